@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// An angle on the circle: it wraps, it has no order, and it is never 360.
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+
+namespace g4lidar {
+
+/// `degrees` brought into [0, 360). *Pure.* Takes -360 <= degrees < 720, which is where the sum of
+/// a first-level angle and a correction lies. A tiny negative number, to which adding 360 gives 360
+/// by rounding, becomes 0.
+template <class Real>
+[[nodiscard]] constexpr Real wrap_once_deg(Real degrees) noexcept {
+  const Real lifted = degrees < Real(0) ? degrees + Real(360) : degrees;
+  return lifted >= Real(360) ? lifted - Real(360) : lifted;
+}
+
+/// `degrees` brought into [0, 360), however many turns away. *Pure.* Takes any finite number below
+/// 1e15 in magnitude.
+template <class Real>
+[[nodiscard]] constexpr Real wrap_deg(Real degrees) noexcept {
+  const auto turns = static_cast<std::int64_t>(degrees / Real(360));
+  return wrap_once_deg(degrees - static_cast<Real>(turns) * Real(360));
+}
+
+/// Sine and cosine of one angle.
+struct sine_cosine {
+  float sine;
+  float cosine;
+};
+
+/// Sine and cosine of `degrees` in [0, 360), without libm. *Pure.* Within 1.2e-7 of the true values.
+[[nodiscard]] constexpr sine_cosine sine_cosine_deg(float degrees) noexcept {
+  // The nearest multiple of 90 is taken off exactly; the rest, at most 45, goes into two series.
+  const auto quarter = static_cast<std::int32_t>(degrees * (1.0F / 90.0F) + 0.5F);
+  const float x =
+      (degrees - static_cast<float>(quarter) * 90.0F) * (std::numbers::pi_v<float> / 180.0F);
+  const float x2 = x * x;
+  const float s =
+      x + x * x2 * (-1.6666667e-1F + x2 * (8.3333310e-3F + x2 * (-1.9840874e-4F + x2 * 2.7525562e-6F)));
+  const float c =
+      1.0F + x2 * (-0.5F + x2 * (4.1666666e-2F + x2 * (-1.3888885e-3F + x2 * 2.4760495e-5F)));
+  switch (quarter & 3) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
+  }
+}
+
+/// An angle on the circle. Sums and differences wrap; two angles are equal or not, and neither is
+/// the smaller one: asking which comes first needs a direction, so `<` does not compile.
+class angle {
+ public:
+  constexpr angle() noexcept = default;
+
+  /// Any finite number of degrees below 1e15 in magnitude.
+  [[nodiscard]] static constexpr angle from_degrees(float degrees) noexcept {
+    return angle(wrap_deg(degrees));
+  }
+  /// Any finite number of radians below 1e13 in magnitude.
+  [[nodiscard]] static constexpr angle from_radians(float radians) noexcept {
+    return angle(wrap_deg(radians * (180.0F / std::numbers::pi_v<float>)));
+  }
+
+  /// In [0, 360); never 360.
+  [[nodiscard]] constexpr float degrees() const noexcept { return degrees_; }
+  /// In [-180, 180).
+  [[nodiscard]] constexpr float signed_degrees() const noexcept {
+    return degrees_ >= 180.0F ? degrees_ - 360.0F : degrees_;
+  }
+  /// In [-pi, pi).
+  [[nodiscard]] constexpr float radians() const noexcept {
+    return signed_degrees() * (std::numbers::pi_v<float> / 180.0F);
+  }
+
+  /// How far to turn, in the direction in which this angle grows, to reach `other`: degrees in
+  /// [0, 360).
+  [[nodiscard]] constexpr float forward_to(angle other) const noexcept {
+    return wrap_once_deg(other.degrees_ - degrees_);
+  }
+  /// The shorter way to `other`, whichever direction it has: degrees in [0, 180].
+  [[nodiscard]] constexpr float apart_from(angle other) const noexcept {
+    const float way = forward_to(other);
+    return way > 180.0F ? 360.0F - way : way;
+  }
+
+  [[nodiscard]] friend constexpr angle operator+(angle a, angle b) noexcept {
+    return angle(wrap_once_deg(a.degrees_ + b.degrees_));
+  }
+  [[nodiscard]] friend constexpr angle operator-(angle a, angle b) noexcept {
+    return angle(wrap_once_deg(a.degrees_ - b.degrees_));
+  }
+  [[nodiscard]] constexpr angle operator-() const noexcept {
+    return angle(wrap_once_deg(-degrees_));
+  }
+  [[nodiscard]] friend constexpr bool operator==(angle, angle) noexcept = default;
+  friend constexpr auto operator<=>(angle, angle) = delete;
+
+ private:
+  explicit constexpr angle(float wrapped_degrees) noexcept : degrees_(wrapped_degrees) {}
+
+  float degrees_ = 0.0F;
+};
+
+}  // namespace g4lidar
