@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: MIT
+# GTest::gtest, GTest::gmock, GTest::gtest_main: the system's, or, for another processor, built from
+# the sources that the package googletest puts into /usr/src.
+
+include(GoogleTest)
+
+if(NOT CMAKE_CROSSCOMPILING)
+  find_package(GTest 1.12 REQUIRED)
+  return()
+endif()
+
+set(G4LIDAR_GOOGLETEST_SOURCE "/usr/src/googletest" CACHE PATH "GoogleTest's sources, for a cross build")
+set(INSTALL_GTEST OFF)
+add_subdirectory("${G4LIDAR_GOOGLETEST_SOURCE}" "${PROJECT_BINARY_DIR}/googletest" EXCLUDE_FROM_ALL)

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: MIT
+# g4lidar_headers(<target> <header>...): the public headers of a target, named below
+# include/g4lidar. Each is compiled alone in builds that set CMAKE_VERIFY_INTERFACE_HEADER_SETS
+# (CMake 3.24 and later); an older CMake gets the include directory and nothing more.
+
+function(g4lidar_headers target)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    set(scope INTERFACE)
+  else()
+    set(scope PUBLIC)
+  endif()
+
+  if(CMAKE_VERSION VERSION_LESS 3.23)
+    target_include_directories(
+      ${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
+      "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
+    )
+    return()
+  endif()
+
+  list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/include/g4lidar/")
+  foreach(header IN LISTS ARGN) # GROWING: until all headers are written
+    if(NOT EXISTS "${header}")
+      list(REMOVE_ITEM ARGN "${header}")
+    endif()
+  endforeach()
+  target_sources(
+    ${target} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${ARGN}
+  )
+endfunction()

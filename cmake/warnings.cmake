@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+# The warnings of our own builds. Included by the top level only when it is nobody's subdirectory,
+# and after the dependencies, so that it reaches neither a consumer's code nor somebody else's.
+
+add_compile_options(
+  -Wall
+  -Wextra
+  -Wpedantic
+  -Wshadow
+  -Wconversion
+  -Wsign-conversion
+  -Wdouble-promotion
+  -Wold-style-cast
+  -Wnon-virtual-dtor
+  -Woverloaded-virtual
+  -Wcast-align
+  -Wcast-qual
+  -Wformat=2
+  -Wnull-dereference
+  -Wimplicit-fallthrough
+  -Wundef
+  -Wvla
+)
+
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wuseless-cast)
+elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  add_compile_options(-Wextra-semi -Wunreachable-code -Wshadow-all -Wno-shadow-field-in-constructor)
+endif()
+
+if(G4LIDAR_WERROR)
+  add_compile_options(-Werror)
+endif()

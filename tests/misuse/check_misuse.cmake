@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+# cmake -DCOMPILER=<c++> -DINCLUDE=<directory> -DSOURCE=<file> -P check_misuse.cmake
+
+set(compile "${COMPILER}" -std=c++20 -Wall -Wextra -Werror -fsyntax-only "-I${INCLUDE}")
+set(ENV{LC_ALL} C) # the messages in English, with plain quotes
+
+file(STRINGS "${SOURCE}" expectations REGEX "^// expect: ")
+if(NOT expectations)
+  message(FATAL_ERROR "${SOURCE} has no line '// expect: <regular expression>'")
+endif()
+
+execute_process(COMMAND ${compile} "${SOURCE}" RESULT_VARIABLE result ERROR_VARIABLE said)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "Without its bad line ${SOURCE} must compile, but:\n${said}")
+endif()
+
+execute_process(COMMAND ${compile} -DMISUSE "${SOURCE}" RESULT_VARIABLE result ERROR_VARIABLE said)
+if(result EQUAL 0)
+  message(FATAL_ERROR "With its bad line ${SOURCE} must not compile, but it does")
+endif()
+string(REGEX REPLACE "[][;]" " " lines "${said}") # the characters that mean something in a list
+string(REPLACE "\n" ";" lines "${lines}")
+foreach(expectation IN LISTS expectations)
+  string(REGEX REPLACE "^// expect: " "" expectation "${expectation}")
+  set(found ${lines})
+  list(FILTER found INCLUDE REGEX "${expectation}")
+  if(NOT found)
+    message(FATAL_ERROR "${SOURCE} is refused, but no line matches '${expectation}':\n${said}")
+  endif()
+endforeach()

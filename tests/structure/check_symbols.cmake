@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+# cmake -DNM=<nm> -DOBJECT=<file.o> -DPROCESSOR=<name> -P check_symbols.cmake
+#
+# Fails if <OBJECT>, in which the whole core is instantiated, needs more than memcpy, memmove, memset
+# and memcmp: no heap, no exceptions, no printing, no libm, no atomics library.
+
+cmake_minimum_required(VERSION 3.22)
+execute_process(COMMAND "${NM}" -P "${OBJECT}" OUTPUT_VARIABLE listing COMMAND_ERROR_IS_FATAL ANY)
+
+set(allowed memcpy memmove memset memcmp)
+set(helper "^$")
+if(PROCESSOR MATCHES "^arm")
+  set(helper "^__aeabi_") # the compiler's own: 64-bit and double arithmetic, and the four above
+endif()
+
+string(REGEX MATCHALL "[^\n]+" lines "${listing}")
+set(defined 0)
+set(needed)
+set(faults)
+foreach(line IN LISTS lines)
+  if(line MATCHES "^[^ ]+ [TWV] ")
+    math(EXPR defined "${defined} + 1")
+  elseif(line MATCHES "^([^ ]+) [Uw]")
+    set(symbol "${CMAKE_MATCH_1}")
+    list(APPEND needed "${symbol}")
+    if(NOT symbol IN_LIST allowed AND NOT symbol MATCHES "${helper}")
+      list(APPEND faults "${symbol}")
+    endif()
+  endif()
+endforeach()
+
+if(faults)
+  list(JOIN faults "\n  " text)
+  message(FATAL_ERROR "The core needs from outside:\n  ${text}")
+endif()
+if(defined LESS 10)
+  message(FATAL_ERROR "Only ${defined} functions in ${OBJECT}: is the core instantiated there?")
+endif()
+list(JOIN needed ", " text)
+message("${defined} functions of the core; needed from outside: ${text}")
