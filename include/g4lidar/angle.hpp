@@ -2,18 +2,33 @@
 // An angle on the circle: it wraps, it has no order, and it is never 360.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <numbers>
 
 namespace g4lidar {
 
+/// All bits set where `x` is negative (or -0), else none. *Pure.* With it a choice between two
+/// numbers is no branch, so that a loop over the choice turns into vector instructions.
+[[nodiscard]] constexpr std::uint32_t negative_mask(float x) noexcept {
+  return static_cast<std::uint32_t>(std::bit_cast<std::int32_t>(x) >> 31);
+}
+
+/// `number` where `mask` has all bits set, 0 where it has none. *Pure.*
+[[nodiscard]] constexpr float masked(std::uint32_t mask, float number) noexcept {
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(number) & mask);
+}
+
 /// `degrees` brought into [0, 360). *Pure.* Takes -360 <= degrees < 720, which is where the sum of
 /// a first-level angle and a correction lies. A tiny negative number, to which adding 360 gives 360
 /// by rounding, becomes 0.
-template <class Real>
-[[nodiscard]] constexpr Real wrap_once_deg(Real degrees) noexcept {
-  const Real lifted = degrees < Real(0) ? degrees + Real(360) : degrees;
-  return lifted >= Real(360) ? lifted - Real(360) : lifted;
+[[nodiscard]] constexpr float wrap_once_deg(float degrees) noexcept {
+  const float lifted = degrees + masked(negative_mask(degrees), 360.0F);
+  return lifted - masked(~negative_mask(lifted - 360.0F), 360.0F);
+}
+[[nodiscard]] constexpr double wrap_once_deg(double degrees) noexcept {
+  const double lifted = degrees < 0.0 ? degrees + 360.0 : degrees;
+  return lifted >= 360.0 ? lifted - 360.0 : lifted;
 }
 
 /// `degrees` brought into [0, 360), however many turns away. *Pure.* Takes any finite number below

@@ -3,9 +3,13 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <optional>
+#include <span>
+#include <type_traits>
 
 #include "g4lidar/bytes.hpp"
 #include "g4lidar/frame_check.hpp"
@@ -97,9 +101,15 @@ class packet_view {
   [[nodiscard]] constexpr std::uint16_t sample(std::size_t i) const noexcept {
     return load_u16(frame_, packet_size(i));
   }
-  /// The samples as bytes, two for each.
-  [[nodiscard]] constexpr bytes sample_bytes() const noexcept {
-    return frame_.subspan(packet_header_size);
+  /// Writes all samples to the front of `out`, and zeroes behind them.
+  constexpr void copy_samples(std::span<std::uint16_t, max_samples> out) const noexcept {
+    const std::size_t count = sample_count();
+    if (std::is_constant_evaluated() || std::endian::native != std::endian::little) {
+      for (std::size_t i = 0; i < count; ++i) out[i] = sample(i);
+    } else {
+      std::memcpy(out.data(), frame_.data() + packet_header_size, 2 * count);
+    }
+    for (std::size_t i = count; i < max_samples; ++i) out[i] = 0;
   }
 
   /// The first sample's first-level angle, clockwise, in 1/64 of a degree, below 23040.

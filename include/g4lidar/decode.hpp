@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// From a packet to corrected points in the caller's memory.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "g4lidar/angle.hpp"
+#include "g4lidar/correction.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// Numbers the revolutions of a stream: 0 from its beginning, one more with each zero packet that is
+/// not the very first packet. *Single thread.*
+class revolution_counter {
+ public:
+  /// The revolution that `packet` belongs to. Show it every packet, the suspect ones too, once.
+  constexpr std::uint32_t count(packet_view packet) noexcept {
+    if (packet.is_zero() && !first_) ++revolution_;
+    first_ = false;
+    return revolution_;
+  }
+
+ private:
+  std::uint32_t revolution_ = 0;
+  bool first_ = true;
+};
+
+/// The points of one packet, and what the packet says of the revolution. `points` lies in the memory
+/// that was given to decode().
+struct decoded {
+  std::span<const point> points;         ///< Empty if the packet is suspect.
+  std::uint32_t revolution = 0;          ///< As given.
+  std::uint16_t sample_count = 0;        ///< Of the packet, suspect or not.
+  std::uint16_t first_angle_64ths = 0;   ///< First-level angle of the first sample, 1/64 degree.
+  std::int16_t span_64ths = 0;           ///< Clockwise way to the last sample, 1/64 degree.
+  std::uint8_t reported_frequency_dhz = 0;  ///< 0.1 Hz; 0 where none is reported.
+  bool starts_revolution = false;        ///< A zero packet, suspect or not.
+  bool suspect = false;                  ///< No angle can be told for its samples.
+};
+
+/// The mark of a sample by its range. *Pure*, and without a branch.
+[[nodiscard]] constexpr point_marks mark_of(std::uint16_t raw) noexcept {
+  constexpr auto too_near_raw = static_cast<std::uint16_t>(4 * too_near_mm);
+  const unsigned no_return = raw == 0;
+  const unsigned near = raw < too_near_raw;
+  return static_cast<point_marks>(no_return | (near & ~no_return) << 1);
+}
+
+/// Writes the corrected points of `packet` to the front of `out`, which has room for the longest
+/// packet, and says what it wrote. *Pure, never allocates.* A suspect packet gives no points. Times
+/// are left 0, not known. (protocol: Point packets)
+template <correction_form Form>
+constexpr decoded decode(packet_view packet, const Form& correction, std::uint32_t revolution,
+                         std::span<point, max_samples> out) noexcept {
+  using real = decltype(correction(std::uint16_t{}));
+  const std::size_t count = packet.sample_count();
+  decoded result;
+  result.revolution = revolution;
+  result.sample_count = static_cast<std::uint16_t>(count);
+  result.first_angle_64ths = static_cast<std::uint16_t>(packet.first_angle_64ths());
+  result.span_64ths = static_cast<std::int16_t>(packet.span_64ths());
+  result.reported_frequency_dhz = static_cast<std::uint8_t>(packet.reported_frequency_dhz());
+  result.starts_revolution = packet.is_zero();
+  result.suspect = packet.is_suspect();
+  if (result.suspect) return result;
+
+  const real first = static_cast<real>(packet.first_angle_64ths()) / real(64);
+  const real step = count > 1 ? static_cast<real>(packet.span_64ths()) /
+                                    (real(64) * static_cast<real>(count - 1))
+                              : real(0);
+  // Whole eights over short arrays, which turn into vector instructions; behind the last sample the
+  // copy holds zeroes.
+  std::array<std::uint16_t, max_samples> raw;
+  packet.copy_samples(raw);
+  for (std::size_t from = 0; from < count; from += 8) {
+    std::array<float, 8> angles_deg;
+    for (std::size_t i = 0; i < 8; ++i) {
+      const real uncorrected = first + static_cast<real>(static_cast<std::int32_t>(from + i)) * step;
+      const real corrected = wrap_once_deg(uncorrected + correction(raw[from + i]));
+      angles_deg[i] = wrap_once_deg(static_cast<float>(corrected));  // rounding can give 360
+    }
+    for (std::size_t i = 0; i < 8 && from + i < count; ++i) {
+      const std::uint16_t sample = raw[from + i];
+      out[from + i] = {angles_deg[i], static_cast<float>(sample) * 0.25F, 0, revolution,
+                       mark_of(sample), {}};
+    }
+  }
+  if (result.starts_revolution) out[0].marks = out[0].marks | point_marks::revolution_start;
+  result.points = out.first(count);
+  return result;
+}
+
+}  // namespace g4lidar
