@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Points as Eigen matrices without a copy, and rigid transforms of them without an allocation.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <concepts>
+#include <cstddef>
+#include <ranges>
+#include <span>
+#include <type_traits>
+
+#include "g4lidar/cartesian.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// Columns of two floats that lie in an array of `Element`s.
+template <class Element>
+using column_map =
+    Eigen::Map<std::conditional_t<std::is_const_v<Element>, const Eigen::Matrix2Xf, Eigen::Matrix2Xf>,
+               Eigen::Unaligned, Eigen::OuterStride<sizeof(Element) / sizeof(float)>>;
+
+/// An argument that owns its elements and dies at the end of the call.
+template <class T>
+concept dying_range = std::ranges::contiguous_range<T> && !std::is_lvalue_reference_v<T> &&
+                      !std::ranges::borrowed_range<std::remove_cvref_t<T>>;
+
+/// The points as a 2 x N matrix, a column for each: angle in degrees, range in millimetres. A map: it
+/// lives as long as the points and sees their changes.
+[[nodiscard]] inline column_map<const point> polar_map(std::span<const point> points) noexcept {
+  static_assert(offsetof(point, range_mm) == offsetof(point, angle_deg) + sizeof(float));
+  return {points.empty() ? nullptr : &points.front().angle_deg, 2,
+          static_cast<Eigen::Index>(points.size())};
+}
+template <dying_range Owner>
+column_map<const point> polar_map(Owner&&) = delete;
+
+/// An array of Cartesian points that outlives the call.
+template <class T>
+concept xy_range = std::ranges::contiguous_range<T> && !dying_range<T> &&
+                   std::same_as<std::ranges::range_value_t<T>, xy_point>;
+
+/// Cartesian points as a 2 x N matrix, a column for each: x and y in metres. A map: it lives as long
+/// as the points, sees their changes, and of points that may be changed it can be written to.
+template <xy_range Points>
+[[nodiscard]] auto xy_map(Points&& points) noexcept {
+  using element = std::remove_reference_t<std::ranges::range_reference_t<Points>>;
+  const std::span<element> columns(points);
+  return column_map<element>(columns.empty() ? nullptr : &columns.front().x_m, 2,
+                             static_cast<Eigen::Index>(columns.size()));
+}
+
+/// Writes x and y in metres in frame `to` into the columns of `out`, which has one for each point.
+/// Points without return become NaN. *Never allocates.*
+inline void to_xy(std::span<const point> points, frame to, Eigen::Ref<Eigen::Matrix2Xf> out) {
+  for (Eigen::Index i = 0; i < out.cols(); ++i) {
+    const xy_point xy = to_xy(points[static_cast<std::size_t>(i)], to);
+    out.col(i) << xy.x_m, xy.y_m;
+  }
+}
+
+/// Moves all points by `motion`: from the lidar's place on the robot, or from the robot's in the
+/// world. *Never allocates.* NaN stays NaN.
+inline void transform(const Eigen::Isometry2f& motion, std::span<xy_point> points) noexcept {
+  auto columns = xy_map(points);
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    const Eigen::Vector2f moved = motion * Eigen::Vector2f(columns.col(i));
+    columns.col(i) = moved;
+  }
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// A scan on a fixed grid of directions: the same number of ranges every time, as SLAM wants it.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "g4lidar/angle.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// Which point a bin takes its range from when several fall into it.
+enum class grid_pick : std::uint8_t {
+  nearest,  ///< The one whose direction is nearest to the middle of the bin.
+  minimum,  ///< The one with the smallest range.
+};
+
+/// How to fill a grid. The defaults are those of a ROS LaserScan from -pi on.
+struct grid_options {
+  /// In the robot's frame bin 0 is centred at -180 degrees, in the vendor's at 0; the next bins follow
+  /// in the direction in which the frame's angles grow.
+  frame to = frame::robot;
+  grid_pick pick = grid_pick::nearest;
+  /// Points marked too near are no obstacles to steer by; left out, they leave NaN.
+  bool keep_too_near = false;
+};
+
+/// The bin of a grid of `bins` bins in which a direction lies, clockwise degrees in [0, 360) as in a
+/// point, and how far from its middle. *Pure.*
+struct grid_place {
+  std::size_t bin;
+  float off_middle_deg;  ///< At most half a bin.
+};
+[[nodiscard]] constexpr grid_place place_in_grid(float direction, frame to,
+                                                 std::size_t bins) noexcept {
+  const float bearing = bearing_deg(direction, to);
+  const float from_first = to == frame::robot ? wrap_once_deg(bearing + 180.0F) : bearing;
+  const float width = 360.0F / static_cast<float>(bins);
+  const auto bin = static_cast<std::size_t>(from_first / width + 0.5F);
+  const float off = from_first - static_cast<float>(bin) * width;
+  return {bin % bins, off < 0.0F ? -off : off};
+}
+
+/// Fills every bin of `ranges_m`: the range in metres; +infinity where the sensor looked and nothing
+/// came back, which never hides a range; NaN where it did not look. *Never allocates.* Takes a scan
+/// of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
+constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
+                         const grid_options& options = {}) noexcept {
+  assert(points.size() <= (std::size_t{1} << 24));
+  // First each bin holds the index of its best point, which is exact in a float; then the range.
+  constexpr float nothing = -1.0F;
+  for (float& slot : ranges_m) slot = nothing;
+  const auto better = [&](const point& p, float off, const point& than) {
+    if (p.is_no_return() != than.is_no_return()) return than.is_no_return();
+    if (options.pick == grid_pick::minimum) return p.range_mm < than.range_mm;
+    return off < place_in_grid(direction_deg(than), options.to, ranges_m.size()).off_middle_deg;
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const point& p = points[i];
+    if (p.is_too_near() && !options.keep_too_near) continue;
+    const grid_place place = place_in_grid(direction_deg(p), options.to, ranges_m.size());
+    float& slot = ranges_m[place.bin];
+    if (slot < 0.0F || better(p, place.off_middle_deg, points[static_cast<std::size_t>(slot)])) {
+      slot = static_cast<float>(i);
+    }
+  }
+  for (float& slot : ranges_m) {
+    if (slot < 0.0F) {
+      slot = std::numeric_limits<float>::quiet_NaN();
+      continue;
+    }
+    const point& best = points[static_cast<std::size_t>(slot)];
+    slot = best.is_no_return() ? std::numeric_limits<float>::infinity() : best.range_mm * 0.001F;
+  }
+}
+
+}  // namespace g4lidar

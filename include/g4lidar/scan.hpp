@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+// Revolutions: points cut at the zero packets, in the caller's storage.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "g4lidar/decode.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// Why a scan is not one whole revolution; a set of bits.
+enum class scan_marks : std::uint8_t {
+  none = 0,
+  start_missing = 1,  ///< Does not begin with a zero packet: the first scan, or one after a cut.
+  end_missing = 2,    ///< Was cut before its zero packet came, or the stream ended.
+  data_lost = 4,      ///< Bytes were lost, or a suspect packet left out, between its points.
+  turn_short = 8,     ///< Its zero packets came well before the angle had gone once round.
+};
+
+[[nodiscard]] constexpr scan_marks operator|(scan_marks a, scan_marks b) noexcept {
+  return static_cast<scan_marks>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+[[nodiscard]] constexpr scan_marks operator&(scan_marks a, scan_marks b) noexcept {
+  return static_cast<scan_marks>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
+}
+
+/// One revolution, or a piece of one. A view: `points` lies in the assembler's storage.
+struct scan {
+  std::span<const point> points;  ///< In the order in which they were measured.
+  std::uint32_t revolution = 0;   ///< Of all its points; two pieces of one revolution share it.
+  scan_marks marks = scan_marks::none;
+  /// The rotation frequency that the device reported with this revolution, 0.1 Hz; 0 if it did not.
+  std::uint8_t reported_frequency_dhz = 0;
+  std::uint32_t suspect_packets = 0;  ///< Left out of `points`; `data_lost` tells of them too.
+  std::uint32_t suspect_samples = 0;  ///< Their samples.
+  /// How far the first-level angle went, clockwise: degrees, about 360 for a whole revolution.
+  float turned_deg = 0.0F;
+  /// From the first point to the first of the next scan, where both times are known; else 0.
+  std::int64_t duration_ns = 0;
+
+  /// Whether this is one revolution from zero packet to zero packet with nothing known to be lost.
+  [[nodiscard]] constexpr bool is_whole() const noexcept { return marks == scan_marks::none; }
+  /// Whether it is anything less.
+  [[nodiscard]] constexpr bool is_partial() const noexcept { return !is_whole(); }
+  [[nodiscard]] constexpr bool has(scan_marks mark) const noexcept {
+    return (marks & mark) != scan_marks::none;
+  }
+  /// The rotation frequency as measured, in Hz: turns over time where the times are known, else
+  /// turns over samples at `samples_per_second`. 0 where it cannot be told.
+  [[nodiscard]] constexpr float measured_frequency_hz(std::uint32_t samples_per_second) const
+      noexcept {
+    const float turns = turned_deg / 360.0F;
+    if (duration_ns > 0) return turns * 1e9F / static_cast<float>(duration_ns);
+    const std::size_t samples = points.size() + suspect_samples;
+    if (samples == 0 || has(scan_marks::data_lost | scan_marks::end_missing)) return 0.0F;
+    return turns * static_cast<float>(samples_per_second) / static_cast<float>(samples);
+  }
+};
+
+/// Cuts the stream of points into revolutions. *Single thread, never allocates.* A pure state
+/// machine over packets; its one state beside the counts is the scan being filled.
+///
+///     scan being filled   packet                              gives                  then
+///     ------------------  ----------------------------------  ---------------------  ------------
+///     empty               zero                                nothing                fill, started
+///     empty               other                               nothing                fill
+///     has points          zero                                the scan, ended        empty
+///     has points          other, would go over 361 degrees    the scan, end missing  empty
+///     has points          other, storage full                 the scan, end missing  empty
+///     has points          other                               nothing                fill
+///     any                 finish()                            the scan, end missing  empty
+///
+/// A packet that gives a scan is not used up: it is shown again and then meets an empty scan. So a
+/// lost zero packet ends in two pieces, the first without an end and the second without a start, and
+/// a full storage loses nothing. Every point that goes in comes out in exactly one scan.
+class scan_assembler {
+ public:
+  /// Fills scans into `storage`, which belongs to the caller, outlives this, and sets the largest
+  /// scan: 9 kHz at 5 Hz makes 1,800 points. Not empty.
+  explicit constexpr scan_assembler(std::span<point> storage) noexcept : storage_(storage) {
+    assert(!storage.empty());
+  }
+
+  /// Takes the points of `packet` until a scan is complete. The scan is good until the next call of
+  /// anything here. Call again with the same `packet`, from whose front the points taken are gone,
+  /// until this gives nothing.
+  [[nodiscard]] constexpr std::optional<scan> next(decoded& packet) noexcept {
+    if (ready_) begin_next();
+    if (packet.starts_revolution) {
+      if (!empty()) return complete(packet);
+      marks_ = scan_marks::none;
+      scan_.reported_frequency_dhz = packet.reported_frequency_dhz;
+      packet.starts_revolution = false;
+    }
+    if (empty()) scan_.revolution = packet.revolution;
+    if (packet.suspect) {
+      ++scan_.suspect_packets;
+      scan_.suspect_samples += packet.sample_count;
+      marks_ = marks_ | scan_marks::data_lost;
+      packet.suspect = false;
+      return std::nullopt;
+    }
+    return fill(packet);
+  }
+
+  /// Tells that packets were lost here, so that the scan they belong to is marked: after a skip for
+  /// any reason but noise.
+  constexpr void lost() noexcept {
+    if (ready_) begin_next();
+    marks_ = marks_ | scan_marks::data_lost;
+  }
+
+  /// Gives the last piece, if there is one, when the stream has ended. After that as new, but for
+  /// the caller's storage.
+  [[nodiscard]] constexpr std::optional<scan> finish() noexcept {
+    if (ready_) begin_next();
+    if (empty()) return std::nullopt;
+    return cut();
+  }
+
+ private:
+  static constexpr std::int32_t turn = turn_64ths;
+  /// Real zero packets come within half a degree of once round; beyond one degree it is lost.
+  static constexpr std::int32_t longest = turn + 64;
+  /// A turn that ends this much early was none: the motor stood still or went back and forth.
+  static constexpr std::int32_t shortest = turn - 10 * 64;
+
+  [[nodiscard]] constexpr bool empty() const noexcept {
+    return used_ == 0 && scan_.suspect_packets == 0;
+  }
+
+  /// Brings the way turned so far up to a sample at `angle_64ths`. Steps back of up to an eighth of a
+  /// turn are the motor's; a larger one is a step ahead over lost packets.
+  constexpr void follow(std::int32_t angle_64ths) noexcept {
+    const std::int32_t ahead = (angle_64ths - at_ + turn) % turn;
+    turned_ += ahead > turn - turn / 8 ? ahead - turn : ahead;
+    at_ = angle_64ths;
+  }
+
+  [[nodiscard]] constexpr std::optional<scan> fill(decoded& packet) noexcept {
+    if (packet.points.empty()) return std::nullopt;
+    const std::size_t before = packet.sample_count - packet.points.size();  // taken earlier
+    if (used_ == 0) at_ = angle_of(packet, before);
+    follow(angle_of(packet, before));
+    const std::size_t fitting =
+        std::min(storage_.size() - used_, samples_within_turn(packet));
+    const std::size_t count = std::min(fitting, packet.points.size());
+    std::copy_n(packet.points.begin(), count,
+                storage_.begin() + static_cast<std::ptrdiff_t>(used_));
+    used_ += count;
+    packet.points = packet.points.subspan(count);
+    if (count > 0) follow(angle_of(packet, before + count - 1));
+    if (packet.points.empty()) return std::nullopt;
+    return cut();
+  }
+
+  /// The first-level angle of sample `i`, 1/64 degree.
+  [[nodiscard]] static constexpr std::int32_t angle_of(const decoded& packet,
+                                                       std::size_t i) noexcept {
+    const std::int32_t gaps = std::max(packet.sample_count - 1, 1);
+    const std::int32_t way = packet.span_64ths * static_cast<std::int32_t>(i) / gaps;
+    return (packet.first_angle_64ths + way) % turn;
+  }
+
+  /// How many samples of `packet`, from the one that follow() was told last, belong to this turn. At
+  /// least one if the scan is empty.
+  [[nodiscard]] constexpr std::size_t samples_within_turn(const decoded& packet) const noexcept {
+    const std::int32_t room = longest - turned_;
+    if (room < 0) return 0;
+    const std::int32_t gaps = std::max(packet.sample_count - 1, 1);
+    const std::int32_t span = std::max<std::int32_t>(packet.span_64ths, 1);
+    return static_cast<std::size_t>(room * gaps / span) + 1;
+  }
+
+  [[nodiscard]] constexpr scan complete(const decoded& next_packet) noexcept {
+    if (used_ > 0) {
+      follow(next_packet.first_angle_64ths);
+      if (turned_ < shortest) marks_ = marks_ | scan_marks::turn_short;
+      if (!next_packet.points.empty()) set_duration(next_packet.points.front());
+    }
+    return give();
+  }
+
+  [[nodiscard]] constexpr scan cut() noexcept {
+    marks_ = marks_ | scan_marks::end_missing;
+    return give();
+  }
+
+  constexpr void set_duration(const point& next_point) noexcept {
+    const std::int64_t from = storage_.front().time_ns;
+    if (from != 0 && next_point.time_ns > from) scan_.duration_ns = next_point.time_ns - from;
+  }
+
+  [[nodiscard]] constexpr scan give() noexcept {
+    ready_ = true;
+    scan_.points = storage_.first(used_);
+    scan_.marks = marks_;
+    scan_.turned_deg = static_cast<float>(turned_) / 64.0F;
+    return scan_;
+  }
+
+  constexpr void begin_next() noexcept {
+    ready_ = false;
+    used_ = 0;
+    turned_ = 0;
+    scan_ = {};
+    marks_ = scan_marks::start_missing;
+  }
+
+  std::span<point> storage_;
+  std::size_t used_ = 0;
+  bool ready_ = false;  // a scan has been given; the next call begins a new one
+  scan scan_;
+  scan_marks marks_ = scan_marks::start_missing;
+  std::int32_t at_ = 0;      // the first-level angle last seen, 1/64 degree
+  std::int32_t turned_ = 0;  // since the scan's first sample, 1/64 degree
+};
+
+}  // namespace g4lidar
