@@ -1,2 +1,72 @@
 # SPDX-License-Identifier: MIT
-# cmake --install: headers, libraries, the CMake package g4lidar, and two pkg-config files.
+# cmake --install: headers, libraries, the CMake package g4lidar with its components, and the
+# pkg-config files g4lidar-core.pc and g4lidar.pc.
+
+include(CMakePackageConfigHelpers)
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/g4lidar")
+
+# Each component has an export file of its own, so that asking for one never needs another's
+# dependencies.
+function(install_component component target)
+  if(CMAKE_VERSION VERSION_LESS 3.23)
+    set(headers)
+  else()
+    set(headers FILE_SET HEADERS)
+  endif()
+  install(
+    TARGETS ${target}
+    EXPORT g4lidar-${component}
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}"
+    ${headers}
+  )
+  install(
+    EXPORT g4lidar-${component}
+    NAMESPACE g4lidar::
+    DESTINATION "${package_dir}"
+  )
+endfunction()
+
+install_component(core g4lidar_core)
+if(TARGET g4lidar_eigen)
+  install_component(eigen g4lidar_eigen)
+endif()
+if(G4LIDAR_HOSTED)
+  install_component(library g4lidar)
+  install_component(sim g4lidar_sim)
+endif()
+
+if(CMAKE_VERSION VERSION_LESS 3.23)
+  install(
+    DIRECTORY "${PROJECT_SOURCE_DIR}/include/g4lidar"
+    DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+    FILES_MATCHING
+    PATTERN "*.hpp"
+  )
+endif()
+
+write_basic_package_version_file(
+  "${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake"
+  COMPATIBILITY SameMinorVersion # until 1.0 a minor version may break
+)
+install(FILES "${PROJECT_SOURCE_DIR}/cmake/g4lidar-config.cmake"
+              "${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake"
+        DESTINATION "${package_dir}"
+)
+
+# ---- pkg-config --------------------------------------------------------------------------------
+cmake_path(APPEND pc_libdir "\${prefix}" "${CMAKE_INSTALL_LIBDIR}")
+cmake_path(APPEND pc_includedir "\${prefix}" "${CMAKE_INSTALL_INCLUDEDIR}")
+set(pc_files)
+foreach(name g4lidar-core g4lidar)
+  if(name STREQUAL "g4lidar-core" OR G4LIDAR_HOSTED)
+    configure_file(
+      "${PROJECT_SOURCE_DIR}/packaging/${name}.pc.in" "${PROJECT_BINARY_DIR}/packaging/${name}.pc"
+      @ONLY
+    )
+    list(APPEND pc_files "${PROJECT_BINARY_DIR}/packaging/${name}.pc")
+  endif()
+endforeach()
+install(FILES ${pc_files} DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

@@ -23,7 +23,7 @@ add_compile_options(
 )
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_compile_options(-Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wuseless-cast)
+  add_compile_options(-Wduplicated-cond -Wduplicated-branches -Wlogical-op)
 elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   add_compile_options(-Wextra-semi -Wunreachable-code -Wshadow-all -Wno-shadow-field-in-constructor)
 endif()

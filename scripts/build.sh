@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+# How the scripts configure and build: quietly when all is well, with everything when it is not.
+# Sourced by the scripts; needs bash.
+
+# run_quietly <what> <command>...: prints one line, and the command's output only if it fails.
+run_quietly() {
+  local what=$1 output
+  shift
+  printf '%s ... ' "$what"
+  local begin=$SECONDS
+  if output=$("$@" 2>&1); then
+    printf '%d s\n' "$((SECONDS - begin))"
+  else
+    local code=$?
+    printf 'failed\n%s\n' "$output" >&2
+    return "$code"
+  fi
+}
+
+# configure <build directory> <cmake argument>...
+configure() {
+  local directory=$1
+  shift
+  local launcher=()
+  if command -v ccache >/dev/null; then
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  run_quietly "Configuring $directory" cmake -S . -B "$directory" -G Ninja "${launcher[@]}" "$@"
+}
+
+# configure_preset <preset> <cmake argument>...: into build/<preset>.
+configure_preset() {
+  local preset=$1
+  shift
+  configure "build/$preset" --preset "$preset" "$@"
+}
+
+# build <build directory> [<target>...]: the targets, or all.
+build() {
+  local directory=$1
+  shift
+  run_quietly "Building $directory" cmake --build "$directory" ${*:+--target "$@"}
+}
