@@ -35,8 +35,10 @@ namespace g4lidar {
 /// 1e15 in magnitude.
 template <class Real>
 [[nodiscard]] constexpr Real wrap_deg(Real degrees) noexcept {
-  const auto turns = static_cast<std::int64_t>(degrees / Real(360));
-  return wrap_once_deg(degrees - static_cast<Real>(turns) * Real(360));
+  // Whole degrees go round as an integer, so that nothing is lost far away from the circle.
+  const auto whole = static_cast<std::int64_t>(degrees);
+  const Real fraction = degrees - static_cast<Real>(whole);
+  return wrap_once_deg(static_cast<Real>(whole % 360) + fraction);
 }
 
 /// Sine and cosine of one angle.
