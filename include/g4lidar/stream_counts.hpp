@@ -56,7 +56,7 @@ struct stream_counts {
   constexpr void add(const event& found) noexcept {
     if (const auto* packet = std::get_if<packet_view>(&found)) return add(*packet);
     if (const auto* response = std::get_if<response_view>(&found)) return add(*response);
-    add(*std::get_if<g4lidar::skipped>(&found));
+    if (const auto* gone = std::get_if<g4lidar::skipped>(&found)) add(*gone);
   }
 
   friend constexpr bool operator==(const stream_counts&, const stream_counts&) = default;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// The arithmetic of the bulk decoder, one packet at a time, once for each instruction set.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/cartesian.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar::bulk {
+
+/// Both write the samples of a packet that is not suspect to the front of `out`. What lies behind
+/// them in `out` may be written to.
+struct kernels {
+  void (*to_points)(packet_view packet, std::uint32_t revolution,
+                    std::span<point, max_samples> out) noexcept;
+  void (*to_xy)(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept;
+};
+
+extern const kernels portable_kernels;
+
+/// Only where the processor can be one that has them.
+#if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
+#define G4LIDAR_HAS_AVX2_KERNELS 1
+extern const kernels avx2_kernels;
+#else
+#define G4LIDAR_HAS_AVX2_KERNELS 0
+#endif
+
+}  // namespace g4lidar::bulk
