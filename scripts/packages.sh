@@ -17,7 +17,7 @@ packages_test=(
 # And everything that .ci/run does.
 packages_ci=(
   "${packages_test[@]}"
-  ccache git pkg-config libbenchmark-dev valgrind
+  ccache debootstrap git pkg-config libbenchmark-dev valgrind
   g++-11
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
