@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// What a G4's beam meets: rays bent through the inverse of the second-level correction.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "g4lidar/sim/world.hpp"
+
+namespace g4lidar::sim {
+
+/// The second-level correction of a target at `range_mm` > 0, in degrees, in double precision and
+/// written independently of the core's. *Pure.* (protocol: Point packets, second-level correction)
+[[nodiscard]] double correction_deg(double range_mm) noexcept;
+
+/// The limit of the correction for far targets, in degrees.
+inline constexpr double far_correction_deg = -7.990596267964585603;
+
+/// A target on the beam.
+struct sighting {
+  double range_mm;     ///< From the lidar's centre, > 0.
+  double bearing_deg;  ///< Where it stands: first-level angle + correction, in [0, 360).
+  std::uint32_t wall;  ///< The index of the wall that was met.
+};
+
+/// Answers which wall the beam meets first. Since the correction depends on the range, the beam is
+/// no straight line but a curve: its point at range d stands at the bearing theta + correction(d).
+/// Allocates on construction only; after that a `const` caster may be used by any number of threads.
+class ray_caster {
+ public:
+  /// `scene` is copied as far as it is needed.
+  explicit ray_caster(const world& scene);
+
+  /// The nearest target on the beam at `first_level_deg` in [0, 360), however far it is; nothing
+  /// where the beam meets no wall. What is nearer than 1 mm is not seen.
+  [[nodiscard]] std::optional<sighting> cast(double first_level_deg) const noexcept;
+
+ private:
+  // A wall in millimetres as the lidar sees it: x at bearing 0, y at bearing 90.
+  struct seen_wall {
+    double normal_x, normal_y;      // unit, from the lidar towards the wall's line
+    double tangent_x, tangent_y;    // unit
+    double distance;                // of the wall's line, >= 0
+    double along_begin, along_end;  // where the wall begins and ends on its line
+    double nearest, farthest;       // of the wall's points
+    std::uint32_t index;
+  };
+  struct beam;
+
+  [[nodiscard]] static seen_wall as_seen(const wall& w, const pose& from,
+                                         std::uint32_t index) noexcept;
+  [[nodiscard]] static std::optional<double> meet(const seen_wall& target, const beam& ray,
+                                                  double not_beyond_mm) noexcept;
+
+  std::vector<seen_wall> walls_;             // the nearest first
+  std::vector<std::uint32_t> candidates_;    // indices into walls_, sector by sector, in its order
+  std::vector<std::uint32_t> sector_begin_;  // into candidates_, one more than there are sectors
+};
+
+}  // namespace g4lidar::sim

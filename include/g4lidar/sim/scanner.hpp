@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// The measuring half of a simulated G4: a turning head, its samples, and the packets it sends.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "g4lidar/bytes.hpp"
+#include "g4lidar/command.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/sim/random.hpp"
+#include "g4lidar/sim/ray_caster.hpp"
+#include "g4lidar/sim/world.hpp"
+
+namespace g4lidar::sim {
+
+/// How the device is set and how good it is. By default a G4 as it comes, without flaws.
+struct scanner_options {
+  std::uint64_t seed = 1;                  ///< Of everything that is drawn at random below.
+  std::uint16_t scan_frequency_chz = 700;  ///< Revolutions in 100 s, constant; 500 to 1200.
+  ranging_frequency ranging = ranging_frequency::khz_9;
+  std::size_t samples_per_packet = 40;  ///< 1 to 80.
+  double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
+  /// The angle at the first sample, [0, 360); drawn at random where not given.
+  std::optional<double> start_deg;
+  bool reports_frequency = true;   ///< Whether a zero packet's CT tells the scan frequency.
+  double min_range_mm = 280.0;     ///< What is nearer gives no return.
+  double max_range_mm = 16'000.0;  ///< What is farther gives no return; at most 16383.75.
+  double noise_mm = 0.0;           ///< Standard deviation of a range, and what each millimetre of
+  double noise_ratio = 0.0;        ///< range adds to it. Both >= 0.
+  double dropout_ratio = 0.0;  ///< How many of all samples give no return for no reason, 0 to 1.
+};
+
+/// What is wrong with `options`, a sentence to be shown to a person; empty if nothing is. *Pure.*
+[[nodiscard]] std::string_view problem_with(const scanner_options& options) noexcept;
+
+/// What a sample truly was, before it was squeezed into the wire's format.
+struct sample_truth {
+  std::uint64_t index;   ///< Of the sample, from 0.
+  std::int64_t time_ns;  ///< When it was measured; sample 0 at 0.
+  std::uint64_t
+      revolution;          ///< From 0; one more with each zero packet that is not the first packet.
+  double first_level_deg;  ///< The head's angle, clockwise, [0, 360).
+  double bearing_deg;      ///< Where the target stands, clockwise, [0, 360). Where there is none,
+                           ///< where a far one would stand.
+  double range_mm;         ///< Of the target, however far and without noise; 0: there is none.
+  std::uint16_t raw;       ///< As sent: quarters of a millimetre, 0 for no return.
+};
+
+/// A packet as it leaves the device, and what its samples truly were.
+struct sent_packet {
+  bytes data;                             ///< Good until the scanner's next call.
+  std::span<const sample_truth> samples;  ///< The same number, in order; good as long as `data`.
+  std::int64_t complete_ns;               ///< When the last sample was measured: not sent before.
+};
+
+/// What a device sends first when scanning starts: the reply to the start command, 7 bytes, good
+/// for ever. (protocol: Commands, 60)
+[[nodiscard]] bytes scan_start_reply() noexcept;
+
+/// A turning head that measures in virtual time: each next() is one packet further. Same options and
+/// same world, same bytes, on every processor. *Single thread. Allocates on construction only.* A
+/// copy lives on independently.
+class scanner {
+ public:
+  /// `problem_with(options)` is empty; a mistake there is an assertion.
+  scanner(const world& scene, const scanner_options& options);
+
+  /// The next packet. It never ends. A zero packet when the index has passed, with the first sample
+  /// after it; then packets of `samples_per_packet`, the last one of a revolution shorter.
+  [[nodiscard]] sent_packet next() noexcept;
+
+  [[nodiscard]] const scanner_options& options() const noexcept { return options_; }
+
+ private:
+  [[nodiscard]] sample_truth measure() noexcept;
+  [[nodiscard]] std::uint16_t raw_sample(double range_mm) noexcept;
+  void turn_on() noexcept;
+  [[nodiscard]] bytes frame_of(std::size_t samples, bool zero) noexcept;
+
+  scanner_options options_;
+  ray_caster caster_;
+  random_stream noise_;
+  random_stream dropouts_;
+  std::uint32_t rate_hz_;
+  std::uint64_t phase_;  // since the index, in 2^-64 of a turn
+  std::uint64_t step_;   // of a sample
+  std::uint64_t index_ = 0;
+  std::uint64_t revolution_ = 0;
+  bool at_index_;  // the index has passed since the last sample
+  std::array<sample_truth, max_samples> truths_{};
+  std::array<std::uint8_t, max_packet_size> frame_{};
+};
+
+}  // namespace g4lidar::sim

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Included first by every source of g4lidar::sim: refuses a compiler set up to round otherwise than
+// IEEE 754 doubles do, one operation at a time. Same seed, same bytes, rests on it.
+#pragma once
+
+#include <cfloat>
+#include <limits>
+
+static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<double>::digits == 53);
+
+// 0: as the type says; 1: float as double, which leaves double alone; 2 would be the x87.
+static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1,
+              "g4lidar::sim needs doubles without excess precision (x86: -msse2 -mfpmath=sse)");
+
+#if defined(__FAST_MATH__)
+#error "g4lidar::sim must not be compiled with -ffast-math"
+#endif
+
+#if defined(__clang__)
+#pragma clang fp contract(off)
+#endif
+
+// A compiler does not say whether it fuses a * b + c. src/CMakeLists.txt gives this definition
+// together with -ffp-contract=off, and the golden digests in the tests notice if that fails.
+#if !defined(G4LIDAR_SIM_UNFUSED)
+#error "compile g4lidar::sim with -ffp-contract=off -DG4LIDAR_SIM_UNFUSED"
+#endif
