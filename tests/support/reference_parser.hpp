@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+// What the parser ought to find in a whole input, written a second time and in another way: without
+// a line of the library, byte by byte and without regard to speed. It judges the tests' streams.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace reference {
+
+/// What a stretch of the input is.
+enum class kind { packet, response, noise, bad_header, bad_checksum, truncated };
+
+/// A stretch of the input: a frame, or neighbouring skipped bytes of one reason.
+struct stretch {
+  std::size_t offset;
+  std::size_t size;
+  kind what;
+
+  friend bool operator==(const stretch&, const stretch&) = default;
+};
+
+[[nodiscard]] inline std::string name_of(kind what) {
+  switch (what) {
+    case kind::packet:
+      return "packet";
+    case kind::response:
+      return "response";
+    case kind::noise:
+      return "noise";
+    case kind::bad_header:
+      return "bad_header";
+    case kind::bad_checksum:
+      return "bad_checksum";
+    case kind::truncated:
+      return "truncated";
+  }
+  return "?";
+}
+
+/// For GoogleTest's messages.
+template <class Stream>
+Stream& operator<<(Stream& out, const stretch& s) {
+  out << "[" << s.offset << ", +" << s.size << " " << name_of(s.what) << "]";
+  return out;
+}
+
+/// Some bytes of an input by their place in it; those behind its end read as nothing.
+class window {
+ public:
+  window(const std::vector<std::uint8_t>& input, std::size_t from) : input_(input), from_(from) {}
+
+  [[nodiscard]] std::size_t left() const { return input_.size() - from_; }
+  /// Byte `i`, or -1 where the input has ended.
+  [[nodiscard]] int operator[](std::size_t i) const {
+    return i < left() ? static_cast<int>(input_[from_ + i]) : -1;
+  }
+
+ private:
+  const std::vector<std::uint8_t>& input_;
+  std::size_t from_;
+};
+
+/// Whether some valid packet header begins with the first `k` bytes, 1 <= k <= 8. What is not there
+/// yet is taken at its most favourable: a missing upper byte of an angle as 0.
+[[nodiscard]] inline bool could_be_packet(const window& in, std::size_t k) {
+  const auto angle_ok = [&](std::size_t low) {
+    if (k <= low) return true;
+    const int high = k > low + 1 ? in[low + 1] : 0;
+    const int raw = in[low] + 256 * high;
+    return raw % 2 == 1 && raw / 2 < 360 * 64;
+  };
+  return in[0] == 0xAA && (k < 2 || in[1] == 0x55) && (k < 4 || (in[3] >= 1 && in[3] <= 80)) &&
+         angle_ok(4) && angle_ok(6);
+}
+
+/// The checksum as the protocol page lists it: PH, FSA, the samples, CT with LSN, LSA.
+[[nodiscard]] inline int checksum_of(const window& in) {
+  const auto word = [&](std::size_t i) { return in[i] + 256 * in[i + 1]; };
+  int sum = 0x55AA;
+  sum ^= word(4);
+  for (int sample = 0; sample < in[3]; ++sample) {
+    sum ^= word(10 + 2 * static_cast<std::size_t>(sample));
+  }
+  sum ^= in[2] + 256 * in[3];
+  sum ^= word(6);
+  return sum;
+}
+
+/// Whether some valid reply begins with the first `k` bytes.
+[[nodiscard]] inline bool could_be_response(const window& in, std::size_t k) {
+  struct form {
+    int length, top_bits, type, content;
+  };
+  const form forms[] = {{5, 0x40, 0x81, 0},
+                        {20, 0x00, 0x04, 20},
+                        {3, 0x00, 0x06, 3},
+                        {1, 0x00, 0x04, 1},
+                        {4, 0x00, 0x04, 4}};
+  for (const form& f : forms) {
+    const int header[7] = {0xA5, 0x5A, f.length, 0, 0, f.top_bits, f.type};
+    bool fits = k <= 7 + static_cast<std::size_t>(f.content);
+    for (std::size_t i = 0; i < 7 && i < k; ++i) fits = fits && in[i] == header[i];
+    const auto content = [&](std::size_t i) { return 7 + i < k ? in[7 + i] : 0; };
+    if (f.content == 1 || f.content == 3) fits = fits && content(0) <= 2;
+    if (f.content == 4) {
+      const std::int64_t hundredths =
+          content(0) + 256LL * content(1) + 65536LL * content(2) + 16777216LL * content(3);
+      fits = fits && hundredths <= 2000;
+    }
+    if (f.content == 20) {
+      for (std::size_t i = 4; i < 20; ++i) fits = fits && content(i) <= 9;
+    }
+    if (fits) return true;
+  }
+  return false;
+}
+
+/// What begins at one place of the input, seen for itself.
+struct start {
+  enum { no_start, refused, unfinished, frame } state;
+  kind what;         ///< Of a frame: packet or response. Refused: why.
+  std::size_t size;  ///< Of a frame; refused: the bytes from the start to what spoke against it.
+};
+
+[[nodiscard]] inline start packet_start_at(const window& in) {
+  for (std::size_t k = 1; k <= 8; ++k) {
+    if (k > in.left()) return {start::unfinished, kind::truncated, 0};
+    if (!could_be_packet(in, k)) {
+      if (k <= 2) return {start::no_start, kind::noise, 1};
+      return {start::refused, kind::bad_header, k};
+    }
+  }
+  const std::size_t size = 10 + 2 * static_cast<std::size_t>(in[3]);
+  if (size > in.left()) return {start::unfinished, kind::truncated, 0};
+  if (checksum_of(in) != in[8] + 256 * in[9]) return {start::refused, kind::bad_checksum, size};
+  return {start::frame, kind::packet, size};
+}
+
+[[nodiscard]] inline start response_start_at(const window& in) {
+  std::size_t k = 1;
+  while (k <= in.left() && could_be_response(in, k)) {
+    // A reply is whole when nothing can follow: no reply is another one's beginning.
+    const int length = k >= 7 ? (in[2] == 5 ? 0 : in[2]) : -1;
+    if (length >= 0 && k == 7 + static_cast<std::size_t>(length)) {
+      return {start::frame, kind::response, k};
+    }
+    ++k;
+  }
+  if (k > in.left()) return {start::unfinished, kind::truncated, 0};
+  if (k <= 2) return {start::no_start, kind::noise, 1};
+  return {start::refused, kind::bad_header, k};
+}
+
+[[nodiscard]] inline start start_at(const std::vector<std::uint8_t>& input, std::size_t offset) {
+  const window in(input, offset);
+  if (in[0] == 0xAA) return packet_start_at(in);
+  if (in[0] == 0xA5) return response_start_at(in);
+  return {start::no_start, kind::noise, 1};
+}
+
+/// The whole input taken apart.
+struct reading {
+  std::vector<stretch> stretches;  ///< From the first byte to the last, without a gap.
+  std::size_t held_from;           ///< What lies from here on is told by finish() only.
+};
+
+/// Reads `input` from its first byte to its last, with finish() at the end. Each byte is part of a
+/// frame or has a reason. A refused start gives its reason to all bytes that it had laid claim to,
+/// unless an earlier one did so before it, and until a frame begins.
+[[nodiscard]] inline reading read(const std::vector<std::uint8_t>& input) {
+  reading result{{}, input.size()};
+  bool ended = false;  // the input does not suffice to tell: from here on finish() decides
+  std::size_t claimed_up_to = 0;
+  kind claimed_for = kind::noise;
+  const auto add = [&](std::size_t offset, std::size_t size, kind what, bool mergeable) {
+    if (mergeable && !result.stretches.empty() && result.stretches.back().what == what) {
+      result.stretches.back().size += size;
+    } else {
+      result.stretches.push_back({offset, size, what});
+    }
+  };
+  for (std::size_t at = 0; at < input.size();) {
+    const start s = start_at(input, at);
+    if (s.state == start::unfinished && !ended) {
+      ended = true;
+      result.held_from = at;
+    }
+    if (s.state == start::frame) {
+      add(at, s.size, s.what, false);
+      at += s.size;
+      claimed_up_to = at;
+      continue;
+    }
+    if (at >= claimed_up_to) {
+      claimed_for = s.what;
+      claimed_up_to = s.state == start::unfinished ? input.size() : at + s.size;
+    }
+    add(at, 1, claimed_for, true);
+    ++at;
+  }
+  return result;
+}
+
+}  // namespace reference

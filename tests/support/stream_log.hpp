@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Runs the parser over an input cut into pieces that live no longer than they must, and puts down
+// what it finds in the words of the reference, so that the two can be compared.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/stream_parser.hpp"
+#include "support/reference_parser.hpp"
+
+namespace g4lidar::test {
+
+using buffer = std::vector<std::uint8_t>;
+
+[[nodiscard]] inline reference::kind kind_of(const event& found) {
+  if (std::holds_alternative<packet_view>(found)) return reference::kind::packet;
+  if (std::holds_alternative<response_view>(found)) return reference::kind::response;
+  switch (std::get<skipped>(found).reason) {
+    case skip_reason::noise:
+      return reference::kind::noise;
+    case skip_reason::bad_header:
+      return reference::kind::bad_header;
+    case skip_reason::bad_checksum:
+      return reference::kind::bad_checksum;
+    case skip_reason::truncated:
+      break;
+  }
+  return reference::kind::truncated;
+}
+
+[[nodiscard]] inline std::size_t size_of(const event& found) {
+  if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
+  if (const auto* reply = std::get_if<response_view>(&found)) return reply->data().size();
+  return std::get<skipped>(found).count;
+}
+
+/// Watches a parser from outside: puts its events together and notes the first promise it breaks.
+class stream_log {
+ public:
+  explicit stream_log(const buffer& whole) : whole_(whole) {}
+
+  /// Feeds the next `count` bytes of the whole input, in memory of their own.
+  void feed(stream_parser& parser, std::size_t count) {
+    const auto from = whole_.begin() + static_cast<std::ptrdiff_t>(fed_);
+    const buffer piece(from, from + static_cast<std::ptrdiff_t>(count));
+    fed_ += count;
+    bytes rest(piece);
+    while (const auto found = parser.next(rest)) {
+      take(*found);
+      expect(told_ + parser.held() + rest.size() == fed_, "bytes went astray after an event");
+    }
+    expect(rest.empty(), "input is left though there is no event");
+    expect(told_ + parser.held() == fed_, "bytes went astray");
+    expect(parser.held() < max_packet_size, "too many bytes are held");
+  }
+
+  /// Ends the input.
+  void finish(stream_parser& parser) {
+    held_from_ = fed_ - parser.held();
+    while (const auto found = parser.finish()) {
+      take(*found);
+      expect(told_ + parser.held() == fed_, "bytes went astray in finish()");
+    }
+    expect(told_ == fed_ && parser.held() == 0, "finish() leaves bytes behind");
+  }
+
+  [[nodiscard]] const std::vector<reference::stretch>& stretches() const { return stretches_; }
+  /// Where the bytes began that were held when finish() was called.
+  [[nodiscard]] std::size_t held_from() const { return held_from_; }
+  /// The first broken promise; empty if none is.
+  [[nodiscard]] const std::string& complaint() const { return complaint_; }
+
+ private:
+  void take(const event& found) {
+    const std::size_t size = size_of(found);
+    const reference::kind what = kind_of(found);
+    expect(size > 0, "an event of no bytes");
+    if (std::holds_alternative<skipped>(found)) {
+      if (!stretches_.empty() && stretches_.back().what == what) {
+        stretches_.back().size += size;
+      } else {
+        stretches_.push_back({told_, size, what});
+      }
+    } else {
+      const bytes frame = what == reference::kind::packet ? std::get<packet_view>(found).data()
+                                                          : std::get<response_view>(found).data();
+      const auto place = whole_.begin() + static_cast<std::ptrdiff_t>(told_);
+      expect(told_ + size <= fed_ && std::equal(frame.begin(), frame.end(), place),
+             "a view of other bytes than those of the input");
+      stretches_.push_back({told_, size, what});
+    }
+    told_ += size;
+  }
+
+  void expect(bool holds, const char* otherwise) {
+    if (!holds && complaint_.empty()) {
+      complaint_ = std::string(otherwise) + " at byte " + std::to_string(told_);
+    }
+  }
+
+  const buffer& whole_;
+  std::size_t fed_ = 0;
+  std::size_t told_ = 0;  // bytes that the events so far speak of
+  std::size_t held_from_ = 0;
+  std::vector<reference::stretch> stretches_;
+  std::string complaint_;
+};
+
+/// The first difference between the log and the reference, in words; empty if there is none.
+[[nodiscard]] inline std::string difference(const stream_log& log,
+                                            const reference::reading& wanted) {
+  if (!log.complaint().empty()) return log.complaint();
+  const auto& got = log.stretches();
+  const auto [a, b] = std::mismatch(got.begin(), got.end(), wanted.stretches.begin(),
+                                    wanted.stretches.end());
+  const auto say = [](auto at, auto end) {
+    if (at == end) return std::string("the end");
+    return reference::name_of(at->what) + " of " + std::to_string(at->size) + " at byte " +
+           std::to_string(at->offset);
+  };
+  if (a != got.end() || b != wanted.stretches.end()) {
+    return "the parser says " + say(a, got.end()) + ", the reference " +
+           say(b, wanted.stretches.end());
+  }
+  if (log.held_from() != wanted.held_from) {
+    return "held from byte " + std::to_string(log.held_from()) + ", not " +
+           std::to_string(wanted.held_from);
+  }
+  return {};
+}
+
+}  // namespace g4lidar::test
