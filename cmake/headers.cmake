@@ -20,11 +20,6 @@ function(g4lidar_headers target)
   endif()
 
   list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/include/g4lidar/")
-  foreach(header IN LISTS ARGN) # GROWING: until all headers are written
-    if(NOT EXISTS "${header}")
-      list(REMOVE_ITEM ARGN "${header}")
-    endif()
-  endforeach()
   target_sources(
     ${target} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${ARGN}
   )

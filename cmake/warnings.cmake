@@ -16,7 +16,6 @@ add_compile_options(
   -Wcast-align
   -Wcast-qual
   -Wformat=2
-  -Wnull-dereference
   -Wimplicit-fallthrough
   -Wundef
   -Wvla
@@ -24,6 +23,9 @@ add_compile_options(
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wduplicated-cond -Wduplicated-branches -Wlogical-op)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
+    add_compile_options(-Wno-psabi) # notes on how g++ 7 passed arguments
+  endif()
 elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   add_compile_options(-Wextra-semi -Wunreachable-code -Wshadow-all -Wno-shadow-field-in-constructor)
 endif()

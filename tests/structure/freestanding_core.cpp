@@ -1,22 +1,140 @@
 // SPDX-License-Identifier: MIT
 // The whole core, instantiated: what this translation unit needs from outside is what the core needs.
+// It is also what clang-tidy looks at to see the core's headers.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <optional>
+#include <span>
+#include <variant>
+
+#include "g4lidar/angle.hpp"
+#include "g4lidar/bytes.hpp"
+#include "g4lidar/cartesian.hpp"
+#include "g4lidar/command.hpp"
+#include "g4lidar/correction.hpp"
+#include "g4lidar/decode.hpp"
+#include "g4lidar/frame_check.hpp"
+#include "g4lidar/grid.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/point.hpp"
+#include "g4lidar/point_ring.hpp"
+#include "g4lidar/response.hpp"
+#include "g4lidar/scan.hpp"
+#include "g4lidar/stream_counts.hpp"
 #include "g4lidar/stream_parser.hpp"
+#include "g4lidar/version.hpp"
 
-namespace {
+namespace freestanding {
 
-struct sink {
-  std::size_t* bytes;
-  void operator()(const g4lidar::event& found) const {
-    if (const auto* gone = std::get_if<g4lidar::skipped>(&found)) *bytes += gone->count;
-  }
-};
+using namespace g4lidar;
 
-}  // namespace
+using any_point_ring = point_ring<1024>;
+using narrow_point_ring = point_ring<512, std::uint32_t>;
 
-std::size_t use_parser(g4lidar::stream_parser& parser, g4lidar::bytes input);
-std::size_t use_parser(g4lidar::stream_parser& parser, g4lidar::bytes input) {
-  std::size_t count = 0;
-  parser.feed(input, sink{&count});
-  while (const auto found = parser.finish()) sink{&count}(*found);
-  return count;
+// ---- ground and wire -------------------------------------------------------------------------
+angle add(angle a, angle b) { return -(a + b - angle::from_radians(a.radians())); }
+float apart(angle a, angle b) { return a.apart_from(b) + a.forward_to(b) + b.signed_degrees(); }
+double wrap(double degrees) { return wrap_deg(degrees); }
+
+frame_check check(bytes data) { return check_packet(data); }
+frame_check check_reply(bytes data) { return check_response(data); }
+std::optional<packet_view> view_packet(bytes data) { return packet_view::from(data); }
+std::optional<response_view> view_reply(bytes data) { return response_view::from(data); }
+std::uint32_t load(bytes data) {
+  return load_u32(data, 0) + load_u16(data, 0) + static_cast<std::uint32_t>(load_u64(data, 0));
 }
+void store(std::span<std::uint8_t> data, std::uint16_t value) { store_u16(data, 0, value); }
+
+std::optional<device_information> read_information(response_view reply) {
+  return reply.as_device_info();
+}
+std::optional<health> read_health(response_view reply) { return reply.as_health(); }
+std::optional<std::uint8_t> read_byte(response_view reply) { return reply.as_byte(); }
+std::optional<std::uint16_t> read_frequency(response_view reply) {
+  return reply.as_frequency_chz();
+}
+std::optional<command_traits> look_up(command code) { return traits_of(code); }
+std::array<std::uint8_t, 2> command_bytes(command code) { return encode(code); }
+std::optional<ranging_frequency> read_ranging(std::uint8_t value) {
+  return reply_byte<ranging_frequency>(value);
+}
+std::optional<motor_direction> read_direction(std::uint8_t value) {
+  return reply_byte<motor_direction>(value);
+}
+
+// ---- stream ----------------------------------------------------------------------------------
+front look(bytes data) { return what_stands_at_front(data); }
+std::optional<event> pull(stream_parser& parser, bytes& data) { return parser.next(data); }
+std::optional<event> end(stream_parser& parser) { return parser.finish(); }
+void push(stream_parser& parser, bytes data, stream_counts& counts) {
+  parser.feed(data, [&](const event& found) { counts.add(found); });
+}
+std::uint64_t skipped_for(const stream_counts& counts, skip_reason reason) {
+  return counts.skipped(reason) + counts.skipped_bytes() +
+         static_cast<std::uint64_t>(name_of(reason)[0]);
+}
+
+double correct_exactly(std::uint16_t raw) { return exact_correction{}(raw); }
+float correct_compactly(std::uint16_t raw) { return compact_correction{}(raw); }
+float correct_by_table(const table_correction& table, std::uint16_t raw) { return table(raw); }
+const table_correction& make_table() {
+  // Made in place, as in a program's own memory: no guard, no destructor.
+  static constinit std::array<std::byte, sizeof(table_correction)> memory alignas(
+      table_correction){};
+  return *::new (memory.data()) table_correction;
+}
+
+// ---- points ----------------------------------------------------------------------------------
+using room = std::span<point, max_samples>;
+decoded decode_exactly(packet_view packet, room out) {
+  return decode(packet, exact_correction{}, 0, out);
+}
+decoded decode_compactly(packet_view packet, room out) {
+  return decode(packet, compact_correction{}, 0, out);
+}
+decoded decode_by_table(packet_view packet, const table_correction& table, room out) {
+  return decode(packet, table, 0, out);
+}
+std::uint32_t count(revolution_counter& counter, packet_view packet) {
+  return counter.count(packet);
+}
+polar turn(const point& p, frame to) { return to_polar(p, to); }
+std::span<xy_point> project(std::span<const point> points, std::span<xy_point> out) {
+  return to_xy(points, frame::robot, out);
+}
+
+// ---- products --------------------------------------------------------------------------------
+template <class Ring>
+std::uint64_t hand_over(Ring& ring, std::span<const point> in, std::span<point> out) {
+  auto reader = ring.make_reader();
+  ring.push(in);
+  if (!in.empty()) ring.push(in.front());
+  const ring_read got = reader.read(out);
+  return got.missed + got.points + reader.ahead() + ring.written();
+}
+std::uint64_t use_ring(any_point_ring& ring, std::span<const point> in, std::span<point> out) {
+  return hand_over(ring, in, out);
+}
+// Where a word has 32 bits this is the same ring.
+std::uint64_t use_narrow_ring(narrow_point_ring& ring, std::span<const point> in,
+                              std::span<point> out) {
+  return hand_over(ring, in, out);
+}
+
+std::optional<scan> assemble(scan_assembler& assembler, decoded& packet) {
+  return assembler.next(packet);
+}
+std::optional<scan> end(scan_assembler& assembler) {
+  assembler.lost();
+  return assembler.finish();
+}
+float measure(const scan& whole) { return whole.measured_frequency_hz(9000); }
+void fill(std::span<const point> points, std::span<float> ranges_m, const grid_options& options) {
+  fill_grid(points, ranges_m, options);
+}
+
+int major_version() { return header_version.major_number; }
+
+}  // namespace freestanding
