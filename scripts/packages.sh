@@ -18,7 +18,7 @@ packages_test=(
 packages_ci=(
   "${packages_test[@]}"
   ccache debootstrap git pkg-config libbenchmark-dev valgrind
-  g++-11
+  g++-11 python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
   g++-s390x-linux-gnu g++-aarch64-linux-gnu g++-arm-linux-gnueabihf
