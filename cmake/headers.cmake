@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # g4lidar_headers(<target> <header>...): the public headers of a target, named below
 # include/g4lidar. Each is compiled alone in builds that set CMAKE_VERIFY_INTERFACE_HEADER_SETS
-# (CMake 3.24 and later); an older CMake gets the include directory and nothing more.
+# (CMake 3.24 and later).
 
 function(g4lidar_headers target)
   get_target_property(type ${target} TYPE)
@@ -11,16 +11,16 @@ function(g4lidar_headers target)
     set(scope PUBLIC)
   endif()
 
-  if(CMAKE_VERSION VERSION_LESS 3.23)
-    target_include_directories(
-      ${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
-      "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
-    )
-    return()
-  endif()
-
-  list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/include/g4lidar/")
-  target_sources(
-    ${target} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${ARGN}
+  # Said even where a file set says it too: what CMake 3.23 and later install is also used by 3.22,
+  # which knows no file sets.
+  target_include_directories(
+    ${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
+    "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"
   )
+  if(CMAKE_VERSION VERSION_GREATER_EQUAL 3.23)
+    list(TRANSFORM ARGN PREPEND "${PROJECT_SOURCE_DIR}/include/g4lidar/")
+    target_sources(
+      ${target} ${scope} FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/include" FILES ${ARGN}
+    )
+  endif()
 endfunction()
