@@ -118,8 +118,8 @@ class stream_log {
                                             const reference::reading& wanted) {
   if (!log.complaint().empty()) return log.complaint();
   const auto& got = log.stretches();
-  const auto [a, b] = std::mismatch(got.begin(), got.end(), wanted.stretches.begin(),
-                                    wanted.stretches.end());
+  const auto [a, b] =
+      std::mismatch(got.begin(), got.end(), wanted.stretches.begin(), wanted.stretches.end());
   const auto say = [](auto at, auto end) {
     if (at == end) return std::string("the end");
     return reference::name_of(at->what) + " of " + std::to_string(at->size) + " at byte " +

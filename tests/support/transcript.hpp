@@ -136,15 +136,17 @@ struct outcome {
 /// Replays all sections of `transcript` through one parser, each cut by `cut`. `storage` takes the
 /// input of one section at a time.
 template <class Cut>
-[[nodiscard]] constexpr outcome replay(std::string_view transcript,
-                                       std::span<std::uint8_t> storage, Cut&& cut) {
+[[nodiscard]] constexpr outcome replay(std::string_view transcript, std::span<std::uint8_t> storage,
+                                       Cut&& cut) {
   outcome result;
   stream_parser parser;
   reader script(transcript);
   const auto fail = [&](std::string_view got) {
     if (!result.ok) return;
-    result = {false, script.line().number,
-              script.done() ? std::string_view("(nothing more)") : script.line().text, {}};
+    result = {false,
+              script.line().number,
+              script.done() ? std::string_view("(nothing more)") : script.line().text,
+              {}};
     result.got << got;
   };
   const auto compare = [&](std::string_view got) {
