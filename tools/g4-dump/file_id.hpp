@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Which file on disk lies behind a name or a descriptor.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <optional>
+#include <string>
+
+namespace g4_dump {
+
+/// A regular file, whatever name it has.
+struct file_id {
+  dev_t device;
+  ino_t number;
+
+  friend bool operator==(const file_id&, const file_id&) = default;
+};
+
+[[nodiscard]] inline std::optional<file_id> id_of(const struct stat& status) noexcept {
+  if (!S_ISREG(status.st_mode)) return std::nullopt;
+  return file_id{status.st_dev, status.st_ino};
+}
+
+/// `name` as it stands in sentences.
+[[nodiscard]] inline std::string in_quotes(const std::string& name) { return "'" + name + "'"; }
+
+}  // namespace g4_dump

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// A handler notes the signal and writes to a pipe, which poll() watches beside the input.
+#include "interrupt.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+
+namespace g4_dump {
+namespace {
+
+volatile std::sig_atomic_t caught = 0;
+std::array<int, 2> bell{-1, -1};
+
+void note(int number) {
+  const int error = errno;
+  caught = number;
+  const char byte = 0;
+  [[maybe_unused]] const auto ignored = ::write(bell[1], &byte, 1);
+  errno = error;
+}
+
+}  // namespace
+
+void prepare_process() {
+  // open() gives the lowest free number: exactly the one that is missing.
+  for (const int standard : {0, 1, 2}) {
+    if (::fcntl(standard, F_GETFD) < 0) {
+      [[maybe_unused]] const int fd = ::open("/dev/null", O_RDONLY);
+    }
+  }
+  std::signal(SIGPIPE, SIG_IGN);
+  if (::pipe2(bell.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
+  struct sigaction action{};
+  action.sa_handler = note;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before{};
+    ::sigaction(number, nullptr, &before);
+    if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);  // nohup stays
+  }
+}
+
+int interrupt() noexcept { return caught; }
+
+wake wait_for_input(int input, int output) noexcept {
+  while (interrupt() == 0) {
+    std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {bell[0], POLLIN, 0}, {output, 0, 0}}};
+    if (::poll(waiting.data(), waiting.size(), -1) < 0) {
+      if (errno == EINTR) continue;
+      return wake::input;  // let read() say what is wrong
+    }
+    if (waiting[1].revents != 0) break;
+    if (waiting[0].revents != 0) return wake::input;
+    if ((waiting[2].revents & (POLLERR | POLLHUP)) != 0) return wake::output_closed;
+    if (waiting[2].revents != 0) return wake::input;  // an output that cannot be waited for
+  }
+  return wake::interrupt;
+}
+
+bool would_wait(int input) noexcept {
+  pollfd waiting{input, POLLIN, 0};
+  return ::poll(&waiting, 1, 0) == 0;
+}
+
+}  // namespace g4_dump

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// ^C, SIGTERM and SIGHUP as something a loop can ask for and a poll can wait for.
+#pragma once
+
+namespace g4_dump {
+
+/// From now on the first such signal is only noted, a second one ends the program, and writing to a
+/// closed pipe is an error like any other. Descriptors 0 to 2 that are closed lead nowhere, so that
+/// no file comes to stand in their place.
+void prepare_process();
+
+/// The signal that came, or 0.
+[[nodiscard]] int interrupt() noexcept;
+
+/// What wait_for_input() saw.
+enum class wake { input, interrupt, output_closed };
+
+/// Waits until `input` can be read, a signal comes, or the reader of `output` has gone.
+[[nodiscard]] wake wait_for_input(int input, int output) noexcept;
+
+/// Whether reading `input` would have to wait.
+[[nodiscard]] bool would_wait(int input) noexcept;
+
+}  // namespace g4_dump

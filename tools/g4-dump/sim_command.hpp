@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// The verb sim: the bytes that a G4 in a world of walls would send.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "g4lidar/sim/scanner.hpp"
+
+namespace g4_dump {
+
+struct sim_options {
+  double seconds = 10.0;
+  g4lidar::sim::scanner_options scanner;
+  std::optional<std::string> world;  ///< The built-in one where none is given.
+  std::optional<std::string> truth;
+  std::string output = "-";
+};
+
+/// Returns the exit code; throws a failure.
+[[nodiscard]] int run(const sim_options& options);
+
+}  // namespace g4_dump
