@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// The second-level correction: the manual's figures, and the worst error of each form over all
+// samples that there are, against the formula as the manual writes it.
+#include "g4lidar/correction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "support/reference_points.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr bool near(double a, double b, double bound) { return a - b < bound && b - a < bound; }
+
+// The manual's figures, to the digits that it prints, in each form.
+struct figure {
+  double range_mm;
+  double correction_deg;
+  double printed_to;
+};
+constexpr figure figures[] = {{0.25, 89.34, 0.005},     {10.0, 63.88, 0.005},
+                              {155.3, 0.0, 0.02},       {280.0, -3.577, 0.0005},
+                              {1000.0, -6.762, 0.0005}, {8000.0, -7.837425, 0.0000005},
+                              {16000.0, -7.914, 0.0005}};
+
+template <class Form>
+constexpr bool gives_the_figures(const Form& form, double rounding) {
+  return std::all_of(std::begin(figures), std::end(figures), [&](const figure& f) {
+    const auto raw = static_cast<std::uint16_t>(f.range_mm * 4.0);
+    return near(static_cast<double>(form(raw)), f.correction_deg, f.printed_to + rounding);
+  });
+}
+static_assert(gives_the_figures(exact_correction{}, 0.0));
+static_assert(gives_the_figures(compact_correction{}, 1e-5));
+
+// 155.3 mm lies between two samples: the correction changes its sign there.
+static_assert(exact_correction{}(621) > 0.0 && exact_correction{}(622) < 0.0);
+static_assert(compact_correction{}(621) > 0.0F && compact_correction{}(622) < 0.0F);
+
+// A sample of 0 is no range and is not corrected.
+static_assert(exact_correction{}(0) == 0.0);
+static_assert(compact_correction{}(0) == 0.0F);
+
+static_assert(near(arctangent_deg(1.0), 45.0, 1e-13));
+static_assert(near(arctangent_deg(-1.0), -45.0, 1e-13));
+static_assert(arctangent_deg(0.0) == 0.0);
+static_assert(near(arctangent_deg(std::numeric_limits<double>::max()), 90.0, 1e-13));
+static_assert(near(far_correction_deg, arctangent_deg(-21.8 / 155.3), 1e-13));
+
+const table_correction& table() {
+  static const auto made = std::make_unique<table_correction>();
+  return *made;
+}
+
+template <class Form>
+double worst_error(const Form& form) {
+  double worst = 0.0;
+  for (unsigned raw = 0; raw <= 65535; ++raw) {
+    const auto sample = static_cast<std::uint16_t>(raw);
+    worst = std::max(
+        worst, std::fabs(static_cast<double>(form(sample)) - reference::correction_deg(sample)));
+  }
+  return worst;
+}
+
+TEST(Correction, TableGivesTheManualsFigures) { EXPECT_TRUE(gives_the_figures(table(), 4e-6)); }
+
+TEST(Correction, ExactFormIsTheFormulaInDoublePrecision) {
+  EXPECT_LT(worst_error(exact_correction{}), 1e-13);
+}
+
+TEST(Correction, TableIsWithinItsBoundForEverySample) {
+  EXPECT_LT(worst_error(table()), 4e-6);
+  EXPECT_EQ(table()(0), 0.0F);
+}
+
+TEST(Correction, CompactFormIsWithinItsBoundForEverySample) {
+  EXPECT_LT(worst_error(compact_correction{}), 1e-5);
+}
+
+TEST(Correction, FarTargetsTendToTheStatedLimit) {
+  EXPECT_NEAR(far_correction_deg, -7.9906, 0.00005);
+  EXPECT_GT(exact_correction{}(65535), far_correction_deg);
+  EXPECT_NEAR(std::atan(-21.8 / 155.3) * 180.0 / std::numbers::pi, far_correction_deg, 1e-14);
+}
+
+TEST(Correction, ArctangentIsWithinItsBoundFarAndNear) {
+  // Where long double is no wider than double the reference itself is off by as much.
+  constexpr bool wide = std::numeric_limits<long double>::digits > 60;
+  constexpr double bound = wide ? 3e-14 : 6e-14;
+  double worst = 0.0;
+  const auto look_at = [&](double x) {
+    const long double truth =
+        std::atan(static_cast<long double>(x)) * 180.0L / std::numbers::pi_v<long double>;
+    worst = std::max(
+        worst, static_cast<double>(std::fabs(static_cast<long double>(arctangent_deg(x)) - truth)));
+  };
+  for (int step = -40000; step <= 40000; ++step) look_at(step / 10000.0);
+  for (double x = 1e-300; x < 1e300; x *= 1.37) {
+    look_at(x);
+    look_at(-x);
+  }
+  // Both sides of every place where the way of reckoning changes.
+  for (int sixteenth = 1; sixteenth <= 16; ++sixteenth) {
+    const double edge = sixteenth / 16.0;
+    for (const double x : {std::nextafter(edge, 0.0), edge, std::nextafter(edge, 2.0)}) {
+      look_at(x);
+      look_at(1.0 / x);
+    }
+  }
+  EXPECT_LT(worst, bound);
+}
+
+}  // namespace
+}  // namespace g4lidar
