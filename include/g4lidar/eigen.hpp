@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <ranges>
@@ -17,9 +18,9 @@ namespace g4lidar {
 
 /// Columns of two floats that lie in an array of `Element`s.
 template <class Element>
-using column_map =
-    Eigen::Map<std::conditional_t<std::is_const_v<Element>, const Eigen::Matrix2Xf, Eigen::Matrix2Xf>,
-               Eigen::Unaligned, Eigen::OuterStride<sizeof(Element) / sizeof(float)>>;
+using column_map = Eigen::Map<
+    std::conditional_t<std::is_const_v<Element>, const Eigen::Matrix2Xf, Eigen::Matrix2Xf>,
+    Eigen::Unaligned, Eigen::OuterStride<sizeof(Element) / sizeof(float)>>;
 
 /// An argument that owns its elements and dies at the end of the call.
 template <class T>
@@ -53,7 +54,9 @@ template <xy_range Points>
 
 /// Writes x and y in metres in frame `to` into the columns of `out`, which has one for each point.
 /// Points without return become NaN. *Never allocates.*
-inline void to_xy(std::span<const point> points, frame to, Eigen::Ref<Eigen::Matrix2Xf> out) {
+inline void to_xy(std::span<const point> points, frame to,
+                  Eigen::Ref<Eigen::Matrix2Xf> out) noexcept {
+  assert(out.cols() == static_cast<Eigen::Index>(points.size()));
   for (Eigen::Index i = 0; i < out.cols(); ++i) {
     const xy_point xy = to_xy(points[static_cast<std::size_t>(i)], to);
     out.col(i) << xy.x_m, xy.y_m;

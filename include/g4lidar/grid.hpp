@@ -25,7 +25,8 @@ struct grid_options {
   /// in the direction in which the frame's angles grow.
   frame to = frame::robot;
   grid_pick pick = grid_pick::nearest;
-  /// Points marked too near are no obstacles to steer by; left out, they leave NaN.
+  /// Whether points marked too near give their range, which is not to be trusted. Where they do not,
+  /// they give NaN if nothing farther is in their bin, for something was there.
   bool keep_too_near = false;
 };
 
@@ -33,7 +34,7 @@ struct grid_options {
 /// point, and how far from its middle. *Pure.*
 struct grid_place {
   std::size_t bin;
-  float off_middle_deg;  ///< At most half a bin.
+  float off_middle_deg;  ///< At most half a bin, but for rounding.
 };
 [[nodiscard]] constexpr grid_place place_in_grid(float direction, frame to,
                                                  std::size_t bins) noexcept {
@@ -45,23 +46,28 @@ struct grid_place {
   return {bin % bins, off < 0.0F ? -off : off};
 }
 
-/// Fills every bin of `ranges_m`: the range in metres; +infinity where the sensor looked and nothing
-/// came back, which never hides a range; NaN where it did not look. *Never allocates.* Takes a scan
-/// of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
+/// Fills every bin of `ranges_m`, of which there is at least one: the range in metres; +infinity where
+/// the sensor looked and nothing came back, which never hides a return; NaN where it did not look.
+/// *Never allocates.* Takes a scan of up to 16,777,216 points. (protocol: Point packets, a sample
+/// of 0)
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {}) noexcept {
-  assert(points.size() <= (std::size_t{1} << 24));
+  assert(!ranges_m.empty() && points.size() <= (std::size_t{1} << 24));
   // First each bin holds the index of its best point, which is exact in a float; then the range.
   constexpr float nothing = -1.0F;
   for (float& slot : ranges_m) slot = nothing;
+  enum : std::uint8_t { no_return, unusable, usable };  // the higher one takes the bin
+  const auto worth = [&](const point& p) {
+    if (p.is_no_return()) return no_return;
+    return p.is_too_near() && !options.keep_too_near ? unusable : usable;
+  };
   const auto better = [&](const point& p, float off, const point& than) {
-    if (p.is_no_return() != than.is_no_return()) return than.is_no_return();
+    if (worth(p) != worth(than)) return worth(p) > worth(than);
     if (options.pick == grid_pick::minimum) return p.range_mm < than.range_mm;
     return off < place_in_grid(direction_deg(than), options.to, ranges_m.size()).off_middle_deg;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const point& p = points[i];
-    if (p.is_too_near() && !options.keep_too_near) continue;
     const grid_place place = place_in_grid(direction_deg(p), options.to, ranges_m.size());
     float& slot = ranges_m[place.bin];
     if (slot < 0.0F || better(p, place.off_middle_deg, points[static_cast<std::size_t>(slot)])) {
@@ -69,12 +75,13 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
     }
   }
   for (float& slot : ranges_m) {
-    if (slot < 0.0F) {
+    const point* const best = slot < 0.0F ? nullptr : &points[static_cast<std::size_t>(slot)];
+    if (best == nullptr || worth(*best) == unusable) {
       slot = std::numeric_limits<float>::quiet_NaN();
-      continue;
+    } else {
+      slot =
+          best->is_no_return() ? std::numeric_limits<float>::infinity() : best->range_mm * 0.001F;
     }
-    const point& best = points[static_cast<std::size_t>(slot)];
-    slot = best.is_no_return() ? std::numeric_limits<float>::infinity() : best.range_mm * 0.001F;
   }
 }
 

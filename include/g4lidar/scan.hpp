@@ -21,7 +21,7 @@ enum class scan_marks : std::uint8_t {
   start_missing = 1,  ///< Does not begin with a zero packet: the first scan, or one after a cut.
   end_missing = 2,    ///< Was cut before its zero packet came, or the stream ended.
   data_lost = 4,      ///< Bytes were lost, or a suspect packet left out, between its points.
-  turn_short = 8,     ///< Its zero packets came well before the angle had gone once round.
+  turn_short = 8,     ///< Its two zero packets came well before the angle had gone once round.
 };
 
 [[nodiscard]] constexpr scan_marks operator|(scan_marks a, scan_marks b) noexcept {
@@ -40,9 +40,10 @@ struct scan {
   std::uint8_t reported_frequency_dhz = 0;
   std::uint32_t suspect_packets = 0;  ///< Left out of `points`; `data_lost` tells of them too.
   std::uint32_t suspect_samples = 0;  ///< Their samples.
-  /// How far the first-level angle went, clockwise: degrees, about 360 for a whole revolution.
+  /// How far the first-level angle went, clockwise degrees, from the first point to the first one of
+  /// the next scan, or to its own last one where the stream ended: about 360 for a whole revolution.
   float turned_deg = 0.0F;
-  /// From the first point to the first of the next scan, where both times are known; else 0.
+  /// The time for that, where both points are there and their times are known; else 0.
   std::int64_t duration_ns = 0;
 
   /// Whether this is one revolution from zero packet to zero packet with nothing known to be lost.
@@ -54,13 +55,12 @@ struct scan {
   }
   /// The rotation frequency as measured, in Hz: turns over time where the times are known, else
   /// turns over samples at `samples_per_second`. 0 where it cannot be told.
-  [[nodiscard]] constexpr float measured_frequency_hz(std::uint32_t samples_per_second) const
-      noexcept {
+  [[nodiscard]] constexpr float measured_frequency_hz(
+      std::uint32_t samples_per_second) const noexcept {
     const float turns = turned_deg / 360.0F;
     if (duration_ns > 0) return turns * 1e9F / static_cast<float>(duration_ns);
-    const std::size_t samples = points.size() + suspect_samples;
-    if (samples == 0 || has(scan_marks::data_lost | scan_marks::end_missing)) return 0.0F;
-    return turns * static_cast<float>(samples_per_second) / static_cast<float>(samples);
+    if (points.empty() || has(scan_marks::data_lost | scan_marks::end_missing)) return 0.0F;
+    return turns * static_cast<float>(samples_per_second) / static_cast<float>(points.size());
   }
 };
 
@@ -71,15 +71,16 @@ struct scan {
 ///     ------------------  ----------------------------------  ---------------------  ------------
 ///     empty               zero                                nothing                fill, started
 ///     empty               other                               nothing                fill
-///     has points          zero                                the scan, ended        empty
-///     has points          other, would go over 361 degrees    the scan, end missing  empty
-///     has points          other, storage full                 the scan, end missing  empty
-///     has points          other                               nothing                fill
-///     any                 finish()                            the scan, end missing  empty
+///     not empty           zero                                the scan, ended        empty
+///     not empty           other, goes beyond 361 degrees      the scan, end missing  empty
+///     not empty           other, goes beyond the storage      the scan, end missing  empty
+///     not empty           other                               nothing                fill
+///     not empty           finish()                            the scan, end missing  empty
 ///
-/// A packet that gives a scan is not used up: it is shown again and then meets an empty scan. So a
-/// lost zero packet ends in two pieces, the first without an end and the second without a start, and
-/// a full storage loses nothing. Every point that goes in comes out in exactly one scan.
+/// A suspect packet brings no points, and marks the scan that it falls into. A packet that gives a
+/// scan is not used up: it is shown again and then meets an empty scan. So a lost zero packet ends in
+/// two pieces, the first without an end and the second without a start, and a full storage loses
+/// nothing. Every point that goes in comes out in exactly one scan.
 class scan_assembler {
  public:
   /// Fills scans into `storage`, which belongs to the caller, outlives this, and sets the largest
@@ -95,7 +96,7 @@ class scan_assembler {
     if (ready_) begin_next();
     if (packet.starts_revolution) {
       if (!empty()) return complete(packet);
-      marks_ = scan_marks::none;
+      marks_ = scan_marks::none;  // what was lost before it is lost to no scan
       scan_.reported_frequency_dhz = packet.reported_frequency_dhz;
       packet.starts_revolution = false;
     }
@@ -120,9 +121,9 @@ class scan_assembler {
   /// Gives the last piece, if there is one, when the stream has ended. After that as new, but for
   /// the caller's storage.
   [[nodiscard]] constexpr std::optional<scan> finish() noexcept {
-    if (ready_) begin_next();
+    if (ready_ || empty()) begin_next();
     if (empty()) return std::nullopt;
-    return cut();
+    return give(scan_marks::end_missing);
   }
 
  private:
@@ -136,61 +137,55 @@ class scan_assembler {
     return used_ == 0 && scan_.suspect_packets == 0;
   }
 
-  /// Brings the way turned so far up to a sample at `angle_64ths`. Steps back of up to an eighth of a
-  /// turn are the motor's; a larger one is a step ahead over lost packets.
-  constexpr void follow(std::int32_t angle_64ths) noexcept {
+  /// How far the angle goes from sample `from` of `packet` to sample `to`, 1/64 degree.
+  [[nodiscard]] static constexpr std::int32_t way(const decoded& packet, std::size_t from,
+                                                  std::size_t to) noexcept {
+    const auto before = [&](std::size_t i) {
+      return packet.span_64ths * static_cast<std::int32_t>(i) /
+             std::max(packet.sample_count - 1, 1);
+    };
+    return before(to) - before(from);
+  }
+
+  /// Moves on within a packet.
+  constexpr void advance(std::int32_t way_64ths) noexcept {
+    turned_ += way_64ths;
+    at_ = (at_ + way_64ths) % turn;
+  }
+  /// Moves on from packet to packet. Back by up to an eighth of a turn is the motor's doing; further
+  /// back is ahead over lost packets.
+  constexpr void move_to(std::int32_t angle_64ths) noexcept {
     const std::int32_t ahead = (angle_64ths - at_ + turn) % turn;
-    turned_ += ahead > turn - turn / 8 ? ahead - turn : ahead;
+    turned_ = std::max(turned_ + (ahead > turn - turn / 8 ? ahead - turn : ahead), -turn);
     at_ = angle_64ths;
   }
 
   [[nodiscard]] constexpr std::optional<scan> fill(decoded& packet) noexcept {
     if (packet.points.empty()) return std::nullopt;
-    const std::size_t before = packet.sample_count - packet.points.size();  // taken earlier
-    if (used_ == 0) at_ = angle_of(packet, before);
-    follow(angle_of(packet, before));
-    const std::size_t fitting =
-        std::min(storage_.size() - used_, samples_within_turn(packet));
-    const std::size_t count = std::min(fitting, packet.points.size());
+    const std::size_t first = packet.sample_count - packet.points.size();  // not taken yet
+    const std::int32_t angle = (packet.first_angle_64ths + way(packet, 0, first)) % turn;
+    if (used_ == 0) at_ = angle;
+    move_to(angle);
+    std::size_t count = std::min(packet.points.size(), storage_.size() - used_);
+    while (count > 0 && turned_ + way(packet, first, first + count - 1) > longest) --count;
     std::copy_n(packet.points.begin(), count,
                 storage_.begin() + static_cast<std::ptrdiff_t>(used_));
     used_ += count;
     packet.points = packet.points.subspan(count);
-    if (count > 0) follow(angle_of(packet, before + count - 1));
-    if (packet.points.empty()) return std::nullopt;
-    return cut();
+    const bool all = packet.points.empty();
+    advance(way(packet, first, all ? first + count - 1 : first + count));
+    if (all) return std::nullopt;
+    set_duration(packet.points.front());
+    return give(scan_marks::end_missing);
   }
 
-  /// The first-level angle of sample `i`, 1/64 degree.
-  [[nodiscard]] static constexpr std::int32_t angle_of(const decoded& packet,
-                                                       std::size_t i) noexcept {
-    const std::int32_t gaps = std::max(packet.sample_count - 1, 1);
-    const std::int32_t way = packet.span_64ths * static_cast<std::int32_t>(i) / gaps;
-    return (packet.first_angle_64ths + way) % turn;
-  }
-
-  /// How many samples of `packet`, from the one that follow() was told last, belong to this turn. At
-  /// least one if the scan is empty.
-  [[nodiscard]] constexpr std::size_t samples_within_turn(const decoded& packet) const noexcept {
-    const std::int32_t room = longest - turned_;
-    if (room < 0) return 0;
-    const std::int32_t gaps = std::max(packet.sample_count - 1, 1);
-    const std::int32_t span = std::max<std::int32_t>(packet.span_64ths, 1);
-    return static_cast<std::size_t>(room * gaps / span) + 1;
-  }
-
+  /// Ends the scan before the zero packet `next_packet`.
   [[nodiscard]] constexpr scan complete(const decoded& next_packet) noexcept {
-    if (used_ > 0) {
-      follow(next_packet.first_angle_64ths);
-      if (turned_ < shortest) marks_ = marks_ | scan_marks::turn_short;
-      if (!next_packet.points.empty()) set_duration(next_packet.points.front());
-    }
-    return give();
-  }
-
-  [[nodiscard]] constexpr scan cut() noexcept {
-    marks_ = marks_ | scan_marks::end_missing;
-    return give();
+    if (used_ == 0) return give(scan_marks::none);
+    move_to(next_packet.first_angle_64ths);
+    if (!next_packet.points.empty()) set_duration(next_packet.points.front());
+    const bool started = (marks_ & scan_marks::start_missing) == scan_marks::none;
+    return give(started && turned_ < shortest ? scan_marks::turn_short : scan_marks::none);
   }
 
   constexpr void set_duration(const point& next_point) noexcept {
@@ -198,10 +193,10 @@ class scan_assembler {
     if (from != 0 && next_point.time_ns > from) scan_.duration_ns = next_point.time_ns - from;
   }
 
-  [[nodiscard]] constexpr scan give() noexcept {
+  [[nodiscard]] constexpr scan give(scan_marks more) noexcept {
     ready_ = true;
     scan_.points = storage_.first(used_);
-    scan_.marks = marks_;
+    scan_.marks = marks_ | more;
     scan_.turned_deg = static_cast<float>(turned_) / 64.0F;
     return scan_;
   }
