@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// The core never allocates: every part of it runs here under a counting allocator. Each part of the
+// core has its own test; a new one gets another.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/angle.hpp"
+#include "g4lidar/command.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/response.hpp"
+#include "g4lidar/stream_parser.hpp"
+#include "support/allocation_count.hpp"
+#include "support/packet_bytes.hpp"
+
+namespace {
+
+std::atomic<std::size_t> calls{0};
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++calls;
+  const std::size_t wanted = size == 0 ? 1 : size;
+  if (alignment <= alignof(std::max_align_t)) return std::malloc(wanted);
+  return std::aligned_alloc(alignment, (wanted + alignment - 1) / alignment * alignment);
+}
+
+void* counted_or_throw(std::size_t size, std::size_t alignment) {
+  void* const memory = counted(size, alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+void release(void* memory) {
+  ++calls;
+  std::free(memory);
+}
+
+constexpr std::size_t plain = alignof(std::max_align_t);
+std::size_t of(std::align_val_t alignment) { return static_cast<std::size_t>(alignment); }
+
+}  // namespace
+
+// All forms of the replaceable operators.
+void* operator new(std::size_t n) { return counted_or_throw(n, plain); }
+void* operator new[](std::size_t n) { return counted_or_throw(n, plain); }
+void* operator new(std::size_t n, std::align_val_t a) { return counted_or_throw(n, of(a)); }
+void* operator new[](std::size_t n, std::align_val_t a) { return counted_or_throw(n, of(a)); }
+void* operator new(std::size_t n, const std::nothrow_t&) noexcept { return counted(n, plain); }
+void* operator new[](std::size_t n, const std::nothrow_t&) noexcept { return counted(n, plain); }
+void* operator new(std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return counted(n, of(a));
+}
+void* operator new[](std::size_t n, std::align_val_t a, const std::nothrow_t&) noexcept {
+  return counted(n, of(a));
+}
+void operator delete(void* p) noexcept { release(p); }
+void operator delete[](void* p) noexcept { release(p); }
+void operator delete(void* p, std::size_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t) noexcept { release(p); }
+void operator delete(void* p, std::align_val_t) noexcept { release(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { release(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { release(p); }
+void operator delete(void* p, const std::nothrow_t&) noexcept { release(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { release(p); }
+void operator delete(void* p, std::align_val_t, const std::nothrow_t&) noexcept { release(p); }
+void operator delete[](void* p, std::align_val_t, const std::nothrow_t&) noexcept { release(p); }
+
+std::size_t g4lidar::test::allocations_so_far() { return calls; }
+
+namespace g4lidar {
+namespace {
+
+using test::allocations_in;
+using test::append;
+using test::buffer;
+using test::packet_bytes;
+using test::some_samples;
+using test::wire_angle;
+
+/// Packets, replies, noise, false starts and a damaged packet.
+buffer mixed_stream() {
+  buffer stream{'b', 'o', 'o', 't'};
+  append(stream, {0xA5, 0x5A, 0x05, 0, 0, 0x40, 0x81, 0x00});
+  for (unsigned i = 0; i < 50; ++i) {
+    append(stream, packet_bytes(i % 10 == 0 ? 0x8D : 0, wire_angle(i * 400),
+                                wire_angle(i * 400 + 300), some_samples(i % 10 == 0 ? 1 : 40)));
+    if (i % 7 == 2) stream[stream.size() - 4] ^= 0x10;
+    if (i % 7 == 4) append(stream, {0xAA, 0x55, 0x00, 0x50, 0x01, 0x10, 0xAA});
+    if (i % 9 == 4) append(stream, {0xA5, 0x5A, 0x03, 0, 0, 0, 6, 1, 0x34, 0x12});
+  }
+  append(stream, {0xA5, 0x5A, 0x14, 0, 0, 0, 4, 5});
+  return stream;
+}
+
+TEST(Allocation, IsCounted) {
+  EXPECT_GE(allocations_in([] {
+              const std::string longer_than_any_small_string(200, 'x');
+              EXPECT_EQ(longer_than_any_small_string.size(), 200U);
+            }),
+            2U);
+  EXPECT_EQ(allocations_in([] {}), 0U);
+}
+
+TEST(Allocation, NoneInParsing) {
+  const buffer stream = mixed_stream();
+  for (const std::size_t piece : {1UL, 3UL, 64UL, 1000000UL}) {
+    std::size_t packets = 0;
+    std::size_t sum = 0;
+    EXPECT_EQ(allocations_in([&] {
+                stream_parser parser;
+                const auto use = [&](const event& found) {
+                  if (const auto* packet = std::get_if<packet_view>(&found)) {
+                    ++packets;
+                    for (std::size_t i = 0; i < packet->sample_count(); ++i) {
+                      sum += packet->sample(i);
+                    }
+                  } else if (const auto* reply = std::get_if<response_view>(&found)) {
+                    sum += reply->as_health() ? reply->as_health()->error_code : 0U;
+                  }
+                };
+                for (std::size_t from = 0; from < stream.size(); from += piece) {
+                  parser.feed(bytes(stream).subspan(from, std::min(piece, stream.size() - from)),
+                              use);
+                }
+                while (const auto found = parser.finish()) use(*found);
+              }),
+              0U)
+        << piece;
+    EXPECT_EQ(packets, 43U);
+    EXPECT_GT(sum, 0U);
+  }
+}
+
+TEST(Allocation, NoneInReadingRepliesAndAngles) {
+  const buffer info{0xA5, 0x5A, 0x14, 0, 0, 0, 4, 5, 2, 3, 3, 2, 0, 2,
+                    1,    1,    0,    1, 0, 0, 0, 0, 7, 0, 0, 7, 3};
+  std::size_t digits = 0;
+  EXPECT_EQ(allocations_in([&] {
+              const auto said = response_view::from(info)->as_device_info();
+              digits = said->serial_number().size();
+              const auto traits = traits_of(command::protection_toggle);
+              digits += encode(traits->code).size();
+              digits += angle::from_degrees(1e9F) == angle{} ? 1U : 0U;
+            }),
+            0U);
+  EXPECT_EQ(digits, 18U);
+}
+
+}  // namespace
+}  // namespace g4lidar

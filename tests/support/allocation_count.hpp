@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Counts the calls of the global operator new and delete in a stretch of code.
+#pragma once
+
+#include <cstddef>
+
+namespace g4lidar::test {
+
+/// Calls of any global operator new and of any global operator delete, in this program so far.
+/// Defined by allocation_test.cpp, which replaces them all.
+[[nodiscard]] std::size_t allocations_so_far();
+
+/// How often `work` allocates or frees.
+template <class Work>
+[[nodiscard]] std::size_t allocations_in(Work&& work) {
+  const std::size_t before = allocations_so_far();
+  work();
+  return allocations_so_far() - before;
+}
+
+}  // namespace g4lidar::test
