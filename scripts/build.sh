@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# shellcheck shell=bash
 # How the scripts configure and build: quietly when all is well, with everything when it is not.
 # Sourced by the scripts; needs bash.
 
@@ -39,5 +40,7 @@ configure_preset() {
 build() {
   local directory=$1
   shift
-  run_quietly "Building $directory" cmake --build "$directory" ${*:+--target "$@"}
+  local targets=()
+  if (($# > 0)); then targets=(--target "$@"); fi
+  run_quietly "Building $directory" cmake --build "$directory" "${targets[@]}"
 }

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: MIT
+# shellcheck shell=bash
 # The Debian packages that the scripts need, in one place, and how they are installed.
 # Sourced by the scripts; needs bash.
 
@@ -15,9 +16,10 @@ packages_test=(
 )
 
 # And everything that .ci/run does.
+# shellcheck disable=SC2034
 packages_ci=(
   "${packages_test[@]}"
-  ccache debootstrap git pkg-config libbenchmark-dev valgrind
+  ccache debootstrap git pkg-config shellcheck libbenchmark-dev valgrind
   g++-11 python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
