@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// Builds streams of packets, replies, noise and false starts, damages them, and remembers which
+// frames came through untouched.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "support/packet_bytes.hpp"
+
+namespace g4lidar::test {
+
+/// Numbers from a seed, the same everywhere (splitmix64).
+class dice {
+ public:
+  explicit dice(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t next() {
+    state_ += 0x9E3779B97F4A7C15U;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+    return z ^ (z >> 31);
+  }
+  /// One of 0 to `n` - 1; `n` is below 2^32.
+  std::size_t below(std::size_t n) { return static_cast<std::uint32_t>(next() % n); }
+  std::uint8_t byte() { return static_cast<std::uint8_t>(next() & 0xFFU); }
+  /// A byte that means something to the parser more often than not.
+  std::uint8_t telling_byte() {
+    constexpr std::array<std::uint8_t, 16> telling{0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01,
+                                                   0x02, 0x03, 0x04, 0x05, 0x14, 0x40, 0x50, 0x81};
+    return below(8) == 0 ? byte() : telling[below(telling.size())];
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// What the part of a stream, or the damage done to it, is made from: a kind, and a seed for the
+/// rest.
+using recipe = std::pair<std::uint8_t, std::uint64_t>;
+
+inline constexpr std::uint8_t part_kinds = 13;
+inline constexpr std::uint8_t damage_kinds = 6;
+
+/// A stretch of the damaged stream that is a frame as it was sent.
+struct intact_frame {
+  std::size_t offset;
+  std::size_t size;
+};
+
+/// A stream that is put together from parts and then damaged.
+class random_stream {
+ public:
+  void add(const recipe& part);
+  void damage(const recipe& harm);
+
+  /// The bytes. False headers of the kind that a checksum agrees with get theirs here, last of all.
+  [[nodiscard]] buffer data() const;
+  /// The frames none of whose bytes was touched, by their offsets in data().
+  [[nodiscard]] std::vector<intact_frame> intact_frames() const;
+
+ private:
+  struct cell {
+    std::uint8_t value;
+    int frame;          // which frame it is of; -1: of none, or touched
+    std::size_t index;  // its place in the frame
+    bool seal;          // first byte of a header whose checksum is made to agree
+  };
+
+  void add_bytes(const buffer& more) {
+    for (const std::uint8_t byte : more) cells_.push_back({byte, -1, 0, false});
+  }
+  void add_frame(const buffer& frame) {
+    const int id = static_cast<int>(sizes_.size());
+    for (std::size_t i = 0; i < frame.size(); ++i) cells_.push_back({frame[i], id, i, false});
+    sizes_.push_back(frame.size());
+  }
+  [[nodiscard]] static buffer packet(dice& random, std::size_t samples, unsigned ct);
+  [[nodiscard]] static buffer response(dice& random);
+  [[nodiscard]] static buffer false_header(dice& random, std::size_t size);
+
+  std::vector<cell> cells_;
+  std::vector<std::size_t> sizes_;  // of the frames
+};
+
+inline buffer random_stream::packet(dice& random, std::size_t samples, unsigned ct) {
+  const bool telling = random.below(3) == 0;
+  std::vector<std::uint16_t> values;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const unsigned low = telling ? random.telling_byte() : random.byte();
+    const unsigned high = telling ? random.telling_byte() : random.byte();
+    values.push_back(static_cast<std::uint16_t>(low | high << 8));
+  }
+  const auto first = static_cast<unsigned>(random.below(23040));
+  const auto last = static_cast<unsigned>(random.below(4) == 0 ? random.below(23040) : first);
+  return packet_bytes(ct, wire_angle(first), wire_angle(last), values);
+}
+
+inline buffer random_stream::response(dice& random) {
+  switch (random.below(5)) {
+    case 0:
+      return response_bytes(5, 0x40, 0x81, {});
+    case 1: {
+      buffer content{random.telling_byte(), random.telling_byte(), random.byte(), random.byte()};
+      for (int i = 0; i < 16; ++i) content.push_back(static_cast<std::uint8_t>(random.below(10)));
+      return response_bytes(20, 0, 4, content);
+    }
+    case 2:
+      return response_bytes(
+          3, 0, 6,
+          {static_cast<std::uint8_t>(random.below(3)), random.telling_byte(), random.byte()});
+    case 3:
+      return response_bytes(1, 0, 4, {static_cast<std::uint8_t>(random.below(3))});
+    default: {
+      const std::size_t hundredths = random.below(2001);
+      return response_bytes(4, 0, 4,
+                            {static_cast<std::uint8_t>(hundredths % 256),
+                             static_cast<std::uint8_t>(hundredths / 256), 0, 0});
+    }
+  }
+}
+
+/// The first bytes of a header that is possible, and nothing true behind it.
+inline buffer random_stream::false_header(dice& random, std::size_t size) {
+  buffer out{0xAA, 0x55, random.byte(), static_cast<std::uint8_t>(1 + random.below(80))};
+  append_u16(out, wire_angle(static_cast<unsigned>(random.below(23040))));
+  append_u16(out, wire_angle(static_cast<unsigned>(random.below(23040))));
+  append_u16(out, static_cast<unsigned>(random.below(65536)));
+  out.resize(size);
+  return out;
+}
+
+inline void random_stream::add(const recipe& part) {
+  dice random(part.second);
+  switch (part.first % part_kinds) {
+    case 0:
+    case 1:
+      return add_frame(packet(random, 1 + random.below(80), 2U * random.byte() & 0xFFU));
+    case 2:
+      return add_frame(packet(random, 1, 1U | 2U * random.byte() % 256));
+    case 3:
+      return add_frame(packet(random, 1 + random.below(5), random.byte()));
+    case 4:
+      return add_frame(response(random));
+    case 5: {
+      buffer noise(1 + random.below(40));
+      for (std::uint8_t& byte : noise) byte = random.byte();
+      return add_bytes(noise);
+    }
+    case 6: {
+      buffer noise(1 + random.below(20));
+      for (std::uint8_t& byte : noise) byte = random.telling_byte();
+      return add_bytes(noise);
+    }
+    case 7:
+      return add_bytes(false_header(random, 2 + random.below(9)));
+    case 8: {  // a reply that breaks off
+      buffer reply = response(random);
+      reply.resize(1 + random.below(reply.size()));
+      return add_bytes(reply);
+    }
+    case 9: {  // a reply that is not possible
+      buffer reply = response(random);
+      const std::size_t at = random.below(reply.size());
+      reply[at] = static_cast<std::uint8_t>(reply[at] + 1 + random.below(255));
+      return add_bytes(reply);
+    }
+    case 10: {  // a packet that is not possible, or whose checksum fails
+      buffer bad = packet(random, 1 + random.below(20), random.byte());
+      const std::size_t at = random.below(bad.size());
+      bad[at] = static_cast<std::uint8_t>(bad[at] + 1 + random.below(255));
+      return add_bytes(bad);
+    }
+    case 11: {  // a header to which the checksum will agree, whatever follows
+      const std::size_t at = cells_.size();
+      add_bytes(false_header(random, 10));
+      cells_[at].seal = true;
+      return;
+    }
+    default:
+      return add_bytes({0x00});
+  }
+}
+
+inline void random_stream::damage(const recipe& harm) {
+  if (cells_.empty()) return;
+  dice random(harm.second);
+  const std::size_t at = random.below(cells_.size());
+  const auto place = cells_.begin() + static_cast<std::ptrdiff_t>(at);
+  const std::size_t length = std::min(1 + random.below(30), cells_.size() - at);
+  switch (harm.first % damage_kinds) {
+    case 0:  // a flipped bit
+      place->value = static_cast<std::uint8_t>(place->value ^ 1U << random.below(8));
+      place->frame = -1;
+      return;
+    case 1:  // one byte lost
+      cells_.erase(place);
+      return;
+    case 2:  // some bytes lost
+      cells_.erase(place, place + static_cast<std::ptrdiff_t>(length));
+      return;
+    case 3: {  // some bytes too many
+      std::vector<cell> more;
+      for (std::size_t i = 0; i < length; ++i)
+        more.push_back({random.telling_byte(), -1, 0, false});
+      cells_.insert(place, more.begin(), more.end());
+      return;
+    }
+    case 4:  // a burst
+      for (std::size_t i = at; i < at + length; ++i) cells_[i] = {random.byte(), -1, 0, false};
+      return;
+    default:  // the end is cut off
+      if (random.below(4) == 0) cells_.erase(place, cells_.end());
+      return;
+  }
+}
+
+inline buffer random_stream::data() const {
+  buffer out;
+  for (const cell& c : cells_) out.push_back(c.value);
+  for (std::size_t at = cells_.size(); at-- > 0;) {
+    const std::size_t left = cells_.size() - at;
+    if (!cells_[at].seal || left < 10 || left < 10 + 2 * std::size_t{out[at + 3]}) continue;
+    // The two bytes of a checksum that damage has moved onto a frame stay as they are.
+    if (cells_[at + 8].frame >= 0 || cells_[at + 9].frame >= 0) continue;
+    const int sum = reference::checksum_of(reference::window(out, at));
+    out[at + 8] = static_cast<std::uint8_t>(sum & 0xFF);
+    out[at + 9] = static_cast<std::uint8_t>(sum >> 8);
+  }
+  return out;
+}
+
+inline std::vector<intact_frame> random_stream::intact_frames() const {
+  std::vector<intact_frame> intact;
+  for (std::size_t at = 0; at < cells_.size(); ++at) {
+    const int frame = cells_[at].frame;
+    if (frame < 0 || cells_[at].index != 0) continue;
+    const std::size_t size = sizes_[static_cast<std::size_t>(frame)];
+    if (size > cells_.size() - at) continue;
+    bool whole = true;
+    for (std::size_t i = 0; i < size; ++i) {
+      whole = whole && cells_[at + i].frame == frame && cells_[at + i].index == i;
+    }
+    if (whole) intact.push_back({at, size});
+  }
+  return intact;
+}
+
+}  // namespace g4lidar::test
