@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Finishing a parser that dies with the expression would give views into it: it does not compile.
+// expect: deleted function.*stream_parser::finish|call to deleted member function 'finish'
+#include "g4lidar/stream_parser.hpp"
+
+bool misuse() {
+#ifdef MISUSE
+  const auto found = g4lidar::stream_parser{}.finish();
+#else
+  g4lidar::stream_parser parser;
+  const auto found = parser.finish();
+#endif
+  return found.has_value();
+}

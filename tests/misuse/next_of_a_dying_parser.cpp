@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// The views in an event may lie in the parser's carry: pulling from a parser that dies with the
+// expression does not compile.
+// expect: deleted function.*stream_parser::next|call to deleted member function 'next'
+#include "g4lidar/stream_parser.hpp"
+
+bool misuse(g4lidar::bytes input) {
+#ifdef MISUSE
+  const auto found = g4lidar::stream_parser{}.next(input);
+#else
+  g4lidar::stream_parser parser;
+  const auto found = parser.next(input);
+#endif
+  return found.has_value();
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// A packet_view of bytes that nobody has checked cannot be made.
+// expect: is private within this context|calling a private constructor
+#include "g4lidar/packet.hpp"
+
+bool misuse(g4lidar::bytes data) {
+#ifdef MISUSE
+  const g4lidar::packet_view packet(data);
+  return packet.is_zero();
+#else
+  const auto packet = g4lidar::packet_view::from(data);
+  return packet && packet->is_zero();
+#endif
+}
