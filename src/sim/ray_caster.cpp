@@ -158,8 +158,10 @@ ray_caster::ray_caster(const world& scene) {
   for (const wall& w : scene.walls) {
     walls_.push_back(as_seen(w, scene.lidar, static_cast<std::uint32_t>(walls_.size())));
   }
-  std::stable_sort(walls_.begin(), walls_.end(),
-                   [](const seen_wall& a, const seen_wall& b) { return a.nearest < b.nearest; });
+  // The index makes the order of all walls one and the same under every standard library.
+  std::sort(walls_.begin(), walls_.end(), [](const seen_wall& a, const seen_wall& b) {
+    return a.nearest < b.nearest || (a.nearest == b.nearest && a.index < b.index);
+  });
 
   // A wall between the bearings b1 and b2, its points between the ranges d1 and d2, is met from
   // first-level angles between b1 - correction(d1) and b2 - correction(d2) only.

@@ -42,8 +42,8 @@ struct scanner_options {
 struct sample_truth {
   std::uint64_t index;   ///< Of the sample, from 0.
   std::int64_t time_ns;  ///< When it was measured; sample 0 at 0.
-  std::uint64_t
-      revolution;          ///< From 0; one more with each zero packet that is not the first packet.
+  /// From 0; one more with each zero packet that is not the first packet.
+  std::uint64_t revolution;
   double first_level_deg;  ///< The head's angle, clockwise, [0, 360).
   double bearing_deg;      ///< Where the target stands, clockwise, [0, 360). Where there is none,
                            ///< where a far one would stand.
