@@ -25,8 +25,8 @@ TEST(SimArithmetic, SineAndCosineAreWithin3em16OfLibm) {
   for (int i = 0; i < 200'000; ++i) {
     const double degrees = (random.uniform() - 0.5) * (i % 2 == 0 ? 720.0 : 90.0);
     const sim::sin_cos both = sim::sin_cos_deg(degrees);
-    const long double sine = both.sine;
-    const long double cosine = both.cosine;
+    const long double sine = static_cast<long double>(both.sine);
+    const long double cosine = static_cast<long double>(both.cosine);
     const long double x = static_cast<long double>(degrees) * radian;
     worst = std::max(worst, std::fabs(sine - std::sin(x)));
     worst = std::max(worst, std::fabs(cosine - std::cos(x)));
@@ -51,7 +51,7 @@ TEST(SimArithmetic, ArctangentIsWithin3em14DegreesOfLibm) {
     const double size = std::exp2((random.uniform() - 0.5) * 60.0);
     const double x = i % 2 == 0 ? size : -size;
     const long double truth = std::atan(static_cast<long double>(x)) / radian;
-    const long double own = sim::atan_deg(x);
+    const long double own = static_cast<long double>(sim::atan_deg(x));
     worst = std::max(worst, std::fabs(own - truth));
   }
   EXPECT_LT(worst, 3e-14L);
