@@ -10,7 +10,17 @@ execute_process(COMMAND "${NM}" -P "${OBJECT}" OUTPUT_VARIABLE listing COMMAND_E
 set(allowed memcpy memmove memset memcmp)
 set(helper "^$")
 if(PROCESSOR MATCHES "^arm")
-  set(helper "^__aeabi_") # the compiler's own: 64-bit and double arithmetic, and the four above
+  # What the processor has no instruction for, from the compiler's own library: conversions, sums,
+  # products and comparisons of float and double, division, 64 bits; the jump tables of Thumb-1.
+  string(
+    JOIN "|" helpers
+    "__aeabi_(d2f|f2d|[df]2u?[il]z|u?[il]2[df])"
+    "__aeabi_[df](add|sub|rsub|mul|div|neg|cmp(eq|lt|le|ge|gt|un))"
+    "__aeabi_c[df](cmpeq|cmple|rcmple)"
+    "__aeabi_(u?idiv|u?idivmod|u?ldivmod|lmul|llsl|llsr|lasr|u?lcmp)"
+    "__gnu_thumb1_case_[us][qhs]i"
+  )
+  set(helper "^(${helpers})$")
 endif()
 
 string(REGEX MATCHALL "[^\n]+" lines "${listing}")
