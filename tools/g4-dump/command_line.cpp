@@ -100,7 +100,7 @@ CLI::App* add_decode(CLI::App& app, decode_options& options) {
   verb->add_option("-o,--output", options.output, "Where to write; - or nothing: standard output")
       ->type_name("OUT");
   add_choice(*verb, "-f,--format", options.style.format, text_formats,
-             "How to write: csv (if nothing is said), jsonl, or text for people", "csv|jsonl|text");
+             "How to write (csv); text is for people", "csv|jsonl|text");
   verb->add_flag("--scans", options.style.scans, "A record for each revolution, not each point");
   verb->add_flag("--valid", options.style.valid_only,
                  "Leave out the points from which nothing came back");
@@ -109,7 +109,7 @@ CLI::App* add_decode(CLI::App& app, decode_options& options) {
       ->type_name("HZ")
       ->check(within(std::uint32_t{1}, std::uint32_t{1'000'000}));
   add_choice(*verb, "--stats", options.stats, stats_formats,
-             "The counts at the end on standard error: words, or one JSON object", "words|json");
+             "The counts at the end, on standard error (words)", "words|json");
   return verb;
 }
 

@@ -107,6 +107,7 @@ void pump(input& in, output& out, pipeline& way, text_detector& detector, bool w
 
 void say_stats(const pipeline& way, stats_format format) {
   if (format == stats_format::json) return say(stats_as_json(way.counts(), way.bytes()));
+  if (way.bytes() == 0) return;  // the failure that follows says it all
   say(stats_in_words(way.counts(), way.bytes()));
   say(warning_about(way.counts(), way.bytes()));
 }

@@ -25,7 +25,10 @@ int open_to_read(const std::string& name, const std::string& what_to_give) {
   while (true) {
     const int fd = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
     if (fd >= 0) return fd;
-    if (errno == EINTR && interrupt() == 0) continue;
+    if (errno == EINTR) {
+      if (interrupt() != 0) throw interrupted();
+      continue;
+    }
     throw failure(exit_code::bad_file,
                   fmt::format("cannot open {}: {}. {}", in_quotes(name), std::strerror(errno),
                               advice_on(errno, what_to_give)));

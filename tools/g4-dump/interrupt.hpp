@@ -12,6 +12,9 @@ void prepare_process();
 /// The signal that came, or 0.
 [[nodiscard]] int interrupt() noexcept;
 
+/// Thrown where a signal came while there was nothing yet to be brought to a good end.
+struct interrupted {};
+
 /// What wait_for_input() saw.
 enum class wake { input, interrupt, output_closed };
 

@@ -28,6 +28,8 @@ int main(int argc, char** argv) {
     prepare_process();
     return std::visit([](const auto& wanted) { return run(wanted); },
                       read_command_line(argc, argv));
+  } catch (const interrupted&) {
+    return 128 + interrupt();
   } catch (const failure& reason) {
     return say_failure(reason.what(), reason.code());
   } catch (const std::exception& reason) {

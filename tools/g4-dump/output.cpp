@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "exit_code.hpp"
+#include "interrupt.hpp"
 
 namespace g4_dump {
 namespace {
@@ -74,10 +75,12 @@ output::~output() {
 }
 
 void output::open_directly() {
-  do {
+  while (true) {
     fd_ = ::open(name_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
-  } while (fd_ < 0 && errno == EINTR);
-  if (fd_ < 0) give_up("open", errno);
+    if (fd_ >= 0) return;
+    if (errno != EINTR) give_up("open", errno);
+    if (interrupt() != 0) throw interrupted();
+  }
 }
 
 void output::open_beside(const struct stat* older) {

@@ -25,7 +25,7 @@ class output {
   ~output();
 
   /// The most that can be asked of room().
-  static constexpr std::size_t max_room = 64 * 1024;
+  static constexpr std::size_t max_room = 65'536;
 
   /// A place to write up to `count` characters to; then say how far with wrote().
   [[nodiscard]] char* room(std::size_t count) {

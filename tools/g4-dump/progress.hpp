@@ -11,7 +11,7 @@ namespace g4_dump {
 class progress_bar {
  public:
   /// Below this many bytes it is over before anybody has read the bar.
-  static constexpr std::uint64_t least_bytes = 16 * 1024 * 1024;
+  static constexpr std::uint64_t least_bytes = 16'000'000;
 
   /// Shows nothing where `wanted` is false, the bytes are few, or standard error is no terminal.
   progress_bar(bool wanted, std::uint64_t all_bytes);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string_view>
 #include <variant>
@@ -24,7 +25,7 @@ namespace {
 std::string read_all(input& in) {
   constexpr std::size_t most = std::size_t{16} * 1024 * 1024;
   std::string text;
-  std::array<std::uint8_t, 16 * 1024> part;
+  std::array<std::uint8_t, 16'384> part;
   while (const std::size_t count = in.read(part)) {
     text.append(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count));
     if (text.size() > most) {
@@ -42,8 +43,9 @@ g4lidar::sim::world load_world(const sim_options& options, const output& out) {
   const auto read = g4lidar::sim::parse_world(read_all(in));
   if (const auto* error = std::get_if<g4lidar::sim::world_error>(&read)) {
     const std::string where = error->line > 0 ? fmt::format(", line {}", error->line) : "";
-    throw failure(exit_code::bad_file, fmt::format("{}{}: {} docs/sim.md has the format of worlds.",
-                                                   in.title(), where, error->message));
+    throw failure(exit_code::bad_file,
+                  fmt::format("{}{}: {}. docs/sim.md has the format of worlds.", in.title(), where,
+                              error->message));
   }
   return std::get<g4lidar::sim::world>(read);
 }
@@ -80,7 +82,10 @@ void refuse_nonsense(const sim_options& options) {
     throw failure(exit_code::usage, fmt::format("{}. See: g4-dump sim --help", problem));
   };
   if (const auto problem = problem_with(options.scanner); !problem.empty()) refuse(problem);
-  if (options.truth && *options.truth == options.output) {
+  const auto plain = [](const std::string& name) {
+    return std::filesystem::path(name).lexically_normal();
+  };
+  if (options.truth && plain(*options.truth) == plain(options.output)) {
     refuse("--truth and -o name the same place");
   }
 }

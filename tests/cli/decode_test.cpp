@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: MIT
+// g4-dump decode: what it writes for bytes whose points are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "recording.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::run;
+using nlohmann::json;
+
+// A bit of everything: a beginning in mid-turn, samples of every kind, a stray byte, a suspect
+// packet, a revolution that ends too early, a packet cut off.
+std::string small_recording() {
+  return cli::scan_started() + cli::packet(350, 359, {0, 621, 4000, 65535}) + std::string(1, '\0') +
+         cli::zero(0, 1120, 70) + cli::packet(1, 10, {4000, 0, 300}) +
+         cli::packet(20, 19, {4000, 4000}) + cli::zero(0, 0, 70) +
+         cli::packet(1, 2, {8000, 8000}).substr(0, 12);
+}
+
+// Its points: scan, angle by the formula in double precision, range and time as text.
+struct expected_point {
+  int scan;
+  double angle_deg;
+  std::string range_mm;
+  std::string time_ns;
+};
+const std::vector<expected_point> small_points{
+    {0, 350.000000, "0.00", "0"},         {0, 353.002590, "155.25", "111111"},
+    {0, 349.237814, "1000.00", "222222"}, {0, 351.084181, "16383.75", "333333"},
+    {1, 356.422734, "280.00", "444444"},  {1, 354.237814, "1000.00", "555555"},
+    {1, 5.500000, "0.00", "666666"},      {1, 18.547194, "75.00", "777777"},
+    {2, 0.000000, "0.00", "1111111"}};  // the two samples of the suspect packet took time
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == ',') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+double formula_deg(double first_level_deg, double range_mm) {
+  if (range_mm <= 0.0) return first_level_deg;
+  const double corrected =
+      first_level_deg +
+      std::atan(21.8 * (155.3 - range_mm) / (155.3 * range_mm)) * 180.0 / std::numbers::pi;
+  return std::fmod(corrected + 360.0, 360.0);
+}
+
+void expect_small_points(const std::string& csv) {
+  const std::vector<std::string> lines = lines_of(csv);
+  ASSERT_EQ(lines.size(), small_points.size() + 1);
+  EXPECT_EQ(lines[0], "scan,angle_deg,range_mm,time_ns");
+  for (std::size_t i = 0; i < small_points.size(); ++i) {
+    SCOPED_TRACE(lines[i + 1]);
+    const auto fields = fields_of(lines[i + 1]);
+    ASSERT_EQ(fields.size(), 4U);
+    EXPECT_EQ(fields[0], std::to_string(small_points[i].scan));
+    EXPECT_NEAR(std::stod(fields[1]), small_points[i].angle_deg, 1e-4);
+    EXPECT_TRUE(std::regex_match(fields[1], std::regex(R"((0|[1-9]\d{0,2})\.\d{6})")));
+    EXPECT_EQ(fields[2], small_points[i].range_mm);
+    EXPECT_EQ(fields[3], small_points[i].time_ns);
+  }
+}
+
+TEST(Decode, CsvOfASmallRecording) {
+  const outcome done = run({"decode", "-"}, small_recording());
+  EXPECT_EQ(done.code, 0);
+  expect_small_points(done.out);
+}
+
+TEST(Decode, CsvIsTheFormatAndStandardInputTheInput_IfNothingIsSaid) {
+  const std::string all = run({"decode", "-", "--format", "csv"}, small_recording()).out;
+  EXPECT_EQ(run({"decode"}, small_recording()).out, all);
+  EXPECT_EQ(run({"decode", "--format=csv", "-o", "-"}, small_recording()).out, all);
+}
+
+TEST(Decode, ValidLeavesOutWhatCameBackEmpty) {
+  const outcome done = run({"decode", "--valid"}, small_recording());
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 7U);
+  for (const std::string& line : lines) EXPECT_EQ(line.find(",0.00,"), std::string::npos);
+  EXPECT_TRUE(lines.back().ends_with(",75.00,777777"));  // times and scans stay as they are
+}
+
+TEST(Decode, JsonlOfASmallRecording) {
+  const outcome done = run({"decode", "--format", "jsonl"}, small_recording());
+  EXPECT_EQ(done.code, 0);
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), small_points.size());
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    SCOPED_TRACE(lines[i]);
+    const json point = json::parse(lines[i]);
+    EXPECT_EQ(point.size(), 7U);
+    EXPECT_EQ(point.at("scan"), small_points[i].scan);
+    EXPECT_NEAR(point.at("angle_deg").get<double>(), small_points[i].angle_deg, 1e-4);
+    EXPECT_EQ(point.at("range_mm").get<double>(), std::stod(small_points[i].range_mm));
+    EXPECT_EQ(point.at("time_ns").get<std::int64_t>(), std::stoll(small_points[i].time_ns));
+    EXPECT_EQ(point.at("no_return"), small_points[i].range_mm == "0.00");
+    EXPECT_EQ(point.at("too_near"), small_points[i].range_mm == "75.00");
+    EXPECT_EQ(point.at("partial"), true);
+  }
+  EXPECT_EQ(lines[0], R"({"scan":0,"angle_deg":350.000000,"range_mm":0.00,"time_ns":0,)"
+                      R"("no_return":true,"too_near":false,"partial":true})");
+}
+
+// Whether each revolution of `recording` is partial, by its points in jsonl.
+std::vector<bool> partial_scans(const std::string& recording) {
+  std::vector<bool> partial;
+  for (const std::string& line : lines_of(run({"decode", "--format", "jsonl"}, recording).out)) {
+    const json point = json::parse(line);
+    const auto scan = point.at("scan").get<std::size_t>();
+    if (scan == partial.size()) partial.push_back(point.at("partial"));
+    EXPECT_EQ(partial.at(scan), point.at("partial").get<bool>()) << "one revolution, two opinions";
+  }
+  return partial;
+}
+
+TEST(Decode, JsonlMarksRevolutionsThatWereNotSeenWhole) {
+  using seen = std::vector<bool>;
+  const std::string whole = cli::zero(0) + cli::turn();
+  EXPECT_EQ(partial_scans(whole + whole + cli::zero(0)), (seen{false, false, true}));
+  EXPECT_EQ(partial_scans(cli::turn(4) + whole + cli::zero(0)), (seen{true, false, true}));
+  // Noise is no loss: healthy devices send a stray byte before every zero packet.
+  const std::string stray(1, '\0');
+  EXPECT_EQ(partial_scans(whole + stray + whole + stray + cli::zero(0)),
+            (seen{false, false, true}));
+  // A damaged packet is one.
+  const std::string hurt = cli::zero(0) + cli::damaged(cli::turn(), 100);
+  EXPECT_EQ(partial_scans(whole + hurt + whole + cli::zero(0)), (seen{false, true, false, true}));
+  // A suspect packet is one.
+  const std::string suspect = cli::zero(0) + cli::turn() + cli::packet(359, 358, {4000, 4000});
+  EXPECT_EQ(partial_scans(whole + suspect + whole), (seen{false, true, true}));
+}
+
+TEST(Decode, ScanGrowsWithEachZeroPacketButAVeryFirst) {
+  const auto last_scan = [](const std::string& recording) {
+    return fields_of(lines_of(run({"decode"}, recording).out).back()).front();
+  };
+  EXPECT_EQ(last_scan(cli::zero(0)), "0");
+  EXPECT_EQ(last_scan(cli::zero(0) + cli::zero(0)), "1");
+  EXPECT_EQ(last_scan(cli::turn() + cli::zero(0)), "1");
+  EXPECT_EQ(last_scan("noise" + cli::zero(0)), "0");
+  // CT with other bits set, but not the lowest, starts nothing.
+  EXPECT_EQ(last_scan(cli::turn() + cli::packet(1, 2, {4000, 4000}, 0x86)), "0");
+  // A suspect zero packet starts a revolution without a point.
+  EXPECT_EQ(last_scan(cli::zero(0) + cli::packet(45, 44, {4000, 4000}, 1) + cli::turn()), "1");
+}
+
+TEST(Decode, TimeIsCountedAtTheRateWithoutDrift) {
+  std::string recording = cli::zero(0);
+  for (int i = 0; i < 250; ++i) recording += cli::turn(9);
+  for (const std::uint64_t rate : {9000U, 7U, 4000U}) {
+    const outcome done = run({"decode", "--rate", std::to_string(rate)}, recording);
+    const std::vector<std::string> lines = lines_of(done.out);
+    ASSERT_EQ(lines.size(), 1U + 1U + 250U * 9U * 40U);
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      ASSERT_EQ(fields_of(lines[i])[3], std::to_string((i - 1) * 1'000'000'000U / rate));
+    }
+  }
+}
+
+// Each first-level angle there is, each with a far, a near and an empty sample.
+TEST(Decode, AnglesAreRightAndBelow360AllAround) {
+  std::string recording;
+  const std::vector<std::uint16_t> raws{0, 1, 400, 621, 622, 1120, 65535};
+  for (int angle = 0; angle < 360 * 64; ++angle) {
+    recording += cli::packet(angle / 64.0, angle / 64.0, raws);
+  }
+  const std::vector<std::string> lines = lines_of(run({"decode"}, recording).out);
+  ASSERT_EQ(lines.size(), 1U + 360U * 64U * raws.size());
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const double first_level_deg = static_cast<double>((i - 1) / raws.size()) / 64.0;
+    const double range_mm = raws[(i - 1) % raws.size()] / 4.0;
+    const double angle_deg = std::stod(fields_of(lines[i])[1]);
+    const double off = std::remainder(angle_deg - formula_deg(first_level_deg, range_mm), 360.0);
+    ASSERT_LT(std::abs(off), 1e-4) << lines[i];
+    ASSERT_LT(angle_deg, 360.0);
+    ASSERT_GE(angle_deg, 0.0);
+  }
+}
+
+TEST(Decode, TextNeverShows360EvenWithFewerDecimals) {
+  std::string recording;
+  for (int angle = 359 * 64; angle < 360 * 64; ++angle) {
+    std::vector<std::uint16_t> samples;
+    for (std::uint16_t raw = 0; raw < 80; ++raw) {
+      samples.push_back(static_cast<std::uint16_t>(615 + raw % 16));
+    }
+    recording += cli::packet(angle / 64.0, angle / 64.0, samples);
+  }
+  const std::string csv = run({"decode"}, recording).out;
+  ASSERT_NE(csv.find(",359.99"), std::string::npos) << "the recording has no case for this";
+  const std::string text = run({"decode", "--format", "text"}, recording).out;
+  EXPECT_EQ(text.find("360."), std::string::npos);
+  EXPECT_NE(text.find(" 0.00 "), std::string::npos);
+}
+
+TEST(Decode, TextOfASmallRecording) {
+  const outcome done = run({"decode", "--format", "text"}, small_recording());
+  EXPECT_EQ(done.out,
+            "  scan  angle_deg   range_mm        time_s\n"
+            "     0     350.00          -      0.000000\n"
+            "     0     353.00     155.25      0.000111\n"
+            "     0     349.24    1000.00      0.000222\n"
+            "     0     351.08   16383.75      0.000333\n"
+            "     1     356.42     280.00      0.000444\n"
+            "     1     354.24    1000.00      0.000555\n"
+            "     1       5.50          -      0.000666\n"
+            "     1      18.55      75.00      0.000777  too near\n"
+            "     2       0.00          -      0.001111\n");
+}
+
+std::string two_and_a_half_turns() {
+  const std::string whole = cli::zero(0, 4000, 71) + cli::turn();
+  return whole + whole + cli::zero(0, 0, 71) + cli::turn(18).substr(0, 3 * 90);
+}
+
+TEST(Decode, ScansAsCsv) {
+  const outcome done = run({"decode", "--scans"}, two_and_a_half_turns());
+  EXPECT_EQ(done.out,
+            "scan,time_ns,points,returns,partial,why,turned_deg,reported_hz,measured_hz\n"
+            "0,0,361,361,false,,360.00,7.1,24.931\n"
+            "1,40111111,361,361,false,,360.00,7.1,24.931\n"
+            "2,80222222,121,120,true,end_missing,59.50,7.1,\n");
+  const outcome small = run({"decode", "--scans", "--valid"}, small_recording());
+  EXPECT_TRUE(lines_of(small.out).at(2).starts_with("1,444444,3,3,true,data_lost+turn_short,"));
+}
+
+TEST(Decode, ScansAsText) {
+  const outcome done = run({"decode", "--scans", "--format", "text"}, two_and_a_half_turns());
+  EXPECT_EQ(
+      done.out,
+      "  scan  points  returns  turned_deg  reported_hz  measured_hz  partial\n"
+      "     0     361      361      360.00          7.1        24.93  whole\n"
+      "     1     361      361      360.00          7.1        24.93  whole\n"
+      "     2     121      120       59.50          7.1            -  partial: end_missing\n");
+}
+
+TEST(Decode, ScansAsJsonl) {
+  const outcome done = run({"decode", "--scans", "--format", "jsonl"}, two_and_a_half_turns());
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 3U);
+  const json first = json::parse(lines[0]);
+  EXPECT_EQ(first.at("scan"), 0);
+  EXPECT_EQ(first.at("partial"), false);
+  EXPECT_EQ(first.at("why"), json::array());
+  EXPECT_EQ(first.at("points"), 361);
+  EXPECT_EQ(first.at("reported_hz"), 7.1);
+  EXPECT_NEAR(first.at("measured_hz").get<double>(), 9000.0 / 361.0, 1e-3);
+  for (const char* const column : {"angle_deg", "range_mm", "time_ns"}) {
+    EXPECT_EQ(first.at(column).size(), 361U) << column;
+  }
+  EXPECT_EQ(first.at("time_ns").at(360), 40'000'000);
+  const json last = json::parse(lines[2]);
+  EXPECT_EQ(last.at("partial"), true);
+  EXPECT_EQ(last.at("why"), json::array({"end_missing"}));
+  EXPECT_EQ(last.at("range_mm").at(0), 0.0);
+  EXPECT_TRUE(last.at("measured_hz").is_null());
+
+  const outcome valid =
+      run({"decode", "--scans", "--valid", "--format", "jsonl"}, two_and_a_half_turns());
+  const json last_valid = json::parse(lines_of(valid.out).at(2));
+  EXPECT_EQ(last_valid.at("points"), 120);
+  EXPECT_EQ(last_valid.at("angle_deg").size(), 120U);
+}
+
+TEST(Decode, AMotorThatStandsStillFillsNoMemoryAndLosesNoPoint) {
+  std::string recording;
+  for (int i = 0; i < 1000; ++i)
+    recording += cli::packet(10, 10, std::vector<std::uint16_t>(40, 4000));
+  std::uint64_t points = 0;
+  const outcome done = run({"decode", "--scans", "--format", "jsonl"}, recording);
+  for (const std::string& line : lines_of(done.out)) {
+    points += json::parse(line).at("points").get<std::uint64_t>();
+  }
+  EXPECT_EQ(points, 40'000U);
+}
+
+TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {
+  // 5 bytes of noise; a header that cannot be; a packet with a wrong checksum; one cut off.
+  const std::string recording = "noise" + std::string("\xAA\x55\x00\xFF", 4) + small_recording() +
+                                cli::zero(0) + cli::damaged(cli::packet(1, 2, {4000, 4000}), 11) +
+                                cli::zero(0) + cli::packet(1, 2, {4000}).substr(0, 11);
+  const outcome done = run({"decode", "--stats", "json"}, recording);
+  EXPECT_EQ(done.code, 0);
+  const std::size_t cut_off = 12;  // of small_recording(): a frame follows, so it is a bad checksum
+  nlohmann::ordered_json expected;
+  expected["bytes"] = recording.size();
+  expected["packets"] = 7;
+  expected["responses"] = 1;
+  expected["points"] = 11;
+  expected["suspect"] = 1;
+  expected["skipped"]["noise"] = 6;
+  expected["skipped"]["bad_header"] = 4;
+  expected["skipped"]["bad_checksum"] = cut_off + 14;
+  expected["skipped"]["truncated"] = 11;
+  EXPECT_EQ(done.err, expected.dump() + "\n");
+}
+
+TEST(Decode, StatsInWords) {
+  EXPECT_EQ(run({"decode"}, small_recording()).err,
+            "92 bytes: 5 packets (1 suspect) with 9 points, 1 response\n"
+            "13 bytes skipped: 1 noise, 0 bad header, 0 bad checksum, 12 truncated\n");
+}
+
+TEST(Decode, AnInputThatIsMostlyNoiseIsRemarkedOn) {
+  const std::string noise(1000, 'x');
+  const outcome words = run({"decode"}, noise + cli::zero(0));
+  EXPECT_EQ(words.code, 0);
+  EXPECT_NE(words.err.find("wrong baud rate"), std::string::npos);
+  EXPECT_EQ(run({"decode"}, noise + cli::turn() + cli::turn()).err.find("baud"), std::string::npos);
+  const outcome as_json = run({"decode", "--stats", "json"}, noise + cli::zero(0));
+  EXPECT_EQ(json::parse(as_json.err).at("skipped").at("noise"), 1000);
+}
+
+TEST(Decode, TheRecordingOfARealDevice) {
+  const std::string name = std::string(G4LIDAR_SOURCE_DIR) + "/../shared/captures/x4_scan1.bin";
+  if (!std::filesystem::exists(name)) GTEST_SKIP() << "the captured recordings are not here";
+  const outcome done = run({"decode", name, "--stats", "json"});
+  EXPECT_EQ(done.code, 0);
+  const json stats = json::parse(done.err);
+  EXPECT_EQ(stats.at("bytes"), 38'074);
+  EXPECT_EQ(stats.at("packets"), 455);
+  EXPECT_EQ(stats.at("points"), 16'721);
+  EXPECT_EQ(stats.at("responses"), 1);
+  EXPECT_EQ(stats.at("skipped").at("truncated"), 75);
+
+  // Point for point against what was decoded independently.
+  const std::vector<std::string> lines = lines_of(done.out);
+  const std::string reference =
+      std::string(G4LIDAR_SOURCE_DIR) + "/../shared/captures/x4_scan1.points.csv";
+  const std::vector<std::string> true_lines = lines_of(cli::read_file(reference));
+  ASSERT_EQ(lines.size(), true_lines.size());
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto fields = fields_of(lines[i]);
+    const auto truth = fields_of(true_lines[i]);
+    const double off = std::remainder(std::stod(fields[1]) - std::stod(truth[7]), 360.0);
+    ASSERT_LT(std::abs(off), 0.001) << lines[i] << " is not " << true_lines[i];
+    ASSERT_EQ(fields[2], truth[5]);
+  }
+  EXPECT_EQ(fields_of(lines.back())[0], "28");
+}
+
+}  // namespace

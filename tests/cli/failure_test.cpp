@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+// What goes wrong: one clear sentence, the right exit code, and nothing half-written.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "recording.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::run;
+using cli::stream;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+class Failure : public cli::scratch {
+ protected:
+  // One line that begins with the program's name and tells both what is wrong and what to do.
+  static void expect_sentence(const outcome& done, int code, const std::string& what) {
+    EXPECT_EQ(done.code, code);
+    EXPECT_EQ(done.out, "");
+    EXPECT_THAT(done.err, HasSubstr(what));
+    const std::vector<std::string> lines = cli::lines_of(done.err);
+    ASSERT_FALSE(lines.empty());
+    EXPECT_THAT(lines.back(), StartsWith("g4-dump: "));
+    EXPECT_THAT(done.err, EndsWith("\n"));
+  }
+  [[nodiscard]] std::string good() const {
+    cli::write_file(path("good.bin"), cli::zero(0) + cli::turn());
+    return path("good.bin");
+  }
+  // Runs it with -o out.csv twice, without and with an older file there: neither may change.
+  void expect_nothing_written(std::vector<std::string> arguments) {
+    const std::string out = path("out.csv");
+    arguments.insert(arguments.end(), {"-o", out});
+    const std::string before = listing();
+    EXPECT_NE(run(arguments).code, 0);
+    EXPECT_EQ(listing(), before);
+    cli::write_file(out, "older\n");
+    const std::string with_older = listing();
+    EXPECT_NE(run(arguments).code, 0);
+    EXPECT_EQ(listing(), with_older);
+    EXPECT_EQ(cli::read_file(out), "older\n");
+  }
+};
+
+TEST_F(Failure, MissingFile) {
+  expect_sentence(run({"decode", path("none.bin")}), 10,
+                  "No such file or directory. Check the name");
+  expect_nothing_written({"decode", path("none.bin")});
+}
+
+TEST_F(Failure, DirectoryForAFile) {
+  expect_sentence(run({"decode", directory_}), 10, "is a directory. Give a file");
+  expect_nothing_written({"decode", directory_});
+}
+
+TEST_F(Failure, UnreadableFile) {
+  if (::geteuid() == 0) GTEST_SKIP() << "nothing is unreadable for root";
+  const std::string name = good();
+  std::filesystem::permissions(name, std::filesystem::perms::none);
+  expect_sentence(run({"decode", name}), 10, "Permission denied. You need the permission");
+}
+
+TEST_F(Failure, EmptyInput) {
+  cli::write_file(path("empty.bin"), "");
+  expect_sentence(run({"decode", path("empty.bin")}), 10, "is empty. Give bytes");
+  expect_sentence(run({"decode", "-"}), 10, "standard input is empty");
+  expect_nothing_written({"decode", path("empty.bin")});
+}
+
+TEST_F(Failure, NotASinglePacket) {
+  cli::write_file(path("noise.bin"), std::string(500, '\xAA'));
+  const outcome noise = run({"decode", path("noise.bin")});
+  expect_sentence(noise, 10, "no point packet in the 500 bytes");
+  EXPECT_THAT(noise.err, HasSubstr("wrong baud rate"));
+  expect_nothing_written({"decode", path("noise.bin")});
+  expect_sentence(run({"decode"}, "scan,angle_deg\n1,2\n"), 10, "this is text");
+  expect_sentence(run({"decode"}, cli::scan_started()), 10, "the lidar was not scanning");
+  for (const char* const format : {"csv", "jsonl", "text"}) {
+    EXPECT_EQ(run({"decode", path("noise.bin"), "--format", format, "--scans"}).out, "");
+  }
+}
+
+TEST_F(Failure, NotASinglePacket_JsonStatsComeAllTheSame) {
+  const outcome done = run({"decode", "--stats", "json"}, std::string(500, '\x01'));
+  EXPECT_EQ(done.code, 10);
+  EXPECT_THAT(done.err, StartsWith(R"({"bytes":500,"packets":0,)"));
+}
+
+TEST_F(Failure, WrongCommandLine) {
+  const auto expect_usage = [](const std::vector<std::string>& arguments, const std::string& what) {
+    const outcome done = run(arguments, cli::zero(0));
+    expect_sentence(done, 2, what);
+    EXPECT_THAT(done.err, HasSubstr("See: g4-dump"));
+    EXPECT_EQ(cli::lines_of(done.err).size(), 1U);
+  };
+  expect_usage({}, "say what to do: decode or sim");
+  expect_usage({"encode"}, "'encode' is no verb");
+  expect_usage({"--colour"}, "'--colour' is no option");
+  expect_usage({"decode", "--colour"}, "--colour");
+  expect_usage({"decode", "a.bin", "b.bin"}, "b.bin");
+  expect_usage({"decode", "--format", "xml"}, "'xml' is none of csv, jsonl, text");
+  expect_usage({"decode", "--format"}, "--format");
+  expect_usage({"decode", "--stats", "yaml"}, "'yaml' is none of json, words");
+  for (const char* const rate : {"0", "-9000", "fast", "1000001", "9000.5", ""}) {
+    expect_usage({"decode", "--rate", rate}, "--rate");
+  }
+  for (const char* const seconds : {"-1", "long", "1e10"}) {
+    expect_usage({"sim", "--seconds", seconds}, "--seconds");
+  }
+  expect_usage({"sim", "--seed", "x"}, "--seed");
+  expect_usage({"sim", "--rate", "5000"}, "'5000' is none of 4000, 8000, 9000");
+  expect_usage({"sim", "--frequency", "4"}, "--frequency");
+  expect_usage({"sim", "--samples", "81"}, "1 to 80");
+}
+
+TEST_F(Failure, WrongCommandLineTouchesNoFile) {
+  expect_nothing_written({"decode", good(), "--rate", "0"});
+  expect_nothing_written({"sim", "--samples", "0"});
+}
+
+TEST_F(Failure, OutputIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
+  const std::string name = good();
+  expect_sentence(run({"decode", name, "-o", "/dev/full"}), 10,
+                  "No space left on device. Make room");
+  cli::program direct({"decode", name}, {{}, stream::of_file("/dev/full"), {}});
+  expect_sentence(direct.wait(), 10, "cannot write standard output: No space left on device");
+  expect_sentence(run({"sim", "--seconds", "1", "-o", "/dev/full"}), 10, "No space left on device");
+  expect_sentence(run({"sim", "--seconds", "1", "-o", path("x"), "--truth", "/dev/full"}), 10,
+                  "No space left on device");
+  EXPECT_EQ(listing(), "good.bin\n");
+}
+
+TEST_F(Failure, OutputHasNoDirectory) {
+  expect_sentence(run({"decode", good(), "-o", path("none/out.csv")}), 10,
+                  "No such file or directory. Make its directory first");
+}
+
+TEST_F(Failure, OutputIsADirectory) {
+  expect_sentence(run({"decode", good(), "-o", directory_}), 10, "is a directory. Give the name");
+}
+
+TEST_F(Failure, OutputIsTheInput) {
+  const std::string name = good();
+  const std::string bytes = cli::read_file(name);
+  std::filesystem::create_symlink(name, path("link"));
+  std::filesystem::create_hard_link(name, path("other"));
+  for (const char* const out : {"good.bin", "link", "other"}) {
+    expect_sentence(run({"decode", name, "-o", path(out)}), 2, "is what is read, too");
+  }
+  cli::program redirected({"decode", "-", "-o", name}, {stream::of_file(name), {}, {}});
+  expect_sentence(redirected.wait(), 2, "is what is read, too");
+  EXPECT_EQ(cli::read_file(name), bytes);
+  EXPECT_EQ(listing(), "good.bin\nlink\nother\n");
+}
+
+TEST_F(Failure, StandardOutputIsClosed) {
+  cli::program started({"decode", good()}, {{}, stream::none(), {}});
+  const outcome done = started.wait();
+  EXPECT_EQ(done.code, 10);
+  EXPECT_THAT(done.err, HasSubstr("cannot write standard output"));
+}
+
+TEST_F(Failure, StandardErrorIsClosed_NothingStraysIntoTheOutput) {
+  const std::string name = good();
+  const std::string all = run({"decode", name}).out;
+  cli::program started({"decode", name, "-o", path("out.csv")}, {{}, {}, stream::none()});
+  EXPECT_EQ(started.wait().code, 0);
+  EXPECT_EQ(cli::read_file(path("out.csv")), all);
+}
+
+TEST_F(Failure, WorldFiles) {
+  cli::write_file(path("world.txt"), "wall 1 1 2 2\nwindow 3 3\n");
+  expect_sentence(run({"sim", "--world", path("world.txt")}), 10, "world.txt', line 2: ");
+  expect_sentence(run({"sim", "--world", path("none.txt")}), 10, "No such file or directory");
+  expect_sentence(run({"sim", "--world", directory_}), 10, "is a directory");
+  expect_nothing_written({"sim", "--world", path("world.txt")});
+}
+
+TEST_F(Failure, SimToOnePlaceTwice) {
+  for (const char* const truth : {"x", "./x"}) {
+    const std::string name = (directory_ / truth).string();
+    expect_sentence(run({"sim", "-o", path("x"), "--truth", name}), 2, "--truth and -o");
+  }
+  expect_sentence(run({"sim", "-o", "-", "--truth", "-"}), 2, "--truth and -o");
+  EXPECT_EQ(listing(), "");
+}
+
+TEST_F(Failure, NothingIsLeftWhenTheOutputIsReplacedAndFine) {
+  const std::string name = good();
+  const std::string all = run({"decode", name}).out;
+  const std::string out = path("out.csv");
+  cli::write_file(out, "older\n");
+  ASSERT_EQ(::chmod(out.c_str(), 0640), 0);
+  EXPECT_EQ(run({"decode", name, "-o", out}).code, 0);
+  EXPECT_EQ(cli::read_file(out), all);
+  EXPECT_EQ(listing(), "good.bin\nout.csv\n");
+  struct stat status{};
+  ASSERT_EQ(::stat(out.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0640U) << "the older file's permissions stay";
+}
+
+TEST_F(Failure, ALinkStaysALink) {
+  cli::write_file(path("real.csv"), "older\n");
+  std::filesystem::create_symlink("real.csv", path("link.csv"));
+  EXPECT_EQ(run({"decode", good(), "-o", path("link.csv")}).code, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.csv")));
+  EXPECT_THAT(cli::read_file(path("real.csv")), StartsWith("scan,"));
+}
+
+TEST(Help, IsOnStandardOutputAndHasExamples) {
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"decode", "--help"}, {"sim", "-h"}}) {
+    const outcome done = run(arguments);
+    EXPECT_EQ(done.code, 0);
+    EXPECT_EQ(done.err, "");
+    EXPECT_THAT(done.out, HasSubstr("Examples:\n  g4-dump " + arguments[0]));
+    EXPECT_THAT(done.out, HasSubstr("Exit codes:"));
+    for (const std::string& line : cli::lines_of(done.out)) EXPECT_LE(line.size(), 100U) << line;
+  }
+  EXPECT_THAT(run({"--help"}).out, HasSubstr("decode"));
+}
+
+TEST(Version, IsThatOfTheLibrary) {
+  const std::string expected = "g4-dump " G4LIDAR_VERSION "\n";
+  EXPECT_EQ(run({"--version"}).out, expected);
+  EXPECT_EQ(run({"decode", "--version"}).out, expected);
+  EXPECT_EQ(run({"--version"}).code, 0);
+}
+
+}  // namespace

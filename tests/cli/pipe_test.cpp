@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// g4-dump between pipes and signals: followed live, left by its reader, interrupted; and its memory.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+#include "recording.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::program;
+using cli::run;
+using cli::stream;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Pipe : public cli::scratch {};
+
+// Whether it lets go of its input, which nobody closes, within 20 seconds.
+bool ends_with_open_input(const program& started) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!started.input_is_dead()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return true;
+}
+
+TEST_F(Pipe, IsFollowedWhileItIsBeingWritten) {
+  const std::string first = cli::packet(10, 20, {4000, 4004});
+  const std::string second = cli::packet(30, 40, {4008, 4012});
+  program started({"decode", "-"});
+  started.feed(first + second.substr(0, 9));
+  EXPECT_THAT(started.read_until("1001.00,111111\n"), StartsWith("scan,angle_deg"));
+  started.feed(second.substr(9));
+  started.read_until("1003.00,333333\n");
+  EXPECT_EQ(started.wait().code, 0);
+}
+
+TEST_F(Pipe, JsonlFollowsRevolutionByRevolution) {
+  program started({"decode", "-", "--format", "jsonl", "--scans"});
+  started.feed(cli::zero(0) + cli::turn() + cli::zero(0));
+  EXPECT_THAT(started.read_until("]}\n"), StartsWith(R"({"scan":0,"partial":false)"));
+  EXPECT_EQ(started.wait().code, 0);
+}
+
+TEST_F(Pipe, AFifoCanBeReadAndWritten) {
+  const std::string in = path("in");
+  const std::string out = path("out");
+  ASSERT_EQ(::mkfifo(in.c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo(out.c_str(), 0600), 0);
+  program started({"decode", in, "-o", out});
+  cli::write_file(in, cli::zero(0));
+  EXPECT_THAT(cli::read_file(out), StartsWith("scan,angle_deg"));
+  EXPECT_EQ(started.wait().code, 0);
+  EXPECT_EQ(listing(), "in\nout\n");
+}
+
+TEST_F(Pipe, AReaderThatHasHadEnoughIsANormalEnd) {
+  const std::string name = path("long.bin");
+  cli::write_repeated(name, cli::zero(0) + cli::turn(), 2'000'000);
+  for (const char* const format : {"csv", "jsonl", "text"}) {
+    program started({"decode", name, "--format", format});
+    started.read_until("\n");
+    started.close_output();
+    const outcome done = started.wait();
+    EXPECT_EQ(done.code, 0) << format;
+    EXPECT_EQ(done.signal, 0) << format;
+    EXPECT_THAT(done.err, HasSubstr("packets"));
+  }
+  program simulated({"sim", "--seconds", "1000000"});
+  simulated.read_until("\xAA\x55");
+  simulated.close_output();
+  EXPECT_EQ(simulated.wait().code, 0);
+}
+
+TEST_F(Pipe, AReaderThatHasGoneIsNoticedWhileTheInputIsSilent) {
+  program started({"decode", "-"});
+  started.feed(cli::zero(0));
+  started.read_until("1000.00");
+  started.close_output();
+  // Its input stays open and silent; it ends all the same, and its end of the pipe with it.
+  EXPECT_TRUE(ends_with_open_input(started));
+  EXPECT_EQ(started.wait().code, 0);
+}
+
+TEST_F(Pipe, InterruptedItWritesWhatItHasAndTheCounts) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    program started({"decode", "-", "--stats", "json"});
+    started.feed(cli::zero(0) + cli::turn(9) + cli::zero(0).substr(0, 5));
+    started.read_until("40000000\n");
+    started.send(signal);
+    EXPECT_TRUE(ends_with_open_input(started)) << "it waits for the end of its input";
+    const outcome done = started.wait();
+    EXPECT_EQ(done.code, 128 + signal);
+    EXPECT_EQ(cli::lines_of(done.out).size(), 1U + 361U);
+    EXPECT_EQ(done.err, R"({"bytes":827,"packets":10,"responses":0,"points":361,"suspect":0,)"
+                        R"("skipped":{"noise":0,"bad_header":0,"bad_checksum":0,"truncated":5}})"
+                        "\n");
+  }
+}
+
+TEST_F(Pipe, InterruptedItKeepsTheFileOfWhatCameSoFar) {
+  const std::string out = path("out.jsonl");
+  const std::string live = path("live");
+  ASSERT_EQ(::mkfifo(live.c_str(), 0600), 0);
+  program started({"decode", live, "--format", "jsonl", "-o", out});
+  const int feeder = ::open(live.c_str(), O_WRONLY);
+  const std::string data = cli::zero(0) + cli::turn();
+  ASSERT_EQ(::write(feeder, data.data(), data.size()), static_cast<ssize_t>(data.size()));
+  for (int left = -1; left != 0; ::ioctl(feeder, FIONREAD, &left)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // until it has read everything
+  }
+  EXPECT_FALSE(std::filesystem::exists(out)) << "it appears when it is finished";
+  started.send(SIGINT);
+  EXPECT_EQ(started.wait().code, 130);
+  ::close(feeder);
+  EXPECT_EQ(cli::lines_of(cli::read_file(out)).size(), 361U);
+  EXPECT_EQ(listing(), "live\nout.jsonl\n");
+}
+
+TEST_F(Pipe, InterruptedBeforeAnyPacketItLeavesNothing) {
+  program started({"decode", "-", "-o", path("out.csv")});
+  started.feed("boot text");
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  started.send(SIGINT);
+  EXPECT_EQ(started.wait().code, 130);
+  EXPECT_EQ(listing(), "");
+}
+
+TEST_F(Pipe, AnInterruptedSimulationLeavesNothing) {
+  program started({"sim", "--seconds", "100000000", "-o", path("x"), "--truth", path("y")});
+  while (listing().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  started.send(SIGINT);
+  EXPECT_EQ(started.wait().code, 130);
+  EXPECT_EQ(listing(), "");
+}
+
+TEST_F(Pipe, ALongFileTakesNoMoreMemoryThanAShortOne) {
+  const std::string block = cli::zero(0) + cli::turn();
+  const std::string short_one = path("short.bin");
+  const std::string long_one = path("long.bin");
+  cli::write_repeated(short_one, block, 500'000);
+  cli::write_repeated(long_one, block, 50'000'000);
+  for (const char* const format : {"csv", "jsonl"}) {
+    const outcome few = run({"decode", short_one, "--format", format, "-o", "/dev/null"});
+    const outcome many = run({"decode", long_one, "--format", format, "-o", "/dev/null"});
+    EXPECT_EQ(many.code, 0);
+    EXPECT_LT(many.max_rss_kib, few.max_rss_kib + 2048) << format;
+  }
+}
+
+// Everything that a terminal on standard error is shown.
+std::string shown_on_terminal(const std::vector<std::string>& arguments, const std::string& out) {
+  int ours = -1;
+  int theirs = -1;
+  if (::openpty(&ours, &theirs, nullptr, nullptr, nullptr) != 0) return "no terminal";
+  ::fcntl(ours, F_SETFD, FD_CLOEXEC);
+  std::string shown;
+  program started(arguments, {{}, stream::of_file(out), stream::of(theirs)});
+  ::close(theirs);
+  char part[4096];
+  for (ssize_t count = 0; (count = ::read(ours, part, sizeof part)) > 0;) {
+    shown.append(part, static_cast<std::size_t>(count));
+  }
+  ::close(ours);
+  EXPECT_EQ(started.wait().code, 0);
+  return shown;
+}
+
+TEST_F(Pipe, AProgressBarOnATerminalForLargeFilesOnly) {
+  const std::string block = cli::zero(0) + cli::turn();
+  const std::string small = path("small.bin");
+  const std::string large = path("large.bin");
+  cli::write_repeated(small, block, 100'000);
+  cli::write_repeated(large, block, 17'000'000);
+  const std::string bar = shown_on_terminal({"decode", large, "--valid"}, "/dev/null");
+  EXPECT_THAT(bar, StartsWith("\r["));
+  EXPECT_THAT(bar, HasSubstr("% "));
+  EXPECT_THAT(bar, HasSubstr("\r\x1b[K17"));  // wiped away before the counts
+  EXPECT_THAT(shown_on_terminal({"decode", small}, "/dev/null"), StartsWith("1"));
+  EXPECT_THAT(shown_on_terminal({"decode", large, "--stats", "json"}, "/dev/null"),
+              StartsWith("{"));
+  EXPECT_THAT(run({"decode", large, "-o", "/dev/null"}).err, StartsWith("17"));
+}
+
+TEST_F(Pipe, BinaryIsNotPouredOntoATerminal) {
+  int ours = -1;
+  int theirs = -1;
+  ASSERT_EQ(::openpty(&ours, &theirs, nullptr, nullptr, nullptr), 0);
+  program simulated({"sim"}, {{}, stream::of(theirs), {}});
+  const outcome done = simulated.wait();
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.err, HasSubstr("-o FILE"));
+  program waiting({"decode"}, {stream::of(theirs), {}, {}});
+  const outcome refused = waiting.wait();
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("standard input is a terminal"));
+  ::close(theirs);
+  ::close(ours);
+}
+
+}  // namespace

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// g4-dump sim: bytes that decode understands, the truth beside them, and the options' effect.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::run;
+using nlohmann::json;
+using ::testing::StartsWith;
+
+std::vector<double> numbers_of(const std::string& line) {
+  std::vector<double> numbers;
+  std::istringstream stream(line);
+  for (std::string field; std::getline(stream, field, ',');) numbers.push_back(std::stod(field));
+  return numbers;
+}
+
+class Sim : public cli::scratch {
+ protected:
+  // Its bytes with these options.
+  std::string bytes_of(std::vector<std::string> options) {
+    options.insert(options.begin(), "sim");
+    options.insert(options.end(), {"-o", path("x.bin")});
+    const outcome done = run(options);
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_EQ(done.out, "");
+    EXPECT_EQ(done.err, "");
+    return cli::read_file(path("x.bin"));
+  }
+  static json stats_of(const std::string& bytes) {
+    return json::parse(run({"decode", "--stats", "json", "--valid"}, bytes).err);
+  }
+};
+
+TEST_F(Sim, SameSeedSameBytes) {
+  const std::string one = bytes_of({"--seconds", "1", "--seed", "7"});
+  EXPECT_EQ(bytes_of({"--seconds", "1", "--seed", "7"}), one);
+  EXPECT_NE(bytes_of({"--seconds", "1", "--seed", "8"}), one);
+  EXPECT_EQ(run({"sim", "--seconds", "1", "--seed", "7"}).out, one);
+  EXPECT_THAT(bytes_of({"--seconds", "2", "--seed", "7"}), StartsWith(one));
+}
+
+TEST_F(Sim, DecodesWithoutASingleSkippedByte) {
+  const json stats = stats_of(bytes_of({"--seconds", "3"}));
+  EXPECT_EQ(stats.at("responses"), 1);
+  EXPECT_EQ(stats.at("suspect"), 0);
+  EXPECT_NEAR(stats.at("points").get<double>(), 27'000.0, 40.0);
+  for (const auto& [reason, count] : stats.at("skipped").items()) EXPECT_EQ(count, 0) << reason;
+}
+
+TEST_F(Sim, TheTruthIsWhatDecodeFinds) {
+  const std::string bytes =
+      bytes_of({"--seconds", "2", "--seed", "5", "--truth", path("truth.csv")});
+  const std::vector<std::string> truth = lines_of(cli::read_file(path("truth.csv")));
+  const std::vector<std::string> points = lines_of(run({"decode"}, bytes).out);
+  ASSERT_EQ(truth.at(0), "index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw");
+  ASSERT_EQ(truth.size(), points.size());
+  std::size_t returns = 0;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    SCOPED_TRACE(truth[i] + " decoded as " + points[i]);
+    const std::vector<double> sample = numbers_of(truth[i]);
+    const std::vector<double> point = numbers_of(points[i]);
+    ASSERT_EQ(sample.size(), 7U);
+    ASSERT_EQ(sample[0], static_cast<double>(i - 1));
+    ASSERT_EQ(sample[1], point[3]);
+    ASSERT_EQ(sample[2], point[0]);
+    ASSERT_EQ(sample[6] / 4.0, point[2]);
+    const bool came_back = point[2] > 0.0;
+    const double bearing = came_back ? sample[4] : sample[3];
+    ASSERT_LT(std::abs(std::remainder(point[1] - bearing, 360.0)), 0.02);
+    if (!came_back) continue;
+    ++returns;
+    ASSERT_NEAR(point[2], sample[5], 0.126);
+  }
+  EXPECT_GT(returns, truth.size() / 2);
+}
+
+TEST_F(Sim, OptionsReachTheScanner) {
+  const auto points = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--seconds", "2"});
+    return stats_of(bytes_of(options)).at("points").get<double>();
+  };
+  EXPECT_NEAR(points({"--rate", "4000"}), 8'000, 40);
+  EXPECT_NEAR(points({"--rate", "8000"}), 16'000, 40);
+  EXPECT_NEAR(points({"--samples", "80"}), 18'000, 80);
+  const auto scans = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--seconds", "2", "--start-deg", "90"});
+    return run({"decode", "--scans", "--format", "jsonl"}, bytes_of(options)).out;
+  };
+  EXPECT_EQ(json::parse(lines_of(scans({"--frequency", "12"})).at(1)).at("reported_hz"), 12.0);
+  EXPECT_NEAR(
+      json::parse(lines_of(scans({"--frequency", "5.5"})).at(1)).at("measured_hz").get<double>(),
+      5.5, 0.05);
+  EXPECT_TRUE(
+      json::parse(lines_of(scans({"--no-reported-frequency"})).at(1)).at("reported_hz").is_null());
+  const std::string clean = bytes_of({"--seconds", "2"});
+  for (const std::vector<std::string>& flaw : {std::vector<std::string>{"--noise-mm", "5"},
+                                               {"--noise-ratio", "0.01"},
+                                               {"--dropout", "0.1"},
+                                               {"--index-deg", "348"},
+                                               {"--start-deg", "10"}}) {
+    std::vector<std::string> options{"--seconds", "2"};
+    options.insert(options.end(), flaw.begin(), flaw.end());
+    EXPECT_NE(bytes_of(options), clean) << flaw[0];
+  }
+}
+
+TEST_F(Sim, AWorldFromAFile) {
+  // A square room of 4 m, the lidar in its middle.
+  cli::write_file(path("room.txt"),
+                  "# a room\nlidar 0 0 0\nwall -2 -2 2 -2\nwall 2 -2 2 2\nwall 2 2 -2 2\n"
+                  "wall -2 2 -2 -2\n");
+  bytes_of({"--seconds", "1", "--world", path("room.txt"), "--truth", path("truth.csv")});
+  const std::vector<std::string> truth = lines_of(cli::read_file(path("truth.csv")));
+  ASSERT_GT(truth.size(), 8'900U);
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const double range_mm = numbers_of(truth[i])[5];
+    ASSERT_GE(range_mm, 1999.999) << truth[i];
+    ASSERT_LE(range_mm, 2828.428) << truth[i];
+  }
+}
+
+}  // namespace
