@@ -11,7 +11,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <span>
 #include <string>
@@ -20,17 +19,14 @@
 #include <vector>
 
 #include "g4lidar/point_ring.hpp"
+#include "support/test_scale.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
 
-std::uint64_t scale() {
-  const char* const given = std::getenv("G4LIDAR_TEST_SCALE");
-  const int number = given == nullptr ? 1 : std::atoi(given);
-  return number < 1 ? 1 : static_cast<std::uint64_t>(number);
-}
+const auto scale = [] { return static_cast<std::uint64_t>(test::test_scale()); };
 
 using point_words = std::array<std::uint32_t, sizeof(point) / 4>;
 
