@@ -32,9 +32,13 @@ struct writer {
   ring_type& ring;
   std::uint64_t next;
 
-  void push() {
+  void push() { write(prepare()); }
+  [[nodiscard]] std::size_t prepare() const {
     const auto count = static_cast<std::size_t>(next % 24U + 1U);
     for (std::size_t i = 0; i < count; ++i) room[i] = numbered(next + i);
+    return count;
+  }
+  void write(std::size_t count) {
     ring.push(std::span<const g4lidar::point>(room).first(count));
     next += count;
   }
@@ -68,7 +72,8 @@ std::uint32_t next_delay() {
 
 void check_account(const writer& in, const listener& out) {
   check(out.in_order);
-  check(out.place + out.reader.ahead() == in.next && in.ring.written() == in.next);
+  check(out.place <= in.next && out.place + out.reader.ahead() == in.next);
+  check(in.ring.written() == in.next);
 }
 
 void test_interrupting_writer() {
@@ -119,11 +124,47 @@ void test_interrupting_reader() {
   put(" missed\n");
 }
 
+/// One interrupt at every place of a push across the carry, or of a read which that push interrupts.
+void test_every_moment(bool writer_interrupts) {
+  constexpr std::uint64_t first = carry - 12;
+  for (std::uint32_t delay = 20; delay < 620; ++delay) {
+    ring_type ring(first);
+    writer in{ring, first};
+    listener out{ring.make_reader(), first};
+    in.push();  // 5 points; the next 10 cross the carry
+    interrupting_writer = &in;
+    interrupting_listener = &out;
+    static std::size_t prepared;
+    prepared = in.prepare();
+    if (writer_interrupts) {
+      start_ticks(delay, [] {
+        interrupting_writer->write(prepared);
+        return std::uint32_t{0};
+      });
+      out.read();
+      while (ring.written() < carry) {
+      }
+    } else {
+      start_ticks(delay, [] {
+        interrupting_listener->read();
+        return std::uint32_t{0};
+      });
+      in.write(prepared);
+    }
+    stop_ticks();
+    out.read();
+    check_account(in, out);
+    check(out.missed == 0);
+  }
+}
+
 }  // namespace
 
 void test_board() {
   test_interrupting_writer();
   test_interrupting_reader();
+  test_every_moment(true);
+  test_every_moment(false);
 }
 
 }  // namespace self_test

@@ -101,6 +101,8 @@ void test_lost_zero_packet() {
   device.rest_of_turn();
   check(device.got.scans == 1 && device.got.whole == 0);
   check(device.got.last.has(scan_marks::end_missing));
+  check(device.got.last.points.size() >= samples_a_turn);
+  check(device.got.last.points.size() <= samples_a_turn + 1);
   device.zero();
   check(device.got.scans == 2 && device.got.whole == 0);
   check(device.got.last.has(scan_marks::start_missing));
@@ -119,27 +121,38 @@ void test_full_storage() {
   check(device.got.points == device.given);
 }
 
+/// What the bin around 180 degrees holds.
+float bin_of(std::span<const point> points, const grid_options& options) {
+  std::array<float, 36> grid{};
+  fill_grid(points, grid, options);
+  return grid[18];
+}
+
 void test_grid() {
-  std::array<point, 5> points{};
-  const std::array<float, 5> angles{180.0F, 180.2F, 90.0F, 90.1F, 270.0F};
-  const std::array<float, 5> ranges_mm{1000.0F, 900.0F, 0.0F, 50.0F, 0.0F};
+  // The first one is a direction in which nothing was seen: that is 8 degrees less.
+  std::array<point, 7> points{};
+  const std::array<float, 7> angles{187.9F, 180.1F, 180.2F, 180.3F, 90.0F, 270.0F, 50.0F};
+  const std::array<float, 7> ranges_mm{0.0F, 50.0F, 1000.0F, 900.0F, 0.0F, 0.0F, 3000.0F};
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i].angle_deg = unknown(angles[i]);
     points[i].range_mm = unknown(ranges_mm[i]);
     points[i].marks = mark_of(static_cast<std::uint16_t>(4.0F * ranges_mm[i]));
   }
+  const grid_options nearest{frame::vendor, grid_pick::nearest, false};
+  const grid_options minimum{frame::vendor, grid_pick::minimum, false};
+  const std::span<const point> all = points;
+  check(bin_of(all, nearest) == 1000.0F * 0.001F);
+  check(bin_of(all, minimum) == 900.0F * 0.001F);
+  check(bin_of(all, {frame::vendor, grid_pick::minimum, true}) == 50.0F * 0.001F);
+  check(bin_of(all, {frame::robot, grid_pick::nearest, false}) == 1000.0F * 0.001F);  // ahead
+  check(bin_of(all.first(1), nearest) > 1e30F);  // nothing came back
+  const float too_near = bin_of(all.first(2), nearest);
+  check(too_near != too_near);
+
   std::array<float, 36> grid{};
-  fill_grid(points, grid, {frame::vendor, grid_pick::nearest, false});
-  check(grid[18] == 1000.0F * 0.001F);
-  fill_grid(points, grid, {frame::vendor, grid_pick::minimum, false});
-  check(grid[18] == 900.0F * 0.001F);
-  check(grid[8] > 1e30F);  // nothing came back, 8 degrees before 90
-  check(grid[26] > 1e30F);
-  check(grid[9] != grid[9]);  // too near, left out
-  check(grid[0] != grid[0]);  // nobody looked
-  fill_grid(points, grid, {frame::robot, grid_pick::minimum, true});
-  check(grid[18] == 900.0F * 0.001F);  // straight ahead
-  check(near(grid[27], 0.05, 1e-6));
+  fill_grid(points, grid, {frame::robot, grid_pick::nearest, false});
+  check(grid[0] != grid[0]);  // nobody looked there
+  check(grid[31] == 3000.0F * 0.001F);
 }
 
 }  // namespace
