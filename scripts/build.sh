@@ -42,5 +42,5 @@ build() {
   shift
   local targets=()
   if (($# > 0)); then targets=(--target "$@"); fi
-  run_quietly "Building $directory" cmake --build "$directory" "${targets[@]}"
+  run_quietly "Building $directory" cmake --build "$directory" "${targets[@]}" -- --quiet
 }
