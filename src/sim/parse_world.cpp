@@ -37,8 +37,9 @@ std::string quoted(std::string_view word) {
   return out;
 }
 
-// [+-]digits[.digits], at most 15 digits that count: a whole number and a power of ten are then
-// both exact, and one division rounds as a correct reading does, in any locale.
+// [+-]digits[.digits], at most 15 digits that count and 15 behind the point: a whole number and a
+// power of ten are then both exact, and one division rounds as a correct reading does, in any
+// locale.
 std::optional<double> number(std::string_view word) noexcept {
   const bool negative = !word.empty() && word.front() == '-';
   if (!word.empty() && (word.front() == '-' || word.front() == '+')) word.remove_prefix(1);

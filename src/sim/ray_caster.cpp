@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Meets of a bent beam and straight walls. With q(d) = tan(correction(d)) = k/d - c, the beam at the
+// Where a bent beam meets straight walls. With q(d) = tan(correction(d)) = k/d - c, the beam at the
 // first-level angle theta is at range d in
 //     P(d) = (d e + (k - c d) n) / g(d),   g(d) = sqrt(1 + q(d)^2),
 // e pointing towards theta and n 90 degrees further. It is on the line N.P = h of a wall where
 //     f(d) = d N.e + (k - c d) N.n - h g(d) = 0.
-// Without g that is a straight line: the laser beam beside the centre. Since h >= 0, f is concave up
-// to the range at which g's curvature changes its sign and convex from there on, which leaves at
-// most two roots in either part and a sure way to all of them, without a trigonometric function.
+// Without g that is a straight line: the laser beam beside the centre. g bends one way up to the
+// range at which its curvature changes its sign and the other way from there on, and f with it,
+// which leaves at most two roots in either part and a sure way to all of them, without a
+// trigonometric function.
 #include "exact.hpp"
 
 #include "g4lidar/sim/ray_caster.hpp"
@@ -84,13 +85,12 @@ struct roots {
   std::size_t count = 0;
 };
 
-// All roots between two ends, where f bends to one side only: `bend` is 1 (convex) or -1 (concave).
-roots roots_between(const gap& f, end low, end high, double bend) noexcept {
+// All roots between two ends, where f bends to one side only.
+roots roots_between(const gap& f, end low, end high) noexcept {
   if ((low.v.f < 0.0) != (high.v.f < 0.0)) return {{root_between(f, low, high)}, 1};
   // Both ends on the same side. Two roots can hide only where f dips from there towards zero: look
   // for a point on the other side. The tangents at the ends bound f; where they meet is tried next.
   const double side = low.v.f < 0.0 ? -1.0 : 1.0;
-  if (side != bend) return {};
   end a = low;
   end b = high;
   for (int i = 0; i < 60; ++i) {
@@ -211,16 +211,16 @@ std::optional<double> ray_caster::meet(const seen_wall& target, const beam& ray,
     const double along = d * (t_e + q * t_n) / std::sqrt(1.0 + q * q);
     return along >= target.along_begin - slack && along <= target.along_end + slack;
   };
-  const auto part = [&](double low, double high, double bend) -> std::optional<double> {
+  const auto part = [&](double low, double high) -> std::optional<double> {
     if (!(low < high)) return std::nullopt;
-    const roots found = roots_between(f, {low, f.at(low)}, {high, f.at(high)}, bend);
+    const roots found = roots_between(f, {low, f.at(low)}, {high, f.at(high)});
     for (std::size_t i = 0; i < found.count; ++i) {
       if (on_wall(found.at[i])) return found.at[i];
     }
     return std::nullopt;
   };
-  if (const auto near_by = part(begin, std::min(end, inflection), -1.0)) return near_by;
-  return part(std::max(begin, inflection), end, 1.0);
+  if (const auto near_by = part(begin, std::min(end, inflection))) return near_by;
+  return part(std::max(begin, inflection), end);
 }
 
 std::optional<sighting> ray_caster::cast(double first_level_deg) const noexcept {

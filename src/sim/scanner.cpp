@@ -115,8 +115,8 @@ sample_truth scanner::measure() noexcept {
   return truth;
 }
 
-// Each sample draws the same amount of randomness whatever it meets and however the options are set,
-// so that a change in one place moves nothing anywhere else.
+// Each sample draws as many random numbers whatever it meets and however the options are set, so
+// that a change in one place moves nothing anywhere else.
 std::uint16_t scanner::raw_sample(double range_mm) noexcept {
   const double error = noise_.gaussian();
   const bool dropped = dropouts_.uniform() < options_.dropout_ratio;

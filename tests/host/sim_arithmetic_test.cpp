@@ -92,6 +92,8 @@ TEST(SimRandom, GivesTheNumbersOfAnIndependentImplementation) {
        {0xFB5405F7BD79C540U, 0x780C98E26CEA5883U, 0x2A146E0980FEBC66U}) {
     EXPECT_EQ(plain.next(), expected);
   }
+  for (int i = 4; i < 100; ++i) (void)plain.next();
+  EXPECT_EQ(plain.next(), 0xEDF949D188C92807U);
   sim::random_stream with_purpose(1, 2);
   for (const std::uint64_t expected :
        {0x84F02F195AB5FD66U, 0x46FF6F0DAAF44911U, 0x8276408E60C29367U}) {

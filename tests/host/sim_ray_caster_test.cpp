@@ -193,6 +193,18 @@ TEST(SimRayCaster, ABeamThatGrazesAWallTwiceMeetsTheNearerPoint) {
   EXPECT_GT(twice, 5U);
 }
 
+TEST(SimRayCaster, AWallSeenEdgeOnGivesTheExactInverseOfTheCorrection) {
+  sim::world world;
+  world.walls.push_back({0.03, 0.0, 16.0, 0.0});  // on the bearing 0
+  const sim::ray_caster caster(world);
+  for (double d = 31.0; d < 16'000.0; d += 0.5) {
+    const double theta = -reference_correction_deg(d);
+    const auto seen = caster.cast(theta < 0.0 ? theta + 360.0 : theta);
+    ASSERT_TRUE(seen) << d;
+    ASSERT_NEAR(seen->range_mm, d, 1e-6);
+  }
+}
+
 TEST(SimRayCaster, ARoomHasNoHolesAtItsCorners) {
   sim::world room;
   room.walls = {{-2, -1, 3, -1.5}, {3, -1.5, 3.5, 2}, {3.5, 2, -2.5, 2.5}, {-2.5, 2.5, -2, -1}};

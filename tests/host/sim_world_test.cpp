@@ -67,6 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
         refusal{"point_alone", "lidar . 0 0", 1, "'.' is not a number"},
         refusal{"two_signs", "lidar +-1 0 0", 1, "'+-1' is not a number"},
         refusal{"digits", "lidar 0.1234567890123456 0 0", 1, "up to 15 digits"},
+        refusal{"decimals", "lidar 0.0000000000000001 0 0", 1, "up to 15 digits"},
         refusal{"huge", "lidar 99999999999999999999999999 0 0", 1, "is not a number"},
         refusal{"far_wall", "lidar 0 0 0\nwall 1 0 1000.1 1", 2, "beyond 1000 m"},
         refusal{"far_lidar", "lidar 0 -1000.1 0", 1, "beyond 1000 m"},

@@ -35,7 +35,7 @@ class random_stream {
   /// A number in [0, 1), a multiple of 2^-53.
   constexpr double uniform() noexcept { return static_cast<double>(next() >> 11) * 0x1p-53; }
 
-  /// A number with mean 0 and standard deviation 1, nearly Gaussian: the sum of twelve uniform ones.
+  /// A number with mean 0 and standard deviation 1, nearly Gaussian, a sum of twelve uniform ones.
   /// Never beyond 6 in magnitude; a multiple of 2^-16, thus exact.
   constexpr double gaussian() noexcept {
     std::int32_t sum = -6 * 65535;  // twelve times the mean of 16 bits

@@ -26,7 +26,7 @@ struct sighting {
 
 /// Answers which wall the beam meets first. Since the correction depends on the range, the beam is
 /// no straight line but a curve: its point at range d stands at the bearing theta + correction(d).
-/// Allocates on construction only; after that a `const` caster may be used by any number of threads.
+/// Allocates on construction only; a `const` caster may be used by any number of threads at once.
 class ray_caster {
  public:
   /// `scene` is copied as far as it is needed.

@@ -62,9 +62,9 @@ struct sent_packet {
 /// for ever. (protocol: Commands, 60)
 [[nodiscard]] bytes scan_start_reply() noexcept;
 
-/// A turning head that measures in virtual time: each next() is one packet further. Same options and
-/// same world, same bytes, on every processor. *Single thread. Allocates on construction only.* A
-/// copy lives on independently.
+/// A turning head that measures in virtual time: each next() is one packet further. Same options
+/// and same world, same bytes, on every processor. *Single thread. Allocates on construction only.*
+/// A copy lives on independently.
 class scanner {
  public:
   /// `problem_with(options)` is empty; a mistake there is an assertion.

@@ -18,8 +18,8 @@ struct wall {
   double y2_m;
 };
 
-/// Where a lidar stands and which way the lidar's angle 0 points: degrees counter-clockwise from the
-/// x axis. The lidar's own angles grow clockwise from there.
+/// Where a lidar stands and which way its angle 0 points: degrees counter-clockwise from the x
+/// axis. The lidar's own angles grow clockwise from there.
 struct pose {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -33,8 +33,8 @@ struct world {
   pose lidar;
 };
 
-/// A flat of a few rooms: a living room with oblique furniture, a pillar and a post nearer
-/// than a G4 can measure; a kitchen behind an open door; a hall, the far end of which is beyond 16 m.
+/// A flat of a few rooms: a living room with oblique furniture, a pillar and a post nearer than a
+/// G4 can measure; a kitchen behind an open door; a hall, the far end of which is beyond 16 m.
 [[nodiscard]] world built_in_world();
 
 /// Why a text is not a world.
