@@ -33,22 +33,24 @@ class revolution_counter {
 /// The points of one packet, and what the packet says of the revolution. `points` lies in the memory
 /// that was given to decode().
 struct decoded {
-  std::span<const point> points;         ///< Empty if the packet is suspect.
-  std::uint32_t revolution = 0;          ///< As given.
-  std::uint16_t sample_count = 0;        ///< Of the packet, suspect or not.
-  std::uint16_t first_angle_64ths = 0;   ///< First-level angle of the first sample, 1/64 degree.
-  std::int16_t span_64ths = 0;           ///< Clockwise way to the last sample, 1/64 degree.
+  std::span<const point> points;            ///< Empty if the packet is suspect.
+  std::uint32_t revolution = 0;             ///< As given.
+  std::uint16_t sample_count = 0;           ///< Of the packet, suspect or not.
+  std::uint16_t first_angle_64ths = 0;      ///< First-level angle of the first sample, 1/64 degree.
+  std::int16_t span_64ths = 0;              ///< Clockwise way to the last sample, 1/64 degree.
   std::uint8_t reported_frequency_dhz = 0;  ///< 0.1 Hz; 0 where none is reported.
-  bool starts_revolution = false;        ///< A zero packet, suspect or not.
-  bool suspect = false;                  ///< No angle can be told for its samples.
+  bool starts_revolution = false;           ///< A zero packet, suspect or not.
+  bool suspect = false;                     ///< No angle can be told for its samples.
 };
 
 /// The mark of a sample by its range. *Pure*, and without a branch.
 [[nodiscard]] constexpr point_marks mark_of(std::uint16_t raw) noexcept {
+  static_assert(static_cast<int>(point_marks::too_near) - 1 ==
+                static_cast<int>(point_marks::no_return));
   constexpr auto too_near_raw = static_cast<std::uint16_t>(4 * too_near_mm);
-  const unsigned no_return = raw == 0;
-  const unsigned near = raw < too_near_raw;
-  return static_cast<point_marks>(no_return | (near & ~no_return) << 1);
+  const int near = raw < too_near_raw;
+  const int no_return = raw == 0;
+  return static_cast<point_marks>(2 * near - no_return);
 }
 
 /// Writes the corrected points of `packet` to the front of `out`, which has room for the longest
@@ -70,25 +72,29 @@ constexpr decoded decode(packet_view packet, const Form& correction, std::uint32
   if (result.suspect) return result;
 
   const real first = static_cast<real>(packet.first_angle_64ths()) / real(64);
-  const real step = count > 1 ? static_cast<real>(packet.span_64ths()) /
-                                    (real(64) * static_cast<real>(count - 1))
-                              : real(0);
-  // Whole eights over short arrays, which turn into vector instructions; behind the last sample the
-  // copy holds zeroes.
+  const real step =
+      count > 1 ? static_cast<real>(packet.span_64ths()) / (real(64) * static_cast<real>(count - 1))
+                : real(0);
+  // First all directions, sixteen at a time: a loop of this form, with a constant number of rounds
+  // and no branch, turns into vector instructions. Behind the last sample the copy holds zeroes.
+  constexpr std::int32_t at_once = 16;
   std::array<std::uint16_t, max_samples> raw;
+  std::array<real, max_samples> angles_deg;
   packet.copy_samples(raw);
-  for (std::size_t from = 0; from < count; from += 8) {
-    std::array<float, 8> angles_deg;
-    for (std::size_t i = 0; i < 8; ++i) {
-      const real uncorrected = first + static_cast<real>(static_cast<std::int32_t>(from + i)) * step;
-      const real corrected = wrap_once_deg(uncorrected + correction(raw[from + i]));
-      angles_deg[i] = wrap_once_deg(static_cast<float>(corrected));  // rounding can give 360
+  for (std::size_t from = 0; from < count; from += at_once) {
+    const std::uint16_t* const raw_here = raw.data() + from;
+    real* const angles_here = angles_deg.data() + from;
+    const auto place = static_cast<std::int32_t>(from);
+    for (std::int32_t i = 0; i < at_once; ++i) {
+      const real uncorrected = first + static_cast<real>(place + i) * step;
+      angles_here[i] = wrap_once_deg(uncorrected + correction(raw_here[i]));
     }
-    for (std::size_t i = 0; i < 8 && from + i < count; ++i) {
-      const std::uint16_t sample = raw[from + i];
-      out[from + i] = {angles_deg[i], static_cast<float>(sample) * 0.25F, 0, revolution,
-                       mark_of(sample), {}};
-    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    auto angle_deg = static_cast<float>(angles_deg[i]);
+    if constexpr (sizeof(real) > sizeof(float)) angle_deg = wrap_once_deg(angle_deg);
+    const auto whole = static_cast<std::int32_t>(raw[i]);
+    out[i] = {angle_deg, static_cast<float>(whole) * 0.25F, 0, revolution, mark_of(raw[i]), {}};
   }
   if (result.starts_revolution) out[0].marks = out[0].marks | point_marks::revolution_start;
   result.points = out.first(count);
