@@ -73,12 +73,11 @@ struct compact_correction {
   // With x the fraction of the formula, atan(x) = centre + atan((x - c) / (1 + x c)) where c is the
   // tangent of the centre. All corrections lie within 48.7 degrees of this centre, so one polynomial
   // does for them all; and x being 87.2 / raw - 21.8 / 155.3, the new fraction is one of two linear
-  // functions of the sample.
+  // functions of the sample, scaled here so that the upper one is zero_raw - raw.
   static constexpr float centre_deg = 40.675655774F;
-  static constexpr float above_0 = 87.2F;
-  static constexpr float above_1 = -0.9997702028F;
-  static constexpr float below_0 = 74.93939504F;
-  static constexpr float below_1 = 0.8793634980F;
+  static constexpr float zero_raw = 87.22004292F;
+  static constexpr float below_0 = 74.95661986F;
+  static constexpr float below_1 = 0.8795656197F;
 
   /// atan(t) / t in degrees as a polynomial in t * t, for |t| <= 1.14: t times it is within 2e-6
   /// degrees.
@@ -89,7 +88,7 @@ struct compact_correction {
   [[nodiscard]] constexpr float operator()(std::uint16_t raw) const noexcept {
     const auto whole = static_cast<std::int32_t>(raw);
     const auto sample = static_cast<float>(whole);
-    const float t = (above_0 + above_1 * sample) / (below_0 + below_1 * sample);
+    const float t = (zero_raw - sample) / (below_0 + below_1 * sample);
     // 1 for a range, 0 for none: a choice between two results would be a branch, and no vectors.
     const auto measured = static_cast<float>(-whole >> 31 & 1);
     return measured * (centre_deg + t * polynomial(t * t));

@@ -38,7 +38,7 @@ constexpr bool gives_the_figures(const Form& form, double rounding) {
   });
 }
 static_assert(gives_the_figures(exact_correction{}, 0.0));
-static_assert(gives_the_figures(compact_correction{}, 1e-5));
+static_assert(gives_the_figures(compact_correction{}, 2e-5));
 
 // 155.3 mm lies between two samples: the correction changes its sign there.
 static_assert(exact_correction{}(621) > 0.0 && exact_correction{}(622) < 0.0);
@@ -82,7 +82,7 @@ TEST(Correction, TableIsWithinItsBoundForEverySample) {
 }
 
 TEST(Correction, CompactFormIsWithinItsBoundForEverySample) {
-  EXPECT_LT(worst_error(compact_correction{}), 1e-5);
+  EXPECT_LT(worst_error(compact_correction{}), 2e-5);
 }
 
 TEST(Correction, FarTargetsTendToTheStatedLimit) {
