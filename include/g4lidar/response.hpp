@@ -74,30 +74,39 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
   return false;
 }
 
+/// Which of the layouts has this length byte, by which the five differ; response_layouts.size() if
+/// none has. *Pure.*
+[[nodiscard]] constexpr std::size_t layout_of_length(std::uint8_t length) noexcept {
+  std::size_t at = 0;
+  while (at < response_layouts.size() && response_layouts[at].header[2] != length) ++at;
+  return at;
+}
+
 /// Whether a reply stands at the front of `data`: one of the headers above and a possible content,
 /// each byte held against them as soon as it is there. *Pure.*
 [[nodiscard]] constexpr frame_check check_response(bytes data) noexcept {
   const std::size_t have = data.size();
-  std::size_t longest_match = 0;
-  for (const response_layout& layout : response_layouts) {
-    std::size_t match = 0;
-    while (match < have && match < response_header_size && data[match] == layout.header[match]) {
-      ++match;
-    }
-    longest_match = match > longest_match ? match : longest_match;
-    if (match < response_header_size) continue;
-    const std::size_t size = response_header_size + layout.content;
-    const bytes content = data.subspan(response_header_size);
-    for (std::size_t at = 0; at < layout.content && at < content.size(); ++at) {
-      if (!is_possible(layout.kind, content, at)) {
-        return {frame_state::bad_header, response_header_size + at + 1};
-      }
-    }
-    if (have < size) return {frame_state::incomplete, have + 1};
-    return {frame_state::valid, size};
+  const auto refused_at = [](std::size_t at) {
+    return frame_check{frame_state::bad_header, at + 1};
+  };
+  if (have > 0 && data[0] != response_start[0]) return refused_at(0);
+  if (have > 1 && data[1] != response_start[1]) return refused_at(1);
+  if (have < 3) return {frame_state::incomplete, have + 1};
+  const std::size_t which = layout_of_length(data[2]);
+  if (which == response_layouts.size()) return refused_at(2);
+  const response_layout& layout = response_layouts[which];
+  for (std::size_t at = 3; at < response_header_size && at < have; ++at) {
+    if (data[at] != layout.header[at]) return refused_at(at);
   }
-  if (longest_match == have) return {frame_state::incomplete, have + 1};
-  return {frame_state::bad_header, longest_match + 1};
+  const std::size_t size = response_header_size + layout.content;
+  for (std::size_t at = response_header_size; at < size && at < have; ++at) {
+    const std::size_t in_content = at - response_header_size;
+    if (!is_possible(layout.kind, data.subspan(response_header_size), in_content)) {
+      return refused_at(at);
+    }
+  }
+  if (have < size) return {frame_state::incomplete, have + 1};
+  return {frame_state::valid, size};
 }
 
 /// What the device says of itself, interpreted. (protocol: Commands, device information)
@@ -115,8 +124,7 @@ struct device_information {
   /// It would point into a structure that is gone.
   std::string_view serial_number() const&& = delete;
 
-  friend constexpr bool operator==(const device_information&,
-                                   const device_information&) = default;
+  friend constexpr bool operator==(const device_information&, const device_information&) = default;
 };
 
 /// The model number of a G4.
@@ -156,10 +164,7 @@ class response_view {
   }
   [[nodiscard]] constexpr std::uint8_t type_code() const noexcept { return frame_[6]; }
   [[nodiscard]] constexpr response_kind kind() const noexcept {
-    for (const response_layout& layout : response_layouts) {
-      if (layout.header[2] == frame_[2]) return layout.kind;  // the five lengths differ
-    }
-    return response_kind::scan_started;  // not reached: the frame was checked
+    return response_layouts[layout_of_length(frame_[2])].kind;  // there is one: it was checked
   }
 
   /// The device information, if that is what this reply holds.

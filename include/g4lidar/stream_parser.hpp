@@ -51,6 +51,15 @@ struct front {
   friend constexpr bool operator==(const front&, const front&) = default;
 };
 
+/// Whether `data[at]`, with the byte behind it if that is there, is the start of a frame. What is not
+/// is noise. *Pure.*
+[[nodiscard]] constexpr bool may_begin_frame(bytes data, std::size_t at) noexcept {
+  const std::uint8_t first = data[at];
+  if (first != packet_start[0] && first != response_start[0]) return false;
+  const std::uint8_t second = first == packet_start[0] ? packet_start[1] : response_start[1];
+  return at + 1 == data.size() || data[at + 1] == second;
+}
+
 /// The specification of the parser: what stands at the front of `data`, which is not empty. *Pure.*
 ///
 /// Applied to a whole input from its first byte on, going on behind each frame and by `size` at each
@@ -59,28 +68,24 @@ struct front {
 /// that a refused frame had claimed counts with that frame's reason, until a frame begins.
 [[nodiscard]] constexpr front what_stands_at_front(bytes data) noexcept {
   const bool maybe_packet = data[0] == packet_start[0];
-  if (!maybe_packet && data[0] != response_start[0]) {
-    const auto next_start =
-        std::find_if(data.begin() + 1, data.end(), [](std::uint8_t byte) {
-          return byte == packet_start[0] || byte == response_start[0];
-        });
-    const auto count = static_cast<std::size_t>(next_start - data.begin());
-    return {front_kind::skip, skip_reason::noise, count, count};
+  if (maybe_packet || data[0] == response_start[0]) {
+    const frame_check check = maybe_packet ? check_packet(data) : check_response(data);
+    switch (check.state) {
+      case frame_state::valid:
+        return {maybe_packet ? front_kind::packet : front_kind::response, skip_reason::noise,
+                check.size, check.size};
+      case frame_state::incomplete:
+        return {front_kind::incomplete, skip_reason::noise, check.size, check.size};
+      case frame_state::bad_checksum:
+        return {front_kind::skip, skip_reason::bad_checksum, 1, check.size};
+      case frame_state::bad_header:
+        if (check.size <= 2) break;  // one byte that looked like a start is no header
+        return {front_kind::skip, skip_reason::bad_header, 1, check.size};
+    }
   }
-  const frame_check check = maybe_packet ? check_packet(data) : check_response(data);
-  switch (check.state) {
-    case frame_state::valid:
-      return {maybe_packet ? front_kind::packet : front_kind::response, skip_reason::noise,
-              check.size, check.size};
-    case frame_state::incomplete:
-      return {front_kind::incomplete, skip_reason::noise, check.size, check.size};
-    case frame_state::bad_header:
-      if (check.size <= 2) break;  // one byte that looked like a start is no header
-      return {front_kind::skip, skip_reason::bad_header, 1, check.size};
-    case frame_state::bad_checksum:
-      return {front_kind::skip, skip_reason::bad_checksum, 1, check.size};
-  }
-  return {front_kind::skip, skip_reason::noise, 1, 1};
+  std::size_t noise = 1;
+  while (noise < data.size() && !may_begin_frame(data, noise)) ++noise;
+  return {front_kind::skip, skip_reason::noise, noise, noise};
 }
 
 /// The resynchronising parser. *Single thread, never allocates.* Constant memory: one frame of
@@ -165,8 +170,7 @@ class stream_parser {
       begin_ = 0;
     }
     const std::size_t count = std::min(needed_ - held_, input.size());
-    std::copy_n(input.begin(), count,
-                carry_.begin() + static_cast<std::ptrdiff_t>(begin_ + held_));
+    std::copy_n(input.begin(), count, carry_.begin() + static_cast<std::ptrdiff_t>(begin_ + held_));
     held_ += count;
     input = input.subspan(count);
     return held_ >= needed_;

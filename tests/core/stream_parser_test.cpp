@@ -50,10 +50,14 @@ static_assert(what_stands_at_front(zero_packet) ==
               front{front_kind::packet, skip_reason::noise, 12, 12});
 static_assert(front_of({0xA5, 0x5A, 5, 0, 0, 0x40, 0x81, 0}) ==
               front{front_kind::response, skip_reason::noise, 7, 7});
-static_assert(front_of({1, 2, 3, 0xAA, 4}) == front{front_kind::skip, skip_reason::noise, 3, 3});
+static_assert(front_of({1, 2, 3, 0xAA, 4}) == front{front_kind::skip, skip_reason::noise, 5, 5});
+static_assert(front_of({1, 2, 3, 0xAA, 0x55}) == front{front_kind::skip, skip_reason::noise, 3, 3});
+static_assert(front_of({1, 0xA5, 0x55, 0xA5, 0x5A}) ==
+              front{front_kind::skip, skip_reason::noise, 3, 3});
 static_assert(front_of({1, 2, 3, 0xA5}) == front{front_kind::skip, skip_reason::noise, 3, 3});
 static_assert(front_of({1, 2}) == front{front_kind::skip, skip_reason::noise, 2, 2});
-static_assert(front_of({0xAA, 1}) == front{front_kind::skip, skip_reason::noise, 1, 1});
+static_assert(front_of({0xAA, 1}) == front{front_kind::skip, skip_reason::noise, 2, 2});
+static_assert(front_of({0xAA, 0xAA, 0x55}) == front{front_kind::skip, skip_reason::noise, 1, 1});
 static_assert(front_of({0xA5, 0xAA}) == front{front_kind::skip, skip_reason::noise, 1, 1});
 static_assert(front_of({0xAA}).kind == front_kind::incomplete);
 static_assert(front_of({0xAA, 0x55, 0, 81}) ==

@@ -161,7 +161,12 @@ TEST(ParserProperty, MoreBytesNeverChangeAnAnswerButIncomplete) {
       for (std::size_t have = 1; have <= most; ++have) {
         const front now = what_stands_at_front(all.first(have));
         if (now.kind != front_kind::incomplete) {
-          RC_ASSERT(now == last);
+          // More noise behind noise is the one thing that makes an answer longer.
+          const bool is_noise = now.kind == front_kind::skip && now.reason == skip_reason::noise;
+          const bool same_noise = is_noise && last.kind == now.kind && last.reason == now.reason &&
+                                  last.size >= now.size;
+          const bool unchanged = now == last || same_noise;
+          RC_ASSERT(unchanged);
           RC_ASSERT(have >= announced);
           break;
         }
