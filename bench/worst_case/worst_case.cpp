@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// Feeds the parser with input made to be dear, for bench/worst_case.sh to count instructions; and
+// searches for dearer input.
+//
+//   worst_case list                         the names of the inputs
+//   worst_case run NAME PIECE BYTES         parses BYTES bytes of that input in pieces of PIECE
+//   worst_case hex NAME                     one period of it
+//   worst_case search SECONDS SEED PIECE    searches; prints the dearest in hexadecimal and ns/byte
+//   worst_case run HEX PIECE BYTES          the same as above, of the period HEX
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/stream_parser.hpp"
+
+namespace {
+
+using buffer = std::vector<std::uint8_t>;
+
+/// A period of input, to be repeated.
+struct input {
+  const char* name;
+  const char* what;
+  buffer period;
+};
+
+buffer repeated(const buffer& unit, std::size_t count) {
+  buffer out;
+  for (std::size_t i = 0; i < count; ++i) out.insert(out.end(), unit.begin(), unit.end());
+  return out;
+}
+
+void seal(buffer& packet) {
+  const std::uint16_t sum = g4lidar::packet_checksum(packet);
+  packet[8] = static_cast<std::uint8_t>(sum & 0xFFU);
+  packet[9] = static_cast<std::uint8_t>(sum >> 8);
+}
+
+/// A good packet of `samples` samples.
+buffer good(std::size_t samples) {
+  buffer out(10 + 2 * samples, 0x11);
+  const std::array<std::uint8_t, 8> header{0xAA, 0x55, 0,    static_cast<std::uint8_t>(samples),
+                                           0x01, 0x10, 0x01, 0x12};
+  std::copy(header.begin(), header.end(), out.begin());
+  seal(out);
+  return out;
+}
+
+buffer from_hex(std::string_view hex) {
+  buffer out;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    out.push_back(
+        static_cast<std::uint8_t>(std::stoul(std::string(hex.substr(i, 2)), nullptr, 16)));
+  }
+  return out;
+}
+
+std::vector<input> inputs() {
+  const buffer info{0xA5, 0x5A, 0x14, 0, 0, 0, 4, 5, 2, 3, 3, 1, 2,
+                    3,    4,    5,    6, 7, 8, 9, 1, 2, 3, 4, 5, 6};
+  buffer broken_info = info;
+  broken_info.push_back(10);
+  buffer true_info = info;
+  true_info.push_back(9);
+  return {
+      {"clean_80", "good packets of 80 samples, for comparison", good(80)},
+      {"clean_1", "good packets of one sample", good(1)},
+      {"noise", "bytes that begin nothing", buffer(64, 0x33)},
+      {"overlapping_headers",
+       "a header of 80 samples every 5 bytes, the densest there is: each lies in the angles of the "
+       "one before, and each checksum runs over 170 bytes and fails",
+       {0xAA, 0x55, 0x00, 0x50, 0x01}},
+      {"overlapping_79",
+       "the same with 79 samples: the checksum's loop ends unevenly",
+       {0xAA, 0x55, 0x00, 0x4F, 0x01}},
+      {"headers_8",
+       "a header of 79 samples every 8 bytes",
+       {0xAA, 0x55, 0x00, 0x4F, 0x01, 0x10, 0x01, 0x12}},
+      {"aa", "nothing but AA", {0xAA}},
+      {"a5", "nothing but A5", {0xA5}},
+      {"aa_a5", "AA and A5 in turn", {0xAA, 0xA5}},
+      {"aa_55", "the start of a packet again and again", {0xAA, 0x55}},
+      {"a5_5a", "the start of a reply again and again", {0xA5, 0x5A}},
+      {"noise_and_a5", "noise of one byte between false starts", {0xA5, 0x00}},
+      {"reply_headers",
+       "headers of replies that break off at the type",
+       {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00}},
+      {"info_refused_at_its_end", "device informations whose last serial digit is 10", broken_info},
+      {"info", "true device informations", true_info},
+      {"bytes", "replies of one byte", {0xA5, 0x5A, 1, 0, 0, 0, 4, 1}},
+      {"info_in_info", "found by searching: device informations that hold another's header",
+       from_hex("A55A1400000004A55A140000000406090250010203040406070809010204030909")},
+      {"pieces_of_info", "found by searching: the same, refused and begun again",
+       from_hex(
+           "A55A1400000004054FAA55060102030405070809010203040505A55A14000000040403AA550601020305"
+           "05070809010203040509")},
+      {"info_in_header",
+       "as overlapping_headers, a reply's header in each gap",
+       {0xAA, 0x55, 0x00, 0x50, 0x01, 0xA5, 0x5A, 0x14}},
+  };
+}
+
+std::size_t checksum_of_events = 0;  // so that the work is not optimised away
+
+void parse(const buffer& data, std::size_t piece) {
+  g4lidar::stream_parser parser;
+  std::size_t sum = 0;
+  for (std::size_t from = 0; from < data.size(); from += piece) {
+    parser.feed(g4lidar::bytes(data).subspan(from, std::min(piece, data.size() - from)),
+                [&](const g4lidar::event& found) { sum += 1 + found.index(); });
+  }
+  while (const auto found = parser.finish()) sum += 1 + found->index();
+  checksum_of_events += sum;
+}
+
+buffer stretched(const buffer& period, std::size_t size) {
+  buffer data = repeated(period, size / period.size() + 1);
+  data.resize(size);
+  return data;
+}
+
+double ns_per_byte(const buffer& period, std::size_t piece, int tries) {
+  const buffer data = stretched(period, 3000);
+  double best = 1e9;
+  for (int i = 0; i < tries; ++i) {
+    const auto before = std::chrono::steady_clock::now();
+    parse(data, piece);
+    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - before;
+    best = std::min(best, took.count() / static_cast<double>(data.size()));
+  }
+  return best;
+}
+
+std::string to_hex(const buffer& data) {
+  std::string out;
+  for (const std::uint8_t byte : data) {
+    std::array<char, 3> digits{};
+    std::snprintf(digits.data(), digits.size(), "%02X", unsigned{byte});
+    out += digits.data();
+  }
+  return out;
+}
+
+/// Climbs from all inputs that we thought of, and from bytes at random, to dearer ones: changes,
+/// inserts, removes and joins bytes that mean something to the parser, and keeps what costs more.
+void search(double seconds, unsigned seed, std::size_t piece) {
+  std::mt19937 random(seed);
+  const auto below = [&](std::size_t n) { return std::size_t{random() % n}; };
+  constexpr std::array<std::uint8_t, 20> telling{0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01, 0x03,
+                                                 0x04, 0x05, 0x06, 0x14, 0x40, 0x81, 0x50,
+                                                 0x4F, 0x28, 0x09, 0x0A, 0xB3, 0x11};
+  const std::array<buffer, 6> chunks{
+      buffer{0xAA, 0x55, 0x00, 0x50, 0x01}, buffer{0xAA, 0x55, 0x00, 0x4F, 0x01, 0x10, 0x01, 0x12},
+      buffer{0xA5, 0x5A, 0x14, 0, 0, 0, 4}, buffer{0xA5, 0x5A, 0x04, 0, 0, 0, 4, 0},
+      buffer{0xA5, 0x5A, 0x03, 0, 0, 0, 6}, buffer{0xA5, 0x5A, 0x05, 0, 0}};
+  struct candidate {
+    double cost;
+    buffer period;
+  };
+  std::vector<candidate> pool;
+  for (const input& known : inputs()) {
+    if (!known.period.empty()) {
+      pool.push_back({ns_per_byte(known.period, piece, 5), known.period});
+    }
+  }
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  const auto dearer = [](const candidate& a, const candidate& b) { return a.cost > b.cost; };
+  while (std::chrono::steady_clock::now() < end) {
+    buffer next =
+        below(20) == 0 ? buffer{telling[below(telling.size())]} : pool[below(pool.size())].period;
+    for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
+      const auto at = static_cast<std::ptrdiff_t>(below(next.size() + 1));
+      switch (below(5)) {
+        case 0:
+          next.insert(next.begin() + at, telling[below(telling.size())]);
+          break;
+        case 1:
+          if (next.size() > 1 && at < std::ssize(next)) next.erase(next.begin() + at);
+          break;
+        case 2:
+          if (at < std::ssize(next)) next[static_cast<std::size_t>(at)] = telling[below(20)];
+          break;
+        case 3: {
+          const buffer& chunk = chunks[below(chunks.size())];
+          next.insert(next.begin() + at, chunk.begin(), chunk.end());
+          break;
+        }
+        default: {
+          const buffer& other = pool[below(pool.size())].period;
+          next.insert(next.begin() + at, other.begin(), other.end());
+          break;
+        }
+      }
+    }
+    if (next.size() > 400) continue;
+    double cost = ns_per_byte(next, piece, 3);
+    if (cost <= pool.back().cost) continue;
+    cost = ns_per_byte(next, piece, 20);
+    pool.push_back({cost, next});
+    std::sort(pool.begin(), pool.end(), dearer);
+    if (pool.size() > 24) pool.pop_back();
+  }
+  for (candidate& c : pool) c.cost = ns_per_byte(c.period, piece, 50);
+  std::sort(pool.begin(), pool.end(), dearer);
+  for (std::size_t i = 0; i < 5; ++i) {
+    std::printf("%.2f %s\n", pool[i].cost, to_hex(pool[i].period).c_str());
+  }
+}
+
+buffer period_of(std::string_view name) {
+  for (const input& known : inputs()) {
+    if (name == known.name) return known.period;
+  }
+  return from_hex(name);
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const std::vector<std::string> words(arguments + 1, arguments + count);
+  if (words.size() == 1 && words[0] == "list") {
+    for (const input& known : inputs()) std::printf("%s\t%s\n", known.name, known.what);
+  } else if (words.size() == 2 && words[0] == "hex") {
+    std::printf("%s\n", to_hex(period_of(words[1])).c_str());
+  } else if (words.size() == 4 && words[0] == "run") {
+    parse(stretched(period_of(words[1]), std::stoul(words[3])), std::stoul(words[2]));
+    std::printf("%zu\n", checksum_of_events);
+  } else if (words.size() == 4 && words[0] == "search") {
+    search(std::stod(words[1]), static_cast<unsigned>(std::stoul(words[2])), std::stoul(words[3]));
+  } else {
+    std::fprintf(stderr, "usage: see the head of worst_case.cpp\n");
+    return 2;
+  }
+  return 0;
+}
