@@ -30,8 +30,9 @@ concept dying_range = std::ranges::contiguous_range<T> && !std::is_lvalue_refere
 /// The points as a 2 x N matrix, a column for each: angle in degrees, range in millimetres. A map: it
 /// lives as long as the points and sees their changes.
 [[nodiscard]] inline column_map<const point> polar_map(std::span<const point> points) noexcept {
-  static_assert(offsetof(point, range_mm) == offsetof(point, angle_deg) + sizeof(float));
-  return {points.empty() ? nullptr : &points.front().angle_deg, 2,
+  static_assert(std::is_standard_layout_v<point> && offsetof(point, angle_deg) == 0 &&
+                offsetof(point, range_mm) == sizeof(float));
+  return {reinterpret_cast<const float*>(points.data()), 2,
           static_cast<Eigen::Index>(points.size())};
 }
 template <dying_range Owner>
@@ -47,8 +48,11 @@ concept xy_range = std::ranges::contiguous_range<T> && !dying_range<T> &&
 template <xy_range Points>
 [[nodiscard]] auto xy_map(Points&& points) noexcept {
   using element = std::remove_reference_t<std::ranges::range_reference_t<Points>>;
+  using coordinate = std::conditional_t<std::is_const_v<element>, const float, float>;
+  static_assert(std::is_standard_layout_v<xy_point> && offsetof(xy_point, x_m) == 0 &&
+                offsetof(xy_point, y_m) == sizeof(float));
   const std::span<element> columns(points);
-  return column_map<element>(columns.empty() ? nullptr : &columns.front().x_m, 2,
+  return column_map<element>(reinterpret_cast<coordinate*>(columns.data()), 2,
                              static_cast<Eigen::Index>(columns.size()));
 }
 
