@@ -22,6 +22,7 @@
 #include "g4lidar/point_ring.hpp"
 #include "g4lidar/response.hpp"
 #include "g4lidar/scan.hpp"
+#include "g4lidar/sensor_clock.hpp"
 #include "g4lidar/stream_counts.hpp"
 #include "g4lidar/stream_parser.hpp"
 #include "g4lidar/version.hpp"
@@ -133,6 +134,21 @@ std::optional<scan> end(scan_assembler& assembler) {
 float measure(const scan& whole) { return whole.measured_frequency_hz(9000); }
 void fill(std::span<const point> points, std::span<float> ranges_m, const grid_options& options) {
   fill_grid(points, ranges_m, options);
+}
+
+packet_times stamp(sensor_clock& clock, const decoded& packet, std::span<point> points,
+                   std::int64_t now_ns) {
+  clock.seen(packet_header_size, now_ns);
+  const packet_times times = clock.stamp(packet, now_ns);
+  times.write_to(points);
+  return times;
+}
+double restart(sensor_clock& clock, std::int64_t& bound_ns) {
+  clock.lost(90);
+  clock.reset();
+  clock.reset(4000.0);
+  bound_ns = clock.bound_ns();
+  return clock.sample_rate_hz();
 }
 
 int major_version() { return header_version.major_number; }

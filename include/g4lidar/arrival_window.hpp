@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// The earliest arrivals of the last seconds, and the line of sampling times under them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "g4lidar/arrival_line.hpp"
+
+namespace g4lidar {
+
+/// A sample, counted from the start, and a time before which it was measured.
+struct arrival {
+  std::int64_t sample = 0;
+  std::int64_t time_ns = 0;
+};
+
+/// Sampling times as a line through an anchor.
+struct sampling_line {
+  arrival anchor;
+  double period_ns = 0.0;
+  double bound_ns = 0.0;       ///< How far off it is at most, near the newest arrivals.
+  double mean_delay_ns = 0.0;  ///< Of the earliest arrivals of each block of samples.
+
+  [[nodiscard]] constexpr std::int64_t at(std::int64_t sample) const noexcept {
+    return anchor.time_ns +
+           static_cast<std::int64_t>(static_cast<double>(sample - anchor.sample) * period_ns);
+  }
+};
+
+/// Keeps the earliest arrival of each of up to 64 blocks of samples, and lays lines under them.
+/// *Single thread, never allocates.* Blocks begin with 20 ms; when all are in use two become one,
+/// until they have 250 ms and the oldest goes: the window grows to 16 s and then slides.
+class arrival_window {
+ public:
+  /// What is known of the samples' rate, as the relative error of the nominal period.
+  struct slopes {
+    double lowest, highest;
+  };
+
+  explicit constexpr arrival_window(double nominal_ns) noexcept : nominal_ns_(nominal_ns) {}
+
+  constexpr void clear() noexcept {
+    size_ = 0;
+    block_ = static_cast<std::int64_t>(first_block_ns / nominal_ns_);
+  }
+
+  /// Takes an arrival; samples never go back. Gives whether it began a block. `period_ns` says which
+  /// of two is the earlier one.
+  constexpr bool add(arrival next, double period_ns) noexcept {
+    if (size_ > 0 && next.sample < block_start_ + block_) {
+      if (is_below(next, blocks_[size_ - 1], period_ns)) blocks_[size_ - 1] = next;
+      return false;
+    }
+    if (size_ == most) make_room(period_ns);
+    block_start_ = next.sample;
+    blocks_[size_++] = next;
+    return true;
+  }
+
+  /// From the first to the last arrival, nominally.
+  [[nodiscard]] constexpr double span_ns() const noexcept {
+    return size_ == 0 ? 0.0 : reach_ns(size_, size_);
+  }
+
+  /// The line, from one arrival at least. `mean_late_ns`: how late packets are, on average. The block
+  /// that is still filling takes part only if `with_newest`.
+  [[nodiscard]] constexpr sampling_line fit(slopes within, double mean_late_ns,
+                                            bool with_newest) const noexcept {
+    const std::size_t end = with_newest || size_ < 2 ? size_ : size_ - 1;
+    candidates found;
+    for (std::size_t taken = end;; taken = (taken + 1) / 2) {
+      candidate& c = found.all[found.count++];
+      c.line = line_under(end, taken).estimate(within.lowest, within.highest, mean_late_ns);
+      c.reach_ns = std::max(reach_ns(end, taken), first_block_ns);
+      if (taken < 16 || found.count == found.all.size()) break;
+      // The rate in a part of the window is not far from that in the whole.
+      const double room = 4.0 * c.line.slope_deviation + usual_drift * c.reach_ns;
+      within.lowest = std::max(within.lowest, c.line.slope - room);
+      within.highest = std::min(within.highest, c.line.slope + room);
+    }
+    return chosen(found, blocks_[end - 1], mean_late_ns);
+  }
+
+ private:
+  static constexpr std::size_t most = line_under_points::capacity;
+  static constexpr double first_block_ns = 20e6;
+  static constexpr double last_block_ns = 250e6;
+  // Changes of the rate, each second, in 1/ns. 200 ppm up and down within a minute is 21 ppm/s.
+  static constexpr double mean_drift = 10e-15;
+  static constexpr double usual_drift = 25e-15;
+  static constexpr double largest_drift = 65e-15;
+  // How much of its mean lateness a stream of packets that beats with the bridge's timer can hide
+  // from a window of 1 s. Found by experiment, as are the two below.
+  static constexpr double hidden_share = 0.6e18;
+  static constexpr double hidden_weight = 0.4;
+  static constexpr double deviations = 7.0;
+
+  struct candidate {
+    line_estimate line;
+    double reach_ns = 0.0;
+  };
+  struct candidates {
+    std::array<candidate, 4> all;  // from the longest window to the shortest
+    std::size_t count = 0;
+  };
+
+  [[nodiscard]] static constexpr bool is_below(arrival a, arrival b, double period_ns) noexcept {
+    return static_cast<double>(a.time_ns - b.time_ns) <=
+           static_cast<double>(a.sample - b.sample) * period_ns;
+  }
+
+  constexpr void make_room(double period_ns) noexcept {
+    if (static_cast<double>(block_) * nominal_ns_ > last_block_ns / 2) {
+      std::copy(blocks_.begin() + 1, blocks_.end(), blocks_.begin());
+      --size_;
+      return;
+    }
+    for (std::size_t i = 0; i < most / 2; ++i) {
+      const arrival left = blocks_[2 * i];
+      const arrival right = blocks_[2 * i + 1];
+      blocks_[i] = is_below(right, left, period_ns) ? right : left;
+    }
+    size_ = most / 2;
+    block_ *= 2;
+  }
+
+  [[nodiscard]] constexpr double reach_ns(std::size_t end, std::size_t taken) const noexcept {
+    return static_cast<double>(blocks_[end - 1].sample - blocks_[end - taken].sample) * nominal_ns_;
+  }
+
+  [[nodiscard]] constexpr line_under_points line_under(std::size_t end,
+                                                       std::size_t taken) const noexcept {
+    const arrival newest = blocks_[end - 1];
+    line_under_points points;
+    for (std::size_t i = end; i-- > end - taken;) {
+      const double x = static_cast<double>(blocks_[i].sample - newest.sample) * nominal_ns_;
+      points.add_left(x, static_cast<double>(blocks_[i].time_ns - newest.time_ns) - x);
+    }
+    return points;
+  }
+
+  /// By how much a line is wrong at its end if the rate changes by `drift`.
+  [[nodiscard]] static constexpr double sag(const candidate& c, double drift) noexcept {
+    return drift * c.reach_ns * c.reach_ns / 8.0;
+  }
+
+  /// Whether a longer window says that `found.all[i]` is late by more than a drift can explain. A
+  /// line that is too early is refuted by the next early arrival, one that is late is not.
+  [[nodiscard]] static constexpr bool is_late(const candidates& found, std::size_t i) noexcept {
+    for (std::size_t j = 0; j < i; ++j) {
+      const candidate& longer = found.all[j];
+      const double late = found.all[i].line.offset - longer.line.offset;
+      if (late > sag(longer, largest_drift) + 3.0 * longer.line.offset_deviation) return true;
+    }
+    return false;
+  }
+
+  /// The window whose noise and drift together are least.
+  [[nodiscard]] constexpr sampling_line chosen(const candidates& found, arrival newest,
+                                               double mean_late_ns) const noexcept {
+    const double longest = found.all[0].reach_ns;
+    double least = 1e300;
+    sampling_line result;
+    for (std::size_t i = found.count; i-- > 0;) {
+      const candidate& c = found.all[i];
+      if (is_late(found, i)) continue;
+      const double hidden = hidden_share * mean_late_ns / c.reach_ns;  // still over a reach
+      const double noise = c.line.offset_deviation;
+      const double bend = sag(c, mean_drift);
+      const double veil = hidden_weight * hidden / c.reach_ns;
+      const double cost = noise * noise + bend * bend + veil * veil;
+      if (cost >= least) continue;
+      least = cost;
+      result.anchor = {newest.sample, newest.time_ns + static_cast<std::int64_t>(c.line.offset)};
+      result.period_ns = nominal_ns_ * (1.0 + c.line.slope);
+      result.bound_ns = deviations * noise + sag(c, usual_drift) + std::min(hidden / longest, 10e6);
+      result.mean_delay_ns = c.line.mean_delay;
+    }
+    return result;
+  }
+
+  double nominal_ns_;
+  std::array<arrival, most> blocks_{};
+  std::size_t size_ = 0;
+  std::int64_t block_start_ = 0;  // of the newest block
+  std::int64_t block_ = 1;        // samples of a block
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// When each sample was measured, estimated from sample counts and arrival times.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "g4lidar/arrival_window.hpp"
+#include "g4lidar/decode.hpp"
+#include "g4lidar/packet.hpp"
+#include "g4lidar/point.hpp"
+#include "g4lidar/sample_counter.hpp"
+
+namespace g4lidar {
+
+/// What a sensor_clock cannot see for itself.
+struct sensor_clock_options {
+  double sample_rate_hz = 9000.0;       ///< Nominal, above 0; the true one is within 4 % of it.
+  std::int64_t transport_delay_ns = 0;  ///< That every byte takes at least, after the line.
+  std::uint32_t baud = 230400;          ///< Of the line, 10 bits a byte; 0: bytes take no time.
+};
+
+/// When the samples of one packet were measured.
+struct packet_times {
+  std::int64_t first_ns = 0;  ///< Of the first sample.
+  double step_ns = 0.0;       ///< From each sample to the next.
+  std::int64_t bound_ns = 0;  ///< How far these times are from the truth, at most.
+  std::int64_t lost = 0;      ///< Samples that were lost before this packet.
+
+  /// Of sample `i`.
+  [[nodiscard]] constexpr std::int64_t at(std::size_t i) const noexcept {
+    return first_ns + static_cast<std::int64_t>(step_ns * static_cast<double>(i));
+  }
+  /// Writes the times into the points of the packet, all of them.
+  constexpr void write_to(std::span<point> points) const noexcept {
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].time_ns = at(i);
+  }
+};
+
+/// Says when samples were measured. *Single thread, never allocates, never waits*: bounded work for a
+/// packet.
+///
+/// Samples are equidistant and arrivals are late, never early: the times of the samples are the line
+/// under the arrivals. What all arrivals have in common cannot be told from them: the delay of the
+/// transport is an option. `docs/design/sensor_clock.md` says how well it does, and why so.
+class sensor_clock {
+ public:
+  /// An option out of its range is an assertion.
+  explicit constexpr sensor_clock(const sensor_clock_options& options = {}) noexcept
+      : options_(options), nominal_ns_(1e9 / options.sample_rate_hz), window_(nominal_ns_) {
+    assert(options.sample_rate_hz > 0.0);
+    line_.period_ns = nominal_ns_;
+    restart();
+  }
+
+  /// The times of the samples of `packet`, whose last byte came at `arrival_ns` of a monotonic clock,
+  /// within 70 years of 0. Show it every packet, the suspect ones too, once and in order. Times grow
+  /// strictly, from sample to sample and packet to packet, whatever happens.
+  constexpr packet_times stamp(const decoded& packet, std::int64_t arrival_ns) noexcept {
+    const std::int64_t count = std::max<std::int64_t>(packet.sample_count, 1);
+    const sample_gap gap = counter_.next(packet, hinted_, late_samples(count, arrival_ns));
+    if (gap.lost > 0) seen_bytes_ = 0;  // of a packet that never came
+    const std::int64_t before = measured_before(count, arrival_ns);
+    hinted_ = false;
+    skipped_bytes_ = 0.0;
+    next_ += gap.lost + count;
+    doubt(gap);
+    const std::int64_t missed = observe({next_ - 1, before});
+    packet_times times = times_until(std::min(line_.at(next_ - 1), before), count);
+    if (is_late_) times.bound_ns += before - line_.at(next_ - 1);  // samples may be missing
+    bound_ns_ = times.bound_ns;
+    times.lost = gap.lost + missed;
+    return times;
+  }
+
+  /// Optional, and makes the times several times better where bytes come in bursts: `count` bytes of a
+  /// packet that is not complete, its header among them, have come by `arrival_ns`. After each reading
+  /// into a stream_parser: `if (parser.held() >= packet_header_size) clock.seen(parser.held(), now)`.
+  /// No byte of a packet is sent before its last sample is measured, so that this tells as much as the
+  /// arrival of a whole packet.
+  constexpr void seen(std::size_t count, std::int64_t arrival_ns) noexcept {
+    if (count < packet_header_size || count > max_packet_size) return;
+    const std::int64_t before = arrival_ns - line_time_ns(count);
+    seen_before_ns_ = seen_bytes_ == 0 ? before : std::min(before, seen_before_ns_);
+    seen_bytes_ = std::max(seen_bytes_, count);
+  }
+
+  /// Packets were probably lost here: after each skip, for any reason but noise, of `count` bytes.
+  /// Gaps are counted without it too; with it, short ones are counted better, and such that are
+  /// longer than a turn at once.
+  constexpr void lost(std::size_t count) noexcept {
+    hinted_ = true;
+    skipped_bytes_ += static_cast<double>(count);
+    seen_bytes_ = 0;
+  }
+
+  /// The stream starts anew: nothing is known but the sample rate, nearly. Times still grow.
+  constexpr void reset() noexcept {
+    counter_.reset();
+    hinted_ = false;
+    skipped_bytes_ = 0.0;
+    seen_bytes_ = 0;
+    restart();
+  }
+  /// And with another nominal sample rate, above 0.
+  constexpr void reset(double sample_rate_hz) noexcept {
+    assert(sample_rate_hz > 0.0);
+    nominal_ns_ = 1e9 / sample_rate_hz;
+    line_.period_ns = nominal_ns_;
+    window_ = arrival_window(nominal_ns_);
+    rate_known_ = false;
+    reset();
+  }
+
+  /// The sample rate as it was last estimated.
+  [[nodiscard]] constexpr double sample_rate_hz() const noexcept { return 1e9 / line_.period_ns; }
+  /// The bound of the last packet, in nanoseconds; 0 before the first.
+  [[nodiscard]] constexpr std::int64_t bound_ns() const noexcept { return bound_ns_; }
+
+ private:
+  /// A packet that is later than this was not merely batched.
+  static constexpr double late_ns = 25e6;
+  /// After so much time without a packet in time, samples were lost that were not counted.
+  static constexpr double all_late_ns = 40e6;
+  /// An arrival that is earlier than this, and than the bound allows, refutes the count.
+  static constexpr double early_ns = 4e6;
+  /// A count of lost samples that is in doubt by more than this tells no times.
+  static constexpr double most_doubt_ns = 1e6;
+  /// By how much the period may differ from the nominal one, and a little more.
+  static constexpr double widest = 0.05;
+  /// How late packets are until something is known, and at least.
+  static constexpr double unknown_late_ns = 8e6;
+  static constexpr double least_late_ns = 1e3;
+
+  [[nodiscard]] constexpr std::int64_t line_time_ns(std::size_t count) const noexcept {
+    const auto bits = static_cast<std::int64_t>(count) * 10;
+    return options_.baud == 0 ? 0 : bits * 1'000'000'000 / options_.baud;
+  }
+
+  /// By how many samples a packet of `count` samples comes later than it would if none were lost; 0 if
+  /// so many bytes were not skipped, for then the program may have slept.
+  [[nodiscard]] constexpr double late_samples(std::int64_t count,
+                                              std::int64_t arrival_ns) const noexcept {
+    const std::int64_t expected = line_.at(next_ + count - 1) + options_.transport_delay_ns;
+    const double late = static_cast<double>(arrival_ns - expected) / line_.period_ns;
+    return started_ && late < skipped_bytes_ ? late : 0.0;  // at least two bytes each
+  }
+
+  /// A time before which the last one of the `count` samples of a packet was measured.
+  [[nodiscard]] constexpr std::int64_t measured_before(std::int64_t count,
+                                                       std::int64_t arrival_ns) noexcept {
+    arrival_ns_ = std::max(arrival_ns_, arrival_ns);
+    const std::size_t size = packet_size(static_cast<std::size_t>(count));
+    std::int64_t before = arrival_ns_ - line_time_ns(size);
+    if (seen_bytes_ > 0 && seen_bytes_ < size) before = std::min(before, seen_before_ns_);
+    seen_bytes_ = 0;
+    return before - options_.transport_delay_ns;
+  }
+
+  /// Forgets the window. The rate is kept: a device that starts again has the oscillator it had.
+  constexpr void restart() noexcept {
+    const double slope = line_.period_ns / nominal_ns_ - 1.0;
+    const double doubt = rate_known_ ? 300e-6 : 2.0 * widest;
+    slopes_ = {std::max(-widest, slope - doubt), std::min(widest, slope + doubt)};
+    window_.clear();
+    started_ = false;
+    is_late_ = false;
+  }
+
+  /// A gap that was not counted surely widens the bound; one of which nothing is known parts the times
+  /// before it from those after it.
+  constexpr void doubt(const sample_gap& gap) noexcept {
+    const double doubt_ns = gap.doubt_samples * line_.period_ns;
+    if (!gap.known || doubt_ns > most_doubt_ns) return restart();
+    doubt_ns_ = std::max(doubt_ns_, doubt_ns);
+  }
+
+  /// Brings the line up to date. Gives how many samples must have been lost unseen.
+  constexpr std::int64_t observe(arrival next) noexcept {
+    double late = started_ ? static_cast<double>(next.time_ns - line_.at(next.sample)) : 0.0;
+    std::int64_t missed = 0;
+    const double too_early = std::max(early_ns, 3.0 * static_cast<double>(bound_ns_));
+    if (late < -too_early || stays_late(late, next)) {
+      if (late > 0.0) missed = static_cast<std::int64_t>(late / line_.period_ns);
+      restart();
+      late = 0.0;
+    }
+    if (is_late_) return 0;
+    started_ = true;
+    mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;
+    const bool begins = window_.add(next, line_.period_ns);
+    if (!begins && late >= 0.0) return missed;
+    if (window_.span_ns() > 4e9) {
+      rate_known_ = true;
+      slopes_ = {-widest, widest};
+    }
+    line_ = window_.fit(slopes_, mean_late_ns_, late < 0.0);
+    return missed;
+  }
+
+  /// Whether packets have come too late for too long: then samples were lost that were not counted. A
+  /// program that slept finds packets of a long time that came within a short one.
+  [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
+    const bool was_late = is_late_;
+    is_late_ = late > std::max(late_ns, 8.0 * line_.mean_delay_ns);
+    if (!is_late_) return false;
+    if (!was_late) late_since_ = next;
+    const double passed_ns = static_cast<double>(next.time_ns - late_since_.time_ns);
+    const auto samples = static_cast<double>(next.sample - late_since_.sample);
+    return passed_ns > all_late_ns && passed_ns > 0.6 * samples * line_.period_ns;
+  }
+
+  /// The times of `count` samples of which the last one is to be at `last_ns`. Where that would not
+  /// be after the samples before, the steps are shortened until it is.
+  [[nodiscard]] constexpr packet_times times_until(std::int64_t last_ns,
+                                                   std::int64_t count) noexcept {
+    const double steps = static_cast<double>(count - 1);
+    const double shortest_ns = line_.period_ns / 2.0;
+    const std::int64_t first_ns = last_ns - static_cast<std::int64_t>(steps * line_.period_ns);
+    packet_times times;
+    times.first_ns = first_ns;
+    times.step_ns = line_.period_ns;
+    if (any_) {
+      times.first_ns = std::max(first_ns, last_ns_ + static_cast<std::int64_t>(shortest_ns));
+    }
+    if (times.first_ns > first_ns && count > 1) {
+      const double fitting = static_cast<double>(last_ns - times.first_ns) / steps;
+      times.step_ns = std::max(shortest_ns, fitting);
+    }
+    any_ = true;
+    last_ns_ = times.at(static_cast<std::size_t>(count - 1));
+    const double behind_ns = static_cast<double>(times.first_ns - first_ns);
+    times.bound_ns = static_cast<std::int64_t>(line_.bound_ns + behind_ns + doubt_ns_) + 1000;
+    doubt_ns_ *= 0.999;  // arrivals since then have spoken
+    return times;
+  }
+
+  sensor_clock_options options_;
+  double nominal_ns_;
+  sample_counter counter_;
+  arrival_window window_;
+  sampling_line line_;
+  arrival_window::slopes slopes_{};
+  std::int64_t next_ = 0;  // number of the next sample
+  std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::size_t seen_bytes_ = 0;  // of the next packet, and what they tell
+  std::int64_t seen_before_ns_ = 0;
+  arrival late_since_;
+  std::int64_t last_ns_ = 0;  // the time of the last sample
+  std::int64_t bound_ns_ = 0;
+  double mean_late_ns_ = unknown_late_ns;
+  double skipped_bytes_ = 0.0;  // since the last packet
+  double doubt_ns_ = 0.0;       // for doubtful counts of lost samples
+  bool started_ = false;        // there is a line
+  bool rate_known_ = false;
+  bool is_late_ = false;
+  bool hinted_ = false;
+  bool any_ = false;  // times were given
+};
+
+}  // namespace g4lidar
