@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
-# cmake -DCOMPILER=<c++> -DINCLUDE=<directory> -DSOURCE=<file> -P check_misuse.cmake
+# cmake -DCOMPILER=<c++> -DINCLUDE=<directory> -DEIGEN=<directory> -DSOURCE=<file>
+#   -P check_misuse.cmake
 
-set(compile "${COMPILER}" -std=c++20 -Wall -Wextra -Werror -fsyntax-only "-I${INCLUDE}")
+set(compile "${COMPILER}" -std=c++20 -Wall -Wextra -Werror -fsyntax-only "-I${INCLUDE}"
+            -isystem "${EIGEN}")
 set(ENV{LC_ALL} C) # the messages in English, with plain quotes
 
 file(STRINGS "${SOURCE}" expectations REGEX "^// expect: ")

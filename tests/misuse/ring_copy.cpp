@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// Readers hold on to the place of their ring: a ring is neither copied nor moved.
+// expect: deleted (function|constructor)
+#include "g4lidar/point_ring.hpp"
+
+std::uint64_t misuse(g4lidar::point_ring<64>& ring) {
+#ifdef MISUSE
+  const g4lidar::point_ring<64> mine(ring);
+#else
+  const g4lidar::point_ring<64>& mine = ring;
+#endif
+  return mine.written();
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// A packet may give several scans and is shown again and again: one that dies with the first call
+// does not compile.
+// expect: (cannot bind|no matching member function|no known conversion|expects an lvalue)
+#include <array>
+
+#include "g4lidar/correction.hpp"
+#include "g4lidar/scan.hpp"
+
+bool misuse(g4lidar::scan_assembler& assembler, g4lidar::packet_view packet,
+            std::array<g4lidar::point, g4lidar::max_samples>& out) {
+#ifdef MISUSE
+  return assembler.next(decode(packet, g4lidar::exact_correction{}, 0, out)).has_value();
+#else
+  g4lidar::decoded points = decode(packet, g4lidar::exact_correction{}, 0, out);
+  return assembler.next(points).has_value();
+#endif
+}

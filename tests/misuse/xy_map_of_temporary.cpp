@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// A map is a view of points: of points that die with the statement it does not compile.
+// expect: (no matching function|constraints not satisfied)
+#include <vector>
+
+#include "g4lidar/eigen.hpp"
+
+std::vector<g4lidar::xy_point> make_points() { return std::vector<g4lidar::xy_point>(3); }
+
+float misuse() {
+#ifdef MISUSE
+  const auto map = g4lidar::xy_map(make_points());
+#else
+  const std::vector<g4lidar::xy_point> points = make_points();
+  const auto map = g4lidar::xy_map(points);
+#endif
+  return map(0, 0);
+}
