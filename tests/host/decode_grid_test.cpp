@@ -87,22 +87,26 @@ double worst_error(const Form& form, const arc& over, bool& in_range) {
   return worst;
 }
 
+/// Tries every `each`th arc.
 template <class Form>
-void expect_within(const Form& form, double bound) {
+void expect_within(const Form& form, double bound, std::size_t each = 1) {
+  const std::vector<arc> over = arcs();
   double worst = 0.0;
   bool in_range = true;
-  for (const arc& over : arcs()) worst = std::max(worst, worst_error(form, over, in_range));
+  for (std::size_t i = 0; i < over.size(); i += each) {
+    worst = std::max(worst, worst_error(form, over[i], in_range));
+  }
   EXPECT_LT(worst, bound);
   EXPECT_TRUE(in_range);
 }
 
 TEST(DecodeGrid, HasSomeHundredDirections) { EXPECT_GE(arcs().size(), 280U); }
 
-// In single precision an angle below 360 is rounded by up to 1.6e-5 degrees.
-TEST(DecodeGrid, ExactFormIsRoundedOnly) { expect_within(exact_correction{}, 1.6e-5); }
+// In single precision an angle below 360 is rounded by up to 1.6e-5 degrees. This form is slow.
+TEST(DecodeGrid, ExactFormIsRoundedOnly) { expect_within(exact_correction{}, 1.6e-5, 5); }
 
 TEST(DecodeGrid, TableFormIsWithinItsBound) {
-  expect_within(*std::make_unique<table_correction>(), 1e-4);
+  expect_within(*std::make_unique<table_correction>(), 1e-4, 2);
 }
 
 TEST(DecodeGrid, CompactFormIsWithinItsBound) { expect_within(compact_correction{}, 1e-4); }
