@@ -426,8 +426,8 @@ TEST(SensorClock, TimesGrowWhateverComes) {
     for (int step = 0; step < 400; ++step) {
       const std::uint64_t kind = dice.bits();
       if (kind % 7 == 0) clock.lost(static_cast<std::size_t>(kind >> 50));
-      if (kind % 3 == 0) const auto seen = static_cast<std::size_t>((kind >> 40) % 200);
-      clock.seen(seen, now - static_cast<std::int64_t>(kind >> 34));
+      const auto part = static_cast<std::size_t>((kind >> 40) % 200);
+      if (kind % 3 == 0) clock.seen(part, now - static_cast<std::int64_t>(kind >> 34));
       if (kind % 61 == 0) clock.reset();
       const std::uint64_t ahead = dice.bits() >> (8 + dice.bits() % 56);
       if (now < (std::int64_t{1} << 60)) now += static_cast<std::int64_t>(ahead);
