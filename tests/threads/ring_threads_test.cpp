@@ -92,7 +92,7 @@ void run(std::uint64_t first, std::uint64_t total, std::size_t longest_push) {
   std::size_t size = 1;
   for (std::uint64_t sent = 0; sent < total;) {
     size = size % longest_push + 1;
-    const std::size_t count = std::min<std::uint64_t>(size, total - sent);
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(size, total - sent));
     for (std::size_t i = 0; i < count; ++i) {
       batch[i] = std::bit_cast<point>(words_of(first + sent + i));
     }
