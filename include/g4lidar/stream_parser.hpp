@@ -109,8 +109,8 @@ class stream_parser {
         needed_ = found.size;
         continue;
       }
-      const event result = make_event(found, data);
-      const std::size_t taken = event_size(result);
+      const std::size_t taken = settle(found);
+      const event result = make_event(found, taken, data);
       if (in_place) {
         input = input.subspan(taken);
       } else {
@@ -142,9 +142,9 @@ class stream_parser {
     if (found.kind == front_kind::incomplete) {
       found = {front_kind::skip, skip_reason::truncated, 1, data.size()};
     }
-    const event result = make_event(found, data);
-    drop(event_size(result));
-    return result;
+    const std::size_t taken = settle(found);
+    drop(taken);
+    return make_event(found, taken, data);
   }
   std::optional<event> finish() && = delete;
 
@@ -190,24 +190,25 @@ class stream_parser {
     needed_ = 1;  // what is left may be anything
   }
 
-  /// The event for a front that is not `incomplete`, with the claims of refused frames kept.
-  [[nodiscard]] constexpr event make_event(const front& found, bytes data) noexcept {
-    if (found.kind == front_kind::packet || found.kind == front_kind::response) {
+  /// How many bytes the event for a front that is not `incomplete` takes. Keeps the claims of refused
+  /// frames: a skip goes no further than the claim that it lies in.
+  [[nodiscard]] constexpr std::size_t settle(const front& found) noexcept {
+    if (found.kind != front_kind::skip) {
       claim_ = {};
-      const bytes frame = data.first(found.size);
-      if (found.kind == front_kind::packet) return packet_view(frame);
-      return response_view(frame);
+      return found.size;
     }
     if (claim_.left == 0) claim_ = {found.claimed, found.reason};
-    const skipped gone{std::min(found.size, claim_.left), claim_.reason};
-    claim_.left -= gone.count;
-    return gone;
+    const std::size_t count = std::min(found.size, claim_.left);
+    claim_.left -= count;
+    return count;
   }
 
-  [[nodiscard]] static constexpr std::size_t event_size(const event& found) noexcept {
-    if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
-    if (const auto* reply = std::get_if<response_view>(&found)) return reply->data().size();
-    return std::get_if<skipped>(&found)->count;
+  /// The event for a front of which `taken` bytes, by settle(), are its own.
+  [[nodiscard]] constexpr event make_event(const front& found, std::size_t taken,
+                                           bytes data) const noexcept {
+    if (found.kind == front_kind::packet) return packet_view(data.first(taken));
+    if (found.kind == front_kind::response) return response_view(data.first(taken));
+    return skipped{taken, claim_.reason};
   }
 
   std::array<std::uint8_t, max_packet_size> carry_{};
