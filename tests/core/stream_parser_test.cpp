@@ -75,8 +75,8 @@ std::vector<event> all_events(stream_parser& parser, bytes input) {
 /// One good packet after another, with a reply and noise among them.
 buffer busy_stream() {
   buffer stream;
-  for (std::size_t i = 0; i < 40; ++i) {
-    const auto angle = static_cast<unsigned>(i * 500);
+  for (unsigned i = 0; i < 40; ++i) {
+    const unsigned angle = i * 500;
     append(stream, packet_bytes(i % 10 == 0 ? 1 : 0, wire_angle(angle), wire_angle(angle + 400),
                                 some_samples(i % 10 == 0 ? 1 : 2 * i + 1)));
     if (i % 8 == 3) append(stream, {0xA5, 0x5A, 0x01, 0, 0, 0, 4, 1});

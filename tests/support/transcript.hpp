@@ -100,8 +100,8 @@ template <class Cut, class Emit>
     }
     flush();
     const bytes frame = frame_of(found);
-    const auto* const packet = std::get_if<packet_view>(&found);
-    show(packet != nullptr ? text_of(*packet) : text_of(*std::get_if<response_view>(&found)));
+    if (const auto* packet = std::get_if<packet_view>(&found)) show(text_of(*packet));
+    if (const auto* reply = std::get_if<response_view>(&found)) show(text_of(*reply));
     sound = sound && told + frame.size() <= input.size() &&
             std::equal(frame.begin(), frame.end(), input.subspan(told).begin());
     told += frame.size();
