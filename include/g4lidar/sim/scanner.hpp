@@ -26,7 +26,7 @@ struct scanner_options {
   std::size_t samples_per_packet = 40;  ///< 1 to 80.
   double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
   /// The angle at the first sample, [0, 360); drawn at random where not given.
-  std::optional<double> start_deg;
+  std::optional<double> start_deg = std::nullopt;
   bool reports_frequency = true;   ///< Whether a zero packet's CT tells the scan frequency.
   double min_range_mm = 280.0;     ///< What is nearer gives no return.
   double max_range_mm = 16'000.0;  ///< What is farther gives no return; at most 16383.75.

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Reads the benchmark's JSON, prints the README's table, and with --check holds it to the targets.
+
+Every ratio is of two medians out of one run. The targets of --check have a slack, for machines that
+do something else at the same time; what the README claims is the table of a quiet one.
+"""
+import json
+import sys
+
+SIZES = {"1280": "one scan", "20480": "in cache", "2048000": "in memory"}
+SLACK = 0.75
+
+# name in the table, benchmark, what it is held against, the least ratio promised and where it holds
+RATIOS = [
+    ("points, `bulk_decoder`", "points_in_bulk", "copy_points", 0.5, ["2048000"]),
+    ("x and y, `bulk_decoder`", "places_in_bulk", "copy_places", 0.25, ["2048000"]),
+    ("points, core with the table", "points_table", "points_libm", 5.0, ["20480", "2048000"]),
+    ("points, core with the compact form", "points_compact", "points_libm", None, []),
+]
+FLOORS = [  # bytes a second of the wire
+    ("framing and checksum", "frame_whole", "20480", 5e9),
+    ("the same, a byte at a time", "frame_by_byte", "20480", 100e6),
+]
+
+
+def medians(path):
+    with open(path, encoding="utf-8") as file:
+        runs = json.load(file)["benchmarks"]
+    found, label = {}, ""
+    for run in runs:
+        if run.get("aggregate_name") == "median":
+            found[run["run_name"]] = run["bytes_per_second"]
+            label = run.get("label") or label
+    return found, label
+
+
+def main():
+    found, label = medians(sys.argv[1])
+    missed = []
+
+    def held(name, value, least):
+        if least is not None and value < SLACK * least:
+            missed.append(f"{name}: {value:.3g}, promised {least:.3g}, not even {SLACK} of it")
+
+    print(f"Instructions of `bulk_decoder`: {label}.\n")
+    print("| bytes to | against | " + " | ".join(SIZES.values()) + " | promised |")
+    print("|---|---|" + "---|" * len(SIZES) + "---|")
+    against_words = {"copy_points": "memcpy of the points", "copy_places": "memcpy of the places",
+                     "points_libm": "the formula with libm"}
+    for name, mine, other, least, where in RATIOS:
+        cells = []
+        for size in SIZES:
+            ratio = found[f"{mine}/{size}"] / found[f"{other}/{size}"]
+            cells.append(f"{ratio:.2f}")
+            if size in where:
+                held(f"{name}, {SIZES[size]}", ratio, least)
+        promised = "" if least is None else f"{least:g} " + " and ".join(SIZES[s] for s in where)
+        print(f"| {name} | {against_words[other]} | " + " | ".join(cells) + f" | {promised} |")
+    print()
+    for name, mine, size, least in FLOORS:
+        value = found[f"{mine}/{size}"]
+        print(f"{name}: {value / 1e9:.2f} GB/s (promised {least / 1e9:g})")
+        held(name, value, least)
+    print(f"memcpy of points in memory: {found['copy_points/2048000'] / 1e9:.1f} GB/s")
+    if missed and "--check" in sys.argv:
+        sys.exit("Missed:\n  " + "\n  ".join(missed))
+
+
+main()

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// How fast bytes become frames, points and places, beside memcpy moving the same results.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/correction.hpp"
+#include "g4lidar/decode.hpp"
+#include "g4lidar/sim/scanner.hpp"
+#include "g4lidar/sim/world.hpp"
+#include "g4lidar/stream_parser.hpp"
+
+namespace {
+
+using namespace g4lidar;
+
+// Points in one scan, in the second-level cache, and in memory.
+constexpr std::int64_t scan_points = 1'280;
+constexpr std::int64_t cache_points = 20'480;
+constexpr std::int64_t memory_points = 2'048'000;
+
+struct recording {
+  std::vector<std::uint8_t> data;
+  std::size_t points = 0;
+};
+
+/// The bytes of a simulated G4 with at least `points` points; a minute of them, over and over.
+recording make_recording(std::size_t points) {
+  static const std::vector<std::vector<std::uint8_t>> packets = [] {
+    sim::scanner scanner(sim::built_in_world(), {.noise_mm = 5.0, .dropout_ratio = 0.05});
+    std::vector<std::vector<std::uint8_t>> all;
+    for (int i = 0; i < 14'000; ++i) {
+      const bytes data = scanner.next().data;
+      all.emplace_back(data.begin(), data.end());
+    }
+    return all;
+  }();
+  recording made;
+  for (std::size_t i = 0; made.points < points; i = (i + 1) % packets.size()) {
+    made.data.insert(made.data.end(), packets[i].begin(), packets[i].end());
+    made.points += packets[i][3];
+  }
+  return made;
+}
+
+void count_bytes(benchmark::State& state, std::size_t each) {
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(each));
+}
+
+/// The correction as the manual has it, with libm's arctangent.
+struct libm_correction {
+  double operator()(std::uint16_t raw) const noexcept {
+    if (raw == 0) return 0.0;
+    const double range_mm = raw / 4.0;
+    return std::atan(21.8 * (155.3 - range_mm) / (155.3 * range_mm)) * 180.0 / std::numbers::pi;
+  }
+};
+
+template <class Element>
+void copy(benchmark::State& state) {
+  const std::size_t points = make_recording(static_cast<std::size_t>(state.range(0))).points;
+  const std::vector<Element> from(points);
+  std::vector<Element> to(points);
+  for (auto _ : state) {
+    std::memcpy(to.data(), from.data(), points * sizeof(Element));
+    benchmark::DoNotOptimize(to.data());
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, points * sizeof(Element));
+}
+
+void frame_in_pieces(benchmark::State& state, std::size_t piece) {
+  const recording input = make_recording(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) {
+    stream_parser parser;
+    std::size_t packets = 0;
+    for (bytes rest = input.data; !rest.empty();) {
+      const bytes head = rest.first(std::min(piece, rest.size()));
+      rest = rest.subspan(head.size());
+      parser.feed(head, [&](const event& found) { packets += found.index() == 0 ? 1U : 0U; });
+    }
+    benchmark::DoNotOptimize(packets);
+  }
+  count_bytes(state, input.data.size());
+}
+void frame_whole(benchmark::State& state) { frame_in_pieces(state, SIZE_MAX); }
+void frame_by_byte(benchmark::State& state) { frame_in_pieces(state, 1); }
+
+/// Bytes to points by the header-only core, with the correction `Form`.
+template <class Form>
+void points_by_core(benchmark::State& state) {
+  const recording input = make_recording(static_cast<std::size_t>(state.range(0)));
+  const auto form = std::make_unique<Form>();
+  std::vector<point> out(input.points + max_samples);
+  for (auto _ : state) {
+    stream_parser parser;
+    std::size_t count = 0;
+    parser.feed(input.data, [&](const event& found) {
+      if (const auto* packet = std::get_if<packet_view>(&found)) {
+        const std::span<point, max_samples> here(out.data() + count, max_samples);
+        count += decode(*packet, *form, 0, here).points.size();
+      }
+    });
+    benchmark::DoNotOptimize(out.data());
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, input.points * sizeof(point));
+}
+
+void points_in_bulk(benchmark::State& state) {
+  const recording input = make_recording(static_cast<std::size_t>(state.range(0)));
+  std::vector<point> out(input.points + max_samples);
+  for (auto _ : state) {
+    bulk_decoder decoder;
+    bytes rest = input.data;
+    benchmark::DoNotOptimize(decoder.decode(rest, out).size());
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, input.points * sizeof(point));
+  state.SetLabel(name_of(best_instruction_set()));
+}
+
+void places_in_bulk(benchmark::State& state) {
+  const recording input = make_recording(static_cast<std::size_t>(state.range(0)));
+  std::vector<xy_point> out(input.points + max_samples);
+  for (auto _ : state) {
+    bulk_decoder decoder;
+    bytes rest = input.data;
+    benchmark::DoNotOptimize(decoder.decode_xy(rest, frame::robot, out).size());
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, input.points * sizeof(xy_point));
+  state.SetLabel(name_of(best_instruction_set()));
+}
+
+void sizes(benchmark::internal::Benchmark* each) {
+  for (const std::int64_t points : {scan_points, cache_points, memory_points}) each->Arg(points);
+}
+
+BENCHMARK(frame_whole)->Apply(sizes);
+BENCHMARK(frame_by_byte)->Arg(cache_points);
+BENCHMARK(copy<point>)->Name("copy_points")->Apply(sizes);
+BENCHMARK(copy<xy_point>)->Name("copy_places")->Apply(sizes);
+BENCHMARK(points_by_core<libm_correction>)->Name("points_libm")->Apply(sizes);
+BENCHMARK(points_by_core<exact_correction>)->Name("points_exact")->Apply(sizes);
+BENCHMARK(points_by_core<table_correction>)->Name("points_table")->Apply(sizes);
+BENCHMARK(points_by_core<compact_correction>)->Name("points_compact")->Apply(sizes);
+BENCHMARK(points_in_bulk)->Apply(sizes);
+BENCHMARK(places_in_bulk)->Apply(sizes);
+
+}  // namespace
