@@ -25,8 +25,8 @@ extern "C" void take_bytes(const std::uint8_t* data, std::size_t count) {
   g4lidar::bytes input(data, count);
   while (const auto found = parser.next(input)) {
     if (const auto* packet = std::get_if<g4lidar::packet_view>(&*found)) {
-      ring.push(g4lidar::decode(*packet, g4lidar::compact_correction{},
-                                revolutions.count(*packet), points)
+      ring.push(g4lidar::decode(*packet, g4lidar::compact_correction{}, revolutions.count(*packet),
+                                points)
                     .points);
     }
   }

@@ -55,7 +55,8 @@ struct sine_cosine {
       (degrees - static_cast<float>(quarter) * 90.0F) * (std::numbers::pi_v<float> / 180.0F);
   const float x2 = x * x;
   const float s =
-      x + x * x2 * (-1.6666667e-1F + x2 * (8.3333310e-3F + x2 * (-1.9840874e-4F + x2 * 2.7525562e-6F)));
+      x +
+      x * x2 * (-1.6666667e-1F + x2 * (8.3333310e-3F + x2 * (-1.9840874e-4F + x2 * 2.7525562e-6F)));
   const float c =
       1.0F + x2 * (-0.5F + x2 * (4.1666666e-2F + x2 * (-1.3888885e-3F + x2 * 2.4760495e-5F)));
   switch (quarter & 3) {

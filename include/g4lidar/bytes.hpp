@@ -46,8 +46,8 @@ constexpr void store_u16(std::span<std::uint8_t> out, std::size_t at,
 /// An argument that owns its bytes and dies at the end of the call: a view of it would dangle, so
 /// the functions that return views refuse it at compile time.
 template <class T>
-concept dying_owner = !std::is_lvalue_reference_v<T> &&
-                      !std::ranges::borrowed_range<std::remove_cvref_t<T>> &&
-                      std::convertible_to<const std::remove_cvref_t<T>&, bytes>;
+concept dying_owner =
+    !std::is_lvalue_reference_v<T> && !std::ranges::borrowed_range<std::remove_cvref_t<T>> &&
+    std::convertible_to<const std::remove_cvref_t<T>&, bytes>;
 
 }  // namespace g4lidar

@@ -117,9 +117,7 @@ class packet_view {
     return load_u16(frame_, 4) >> 1;
   }
   /// The last sample's first-level angle, clockwise, in 1/64 of a degree, below 23040.
-  [[nodiscard]] constexpr int last_angle_64ths() const noexcept {
-    return load_u16(frame_, 6) >> 1;
-  }
+  [[nodiscard]] constexpr int last_angle_64ths() const noexcept { return load_u16(frame_, 6) >> 1; }
   /// The clockwise way from the first angle to the last, in 1/64 of a degree. Negative only in a
   /// suspect packet, where it is the small way back.
   [[nodiscard]] constexpr int span_64ths() const noexcept {

@@ -31,6 +31,7 @@ fi
 
 # Every path that is named exists.
 missing=0
+# shellcheck disable=SC2016 # the backquotes are those of Markdown
 for path in $(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|\.ci)/[A-Za-z0-9_./-]+`' README.md \
   | tr -d '`' | sort --unique); do
   if [[ ! -e $path ]]; then
