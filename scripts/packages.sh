@@ -15,11 +15,17 @@ packages_test=(
   binutils libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev
 )
 
+# What it takes to build and run the benchmarks.
+packages_bench=(
+  "${packages_demo[@]}"
+  libbenchmark-dev python3-minimal
+)
+
 # And everything that .ci/run does.
 # shellcheck disable=SC2034
 packages_ci=(
-  "${packages_test[@]}"
-  ccache debootstrap git pkg-config shellcheck libbenchmark-dev valgrind
+  "${packages_test[@]}" "${packages_bench[@]}"
+  ccache debootstrap git pkg-config shellcheck valgrind
   g++-11 python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
