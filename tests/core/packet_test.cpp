@@ -113,6 +113,19 @@ TEST(Packet, TheManualsFortySamples) {
   }
 }
 
+TEST(Packet, EverySampleCanHaveEveryValue) {
+  std::vector<std::uint16_t> samples = some_samples(80);
+  for (std::size_t i = 0; i < 80; ++i) {
+    for (unsigned value = 0; value < 65536; value += 257) {
+      samples[i] = static_cast<std::uint16_t>(value);
+      const auto data = packet_bytes(0, wire_angle(640), wire_angle(960), samples);
+      const auto packet = packet_view::from(data);
+      ASSERT_TRUE(packet);
+      ASSERT_EQ(packet->sample(i), value) << i;
+    }
+  }
+}
+
 TEST(Packet, UpperBitsOfCtOfANormalPacketMeanNothingButCount) {
   const buffer data = packet_bytes(0x86, wire_angle(9600), wire_angle(10224), some_samples(40));
   const auto packet = packet_view::from(data);
