@@ -43,16 +43,6 @@ const bulk::kernels& kernels_of(instruction_set set) noexcept {
   return bulk::portable_kernels;
 }
 
-/// Converts into `out`, by way of a packet's worth of scratch memory where a kernel could write
-/// behind its end.
-template <class Point, class Kernel>
-void convert_to_front(std::span<Point> out, std::size_t count, const Kernel& kernel) noexcept {
-  if (out.size() >= max_samples) return kernel(out.template first<max_samples>());
-  std::array<Point, max_samples> scratch;
-  kernel(std::span<Point, max_samples>(scratch));
-  std::copy_n(scratch.begin(), count, out.begin());
-}
-
 }  // namespace
 
 instruction_set best_instruction_set() noexcept {
@@ -69,93 +59,96 @@ const char* name_of(instruction_set set) noexcept {
 bulk_decoder::bulk_decoder(instruction_set wanted) noexcept
     : set_(wanted == best_instruction_set() ? wanted : instruction_set::portable) {}
 
-/// Converts packet after packet as `next` finds them. Where a packet is found to have no room, the
-/// step is taken back: `next` takes a parser and gives an event, and touches nothing else that
-/// `undo` does not restore.
-template <class Next, class Point, class Convert>
-std::span<Point> bulk_decoder::run(const Next& next, std::span<Point> out,
-                                   const Convert& convert) noexcept {
+/// The next event, and how many points were written for it.
+template <class Source, class Point, class Convert>
+std::optional<std::size_t> bulk_decoder::step(const Source& source, const Convert& convert,
+                                              std::span<Point, max_samples> out) noexcept {
+  const std::optional<event> found = source.next(parser_);
+  if (!found) return std::nullopt;
+  counts_.add(*found);
+  const auto* const packet = std::get_if<packet_view>(&*found);
+  if (packet == nullptr) return 0;
+  const std::uint32_t revolution = revolutions_.count(*packet);
+  if (packet->is_suspect()) return 0;
+  convert(*packet, revolution, out);
+  return packet->sample_count();
+}
+
+template <class Source, class Point, class Convert>
+std::span<Point> bulk_decoder::run(const Source& source, const Convert& convert,
+                                   std::span<Point> out) noexcept {
   std::size_t used = 0;
+  while (out.size() - used >= max_samples) {
+    const auto count = step(source, convert, out.subspan(used).template first<max_samples>());
+    if (!count) return out.first(used);
+    used += *count;
+  }
+  // Now the next packet may not fit. Each step is tried, and taken back where that is so.
   while (true) {
-    const std::span<Point> room = out.subspan(used);
-    // A packet that may not fit is looked for with a copy of the parser first.
-    std::optional<stream_parser> before;
-    if (room.size() < max_samples) before = parser_;
-    const auto mark = next.mark();
-    const std::optional<event> found = next(parser_);
-    if (!found) break;
-    const auto* const packet = std::get_if<packet_view>(&*found);
-    if (packet != nullptr && !packet->is_suspect()) {
-      const std::size_t count = packet->sample_count();
-      if (count > room.size()) {
-        parser_ = *before;
-        next.go_back(mark);
-        break;
-      }
-      counts_.add(*packet);
-      convert(*packet, revolutions_.count(*packet), room);
-      used += count;
-      continue;
+    const bulk_decoder before = *this;
+    const auto place = source.place();
+    std::array<Point, max_samples> points;
+    const auto count = step(source, convert, std::span(points));
+    if (!count) break;
+    if (*count > out.size() - used) {
+      *this = before;
+      source.go_back(place);
+      break;
     }
-    if (packet != nullptr) static_cast<void>(revolutions_.count(*packet));
-    counts_.add(*found);
+    std::copy_n(points.begin(), *count, out.subspan(used).begin());
+    used += *count;
   }
   return out.first(used);
 }
 
 namespace {
 
-/// Events from an input that goes on, and from one that has ended.
-struct from_input {
+/// Events of an input that goes on.
+struct going_on {
   bytes& input;
 
-  std::optional<event> operator()(stream_parser& parser) const noexcept {
+  [[nodiscard]] std::optional<event> next(stream_parser& parser) const noexcept {
     return parser.next(input);
   }
-  [[nodiscard]] bytes mark() const noexcept { return input; }
+  [[nodiscard]] bytes place() const noexcept { return input; }
   void go_back(bytes to) const noexcept { input = to; }
 };
-struct from_end {
-  std::optional<event> operator()(stream_parser& parser) const noexcept { return parser.finish(); }
-  [[nodiscard]] int mark() const noexcept { return 0; }
-  void go_back(int /*to*/) const noexcept {}
+
+/// Events of an input that has ended; all that it is lies in the parser.
+struct ended {
+  [[nodiscard]] std::optional<event> next(stream_parser& parser) const noexcept {
+    return parser.finish();
+  }
+  [[nodiscard]] bytes place() const noexcept { return {}; }
+  void go_back(bytes /*to*/) const noexcept {}
 };
 
-auto point_converter(instruction_set set) noexcept {
-  return [kernel = kernels_of(set).to_points](packet_view packet, std::uint32_t revolution,
-                                              std::span<point> out) noexcept {
-    convert_to_front(out, packet.sample_count(), [&](std::span<point, max_samples> to) noexcept {
-      kernel(packet, revolution, to);
-    });
-  };
-}
+auto points_with(instruction_set set) noexcept { return kernels_of(set).to_points; }
 
-auto xy_converter(instruction_set set, frame frame_of) noexcept {
-  return [kernel = kernels_of(set).to_xy, frame_of](packet_view packet, std::uint32_t,
-                                                    std::span<xy_point> out) noexcept {
-    convert_to_front(out, packet.sample_count(), [&](std::span<xy_point, max_samples> to) noexcept {
-      kernel(packet, frame_of, to);
-    });
+auto places_with(instruction_set set, frame to) noexcept {
+  return [kernel = kernels_of(set).to_xy, to](packet_view packet, std::uint32_t /*revolution*/,
+                                              std::span<xy_point, max_samples> out) noexcept {
+    kernel(packet, to, out);
   };
 }
 
 }  // namespace
 
 std::span<point> bulk_decoder::decode(bytes& input, std::span<point> out) noexcept {
-  return run(from_input{input}, out, point_converter(set_));
+  return run(going_on{input}, points_with(set_), out);
 }
 
 std::span<xy_point> bulk_decoder::decode_xy(bytes& input, frame to,
                                             std::span<xy_point> out) noexcept {
-  return run(from_input{input}, out, xy_converter(set_, to));
+  return run(going_on{input}, places_with(set_, to), out);
 }
 
 std::span<point> bulk_decoder::finish(std::span<point> out) noexcept {
-  return run(from_end{}, out, point_converter(set_));
+  return run(ended{}, points_with(set_), out);
 }
 
 std::span<xy_point> bulk_decoder::finish_xy(frame to, std::span<xy_point> out) noexcept {
-  return run(from_end{}, out, xy_converter(set_, to));
+  return run(ended{}, places_with(set_, to), out);
 }
 
 }  // namespace g4lidar

@@ -4,9 +4,217 @@
 
 #if G4LIDAR_HAS_AVX2_KERNELS
 
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "avx2.hpp"
+#include "g4lidar/correction.hpp"
+
+// Each kernel goes over the packet several times, a few instructions for each eight samples at a
+// time. In one go they would be a chain of some sixty, and the processor, which looks only so far
+// ahead, would wait for each result: that takes twice as long.
+
 namespace g4lidar::bulk {
 
-const kernels avx2_kernels = portable_kernels;
+namespace {
+
+using namespace avx2;
+
+/// The first-level angles of a packet: that of its first sample, and the way from one to the next.
+struct way {
+  floats first_deg;
+  floats step_deg;
+};
+G4LIDAR_AVX2 way way_of(packet_view packet) {
+  const auto gaps = static_cast<float>(static_cast<int>(packet.sample_count()) - 1);
+  const auto span = static_cast<float>(packet.span_64ths());
+  return {every(static_cast<float>(packet.first_angle_64ths()) / 64.0F),
+          every(gaps > 0.0F ? span / (64.0F * gaps) : 0.0F)};
+}
+
+/// Where nothing came back.
+G4LIDAR_AVX2 words none(words raw) { return equal(raw, every(0)); }
+
+/// The second-level correction of samples from 100 mm on. As in compact_correction it is taken from
+/// its middle; but the corrections that are left lie within 6.3 degrees of it, and three terms of
+/// the series are good for 3e-8 degrees.
+constexpr std::uint32_t nearest_raw = 400;
+static_assert(nearest_raw == static_cast<std::uint32_t>(4 * too_near_mm));
+
+G4LIDAR_AVX2 floats correction_of(floats sample) {
+  const floats t = (every(797.3080408F) - sample) /
+                   times_plus(every(9.183236226F), sample, every(-24.72089691F));
+  const floats x = t * t;
+  floats series = times_plus(x, every(11.291349704F), every(-19.097602652F));
+  series = times_plus(x, series, every(57.295778049F));
+  return times_plus(t, series, every(-1.77591265498F));
+}
+
+/// Whether an angle of the packet can lie outside [0, 360) before it is wrapped, all its ranges
+/// being 100 mm or more.
+bool touches_zero(packet_view packet) noexcept {
+  constexpr int below = 8 * 64;
+  constexpr int above = 7 * 64;
+  return packet.first_angle_64ths() < below ||
+         packet.first_angle_64ths() + packet.span_64ths() >= turn_64ths - above;
+}
+
+/// wrap_once_deg(). Compared as unsigned numbers, any negative float is greater than any positive
+/// one, so the smaller one of x and x + 360, and then of that and 360 less, is the one in range.
+G4LIDAR_AVX2 floats wrapped(floats x) {
+  const words lifted = unsigned_min(bits_of(x), bits_of(x + every(360.0F)));
+  return floats_of(unsigned_min(lifted, bits_of(floats_of(lifted) - every(360.0F))));
+}
+
+static_assert(offsetof(point, angle_deg) == 0 && offsetof(point, range_mm) == 4 &&
+              offsetof(point, time_ns) == 8 && offsetof(point, revolution) == 16 &&
+              offsetof(point, marks) == 20);
+
+/// Four points of 24 bytes, put together from pairs A (angle, range) and B (revolution, marks): in
+/// three registers A0 0 B0 A1 | 0 B1 A2 0 | B2 A3 0 B3. This is the order in which no pair has to
+/// move: `a` holds A0 A3 A2 A1, and `b` holds B2 B1 B0 B3.
+constexpr lane_order point_order{0, 3, 4, 7, 2, 1, 6, 5};
+
+G4LIDAR_AVX2 void store_four(__m256i a, __m256i b, point* out) {
+  const __m256i zero = _mm256_setzero_si256();
+  const __m256i first = _mm256_blend_epi32(a, b, 0b00110000);
+  const __m256i second = _mm256_blend_epi32(a, b, 0b00001100);
+  const __m256i third = _mm256_blend_epi32(b, a, 0b00001100);
+  auto* const to = reinterpret_cast<__m256i*>(out);
+  _mm256_storeu_si256(to, _mm256_blend_epi32(first, zero, 0b00001100));
+  _mm256_storeu_si256(to + 1, _mm256_blend_epi32(second, zero, 0b11000011));
+  _mm256_storeu_si256(to + 2, _mm256_blend_epi32(third, zero, 0b00110000));
+}
+
+G4LIDAR_AVX2 void store_eight(floats angle, floats range, words revolution, words marks,
+                              point* out) {
+  const __m256i swapped = _mm256_permute2x128_si256(marks.v, marks.v, 1);
+  store_four(_mm256_castps_si256(_mm256_unpacklo_ps(angle.v, range.v)),
+             _mm256_unpacklo_epi32(revolution.v, swapped), out);
+  store_four(_mm256_castps_si256(_mm256_unpackhi_ps(angle.v, range.v)),
+             _mm256_unpackhi_epi32(revolution.v, swapped), out + 4);
+}
+
+/// A packet with a sample below 100 mm, which is rare, is left to the portable kernel.
+__attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint32_t revolution,
+                                                   std::span<point, max_samples> out) noexcept {
+  const eights<point_order> raw(packet);
+  per_packet<floats> range;
+  const way angles = way_of(packet);
+  per_packet<floats> angle;
+  words nearest = every(-1);  // less 1, as unsigned: so that no return is the farthest
+  for (std::size_t i = 0; i < raw.count(); ++i) {
+    const floats sample = to_floats(raw[i]);
+    nearest = unsigned_min(nearest, raw[i] - every(1));
+    range[i] = sample * every(0.25F);
+    const floats correction = floats_of(without(none(raw[i]), bits_of(correction_of(sample))));
+    angle[i] = angles.first_deg + times_plus(raw.places(i), angles.step_deg, correction);
+  }
+  if (any(equal(unsigned_min(nearest, every(static_cast<int>(nearest_raw) - 2)), nearest))) {
+    return portable_kernels.to_points(packet, revolution, out);
+  }
+  if (touches_zero(packet)) {
+    for (std::size_t i = 0; i < raw.count(); ++i) angle[i] = wrapped(angle[i]);
+  }
+  const words revolutions = every(static_cast<int>(revolution));
+  for (std::size_t i = 0; i < raw.count(); ++i) {
+    static_assert(static_cast<int>(point_marks::no_return) == 1);
+    const words marks = every(0) - none(raw[i]);
+    store_eight(angle[i], range[i], revolutions, marks, out.data() + lanes * i);
+  }
+  if (packet.is_zero()) out[0].marks = out[0].marks | point_marks::revolution_start;
+}
+
+/// See sine_cosine_deg().
+struct direction {
+  floats sine;
+  floats cosine;
+};
+G4LIDAR_AVX2 direction direction_of(floats degrees) {
+  const words quarter = to_nearest(degrees * every(1.0F / 90.0F));
+  const floats x = minus_times(to_floats(quarter), every(90.0F), degrees) *
+                   every(std::numbers::pi_v<float> / 180.0F);
+  const floats x2 = x * x;
+  floats s = times_plus(x2, every(2.7525562e-6F), every(-1.9840874e-4F));
+  floats c = times_plus(x2, every(2.4760495e-5F), every(-1.3888885e-3F));
+  s = times_plus(x2, s, every(8.3333310e-3F));
+  c = times_plus(x2, c, every(4.1666666e-2F));
+  s = times_plus(x2, s, every(-1.6666667e-1F));
+  c = times_plus(x2, c, every(-0.5F));
+  s = times_plus(x * x2, s, x);
+  c = times_plus(x2, c, every(1.0F));
+  // An odd number of quarters swaps the two; bit 1 of the number turns the sine's sign, and bit 1
+  // of the next number the cosine's.
+  const words odd = shifted_left<31>(quarter);
+  const words sign = every(std::numeric_limits<int>::min());
+  const words sine_sign = shifted_left<30>(quarter) & sign;
+  const words cosine_sign = shifted_left<30>(quarter + every(1)) & sign;
+  return {floats_of(bits_of(choose(odd, s, c)) ^ sine_sign),
+          floats_of(bits_of(choose(odd, c, s)) ^ cosine_sign)};
+}
+
+static_assert(offsetof(xy_point, x_m) == 0 && offsetof(xy_point, y_m) == 4 &&
+              offsetof(xy_point, time_ns) == 8);
+
+/// Eight places of 16 bytes, two to a register.
+constexpr lane_order xy_order{0, 2, 4, 6, 1, 3, 5, 7};
+
+G4LIDAR_AVX2 void store_eight(floats x, floats y, xy_point* out) {
+  const __m256i zero = _mm256_setzero_si256();
+  const __m256i low = _mm256_castps_si256(_mm256_unpacklo_ps(x.v, y.v));
+  const __m256i high = _mm256_castps_si256(_mm256_unpackhi_ps(x.v, y.v));
+  auto* const to = reinterpret_cast<__m256i*>(out);
+  _mm256_storeu_si256(to, _mm256_unpacklo_epi64(low, zero));
+  _mm256_storeu_si256(to + 1, _mm256_unpackhi_epi64(low, zero));
+  _mm256_storeu_si256(to + 2, _mm256_unpacklo_epi64(high, zero));
+  _mm256_storeu_si256(to + 3, _mm256_unpackhi_epi64(high, zero));
+}
+
+/// The legs of the correction's triangle, see to_xy().
+struct legs {
+  floats d;
+  floats u;
+};
+G4LIDAR_AVX2 legs legs_of(words raw) {
+  constexpr auto offset_raw = static_cast<float>(4.0 * correction_offset_mm);
+  constexpr auto slope = static_cast<float>(-correction_offset_mm / correction_zero_mm);
+  const floats d = to_floats(raw);
+  return {d, times_plus(d, every(slope), every(offset_raw))};
+}
+
+/// No arctangent is needed: the correction is an angle in the right-angled triangle with the legs d
+/// and u = 21.8 - (21.8 / 155.3) d, so the range along the first-level angle and across it follow
+/// from the sides, and turning them by that angle is all that is left.
+__attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to_frame,
+                                               std::span<xy_point, max_samples> out) noexcept {
+  const eights<xy_order> raw(packet);
+  const way angles = way_of(packet);
+  per_packet<floats> share;  // of the range in the triangle's long side; or NaN
+  per_packet<direction> turn;
+  for (std::size_t i = 0; i < raw.count(); ++i) {
+    const auto [d, u] = legs_of(raw[i]);
+    const floats ratio = d / square_root(times_plus(d, d, u * u));
+    share[i] = floats_of(bits_of(ratio) | none(raw[i]));
+  }
+  for (std::size_t i = 0; i < raw.count(); ++i) {
+    turn[i] = direction_of(times_plus(raw.places(i), angles.step_deg, angles.first_deg));
+  }
+  constexpr float metres = 0.00025F;  // a quarter of a millimetre
+  const floats scale_x = every(to_frame == frame::robot ? -metres : metres);
+  for (std::size_t i = 0; i < raw.count(); ++i) {
+    const auto [d, u] = legs_of(raw[i]);
+    const floats along = share[i] * d;
+    const floats across = share[i] * u;
+    const floats x = times_minus(along, turn[i].cosine, across * turn[i].sine);
+    const floats y = times_plus(along, turn[i].sine, across * turn[i].cosine);
+    store_eight(x * scale_x, y * every(metres), out.data() + lanes * i);
+  }
+}
+
+}  // namespace
+
+const kernels avx2_kernels{to_points, to_xy};
 
 }  // namespace g4lidar::bulk
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "g4lidar/bytes.hpp"
@@ -65,8 +66,11 @@ class bulk_decoder {
   [[nodiscard]] instruction_set in_use() const noexcept { return set_; }
 
  private:
-  template <class Next, class Point, class Convert>
-  std::span<Point> run(const Next& next, std::span<Point> out, const Convert& convert) noexcept;
+  template <class Source, class Point, class Convert>
+  std::optional<std::size_t> step(const Source& source, const Convert& convert,
+                                  std::span<Point, max_samples> out) noexcept;
+  template <class Source, class Point, class Convert>
+  std::span<Point> run(const Source& source, const Convert& convert, std::span<Point> out) noexcept;
 
   stream_parser parser_;
   revolution_counter revolutions_;
