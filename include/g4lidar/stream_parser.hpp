@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <variant>
 
 #include "g4lidar/bytes.hpp"
@@ -110,13 +111,12 @@ class stream_parser {
         continue;
       }
       const std::size_t taken = settle(found);
-      const event result = make_event(found, taken, data);
       if (in_place) {
         input = input.subspan(taken);
       } else {
         drop(taken);
       }
-      return result;
+      return make_event(found, taken, data);
     }
   }
   /// The carry that views may point into would die with the parser.
@@ -203,12 +203,15 @@ class stream_parser {
     return count;
   }
 
-  /// The event for a front of which `taken` bytes, by settle(), are its own.
-  [[nodiscard]] constexpr event make_event(const front& found, std::size_t taken,
-                                           bytes data) const noexcept {
-    if (found.kind == front_kind::packet) return packet_view(data.first(taken));
-    if (found.kind == front_kind::response) return response_view(data.first(taken));
-    return skipped{taken, claim_.reason};
+  /// The event for a front of which `taken` bytes, by settle(), are its own. Made where the caller
+  /// will read it: a copy of what was just written in pieces costs more than all the rest.
+  [[nodiscard]] constexpr std::optional<event> make_event(const front& found, std::size_t taken,
+                                                          bytes data) const noexcept {
+    using made = std::optional<event>;
+    const bytes frame = data.first(taken);
+    if (found.kind == front_kind::packet) return made(std::in_place, packet_view(frame));
+    if (found.kind == front_kind::response) return made(std::in_place, response_view(frame));
+    return made(std::in_place, skipped{taken, claim_.reason});
   }
 
   std::array<std::uint8_t, max_packet_size> carry_{};
