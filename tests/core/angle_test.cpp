@@ -84,6 +84,7 @@ TEST(Angle, WrapsFromFarAwayExactly) {
 }
 
 TEST(Angle, HasOneZero) {
+  EXPECT_EQ((-angle{}).degrees(), 0.0F);
   EXPECT_FALSE(std::signbit((-angle{}).degrees()));
   EXPECT_FALSE(std::signbit(angle::from_degrees(-0.0F).degrees()));
   EXPECT_FALSE(std::signbit(angle::from_degrees(-360.0F).degrees()));

@@ -167,7 +167,8 @@ inline void random_stream::add(const recipe& part) {
     case 9: {  // a reply that is not possible
       buffer reply = response(random);
       const std::size_t at = random.below(reply.size());
-      reply[at] = static_cast<std::uint8_t>(reply[at] + 1 + random.below(255));
+      const std::size_t more = random.below(2) == 0 ? 1 : 1 + random.below(255);
+      reply[at] = static_cast<std::uint8_t>(reply[at] + more);
       return add_bytes(reply);
     }
     case 10: {  // a packet that is not possible, or whose checksum fails
