@@ -10,6 +10,7 @@
 
 #include "avx2.hpp"
 #include "g4lidar/correction.hpp"
+#include "g4lidar/decode.hpp"
 
 // Each kernel goes over the packet several times, a few instructions for each eight samples at a
 // time. In one go they would be a chain of some sixty, and the processor, which looks only so far
@@ -20,18 +21,6 @@ namespace g4lidar::bulk {
 namespace {
 
 using namespace avx2;
-
-/// The first-level angles of a packet: that of its first sample, and the way from one to the next.
-struct way {
-  floats first_deg;
-  floats step_deg;
-};
-G4LIDAR_AVX2 way way_of(packet_view packet) {
-  const auto gaps = static_cast<float>(static_cast<int>(packet.sample_count()) - 1);
-  const auto span = static_cast<float>(packet.span_64ths());
-  return {every(static_cast<float>(packet.first_angle_64ths()) / 64.0F),
-          every(gaps > 0.0F ? span / (64.0F * gaps) : 0.0F)};
-}
 
 /// Where nothing came back.
 G4LIDAR_AVX2 words none(words raw) { return equal(raw, every(0)); }
@@ -54,10 +43,10 @@ G4LIDAR_AVX2 floats correction_of(floats sample) {
 /// Whether an angle of the packet can lie outside [0, 360) before it is wrapped, all its ranges
 /// being 100 mm or more.
 bool touches_zero(packet_view packet) noexcept {
-  constexpr int below = 8 * 64;
-  constexpr int above = 7 * 64;
-  return packet.first_angle_64ths() < below ||
-         packet.first_angle_64ths() + packet.span_64ths() >= turn_64ths - above;
+  constexpr int before = 8 * 64;
+  constexpr int behind = 5 * 64;
+  const int begin = packet.first_angle_64ths();
+  return begin < before || begin + packet.span_64ths() >= turn_64ths - behind;
 }
 
 /// wrap_once_deg(). Compared as unsigned numbers, any negative float is greater than any positive
@@ -101,7 +90,9 @@ __attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint
                                                    std::span<point, max_samples> out) noexcept {
   const eights<point_order> raw(packet);
   per_packet<floats> range;
-  const way angles = way_of(packet);
+  const first_level_angles<float> angles(packet);
+  const floats first = every(angles.first);
+  const floats step = every(angles.step);
   per_packet<floats> angle;
   words nearest = every(-1);  // less 1, as unsigned: so that no return is the farthest
   for (std::size_t i = 0; i < raw.count(); ++i) {
@@ -109,7 +100,7 @@ __attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint
     nearest = unsigned_min(nearest, raw[i] - every(1));
     range[i] = sample * every(0.25F);
     const floats correction = floats_of(without(none(raw[i]), bits_of(correction_of(sample))));
-    angle[i] = angles.first_deg + times_plus(raw.places(i), angles.step_deg, correction);
+    angle[i] = first + times_plus(raw.places(i), step, correction);
   }
   if (any(equal(unsigned_min(nearest, every(static_cast<int>(nearest_raw) - 2)), nearest))) {
     return portable_kernels.to_points(packet, revolution, out);
@@ -189,7 +180,9 @@ G4LIDAR_AVX2 legs legs_of(words raw) {
 __attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to_frame,
                                                std::span<xy_point, max_samples> out) noexcept {
   const eights<xy_order> raw(packet);
-  const way angles = way_of(packet);
+  const first_level_angles<float> angles(packet);
+  const floats first = every(angles.first);
+  const floats step = every(angles.step);
   per_packet<floats> share;  // of the range in the triangle's long side; or NaN
   per_packet<direction> turn;
   for (std::size_t i = 0; i < raw.count(); ++i) {
@@ -198,7 +191,7 @@ __attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to_fram
     share[i] = floats_of(bits_of(ratio) | none(raw[i]));
   }
   for (std::size_t i = 0; i < raw.count(); ++i) {
-    turn[i] = direction_of(times_plus(raw.places(i), angles.step_deg, angles.first_deg));
+    turn[i] = direction_of(times_plus(raw.places(i), step, first));
   }
   constexpr float metres = 0.00025F;  // a quarter of a millimetre
   const floats scale_x = every(to_frame == frame::robot ? -metres : metres);

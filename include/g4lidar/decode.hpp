@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -53,6 +54,23 @@ struct decoded {
   return static_cast<point_marks>(2 * near - no_return);
 }
 
+/// The first-level angles of a packet that is not suspect, in degrees: sample `i` lies at `first` +
+/// `i` * `step`. Of a packet that goes through zero the first one is negative, so that none is 360 or
+/// more: there, single precision would be half as fine.
+template <std::floating_point Real>
+struct first_level_angles {
+  Real first;
+  Real step;
+
+  explicit constexpr first_level_angles(packet_view packet) noexcept {
+    const int begin = packet.first_angle_64ths();
+    const int way = packet.span_64ths();
+    const int gaps = static_cast<int>(packet.sample_count()) - 1;
+    first = static_cast<Real>(begin + way >= turn_64ths ? begin - turn_64ths : begin) / Real(64);
+    step = gaps > 0 ? static_cast<Real>(way) / static_cast<Real>(64 * gaps) : Real(0);
+  }
+};
+
 /// Writes the corrected points of `packet` to the front of `out`, which has room for the longest
 /// packet, and says what it wrote. *Pure, never allocates.* A suspect packet gives no points. Times
 /// are left 0, not known. (protocol: Point packets)
@@ -71,10 +89,7 @@ constexpr decoded decode(packet_view packet, const Form& correction, std::uint32
   result.suspect = packet.is_suspect();
   if (result.suspect) return result;
 
-  const real first = static_cast<real>(packet.first_angle_64ths()) / real(64);
-  const real step =
-      count > 1 ? static_cast<real>(packet.span_64ths()) / (real(64) * static_cast<real>(count - 1))
-                : real(0);
+  const first_level_angles<real> angles(packet);
   // First all directions, sixteen at a time: a loop of this form, with a constant number of rounds
   // and no branch, turns into vector instructions. Behind the last sample the copy holds zeroes.
   constexpr std::int32_t at_once = 16;
@@ -86,8 +101,8 @@ constexpr decoded decode(packet_view packet, const Form& correction, std::uint32
     real* const angles_here = angles_deg.data() + from;
     const auto place = static_cast<std::int32_t>(from);
     for (std::int32_t i = 0; i < at_once; ++i) {
-      const real uncorrected = first + static_cast<real>(place + i) * step;
-      angles_here[i] = wrap_once_deg(uncorrected + correction(raw_here[i]));
+      const real turned = static_cast<real>(place + i) * angles.step + correction(raw_here[i]);
+      angles_here[i] = wrap_once_deg(angles.first + turned);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
