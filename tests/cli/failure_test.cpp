@@ -2,6 +2,7 @@
 // What goes wrong: one clear sentence, the right exit code, and nothing half-written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -129,17 +130,51 @@ TEST_F(Failure, WrongCommandLineTouchesNoFile) {
   expect_nothing_written({"sim", "--samples", "0"});
 }
 
-TEST_F(Failure, OutputIsFull) {
+// No test gives a device by name while it is root: a mistake in the program could then replace the
+// system's own device by a file.
+TEST_F(Failure, StandardOutputIsFull) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full here";
-  const std::string name = good();
-  expect_sentence(run({"decode", name, "-o", "/dev/full"}), 10,
-                  "No space left on device. Make room");
-  cli::program direct({"decode", name}, {{}, stream::of_file("/dev/full"), {}});
-  expect_sentence(direct.wait(), 10, "cannot write standard output: No space left on device");
-  expect_sentence(run({"sim", "--seconds", "1", "-o", "/dev/full"}), 10, "No space left on device");
-  expect_sentence(run({"sim", "--seconds", "1", "-o", path("x"), "--truth", "/dev/full"}), 10,
-                  "No space left on device");
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"decode", good()},
+        {"sim", "--seconds", "1"},
+        {"sim", "--seconds", "1", "-o", path("x"), "--truth", "-"}}) {
+    cli::program started(arguments, {{}, stream::of_file("/dev/full"), {}});
+    expect_sentence(started.wait(), 10,
+                    "cannot write standard output: No space left on device. Make room");
+  }
   EXPECT_EQ(listing(), "good.bin\n");
+}
+
+TEST_F(Failure, ADeviceThatIsFull) {
+  if (::geteuid() == 0) GTEST_SKIP() << "not as root, who could replace the device by a file";
+  expect_sentence(run({"decode", good(), "-o", "/dev/full"}), 10,
+                  "cannot write '/dev/full': No space left on device");
+  EXPECT_EQ(run({"decode", good(), "-o", "/dev/null"}).code, 0);
+}
+
+// While it lives, no file may grow beyond so many bytes.
+class file_size_limit {
+ public:
+  explicit file_size_limit(rlim_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  file_size_limit(const file_size_limit&) = delete;
+  file_size_limit& operator=(const file_size_limit&) = delete;
+  ~file_size_limit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(Failure, AFileThatCannotGrowLeavesNothing) {
+  const std::string name = path("good.bin");
+  cli::write_repeated(name, cli::zero(0) + cli::turn(), 100'000);
+  const file_size_limit limit(1000);
+  expect_sentence(run({"decode", name, "-o", path("out.csv")}), 10, "File too large. Make room");
+  expect_nothing_written({"decode", name});
+  expect_nothing_written({"sim", "--seconds", "5"});
 }
 
 TEST_F(Failure, OutputHasNoDirectory) {
@@ -175,7 +210,8 @@ TEST_F(Failure, StandardOutputIsClosed) {
 TEST_F(Failure, StandardErrorIsClosed_NothingStraysIntoTheOutput) {
   const std::string name = good();
   const std::string all = run({"decode", name}).out;
-  cli::program started({"decode", name, "-o", path("out.csv")}, {{}, {}, stream::none()});
+  const std::vector<std::string> arguments{"decode", "-", "-o", path("out.csv")};
+  cli::program started(arguments, {stream::of_file(name), {}, stream::none()});
   EXPECT_EQ(started.wait().code, 0);
   EXPECT_EQ(cli::read_file(path("out.csv")), all);
 }

@@ -156,8 +156,12 @@ TEST_F(Pipe, ALongFileTakesNoMoreMemoryThanAShortOne) {
   cli::write_repeated(short_one, block, 500'000);
   cli::write_repeated(long_one, block, 50'000'000);
   for (const char* const format : {"csv", "jsonl"}) {
-    const outcome few = run({"decode", short_one, "--format", format, "-o", "/dev/null"});
-    const outcome many = run({"decode", long_one, "--format", format, "-o", "/dev/null"});
+    const auto decode = [&](const std::string& name) {
+      program started({"decode", name, "--format", format}, {{}, stream::of_file("/dev/null"), {}});
+      return started.wait();
+    };
+    const outcome few = decode(short_one);
+    const outcome many = decode(long_one);
     EXPECT_EQ(many.code, 0);
     EXPECT_LT(many.max_rss_kib, few.max_rss_kib + 2048) << format;
   }
@@ -194,7 +198,8 @@ TEST_F(Pipe, AProgressBarOnATerminalForLargeFilesOnly) {
   EXPECT_THAT(shown_on_terminal({"decode", small}, "/dev/null"), StartsWith("1"));
   EXPECT_THAT(shown_on_terminal({"decode", large, "--stats", "json"}, "/dev/null"),
               StartsWith("{"));
-  EXPECT_THAT(run({"decode", large, "-o", "/dev/null"}).err, StartsWith("17"));
+  program unseen({"decode", large}, {{}, stream::of_file("/dev/null"), {}});
+  EXPECT_THAT(unseen.wait().err, StartsWith("17"));
 }
 
 TEST_F(Pipe, BinaryIsNotPouredOntoATerminal) {

@@ -139,7 +139,12 @@ std::string program::read_until(std::string_view text) {
 
 outcome program::wait() {
   close_input();
-  while (read_some(-1)) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  while (read_some(100)) {
+    if (std::chrono::steady_clock::now() < end) continue;
+    ADD_FAILURE() << "it does not come to an end";
+    ::kill(pid_, SIGKILL);
+    break;
   }
   int status = 0;
   rusage usage{};

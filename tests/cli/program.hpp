@@ -59,7 +59,7 @@ class program {
   void send(int signal) const;
   /// Reads its standard output until `text` is there; all that was read, or fails after 20 seconds.
   std::string read_until(std::string_view text);
-  /// Closes its input, reads everything and waits for the end.
+  /// Closes its input, reads everything and waits for the end; fails after two minutes.
   outcome wait();
 
  private:

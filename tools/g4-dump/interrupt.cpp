@@ -34,6 +34,7 @@ void prepare_process() {
     }
   }
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   if (::pipe2(bell.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
   struct sigaction action{};
   action.sa_handler = note;

@@ -5,7 +5,7 @@
 namespace g4_dump {
 
 /// From now on the first such signal is only noted, a second one ends the program, and writing to a
-/// closed pipe is an error like any other. Descriptors 0 to 2 that are closed lead nowhere, so that
+/// closed pipe or beyond the largest file is an error like any other. Descriptors 0 to 2 that are closed lead nowhere, so that
 /// no file comes to stand in their place.
 void prepare_process();
 
