@@ -32,7 +32,7 @@ struct sampling_line {
 
 /// Keeps the earliest arrival of each of up to 64 blocks of samples, and lays lines under them.
 /// *Single thread, never allocates.* Blocks begin with 20 ms; when all are in use two become one,
-/// until they have 250 ms and the oldest goes: the window grows to 16 s and then slides.
+/// until they have 320 ms and the oldest goes: the window grows to 20 s and then slides.
 class arrival_window {
  public:
   /// What is known of the samples' rate, as the relative error of the nominal period.
@@ -62,32 +62,36 @@ class arrival_window {
 
   /// From the first to the last arrival, nominally.
   [[nodiscard]] constexpr double span_ns() const noexcept {
-    return size_ == 0 ? 0.0 : reach_ns(size_, size_);
+    if (size_ == 0) return 0.0;
+    return static_cast<double>(blocks_[size_ - 1].sample - blocks_[0].sample) * nominal_ns_;
   }
 
-  /// The line, from one arrival at least. `mean_late_ns`: how late packets are, on average. The block
-  /// that is still filling takes part only if `with_newest`.
-  [[nodiscard]] constexpr sampling_line fit(slopes within, double mean_late_ns,
-                                            bool with_newest) const noexcept {
-    const std::size_t end = with_newest || size_ < 2 ? size_ : size_ - 1;
+  /// The line, from one arrival at least. `mean_late_ns`, above 0: how late packets are, on average.
+  /// The block that is still being filled takes no part, unless it is the only one.
+  [[nodiscard]] constexpr sampling_line fit(slopes within, double mean_late_ns) const noexcept {
+    const std::size_t end = size_ < 2 ? size_ : size_ - 1;
+    const arrival newest = blocks_[end - 1];
+    line_under_points points;
     candidates found;
-    for (std::size_t taken = end;; taken = (taken + 1) / 2) {
+    std::size_t wanted = end;  // an eighth of the blocks, then a quarter, a half, and all
+    for (int halvings = 0; halvings < 3 && wanted >= 16; ++halvings) wanted = (wanted + 1) / 2;
+    for (std::size_t taken = 1; taken <= end; ++taken) {
+      const arrival next = blocks_[end - taken];
+      const double x = static_cast<double>(next.sample - newest.sample) * nominal_ns_;
+      points.add_left(x, static_cast<double>(next.time_ns - newest.time_ns) - x);
+      if (taken < std::min(wanted, end)) continue;
       candidate& c = found.all[found.count++];
-      c.line = line_under(end, taken).estimate(within.lowest, within.highest, mean_late_ns);
-      c.reach_ns = std::max(reach_ns(end, taken), first_block_ns);
-      if (taken < 16 || found.count == found.all.size()) break;
-      // The rate in a part of the window is not far from that in the whole.
-      const double room = 4.0 * c.line.slope_deviation + usual_drift * c.reach_ns;
-      within.lowest = std::max(within.lowest, c.line.slope - room);
-      within.highest = std::min(within.highest, c.line.slope + room);
+      c.line = points.estimate(within.lowest, within.highest, mean_late_ns);
+      c.reach_ns = std::max(-x, first_block_ns);
+      wanted = 2 * taken;
     }
-    return chosen(found, blocks_[end - 1], mean_late_ns);
+    return chosen(found, newest, mean_late_ns);
   }
 
  private:
   static constexpr std::size_t most = line_under_points::capacity;
   static constexpr double first_block_ns = 20e6;
-  static constexpr double last_block_ns = 250e6;
+  static constexpr double last_block_ns = 320e6;
   // Changes of the rate, each second, in 1/ns. 200 ppm up and down within a minute is 21 ppm/s.
   static constexpr double mean_drift = 10e-15;
   static constexpr double usual_drift = 25e-15;
@@ -103,7 +107,7 @@ class arrival_window {
     double reach_ns = 0.0;
   };
   struct candidates {
-    std::array<candidate, 4> all;  // from the longest window to the shortest
+    std::array<candidate, 5> all;  // from the shortest window to the longest
     std::size_t count = 0;
   };
 
@@ -113,7 +117,7 @@ class arrival_window {
   }
 
   constexpr void make_room(double period_ns) noexcept {
-    if (static_cast<double>(block_) * nominal_ns_ > last_block_ns / 2) {
+    if (static_cast<double>(block_) * nominal_ns_ > 0.9 * last_block_ns) {
       std::copy(blocks_.begin() + 1, blocks_.end(), blocks_.begin());
       --size_;
       return;
@@ -127,21 +131,6 @@ class arrival_window {
     block_ *= 2;
   }
 
-  [[nodiscard]] constexpr double reach_ns(std::size_t end, std::size_t taken) const noexcept {
-    return static_cast<double>(blocks_[end - 1].sample - blocks_[end - taken].sample) * nominal_ns_;
-  }
-
-  [[nodiscard]] constexpr line_under_points line_under(std::size_t end,
-                                                       std::size_t taken) const noexcept {
-    const arrival newest = blocks_[end - 1];
-    line_under_points points;
-    for (std::size_t i = end; i-- > end - taken;) {
-      const double x = static_cast<double>(blocks_[i].sample - newest.sample) * nominal_ns_;
-      points.add_left(x, static_cast<double>(blocks_[i].time_ns - newest.time_ns) - x);
-    }
-    return points;
-  }
-
   /// By how much a line is wrong at its end if the rate changes by `drift`.
   [[nodiscard]] static constexpr double sag(const candidate& c, double drift) noexcept {
     return drift * c.reach_ns * c.reach_ns / 8.0;
@@ -150,7 +139,7 @@ class arrival_window {
   /// Whether a longer window says that `found.all[i]` is late by more than a drift can explain. A
   /// line that is too early is refuted by the next early arrival, one that is late is not.
   [[nodiscard]] static constexpr bool is_late(const candidates& found, std::size_t i) noexcept {
-    for (std::size_t j = 0; j < i; ++j) {
+    for (std::size_t j = i + 1; j < found.count; ++j) {
       const candidate& longer = found.all[j];
       const double late = found.all[i].line.offset - longer.line.offset;
       if (late > sag(longer, largest_drift) + 3.0 * longer.line.offset_deviation) return true;
@@ -161,10 +150,10 @@ class arrival_window {
   /// The window whose noise and drift together are least.
   [[nodiscard]] constexpr sampling_line chosen(const candidates& found, arrival newest,
                                                double mean_late_ns) const noexcept {
-    const double longest = found.all[0].reach_ns;
+    const double longest = found.all[found.count - 1].reach_ns;
     double least = 1e300;
     sampling_line result;
-    for (std::size_t i = found.count; i-- > 0;) {
+    for (std::size_t i = 0; i < found.count; ++i) {
       const candidate& c = found.all[i];
       if (is_late(found, i)) continue;
       const double hidden = hidden_share * mean_late_ns / c.reach_ns;  // still over a reach

@@ -127,7 +127,7 @@ class sensor_clock {
   /// After so much time without a packet in time, samples were lost that were not counted.
   static constexpr double all_late_ns = 40e6;
   /// An arrival that is earlier than this, and than the bound allows, refutes the count.
-  static constexpr double early_ns = 4e6;
+  static constexpr double early_ns = 1e6;
   /// A count of lost samples that is in doubt by more than this tells no times.
   static constexpr double most_doubt_ns = 1e6;
   /// By how much the period may differ from the nominal one, and a little more.
@@ -183,22 +183,22 @@ class sensor_clock {
   constexpr std::int64_t observe(arrival next) noexcept {
     double late = started_ ? static_cast<double>(next.time_ns - line_.at(next.sample)) : 0.0;
     std::int64_t missed = 0;
-    const double too_early = std::max(early_ns, 3.0 * static_cast<double>(bound_ns_));
+    const double too_early = std::max(early_ns, 3.0 * line_.bound_ns);
     if (late < -too_early || stays_late(late, next)) {
       if (late > 0.0) missed = static_cast<std::int64_t>(late / line_.period_ns);
       restart();
       late = 0.0;
     }
     if (is_late_) return 0;
+    if (-late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
     started_ = true;
     mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;
-    const bool begins = window_.add(next, line_.period_ns);
-    if (!begins && late >= 0.0) return missed;
+    if (!window_.add(next, line_.period_ns)) return missed;
     if (window_.span_ns() > 4e9) {
       rate_known_ = true;
       slopes_ = {-widest, widest};
     }
-    line_ = window_.fit(slopes_, mean_late_ns_, late < 0.0);
+    line_ = window_.fit(slopes_, mean_late_ns_);
     return missed;
   }
 

@@ -64,6 +64,7 @@ TEST_F(SampleCounter, AddsTurnsOnlyIfToldThatThereWasTime) {
   EXPECT_EQ(next(after(1440 + 100), true, 1440 + 100 + 140).lost, 1540);
   EXPECT_EQ(next(after(2 * 1440), true, 2 * 1440 + 1).lost, 2880);
   EXPECT_EQ(next(after(3 * 1440 - 5), true, 3 * 1440).lost, 4315);
+  EXPECT_EQ(next(after(1440 + 700), true, 1440 + 690).lost, 2140);  // rates differ a little
 }
 
 TEST_F(SampleCounter, DoubtsLongGaps) {
