@@ -115,6 +115,8 @@ TEST_F(Sim, OptionsReachTheScanner) {
     options.insert(options.end(), flaw.begin(), flaw.end());
     EXPECT_NE(bytes_of(options), clean) << flaw[0];
   }
+  const std::string blind = bytes_of({"--seconds", "2", "--dropout", "1"});
+  EXPECT_EQ(lines_of(run({"decode", "--valid"}, blind).out).size(), 1U) << "the header alone";
 }
 
 TEST_F(Sim, AWorldFromAFile) {
