@@ -14,7 +14,8 @@ int main() {
       const auto* packet = std::get_if<g4lidar::packet_view>(&found);
       if (packet == nullptr) return;
       for (const auto& p : decode(*packet, g4lidar::compact_correction{}, 0, points).points) {
-        std::printf("%f degrees %.2f mm\n", double{p.angle_deg}, double{p.range_mm});
+        std::printf("%.3f degrees %.2f mm\n", static_cast<double>(p.angle_deg),
+                    static_cast<double>(p.range_mm));
       }
     });
   }
