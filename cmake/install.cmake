@@ -51,7 +51,16 @@ write_basic_package_version_file(
   "${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake"
   COMPATIBILITY SameMinorVersion # until 1.0 a minor version may break
 )
-install(FILES "${PROJECT_SOURCE_DIR}/cmake/g4lidar-config.cmake"
+if(G4LIDAR_HOSTED AND G4LIDAR_DEVICE)
+  set(has_device TRUE)
+else()
+  set(has_device FALSE)
+endif()
+configure_file(
+  "${PROJECT_SOURCE_DIR}/cmake/g4lidar-config.cmake.in"
+  "${PROJECT_BINARY_DIR}/cmake/g4lidar-config.cmake" @ONLY
+)
+install(FILES "${PROJECT_BINARY_DIR}/cmake/g4lidar-config.cmake"
               "${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake"
         DESTINATION "${package_dir}"
 )
@@ -60,6 +69,16 @@ install(FILES "${PROJECT_SOURCE_DIR}/cmake/g4lidar-config.cmake"
 cmake_path(APPEND pc_libdir "\${prefix}" "${CMAKE_INSTALL_LIBDIR}")
 cmake_path(APPEND pc_includedir "\${prefix}" "${CMAKE_INSTALL_INCLUDEDIR}")
 set(pc_files)
+# Who links a static library links what it stands on, too.
+set(pc_device_libs)
+set(pc_private_libs)
+if(has_device)
+  if(BUILD_SHARED_LIBS)
+    set(pc_private_libs "-ludev -pthread")
+  else()
+    set(pc_device_libs " -ludev -pthread")
+  endif()
+endif()
 foreach(name g4lidar-core g4lidar)
   if(name STREQUAL "g4lidar-core" OR G4LIDAR_HOSTED)
     configure_file(

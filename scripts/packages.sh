@@ -5,14 +5,14 @@
 
 # What it takes to build the library and g4-dump.
 packages_demo=(
-  cmake g++ ninja-build
+  cmake g++ ninja-build pkg-config libudev-dev libexpected-dev
   libcli11-dev libfmt-dev nlohmann-json3-dev
 )
 
 # And the tests.
 packages_test=(
   "${packages_demo[@]}"
-  binutils libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev
+  binutils libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev libumockdev-dev umockdev
 )
 
 # What it takes to build and run the benchmarks.
