@@ -12,6 +12,7 @@
 #include "g4lidar/decode.hpp"
 #include "g4lidar/packet.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/stream_parser.hpp"
 
 namespace g4lidar {
 
@@ -94,6 +95,7 @@ class scan_assembler {
   /// until this gives nothing.
   [[nodiscard]] constexpr std::optional<scan> next(decoded& packet) noexcept {
     if (ready_) begin_next();
+    noise_ = 0;
     if (packet.starts_revolution) {
       if (!empty()) return complete(packet);
       marks_ = scan_marks::none;  // what was lost before it is lost to no scan
@@ -111,8 +113,16 @@ class scan_assembler {
     return fill(packet);
   }
 
-  /// Tells that packets were lost here, so that the scan they belong to is marked: after a skip for
-  /// any reason but noise.
+  /// Tells of bytes that the parser skipped, and marks the scan in which they fall where a packet may
+  /// have been among them: for any reason but noise, and noise longer than a packet's header, for a
+  /// packet whose first byte is damaged is noise. The stray bytes of healthy devices are no loss.
+  constexpr void add(skipped gone) noexcept {
+    const bool is_noise = gone.reason == skip_reason::noise;
+    if (is_noise) noise_ += gone.count;
+    if (!is_noise || noise_ > packet_header_size) lost();
+  }
+
+  /// Tells that packets were lost here in another way, so that the scan they belong to is marked.
   constexpr void lost() noexcept {
     if (ready_) begin_next();
     marks_ = marks_ | scan_marks::data_lost;
@@ -121,6 +131,7 @@ class scan_assembler {
   /// Gives the last piece, if there is one, when the stream has ended. After that as new, but for
   /// the caller's storage.
   [[nodiscard]] constexpr std::optional<scan> finish() noexcept {
+    noise_ = 0;
     if (ready_ || empty()) begin_next();
     if (empty()) return std::nullopt;
     return give(scan_marks::end_missing);
@@ -216,6 +227,7 @@ class scan_assembler {
   scan_marks marks_ = scan_marks::start_missing;
   std::int32_t at_ = 0;      // the first-level angle last seen, 1/64 degree
   std::int32_t turned_ = 0;  // since the scan's first sample, 1/64 degree
+  std::size_t noise_ = 0;    // bytes of it since the last packet
 };
 
 }  // namespace g4lidar

@@ -146,6 +146,10 @@ TEST(Decode, JsonlMarksRevolutionsThatWereNotSeenWhole) {
   // A damaged packet is one.
   const std::string hurt = cli::zero(0) + cli::damaged(cli::turn(), 100);
   EXPECT_EQ(partial_scans(whole + hurt + whole + cli::zero(0)), (seen{false, true, false, true}));
+  // A packet whose first byte is damaged is one, too, though it counts as noise.
+  const std::string headless = cli::zero(0) + cli::damaged(cli::turn(), 90);
+  EXPECT_EQ(partial_scans(whole + headless + whole + cli::zero(0)),
+            (seen{false, true, false, true}));
   // A suspect packet is one.
   const std::string suspect = cli::zero(0) + cli::turn() + cli::packet(359, 358, {4000, 4000});
   EXPECT_EQ(partial_scans(whole + suspect + whole), (seen{false, true, true}));
@@ -176,6 +180,14 @@ TEST(Decode, TimeIsCountedAtTheRateWithoutDrift) {
       ASSERT_EQ(fields_of(lines[i])[3], std::to_string((i - 1) * 1'000'000'000U / rate));
     }
   }
+}
+
+TEST(Decode, TimeBeginsWithTheFirstPoint) {
+  const std::string suspect = cli::packet(20, 19, {4000, 4000});
+  const auto lines = lines_of(run({"decode"}, suspect + cli::packet(1, 2, {4000, 4000})).out);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(fields_of(lines[1])[3], "0");
+  EXPECT_EQ(fields_of(lines[2])[3], "111111");
 }
 
 // Each first-level angle there is, each with a far, a near and an empty sample.

@@ -241,6 +241,36 @@ TEST(Scan, LossMarksTheScanInWhichItFalls) {
   EXPECT_EQ(marks_of(cutter), (all_marks{whole, data_lost, data_lost, data_lost}));
 }
 
+TEST(Scan, SkippedBytesAreALossIfAPacketMayHaveBeenAmongThem) {
+  const auto marks_after = [](const std::vector<skipped>& gone) {
+    scan_cutter cutter(1000);
+    zero(cutter);
+    turn(cutter, 0, 180);
+    for (const skipped& each : gone) cutter.add(each);
+    turn(cutter, 180, 360);
+    zero(cutter);
+    return cutter.scans().at(0).view.marks;
+  };
+  EXPECT_EQ(marks_after({{1, skip_reason::bad_header}}), data_lost);
+  EXPECT_EQ(marks_after({{1, skip_reason::bad_checksum}}), data_lost);
+  EXPECT_EQ(marks_after({{1, skip_reason::truncated}}), data_lost);
+  // A packet whose first byte is damaged, in one piece and in many; and less than a packet.
+  EXPECT_EQ(marks_after({{50, skip_reason::noise}}), data_lost);
+  EXPECT_EQ(marks_after(std::vector<skipped>(11, {1, skip_reason::noise})), data_lost);
+  EXPECT_EQ(marks_after({{10, skip_reason::noise}}), whole);
+}
+
+TEST(Scan, StrayBytesDoNotAddUpBeyondAPacket) {
+  scan_cutter cutter(1000);
+  zero(cutter);
+  for (int deg = 0; deg < 360; deg += 10) {
+    cutter.add({1, skip_reason::noise});
+    turn(cutter, deg, deg + 10);
+  }
+  zero(cutter);
+  EXPECT_EQ(marks_of(cutter), (all_marks{whole}));
+}
+
 TEST(Scan, LossOverAZeroPacketIsCutByTheAngle) {
   scan_cutter cutter(2000);
   zero(cutter);

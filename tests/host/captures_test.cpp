@@ -123,8 +123,7 @@ stream_counts counts_of(const std::string& name, test::scan_cutter& cutter) {
   const auto take = [&](const event& found) {
     counts.add(found);
     if (const auto* packet = std::get_if<packet_view>(&found)) cutter.feed(*packet);
-    const auto* const gone = std::get_if<skipped>(&found);
-    if (gone != nullptr && gone->reason != skip_reason::noise) cutter.lost();
+    if (const auto* gone = std::get_if<skipped>(&found)) cutter.add(*gone);
   };
   parser.feed(data, take);
   while (const auto found = parser.finish()) take(*found);

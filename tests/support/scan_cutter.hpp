@@ -38,6 +38,7 @@ class scan_cutter {
     put_in_.insert(put_in_.end(), now.points.begin(), now.points.end());
     while (const std::optional<scan> found = assembler_.next(now)) keep(*found);
   }
+  void add(skipped gone) { assembler_.add(gone); }
   void lost() { assembler_.lost(); }
   void finish() {
     while (const std::optional<scan> found = assembler_.finish()) keep(*found);

@@ -56,8 +56,7 @@ class pipeline {
   void take(const g4lidar::event& found) {
     counts_.add(found);
     if (const auto* packet = std::get_if<g4lidar::packet_view>(&found)) return take(*packet);
-    const auto* gone = std::get_if<g4lidar::skipped>(&found);
-    if (gone != nullptr && gone->reason != g4lidar::skip_reason::noise) assembler_.lost();
+    if (const auto* gone = std::get_if<g4lidar::skipped>(&found)) assembler_.add(*gone);
   }
 
   void take(g4lidar::packet_view packet) {
@@ -68,8 +67,9 @@ class pipeline {
       p.time_ns = clock_.now_ns();
       clock_.tick();
     }
-    // The samples of a suspect packet were measured, too, though nobody can tell where.
-    if (decoded.suspect) clock_.tick(decoded.sample_count);
+    // The samples of a suspect packet were measured, too, though nobody can tell where. The clock
+    // begins with the first point.
+    if (decoded.suspect && counts_.points > 0) clock_.tick(decoded.sample_count);
     if (!by_scan_) return writer_->write_points(decoded.points, out_);
     while (const auto scan = assembler_.next(decoded)) writer_->write_scan(*scan, out_);
   }
