@@ -116,12 +116,15 @@ TEST_F(Failure, WrongCommandLine) {
   for (const char* const rate : {"0", "-9000", "fast", "1000001", "9000.5", ""}) {
     expect_usage({"decode", "--rate", rate}, "--rate");
   }
-  for (const char* const seconds : {"-1", "long", "1e10"}) {
+  for (const char* const seconds : {"-1", "long", "1e10", "nan", "inf"}) {
     expect_usage({"sim", "--seconds", seconds}, "--seconds");
   }
-  expect_usage({"sim", "--seed", "x"}, "--seed");
+  for (const char* const seed : {"x", "-1", "1.5", "18446744073709551616", ""}) {
+    expect_usage({"sim", "--seed", seed}, "--seed");
+  }
   expect_usage({"sim", "--rate", "5000"}, "'5000' is none of 4000, 8000, 9000");
   expect_usage({"sim", "--frequency", "4"}, "--frequency");
+  expect_usage({"sim", "--frequency", "nan"}, "--frequency");
   expect_usage({"sim", "--samples", "81"}, "1 to 80");
 }
 

@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <map>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "exit_code.hpp"
@@ -31,12 +33,27 @@ const names<g4lidar::ranging_frequency> ranging_frequencies{
     {"8000", g4lidar::ranging_frequency::khz_8},
     {"9000", g4lidar::ranging_frequency::khz_9}};
 
-/// A range that the help does not spell out.
+/// A range that the help does not spell out. What is no number lies in none.
 template <class Value>
 CLI::Validator within(Value least, Value most) {
-  CLI::Validator range = CLI::Range(least, most);
-  range.description("");
-  return range;
+  const auto check = [least, most](const std::string& text) {
+    Value value{};
+    const bool is_number = CLI::detail::lexical_cast(text, value);
+    if (is_number && least <= value && value <= most) return std::string();
+    return fmt::format("'{}' is not in the range {} to {}", text, least, most);
+  };
+  return {check, ""};
+}
+
+/// A whole number of 64 bits: one with a sign or too large would be taken for another one.
+CLI::Validator whole_number() {
+  const auto check = [](const std::string& text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc() && end == text.data() + text.size()) return std::string();
+    return fmt::format("'{}' is no whole number from 0 to {}", text, UINT64_MAX);
+  };
+  return {check, ""};
 }
 
 /// One of a few words: refuses any other with the list of them.
@@ -122,7 +139,9 @@ CLI::App* add_sim(CLI::App& app, sim_options& options) {
   verb->add_option("--seconds", options.seconds, "How long it scans (10)")
       ->type_name("N")
       ->check(within(0.0, 1e9));
-  verb->add_option("--seed", scanner.seed, "Of all that is random (1)")->type_name("S");
+  verb->add_option("--seed", scanner.seed, "Of all that is random (1)")
+      ->type_name("S")
+      ->check(whole_number());
   verb->add_option("-o,--output", options.output, "Where to write; - or nothing: standard output")
       ->type_name("FILE");
   verb->add_option("--truth", options.truth, "What each sample truly was, as csv")
