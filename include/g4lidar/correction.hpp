@@ -106,8 +106,8 @@ struct compact_correction {
 };
 
 /// The exact form, rounded to single precision, for all 65,536 samples. 256 KiB: make it static or
-/// put it on the heap, never on a small stack. Fills itself when made, in some milliseconds; then
-/// *single writer none, any reader*. Within 4e-6 degrees of the exact form.
+/// put it on the heap, never on a small stack. Fills itself when made, in some milliseconds; after
+/// that *any thread* reads it. Within 4e-6 degrees of the exact form.
 class table_correction {
  public:
   constexpr table_correction() noexcept {
