@@ -5,6 +5,7 @@
 
 #include "g4lidar/sim/scanner.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 
@@ -35,6 +36,31 @@ std::uint64_t first_phase(const scanner_options& options) noexcept {
   if (!options.start_deg) return stream_for(options, purpose::start_angle).next();
   const double turn = wrap_once_deg(*options.start_deg - options.index_deg) / 360.0;
   return static_cast<std::uint64_t>(turn * 0x1p53) << 11;
+}
+
+// The same place seen in a mirror along the lidar's own axis of angle 0.
+world mirrored(world scene) {
+  for (wall& w : scene.walls) {
+    w.y1_m = 2.0 * scene.lidar.y_m - w.y1_m;
+    w.y2_m = 2.0 * scene.lidar.y_m - w.y2_m;
+  }
+  scene.lidar.heading_deg = -scene.lidar.heading_deg;
+  return scene;
+}
+
+// -1 to 1 and back in a minute, from 0 at time 0.
+double slow_wave(std::int64_t time_ns) noexcept {
+  constexpr std::int64_t quarter = 15'000'000'000;
+  const std::int64_t at = (time_ns + quarter) % (4 * quarter);
+  const std::int64_t height = at < 2 * quarter ? at - quarter : 3 * quarter - at;
+  return static_cast<double>(height) / static_cast<double>(quarter);
+}
+
+// The true sample rate in 0.001 Hz.
+std::uint64_t true_rate_mhz(const scanner_options& options, std::int64_t time_ns) noexcept {
+  const double drift = options.sample_rate_drift_ppm * 1e-6 * slow_wave(time_ns);
+  const double nominal = 1000.0 * samples_per_second(options.ranging);
+  return static_cast<std::uint64_t>(nominal * options.sample_rate_ratio * (1.0 + drift) + 0.5);
 }
 
 // A wire angle: the nearest 1/64 of a degree, and the check bit.
@@ -68,6 +94,12 @@ std::string_view problem_with(const scanner_options& options) noexcept {
   if (!(options.dropout_ratio >= 0.0 && options.dropout_ratio <= 1.0)) {
     return "the dropouts must be 0 to 1 of all samples";
   }
+  if (!(options.sample_rate_ratio >= 0.9 && options.sample_rate_ratio <= 1.1)) {
+    return "the true sample rate must be 0.9 to 1.1 of the nominal one";
+  }
+  if (!(options.sample_rate_drift_ppm >= 0.0 && options.sample_rate_drift_ppm <= 10'000.0)) {
+    return "the sample rate must drift by 0 to 10000 millionths";
+  }
   return {};
 }
 
@@ -77,16 +109,54 @@ static_assert(response_layouts[0].kind == response_kind::scan_started);
 scanner::scanner(const world& scene, const scanner_options& options)
     : options_(options),
       caster_(scene),
+      mirrored_caster_(mirrored(scene)),
       noise_(stream_for(options, purpose::noise)),
       dropouts_(stream_for(options, purpose::dropouts)),
-      rate_hz_(samples_per_second(options.ranging)),
+      speed_mhz_(options.scan_frequency_chz * std::uint32_t{10}),
+      rate_mhz_(true_rate_mhz(options, 0)),
       phase_(first_phase(options)),
-      step_(fraction_of_turn(options.scan_frequency_chz, std::uint64_t{100} * rate_hz_)),
+      step_(fraction_of_turn(speed_mhz_, rate_mhz_)),
       at_index_(phase_ < step_) {
   assert(problem_with(options).empty());
 }
 
+void scanner::set_step() noexcept { step_ = fraction_of_turn(speed_mhz_, rate_mhz_); }
+
+void scanner::set_speed_mhz(std::uint32_t speed_mhz) noexcept {
+  if (speed_mhz == speed_mhz_) return;
+  speed_mhz_ = speed_mhz;
+  set_step();
+}
+
+void scanner::set_ranging(ranging_frequency ranging) noexcept { options_.ranging = ranging; }
+
+std::int64_t scanner::next_sample_ns() const noexcept {
+  const std::uint64_t since = index_ - index_then_;
+  constexpr std::uint64_t ns_by_mhz = 1'000'000'000'000;
+  return since_ns_ + static_cast<std::int64_t>(since / rate_mhz_ * ns_by_mhz +
+                                               since % rate_mhz_ * ns_by_mhz / rate_mhz_);
+}
+
+void scanner::resume(std::int64_t at_ns, std::uint64_t phase) noexcept {
+  since_ns_ = at_ns;
+  index_then_ = index_;
+  phase_ = phase;
+  at_index_ = false;
+}
+
+// A packet's samples are equidistant: whatever changes, changes between packets.
+void scanner::keep_rate() noexcept {
+  const std::int64_t at_ns = next_sample_ns();
+  const std::uint64_t rate_mhz = true_rate_mhz(options_, at_ns);
+  if (rate_mhz == rate_mhz_) return;
+  since_ns_ = at_ns;
+  index_then_ = index_;
+  rate_mhz_ = rate_mhz;
+  set_step();
+}
+
 sent_packet scanner::next() noexcept {
+  keep_rate();
   const bool zero = at_index_;
   if (zero && index_ != 0) ++revolution_;
   const std::size_t at_most = zero ? 1 : options_.samples_per_packet;
@@ -101,13 +171,13 @@ sent_packet scanner::next() noexcept {
 sample_truth scanner::measure() noexcept {
   sample_truth truth{};
   truth.index = index_;
-  truth.time_ns = static_cast<std::int64_t>(index_ / rate_hz_ * 1'000'000'000U +
-                                            index_ % rate_hz_ * 1'000'000'000U / rate_hz_);
+  truth.time_ns = next_sample_ns();
   truth.revolution = revolution_;
   const double since_index = static_cast<double>(phase_ >> 11) * 0x1p-53 * 360.0;
   truth.first_level_deg = wrap_once_deg(options_.index_deg + since_index);
   truth.bearing_deg = wrap_once_deg(truth.first_level_deg + far_correction_deg);
-  if (const std::optional<sighting> target = caster_.cast(truth.first_level_deg)) {
+  const ray_caster& caster = turning_ == turning::mirrored ? mirrored_caster_ : caster_;
+  if (const std::optional<sighting> target = caster.cast(truth.first_level_deg)) {
     truth.bearing_deg = target->bearing_deg;
     truth.range_mm = target->range_mm;
   }
@@ -129,17 +199,23 @@ std::uint16_t scanner::raw_sample(double range_mm) noexcept {
 
 void scanner::turn_on() noexcept {
   ++index_;
-  phase_ += step_;
-  at_index_ = phase_ < step_;  // it has wrapped
+  if (turning_ == turning::falling) {
+    at_index_ = phase_ < step_;  // it is about to wrap
+    phase_ -= step_;
+  } else {
+    phase_ += step_;
+    at_index_ = phase_ < step_;  // it has wrapped
+  }
 }
 
 bytes scanner::frame_of(std::size_t samples, bool zero) noexcept {
   const std::span<std::uint8_t> out(frame_);
-  const unsigned frequency_dhz = (options_.scan_frequency_chz + 5U) / 10U;
+  const unsigned frequency_dhz = std::min((speed_mhz_ + 50U) / 100U, 127U);
   const unsigned reported = options_.reports_frequency ? frequency_dhz : 0U;
+  const unsigned ordinary = options_.ordinary_ct & 0xFEU;
   frame_[0] = packet_start[0];
   frame_[1] = packet_start[1];
-  frame_[2] = static_cast<std::uint8_t>(zero ? reported << 1 | 1U : 0U);
+  frame_[2] = static_cast<std::uint8_t>(zero ? reported << 1 | 1U : ordinary);
   frame_[3] = static_cast<std::uint8_t>(samples);
   store_u16(out, 4, wire_angle(truths_[0].first_level_deg));
   store_u16(out, 6, wire_angle(truths_[samples - 1].first_level_deg));

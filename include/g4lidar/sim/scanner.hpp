@@ -18,6 +18,13 @@
 
 namespace g4lidar::sim {
 
+/// Which way the head turns, and what becomes of its angles.
+enum class turning : std::uint8_t {
+  clockwise,  ///< As a G4 comes.
+  mirrored,   ///< Counter-clockwise, and the angles grow along with it: a mirrored room.
+  falling,    ///< Counter-clockwise, and the angles fall: receivers take such packets for suspect.
+};
+
 /// How the device is set and how good it is. By default a G4 as it comes, without flaws.
 struct scanner_options {
   std::uint64_t seed = 1;                  ///< Of everything that is drawn at random below.
@@ -33,6 +40,11 @@ struct scanner_options {
   double noise_mm = 0.0;           ///< Standard deviation of a range, and what each millimetre of
   double noise_ratio = 0.0;        ///< range adds to it. Both >= 0.
   double dropout_ratio = 0.0;  ///< How many of all samples give no return for no reason, 0 to 1.
+  /// The true sample rate by the nominal one, 0.9 to 1.1, and how far it wanders from that to either
+  /// side within a minute, 0 to 10000 millionths.
+  double sample_rate_ratio = 1.0;
+  double sample_rate_drift_ppm = 0.0;
+  std::uint8_t ordinary_ct = 0;  ///< CT of packets that are no zero packets; its bit 0 is ignored.
 };
 
 /// What is wrong with `options`, a sentence to be shown to a person; empty if nothing is. *Pure.*
@@ -74,6 +86,19 @@ class scanner {
   /// after it; then packets of `samples_per_packet`, the last one of a revolution shorter.
   [[nodiscard]] sent_packet next() noexcept;
 
+  /// From the next packet on the head turns this many times in 1000 s, at most 20'000; at 0 it
+  /// stands, and all samples have one angle.
+  void set_speed_mhz(std::uint32_t speed_mhz) noexcept;
+  /// From the next packet on it measures as often as that.
+  void set_ranging(ranging_frequency ranging) noexcept;
+  /// From the next packet on the head turns that way.
+  void set_turning(turning way) noexcept { turning_ = way; }
+  /// The next sample is measured at `at_ns`, not before the last one, with the head `phase` / 2^64
+  /// turns behind the index.
+  void resume(std::int64_t at_ns, std::uint64_t phase) noexcept;
+  /// When the next sample will be measured, unless resume() says otherwise.
+  [[nodiscard]] std::int64_t next_sample_ns() const noexcept;
+
   [[nodiscard]] const scanner_options& options() const noexcept { return options_; }
 
  private:
@@ -81,12 +106,19 @@ class scanner {
   [[nodiscard]] std::uint16_t raw_sample(double range_mm) noexcept;
   void turn_on() noexcept;
   [[nodiscard]] bytes frame_of(std::size_t samples, bool zero) noexcept;
+  void keep_rate() noexcept;
+  void set_step() noexcept;
 
   scanner_options options_;
   ray_caster caster_;
+  ray_caster mirrored_caster_;
   random_stream noise_;
   random_stream dropouts_;
-  std::uint32_t rate_hz_;
+  turning turning_ = turning::clockwise;
+  std::uint32_t speed_mhz_;
+  std::uint64_t rate_mhz_;  // the true one, in 0.001 Hz
+  std::int64_t since_ns_ = 0;        // the rate has been that since then,
+  std::uint64_t index_then_ = 0;     // when this sample was measured
   std::uint64_t phase_;  // since the index, in 2^-64 of a turn
   std::uint64_t step_;   // of a sample
   std::uint64_t index_ = 0;
