@@ -104,16 +104,61 @@ enum class verdict : std::uint8_t {
   still_scanning,  ///< The device did not stop scanning, so nothing could be asked.
 };
 
+/// What came from the device while a request was under way.
+struct heard_from_device {
+  std::uint32_t skipped_bytes = 0;  ///< Bytes that belong to no frame.
+  std::uint32_t responses = 0;
+  std::uint32_t packets = 0;
+  friend constexpr bool operator==(const heard_from_device&,
+                                   const heard_from_device&) noexcept = default;
+};
+
 /// An answer, in the type of what was asked; for start, stop and restart there is none.
 using answer =
     std::variant<std::monostate, device_information, health, low_power, motor_direction,
                  scan_frequency, constant_frequency, ranging_frequency, power_down_protection>;
 
+/// How a request has ended.
 struct outcome {
   request asked;
   verdict how = verdict::answered;
   answer value{};
-  std::uint8_t retries = 0;  ///< Commands sent again, those that clear the line not counted.
+  std::uint8_t retries = 0;        ///< Commands sent again, those that clear the line not counted.
+  std::uint8_t wrong_answers = 0;  ///< Answers that cannot be the ones to what was asked.
+  heard_from_device heard{};
+
+  /// Whether not a single byte came.
+  [[nodiscard]] constexpr bool heard_nothing() const noexcept {
+    return heard == heard_from_device{};
+  }
+  /// Whether bytes came, and no frame among them: most likely the baud rate is another.
+  [[nodiscard]] constexpr bool heard_noise_only() const noexcept {
+    return heard.skipped_bytes > 0 && heard.responses == 0 && heard.packets == 0;
+  }
+  friend constexpr bool operator==(const outcome&, const outcome&) noexcept = default;
+};
+
+/// Why a request is not taken.
+enum class refusal : std::uint8_t {
+  busy,      ///< Another request is under way, or its outcome has not been fetched.
+  scanning,  ///< Any command but start and stop would disturb the running scan.
+};
+
+/// Whether a request may stop a running scan.
+enum class while_scanning : std::uint8_t {
+  refuse,
+  stop_and_resume,  ///< Stop, ask, and start again; the outcome comes when the scan runs again.
+};
+
+/// What a session has to tell that nobody asked for.
+enum class notice : std::uint8_t {
+  none,
+  found_scanning,       ///< Packets came though no scan had been started; the device is stopped.
+  protection_starved,   ///< The caller looked too late to feed the protection; started again.
+  protection_found_on,  ///< The scan ended as if unfed; started again, and fed from now on.
+  restarted,            ///< The scan ended by itself for another reason; started again.
+  stalled,  ///< The scan ended by itself, or never sent a packet, and not even a start again helped:
+            ///< given up. A device with too little power for its motor does this.
 };
 
 }  // namespace g4lidar

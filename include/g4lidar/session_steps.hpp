@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+// Which questions a request asks of a device, one after the other, and when it has its answer.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "g4lidar/command.hpp"
+#include "g4lidar/request.hpp"
+#include "g4lidar/response.hpp"
+
+namespace g4lidar {
+
+/// The word of command.hpp for a kind of response.
+[[nodiscard]] constexpr reply as_reply(response_kind kind) noexcept {
+  switch (kind) {
+    case response_kind::scan_started:
+      return reply::scan_started;
+    case response_kind::device_info:
+      return reply::device_info;
+    case response_kind::health:
+      return reply::health;
+    case response_kind::byte:
+      return reply::byte;
+    case response_kind::frequency:
+      return reply::frequency;
+  }
+  return reply::none;
+}
+
+/// Whether `heard` can be a true answer to `code`. *Pure.* (protocol: Commands)
+[[nodiscard]] constexpr bool can_answer(command code, const response_view& heard) noexcept {
+  const auto traits = traits_of(code);
+  if (!traits || traits->answered_by != as_reply(heard.kind())) return false;
+  const auto byte = heard.as_byte();
+  if (!byte) return true;
+  if (traits->fixed_answer) return *byte == *traits->fixed_answer;
+  const bool has_three = code == command::ranging_next || code == command::ranging_query;
+  return *byte < (has_three ? 3 : 2);
+}
+
+/// What a request wants next.
+struct request_step {
+  enum class action : std::uint8_t {
+    ask,      ///< Send `code` and wait for its answer.
+    doubt,    ///< That answer cannot be: clear the line, then say lost().
+    end,      ///< The request has ended with `how` and `value`.
+    give_up,  ///< No answer is to be had.
+  };
+  action what = action::give_up;
+  command code = command::device_info;
+  /// Of an ask: the one possible answer is known, so that another's copy is not taken for it.
+  bool foretold = false;
+  verdict how = verdict::answered;
+  answer value{};
+};
+
+/// The questions of one request. Knows no time and no line: it is told of believable answers, and
+/// that an answer was lost and the line has been cleared.
+///
+/// A command that moves state is foretold: its answer is what follows from the last one. After any
+/// other answer, and after none, the setting is read back. What was reached by moving is read once
+/// more before it is believed, for replies carry no checksum. (protocol: Commands)
+class request_steps {
+ public:
+  constexpr request_steps() noexcept = default;
+  explicit constexpr request_steps(const request& wanted) noexcept : wanted_(wanted) {}
+
+  [[nodiscard]] constexpr request_step first() const noexcept { return ask(question()); }
+
+  /// `heard` can_answer() the command last asked.
+  [[nodiscard]] constexpr request_step answered(const response_view& heard) noexcept {
+    if (const auto info = heard.as_device_info()) return end(*info);
+    if (const auto state = heard.as_health()) return end(*state);
+    const std::uint16_t value = heard.as_frequency_chz().value_or(heard.as_byte().value_or(0));
+    if (wanted_.what == ask::set_protection) return toggled(value);
+    if (!is_moving()) return end(as_answer(value));
+    switch (waits_for_) {
+      case answer_of::query:
+        return queried(value);
+      case answer_of::move:
+        return moved(value);
+      case answer_of::confirmation:
+        break;
+    }
+    return confirmed(value);
+  }
+
+  /// The answer did not come or could not be, and nothing is on the line any more.
+  [[nodiscard]] constexpr request_step lost() noexcept {
+    if (++losses_ == max_losses) return {};
+    waits_for_ = answer_of::query;
+    is_known_ = false;
+    return ask(question());
+  }
+
+ private:
+  enum class answer_of : std::uint8_t { query, move, confirmation };
+
+  static constexpr int max_losses = 4;   // of answers, without a move between them
+  static constexpr int max_unmoved = 3;  // moves without effect and without an answer
+  static constexpr int max_moves = 60;   // more than all steps from one end to the other
+  static constexpr int tolerance_chz = 5;
+  static constexpr int coarse_chz = 100;
+  static constexpr int fine_chz = 10;
+
+  [[nodiscard]] static constexpr request_step ask(command code, bool foretold = false) noexcept {
+    return {request_step::action::ask, code, foretold, verdict::answered, {}};
+  }
+  [[nodiscard]] static constexpr request_step end(const answer& value,
+                                                  verdict how = verdict::answered) noexcept {
+    return {request_step::action::end, command::device_info, false, how, value};
+  }
+  [[nodiscard]] static constexpr request_step doubt() noexcept {
+    return {request_step::action::doubt, command::device_info, false, verdict::answered, {}};
+  }
+
+  /// Whether the request is carried out by commands that move state, and by reading it.
+  [[nodiscard]] constexpr bool is_moving() const noexcept {
+    return wanted_.what == ask::step_scan_frequency || wanted_.what == ask::set_scan_frequency ||
+           wanted_.what == ask::set_ranging;
+  }
+
+  /// What may be asked first, and again after a loss.
+  [[nodiscard]] constexpr command question() const noexcept {
+    const bool is_one = wanted_.value == 1;
+    switch (wanted_.what) {
+      case ask::health:  // by turns: a device answers one of them, and that may get lost
+        return losses_ % 2 == 0 ? command::health : command::health_vendor;
+      case ask::get_low_power:
+        return command::low_power_query;
+      case ask::set_low_power:
+        return is_one ? command::low_power_on : command::low_power_off;
+      case ask::get_direction:
+        return command::motor_direction_query;
+      case ask::set_direction:
+        return is_one ? command::motor_counter_clockwise : command::motor_clockwise;
+      case ask::get_scan_frequency:
+      case ask::step_scan_frequency:
+      case ask::set_scan_frequency:
+        return command::frequency_query;
+      case ask::set_constant_frequency:
+        return is_one ? command::constant_frequency_on : command::constant_frequency_off;
+      case ask::get_ranging:
+      case ask::set_ranging:
+        return command::ranging_query;
+      case ask::set_protection:
+        return command::protection_toggle;
+      default:
+        return command::device_info;
+    }
+  }
+
+  /// A byte or frequency, in the type of what was asked.
+  [[nodiscard]] constexpr answer as_answer(std::uint16_t value) const noexcept {
+    const auto byte = static_cast<std::uint8_t>(value);
+    switch (wanted_.what) {
+      case ask::get_low_power:
+      case ask::set_low_power:
+        return static_cast<low_power>(byte);
+      case ask::get_direction:
+      case ask::set_direction:
+        return static_cast<motor_direction>(byte);
+      case ask::set_constant_frequency:
+        return static_cast<constant_frequency>(byte);
+      case ask::get_ranging:
+      case ask::set_ranging:
+        return static_cast<ranging_frequency>(byte);
+      case ask::set_protection:
+        return static_cast<power_down_protection>(byte);
+      default:
+        return scan_frequency{value};
+    }
+  }
+
+  // ---- D9 has no query: its answers must go to and fro ----
+  constexpr request_step toggled(std::uint16_t value) noexcept {
+    if (is_known_ && value == current_) return doubt();
+    is_known_ = true;
+    current_ = value;
+    if (value == wanted_.value) return end(as_answer(value));
+    return ask(command::protection_toggle, true);
+  }
+
+  // ---- 09 to 0C and D0: query, move, confirm ----
+  constexpr request_step queried(std::uint16_t value) noexcept {
+    current_ = value;
+    if (!has_origin_) origin_ = value;
+    has_origin_ = true;
+    if (std::exchange(has_moved_, false)) judge_move();
+    return go_on();
+  }
+  constexpr request_step moved(std::uint16_t value) noexcept {
+    if (!is_move_to(value)) {
+      denied_ = value == current_;
+      return doubt();
+    }
+    current_ = value;
+    count_progress();
+    return go_on();
+  }
+  constexpr request_step confirmed(std::uint16_t value) noexcept {
+    if (value == current_) return end(as_answer(value));
+    if (++losses_ == max_losses) return {};
+    current_ = value;
+    return go_on();
+  }
+
+  /// A move whose own answer is not known has been followed by reading the state.
+  constexpr void judge_move() noexcept {
+    if (current_ != before_) return count_progress();
+    if (++unmoved_ < max_unmoved && !denied_) return;  // the command itself may have been lost
+    (is_coarse_ ? coarse_stuck_ : stuck_) = true;
+    count_progress();
+  }
+  constexpr void count_progress() noexcept {
+    has_moved_ = false;
+    denied_ = false;
+    unmoved_ = 0;
+    losses_ = 0;
+  }
+
+  [[nodiscard]] constexpr request_step go_on() noexcept {
+    if (has_arrived()) {
+      waits_for_ = answer_of::confirmation;
+      return ask(question());
+    }
+    if (is_at_end() || moves_ == max_moves) return end(as_answer(current_), verdict_at_end());
+    ++moves_;
+    before_ = current_;
+    has_moved_ = true;
+    waits_for_ = answer_of::move;
+    return ask(next_move(), true);
+  }
+
+  [[nodiscard]] constexpr int missing() const noexcept {
+    return static_cast<int>(wanted_.value) - static_cast<int>(current_);
+  }
+  [[nodiscard]] constexpr bool has_arrived() const noexcept {
+    if (wanted_.what == ask::step_scan_frequency) return current_ != origin_;
+    if (wanted_.what == ask::set_ranging) return missing() == 0;
+    return missing() <= tolerance_chz && -missing() <= tolerance_chz;
+  }
+  [[nodiscard]] constexpr bool is_at_end() const noexcept {
+    return stuck_ || (coarse_stuck_ && wanted_.what == ask::step_scan_frequency);
+  }
+  [[nodiscard]] constexpr verdict verdict_at_end() const noexcept {
+    return wanted_.what == ask::step_scan_frequency ? verdict::answered : verdict::not_reached;
+  }
+
+  [[nodiscard]] constexpr command next_move() noexcept {
+    is_coarse_ = false;
+    if (wanted_.what == ask::set_ranging) return command::ranging_next;
+    const bool is_up = missing() > 0;
+    const int far = is_up ? missing() : -missing();
+    move_ = is_up ? command::frequency_up_0_1_hz : command::frequency_down_0_1_hz;
+    if (far >= coarse_chz - tolerance_chz && !coarse_stuck_) {
+      move_ = is_up ? command::frequency_up_1_hz : command::frequency_down_1_hz;
+    }
+    if (wanted_.what == ask::step_scan_frequency) move_ = static_cast<command>(wanted_.value);
+    is_coarse_ = move_ == command::frequency_up_1_hz || move_ == command::frequency_down_1_hz;
+    return move_;
+  }
+
+  /// Whether the last move can have led from `current_` to `value`; at the end of the device's range
+  /// a step may be a short one.
+  [[nodiscard]] constexpr bool is_move_to(std::uint16_t value) const noexcept {
+    if (wanted_.what == ask::set_ranging) return value == (current_ + 1) % 3;
+    const bool is_up = move_ == command::frequency_up_0_1_hz || move_ == command::frequency_up_1_hz;
+    const int by = is_up ? value - current_ : current_ - value;
+    return by > 0 && by <= (is_coarse_ ? coarse_chz : fine_chz);
+  }
+
+  request wanted_{ask::device_info};
+  answer_of waits_for_ = answer_of::query;
+  command move_ = command::frequency_query;
+  std::uint16_t origin_ = 0;   // the first reading
+  std::uint16_t current_ = 0;  // the last one
+  std::uint16_t before_ = 0;   // the one before the last move
+  std::uint8_t losses_ = 0;
+  std::uint8_t unmoved_ = 0;
+  std::uint8_t moves_ = 0;
+  bool has_origin_ = false;
+  bool is_known_ = false;   // of the protection: `current_` holds an answer
+  bool has_moved_ = false;  // a move is out whose effect is not known
+  bool denied_ = false;     // its answer said that nothing moved
+  bool is_coarse_ = false;  // it was one by 1 Hz
+  bool coarse_stuck_ = false;
+  bool stuck_ = false;
+};
+
+}  // namespace g4lidar
