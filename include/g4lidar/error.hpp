@@ -48,6 +48,7 @@ enum class problem : std::uint8_t {
   stalled,         ///< The stream has stopped although the port is there.
   brown_out,       ///< The bytes stopped when the motor started: too little power.
   interference,    ///< Another program reads from or writes to the port.
+  read_only,       ///< A file was to be asked or set, as if it were a device.
   end_of_input,    ///< A file or connection has ended.
   cancelled,       ///< Woken from another thread.
   system,          ///< The system refused for a reason of its own; see `system_errno`.

@@ -55,6 +55,9 @@ class transport {
   /// What this is, for messages: a path, "tcp:host:port". Good as long as this.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
 
+  /// Whether a device is at the other end, which answers; with a file there is none.
+  [[nodiscard]] virtual bool answers() const noexcept { return true; }
+
   /// The rate of the line in bits a second, 10 to the byte; 0 where bytes take no time.
   [[nodiscard]] virtual std::uint32_t baud() const noexcept { return 0; }
 

@@ -69,6 +69,8 @@ constexpr std::array<words, problem_count> all_words{{
     {problem::interference, "interference", "another program reads from or writes to the port",
      "Keep ModemManager and brltty off the port (the udev rule does), and end other programs that "
      "use it."},
+    {problem::read_only, "read_only", "a file cannot be asked anything",
+     "Open the lidar itself for that; a file only gives its points."},
     {problem::end_of_input, "end_of_input", "there is no more to read",
      "A recording ends, a connection is closed by its other end: open it again."},
     {problem::cancelled, "cancelled", "woken by this program", "Nothing is wrong."},

@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: MIT
+// The driver's rounds: bytes in, events taken, time passed, commands out.
+#include "driver.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace g4lidar {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::size_t buffer_size = 65536;
+/// A command of two bytes that does not go out in this time never will.
+constexpr std::int64_t write_time_ns = 100 * ms;
+/// A line that has been silent for so long will not end the frame that it began. Bridges hold bytes
+/// back for up to 16 ms.
+constexpr std::int64_t frame_pause_ns = 30 * ms;
+
+session_times times_for(const lidar_options& options) noexcept {
+  session_times times;
+  times.answer_ns = std::chrono::nanoseconds(options.answer_time).count();
+  times.stall_ns = std::chrono::nanoseconds(options.stall_time).count();
+  return times;
+}
+
+}  // namespace
+
+lidar::driver::driver(std::unique_ptr<connector> connector, const lidar_options& options)
+    : options_(options),
+      connector_(std::move(connector)),
+      session_(times_for(options)),
+      stream_(options.baud, options.transport_delay.count(), options.partial_scans),
+      buffer_(buffer_size),
+      reader_(stream_.ring().make_reader()),
+      points_(buffer_size / 8) {}
+
+lidar::driver::~driver() { static_cast<void>(close()); }
+
+// ---- the line -----------------------------------------------------------------------------------
+
+result<void> lidar::driver::connect() {
+  auto made = connector_->connect();
+  if (!made) return tl::unexpected(made.error());
+  {
+    const std::lock_guard lock(line_mutex_);
+    line_ = std::move(*made);
+  }
+  ready_.follow(line_->native_handle());
+  session_.reset();
+  last_bytes_ns_ = last_read_ns_ = now_ns();
+  planned_ = plan_at_ = 0;
+  stage_ = stage::identifying;
+  if (line_->answers()) {
+    plan(requests::device_info(), true);
+  } else {
+    opened_ = true;
+    stage_ = stage::idle;
+  }
+  return {};
+}
+
+void lidar::driver::release_line() noexcept {
+  ready_.follow(-1);
+  std::unique_ptr<transport> old;
+  {
+    const std::lock_guard lock(line_mutex_);
+    old = std::move(line_);
+  }
+  input_ = {};
+  end_of_bytes();
+  planned_ = plan_at_ = 0;
+}
+
+/// The line has broken, or is of no use. Gives an error if that is the end.
+result<void> lidar::driver::hang_up(const error& why) {
+  const bool was_up = stage_ > stage::identifying;
+  release_line();
+  if (was_up) {
+    tell(lidar_event::kind::lost, why.what());
+    backoff_ns_ = 0;
+  }
+  lost_ = why;
+  if (options_.reconnect && opened_) {
+    stage_ = stage::lost;
+    next_attempt_ns_ = now_ns() + backoff_ns_;
+    const auto longest = std::chrono::nanoseconds(options_.longest_backoff).count();
+    backoff_ns_ = std::min(std::max(2 * backoff_ns_, 20 * ms), longest);
+    return {};
+  }
+  stage_ = stage::closed;
+  return tl::unexpected(why);
+}
+
+result<void> lidar::driver::wait_for_line(std::int64_t deadline_ns) {
+  if (now_ns() < next_attempt_ns_) {
+    if (!connector_->pause(std::min(deadline_ns, next_attempt_ns_))) {
+      return failure(task::reading, problem::cancelled);
+    }
+    if (now_ns() < next_attempt_ns_) return {};
+  }
+  if (auto connected = connect(); !connected) return hang_up(connected.error());
+  return {};
+}
+
+result<void> lidar::driver::send_commands() {
+  while (const auto command = session_.to_send()) {
+    const auto sent = line_->write(*command, now_ns() + write_time_ns);
+    if (!sent) return tl::unexpected(sent.error());
+  }
+  return {};
+}
+
+/// One reading, which waits until something comes or the deadline.
+result<void> lidar::driver::receive(std::int64_t deadline_ns) {
+  const std::int64_t batch_ns = std::chrono::nanoseconds(options_.batch).count();
+  if (batch_ns > 0 && stage_ == stage::scanning) {
+    const std::int64_t until = std::min(last_read_ns_ + batch_ns, deadline_ns);
+    if (until > now_ns()) {
+      if (auto paused = line_->pause(until); !paused) return paused;
+    }
+    deadline_ns = until;  // what is there now, or nothing: without another wait
+  }
+  const auto got = line_->read(buffer_, deadline_ns);
+  if (!got) return tl::unexpected(got.error());
+  last_read_ns_ = batch_ns > 0 ? now_ns() : 0;
+  if (got->count == 0) return {};
+  input_ = bytes(buffer_).first(got->count);
+  arrival_ns_ = last_bytes_ns_ = got->arrival_ns;
+  return {};
+}
+
+// ---- one round ----------------------------------------------------------------------------------
+
+/// Does everything that is due, and waits for bytes until the deadline at most once. Stops at a scan.
+result<void> lidar::driver::step(std::int64_t deadline_ns) {
+  if (stage_ == stage::closed) return tl::unexpected(lost_);
+  if (stage_ == stage::lost) return wait_for_line(deadline_ns);
+  const auto done = round(deadline_ns);
+  if (done || done.error().what() == problem::cancelled) return done;
+  return hang_up(done.error());
+}
+
+result<void> lidar::driver::round(std::int64_t deadline_ns) {
+  if (line_->answers()) {
+    const std::int64_t now = now_ns();
+    if (session_.next_look_ns() <= now && input_.empty()) {
+      end_a_silent_frame();
+      session_.look(now);
+    }
+    if (auto told = take_notice(); !told) return told;
+    if (auto gone_on = go_on_with_plan(); !gone_on) return gone_on;
+    if (auto sent = send_commands(); !sent) return sent;
+  }
+  if (digest()) return {};
+  if (input_.empty()) {
+    // An outcome may be due, and is worth more than bytes.
+    const bool hurry = plan_at_ < planned_ && !session_.is_busy();
+    const std::int64_t until = hurry ? now_ns() : std::min(deadline_ns, next_deadline_ns());
+    if (auto got = receive(until); !got) return got;
+    if (input_.empty()) end_a_silent_frame();
+  }
+  digest();
+  return {};
+}
+
+/// The device will not go on with a frame after such a pause, so what is held is taken apart before
+/// the next answer is taken for its end.
+void lidar::driver::end_a_silent_frame() {
+  if (!is_waiting_for_answer() || parser_.held() == 0) return;
+  if (now_ns() - last_bytes_ns_ >= frame_pause_ns) end_of_bytes();
+}
+
+bool lidar::driver::is_waiting_for_answer() const noexcept {
+  return session_.is_busy() || !session_.is_scanning();
+}
+
+void lidar::driver::end_of_bytes() {
+  while (const auto found = parser_.finish()) take(*found);
+  while (stream_.has_more()) keep_scan();
+}
+
+/// Parses until a scan is complete, which is then in `scan_`: true; or until nothing is left.
+bool lidar::driver::digest() {
+  if (scan_) return true;
+  while (!keep_scan()) {
+    const std::size_t before = input_.size();
+    const auto found = parser_.next(input_);
+    bytes_ += before - input_.size();
+    if (!found) {
+      if (before > 0 && stage_ == stage::scanning) stream_.seen(parser_.held(), arrival_ns_);
+      return false;
+    }
+    take(*found);
+  }
+  return true;
+}
+
+bool lidar::driver::keep_scan() {
+  if (!stream_.has_more()) return false;
+  if (scan_) ++scans_missed_;
+  scan_ = stream_.next_scan();
+  return scan_.has_value();
+}
+
+void lidar::driver::take(const event& found) {
+  stream_counts_.add(found);
+  if (line_ == nullptr || line_->answers()) session_.take(found, arrival_ns_);
+  if (!delivers_points()) return;
+  if (const auto* packet = std::get_if<packet_view>(&found)) {
+    stream_.packet(*packet, arrival_ns_);
+  } else if (const auto* gone = std::get_if<skipped>(&found)) {
+    stream_.gone(*gone);
+  }
+}
+
+/// Packets of a device that is being stopped are nobody's.
+bool lidar::driver::delivers_points() const noexcept {
+  if (line_ != nullptr && !line_->answers()) return stage_ == stage::scanning;
+  return stage_ >= stage::preparing && session_.is_scanning();
+}
+
+result<void> lidar::driver::take_notice() {
+  switch (session_.noticed()) {
+    case notice::none:
+      return {};
+    case notice::found_scanning:
+      tell(lidar_event::kind::found_scanning);
+      return {};
+    case notice::protection_starved:
+      tell(lidar_event::kind::protection_starved);
+      break;
+    case notice::protection_found_on:
+      tell(lidar_event::kind::protection_found_on);
+      break;
+    case notice::restarted:
+      tell(lidar_event::kind::restarted);
+      break;
+    case notice::stalled:
+      return failure(task::reading, stream_.has_begun() ? problem::stalled : problem::brown_out,
+                     name());
+  }
+  stream_.begin(samples_per_second_);
+  return {};
+}
+
+std::int64_t lidar::driver::next_deadline_ns() const noexcept {
+  if (stage_ == stage::closed) return never_ns;
+  if (stage_ == stage::lost) return next_attempt_ns_;
+  if (scan_ || !input_.empty() || stream_.has_more()) return now_ns();
+  std::int64_t next = line_->answers() ? session_.next_look_ns() : never_ns;
+  if (is_waiting_for_answer() && parser_.held() > 0) {
+    next = std::min(next, last_bytes_ns_ + frame_pause_ns);
+  }
+  return next;
+}
+
+// ---- what it is asked ---------------------------------------------------------------------------
+
+result<void> lidar::driver::open() {
+  if (auto connected = connect(); !connected) return connected;
+  return run_plan();
+}
+
+result<void> lidar::driver::start() {
+  if (stage_ == stage::scanning) return {};
+  if (auto ready = run_plan(); !ready) return ready;
+  if (!line_->answers()) {
+    stage_ = stage::scanning;
+    wants_scan_ = true;
+    return {};
+  }
+  scan_.reset();
+  wants_scan_ = true;
+  plan_start();
+  const auto started = run_plan();
+  if (!started) wants_scan_ = false;
+  return started;
+}
+
+result<void> lidar::driver::stop() {
+  wants_scan_ = false;
+  if (stage_ == stage::lost) return {};  // it is stopped when it is found again
+  if (auto ready = run_plan(); !ready) return ready;
+  scan_.reset();
+  if (line_->answers()) {
+    plan(requests::stop(), true);
+    if (auto stopped = run_plan(); !stopped) return stopped;
+  }
+  input_ = {};
+  end_of_bytes();
+  scan_.reset();
+  stream_.end();
+  stage_ = stage::idle;
+  return {};
+}
+
+result<void> lidar::driver::close() {
+  result<void> stopped;
+  if (stage_ == stage::scanning || stage_ == stage::preparing) stopped = stop();
+  if (line_ != nullptr) release_line();
+  stage_ = stage::closed;
+  lost_ = error(task::reading, problem::gone, "this lidar, which was closed");
+  return stopped;
+}
+
+result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
+  if (auto ready = run_plan(); !ready) return tl::unexpected(ready.error());
+  if (!line_->answers()) return failure(task::asking, problem::read_only, name());
+  if (const auto refused = session_.begin(wanted, now_ns(), how)) {
+    return failure(task::asking, problem::scanning, name());
+  }
+  asked_.reset();
+  asking_ = true;
+  while (!asked_) {
+    drop_scan();
+    const auto done = step(never_ns);
+    if (!done || line_ == nullptr) {
+      asking_ = false;
+      return tl::unexpected(done ? lost_ : done.error());
+    }
+  }
+  asking_ = false;
+  if (session_.is_scanning() && how == while_scanning::stop_and_resume) {
+    stream_.begin(samples_per_second_);
+  }
+  if (asked_->how == verdict::answered) return asked_->value;
+  return tl::unexpected(error_of(*asked_));
+}
+
+result<scan> lidar::driver::next_scan(std::int64_t timeout_ns) {
+  if (auto able = can_read(); !able) return tl::unexpected(able.error());
+  const std::int64_t deadline_ns = now_ns() + timeout_ns;
+  bool last = false;
+  while (!scan_) {
+    if (last) return failure(task::reading, problem::timeout, name());
+    if (auto done = step(deadline_ns); !done) return tl::unexpected(done.error());
+    last = now_ns() >= deadline_ns && input_.empty() && !stream_.has_more();
+  }
+  const scan found = *scan_;
+  scan_.reset();
+  return found;
+}
+
+result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_ns) {
+  if (auto able = can_read(); !able) return tl::unexpected(able.error());
+  const std::int64_t deadline_ns = now_ns() + timeout_ns;
+  bool last = false;
+  while (true) {
+    const ring_read read = reader_.read(points_);
+    points_missed_ += read.missed;
+    if (read.points > 0) return std::span<const point>(points_).first(read.points);
+    if (last) return failure(task::reading, problem::timeout, name());
+    drop_scan();
+    if (auto done = step(deadline_ns); !done) return tl::unexpected(done.error());
+    last = now_ns() >= deadline_ns && input_.empty() && !stream_.has_more();
+  }
+}
+
+result<void> lidar::driver::process() {
+  drop_scan();
+  return step(now_ns());
+}
+
+result<void> lidar::driver::can_read() const noexcept {
+  if (stage_ == stage::closed) return tl::unexpected(lost_);
+  if (!wants_scan_) return failure(task::reading, problem::not_scanning, name());
+  return {};
+}
+
+void lidar::driver::drop_scan() noexcept {
+  if (!scan_) return;
+  ++scans_missed_;
+  scan_.reset();
+}
+
+void lidar::driver::wake() noexcept {
+  const std::lock_guard lock(line_mutex_);
+  if (line_ != nullptr) {
+    line_->wake();
+  } else {
+    connector_->wake();
+  }
+}
+
+// ---- what it tells ------------------------------------------------------------------------------
+
+std::string_view lidar::driver::name() const noexcept {
+  return line_ != nullptr ? line_->name() : std::string_view(options_.device);
+}
+
+void lidar::driver::tell(lidar_event::kind what, problem reason) noexcept {
+  events_.put({what, reason, now_ns()});
+}
+
+lidar_counts lidar::driver::counts() const noexcept {
+  lidar_counts all;
+  all.bytes = bytes_;
+  all.held = parser_.held();
+  all.stream = stream_counts_;
+  all.samples_lost = stream_.samples_lost();
+  all.scans = stream_.scans();
+  all.partial_scans = stream_.partial_scans();
+  all.scans_missed = scans_missed_;
+  all.points_missed = points_missed_;
+  all.command_retries = session_.retries();
+  all.reconnects = reconnects_;
+  all.largest_gap_ns = stream_.largest_gap_ns();
+  return all;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// What stands behind a lidar: a line that may break, the session on it, and what is to be done next.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "event_queue.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/session.hpp"
+#include "g4lidar/stream_parser.hpp"
+#include "point_stream.hpp"
+#include "ready_handle.hpp"
+
+namespace g4lidar {
+
+/// The state machine of a driver. *Single thread* but for wake().
+///
+///     stage        does                                  leaves it for
+///     -----------  ------------------------------------  --------------------------------------------
+///     closed       nothing                               -
+///     lost         connects again, less and less often   identifying
+///     identifying  asks who is there                     idle; preparing, if it had been scanning;
+///                                                        lost, if it is somebody else
+///     idle         what it is asked                      preparing, by start()
+///     preparing    health, settings, start               scanning
+///     scanning     reads                                 idle, by stop()
+///
+/// Any of them is left for lost when the line breaks, or for closed where reconnecting is off.
+class lidar::driver {
+ public:
+  driver(std::unique_ptr<connector> connector, const lidar_options& options);
+  driver(const driver&) = delete;
+  driver& operator=(const driver&) = delete;
+  ~driver();
+
+  result<void> open();
+  result<void> start();
+  result<void> stop();
+  result<void> close();
+  result<answer> ask(const request& wanted, while_scanning how);
+  result<scan> next_scan(std::int64_t timeout_ns);
+  result<std::span<const point>> next_points(std::int64_t timeout_ns);
+  result<void> process();
+  void wake() noexcept;
+
+  [[nodiscard]] int native_handle() const noexcept { return ready_.native_handle(); }
+  [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
+  [[nodiscard]] const device_information& information() const noexcept { return information_; }
+  [[nodiscard]] std::string_view name() const noexcept;
+  [[nodiscard]] bool is_scanning() const noexcept { return stage_ == stage::scanning; }
+  [[nodiscard]] lidar_counts counts() const noexcept;
+  [[nodiscard]] std::optional<lidar_event> next_event() noexcept { return events_.take(); }
+  [[nodiscard]] lidar_ring& points() noexcept { return stream_.ring(); }
+
+ private:
+  enum class stage : std::uint8_t { closed, lost, identifying, idle, preparing, scanning };
+
+  /// A request of a plan, and whether the plan fails where it is not answered.
+  struct errand {
+    request wanted;
+    bool needed;
+  };
+
+  // The line.
+  result<void> connect();
+  result<void> hang_up(const error& why);
+  void release_line() noexcept;
+  result<void> send_commands();
+  result<void> receive(std::int64_t deadline_ns);
+  result<void> wait_for_line(std::int64_t deadline_ns);
+
+  // One round of everything.
+  result<void> step(std::int64_t deadline_ns);
+  result<void> round(std::int64_t deadline_ns);
+  result<void> take_notice();
+  bool digest();
+  bool keep_scan();
+  void drop_scan() noexcept;
+  void take(const event& found);
+  void end_of_bytes();
+  void end_a_silent_frame();
+  [[nodiscard]] bool is_waiting_for_answer() const noexcept;
+  [[nodiscard]] bool delivers_points() const noexcept;
+  [[nodiscard]] result<void> can_read() const noexcept;
+
+  // The plan.
+  void plan(request wanted, bool needed);
+  void plan_start();
+  result<void> go_on_with_plan();
+  result<void> finish_errand(const outcome& done);
+  result<void> identified(const device_information& who);
+  result<void> give_up(const error& why);
+  void started();
+  void back_again();
+  result<void> run_plan();
+  [[nodiscard]] error error_of(const outcome& done) const noexcept;
+
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return connector_->now_ns(); }
+  void tell(lidar_event::kind what, problem reason = problem::timeout) noexcept;
+
+  lidar_options options_;
+  std::unique_ptr<connector> connector_;
+  mutable std::mutex line_mutex_;  // held when line_ changes, and by wake(), which reads it
+  std::unique_ptr<transport> line_;
+  ready_handle ready_;
+  stage stage_ = stage::closed;
+  bool opened_ = false;                       // who it is is known
+  bool wants_scan_ = false;                   // started, and not stopped
+  bool reconnecting_ = false;                 // connected again, and not yet as before
+  error lost_{task::reading, problem::gone};  // why it is lost or closed
+  std::optional<error> refused_;              // why a plan ended, though the line is good
+  device_information information_{};
+
+  session session_;
+  stream_parser parser_;
+  point_stream stream_;
+  event_queue events_;
+  stream_counts stream_counts_;
+  std::uint64_t bytes_ = 0;
+
+  std::vector<std::uint8_t> buffer_;
+  bytes input_;  // of the buffer, not parsed yet
+  std::int64_t arrival_ns_ = 0;
+  std::optional<scan> scan_;  // complete, and not taken
+  std::uint64_t scans_missed_ = 0;
+
+  std::array<errand, 12> plan_{};
+  std::size_t planned_ = 0;
+  std::size_t plan_at_ = 0;
+  std::optional<outcome> asked_;  // what became of an ask()
+  bool asking_ = false;
+  std::uint32_t samples_per_second_ = 9000;
+
+  std::int64_t last_bytes_ns_ = 0;
+  std::int64_t last_read_ns_ = 0;
+  std::int64_t next_attempt_ns_ = 0;
+  std::int64_t backoff_ns_ = 0;
+  std::uint64_t reconnects_ = 0;
+
+  lidar_ring::reader reader_;
+  std::vector<point> points_;
+  std::uint64_t points_missed_ = 0;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// The driver's plan: what is asked in which order, and what the answers mean.
+#include <utility>
+
+#include "driver.hpp"
+
+namespace g4lidar {
+
+void lidar::driver::plan(request wanted, bool needed) {
+  if (planned_ < plan_.size()) plan_[planned_++] = {wanted, needed};
+}
+
+void lidar::driver::plan_start() {
+  stage_ = stage::preparing;
+  plan(requests::health(), false);
+  if (options_.ranging) {
+    plan(requests::set(*options_.ranging), true);
+  } else {
+    plan(requests::get_ranging(), false);
+  }
+  if (options_.frequency) plan(requests::set(*options_.frequency), true);
+  if (options_.direction) plan(requests::set(*options_.direction), true);
+  if (options_.constant) plan(requests::set(*options_.constant), true);
+  if (options_.idle) plan(requests::set(*options_.idle), true);
+  if (options_.protection) plan(requests::set(*options_.protection), true);
+  plan(requests::start(), true);
+}
+
+/// Waits until all that is planned is done, or fails. It ends, since every request does.
+result<void> lidar::driver::run_plan() {
+  if (stage_ == stage::closed || stage_ == stage::lost) return tl::unexpected(lost_);
+  while (plan_at_ < planned_ || session_.is_busy()) {
+    drop_scan();
+    if (auto done = step(never_ns); !done) return done;
+    if (stage_ == stage::lost) return tl::unexpected(lost_);
+    if (refused_) return tl::unexpected(*std::exchange(refused_, std::nullopt));
+  }
+  return {};
+}
+
+/// Takes the outcome of what was asked last, and asks the next.
+result<void> lidar::driver::go_on_with_plan() {
+  while (true) {
+    if (const auto done = session_.finished()) {
+      if (asking_) {
+        asked_ = done;
+      } else if (plan_at_ < planned_) {
+        if (auto good = finish_errand(*done); !good) return good;
+      }
+    }
+    if (asking_ || plan_at_ == planned_ || session_.is_busy()) return {};
+    const request& next = plan_[plan_at_].wanted;
+    if (next.what == ask::start) stream_.begin(samples_per_second_);
+    if (session_.begin(next, now_ns())) return {};  // busy with what it found by itself
+    if (session_.is_busy()) return {};
+  }
+}
+
+result<void> lidar::driver::finish_errand(const outcome& done) {
+  const errand current = plan_[plan_at_++];
+  if (done.how != verdict::answered) {
+    if (!current.needed) return {};
+    return give_up(error_of(done));
+  }
+  if (const auto* said = std::get_if<health>(&done.value)) {
+    if (said->status == health_status::error) {
+      return give_up(error(task::starting, problem::unhealthy, name()));
+    }
+    if (said->status == health_status::warning) tell(lidar_event::kind::health_warning);
+  }
+  if (const auto* ranging = std::get_if<ranging_frequency>(&done.value)) {
+    samples_per_second_ = samples_per_second(*ranging);
+  }
+  if (const auto* who = std::get_if<device_information>(&done.value)) return identified(*who);
+  if (current.wanted.what == ask::start) started();
+  return {};
+}
+
+/// A device that answers, but not as it should, need not be given up: what was asked of it is.
+result<void> lidar::driver::give_up(const error& why) {
+  planned_ = plan_at_ = 0;
+  const bool of_use = stage_ == stage::preparing && why.what() != problem::silence;
+  if (!of_use || (wants_scan_ && reconnecting_)) return tl::unexpected(why);
+  stage_ = stage::idle;
+  refused_ = why;
+  return {};
+}
+
+result<void> lidar::driver::identified(const device_information& who) {
+  if (who.model != model_g4) return failure(task::opening, problem::other_device, name());
+  if (opened_ && who.serial_digits != information_.serial_digits) {
+    // Another lidar: ours may be behind another port.
+    backoff_ns_ = 0;
+    return failure(task::finding, problem::no_port, name());
+  }
+  reconnecting_ = opened_;
+  information_ = who;
+  opened_ = true;
+  stage_ = stage::idle;
+  if (wants_scan_) {
+    plan_start();
+  } else if (reconnecting_) {
+    back_again();
+  }
+  return {};
+}
+
+void lidar::driver::started() {
+  stage_ = stage::scanning;
+  if (reconnecting_) back_again();
+}
+
+void lidar::driver::back_again() {
+  reconnecting_ = false;
+  backoff_ns_ = 0;
+  ++reconnects_;
+  tell(lidar_event::kind::reconnected);
+}
+
+error lidar::driver::error_of(const outcome& done) const noexcept {
+  const auto doing = [&] {
+    switch (done.asked.what) {
+      case ask::start:
+        return task::starting;
+      case ask::stop:
+        return task::stopping;
+      default:
+        break;
+    }
+    if (stage_ == stage::identifying) return task::opening;
+    return stage_ == stage::preparing ? task::configuring : task::asking;
+  }();
+  switch (done.how) {
+    case verdict::not_reached:
+      return {doing, problem::not_reached, name()};
+    case verdict::still_scanning:
+      return {doing, problem::does_not_stop, name()};
+    default:
+      break;
+  }
+  if (done.heard_nothing() && stage_ == stage::identifying)
+    return {doing, problem::silence, name()};
+  if (done.heard_noise_only()) return {doing, problem::garbage, name()};
+  return {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, name()};
+}
+
+}  // namespace g4lidar

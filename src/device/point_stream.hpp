@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// From events of the parser to points in a ring and revolutions: the driver's products.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "g4lidar/correction.hpp"
+#include "g4lidar/decode.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/scan.hpp"
+#include "g4lidar/sensor_clock.hpp"
+#include "g4lidar/stream_parser.hpp"
+
+namespace g4lidar {
+
+/// *Allocates on open.* Show it the events one after the other; behind each packet, take the scans.
+class point_stream {
+ public:
+  point_stream(std::uint32_t baud, std::int64_t transport_delay_ns, bool partial_scans)
+      : partial_scans_(partial_scans),
+        clock_({.sample_rate_hz = 9000.0, .transport_delay_ns = transport_delay_ns, .baud = baud}),
+        storage_(largest_scan),
+        assembler_(storage_) {}
+
+  /// A scan begins, or goes on after a break. `samples_per_second` nominally.
+  void begin(std::uint32_t samples_per_second) noexcept {
+    end();
+    scans_at_begin_ = scans_;
+    clock_.reset(samples_per_second);
+    last_packet_ns_ = 0;
+  }
+
+  /// The scan is over; what there is of a revolution is counted.
+  void end() noexcept {
+    if (const auto rest = assembler_.finish()) count(*rest);
+  }
+
+  /// Whether a whole revolution has come since begin().
+  [[nodiscard]] bool has_begun() const noexcept { return scans_ > scans_at_begin_; }
+
+  void packet(packet_view found, std::int64_t arrival_ns) noexcept {
+    open_ = decode(found, *correction_, revolutions_.count(found), memory_);
+    const packet_times times = clock_.stamp(open_, arrival_ns);
+    const std::span<point> points = std::span(memory_).first(open_.points.size());
+    times.write_to(points);
+    ring_->push(points);
+    samples_lost_ += static_cast<std::uint64_t>(std::max<std::int64_t>(times.lost, 0));
+    if (last_packet_ns_ != 0) {
+      largest_gap_ns_ = std::max(largest_gap_ns_, arrival_ns - last_packet_ns_);
+    }
+    last_packet_ns_ = arrival_ns;
+    is_open_ = true;
+  }
+
+  /// Bytes were skipped in the middle of the scan.
+  void gone(skipped what) noexcept {
+    if (what.reason == skip_reason::noise) return;  // healthy devices send stray bytes
+    assembler_.lost();
+    clock_.lost(what.count);
+  }
+
+  /// So many bytes of an unfinished frame have come. See sensor_clock::seen().
+  void seen(std::size_t held, std::int64_t arrival_ns) noexcept { clock_.seen(held, arrival_ns); }
+
+  /// The next scan of the packet last shown; it is good until the next call of anything here.
+  [[nodiscard]] std::optional<scan> next_scan() noexcept {
+    while (is_open_) {
+      const auto found = assembler_.next(open_);
+      if (!found) {
+        is_open_ = false;
+      } else if (count(*found) || partial_scans_) {
+        return found;
+      }
+    }
+    return std::nullopt;
+  }
+  /// Whether the packet last shown may hold more scans.
+  [[nodiscard]] bool has_more() const noexcept { return is_open_; }
+
+  [[nodiscard]] lidar_ring& ring() noexcept { return *ring_; }
+  [[nodiscard]] std::uint64_t scans() const noexcept { return scans_; }
+  [[nodiscard]] std::uint64_t partial_scans() const noexcept { return partials_; }
+  [[nodiscard]] std::uint64_t samples_lost() const noexcept { return samples_lost_; }
+  [[nodiscard]] std::int64_t largest_gap_ns() const noexcept { return largest_gap_ns_; }
+
+ private:
+  /// 9 kHz at 5 Hz make 1,800 points; a motor that spins up makes more in one turn.
+  static constexpr std::size_t largest_scan = 8192;
+
+  /// Counts a scan; true if it is a revolution from zero packet to zero packet, though points in it
+  /// may have been lost.
+  bool count(const scan& found) noexcept {
+    constexpr scan_marks pieces =
+        scan_marks::start_missing | scan_marks::end_missing | scan_marks::turn_short;
+    const bool whole = !found.has(pieces);
+    ++(whole ? scans_ : partials_);
+    return whole;
+  }
+
+  bool partial_scans_;
+  std::unique_ptr<const table_correction> correction_ = std::make_unique<table_correction>();
+  std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
+  sensor_clock clock_;
+  std::vector<point> storage_;
+  scan_assembler assembler_;
+  revolution_counter revolutions_;
+  std::array<point, max_samples> memory_{};
+  decoded open_{};
+  bool is_open_ = false;
+  std::int64_t last_packet_ns_ = 0;
+  std::int64_t largest_gap_ns_ = 0;
+  std::uint64_t samples_lost_ = 0;
+  std::uint64_t scans_ = 0;
+  std::uint64_t scans_at_begin_ = 0;
+  std::uint64_t partials_ = 0;
+};
+
+}  // namespace g4lidar
