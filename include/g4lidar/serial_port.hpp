@@ -35,7 +35,7 @@ class serial_port {
   /// enforces on everyone but root.
   ///
   /// Fails with bad_option, no_port, permission, busy (the subject names who holds it, where the
-  /// system tells), not_serial, bad_baud_rate, gone or system.
+  /// system tells), not_serial, bad_baud_rate or system.
   [[nodiscard]] static result<std::unique_ptr<transport>> open(std::string_view path,
                                                                const serial_options& options = {});
 };

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Which program has a port open, as far as this user may know. Reads /proc; allocates.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <map>
+#include <string>
+
+namespace g4lidar {
+
+/// Who holds the lock on this file, "screen (1234)"; empty where the system does not tell.
+[[nodiscard]] std::string lock_holder(const struct stat& file);
+
+/// By path: who has a file below /dev open. Programs of other users are seen by root only.
+[[nodiscard]] std::map<std::string, std::string> device_holders();
+
+/// Who holds the port at `path`, by its lock or by having it open; empty where nobody is seen.
+[[nodiscard]] std::string port_holder(const std::string& path);
+
+}  // namespace g4lidar
