@@ -34,7 +34,7 @@ bool means_gone(int system_errno) noexcept {
 }
 
 bool is_blocked(int system_errno) noexcept {
-  return system_errno == EAGAIN || system_errno == EWOULDBLOCK;
+  return system_errno == EAGAIN;  // and EWOULDBLOCK, which is the same on Linux
 }
 
 // They stay: whoever finds one of them and nothing to read or write must not wait again.

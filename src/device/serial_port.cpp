@@ -208,9 +208,10 @@ result<void> serial_line::configure() noexcept {
 void serial_line::hasten() noexcept {
   serial_struct serial{};
   if (control(TIOCGSERIAL, &serial) != 0) return;
-  if ((serial.flags & ASYNC_LOW_LATENCY) != 0) return;
+  constexpr int low_latency = static_cast<int>(ASYNC_LOW_LATENCY);
+  if ((serial.flags & low_latency) != 0) return;
   found_flags_ = serial.flags;
-  serial.flags |= ASYNC_LOW_LATENCY;
+  serial.flags |= low_latency;
   is_hastened_ = control(TIOCSSERIAL, &serial) == 0;
 }
 
