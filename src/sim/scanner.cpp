@@ -11,16 +11,10 @@
 
 #include "g4lidar/angle.hpp"
 #include "g4lidar/response.hpp"
+#include "purpose.hpp"
 
 namespace g4lidar::sim {
 namespace {
-
-// What the random streams of a scanner are for. The numbers are part of the golden digests.
-enum class purpose : std::uint64_t { start_angle = 1, noise = 2, dropouts = 3 };
-
-random_stream stream_for(const scanner_options& options, purpose what) noexcept {
-  return random_stream(options.seed, static_cast<std::uint64_t>(what));
-}
 
 constexpr bool is_angle(double degrees) noexcept { return degrees >= 0.0 && degrees < 360.0; }
 
@@ -33,7 +27,7 @@ constexpr std::uint64_t fraction_of_turn(std::uint64_t numerator,
 }
 
 std::uint64_t first_phase(const scanner_options& options) noexcept {
-  if (!options.start_deg) return stream_for(options, purpose::start_angle).next();
+  if (!options.start_deg) return stream_for(options.seed, purpose::start_angle).next();
   const double turn = wrap_once_deg(*options.start_deg - options.index_deg) / 360.0;
   return static_cast<std::uint64_t>(turn * 0x1p53) << 11;
 }
@@ -110,8 +104,8 @@ scanner::scanner(const world& scene, const scanner_options& options)
     : options_(options),
       caster_(scene),
       mirrored_caster_(mirrored(scene)),
-      noise_(stream_for(options, purpose::noise)),
-      dropouts_(stream_for(options, purpose::dropouts)),
+      noise_(stream_for(options.seed, purpose::noise)),
+      dropouts_(stream_for(options.seed, purpose::dropouts)),
       speed_mhz_(options.scan_frequency_chz * std::uint32_t{10}),
       rate_mhz_(true_rate_mhz(options, 0)),
       phase_(first_phase(options)),

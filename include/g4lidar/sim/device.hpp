@@ -55,7 +55,7 @@ class device {
   [[nodiscard]] std::size_t available(std::int64_t now_ns) noexcept;
   /// The next time at which looking again may be worth it: read() will not give anything and
   /// is_plugged() will not change before, if nothing is written. `now_ns` where read() gives
-  /// something at once, never_ns where nothing will happen by itself.
+  /// something at once, forever_ns where nothing will happen by itself.
   [[nodiscard]] std::int64_t next_ns(std::int64_t now_ns) const noexcept;
 
   /// Whether the host sees the port.

@@ -43,8 +43,12 @@ struct device_options {
   /// How it measures, and the seed of all that is random here. Its scan and ranging frequency are
   /// the device's own defaults; `start_deg` is not used: each start has a random angle.
   scanner_options scanner;
-  device_information info{model_g4, 3, 2, 3, {'2', '0', '2', '1', '1', '0', '1', '0',
-                                              '0', '0', '0', '7', '0', '0', '7', '3'}};
+  device_information info{
+      model_g4,
+      3,
+      2,
+      3,
+      {'2', '0', '2', '1', '1', '0', '1', '0', '0', '0', '0', '7', '0', '0', '7', '3'}};
   health condition{health_status::ok, 0};
 
   // The line.
@@ -66,11 +70,11 @@ struct device_options {
   turning counter_clockwise = turning::mirrored;
 
   // What healthy devices send beside the protocol.
-  bool stray_after_start = true;   ///< A 00 after the scan header.
-  bool stray_before_zero = true;   ///< A random byte before every zero packet.
-  bool stop_truncates = true;      ///< A stop cuts the packet that is on the line.
-  bool boot_text = true;           ///< ASCII after a restart and after power has come.
-  bool boot_information = true;    ///< Then the device information, unasked.
+  bool stray_after_start = true;  ///< A 00 after the scan header.
+  bool stray_before_zero = true;  ///< A random byte before every zero packet.
+  bool stop_truncates = true;     ///< A stop cuts the packet that is on the line.
+  bool boot_text = true;          ///< ASCII after a restart and after power has come.
+  bool boot_information = true;   ///< Then the device information, unasked.
   std::int64_t boot_ns = 400'000'000;
 
   // Open questions of the protocol.
@@ -78,10 +82,10 @@ struct device_options {
   disturbance while_scanning = disturbance::mid_packet;
   bool settings_outlive_power = false;
   bool settings_outlive_restart = false;
-  bool answers_direction = true;        ///< To 08.
+  bool answers_direction = true;  ///< To 08.
   bool answers_health_91 = true;
   bool answers_health_92 = true;
-  bool obeys_forced_stop = true;        ///< 00.
+  bool obeys_forced_stop = true;  ///< 00.
   bool obeys_restart_80 = true;
   bool obeys_restart_40 = true;
   bool error_refuses_start = false;     ///< With health error, 60 is not answered.
@@ -90,8 +94,8 @@ struct device_options {
   std::int64_t protection_ns = 3'000'000'000;
 
   // How it stands there at time 0: with power, idle, and booted long ago.
-  device_settings initial;       ///< But for the two frequencies, which `scanner` has.
-  bool boots_at_start = false;   ///< It gets its power at time 0.
+  device_settings initial;      ///< But for the two frequencies, which `scanner` has.
+  bool boots_at_start = false;  ///< It gets its power at time 0.
 
   // What is kept for whoever asks; the oldest is lost beyond that.
   std::size_t truth_capacity = 16'384;  ///< Samples.

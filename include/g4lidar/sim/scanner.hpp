@@ -116,11 +116,11 @@ class scanner {
   random_stream dropouts_;
   turning turning_ = turning::clockwise;
   std::uint32_t speed_mhz_;
-  std::uint64_t rate_mhz_;  // the true one, in 0.001 Hz
-  std::int64_t since_ns_ = 0;        // the rate has been that since then,
-  std::uint64_t index_then_ = 0;     // when this sample was measured
-  std::uint64_t phase_;  // since the index, in 2^-64 of a turn
-  std::uint64_t step_;   // of a sample
+  std::uint64_t rate_mhz_;        // the true one, in 0.001 Hz
+  std::int64_t since_ns_ = 0;     // the rate has been that since then,
+  std::uint64_t index_then_ = 0;  // when this sample was measured
+  std::uint64_t phase_;           // since the index, in 2^-64 of a turn
+  std::uint64_t step_;            // of a sample
   std::uint64_t index_ = 0;
   std::uint64_t revolution_ = 0;
   bool at_index_;  // the index has passed since the last sample

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// Commands and answers.
+#include "exact.hpp"
+
+#include "machine.hpp"
+
+#include <algorithm>
+
+namespace g4lidar::sim {
+
+void device::machine::host_byte_arrives() noexcept {
+  std::uint8_t byte = from_host_.front().byte;
+  from_host_.pop();
+  if (faults_.find(fault_kind::baud) != nullptr) {
+    byte = static_cast<std::uint8_t>(garbage_.next() >> 56);
+  }
+  if (!is_up() || faults_.find(fault_kind::deaf) != nullptr) {
+    start_byte_seen_ = false;
+    return;
+  }
+  if (byte == command_start || !start_byte_seen_) {
+    start_byte_seen_ = byte == command_start;
+    return;
+  }
+  start_byte_seen_ = false;
+  commands_.push({now_ns_ + options_.reaction_ns, now_ns_, byte});
+}
+
+void device::machine::execute(const pending_command& asked_for) noexcept {
+  const bool scanning = is_scanning();
+  const bool obeyed = obey(static_cast<command>(asked_for.code));
+  if (log.size() == options_.log_capacity) {
+    ++log_missed;
+    return;
+  }
+  log.push_back({asked_for.asked_ns, asked_for.code, obeyed, scanning});
+}
+
+bool device::machine::obey(command code) noexcept {
+  const std::optional<command_traits> traits = traits_of(code);
+  if (!traits) return false;
+  if (is_scanning() && !traits->allowed_while_scanning &&
+      options_.while_scanning == disturbance::ignored) {
+    return false;
+  }
+  switch (code) {
+    case command::forced_stop:
+      if (!options_.obeys_forced_stop) return false;
+      end_scan();
+      return true;
+    case command::stop:
+      end_scan();
+      return true;
+    case command::start:
+      return obey_start();
+    case command::device_info:
+      answer(answer_with(options_.info));
+      return true;
+    case command::health:
+      if (options_.answers_health_91) answer(answer_with(condition()));
+      return options_.answers_health_91;
+    case command::health_vendor:
+      if (options_.answers_health_92) answer(answer_with(condition()));
+      return options_.answers_health_92;
+    case command::restart:
+      if (options_.obeys_restart_80) restart();
+      return options_.obeys_restart_80;
+    case command::restart_old:
+      if (options_.obeys_restart_40) restart();
+      return options_.obeys_restart_40;
+    default:
+      return obey_setting(code);
+  }
+}
+
+bool device::machine::obey_setting(command code) noexcept {
+  const power_down_protection before = settings.protection;
+  const std::optional<answer_bytes> answered = apply(code, settings, options_);
+  if (!answered) return false;
+  if (settings.protection != before) fed_ns_ = now_ns_;
+  scanner_.set_ranging(settings.ranging);
+  scanner_.set_turning(settings.direction == motor_direction::clockwise
+                           ? turning::clockwise
+                           : options_.counter_clockwise);
+  head.hold(settings.constancy);
+  keep_motor();
+  answer(*answered);
+  return true;
+}
+
+bool device::machine::obey_start() noexcept {
+  if (condition().status == health_status::error && options_.error_refuses_start) return false;
+  fed_ns_ = now_ns_;
+  if (is_scanning()) {
+    if (options_.start_again_answers) answer(answer_with(response_kind::scan_started, {}));
+    return true;
+  }
+  if (!stopped_by_protection_ || options_.header_after_protection) {
+    answer_bytes header = answer_with(response_kind::scan_started, {});
+    if (options_.stray_after_start) header.data[header.size++] = 0x00;
+    answer(header);
+  }
+  begin_scan();
+  return true;
+}
+
+health device::machine::condition() const noexcept {
+  if (const fault* bad = faults_.find(fault_kind::health)) {
+    return {static_cast<health_status>(bad->amount), 1};
+  }
+  return options_.condition;
+}
+
+void device::machine::restart() noexcept { power_on(options_.settings_outlive_restart); }
+
+void device::machine::answer(answer_bytes what) noexcept {
+  if (faults_.strike(fault_kind::mute) != nullptr) return;
+  if (faults_.strike(fault_kind::wrong) != nullptr) what = another_than(what);
+  const bool twice = faults_.strike(fault_kind::twice) != nullptr;
+  const fault* const late = faults_.strike(fault_kind::late);
+  for (int times = twice ? 2 : 1; times > 0; --times) {
+    if (late != nullptr) {
+      send_later(what, now_ns_ + late->amount);
+    } else {
+      send(what);
+    }
+  }
+}
+
+// An answer that is possible, and right for a question of another kind.
+answer_bytes device::machine::another_than(const answer_bytes& right) noexcept {
+  const std::array others{
+      answer_with(response_kind::byte,
+                  std::array{static_cast<std::uint8_t>(faults_.draw(fault_kind::wrong, 2))}),
+      answer_with(response_kind::frequency, std::array<std::uint8_t, 4>{0xBC, 0x02, 0, 0}),
+      answer_with(condition()), answer_with(options_.info)};
+  std::size_t which = faults_.draw(fault_kind::wrong, others.size());
+  if (others[which].size == right.size) which = (which + 1) % others.size();
+  return others[which];
+}
+
+void device::machine::send_later(const answer_bytes& what, std::int64_t due_ns) noexcept {
+  for (late_answer& place : answers_) {
+    if (place.due_ns != forever_ns) continue;
+    place = {due_ns, what};
+    answer_ns_ = std::min(answer_ns_, due_ns);
+    return;
+  }
+}
+
+void device::machine::answers_due() noexcept {
+  answer_ns_ = forever_ns;
+  for (late_answer& place : answers_) {
+    if (place.due_ns <= now_ns_) {
+      place.due_ns = forever_ns;
+      send(place.what);
+    }
+    answer_ns_ = std::min(answer_ns_, place.due_ns);
+  }
+}
+
+void device::machine::send(const answer_bytes& what) noexcept {
+  if (!is_scanning() || options_.while_scanning == disturbance::between) return say(what.view());
+  if (options_.while_scanning == disturbance::drops) wire_.cut_front();
+  wire_.interject(what, now_ns_);
+}
+
+void device::machine::say(bytes content) noexcept {
+  speaking_.assign(content);
+  wire_.say(speaking_, now_ns_);
+}
+
+}  // namespace g4lidar::sim

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// The motor of a simulated G4: it takes its time to get up to speed, and never keeps it quite.
+#pragma once
+
+#include <cstdint>
+
+#include "g4lidar/sim/device_options.hpp"
+
+namespace g4lidar::sim {
+
+class motor {
+ public:
+  explicit motor(const device_options& options) noexcept;
+
+  /// From now on it is driven towards this speed; 0: not driven, it runs down.
+  void drive(std::uint32_t target_mhz, std::int64_t now_ns) noexcept;
+  /// As drive(), but it is there at once.
+  void jump(std::uint32_t target_mhz, std::int64_t now_ns) noexcept;
+  /// How far it wanders from its speed.
+  void hold(constant_frequency constancy) noexcept;
+
+  [[nodiscard]] std::uint32_t speed_mhz(std::int64_t now_ns) const noexcept;
+  [[nodiscard]] bool is_driven() const noexcept { return target_mhz_ != 0; }
+
+ private:
+  [[nodiscard]] std::int64_t undisturbed_mhz(std::int64_t now_ns) const noexcept;
+
+  std::int64_t acceleration_mhz_per_s_;
+  std::int64_t standstill_ns_;
+  std::int64_t period_ns_;
+  std::int64_t offset_ns_;  // of its wandering, random
+  std::int64_t held_ppm_;
+  std::int64_t free_ppm_;
+  std::int64_t drift_ppm_;
+  std::int64_t since_ns_ = 0;
+  std::int64_t from_mhz_ = 0;
+  std::uint32_t target_mhz_ = 0;
+};
+
+}  // namespace g4lidar::sim
