@@ -26,6 +26,7 @@ namespace g4lidar {
   const float lifted = degrees + masked(negative_mask(degrees), 360.0F);
   return lifted - masked(~negative_mask(lifted - 360.0F), 360.0F);
 }
+/// The same in double precision.
 [[nodiscard]] constexpr double wrap_once_deg(double degrees) noexcept {
   const double lifted = degrees < 0.0 ? degrees + 360.0 : degrees;
   return lifted >= 360.0 ? lifted - 360.0 : lifted;
@@ -75,6 +76,7 @@ struct sine_cosine {
 /// the smaller one: asking which comes first needs a direction, so `<` does not compile.
 class angle {
  public:
+  /// 0 degrees.
   constexpr angle() noexcept = default;
 
   /// Any finite number of degrees below 1e15 in magnitude.
@@ -108,6 +110,7 @@ class angle {
     return way > 180.0F ? 360.0F - way : way;
   }
 
+  /// Sum, difference and opposite turn, wrapped into [0, 360); exact but for rounding.
   [[nodiscard]] friend constexpr angle operator+(angle a, angle b) noexcept {
     return angle(wrap_once_deg(a.degrees_ + b.degrees_));
   }
@@ -117,7 +120,9 @@ class angle {
   [[nodiscard]] constexpr angle operator-() const noexcept {
     return angle(wrap_once_deg(-degrees_));
   }
+  /// Equal in every bit but the sign of 0; after arithmetic rather ask apart_from().
   [[nodiscard]] friend constexpr bool operator==(angle, angle) noexcept = default;
+  /// There is no order on a circle; forward_to() tells how far it is in one direction.
   friend constexpr auto operator<=>(angle, angle) = delete;
 
  private:

@@ -22,10 +22,12 @@ enum class instruction_set : std::uint8_t {
   avx2,      ///< AVX2 and FMA, on x86-64.
 };
 
-/// The best of them that this processor has. *Pure.*
+/// The best of them that this processor has. *Pure*, for the answer never changes while a program
+/// runs; not `constexpr`, for the compiler does not know where that will be.
 [[nodiscard]] instruction_set best_instruction_set() noexcept;
 
-/// The name of an instruction set, for people; it lives for ever.
+/// The name of an instruction set, for people; it lives for ever. *Pure*; not `constexpr`, for it is
+/// compiled with the rest.
 [[nodiscard]] const char* name_of(instruction_set set) noexcept;
 
 /// The whole way from bytes to points: a stream_parser, the count of revolutions and the arithmetic,
@@ -56,6 +58,7 @@ class bulk_decoder {
   /// less, call until held() is 0. The next byte begins a new stream, but revolutions and counts go
   /// on.
   [[nodiscard]] std::span<point> finish(std::span<point> out) noexcept;
+  /// The same to places in frame `to`, as decode_xy() gives them.
   [[nodiscard]] std::span<xy_point> finish_xy(frame to, std::span<xy_point> out) noexcept;
 
   /// Everything that was found so far. Bytes given = bytes of frames + bytes skipped + held().

@@ -20,9 +20,11 @@ enum class point_marks : std::uint8_t {
   revolution_start = 4,  ///< The sample of a zero packet, the first one of its revolution.
 };
 
+/// All marks of both. *Pure.*
 [[nodiscard]] constexpr point_marks operator|(point_marks a, point_marks b) noexcept {
   return static_cast<point_marks>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
+/// The marks that both have. *Pure.*
 [[nodiscard]] constexpr point_marks operator&(point_marks a, point_marks b) noexcept {
   return static_cast<point_marks>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
 }
@@ -43,14 +45,18 @@ struct point {
   /// Which revolution since the start of the stream, the first one being 0.
   std::uint32_t revolution = 0;
   point_marks marks = point_marks::none;
+  /// Zeroes, so that the structure has no padding and equal points have equal bytes.
   std::array<std::uint8_t, 3> reserved{};
 
+  /// Whether nothing came back: then `range_mm` is no range.
   [[nodiscard]] constexpr bool is_no_return() const noexcept {
     return (marks & point_marks::no_return) != point_marks::none;
   }
+  /// Whether something came back from below 100 mm: there it is, but not to be trusted.
   [[nodiscard]] constexpr bool is_too_near() const noexcept {
     return (marks & point_marks::too_near) != point_marks::none;
   }
+  /// Whether this is the sample of a zero packet, with which a revolution begins.
   [[nodiscard]] constexpr bool is_revolution_start() const noexcept {
     return (marks & point_marks::revolution_start) != point_marks::none;
   }

@@ -154,15 +154,19 @@ class response_view {
   template <dying_owner Owner>
   static constexpr std::optional<response_view> from(Owner&&) = delete;
 
-  /// All bytes of the reply, and those behind its header.
+  /// All bytes of the reply; good as long as those that the view was made from.
   [[nodiscard]] constexpr bytes data() const noexcept { return frame_; }
+  /// The bytes behind the header, 0 to 20 of them; good as long as data().
   [[nodiscard]] constexpr bytes content() const noexcept {
     return frame_.subspan(response_header_size);
   }
+  /// Whether one answer was sent or an endless stream begins. (protocol: Commands, reply header)
   [[nodiscard]] constexpr response_mode mode() const noexcept {
     return static_cast<response_mode>(frame_[5] >> 6);
   }
+  /// The seventh byte: 04h, 06h or 81h. Several kinds share a code; kind() tells them apart.
   [[nodiscard]] constexpr std::uint8_t type_code() const noexcept { return frame_[6]; }
+  /// What the reply is, by its length byte.
   [[nodiscard]] constexpr response_kind kind() const noexcept {
     return response_layouts[layout_of_length(frame_[2])].kind;  // there is one: it was checked
   }

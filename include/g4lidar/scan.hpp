@@ -25,9 +25,11 @@ enum class scan_marks : std::uint8_t {
   turn_short = 8,     ///< Its two zero packets came well before the angle had gone once round.
 };
 
+/// All marks of both. *Pure.*
 [[nodiscard]] constexpr scan_marks operator|(scan_marks a, scan_marks b) noexcept {
   return static_cast<scan_marks>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
+/// The marks that both have. *Pure.*
 [[nodiscard]] constexpr scan_marks operator&(scan_marks a, scan_marks b) noexcept {
   return static_cast<scan_marks>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
 }
@@ -51,6 +53,7 @@ struct scan {
   [[nodiscard]] constexpr bool is_whole() const noexcept { return marks == scan_marks::none; }
   /// Whether it is anything less.
   [[nodiscard]] constexpr bool is_partial() const noexcept { return !is_whole(); }
+  /// Whether it has `mark`, or of several at least one.
   [[nodiscard]] constexpr bool has(scan_marks mark) const noexcept {
     return (marks & mark) != scan_marks::none;
   }

@@ -37,6 +37,7 @@ struct stream_counts {
     return sum;
   }
 
+  /// Counts what a stream gave, each thing once: a valid packet, suspect or not,
   constexpr void add(packet_view packet) noexcept {
     frame_bytes += packet.data().size();
     ++packets;
@@ -46,13 +47,16 @@ struct stream_counts {
       points += packet.sample_count();
     }
   }
+  /// a valid reply,
   constexpr void add(response_view response) noexcept {
     frame_bytes += response.data().size();
     ++responses;
   }
+  /// bytes that were skipped,
   constexpr void add(g4lidar::skipped gone) noexcept {
     skipped_by_reason[static_cast<std::size_t>(gone.reason)] += gone.count;
   }
+  /// or whichever of them `found` is.
   constexpr void add(const event& found) noexcept {
     if (const auto* packet = std::get_if<packet_view>(&found)) return add(*packet);
     if (const auto* response = std::get_if<response_view>(&found)) return add(*response);

@@ -99,6 +99,7 @@ class scanner {
   /// When the next sample will be measured, unless resume() says otherwise.
   [[nodiscard]] std::int64_t next_sample_ns() const noexcept;
 
+  /// As given, but for `ranging`, which set_ranging() changes; good as long as the scanner.
   [[nodiscard]] const scanner_options& options() const noexcept { return options_; }
 
  private:
