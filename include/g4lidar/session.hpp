@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
 
 #include "g4lidar/command.hpp"
+#include "g4lidar/device_talk.hpp"
 #include "g4lidar/request.hpp"
+#include "g4lidar/request_steps.hpp"
 #include "g4lidar/response.hpp"
 #include "g4lidar/scan_watch.hpp"
-#include "g4lidar/session_steps.hpp"
 #include "g4lidar/stream_parser.hpp"
 
 namespace g4lidar {
@@ -25,33 +24,35 @@ namespace g4lidar {
 /// says, and looks again when it says. When nothing has come for a while, stream_parser::finish()
 /// comes before look(): a stopped stream leaves half a packet behind that would swallow an answer.
 ///
-///     phase      sent     ends by                        and then
-///     ---------  -------  -----------------------------  ------------------------------------------
-///     rest       (60)     a packet, no scan wanted       draining
-///                         a wanted scan falls silent     draining, then starting
-///                         fed too late                   starting
-///     draining   00 65    silence                        what it was for: rest, starting, asking,
-///                                                        booting, or clearing if it broke a question
-///                         none, told often enough        the end: still scanning
-///     asking     a        a possible answer              asking the next, or the end
-///                command  an impossible one, none        clearing
-///                         a packet                       draining, then clearing
-///     clearing   90 (91)  its answer; all before it is   asking: again what may be repeated, else
-///                         thrown away                    the state; or the end, booted
-///                         no answer, asked often enough  the end: timed out
-///     starting   60       the scan header or a packet    rest, scanning; the end
-///                         neither                        draining, then starting; or the end
-///     booting    80 (40)  silence after boot text, or    clearing
-///                         nothing at all
+///     state     sent     ends by                        and then
+///     --------  -------  -----------------------------  ------------------------------------------
+///     rest      (60)     a packet, no scan wanted       draining
+///                        the wanted scan falls silent   draining, then starting
+///                        it is fed too late             starting
+///     draining  00 65    silence                        what it was for: rest, starting, asking,
+///                                                       booting; clearing if it broke a question
+///                        none, told often enough        the end: still scanning
+///     asking    a        a possible answer              asking the next, or the end
+///               command  an impossible one, none        clearing
+///                        a packet                       draining, then clearing
+///     clearing  90 (91)  its answer; all before it is   asking: again what may be repeated, else
+///                        thrown away                    the state that it moves
+///                        no answer, asked often enough  the end: timed out
+///     starting  60       the scan header or a packet    rest, scanning; the end
+///                        neither                        draining, then starting; or the end
+///     booting   80 (40)  silence after the boot text,   probing
+///                        or nothing at all
+///     probing   90       its answer, or none in time    the end
 ///
-/// The end is rest with an outcome, or starting where a scan is to be resumed. Every wait has a
-/// deadline, every count a bound, so each request ends. (protocol: Commands; The stream)
+/// The end is rest with an outcome, or starting where a scan is to be resumed. Every state but rest
+/// has a deadline, and every way round in the table is counted, so each request ends.
+/// (protocol: Commands; The stream)
 class session {
  public:
-  explicit constexpr session(const session_times& times = {}) noexcept : times_(times) {}
+  explicit constexpr session(const session_times& times = {}) noexcept : talk_(times) {}
 
-  /// Begins a request, or says why not. The first after the line was opened stops the device, which
-  /// may be scanning. What is to be sent is in to_send().
+  /// Begins a request, or says why not. The first one after the line was opened stops the device,
+  /// which may be scanning.
   [[nodiscard]] constexpr std::optional<refusal> begin(
       const request& wanted, std::int64_t now_ns,
       while_scanning how = while_scanning::refuse) noexcept {
@@ -60,15 +61,15 @@ class session {
     if (scanning_ && disturbs && how == while_scanning::refuse) return refusal::scanning;
     take_up(wanted, now_ns);
     if (wanted.what == ask::start && scanning_) {
-      if (phase_ == phase::rest) publish();
+      if (talk_.is_at_rest()) publish();
       return std::nullopt;  // otherwise it is being started already
     }
     resume_ = scanning_ && disturbs ? resume::later : resume::no;
-    surprise_ = !scanning_ && phase_ != phase::draining;
+    surprise_ = !scanning_ && !talk_.is_draining();
     scanning_ = false;
     if (wanted.what != ask::stop && is_idle_) {
       go(now_ns);
-    } else if (wanted.what == ask::stop || phase_ != phase::draining) {
+    } else if (wanted.what == ask::stop || !talk_.is_draining()) {
       drain(now_ns);
     }
     return std::nullopt;
@@ -76,53 +77,31 @@ class session {
 
   /// Shows an event of the parser and when its bytes came. Every event, the skipped bytes too.
   constexpr void take(const event& found, std::int64_t now_ns) noexcept {
-    heard_ns_ = std::max(heard_ns_, now_ns);
-    has_signs_ = true;
     if (has_request_) count(found);
-    if (const auto* reply = std::get_if<response_view>(&found)) return on_response(*reply, now_ns);
-    if (std::get_if<packet_view>(&found) != nullptr) on_packet(now_ns);
+    const bool was_at_rest = talk_.is_at_rest();
+    const talk_state now = talk_.take(found, now_ns);
+    if (now == talk_state::answered) {
+      return on_answer(*std::get_if<response_view>(&found), now_ns);
+    }
+    on_talk(now, now_ns);
+    if (std::get_if<packet_view>(&found) != nullptr) on_packet(was_at_rest, now_ns);
   }
 
   /// Lets time pass: call it when next_look_ns() has come, after the events from before then.
   constexpr void look(std::int64_t now_ns) noexcept {
-    if (phase_ == phase::rest) return look_at_scan(now_ns);
-    if (now_ns < next_look_ns()) return;
-    switch (phase_) {
-      case phase::draining:
-        return now_ns >= heard_ns_ + times_.quiet_ns ? on_quiet(now_ns) : on_unquiet(now_ns);
-      case phase::asking:
-        return clear(now_ns);
-      case phase::clearing:
-        return on_unclear(now_ns);
-      case phase::starting:
-        return start_tries_ == max_tries ? on_start_failed(now_ns) : drain(now_ns);
-      case phase::booting:
-        return on_boot_wait(now_ns);
-      case phase::rest:
-        break;
-    }
+    if (!talk_.is_at_rest()) return on_talk(talk_.look(now_ns), now_ns);
+    if (scanning_) on_need(watch_.look(now_ns, talk_.times()), now_ns);
   }
 
   /// When to look again even if nothing comes; the largest number where nothing is awaited.
   [[nodiscard]] constexpr std::int64_t next_look_ns() const noexcept {
-    switch (phase_) {
-      case phase::rest:
-        break;
-      case phase::draining:
-        return std::min(heard_ns_ + times_.quiet_ns, deadline_ns_);
-      case phase::booting:
-        if (has_signs_) return std::min(heard_ns_ + 2 * times_.quiet_ns, boot_until_ns_);
-        return deadline_ns_;
-      default:
-        return deadline_ns_;
-    }
-    return scanning_ ? watch_.next_look_ns(times_) : std::numeric_limits<std::int64_t>::max();
+    if (scanning_ && talk_.is_at_rest()) return watch_.next_look_ns(talk_.times());
+    return talk_.next_look_ns();
   }
 
   /// The next command to send, once; call until it gives nothing, after every other call.
   [[nodiscard]] constexpr std::optional<std::array<std::uint8_t, 2>> to_send() noexcept {
-    if (sent_ == queued_) return std::nullopt;
-    return encode(queue_[sent_++]);
+    return talk_.to_send();
   }
 
   /// What became of the request, once, when it has ended.
@@ -145,69 +124,69 @@ class session {
     return watch_.protection();
   }
 
-  /// Commands sent again because no believable answer came, and how often the line was cleared.
+  /// Commands sent again because no believable answer came.
   [[nodiscard]] constexpr std::uint64_t retries() const noexcept { return retries_; }
-  [[nodiscard]] constexpr std::uint64_t cleared_lines() const noexcept { return cleared_; }
 
   /// The line was opened anew: nothing is known of the device, and nothing asked of it any more.
   constexpr void reset() noexcept {
     const std::uint64_t retries = retries_;
-    const std::uint64_t cleared = cleared_;
-    *this = session(times_);
+    *this = session(talk_.times());
     retries_ = retries;
-    cleared_ = cleared;
   }
 
  private:
   friend struct session_state;  // of the test that explores all of them
 
-  enum class phase : std::uint8_t { rest, draining, asking, clearing, starting, booting };
   enum class resume : std::uint8_t { no, later, now };
 
-  static constexpr int max_tries = 3;       // to stop, to start, to clear the line
-  static constexpr int max_intrusions = 3;  // of packets into the questions of one request
-  static constexpr std::uint8_t all_kinds = 0xFF;
+  static constexpr int max_starts = 3;  // before a device is taken for one that does not start
+  static constexpr int max_disturbances = 3;  // of one request, by packets
 
-  // ---- requests ----
+  // ---- the course of a request ----
   constexpr void take_up(const request& wanted, std::int64_t now_ns) noexcept {
     outcome_ = outcome{};
     outcome_.asked = wanted;
     steps_ = request_steps(wanted);
     has_request_ = true;
-    is_fencing_ = is_broken_ = false;
-    intrusions_ = start_tries_ = 0;
-    limit_ns_ = now_ns + times_.request_ns;
+    is_broken_ = false;
+    disturbances_ = starts_ = 0;
+    limit_ns_ = now_ns + talk_.times().request_ns;
     watch_.forget_restarts();
+    talk_.question().be_quick();
   }
 
-  /// The line is drained: the request proper.
+  constexpr void drain(std::int64_t now_ns) noexcept {
+    is_idle_ = false;
+    talk_.drain(now_ns);
+  }
+
+  /// The device is idle and silent: the request proper.
   constexpr void go(std::int64_t now_ns) noexcept {
     switch (outcome_.asked.what) {
       case ask::stop:
         return publish();
       case ask::start:
-        return send_start(now_ns);
+        return start(now_ns);
       case ask::restart:
-        return boot(now_ns);
+        watch_.set_protection({});
+        return talk_.restart(now_ns);
       default:
-        return act(steps_.first(), now_ns);
+        return follow(steps_.first(), now_ns);
     }
   }
 
-  constexpr void act(const request_step& next, std::int64_t now_ns) noexcept {
+  constexpr void follow(const request_step& next, std::int64_t now_ns) noexcept {
     switch (next.what) {
       case request_step::action::ask:
-        code_ = next.code;
-        is_fencing_ = !next.foretold && wants_fence(next.code);
-        return is_fencing_ ? ask_known(now_ns) : ask_device(now_ns);
+        return talk_.ask(next.code, next.foretold, now_ns);
       case request_step::action::doubt:
-        return distrust(now_ns);
+        count_wrong();
+        return talk_.clear(now_ns);
       case request_step::action::end:
         return end(next.how, next.value, now_ns);
       case request_step::action::give_up:
-        break;
+        return end(verdict::timed_out, {}, now_ns);
     }
-    end(verdict::timed_out, {}, now_ns);
   }
 
   constexpr void end(verdict how, const answer& value, std::int64_t now_ns) noexcept {
@@ -215,179 +194,99 @@ class session {
     outcome_.value = value;
     if (how == verdict::timed_out) {
       is_idle_ = false;
-      doubt_ = all_kinds;
+      talk_.question().doubt_all();
     }
     if (resume_ != resume::later) return publish();
     resume_ = resume::now;
-    start_tries_ = 0;
-    return is_idle_ ? send_start(now_ns) : drain(now_ns);
+    starts_ = 0;
+    is_idle_ ? start(now_ns) : drain(now_ns);
   }
 
   constexpr void publish() noexcept {
-    phase_ = phase::rest;
+    talk_.rest();
     resume_ = resume::no;
     has_request_ = false;
     is_done_ = true;
   }
 
-  // ---- sending ----
-  /// What has not been fetched yet is out of date.
-  constexpr void send(command code) noexcept {
-    queue_[0] = code;
-    queued_ = 1;
-    sent_ = 0;
-  }
-  constexpr void send_stop() noexcept {
-    queue_ = {command::forced_stop, command::stop};
-    queued_ = 2;
-    sent_ = 0;
-  }
-  constexpr void enter(phase next, std::int64_t deadline_ns) noexcept {
-    phase_ = next;
-    deadline_ns_ = deadline_ns;
-  }
-
-  // ---- draining ----
-  constexpr void drain(std::int64_t now_ns) noexcept {
-    drains_ = 0;
-    tell_to_stop(now_ns);
-  }
-  constexpr void tell_to_stop(std::int64_t now_ns) noexcept {
-    ++drains_;
-    is_idle_ = false;
-    has_packets_ = false;
-    heard_ns_ = now_ns;
-    send_stop();
-    enter(phase::draining, now_ns + times_.drain_ns);
+  // ---- what an act has come to ----
+  constexpr void on_talk(talk_state now, std::int64_t now_ns) noexcept {
+    switch (now) {
+      case talk_state::going_on:
+      case talk_state::answered:
+        return;
+      case talk_state::quiet:
+        return on_quiet(now_ns);
+      case talk_state::streaming:
+        return on_unstoppable(now_ns);
+      case talk_state::wrong:
+        return count_wrong();
+      case talk_state::lost:
+        return on_lost(now_ns);
+      case talk_state::silent:
+        forget_toggle();
+        return end(verdict::timed_out, {}, now_ns);
+      case talk_state::disturbed:
+        return on_disturbed(now_ns);
+      case talk_state::running:
+        return on_running(now_ns);
+      case talk_state::not_started:
+        return starts_ == max_starts ? on_start_failed(now_ns) : drain(now_ns);
+      case talk_state::restarted:
+        return end(verdict::answered, {}, now_ns);
+    }
   }
 
   constexpr void on_quiet(std::int64_t now_ns) noexcept {
     is_idle_ = true;
-    if (wants_start()) return send_start(now_ns);
-    if (!has_request_) {
-      phase_ = phase::rest;
-    } else if (!std::exchange(is_broken_, false)) {
-      go(now_ns);
-    } else if (outcome_.asked.what == ask::restart) {
-      boot(now_ns);
-    } else {
-      clear(now_ns);
+    if (wants_start()) return start(now_ns);
+    if (!has_request_) return talk_.rest();
+    if (!std::exchange(is_broken_, false) || outcome_.asked.what == ask::restart) {
+      return go(now_ns);
     }
-  }
-
-  constexpr void on_unquiet(std::int64_t now_ns) noexcept {
-    if (drains_ < max_tries) return tell_to_stop(now_ns);
-    if (!has_packets_) return on_quiet(now_ns);  // noise need not keep anyone from asking
-    on_unstoppable(now_ns);
+    talk_.clear(now_ns);
   }
 
   /// Nothing that is sent arrives, most likely. A scan that is wanted goes on.
   constexpr void on_unstoppable(std::int64_t now_ns) noexcept {
     if (resume_ == resume::later) outcome_.how = verdict::still_scanning;
-    scanning_ = scanning_ || resume_ != resume::no;
-    if (scanning_) return runs(now_ns);
+    if (scanning_ || resume_ != resume::no) return on_running(now_ns);
     is_runaway_ = true;
     if (has_request_) return end(verdict::still_scanning, {}, now_ns);
-    phase_ = phase::rest;
+    talk_.rest();
   }
 
-  // ---- asking ----
-  constexpr void ask_device(std::int64_t now_ns) noexcept {
-    send(code_);
-    enter(phase::asking, now_ns + times_.answer_ns);
-  }
-
-  [[nodiscard]] static constexpr std::uint8_t bit(response_kind kind) noexcept {
-    return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind));
-  }
-
-  /// Whether an answer to something else could be taken for the one to `code`. A device information
-  /// is true whenever it was asked for.
-  [[nodiscard]] constexpr bool wants_fence(command code) const noexcept {
-    if (code == command::device_info) return false;
-    const auto traits = traits_of(code);
-    for (const response_layout& layout : response_layouts) {
-      if (traits && traits->answered_by == as_reply(layout.kind)) {
-        return (doubt_ & bit(layout.kind)) != 0;
-      }
+  constexpr void on_answer(const response_view& heard, std::int64_t now_ns) noexcept {
+    if (talk_.question().code() == command::protection_toggle) {
+      watch_.set_protection(reply_byte<power_down_protection>(*heard.as_byte()));
     }
-    return false;
+    follow(steps_.answered(heard), now_ns);
   }
 
-  constexpr void on_answer(const response_view& reply, std::int64_t now_ns) noexcept {
-    const bool may_be_older = (doubt_ & bit(reply.kind())) != 0;
-    if (can_answer(code_, reply)) {
-      doubt_ =
-          bit(reply.kind());  // all earlier questions have been answered; this one perhaps twice
-      if (code_ == command::protection_toggle) {
-        watch_.set_protection(reply_byte<power_down_protection>(*reply.as_byte()));
-      }
-      return act(steps_.answered(reply), now_ns);
-    }
-    if (!may_be_older) distrust(now_ns);
-  }
-
-  constexpr void distrust(std::int64_t now_ns) noexcept {
-    if (outcome_.wrong_answers < 0xFF) ++outcome_.wrong_answers;
-    clear(now_ns);
-  }
-
-  // ---- clearing ----
-  /// An answer is lost, or an impossible one came.
-  constexpr void clear(std::int64_t now_ns) noexcept {
-    if (code_ == command::protection_toggle) watch_.set_protection({});
+  constexpr void on_lost(std::int64_t now_ns) noexcept {
+    forget_toggle();
     if (now_ns >= limit_ns_) return end(verdict::timed_out, {}, now_ns);
-    ++cleared_;
-    clears_ = 0;
-    ask_known(now_ns);
-  }
-
-  /// Asks what every device answers; by its answer all earlier ones have come. Never the question
-  /// that is pending, and by turns, so that a late answer is not taken for the one to the next try.
-  constexpr void ask_known(std::int64_t now_ns) noexcept {
-    const bool is_odd = clears_++ % 2 == 1;
-    command known = is_odd ? command::health : command::device_info;
-    if (code_ == command::device_info) known = is_odd ? command::health_vendor : command::health;
-    if (code_ == command::health || code_ == command::health_vendor) known = command::device_info;
-    if (outcome_.asked.what == ask::restart) known = command::device_info;
-    awaited_ = known == command::device_info ? response_kind::device_info : response_kind::health;
-    send(known);
-    enter(phase::clearing, now_ns + times_.answer_ns);
-  }
-
-  constexpr void on_clear(std::int64_t now_ns) noexcept {
-    doubt_ = bit(awaited_);
-    if (outcome_.asked.what == ask::restart) {
-      doubt_ = all_kinds;  // it may have said so by itself
-      return end(verdict::answered, {}, now_ns);
+    const request_step next = steps_.lost();
+    if (next.what == request_step::action::ask) {
+      ++retries_;
+      if (outcome_.retries < 0xFF) ++outcome_.retries;
     }
-    if (std::exchange(is_fencing_, false)) return ask_device(now_ns);
-    ++retries_;
-    if (outcome_.retries < 0xFF) ++outcome_.retries;
-    act(steps_.lost(), now_ns);
+    follow(next, now_ns);
   }
 
-  constexpr void on_unclear(std::int64_t now_ns) noexcept {
-    const bool is_over =
-        outcome_.asked.what == ask::restart ? now_ns >= boot_until_ns_ : clears_ >= max_tries;
-    return is_over ? end(verdict::timed_out, {}, now_ns) : ask_known(now_ns);
+  constexpr void on_disturbed(std::int64_t now_ns) noexcept {
+    if (++disturbances_ > max_disturbances) {
+      is_runaway_ = true;
+      is_idle_ = false;
+      forget_toggle();
+      return end(verdict::still_scanning, {}, now_ns);
+    }
+    is_broken_ = true;
+    drain(now_ns);
   }
 
-  // ---- restarting ----
-  constexpr void boot(std::int64_t now_ns) noexcept {
-    watch_.set_protection({});
-    is_old_ = false;
-    boot_until_ns_ = now_ns + times_.boot_ns;
-    await_boot(command::restart, now_ns);
-  }
-  constexpr void await_boot(command code, std::int64_t now_ns) noexcept {
-    has_signs_ = false;
-    send(code);
-    enter(phase::booting, now_ns + times_.boot_sign_ns);
-  }
-  constexpr void on_boot_wait(std::int64_t now_ns) noexcept {
-    if (has_signs_ || std::exchange(is_old_, true)) return ask_known(now_ns);
-    await_boot(command::restart_old, now_ns);
+  constexpr void forget_toggle() noexcept {
+    if (talk_.question().code() == command::protection_toggle) watch_.set_protection({});
   }
 
   // ---- scanning ----
@@ -396,45 +295,41 @@ class session {
     return resume_ == resume::now || outcome_.asked.what == ask::start;
   }
 
-  constexpr void send_start(std::int64_t now_ns) noexcept {
-    ++start_tries_;
+  constexpr void start(std::int64_t now_ns) noexcept {
+    ++starts_;
     is_idle_ = false;
     watch_.start_sent(now_ns);
-    send(command::start);
-    enter(phase::starting, now_ns + times_.start_ns);
+    talk_.start(now_ns);
   }
 
-  constexpr void runs(std::int64_t now_ns) noexcept {
-    phase_ = phase::rest;
+  constexpr void on_running(std::int64_t now_ns) noexcept {
+    talk_.rest();
     scanning_ = true;
     watch_.runs(now_ns);
     if (has_request_) publish();
   }
 
   constexpr void on_start_failed(std::int64_t now_ns) noexcept {
-    const bool is_told = has_request_ && resume_ == resume::no;
-    scanning_ = false;
-    is_idle_ = false;
-    doubt_ = all_kinds;
-    phase_ = phase::rest;
-    send_stop();
-    if (!is_told) notice_ = notice::stalled;
-    if (is_told) return end(verdict::timed_out, {}, now_ns);
+    scanning_ = is_idle_ = false;
+    talk_.rest();
+    talk_.send_stop();  // it may have heard what was not answered
+    talk_.question().doubt_all();
+    if (has_request_ && resume_ == resume::no) return end(verdict::timed_out, {}, now_ns);
+    notice_ = notice::stalled;
     if (has_request_) publish();
   }
 
-  constexpr void look_at_scan(std::int64_t now_ns) noexcept {
-    if (!scanning_) return;
-    switch (watch_.look(now_ns, times_)) {
+  constexpr void on_need(scan_need need, std::int64_t now_ns) noexcept {
+    switch (need) {
       case scan_need::nothing:
         return;
       case scan_need::feed:
         watch_.start_sent(now_ns);
-        return send(command::start);
+        return talk_.send(command::start);
       case scan_need::starved:
         notice_ = notice::protection_starved;
-        start_tries_ = 0;
-        return send_start(now_ns);
+        starts_ = 0;
+        return start(now_ns);
       case scan_need::found_protected:
         notice_ = notice::protection_found_on;
         break;
@@ -446,12 +341,21 @@ class session {
         scanning_ = false;
         break;
     }
-    start_tries_ = 0;
+    starts_ = 0;
     surprise_ = false;
     drain(now_ns);
   }
 
-  // ---- what comes ----
+  /// A packet: of a wanted scan, or of one that is told of once and stopped.
+  constexpr void on_packet(bool was_at_rest, std::int64_t now_ns) noexcept {
+    if (scanning_) return watch_.packet(now_ns);
+    if (talk_.is_draining() && std::exchange(surprise_, false)) notice_ = notice::found_scanning;
+    if (!was_at_rest || is_runaway_) return;
+    notice_ = notice::found_scanning;
+    surprise_ = false;
+    drain(now_ns);
+  }
+
   constexpr void count(const event& found) noexcept {
     heard_from_device& heard = outcome_.heard;
     if (const auto* noise = std::get_if<skipped>(&found)) {
@@ -460,88 +364,27 @@ class session {
       ++(std::get_if<packet_view>(&found) != nullptr ? heard.packets : heard.responses);
     }
   }
-
-  constexpr void on_response(const response_view& reply, std::int64_t now_ns) noexcept {
-    switch (phase_) {
-      case phase::asking:
-        return on_answer(reply, now_ns);
-      case phase::clearing:
-        if (reply.kind() == awaited_) on_clear(now_ns);
-        return;
-      case phase::starting:
-        if (reply.kind() == response_kind::scan_started) runs(now_ns);
-        return;
-      case phase::rest:
-      case phase::draining:
-      case phase::booting:
-        break;
-    }
-    doubt_ = static_cast<std::uint8_t>(doubt_ | bit(reply.kind()));
+  constexpr void count_wrong() noexcept {
+    if (outcome_.wrong_answers < 0xFF) ++outcome_.wrong_answers;
   }
 
-  constexpr void on_packet(std::int64_t now_ns) noexcept {
-    switch (phase_) {
-      case phase::starting:
-        runs(now_ns);
-        return watch_.packet(now_ns);
-      case phase::draining:
-        has_packets_ = true;
-        if (std::exchange(surprise_, false)) notice_ = notice::found_scanning;
-        return;
-      case phase::rest:
-        if (scanning_) return watch_.packet(now_ns);
-        if (is_runaway_) return;
-        notice_ = notice::found_scanning;
-        break;
-      case phase::asking:
-      case phase::clearing:
-      case phase::booting:
-        if (++intrusions_ > max_intrusions) {
-          is_runaway_ = true;
-          is_idle_ = false;
-          return end(verdict::still_scanning, {}, now_ns);
-        }
-        is_broken_ = true;
-        break;
-    }
-    surprise_ = false;
-    drain(now_ns);
-  }
-
-  session_times times_;
-  phase phase_ = phase::rest;
-  resume resume_ = resume::no;  // the scan that a request has interrupted
-  bool has_request_ = false;
-  bool is_done_ = false;      // its outcome has not been fetched
-  bool is_idle_ = false;      // the device has been heard to fall silent, and not told to start
-  bool scanning_ = false;     // it is to scan
-  bool is_runaway_ = false;   // it scans and cannot be stopped
-  bool surprise_ = false;     // a packet while draining would be one that nobody wanted
-  bool has_packets_ = false;  // packets came after it was told to stop
-  bool has_signs_ = false;    // anything came after it was told to restart
-  bool is_old_ = false;       // it has been told to restart in the old way
-  bool is_fencing_ = false;   // the line is cleared before a question and not after it
-  bool is_broken_ = false;    // packets came instead of an answer
-  std::uint8_t drains_ = 0;
-  std::uint8_t clears_ = 0;
-  std::uint8_t start_tries_ = 0;
-  std::uint8_t intrusions_ = 0;
-  std::uint8_t doubt_ = all_kinds;       // kinds of answers that may still come unasked, a bit each
-  command code_ = command::device_info;  // the question that is pending
-  response_kind awaited_ = response_kind::device_info;  // while clearing
-  std::array<command, 2> queue_{};
-  std::uint8_t queued_ = 0;
-  std::uint8_t sent_ = 0;
-  notice notice_ = notice::none;
-  request_steps steps_;
+  device_talk talk_;
   scan_watch watch_;
+  request_steps steps_;
   outcome outcome_{request{ask::device_info}};
-  std::int64_t heard_ns_ = 0;
-  std::int64_t deadline_ns_ = 0;
+  notice notice_ = notice::none;
+  resume resume_ = resume::no;  // of the scan that the request has interrupted
+  bool has_request_ = false;
+  bool is_done_ = false;     // its outcome has not been fetched
+  bool scanning_ = false;    // the device is to scan
+  bool is_idle_ = false;     // it has fallen silent, and was not told to start since
+  bool is_runaway_ = false;  // it scans and cannot be stopped
+  bool surprise_ = false;    // a packet while draining would be one that nobody wanted
+  bool is_broken_ = false;   // packets came instead of an answer
+  std::uint8_t disturbances_ = 0;
+  std::uint8_t starts_ = 0;  // sent, without a scan
   std::int64_t limit_ns_ = 0;
-  std::int64_t boot_until_ns_ = 0;
   std::uint64_t retries_ = 0;
-  std::uint64_t cleared_ = 0;
 };
 
 }  // namespace g4lidar

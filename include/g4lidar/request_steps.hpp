@@ -11,34 +11,6 @@
 
 namespace g4lidar {
 
-/// The word of command.hpp for a kind of response.
-[[nodiscard]] constexpr reply as_reply(response_kind kind) noexcept {
-  switch (kind) {
-    case response_kind::scan_started:
-      return reply::scan_started;
-    case response_kind::device_info:
-      return reply::device_info;
-    case response_kind::health:
-      return reply::health;
-    case response_kind::byte:
-      return reply::byte;
-    case response_kind::frequency:
-      return reply::frequency;
-  }
-  return reply::none;
-}
-
-/// Whether `heard` can be a true answer to `code`. *Pure.* (protocol: Commands)
-[[nodiscard]] constexpr bool can_answer(command code, const response_view& heard) noexcept {
-  const auto traits = traits_of(code);
-  if (!traits || traits->answered_by != as_reply(heard.kind())) return false;
-  const auto byte = heard.as_byte();
-  if (!byte) return true;
-  if (traits->fixed_answer) return *byte == *traits->fixed_answer;
-  const bool has_three = code == command::ranging_next || code == command::ranging_query;
-  return *byte < (has_three ? 3 : 2);
-}
-
 /// What a request wants next.
 struct request_step {
   enum class action : std::uint8_t {

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// One question on a line that loses, delays and repeats: which answer is the one to it.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "g4lidar/command.hpp"
+#include "g4lidar/response.hpp"
+
+namespace g4lidar {
+
+/// The word of command.hpp for a kind of response. *Pure.*
+[[nodiscard]] constexpr reply as_reply(response_kind kind) noexcept {
+  switch (kind) {
+    case response_kind::scan_started:
+      return reply::scan_started;
+    case response_kind::device_info:
+      return reply::device_info;
+    case response_kind::health:
+      return reply::health;
+    case response_kind::byte:
+      return reply::byte;
+    case response_kind::frequency:
+      return reply::frequency;
+  }
+  return reply::none;
+}
+
+/// Whether `heard` can be a true answer to `code`. *Pure.* (protocol: Commands)
+[[nodiscard]] constexpr bool can_answer(command code, const response_view& heard) noexcept {
+  const auto traits = traits_of(code);
+  if (!traits || traits->answered_by != as_reply(heard.kind())) return false;
+  const auto byte = heard.as_byte();
+  if (!byte) return true;
+  if (traits->fixed_answer) return *byte == *traits->fixed_answer;
+  const bool has_three = code == command::ranging_next || code == command::ranging_query;
+  return *byte < (has_three ? 3 : 2);
+}
+
+/// What a question has come to.
+enum class question_state : std::uint8_t {
+  waiting,   ///< No news.
+  send,      ///< No news, and code_to_send() is to be sent.
+  answered,  ///< The response just shown is the answer.
+  lost,      ///< There was none, and the line is clear: nothing of it will come any more.
+  silent,    ///< There was none, and none to what every device answers.
+};
+
+/// A question and what is done about an answer that does not come or cannot be: the line is cleared
+/// by asking what every device answers, and all that comes before that answer is thrown away.
+///
+/// Where a copy of an earlier answer might be on its way that could be taken for the answer to this
+/// question, the line is cleared before it is asked. (protocol: Commands, clear the line)
+class pending_question {
+ public:
+  /// Asks `code`. A foretold question has one possible answer, known to the caller: it needs no
+  /// clear line.
+  constexpr void ask(command code, bool is_foretold) noexcept {
+    code_ = code;
+    clears_ = 0;
+    is_early_ = !is_foretold && is_doubtful(code);
+    is_early_ ? ask_known() : ask_itself();
+  }
+
+  /// The answer was lost, cannot be, or was broken by packets: clears the line.
+  constexpr void clear() noexcept {
+    is_slow_ = true;
+    clears_ = 0;
+    ask_known();
+  }
+
+  [[nodiscard]] constexpr question_state take(const response_view& heard) noexcept {
+    return is_clearing_ ? take_known(heard) : take_answer(heard);
+  }
+
+  /// No answer has come in time.
+  [[nodiscard]] constexpr question_state late() noexcept {
+    if (!is_clearing_) {
+      clear();
+    } else if (clears_ == max_clears) {
+      return question_state::silent;
+    } else {
+      ask_known();
+    }
+    return question_state::send;
+  }
+
+  /// A response that nobody has asked for: there may be copies of it.
+  constexpr void take_unasked(const response_view& heard) noexcept {
+    doubt_ = static_cast<std::uint8_t>(doubt_ | bit(heard.kind()));
+  }
+  /// Nothing is known of what is on its way.
+  constexpr void doubt_all() noexcept { doubt_ = all_kinds; }
+  /// Another request begins: the device is taken for a fast one again.
+  constexpr void be_quick() noexcept { is_slow_ = false; }
+
+  [[nodiscard]] constexpr command code() const noexcept { return code_; }
+  [[nodiscard]] constexpr command code_to_send() const noexcept { return sent_; }
+  [[nodiscard]] constexpr bool is_clearing() const noexcept { return is_clearing_; }
+  /// How long to wait, in times of the usual: after a loss the device may be a slow one.
+  [[nodiscard]] constexpr int patience() const noexcept {
+    return is_slow_ && (!is_clearing_ || clears_ == max_clears) ? 2 : 1;
+  }
+
+ private:
+  friend struct session_state;  // of the test that explores all of them
+
+  static constexpr int max_clears = 3;
+  static constexpr std::uint8_t all_kinds = 0xFF;
+
+  [[nodiscard]] static constexpr std::uint8_t bit(response_kind kind) noexcept {
+    return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind));
+  }
+
+  /// A device information is true whenever it was asked for.
+  [[nodiscard]] constexpr bool is_doubtful(command code) const noexcept {
+    const auto traits = traits_of(code);
+    if (!traits || code == command::device_info) return false;
+    for (const response_layout& layout : response_layouts) {
+      if (traits->answered_by == as_reply(layout.kind)) return (doubt_ & bit(layout.kind)) != 0;
+    }
+    return false;
+  }
+
+  constexpr void ask_itself() noexcept {
+    is_clearing_ = is_early_ = false;
+    sent_ = code_;
+  }
+
+  /// Never the question that is pending, and by turns, so that a late answer is not taken for the
+  /// one to the next try.
+  constexpr void ask_known() noexcept {
+    const bool is_second = clears_++ == 1;
+    sent_ = is_second ? command::health : command::device_info;
+    if (code_ == command::device_info) sent_ = is_second ? command::health_vendor : command::health;
+    if (code_ == command::health || code_ == command::health_vendor) sent_ = command::device_info;
+    is_clearing_ = true;
+  }
+
+  [[nodiscard]] constexpr question_state take_known(const response_view& heard) noexcept {
+    if (!can_answer(sent_, heard)) return question_state::waiting;
+    doubt_ = bit(heard.kind());
+    if (!is_early_) return question_state::lost;
+    ask_itself();
+    return question_state::send;
+  }
+
+  [[nodiscard]] constexpr question_state take_answer(const response_view& heard) noexcept {
+    if (can_answer(code_, heard)) {
+      doubt_ = bit(heard.kind());  // all earlier questions are answered; this one, perhaps, twice
+      return question_state::answered;
+    }
+    if ((doubt_ & bit(heard.kind())) != 0) return question_state::waiting;  // such a copy
+    clear();
+    return question_state::send;
+  }
+
+  command code_ = command::device_info;
+  command sent_ = command::device_info;
+  std::uint8_t doubt_ =
+      all_kinds;  // kinds of answers that may come though not asked for, a bit each
+  std::uint8_t clears_ = 0;
+  bool is_clearing_ = false;
+  bool is_early_ = false;  // the line is cleared before the question and not after it
+  bool is_slow_ = false;
+};
+
+}  // namespace g4lidar
