@@ -207,6 +207,7 @@ void lidar::driver::take(const event& found) {
   if (line_ == nullptr || line_->answers()) session_.take(found, arrival_ns_);
   if (!delivers_points()) return;
   if (const auto* packet = std::get_if<packet_view>(&found)) {
+    drop_scan();  // at the end of the bytes one may still wait, where the points of this go
     stream_.packet(*packet, arrival_ns_);
   } else if (const auto* gone = std::get_if<skipped>(&found)) {
     stream_.gone(*gone);

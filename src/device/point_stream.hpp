@@ -60,9 +60,8 @@ class point_stream {
 
   /// Bytes were skipped in the middle of the scan.
   void gone(skipped what) noexcept {
-    if (what.reason == skip_reason::noise) return;  // healthy devices send stray bytes
-    assembler_.lost();
-    clock_.lost(what.count);
+    assembler_.add(what);
+    if (what.reason != skip_reason::noise) clock_.lost(what.count);
   }
 
   /// So many bytes of an unfinished frame have come. See sensor_clock::seen().
