@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,7 @@ struct port_info {
   std::uint16_t vendor_id = 0;  ///< USB, 0x10c4 for Silicon Labs.
   std::uint16_t product_id = 0;
   bool may_open = false;  ///< This user may read and write it.
-  std::string holder;     ///< Who has it open, "screen (1234)", where this user may see that.
+  std::string holder;     ///< See find_holders().
 
   friend bool operator==(const port_info&, const port_info&) = default;
 };
@@ -37,6 +38,10 @@ struct port_info {
 /// out of its data base) is then empty or comes from the bridge itself. *Allocates.*
 /// Fails with system.
 [[nodiscard]] result<std::vector<port_info>> list_ports();
+
+/// Says in each port who has it open, "screen (1234)", as far as this user may see that: the programs
+/// of others only root may. Looks through all processes, some ten milliseconds. *Allocates.*
+void find_holders(std::span<port_info> ports);
 
 /// Whether the port is behind the bridge that comes with a G4: a CP2102, USB 10c4:ea60. Other lidars
 /// of the maker come behind 0483:5740 (STM32) and 067b:2303 (PL2303) too; those are not counted, and
@@ -102,7 +107,7 @@ struct find_options {
 [[nodiscard]] result<std::vector<found_lidar>> find_lidars(const find_options& options = {});
 
 /// The one port that `which` means; where it can be told without, no port is written to:
-/// - "/dev/...", or any path: that port;
+/// - "/dev/...", or any path: that port, of which nothing else is then told;
 /// - "usb:1-1.4": the port at that USB place;
 /// - "serial:2021101000070073": the port behind which the lidar with this number answers;
 /// - "": the port of the only G4. Where one bridge is plugged, it is that; where there are several,
