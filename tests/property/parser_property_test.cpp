@@ -7,14 +7,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "g4lidar/stream_parser.hpp"
+#include "support/check_cases.hpp"
 #include "support/random_stream.hpp"
 #include "support/reference_parser.hpp"
 #include "support/stream_log.hpp"
@@ -23,30 +22,9 @@ namespace g4lidar {
 namespace {
 
 using test::buffer;
+using test::check_cases;
 using test::random_stream;
 using test::recipe;
-
-/// Checks `property` on `cases` cases, times G4LIDAR_TEST_SCALE. The cases are the same ones each
-/// time, unless RC_PARAMS says otherwise ("seed=...").
-template <class Property>
-void check_cases(int cases, Property property) {
-  const auto* const info = testing::UnitTest::GetInstance()->current_test_info();
-  rc::detail::TestMetadata about;
-  about.id = std::string(info->test_suite_name()) + "/" + info->name();
-  about.description = info->name();
-  rc::detail::TestParams params = rc::detail::configuration().testParams;
-  if (std::getenv("RC_PARAMS") == nullptr) {
-    const char* const scale = std::getenv("G4LIDAR_TEST_SCALE");
-    params.seed = 4;
-    params.maxSuccess = cases * (scale != nullptr ? std::max(1, std::atoi(scale)) : 1);
-  }
-  const auto result = rc::detail::checkTestable(property, about, params);
-  if (!result.template is<rc::detail::SuccessResult>()) {
-    std::ostringstream message;
-    rc::detail::printResultMessage(result, message);
-    FAIL() << message.str();
-  }
-}
 
 rc::Gen<std::vector<recipe>> recipes(std::uint8_t kinds) {
   return rc::gen::container<std::vector<recipe>>(
