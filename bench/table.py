@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Reads the benchmark's JSON, prints the README's table, and with --check holds it to the targets.
 
-Every ratio is of two medians out of one run. The targets of --check have a slack, for machines that
-do something else at the same time.
+Every ratio is of two medians out of one run. With --check it fails below half of what is promised: the
+slack is for machines that do something else at the same time.
 """
 import json
 import sys
@@ -13,8 +13,8 @@ SLACK = 0.5
 
 # name in the table, benchmark, what it is held against, the least ratio promised and where it holds
 RATIOS = [
-    ("points, `bulk_decoder`", "points_in_bulk", "copy_points", 0.5, ["2048000"]),
-    ("x and y, `bulk_decoder`", "places_in_bulk", "copy_places", 0.25, ["2048000"]),
+    ("points, `bulk_decoder`", "points_in_bulk", "copy_points", 0.5, ["20480", "2048000"]),
+    ("x and y, `bulk_decoder`", "places_in_bulk", "copy_places", 0.25, ["20480", "2048000"]),
     ("points, core with the table", "points_table", "points_libm", 5.0, ["20480"]),
     ("points, core with the compact form", "points_compact", "points_libm", None, []),
 ]
