@@ -25,8 +25,10 @@ struct grid_options {
   /// in the direction in which the frame's angles grow.
   frame to = frame::robot;
   grid_pick pick = grid_pick::nearest;
-  /// Whether points marked too near give their range, which is not to be trusted. Where they do not,
-  /// they give NaN if nothing farther is in their bin, for something was there.
+  /// Whether points marked too near give their range. By default a bin with none but them is NaN:
+  /// something was there, so +infinity would clear a way through it; and how far, or whether it was
+  /// more than dust on the window, is not to be trusted, so a range would put an obstacle onto the
+  /// robot. NaN makes a map neither. A trusted return in the same bin goes before.
   bool keep_too_near = false;
 };
 
@@ -47,9 +49,9 @@ struct grid_place {
 }
 
 /// Fills every bin of `ranges_m`, of which there is at least one: the range in metres; +infinity where
-/// the sensor looked and nothing came back, which never hides a return; NaN where it did not look.
-/// *Never allocates.* Takes a scan of up to 16,777,216 points. (protocol: Point packets, a sample
-/// of 0)
+/// the sensor looked and nothing came back, which never hides a return; NaN where nothing is known,
+/// because it did not look, or because all that came back is too near to be trusted. *Never
+/// allocates.* Takes a scan of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {}) noexcept {
   assert(!ranges_m.empty() && points.size() <= (std::size_t{1} << 24));
