@@ -153,8 +153,8 @@ result<void> lidar::driver::round(std::int64_t deadline_ns) {
   }
   if (digest()) return {};
   if (input_.empty()) {
-    // An outcome may be due, and is worth more than bytes.
-    const bool hurry = plan_at_ < planned_ && !session_.is_busy();
+    // Whoever waits for an outcome wants to know of it first.
+    const bool hurry = std::exchange(has_outcome_, false);
     const std::int64_t until = hurry ? now_ns() : std::min(deadline_ns, next_deadline_ns());
     if (auto got = receive(until); !got) return got;
     if (input_.empty()) end_a_silent_frame();

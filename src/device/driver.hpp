@@ -134,6 +134,7 @@ class lidar::driver {
   std::size_t plan_at_ = 0;
   std::optional<outcome> asked_;  // what became of an ask()
   bool asking_ = false;
+  bool has_outcome_ = false;  // one has been taken in this round
   std::uint32_t samples_per_second_ = 9000;
 
   std::int64_t last_bytes_ns_ = 0;

@@ -42,6 +42,7 @@ result<void> lidar::driver::run_plan() {
 result<void> lidar::driver::go_on_with_plan() {
   while (true) {
     if (const auto done = session_.finished()) {
+      has_outcome_ = true;
       if (asking_) {
         asked_ = done;
       } else if (plan_at_ < planned_) {
