@@ -40,6 +40,18 @@ bool device::is_plugged(std::int64_t now_ns) noexcept {
   return machine_->plugged;
 }
 
+void device::unplug(std::int64_t now_ns) noexcept {
+  machine_->advance(now_ns);
+  machine_->hold_unplugged(true);
+}
+
+void device::replug(std::int64_t now_ns) noexcept {
+  machine_->advance(now_ns);
+  machine_->hold_unplugged(false);
+}
+
+std::int64_t device::next_plug_ns() const noexcept { return machine_->next_edge_ns(); }
+
 std::uint64_t device::replugs() const noexcept { return machine_->replugs; }
 bool device::is_scanning() const noexcept { return machine_->is_scanning(); }
 bool device::is_up() const noexcept { return machine_->is_up(); }

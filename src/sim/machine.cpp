@@ -137,7 +137,7 @@ void device::machine::write(bytes from_host) noexcept {
 
 void device::machine::fault_edge() noexcept {
   faults_.set_time(now_ns_);
-  const bool plug = faults_.find(fault_kind::unplug) == nullptr;
+  const bool plug = !held_unplugged_ && faults_.find(fault_kind::unplug) == nullptr;
   if (plug != plugged) {
     plugged = plug;
     if (plug) {

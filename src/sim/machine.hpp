@@ -33,6 +33,12 @@ class device::machine {
     return next_event().at_ns > now_ns;
   }
 
+  void hold_unplugged(bool held) noexcept {
+    held_unplugged_ = held;
+    fault_edge();
+  }
+  [[nodiscard]] std::int64_t next_edge_ns() const noexcept { return faults_.next_edge_ns(); }
+
   // What the device shows of itself.
   bridge to_host;
   truth_log truths;
@@ -124,6 +130,7 @@ class device::machine {
 
   std::int64_t now_ns_ = 0;
   state state_ = state::idle;
+  bool held_unplugged_ = false;
   bool browned_out_ = false;
   bool stopped_by_protection_ = false;
   bool start_byte_seen_ = false;

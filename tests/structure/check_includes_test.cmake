@@ -4,7 +4,7 @@
 # The check itself, checked: small header trees with one fault each must be refused for that fault.
 
 cmake_minimum_required(VERSION 3.22)
-file(WRITE "${SCRATCH}/floors.txt" "0 ground earth\n1 wall\n2 roof\n")
+file(WRITE "${SCRATCH}/floors.txt" "0 ground earth\n1 wall\n2 roof error\n")
 
 function(tree name) # <file> <text>...: the sound tree with these files instead
   file(REMOVE_RECURSE "${SCRATCH}/${name}")
@@ -12,6 +12,7 @@ function(tree name) # <file> <text>...: the sound tree with these files instead
     file(WRITE "${SCRATCH}/${name}/${header}.hpp" "#include <cstdint>\n")
   endforeach()
   file(WRITE "${SCRATCH}/${name}/wall.hpp" "#include \"g4lidar/ground.hpp\"\n")
+  file(WRITE "${SCRATCH}/${name}/error.hpp" "")
   file(WRITE "${SCRATCH}/${name}/roof.hpp" "#include <g4lidar/wall.hpp>\n")
   file(WRITE "${SCRATCH}/${name}/sim/world.hpp" "#include \"g4lidar/wall.hpp\"\n")
   while(ARGN)
@@ -32,7 +33,7 @@ function(expect name message)
 endfunction()
 
 tree(sound)
-expect(sound "5 headers, 3 includes among them, each downward")
+expect(sound "6 headers, 3 includes among them, each downward")
 tree(upward wall.hpp "#include \"g4lidar/roof.hpp\"")
 expect(upward "wall.hpp .floor 1. includes roof.hpp .floor 2., which is not below it")
 expect(upward "a circle of includes")
@@ -44,6 +45,12 @@ tree(homeless shed.hpp "")
 expect(homeless "shed.hpp has no floor")
 tree(sim_above sim/world.hpp "#include \"g4lidar/roof.hpp\"")
 expect(sim_above "the simulator stands on floors 0 and 1")
+tree(sim_door sim/virtual_port.hpp "#include \"g4lidar/error.hpp\"" error.hpp "")
+expect(sim_door "each downward")
+tree(sim_no_door sim/world.hpp "#include \"g4lidar/error.hpp\"" error.hpp "")
+expect(sim_no_door "includes error.hpp of floor 2")
+tree(sim_door_too_far sim/pty_port.hpp "#include \"g4lidar/roof.hpp\"")
+expect(sim_door_too_far "includes roof.hpp of floor 2")
 tree(sim_circle sim/world.hpp "#include \"g4lidar/sim/ray.hpp\"" sim/ray.hpp "#include \"g4lidar/sim/world.hpp\"")
 expect(sim_circle "a circle of includes among or above: sim/ray, sim/world")
 tree(eigen wall.hpp "#include <Eigen/Core>")

@@ -60,6 +60,11 @@ class device {
 
   /// Whether the host sees the port.
   [[nodiscard]] bool is_plugged(std::int64_t now_ns) noexcept;
+  /// Pulls the plug, or puts it in again, whatever the faults say of it meanwhile.
+  void unplug(std::int64_t now_ns) noexcept;
+  void replug(std::int64_t now_ns) noexcept;
+  /// When is_plugged() may next change by a fault.
+  [[nodiscard]] std::int64_t next_plug_ns() const noexcept;
   /// How often the plug has been put in, the first time not counted: a descriptor that was opened
   /// before the last time is dead.
   [[nodiscard]] std::uint64_t replugs() const noexcept;

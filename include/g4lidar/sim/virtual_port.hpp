@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// A line to a simulated G4 in the same program, in virtual time: waiting costs no time.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/connector.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/sim/device.hpp"
+#include "g4lidar/transport.hpp"
+
+namespace g4lidar::sim {
+
+/// The time that devices and the ports to them share. *Single thread.*
+class virtual_clock {
+ public:
+  /// Each call of a port or connector takes `tick_ns`, so that a loop which never waits comes to an
+  /// end, too; 0: no time passes but by waiting.
+  explicit virtual_clock(std::int64_t tick_ns = 1'000) noexcept : tick_ns_(tick_ns) {}
+
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
+  /// It never goes back.
+  void advance_to(std::int64_t at_ns) noexcept { now_ns_ = at_ns > now_ns_ ? at_ns : now_ns_; }
+  /// A call has been made.
+  void tick() noexcept {
+    now_ns_ += tick_ns_;
+    ++calls_;
+  }
+  /// Of all ports and connectors.
+  [[nodiscard]] std::uint64_t calls() const noexcept { return calls_; }
+
+ private:
+  std::int64_t now_ns_ = 0;
+  std::int64_t tick_ns_;
+  std::uint64_t calls_ = 0;
+};
+
+/// A transport to a device in virtual time. The device and the clock are the caller's and outlive
+/// it. A port is dead once the plug was out, as a descriptor is. *Never allocates.*
+class virtual_port final : public transport {
+ public:
+  /// `name` lives as long as the port.
+  virtual_port(device& twin, virtual_clock& clock, std::string_view name = "virtual:g4") noexcept;
+
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override;
+  [[nodiscard]] result<void> write(bytes data, std::int64_t deadline_ns) noexcept override;
+  [[nodiscard]] result<void> pause(std::int64_t deadline_ns) noexcept override;
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return clock_->now_ns(); }
+  void wake() noexcept override { woken_.store(true, std::memory_order_relaxed); }
+  [[nodiscard]] std::string_view name() const noexcept override { return name_; }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return 230'400; }
+
+ private:
+  [[nodiscard]] result<void> look(task doing) noexcept;
+
+  device* twin_;
+  virtual_clock* clock_;
+  std::string_view name_;
+  std::uint64_t replugs_;
+  std::atomic<bool> woken_{false};
+};
+
+/// Connects to simulated devices, whichever of them are plugged in, in turn.
+class virtual_connector final : public connector {
+ public:
+  /// The devices and the clock are the caller's and outlive it.
+  virtual_connector(std::vector<device*> twins, virtual_clock& clock)
+      : twins_(std::move(twins)), clock_(&clock) {}
+  virtual_connector(device& twin, virtual_clock& clock)
+      : virtual_connector(std::vector<device*>{&twin}, clock) {}
+
+  /// Fails with no_port while none is plugged in.
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return clock_->now_ns(); }
+  [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override;
+  void wake() noexcept override { woken_.store(true, std::memory_order_relaxed); }
+
+ private:
+  std::vector<device*> twins_;
+  std::size_t next_ = 0;
+  virtual_clock* clock_;
+  std::atomic<bool> woken_{false};
+};
+
+}  // namespace g4lidar::sim
