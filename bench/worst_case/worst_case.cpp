@@ -14,9 +14,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <random>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -150,70 +152,115 @@ std::string to_hex(const buffer& data) {
   return out;
 }
 
-/// Climbs from all inputs that we thought of, and from bytes at random, to dearer ones: changes,
-/// inserts, removes and joins bytes that mean something to the parser, and keeps what costs more.
+/// Changes, inserts, removes and joins bytes that mean something to the parser.
+class mutator {
+ public:
+  explicit mutator(unsigned seed) : random_(seed) {}
+
+  /// Something made of one of `known`, or rarely of a single byte.
+  buffer make(const std::vector<buffer>& known) {
+    buffer made = below(20) == 0 ? buffer{telling_byte()} : one_of(known);
+    for (std::size_t changes = 1 + below(4); changes > 0; --changes) change(made, known);
+    return made;
+  }
+
+ private:
+  void change(buffer& made, const std::vector<buffer>& known) {
+    const auto place = static_cast<std::ptrdiff_t>(below(made.size() + 1));
+    const auto at = made.begin() + place;
+    switch (below(5)) {
+      case 0:
+        made.insert(at, telling_byte());
+        break;
+      case 1:
+        if (made.size() > 1 && at != made.end()) made.erase(at);
+        break;
+      case 2:
+        if (at != made.end()) *at = telling_byte();
+        break;
+      case 3:
+        join(made, place, one_of(chunks));
+        break;
+      default:
+        join(made, place, buffer(one_of(known)));
+        break;
+    }
+  }
+  static void join(buffer& made, std::ptrdiff_t place, const buffer& more) {
+    made.insert(made.begin() + place, more.begin(), more.end());
+  }
+
+  std::size_t below(std::size_t n) { return std::size_t{random_() % n}; }
+  std::uint8_t telling_byte() { return telling[below(telling.size())]; }
+  const buffer& one_of(const std::vector<buffer>& all) { return all[below(all.size())]; }
+
+  static constexpr std::array<std::uint8_t, 20> telling{0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01, 0x03,
+                                                        0x04, 0x05, 0x06, 0x14, 0x40, 0x81, 0x50,
+                                                        0x4F, 0x28, 0x09, 0x0A, 0xB3, 0x11};
+  const std::vector<buffer> chunks{
+      {0xAA, 0x55, 0x00, 0x50, 0x01}, {0xAA, 0x55, 0x00, 0x4F, 0x01, 0x10, 0x01, 0x12},
+      {0xA5, 0x5A, 0x14, 0, 0, 0, 4}, {0xA5, 0x5A, 0x04, 0, 0, 0, 4, 0},
+      {0xA5, 0x5A, 0x03, 0, 0, 0, 6}, {0xA5, 0x5A, 0x05, 0, 0}};
+  std::mt19937 random_;
+};
+
+/// The dearest periods that were found, the dearest one first.
+class pool {
+ public:
+  explicit pool(std::size_t piece) : piece_(piece) {
+    for (const input& known : inputs()) {
+      if (!known.period.empty()) keep(known.period, 5);
+    }
+  }
+
+  [[nodiscard]] const std::vector<buffer>& periods() const { return periods_; }
+
+  /// Keeps `period` if it costs more than the cheapest one here.
+  void offer(const buffer& period) {
+    if (ns_per_byte(period, piece_, 3) <= costs_.back()) return;
+    keep(period, 20);
+    if (periods_.size() <= 24) return;
+    periods_.pop_back();
+    costs_.pop_back();
+  }
+
+  /// Measures all of them once more, and carefully.
+  void measure_again() {
+    const std::vector<buffer> all = std::exchange(periods_, {});
+    costs_.clear();
+    for (const buffer& period : all) keep(period, 50);
+  }
+
+  void print(std::size_t most) const {
+    for (std::size_t i = 0; i < std::min(most, periods_.size()); ++i) {
+      std::printf("%.2f %s\n", costs_[i], to_hex(periods_[i]).c_str());
+    }
+  }
+
+ private:
+  void keep(const buffer& period, int tries) {
+    const double cost = ns_per_byte(period, piece_, tries);
+    const auto place = std::upper_bound(costs_.begin(), costs_.end(), cost, std::greater<>());
+    periods_.insert(periods_.begin() + (place - costs_.begin()), period);
+    costs_.insert(place, cost);
+  }
+
+  std::size_t piece_;
+  std::vector<buffer> periods_;
+  std::vector<double> costs_;  // ns a byte, of each of them
+};
+
+/// Climbs from all inputs that we thought of to dearer ones.
 void search(double seconds, unsigned seed, std::size_t piece) {
-  std::mt19937 random(seed);
-  const auto below = [&](std::size_t n) { return std::size_t{random() % n}; };
-  constexpr std::array<std::uint8_t, 20> telling{0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01, 0x03,
-                                                 0x04, 0x05, 0x06, 0x14, 0x40, 0x81, 0x50,
-                                                 0x4F, 0x28, 0x09, 0x0A, 0xB3, 0x11};
-  const std::array<buffer, 6> chunks{
-      buffer{0xAA, 0x55, 0x00, 0x50, 0x01}, buffer{0xAA, 0x55, 0x00, 0x4F, 0x01, 0x10, 0x01, 0x12},
-      buffer{0xA5, 0x5A, 0x14, 0, 0, 0, 4}, buffer{0xA5, 0x5A, 0x04, 0, 0, 0, 4, 0},
-      buffer{0xA5, 0x5A, 0x03, 0, 0, 0, 6}, buffer{0xA5, 0x5A, 0x05, 0, 0}};
-  struct candidate {
-    double cost;
-    buffer period;
-  };
-  std::vector<candidate> pool;
-  for (const input& known : inputs()) {
-    if (!known.period.empty()) {
-      pool.push_back({ns_per_byte(known.period, piece, 5), known.period});
-    }
-  }
+  mutator changes(seed);
+  pool dearest(piece);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  const auto dearer = [](const candidate& a, const candidate& b) { return a.cost > b.cost; };
   while (std::chrono::steady_clock::now() < end) {
-    buffer next =
-        below(20) == 0 ? buffer{telling[below(telling.size())]} : pool[below(pool.size())].period;
-    for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
-      const auto at = static_cast<std::ptrdiff_t>(below(next.size() + 1));
-      switch (below(5)) {
-        case 0:
-          next.insert(next.begin() + at, telling[below(telling.size())]);
-          break;
-        case 1:
-          if (next.size() > 1 && at < std::ssize(next)) next.erase(next.begin() + at);
-          break;
-        case 2:
-          if (at < std::ssize(next)) next[static_cast<std::size_t>(at)] = telling[below(20)];
-          break;
-        case 3: {
-          const buffer& chunk = chunks[below(chunks.size())];
-          next.insert(next.begin() + at, chunk.begin(), chunk.end());
-          break;
-        }
-        default: {
-          const buffer& other = pool[below(pool.size())].period;
-          next.insert(next.begin() + at, other.begin(), other.end());
-          break;
-        }
-      }
-    }
-    if (next.size() > 400) continue;
-    double cost = ns_per_byte(next, piece, 3);
-    if (cost <= pool.back().cost) continue;
-    cost = ns_per_byte(next, piece, 20);
-    pool.push_back({cost, next});
-    std::sort(pool.begin(), pool.end(), dearer);
-    if (pool.size() > 24) pool.pop_back();
+    const buffer next = changes.make(dearest.periods());
+    if (next.size() <= 400) dearest.offer(next);
   }
-  for (candidate& c : pool) c.cost = ns_per_byte(c.period, piece, 50);
-  std::sort(pool.begin(), pool.end(), dearer);
-  for (std::size_t i = 0; i < 5; ++i) {
-    std::printf("%.2f %s\n", pool[i].cost, to_hex(pool[i].period).c_str());
-  }
+  dearest.measure_again();
+  dearest.print(5);
 }
 
 buffer period_of(std::string_view name) {
