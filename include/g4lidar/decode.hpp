@@ -71,6 +71,20 @@ struct first_level_angles {
   }
 };
 
+/// What `packet` says beside its points. *Pure.*
+[[nodiscard]] constexpr decoded without_points(packet_view packet,
+                                               std::uint32_t revolution) noexcept {
+  decoded result;
+  result.revolution = revolution;
+  result.sample_count = static_cast<std::uint16_t>(packet.sample_count());
+  result.first_angle_64ths = static_cast<std::uint16_t>(packet.first_angle_64ths());
+  result.span_64ths = static_cast<std::int16_t>(packet.span_64ths());
+  result.reported_frequency_dhz = static_cast<std::uint8_t>(packet.reported_frequency_dhz());
+  result.starts_revolution = packet.is_zero();
+  result.suspect = packet.is_suspect();
+  return result;
+}
+
 /// Writes the corrected points of `packet` to the front of `out`, which has room for the longest
 /// packet, and says what it wrote. *Pure, never allocates.* A suspect packet gives no points. Times
 /// are left 0, not known. (protocol: Point packets)
@@ -78,17 +92,10 @@ template <correction_form Form>
 constexpr decoded decode(packet_view packet, const Form& correction, std::uint32_t revolution,
                          std::span<point, max_samples> out) noexcept {
   using real = decltype(correction(std::uint16_t{}));
-  const std::size_t count = packet.sample_count();
-  decoded result;
-  result.revolution = revolution;
-  result.sample_count = static_cast<std::uint16_t>(count);
-  result.first_angle_64ths = static_cast<std::uint16_t>(packet.first_angle_64ths());
-  result.span_64ths = static_cast<std::int16_t>(packet.span_64ths());
-  result.reported_frequency_dhz = static_cast<std::uint8_t>(packet.reported_frequency_dhz());
-  result.starts_revolution = packet.is_zero();
-  result.suspect = packet.is_suspect();
+  decoded result = without_points(packet, revolution);
   if (result.suspect) return result;
 
+  const std::size_t count = packet.sample_count();
   const first_level_angles<real> angles(packet);
   // First all directions, sixteen at a time: a loop of this form, with a constant number of rounds
   // and no branch, turns into vector instructions. Behind the last sample the copy holds zeroes.
