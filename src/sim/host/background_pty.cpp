@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// A thread that serves one device; a pipe ends it, and lets others have the device for a moment.
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include "file_handle.hpp"
+#include "g4lidar/sim/pty_port.hpp"
+
+namespace g4lidar::sim {
+
+class background_pty::state {
+ public:
+  state(pty_port port, std::array<file_handle, 2> bell)
+      : port_(std::move(port)), path_(port_.path()), bell_(std::move(bell)) {
+    thread_ = std::thread([this] { run(); });
+  }
+  ~state() {
+    ending_ = true;
+    ring();
+    thread_.join();
+  }
+  state(const state&) = delete;
+  state& operator=(const state&) = delete;
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  void with(const std::function<void(device&, std::int64_t)>& look) {
+    const std::lock_guard lock(mutex_);
+    look(port_.twin(), port_.now_ns());
+    ring();
+  }
+
+ private:
+  void ring() const noexcept {
+    const char byte = 0;
+    [[maybe_unused]] const ssize_t ignored = ::write(bell_[1].number(), &byte, 1);
+  }
+
+  void run() {
+    while (!ending_) {
+      std::array<pollfd, 3> waiting{{{bell_[0].number(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
+      std::int64_t sleep_ns = forever_ns;
+      {
+        const std::lock_guard lock(mutex_);
+        const result<std::int64_t> next = port_.process();
+        if (!next) return;
+        if (*next != forever_ns) sleep_ns = *next - port_.now_ns();
+        const pty_port::handles handles = port_.native_handles();
+        waiting[1] = {handles.line, POLLIN, 0};
+        waiting[2] = {handles.visitors, POLLIN, 0};
+      }
+      constexpr std::int64_t longest_ns = 3'600'000'000'000;
+      sleep_ns = std::clamp<std::int64_t>(sleep_ns, 0, longest_ns);
+      constexpr std::int64_t second_ns = 1'000'000'000;
+      const timespec sleep{static_cast<std::time_t>(sleep_ns / second_ns),
+                           static_cast<long>(sleep_ns % second_ns)};
+      if (::ppoll(waiting.data(), waiting.size(), &sleep, nullptr) > 0 && waiting[0].revents != 0) {
+        std::array<char, 64> rung;
+        [[maybe_unused]] const ssize_t ignored =
+            ::read(bell_[0].number(), rung.data(), rung.size());
+      }
+    }
+  }
+
+  pty_port port_;
+  std::string path_;
+  std::array<file_handle, 2> bell_;
+  std::mutex mutex_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+};
+
+background_pty::background_pty(std::unique_ptr<state> made) noexcept : state_(std::move(made)) {}
+background_pty::background_pty(background_pty&&) noexcept = default;
+background_pty& background_pty::operator=(background_pty&&) noexcept = default;
+background_pty::~background_pty() = default;
+
+result<background_pty> background_pty::open(device twin, const std::string& link) {
+  std::array<int, 2> ends{-1, -1};
+  if (::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
+    return failure(task::opening, problem::system, "a pipe", errno);
+  }
+  std::array<file_handle, 2> bell{file_handle(ends[0]), file_handle(ends[1])};
+  result<pty_port> port = pty_port::open(std::move(twin), link);
+  if (!port) return tl::unexpected<error>(port.error());
+  return background_pty(std::make_unique<state>(std::move(*port), std::move(bell)));
+}
+
+const std::string& background_pty::path() const noexcept { return state_->path(); }
+
+void background_pty::with(const std::function<void(device&, std::int64_t)>& look) {
+  state_->with(look);
+}
+
+}  // namespace g4lidar::sim

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// The slave is held open, or reading the master would fail between two programs. Therefore the
+// kernel never sees a last close, and what it would do then is done here: inotify tells of it.
+#include "pty.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/inotify.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+namespace g4lidar::sim {
+
+result<pty> pty::open() {
+  const auto failed = [](const char* what) {
+    return failure(task::opening, problem::system, what, errno);
+  };
+  pty made;
+  made.master_ = file_handle(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
+  if (!made.master_) return failed("a pseudo-terminal");
+  std::array<char, 64> name{};
+  if (::grantpt(made.master()) != 0 || ::unlockpt(made.master()) != 0 ||
+      ::ptsname_r(made.master(), name.data(), name.size()) != 0 ||
+      ::fcntl(made.master(), F_SETFL, O_NONBLOCK) != 0) {
+    return failed("a pseudo-terminal");
+  }
+  made.name_ = name.data();
+  made.watch_ = file_handle(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  if (made.watch_ && ::inotify_add_watch(made.watch(), name.data(), IN_OPEN | IN_CLOSE) < 0) {
+    made.watch_.close();
+  }
+  made.slave_ = file_handle(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  if (!made.slave_ || !made.make_raw()) return failed(name.data());
+  made.find_out_whether_watching_works();
+  return made;
+}
+
+// Our own opening was the first thing to be told.
+void pty::find_out_whether_watching_works() noexcept {
+  if (!watch_) return;
+  look_for_visitors();
+  if (visitors_ != 1) watch_.close();
+  visitors_ = 0;
+}
+
+bool pty::make_raw() const noexcept {
+  termios line{};
+  if (::tcgetattr(slave_.number(), &line) != 0) return false;
+  ::cfmakeraw(&line);
+  ::cfsetspeed(&line, B230400);
+  return ::tcsetattr(slave_.number(), TCSANOW, &line) == 0;
+}
+
+void pty::look_for_visitors() noexcept {
+  if (!watch_) return;
+  const int before = visitors_;
+  alignas(inotify_event) std::array<char, 4096> told;
+  for (;;) {
+    const ssize_t size = ::read(watch(), told.data(), told.size());
+    if (size <= 0) break;
+    for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
+      inotify_event event{};
+      std::memcpy(&event, told.data() + at, sizeof event);
+      if ((event.mask & IN_OPEN) != 0) ++visitors_;
+      if ((event.mask & IN_CLOSE) != 0) --visitors_;
+      at += sizeof event + event.len;
+    }
+  }
+  if (before > 0 && visitors_ == 0) {
+    ::ioctl(slave_.number(), TIOCNXCL);
+    ::tcflush(slave_.number(), TCIFLUSH);
+    [[maybe_unused]] const bool raw = make_raw();
+  }
+}
+
+std::size_t pty::read(std::span<std::uint8_t> out) noexcept {
+  const ssize_t count = ::read(master(), out.data(), out.size());
+  return count > 0 ? static_cast<std::size_t>(count) : 0;
+}
+
+void pty::write(bytes data) noexcept {
+  if (watch_ && visitors_ <= 0) return;
+  while (!data.empty()) {
+    const ssize_t count = ::write(master(), data.data(), data.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return;
+    data = data.subspan(static_cast<std::size_t>(count));
+  }
+}
+
+}  // namespace g4lidar::sim

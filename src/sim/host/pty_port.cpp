@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// The device's clock is the steady clock since it was opened; between two looks the loop sleeps.
+#include "g4lidar/sim/pty_port.hpp"
+
+#include <poll.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <filesystem>
+
+#include "pty.hpp"
+
+namespace g4lidar::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Waking more often than that is worth nothing to anybody.
+constexpr std::int64_t shortest_sleep_ns = 500'000;
+
+std::int64_t steady_ns() noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// A symbolic link to a pty, ours to replace.
+bool leads_to_a_pty(const fs::path& link) {
+  std::error_code none;
+  const fs::path target = fs::read_symlink(link, none);
+  return !none && target.native().starts_with("/dev/pts/");
+}
+
+// Never a moment without a link where there was one.
+result<void> point(const fs::path& link, const std::string& target) {
+  std::error_code wrong;
+  const fs::file_status there = fs::symlink_status(link, wrong);
+  if (fs::exists(there) && !leads_to_a_pty(link)) {
+    return failure(task::opening, problem::busy, link.native(), EEXIST);
+  }
+  fs::path fresh = link;
+  fresh += "." + fs::path(target).filename().native() + ".new";
+  fs::remove(fresh, wrong);
+  fs::create_symlink(target, fresh, wrong);
+  if (!wrong) fs::rename(fresh, link, wrong);
+  if (wrong) return failure(task::opening, problem::system, link.native(), wrong.value());
+  return {};
+}
+
+void unpoint(const fs::path& link, const std::string& target) {
+  std::error_code none;
+  if (!link.empty() && fs::read_symlink(link, none) == target) fs::remove(link, none);
+}
+
+}  // namespace
+
+class pty_port::state {
+ public:
+  state(device of, const std::string& link) : twin(std::move(of)), link_(link) {}
+  ~state() { unplug(); }
+  state(const state&) = delete;
+  state& operator=(const state&) = delete;
+
+  result<void> plug() {
+    result<pty> made = pty::open();
+    if (!made) return tl::unexpected<error>(made.error());
+    if (!link_.empty()) {
+      if (result<void> linked = point(link_, made->name()); !linked) return linked;
+    }
+    line_ = std::move(*made);
+    path_ = link_.empty() ? line_->name() : link_;
+    return {};
+  }
+
+  void unplug() {
+    if (!line_) return;
+    unpoint(link_, line_->name());
+    line_.reset();
+  }
+
+  result<std::int64_t> process() {
+    const std::int64_t now = now_ns();
+    const bool plugged = twin.is_plugged(now);
+    if (line_ && (!plugged || twin.replugs() != replugs_)) unplug();
+    replugs_ = twin.replugs();
+    if (plugged && !line_) {
+      if (const result<void> back = plug(); !back) return tl::unexpected<error>(back.error());
+    }
+    if (line_) carry(now);
+    return std::max(twin.next_ns(now), now + shortest_sleep_ns);
+  }
+
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return steady_ns() - begin_ns_; }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] handles native_handles() const noexcept {
+    return line_ ? handles{line_->master(), line_->watch()} : handles{-1, -1};
+  }
+
+  device twin;
+
+ private:
+  void carry(std::int64_t now) noexcept {
+    line_->look_for_visitors();
+    std::array<std::uint8_t, 4096> data;
+    // A program that floods the line gets its turn, and no more.
+    for (int turn = 0; turn < 4; ++turn) {
+      const std::size_t count = line_->read(data);
+      if (count == 0) break;
+      twin.write(bytes(data).first(count), now);
+    }
+    while (const std::size_t count = twin.read(data, now)) line_->write(bytes(data).first(count));
+  }
+
+  std::string link_;
+  std::string path_;
+  std::optional<pty> line_;
+  std::uint64_t replugs_ = 0;
+  std::int64_t begin_ns_ = steady_ns();
+};
+
+pty_port::pty_port(std::unique_ptr<state> made) noexcept : state_(std::move(made)) {}
+pty_port::pty_port(pty_port&&) noexcept = default;
+pty_port& pty_port::operator=(pty_port&&) noexcept = default;
+pty_port::~pty_port() = default;
+
+result<pty_port> pty_port::open(device twin, const std::string& link) {
+  auto made = std::make_unique<state>(std::move(twin), link);
+  if (made->twin.is_plugged(0)) {
+    if (const result<void> plugged = made->plug(); !plugged) {
+      return tl::unexpected<error>(plugged.error());
+    }
+  }
+  return pty_port(std::move(made));
+}
+
+const std::string& pty_port::path() const noexcept { return state_->path(); }
+std::int64_t pty_port::now_ns() const noexcept { return state_->now_ns(); }
+device& pty_port::twin() noexcept { return state_->twin; }
+result<std::int64_t> pty_port::process() { return state_->process(); }
+pty_port::handles pty_port::native_handles() const noexcept { return state_->native_handles(); }
+
+result<void> serve(std::span<pty_port> ports, int stop, const std::function<void()>& after_each) {
+  std::vector<pollfd> waiting;
+  for (;;) {
+    waiting.assign(1, {stop, POLLIN, 0});
+    std::int64_t sleep_ns = forever_ns;
+    for (pty_port& port : ports) {
+      const result<std::int64_t> next = port.process();
+      if (!next) return tl::unexpected<error>(next.error());
+      if (*next != forever_ns) {
+        sleep_ns = std::min(sleep_ns, std::max<std::int64_t>(*next - port.now_ns(), 0));
+      }
+      const pty_port::handles handles = port.native_handles();
+      waiting.push_back({handles.line, POLLIN, 0});
+      waiting.push_back({handles.visitors, POLLIN, 0});
+    }
+    if (after_each) after_each();
+    constexpr std::int64_t second_ns = 1'000'000'000;
+    const timespec sleep{static_cast<std::time_t>(sleep_ns / second_ns),
+                         static_cast<long>(sleep_ns % second_ns)};
+    const int ready =
+        ::ppoll(waiting.data(), waiting.size(), sleep_ns == forever_ns ? nullptr : &sleep, nullptr);
+    if (ready < 0 && errno != EINTR) {
+      return failure(task::reading, problem::system, "poll", errno);
+    }
+    if (ready > 0 && waiting.front().revents != 0) return {};
+  }
+}
+
+}  // namespace g4lidar::sim
