@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -108,8 +109,11 @@ TEST_F(Failure, WrongCommandLine) {
   expect_usage({}, "say what to do: decode or sim");
   expect_usage({"encode"}, "'encode' is no verb");
   expect_usage({"--colour"}, "'--colour' is no option");
-  expect_usage({"decode", "--colour"}, "--colour");
-  expect_usage({"decode", "a.bin", "b.bin"}, "b.bin");
+  expect_usage({"decode", "--colour"}, "'--colour' is no option. See: g4-dump decode --help");
+  expect_usage({"decode", "--colour", "x", "y"}, "'--colour' is no option");
+  expect_usage({"decode", "one", "two", "three"}, "'two' is one argument too many");
+  expect_usage({"sim", "room.bin"}, "'room.bin' is one argument too many");
+  expect_usage({"decode", "a.bin", "b.bin"}, "'b.bin' is one argument too many");
   expect_usage({"decode", "--format", "xml"}, "'xml' is none of csv, jsonl, text");
   expect_usage({"decode", "--format"}, "--format");
   expect_usage({"decode", "--stats", "yaml"}, "'yaml' is none of json, words");
@@ -269,6 +273,19 @@ TEST(Help, IsOnStandardOutputAndHasExamples) {
     for (const std::string& line : cli::lines_of(done.out)) EXPECT_LE(line.size(), 100U) << line;
   }
   EXPECT_THAT(run({"--help"}).out, HasSubstr("decode"));
+}
+
+TEST(Help, NamesEveryColumn) {
+  const std::string help = run({"decode", "--help"}).out;
+  const std::string recording = cli::zero(0);
+  const std::string points = run({"decode"}, recording).out;
+  const std::string scans = run({"decode", "--scans"}, recording).out;
+  for (const std::string& csv : {points, scans}) {
+    std::istringstream header(cli::lines_of(csv).at(0));
+    for (std::string column; std::getline(header, column, ',');) {
+      EXPECT_THAT(help, testing::ContainsRegex("[ (]" + column + "[ ,(]"));
+    }
+  }
 }
 
 TEST(Version, IsThatOfTheLibrary) {

@@ -80,8 +80,11 @@ time_ns (since the first point: raw bytes carry no times, so it is counted at --
 suspect packets count, samples that were lost do not). More columns may follow these.
 jsonl adds to each point no_return, too_near, and partial: its revolution was not seen whole. It
 is therefore written revolution by revolution.
---scans: csv and text have a line, jsonl an object with all points, for each revolution. why says
-what makes one partial: start_missing, end_missing, data_lost, turn_short.
+--scans: csv and text have a line, jsonl an object with all points, for each revolution. Columns of
+csv: scan, time_ns (of its first point), points, returns (points from which something came back),
+partial (true, false), why (what makes it partial, joined by +: start_missing, end_missing,
+data_lost, turn_short), turned_deg (how far the angle went, about 360), reported_hz and measured_hz
+(of the rotation; empty where not known).
 
 A file that OUT names appears when all went well, and not before. ^C ends a recording in good
 order: what came so far is written.
@@ -189,6 +192,11 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
     const bool is_option = rest.front().front() == '-';
     return fmt::format("{} is no {}; say what to do: {}", in_quotes(rest.front()),
                        is_option ? "option" : "verb", verbs);
+  }
+  const std::vector<std::string> rest = app.remaining(true);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty()) {
+    const bool is_option = rest.front().front() == '-';
+    return in_quotes(rest.front()) + (is_option ? " is no option" : " is one argument too many");
   }
   std::string words = error.what();
   if (!words.empty() && words.back() == '.') words.pop_back();
