@@ -283,7 +283,7 @@ TEST(Help, NamesEveryColumn) {
   for (const std::string& csv : {points, scans}) {
     std::istringstream header(cli::lines_of(csv).at(0));
     for (std::string column; std::getline(header, column, ',');) {
-      EXPECT_THAT(help, testing::ContainsRegex("[ (]" + column + "[ ,(]"));
+      EXPECT_THAT(help, testing::ContainsRegex("[ (]" + column + "[ ,(\n]"));
     }
   }
 }
