@@ -78,7 +78,7 @@ class device_talk {
   /// An event of the parser.
   [[nodiscard]] constexpr talk_state take(const event& found, std::int64_t now_ns) noexcept {
     heard_ns_ = std::max(heard_ns_, now_ns);
-    has_signs_ = true;
+    has_signs_ = !is_unsent();
     if (const auto* heard = std::get_if<response_view>(&found)) return on_response(*heard, now_ns);
     if (std::get_if<packet_view>(&found) != nullptr) return on_packet();
     return talk_state::going_on;
@@ -126,7 +126,7 @@ class device_talk {
   }
 
   [[nodiscard]] constexpr std::optional<std::array<std::uint8_t, 2>> to_send() noexcept {
-    if (fetched_ == queued_) return std::nullopt;
+    if (!is_unsent()) return std::nullopt;
     return encode(queue_[fetched_++]);
   }
 
@@ -141,6 +141,9 @@ class device_talk {
   enum class act : std::uint8_t { none, draining, asking, starting, booting, probing };
 
   static constexpr int max_drains = 3;  // times that a device is told to stop
+
+  /// Whether a command has not been fetched yet: what comes now is no answer to it.
+  [[nodiscard]] constexpr bool is_unsent() const noexcept { return fetched_ != queued_; }
 
   constexpr void enter(act next, std::int64_t deadline_ns) noexcept {
     act_ = next;
@@ -186,6 +189,10 @@ class device_talk {
   }
 
   constexpr talk_state on_response(const response_view& heard, std::int64_t now_ns) noexcept {
+    if (is_unsent()) {
+      question_.take_unasked(heard);
+      return talk_state::going_on;
+    }
     switch (act_) {
       case act::asking: {
         const bool was_clearing = question_.is_clearing();
@@ -210,7 +217,7 @@ class device_talk {
 
   constexpr talk_state on_packet() noexcept {
     has_packets_ = true;
-    if (act_ == act::starting) return talk_state::running;
+    if (act_ == act::starting) return is_unsent() ? talk_state::going_on : talk_state::running;
     const bool is_free = act_ == act::none || act_ == act::draining;
     return is_free ? talk_state::going_on : talk_state::disturbed;
   }

@@ -81,6 +81,7 @@ class pending_question {
     } else if (clears_ == max_clears) {
       return question_state::silent;
     } else {
+      is_slow_ = true;
       ask_known();
     }
     return question_state::send;
@@ -100,7 +101,8 @@ class pending_question {
   [[nodiscard]] constexpr bool is_clearing() const noexcept { return is_clearing_; }
   /// How long to wait, in times of the usual: after a loss the device may be a slow one.
   [[nodiscard]] constexpr int patience() const noexcept {
-    return is_slow_ && (!is_clearing_ || clears_ == max_clears) ? 2 : 1;
+    const bool is_last = is_clearing_ && clears_ == max_clears;
+    return is_last || (is_slow_ && !is_clearing_) ? 2 : 1;
   }
 
  private:

@@ -99,7 +99,8 @@ class session {
     return talk_.next_look_ns();
   }
 
-  /// The next command to send, once; call until it gives nothing, after every other call.
+  /// The next command to send, once; call until it gives nothing, after every other call, or after
+  /// all events of what was read together: none of those is taken for an answer to it.
   [[nodiscard]] constexpr std::optional<std::array<std::uint8_t, 2>> to_send() noexcept {
     return talk_.to_send();
   }
