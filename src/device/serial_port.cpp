@@ -132,7 +132,6 @@ tl::unexpected<error> serial_line::refused(int system_errno) const noexcept {
     case ENODEV:
       return failure(task::opening, problem::no_port, name(), system_errno);
     case ENOTTY:
-    case EINVAL:
       return failure(task::opening, problem::not_serial, name(), system_errno);
     default:
       return failure(task::opening, problem::system, name(), system_errno);
@@ -140,7 +139,9 @@ tl::unexpected<error> serial_line::refused(int system_errno) const noexcept {
 }
 
 result<void> serial_line::look() noexcept {
-  if (uninterrupted([&] { return calls().tcgetattr(fd(), &found_); }) != 0) return refused(errno);
+  if (uninterrupted([&] { return calls().tcgetattr(fd(), &found_); }) != 0) {
+    return refused(errno == EINVAL ? ENOTTY : errno);  // as some devices say it
+  }
   if (!has_name(cfgetospeed(&found_))) found_custom_baud_ = custom_baud(calls().ioctl, fd());
   return {};
 }

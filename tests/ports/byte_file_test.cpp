@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/byte_file.hpp"
+
+#include <vector>
+
+#include "lives.hpp"
+#include "temporary_file.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(ByteFile, GivesItsBytesAndEnds) {
+  const temporary_file file("some bytes");
+  auto input = byte_file::open(file.path());
+  ASSERT_TRUE(input) << input.error().message();
+  EXPECT_FALSE((*input)->answers());
+  EXPECT_EQ((*input)->baud(), 0U);
+  EXPECT_EQ((*input)->name(), file.path());
+  EXPECT_EQ(read_text(**input, 10), "some bytes");
+  const auto after = read_text(**input, 1);
+  ASSERT_FALSE(after);
+  EXPECT_EQ(after.error().what(), problem::end_of_input);
+}
+
+TEST(ByteFile, WritingIsSwallowed) {
+  const temporary_file file("some bytes");
+  auto input = byte_file::open(file.path());
+  ASSERT_TRUE(input);
+  EXPECT_TRUE(write_text(**input, "not to the file"));
+  EXPECT_EQ(read_text(**input, 10), "some bytes");
+}
+
+TEST(ByteFile, AtARate_ComesNoFasterAndInBursts) {
+  const temporary_file file(std::string(2000, 'x'));
+  auto input = byte_file::open(file.path(), {.bytes_per_second = 20'000});
+  ASSERT_TRUE(input);
+  EXPECT_EQ((*input)->baud(), 200'000U);
+  std::array<std::uint8_t, 4096> buffer{};
+  const std::int64_t began_ns = (*input)->now_ns();
+  std::size_t count = 0;
+  std::int64_t last_ns = 0;
+  while (count < 2000) {
+    const auto got = (*input)->read(buffer, never_ns);
+    ASSERT_TRUE(got);
+    EXPECT_TRUE(got->count >= 20 || count + got->count == 2000);
+    EXPECT_GT(got->arrival_ns, last_ns);
+    EXPECT_LE(got->arrival_ns, (*input)->now_ns());
+    last_ns = got->arrival_ns;
+    count += got->count;
+    EXPECT_LE(count, 1 + static_cast<std::size_t>((*input)->now_ns() - began_ns) / 50'000);
+  }
+  EXPECT_GE(last_ns - began_ns, std::chrono::nanoseconds(100ms).count());
+  EXPECT_EQ((*input)->read(buffer, never_ns).error().what(), problem::end_of_input);
+}
+
+TEST(ByteFile, AtARate_DeadlinesAreKept) {
+  const temporary_file file("x");
+  auto input = byte_file::open(file.path(), {.bytes_per_second = 1});
+  ASSERT_TRUE(input);
+  std::array<std::uint8_t, 4096> buffer{};
+  EXPECT_EQ((*input)->read(buffer, in(**input, 5ms))->count, 0U);
+  EXPECT_EQ((*input)->read(buffer, (*input)->now_ns())->count, 0U);
+  (*input)->wake();
+  EXPECT_EQ((*input)->read(buffer, never_ns).error().what(), problem::cancelled);
+  (*input)->wake();
+  EXPECT_EQ((*input)->pause(never_ns).error().what(), problem::cancelled);
+}
+
+TEST(ByteFile, WhatIsNoFile_IsRefused) {
+  EXPECT_EQ(byte_file::open("/dev/null").error().what(), problem::bad_option);
+  EXPECT_EQ(byte_file::open("/dev").error().what(), problem::bad_option);
+  const auto missing = byte_file::open("/no/such/file");
+  EXPECT_EQ(missing.error().what(), problem::system);
+  EXPECT_EQ(missing.error().system_errno(), ENOENT);
+}
+
+}  // namespace
+}  // namespace g4lidar::test
