@@ -7,7 +7,7 @@
 namespace g4lidar::test {
 
 /// Calls of any global operator new and of any global operator delete, in this program so far.
-/// Defined by allocation_test.cpp, which replaces them all.
+/// Defined by allocation_count.cpp, which replaces them all.
 [[nodiscard]] std::size_t allocations_so_far();
 
 /// How often `work` allocates or frees.

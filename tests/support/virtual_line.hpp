@@ -3,11 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
-#include <utility>
 
 #include "g4lidar/connector.hpp"
 #include "g4lidar/lidar.hpp"
@@ -27,15 +27,14 @@ struct virtual_bench {
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
   std::uint64_t pauses = 0;
-  bool wake = false;
+  std::atomic<bool> wake = false;
 
-  [[nodiscard]] bool woken() noexcept { return std::exchange(wake, false); }
+  [[nodiscard]] bool woken() noexcept { return wake.exchange(false); }
 };
 
 class virtual_line final : public transport {
  public:
-  explicit virtual_line(virtual_bench& bench)
-      : bench_(&bench), replugs_(bench.device.replugs()) {}
+  explicit virtual_line(virtual_bench& bench) : bench_(&bench), replugs_(bench.device.replugs()) {}
 
   result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
     ++bench_->reads;
@@ -61,7 +60,8 @@ class virtual_line final : public transport {
     while (bench_->now_ns < deadline_ns) {
       if (is_gone()) return failure(task::reading, problem::gone, name());
       if (bench_->woken()) return failure(task::reading, problem::cancelled, name());
-      wait(deadline_ns);
+      // Bytes may be there all the time: only the plug is watched.
+      bench_->now_ns = std::min(deadline_ns, bench_->now_ns + 1'000'000);
     }
     return {};
   }

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Points, event loops, batches, wake-ups and the heap.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "g4lidar/lidar.hpp"
+#include "support/allocation_count.hpp"
+#include "support/virtual_line.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+using test::open_virtual;
+using test::virtual_bench;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t second = 1'000 * ms;
+
+result<lidar> open_and_start(virtual_bench& bench, const lidar_options& options = {}) {
+  auto lidar = open_virtual(bench, options);
+  if (!lidar) return lidar;
+  if (auto started = lidar->start(); !started) return tl::unexpected(started.error());
+  return lidar;
+}
+
+TEST(LidarReading, PointsComeOnceEachAndInOrder) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  std::uint64_t points = 0;
+  std::int64_t last_ns = 0;
+  const std::int64_t end = bench.now_ns + 10 * second;
+  while (bench.now_ns < end) {
+    const auto some = lidar->next_points(500ms);
+    ASSERT_TRUE(some) << some.error().message();
+    points += some->size();
+    for (const point& p : *some) {
+      ASSERT_GT(p.time_ns, last_ns);
+      last_ns = p.time_ns;
+    }
+    ASSERT_LE(last_ns, bench.now_ns);
+  }
+  const auto counts = lidar->counts();
+  EXPECT_EQ(points, counts.stream.points);
+  EXPECT_EQ(points, lidar->points().written());
+  EXPECT_EQ(counts.points_missed, 0U);
+  EXPECT_NEAR(static_cast<double>(points), 9.0 * 9000, 9000);  // the motor takes a moment
+}
+
+TEST(LidarReading, ASlowReaderIsToldWhatItMissed) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  auto reader = lidar->points().make_reader();
+  for (int i = 0; i < 60; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  std::vector<point> all(std::size_t{1} << 15U);
+  const ring_read read = reader.read(all);
+  EXPECT_GT(read.missed, 0U);
+  EXPECT_EQ(read.points + read.missed, lidar->points().written());
+  const auto points = lidar->next_points(0ms);
+  ASSERT_TRUE(points);
+  EXPECT_EQ(lidar->counts().points_missed + points->size() + 8192, lidar->points().written());
+}
+
+TEST(LidarReading, AnEventLoopGetsEveryScan) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  std::uint64_t scans = 0;
+  const std::int64_t end = bench.now_ns + 10 * second;
+  while (bench.now_ns < end) {
+    // What poll() would do.
+    bench.now_ns =
+        std::max(bench.now_ns,
+                 std::min({lidar->next_deadline_ns(), bench.device.next_ns(bench.now_ns), end}));
+    while (lidar->next_scan(0ms)) ++scans;
+  }
+  EXPECT_GT(scans, 60U);
+  EXPECT_EQ(scans, lidar->counts().scans);
+  EXPECT_EQ(lidar->counts().scans_missed, 0U);
+}
+
+TEST(LidarReading, ProcessCountsTheScansThatNobodyTook) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  const std::int64_t end = bench.now_ns + 5 * second;
+  while (bench.now_ns < end) {
+    bench.now_ns = std::max(bench.now_ns, std::min(bench.device.next_ns(bench.now_ns), end));
+    ASSERT_TRUE(lidar->process());
+  }
+  const auto counts = lidar->counts();
+  EXPECT_GT(counts.scans, 25U);
+  EXPECT_GE(counts.scans_missed + 1, counts.scans);
+  EXPECT_LE(counts.scans_missed, counts.scans);
+}
+
+TEST(LidarReading, ABatchSavesReadings) {
+  const auto readings_in_10_s = [](std::chrono::milliseconds batch) {
+    virtual_bench bench;
+    lidar_options options;
+    options.batch = batch;
+    auto lidar = open_and_start(bench, options);
+    EXPECT_TRUE(lidar);
+    while (bench.now_ns < 4 * second) static_cast<void>(lidar->next_scan(500ms));
+    const std::uint64_t before = bench.reads + bench.pauses;
+    std::uint64_t scans = 0;
+    while (bench.now_ns < 14 * second) scans += lidar->next_scan(500ms).has_value();
+    EXPECT_GT(scans, 65U);
+    EXPECT_EQ(lidar->counts().samples_lost, 0U);
+    return bench.reads + bench.pauses - before;
+  };
+  EXPECT_GT(readings_in_10_s(0ms), 2000U);
+  EXPECT_LE(readings_in_10_s(20ms), 1100U);
+}
+
+TEST(LidarReading, AWakeEndsAWaitOnce) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  lidar->wake();
+  const auto woken = lidar->next_scan(2000ms);
+  ASSERT_FALSE(woken);
+  EXPECT_EQ(woken.error().what(), problem::cancelled);
+  EXPECT_FALSE(woken.error().is_fatal());
+  EXPECT_TRUE(lidar->next_scan(2000ms));
+}
+
+TEST(LidarReading, NothingIsAllocatedWhileItStreams) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->next_scan(2000ms));
+  const std::size_t allocated = test::allocations_in([&] {
+    for (int i = 0; i < 50; ++i) {
+      ASSERT_TRUE(lidar->next_scan(2000ms));
+      static_cast<void>(lidar->next_points(0ms));
+      static_cast<void>(lidar->counts());
+      static_cast<void>(lidar->next_event());
+    }
+    static_cast<void>(lidar->ask(requests::health()));
+  });
+  EXPECT_EQ(allocated, 0U);
+}
+
+TEST(LidarReading, AScanIsHandedOverAsSoonAsItsEndIsThere) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  for (int i = 0; i < 20; ++i) {
+    const auto scan = lidar->next_scan(2000ms);
+    ASSERT_TRUE(scan);
+    // The last packet takes 4 ms on the line, the next zero packet 0.5, and the bridge up to 1. The
+    // packet behind that, which is not waited for, would take 4 more.
+    EXPECT_LT(bench.now_ns - scan->points.back().time_ns, 7 * ms);
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar
