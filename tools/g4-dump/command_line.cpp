@@ -104,9 +104,13 @@ command that starts scanning; whole packets follow, all that were complete befor
 --truth: index, time_ns, scan, first_level_deg, bearing_deg (where the target stands), range_mm
 (of the target, exact; 0: there is none), raw (as sent, in quarters of a millimetre).
 
+--link: a whole device that answers commands, on a pseudo-terminal that PATH leads to, instead.
+
 Examples:
   g4-dump sim --seconds 60 --seed 7 -o room.bin --truth room.csv
   g4-dump sim --seconds 5 --noise-mm 8 --dropout 0.02 | g4-dump decode --format text
+  g4-dump sim --link /tmp/lidar --log
+  g4-dump sim --link /tmp/front --link /tmp/rear --fault unplug@5s+2s --fault 'flip*0.01%'
 
 Exit codes: 0 well, 2 wrong command line, 10 a file that cannot be read or written, 130 after ^C.)";
 
@@ -133,22 +137,49 @@ CLI::App* add_decode(CLI::App& app, decode_options& options) {
   return verb;
 }
 
+/// The options that make it serve ptys, and those that then mean nothing.
+void add_served(CLI::App& verb, sim_options& options, const std::vector<CLI::Option*>& not_then) {
+  // Each takes one value, and may be given again.
+  const auto add = [&verb](const std::string& name, std::vector<std::string>& values,
+                           const std::string& help, const std::string& shown) {
+    return verb.add_option(name, values, help)
+        ->type_name(shown)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->group("A device on a pseudo-terminal, in real time");
+  };
+  CLI::Option* const link =
+      add("--link", options.links, "Serve a device here, until ^C; again for one more", "PATH");
+  for (CLI::Option* const other : not_then) link->excludes(other);
+  add("--serial", options.serials, "Of the devices, in turn: 16 digits each", "DIGITS")
+      ->needs(link);
+  add("--fault", options.faults, "KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]]; see docs/sim.md",
+      "FAULT")
+      ->needs(link);
+  verb.add_flag("--log", options.log, "What they are asked, on standard error")
+      ->group("A device on a pseudo-terminal, in real time")
+      ->needs(link);
+}
+
 CLI::App* add_sim(CLI::App& app, sim_options& options) {
   CLI::App* const verb =
       app.add_subcommand("sim", "The bytes that a G4 in a world of walls would send")
           ->group("Verbs");
   verb->footer(sim_footer);
   g4lidar::sim::scanner_options& scanner = options.scanner;
-  verb->add_option("--seconds", options.seconds, "How long it scans (10)")
-      ->type_name("N")
-      ->check(within(0.0, 1e9));
+  CLI::Option* const seconds =
+      verb->add_option("--seconds", options.seconds, "How long it scans (10)")
+          ->type_name("N")
+          ->check(within(0.0, 1e9));
   verb->add_option("--seed", scanner.seed, "Of all that is random (1)")
       ->type_name("S")
       ->check(whole_number());
-  verb->add_option("-o,--output", options.output, "Where to write; - or nothing: standard output")
-      ->type_name("FILE");
-  verb->add_option("--truth", options.truth, "What each sample truly was, as csv")
-      ->type_name("FILE");
+  CLI::Option* const output = verb->add_option("-o,--output", options.output,
+                                               "Where to write; - or nothing: standard output")
+                                  ->type_name("FILE");
+  CLI::Option* const truth =
+      verb->add_option("--truth", options.truth, "What each sample truly was, as csv")
+          ->type_name("FILE");
   verb->add_option("--world", options.world, "The walls (a flat of a few rooms); see docs/sim.md")
       ->type_name("FILE");
   verb->add_option_function<double>(
@@ -177,6 +208,7 @@ CLI::App* add_sim(CLI::App& app, sim_options& options) {
   verb->add_flag_function(
       "--no-reported-frequency", [&scanner](std::int64_t) { scanner.reports_frequency = false; },
       "Packets do not tell the scan frequency");
+  add_served(*verb, options, {seconds, output, truth});
   return verb;
 }
 

@@ -48,6 +48,8 @@ void prepare_process() {
 
 int interrupt() noexcept { return caught; }
 
+int interrupt_handle() noexcept { return bell[0]; }
+
 wake wait_for_input(int input, int output) noexcept {
   while (interrupt() == 0) {
     std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {bell[0], POLLIN, 0}, {output, 0, 0}}};

@@ -12,6 +12,9 @@ void prepare_process();
 /// The signal that came, or 0.
 [[nodiscard]] int interrupt() noexcept;
 
+/// For poll(): readable when a signal has come.
+[[nodiscard]] int interrupt_handle() noexcept;
+
 /// Thrown where a signal came while there was nothing yet to be brought to a good end.
 struct interrupted {};
 

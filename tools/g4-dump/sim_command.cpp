@@ -18,6 +18,7 @@
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
+#include "serve_command.hpp"
 
 namespace g4_dump {
 namespace {
@@ -36,10 +37,10 @@ std::string read_all(input& in) {
   return text;
 }
 
-g4lidar::sim::world load_world(const sim_options& options, const output& out) {
+g4lidar::sim::world load_world(const sim_options& options, const output* out) {
   if (!options.world) return g4lidar::sim::built_in_world();
   input in(*options.world, "Give a text file of walls, or leave --world out for a built-in flat.");
-  refuse_same_file(in.id(), out);
+  if (out != nullptr) refuse_same_file(in.id(), *out);
   const auto read = g4lidar::sim::parse_world(read_all(in));
   if (const auto* error = std::get_if<g4lidar::sim::world_error>(&read)) {
     const std::string where = error->line > 0 ? fmt::format(", line {}", error->line) : "";
@@ -94,6 +95,10 @@ void refuse_nonsense(const sim_options& options) {
 
 int run(const sim_options& options) {
   refuse_nonsense(options);
+  if (!options.links.empty()) {
+    refuse_nonsense_to_serve(options);
+    return serve(options, load_world(options, nullptr));
+  }
   output out(options.output);
   if (out.is_terminal()) {
     throw failure(exit_code::usage,
@@ -106,7 +111,7 @@ int run(const sim_options& options) {
     refuse_same_file(out.id(), *truth);
     truth->write("index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw\n");
   }
-  g4lidar::sim::scanner scanner(load_world(options, out), options.scanner);
+  g4lidar::sim::scanner scanner(load_world(options, &out), options.scanner);
   const auto end_ns = static_cast<std::int64_t>(std::llround(options.seconds * 1e9));
   write(g4lidar::sim::scan_start_reply(), out);
   while (interrupt() == 0 && !out.is_closed()) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "g4lidar/sim/scanner.hpp"
 
@@ -15,6 +16,11 @@ struct sim_options {
   std::optional<std::string> world;  ///< The built-in one where none is given.
   std::optional<std::string> truth;
   std::string output = "-";
+  // Served on ptys instead, one device for each link.
+  std::vector<std::string> links;
+  std::vector<std::string> serials;  ///< Of the first of them.
+  std::vector<std::string> faults;   ///< Of each of them.
+  bool log = false;
 };
 
 /// Returns the exit code; throws a failure.
