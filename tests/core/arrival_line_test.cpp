@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/arrival_model.hpp"
+#include "support/test_scale.hpp"
 
 namespace g4lidar {
 namespace {
@@ -77,9 +78,9 @@ line_estimate by_grid(const std::vector<xy>& points, double lowest, double highe
 }
 
 TEST(ArrivalLine, AgreesWithASumOverAllLines) {
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+  for (int seed = 1; seed <= test::scaled(8); ++seed) {
     SCOPED_TRACE(seed);
-    arrivals::model dice(arrivals::options{.seed = seed});
+    arrivals::model dice(arrivals::options{.seed = static_cast<std::uint64_t>(seed)});
     const auto count = static_cast<std::size_t>(1 + dice.bits() % 40);
     std::vector<xy> points;
     line_under_points line;

@@ -146,7 +146,7 @@ std::vector<condition> promised() {
 }
 
 TEST(SensorClock, KeepsItsPromiseInEachLife) {
-  const int lives = 6 * test::test_scale();
+  const int lives = test::scaled(6);
   for (const condition& c : promised()) {
     errors all;
     for (int life = 1; life <= lives; ++life) {
@@ -167,7 +167,7 @@ TEST(SensorClock, KeepsItsPromiseInEachLife) {
 // Without seen() the packets of a bridge that looks every 16 ms can beat with its timer: the least
 // delay then changes slowly, and no arrival shows it. See docs/design/sensor_clock.md.
 TEST(SensorClock, KeepsItsPromiseOnAverageFromWholePacketsAlone) {
-  const int lives = 6 * test::test_scale();
+  const int lives = test::scaled(6);
   for (const condition& c : promised()) {
     errors all;
     for (int life = 1; life <= lives; ++life) {
@@ -182,11 +182,69 @@ TEST(SensorClock, KeepsItsPromiseOnAverageFromWholePacketsAlone) {
   }
 }
 
+// The ends of what is promised: a rate 3 % off, through two whole periods of its drift.
+TEST(SensorClock, KeepsItsPromiseAtTheEndsOfIt) {
+  int seed = 0;
+  for (const double rate_error : {-0.03, 0.03}) {
+    for (const batching mode : {batching::ticks, batching::gaps}) {
+      arrivals::options o{.seed = static_cast<std::uint64_t>(++seed), .mode = mode, .loss = 0.01};
+      o.rate_error = rate_error;
+      o.motor_drift = 0.03;
+      errors found = live(o, {}, std::max(30, test::scaled(120)));
+      found.print("3 % off, through the drift");
+      EXPECT_LT(found.rms_us(), 200.0);
+      EXPECT_LE(found.worst_us(), 1000.0);
+      EXPECT_LT(found.broken_share(), 1e-3);
+      EXPECT_LE(found.median_bound_us(), 500.0);
+      EXPECT_TRUE(found.grows);
+    }
+  }
+}
+
+// Not what a bridge does, and beyond the promise: as each waits for those before it, hardly a packet
+// comes in time.
+TEST(SensorClock, ToleratesPacketsThatAreLateEachByItself) {
+  errors all;
+  for (int life = 1; life <= test::scaled(6); ++life) {
+    all.add(live(drawn({.mode = batching::each}, static_cast<std::uint64_t>(life)), {}, 25.0));
+  }
+  all.print("each late by 0 to 16 ms");
+  EXPECT_LT(all.rms_us(), 400.0);
+  EXPECT_LT(all.worst_us(), 3000.0);
+  EXPECT_LT(all.broken_share(), 1e-2);
+  EXPECT_TRUE(all.grows);
+}
+
+TEST(SensorClock, WidensItsBoundAfterAGap) {
+  for (int life = 1; life <= test::scaled(6); ++life) {
+    SCOPED_TRACE(life);
+    arrivals::options o{.mode = batching::gaps, .outage_at_s = 10.0, .outage_s = 2.0};
+    o = drawn(o, static_cast<std::uint64_t>(life));
+    model device(o);
+    sensor_clock clock;
+    std::int64_t before = 0;
+    std::int64_t behind = 0;
+    errors found;
+    found.after_s = 12.0;
+    while (device.now_s() < 20.0) {
+      const delivery d = device.next();
+      const packet_times times = stamp(clock, d, {});
+      if (d.lost_samples == 0 && behind == 0) before = times.bound_ns;
+      if (d.lost_samples > 0) behind = times.bound_ns;
+      found.add(d, times, o.start_ns);
+    }
+    EXPECT_GT(behind, 5 * before);
+    EXPECT_LT(clock.bound_ns(), 500'000);
+    EXPECT_LT(found.broken_share(), 1e-3);
+    EXPECT_TRUE(found.grows);
+  }
+}
+
 TEST(SensorClock, IsHonestFromTheFirstPacketOn) {
   errors all;
   all.after_s = 0.0;
-  for (std::uint64_t life = 1; life <= 20; ++life) {
-    const arrivals::options o = drawn({.mode = batching::gaps}, life);
+  for (int life = 1; life <= test::scaled(20); ++life) {
+    const arrivals::options o = drawn({.mode = batching::gaps}, static_cast<std::uint64_t>(life));
     model device(o);
     sensor_clock clock({.sample_rate_hz = o.nominal_hz});
     errors one;
@@ -271,9 +329,10 @@ TEST(SensorClock, FindsOutThatTurnsWereLostSilently) {
 
 TEST(SensorClock, IsNotMisledByAProgramThatSleeps) {
   errors all;
-  for (std::uint64_t life = 1; life <= 10; ++life) {
+  for (int life = 1; life <= test::scaled(10); ++life) {
     for (const batching mode : {batching::direct, batching::ticks, batching::gaps}) {
-      const arrivals::options o = drawn({.mode = mode, .loss = 0.01, .stalls_per_s = 0.3}, life);
+      const arrivals::options o = drawn({.mode = mode, .loss = 0.01, .stalls_per_s = 0.3},
+                                        static_cast<std::uint64_t>(life));
       all.add(live(o, {}, 25.0));
     }
   }
@@ -328,8 +387,8 @@ TEST(SensorClock, TellsThatItsTimesRanAhead) {
 // Three and a half packets in 16 ms: the packets beat with the bridge's timer.
 TEST(SensorClock, ToleratesABeat) {
   errors all;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    arrivals::options o{.seed = seed};
+  for (int seed = 1; seed <= test::scaled(12); ++seed) {
+    arrivals::options o{.seed = static_cast<std::uint64_t>(seed)};
     o.rate_error = -0.0282;
     o.motor_hz = 9.91;
     all.add(live(o, {.seen = false}, 40.0));
@@ -504,8 +563,8 @@ TEST(SensorClock, WritesTimesIntoPoints) {
 }
 
 TEST(SensorClock, TimesGrowWhateverComes) {
-  for (std::uint64_t seed = 1; seed <= 200U * static_cast<unsigned>(test::test_scale()); ++seed) {
-    model dice(arrivals::options{.seed = seed});
+  for (int seed = 1; seed <= test::scaled(200); ++seed) {
+    model dice(arrivals::options{.seed = static_cast<std::uint64_t>(seed)});
     sensor_clock clock({.sample_rate_hz = 1000.0 + 20'000.0 * dice.uniform(),
                         .transport_delay_ns = static_cast<std::int64_t>(dice.bits() >> 40),
                         .baud = dice.bits() % 2 == 0 ? 0U : 230400U});
