@@ -35,7 +35,7 @@ enum class problem : std::uint8_t {
   bad_baud_rate,   ///< The port cannot do the baud rate.
   cannot_connect,  ///< The other end of a network connection does not answer.
   silence,         ///< Not a single byte came.
-  garbage,         ///< Bytes came, and no frame: most likely the wrong baud rate.
+  garbage,         ///< Bytes came, and no frame: the wrong baud rate or another device.
   other_device,    ///< It answers, and is no G4.
   does_not_stop,   ///< It scans and cannot be stopped: commands do not reach it.
   unhealthy,       ///< It says that it is defective.
@@ -71,14 +71,15 @@ class error {
   [[nodiscard]] std::string_view subject() const& noexcept { return {subject_.data(), size_}; }
   std::string_view subject() const&& = delete;
 
-  /// Whether going on with the same object is of no use. A timeout, a stall that is being recovered
-  /// from, a refusal and a cancellation are not fatal.
+  /// Whether going on with the same object is of no use, so that a loop should end. Not fatal are
+  /// timeout, wrong_answer, not_reached, scanning, read_only and cancelled: the object works as before.
   [[nodiscard]] bool is_fatal() const noexcept;
 
   /// What to try, a sentence; it lives for ever.
   [[nodiscard]] std::string_view advice() const noexcept;
 
-  /// All of it: "opening /dev/ttyUSB0: permission denied (EACCES). Add yourself to ...". Allocates.
+  /// All of it: "opening /dev/ttyUSB0 of group dialout: this user may not open it (EACCES, Permission
+  /// denied). Install the udev rule, or join ...". Allocates.
   [[nodiscard]] std::string message() const;
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The driver's rounds: bytes in, events taken, time passed, commands out.
 #include "driver.hpp"
+#include "subject.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -71,9 +72,19 @@ void lidar::driver::release_line() noexcept {
   planned_ = plan_at_ = 0;
 }
 
+/// Nobody will see to it any more. It may hear this, even if nothing is heard of it.
+void lidar::driver::leave_stopped(const error& why) noexcept {
+  if (line_ == nullptr || !line_->answers() || why.what() == problem::gone) return;
+  for (const command each : {command::forced_stop, command::stop}) {
+    if (!line_->write(encode(each), now_ns() + write_time_ns)) return;
+  }
+}
+
 /// The line has broken, or is of no use. Gives an error if that is the end.
-result<void> lidar::driver::hang_up(const error& why) {
+result<void> lidar::driver::hang_up(const error& broken) {
   const bool was_up = stage_ > stage::identifying;
+  const error why = spoilt(broken);
+  if (was_up) leave_stopped(why);
   release_line();
   if (was_up) {
     tell(lidar_event::kind::lost, why.what());
@@ -221,6 +232,7 @@ bool lidar::driver::delivers_points() const noexcept {
 }
 
 result<void> lidar::driver::take_notice() {
+  has_streamed_ = has_streamed_ || stream_.has_begun();
   switch (session_.noticed()) {
     case notice::none:
       return {};
@@ -237,8 +249,8 @@ result<void> lidar::driver::take_notice() {
       tell(lidar_event::kind::restarted);
       break;
     case notice::stalled:
-      return failure(task::reading, stream_.has_begun() ? problem::stalled : problem::brown_out,
-                     name());
+      return has_streamed_ ? failure(task::reading, problem::stalled, name())
+                           : failure(task::starting, problem::brown_out, name());
   }
   stream_.begin(samples_per_second_);
   return {};
@@ -308,7 +320,7 @@ result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
   if (auto ready = run_plan(); !ready) return tl::unexpected(ready.error());
   if (!line_->answers()) return failure(task::asking, problem::read_only, name());
   if (const auto refused = session_.begin(wanted, now_ns(), how)) {
-    return failure(task::asking, problem::scanning, name());
+    return failure(task::asking, problem::scanning, subject(name()).add(wanted));
   }
   asked_.reset();
   asking_ = true;

@@ -68,7 +68,8 @@ class lidar::driver {
 
   // The line.
   result<void> connect();
-  result<void> hang_up(const error& why);
+  result<void> hang_up(const error& broken);
+  void leave_stopped(const error& why) noexcept;
   void release_line() noexcept;
   result<void> send_commands();
   result<void> receive(std::int64_t deadline_ns);
@@ -98,7 +99,8 @@ class lidar::driver {
   void started();
   void back_again();
   result<void> run_plan();
-  [[nodiscard]] error error_of(const outcome& done) const noexcept;
+  [[nodiscard]] error error_of(const outcome& done) const;
+  [[nodiscard]] error spoilt(const error& why) const;
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connector_->now_ns(); }
   void tell(lidar_event::kind what, problem reason = problem::timeout) noexcept;
@@ -111,6 +113,7 @@ class lidar::driver {
   stage stage_ = stage::closed;
   bool opened_ = false;                       // who it is is known
   bool wants_scan_ = false;                   // started, and not stopped
+  bool has_streamed_ = false;                 // a whole revolution has come since the start
   bool reconnecting_ = false;                 // connected again, and not yet as before
   error lost_{task::reading, problem::gone};  // why it is lost or closed
   std::optional<error> refused_;              // why a plan ended, though the line is good

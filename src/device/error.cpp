@@ -38,7 +38,7 @@ constexpr std::array<words, problem_count> all_words{{
      "firewall stands between."},
     {problem::silence, "silence", "not a single byte came",
      "See that the lidar has power (its own 5 V supply if need be), that the cable carries data, "
-     "and that this is the lidar's port."},
+     "that this is the lidar's port, and that the baud rate is its own: 230400 for a G4."},
     {problem::garbage, "garbage", "bytes came, but none that make sense",
      "Most likely the baud rate is wrong: a G4 speaks at 230400 baud. Else look for a loose cable "
      "or for another kind of device."},
@@ -50,32 +50,34 @@ constexpr std::array<words, problem_count> all_words{{
     {problem::unhealthy, "unhealthy", "the lidar says that it is defective",
      "Plug it out and in. If it says so again, have it repaired; the error code is for the maker."},
     {problem::timeout, "timeout", "nothing came in time",
-     "Try again, or wait longer. If it stays so, restart the lidar."},
+     "Try again, or wait longer: a scan comes some 0.7 s after the start. If it stays so, plug the "
+     "lidar out and in."},
     {problem::wrong_answer, "wrong_answer", "the answers do not belong to the question",
-     "See that no other program talks to the lidar, then restart it."},
+     "Try again. If it stays so, see that no other program talks to the lidar, and plug it out and "
+     "in."},
     {problem::not_reached, "not_reached", "the lidar does not take this value",
-     "Choose a value within what the lidar offers; it now has the nearest one that it took."},
+     "Choose a value that the lidar offers; it stays with the nearest one that it took."},
     {problem::scanning, "scanning", "refused, since it would disturb the running scan",
-     "Stop the scan first, or allow the driver to stop and resume."},
+     "Stop the scan first, or allow it to be interrupted (while_scanning::stop_and_resume)."},
     {problem::not_scanning, "not_scanning", "no scan is running", "Start the scan first."},
-    {problem::gone, "gone", "the port has vanished",
-     "The lidar was unplugged or lost its power. Plug it in, and turn reconnecting on if the "
-     "program is to go on by itself."},
+    {problem::gone, "gone", "the port is not there any more",
+     "Unless the program has closed it, the lidar was unplugged: plug it in and open it again, or "
+     "turn reconnecting on, so that the program goes on by itself."},
     {problem::stalled, "stalled", "the stream has stopped though the port is there",
      "See whether the head still turns: if not, power or motor; if so, cable or bridge."},
     {problem::brown_out, "brown_out", "the bytes stopped when the motor started",
      "The lidar gets too little power: give it a supply of its own, a shorter cable, or a port "
      "that can deliver 1 A."},
     {problem::interference, "interference", "another program reads from or writes to the port",
-     "Keep ModemManager and brltty off the port (the udev rule does), and end other programs that "
-     "use it."},
+     "End the other program (`fuser -v <port>` names it); the udev rule keeps ModemManager and "
+     "brltty off the port."},
     {problem::read_only, "read_only", "a file cannot be asked anything",
-     "Open the lidar itself for that; a file only gives its points."},
+     "A file only gives its points: open the lidar itself for that."},
     {problem::end_of_input, "end_of_input", "there is no more to read",
      "A recording ends, a connection is closed by its other end: open it again."},
     {problem::cancelled, "cancelled", "woken by this program", "Nothing is wrong."},
     {problem::system, "system", "the system refused",
-     "Look up the system's error; `dmesg` may say more."},
+     "See what the system's error means; `dmesg` may say more."},
 }};
 
 constexpr bool in_order() {
@@ -104,9 +106,11 @@ error::error(g4lidar::task doing, problem what, std::string_view subject, int sy
 bool error::is_fatal() const noexcept {
   switch (what_) {
     case problem::timeout:
-    case problem::scanning:
-    case problem::cancelled:
+    case problem::wrong_answer:
     case problem::not_reached:
+    case problem::scanning:
+    case problem::read_only:
+    case problem::cancelled:
       return false;
     default:
       return true;
@@ -120,8 +124,12 @@ std::string error::message() const {
   if (size_ > 0) text.append(" ").append(subject());
   text.append(": ").append(words_of(what_).says);
   if (errno_ != 0) {
-    // Of glibc; thread-safe, unlike strerror.
-    if (const char* name = strerrorname_np(errno_)) text.append(" (").append(name).append(")");
+    // Of glibc; thread-safe and independent of the locale, unlike strerror.
+    const char* name = strerrorname_np(errno_);
+    const char* says = strerrordesc_np(errno_);
+    if (name != nullptr && says != nullptr) {
+      text.append(" (").append(name).append(", ").append(says).append(")");
+    }
   }
   return text.append(". ").append(words_of(what_).advice);
 }

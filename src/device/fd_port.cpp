@@ -40,6 +40,9 @@ bool is_blocked(int system_errno) noexcept {
 // They stay: whoever finds one of them and nothing to read or write must not wait again.
 constexpr short hung_up = POLLHUP | POLLERR | POLLNVAL;
 
+// In a row; with another reader that takes half of the bursts this comes within a few of them.
+constexpr int max_robbed = 3;
+
 timespec time_until(std::int64_t deadline_ns) noexcept {
   const std::int64_t now = steady_now_ns();
   const std::int64_t left = deadline_ns > now ? deadline_ns - now : 0;
@@ -132,10 +135,18 @@ result<received> fd_port::read_now(std::span<std::uint8_t> out, short polled) no
       uninterrupted([&] { return calls_->read(fd_.get(), out.data(), out.size()); });
   const int system_errno = errno;
   may_have_more_ = got == static_cast<ssize_t>(out.size());
-  if (got > 0) return received{static_cast<std::size_t>(got), steady_now_ns()};
+  if (got > 0) {
+    robbed_ = 0;
+    return received{static_cast<std::size_t>(got), steady_now_ns()};
+  }
   if (got == 0) return ended(task::reading, at_end_, 0);
   if (!is_blocked(system_errno)) return failed(task::reading, system_errno);
   if ((polled & hung_up) != 0) return ended(task::reading, problem::gone, 0);
+  // There were bytes, and there are none: somebody else has read them.
+  if ((polled & POLLIN) != 0 && at_end_ == problem::gone && ++robbed_ >= max_robbed) {
+    robbed_ = 0;
+    return failure(task::reading, problem::interference, name_);
+  }
   return received{};
 }
 

@@ -86,6 +86,7 @@ class fd_port : public transport {
   problem at_end_;
   bool may_have_more_ = false;  // the last read() filled its buffer
   bool is_gone_ = false;
+  int robbed_ = 0;  // bytes that were there when poll() looked, and not for read(), in a row
 };
 
 }  // namespace g4lidar

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "driver.hpp"
+#include "rival.hpp"
+#include "subject.hpp"
 
 namespace g4lidar {
 
@@ -51,7 +53,10 @@ result<void> lidar::driver::go_on_with_plan() {
     }
     if (asking_ || plan_at_ == planned_ || session_.is_busy()) return {};
     const request& next = plan_[plan_at_].wanted;
-    if (next.what == ask::start) stream_.begin(samples_per_second_);
+    if (next.what == ask::start) {
+      stream_.begin(samples_per_second_);
+      has_streamed_ = false;
+    }
     if (session_.begin(next, now_ns())) return {};  // busy with what it found by itself
     if (session_.is_busy()) return {};
   }
@@ -60,12 +65,15 @@ result<void> lidar::driver::go_on_with_plan() {
 result<void> lidar::driver::finish_errand(const outcome& done) {
   const errand current = plan_[plan_at_++];
   if (done.how != verdict::answered) {
-    if (!current.needed) return {};
+    // Who does not even answer what every G4 knows is not there any more.
+    if (!current.needed && !done.heard_nothing()) return {};
     return give_up(error_of(done));
   }
   if (const auto* said = std::get_if<health>(&done.value)) {
     if (said->status == health_status::error) {
-      return give_up(error(task::starting, problem::unhealthy, name()));
+      const subject code =
+          subject(name()).add(", error code ").add(std::uint32_t{said->error_code});
+      return give_up(error(task::starting, problem::unhealthy, code));
     }
     if (said->status == health_status::warning) tell(lidar_event::kind::health_warning);
   }
@@ -88,7 +96,10 @@ result<void> lidar::driver::give_up(const error& why) {
 }
 
 result<void> lidar::driver::identified(const device_information& who) {
-  if (who.model != model_g4) return failure(task::opening, problem::other_device, name());
+  if (who.model != model_g4) {
+    const subject model = subject(name()).add(", model ").add(std::uint32_t{who.model});
+    return failure(task::opening, problem::other_device, model);
+  }
   if (opened_ && who.serial_digits != information_.serial_digits) {
     // Another lidar: ours may be behind another port.
     backoff_ns_ = 0;
@@ -118,7 +129,7 @@ void lidar::driver::back_again() {
   tell(lidar_event::kind::reconnected);
 }
 
-error lidar::driver::error_of(const outcome& done) const noexcept {
+error lidar::driver::error_of(const outcome& done) const {
   const auto doing = [&] {
     switch (done.asked.what) {
       case ask::start:
@@ -129,20 +140,28 @@ error lidar::driver::error_of(const outcome& done) const noexcept {
         break;
     }
     if (stage_ == stage::identifying) return task::opening;
-    return stage_ == stage::preparing ? task::configuring : task::asking;
+    if (stage_ != stage::preparing) return task::asking;
+    return done.asked.what == ask::health ? task::starting : task::configuring;
   }();
-  switch (done.how) {
-    case verdict::not_reached:
-      return {doing, problem::not_reached, name()};
-    case verdict::still_scanning:
-      return {doing, problem::does_not_stop, name()};
-    default:
-      break;
+  subject about(name());
+  if (stage_ != stage::identifying) about.add(done.asked);
+  if (done.how == verdict::not_reached) {
+    if (const auto* reached = std::get_if<scan_frequency>(&done.value)) {
+      about.add(" (reached ").add(*reached).add(")");
+    }
+    return {doing, problem::not_reached, about};
   }
-  if (done.heard_nothing() && stage_ == stage::identifying)
-    return {doing, problem::silence, name()};
-  if (done.heard_noise_only()) return {doing, problem::garbage, name()};
-  return {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, name()};
+  if (done.how == verdict::still_scanning) return spoilt({doing, problem::does_not_stop, about});
+  if (done.heard_nothing() && stage_ <= stage::preparing && stage_ != stage::idle) {
+    return spoilt({doing, problem::silence, about});
+  }
+  if (done.heard_noise_only()) return spoilt({doing, problem::garbage, about});
+  return spoilt({doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about});
+}
+
+/// Another program on the port explains more than what it has led to.
+error lidar::driver::spoilt(const error& why) const {
+  return line_ != nullptr ? with_rivals(why, *line_) : why;
 }
 
 }  // namespace g4lidar

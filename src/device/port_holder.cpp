@@ -104,4 +104,24 @@ std::string port_holder(const std::string& path) {
   return found == holders.end() ? std::string() : found->second;
 }
 
+std::string port_rival(const std::string& path) {
+  std::array<char, PATH_MAX> real{};
+  if (::realpath(path.c_str(), real.data()) == nullptr) return {};
+  const std::string self = std::to_string(::getpid());
+  std::string rival;
+  each_entry("/proc", [&](std::string_view pid) {
+    if (!rival.empty() || !is_number(pid) || pid == self) return;
+    const std::string files = "/proc/" + std::string(pid) + "/fd/";
+    bool has_port = false;
+    bool has_master = false;
+    each_entry(files, [&](std::string_view fd) {
+      const std::string target = link_target(files + std::string(fd));
+      has_port = has_port || target == real.data();
+      has_master = has_master || target.ends_with("/ptmx");
+    });
+    if (has_port && !has_master) rival = program(pid);
+  });
+  return rival;
+}
+
 }  // namespace g4lidar

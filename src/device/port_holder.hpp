@@ -18,4 +18,8 @@ namespace g4lidar {
 /// Who holds the port at `path`, by its lock or by having it open; empty where nobody is seen.
 [[nodiscard]] std::string port_holder(const std::string& path);
 
+/// Which other process has the port at `path` open, "cat (1234)"; empty where none is seen. Whoever
+/// plays the device, at the other end of a pseudo-terminal, does not count.
+[[nodiscard]] std::string port_rival(const std::string& path);
+
 }  // namespace g4lidar
