@@ -63,13 +63,14 @@ class inquiry {
 
   [[nodiscard]] result<device_information> judge(const outcome& ended) const {
     const auto* device = std::get_if<device_information>(&ended.value);
-    if (ended.how == verdict::still_scanning) return fail(problem::does_not_stop);
     if (ended.how != verdict::answered || device == nullptr) return nothing_believable();
     if (device->model == model_g4) return *device;
     return failure(task::asking, problem::other_device,
                    std::string(port_.name()) + ", model " + std::to_string(device->model));
   }
 
+  // A line that is never silent is a G4's only where it makes packets: at another baud rate it is
+  // nobody's.
   [[nodiscard]] tl::unexpected<error> nothing_believable() const noexcept {
     if (has_packets_) return fail(problem::does_not_stop);
     return fail(has_heard_ ? problem::garbage : problem::silence);
