@@ -148,26 +148,25 @@ class life {
 };
 
 TEST(SensorClockTwin, KeepsItsPromiseAgainstTheTruth) {
-  int seed = 0;
-  for (const double ratio : {0.97, 1.03, 1.0}) {
-    for (int repeat = test::scaled(2); repeat > 0; --repeat) {
-      SCOPED_TRACE(testing::Message() << "seed " << ++seed << ", rate times " << ratio);
-      life one(static_cast<std::uint64_t>(seed), ratio);
-      errors found = one.run(30.0);
-      ASSERT_GT(found.points, 200'000.0);
-      const double rms_us = std::sqrt(found.square_sum / found.points) / 1e3;
-      const auto middle = found.bounds.begin() + std::ssize(found.bounds) / 2;
-      std::nth_element(found.bounds.begin(), middle, found.bounds.end());
-      std::printf("  rate times %.2f: rms %.1f us, worst %.1f us, bound %.1f us, broken %.5f\n",
-                  ratio, rms_us, found.worst_ns / 1e3, *middle / 1e3, found.broken / found.points);
-      EXPECT_LT(rms_us, 200.0);
-      EXPECT_LE(found.worst_ns, 1e6);
-      EXPECT_LT(found.broken / found.points, 1e-3);
-      EXPECT_LE(*middle, 500e3);
-      EXPECT_TRUE(found.grows);
-      EXPECT_GT(one.lost(), 1000);
-      EXPECT_NEAR(static_cast<double>(one.counted()), static_cast<double>(one.lost()), 80.0);
-    }
+  constexpr std::array<double, 3> ratios{0.97, 1.03, 1.0};
+  for (int seed = 1; seed <= test::scaled(6); ++seed) {
+    const double ratio = ratios[static_cast<std::size_t>(seed % 3)];
+    SCOPED_TRACE(testing::Message() << "seed " << seed << ", rate times " << ratio);
+    life one(static_cast<std::uint64_t>(seed), ratio);
+    errors found = one.run(30.0);
+    ASSERT_GT(found.points, 200'000.0);
+    const double rms_us = std::sqrt(found.square_sum / found.points) / 1e3;
+    const auto middle = found.bounds.begin() + std::ssize(found.bounds) / 2;
+    std::nth_element(found.bounds.begin(), middle, found.bounds.end());
+    std::printf("  rate times %.2f: rms %.1f us, worst %.1f us, bound %.1f us, broken %.5f\n",
+                ratio, rms_us, found.worst_ns / 1e3, *middle / 1e3, found.broken / found.points);
+    EXPECT_LT(rms_us, 200.0);
+    EXPECT_LE(found.worst_ns, 1e6);
+    EXPECT_LT(found.broken / found.points, 1e-3);
+    EXPECT_LE(*middle, 500e3);
+    EXPECT_TRUE(found.grows);
+    EXPECT_GT(one.lost(), 1000);
+    EXPECT_NEAR(static_cast<double>(one.counted()), static_cast<double>(one.lost()), 80.0);
   }
 }
 
