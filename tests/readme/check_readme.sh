@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # The program in the README is examples/first_points.cpp, and prints what the README shows; the files
-# and commands that the README names are there. Wants G4_DUMP, FIRST_POINTS and G4LIDAR_SOURCE_DIR.
+# and commands that the README names are there, and so are the documents that the sources name. Wants
+# G4_DUMP, FIRST_POINTS and G4LIDAR_SOURCE_DIR.
 set -euo pipefail
 cd "$G4LIDAR_SOURCE_DIR"
 
@@ -39,4 +40,14 @@ for path in $(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cm
     missing=1
   fi
 done
+
+# And every document that a header, a source or the tool names.
+while read -r path; do
+  if [[ $path == docs/errors.md ]]; then continue; fi # comes with the errors that it describes
+  if [[ ! -e $path ]]; then
+    echo "$path is not there, and is named by:" >&2
+    grep -rlF "$path" include src tools >&2
+    missing=1
+  fi
+done < <(grep -rhoE 'docs/[A-Za-z0-9_./-]+\.md' include src tools | sort --unique)
 exit "$missing"
