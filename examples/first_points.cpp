@@ -11,7 +11,8 @@ int main() {
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), stdin)) {
     g4lidar::bytes input(buffer.data(), n);
     for (const g4lidar::point& p : decoder.decode(input, points)) {
-      std::printf("%.3f degrees %.2f mm\n", double{p.angle_deg}, double{p.range_mm});
+      std::printf("%.3f degrees %.2f mm\n", static_cast<double>(p.angle_deg),
+                  static_cast<double>(p.range_mm));
     }
   }
 }
