@@ -67,6 +67,8 @@ class request_steps {
   }
 
  private:
+  friend struct session_state;  // of the test that explores all of them
+
   enum class answer_of : std::uint8_t { query, move, confirmation };
 
   static constexpr int max_losses = 4;   // of answers, without a move between them

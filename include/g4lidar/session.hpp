@@ -240,6 +240,7 @@ class session {
 
   constexpr void on_quiet(std::int64_t now_ns) noexcept {
     is_idle_ = true;
+    is_runaway_ = false;
     if (wants_start()) return start(now_ns);
     if (!has_request_) return talk_.rest();
     if (!std::exchange(is_broken_, false) || outcome_.asked.what == ask::restart) {
@@ -279,6 +280,7 @@ class session {
     if (++disturbances_ > max_disturbances) {
       is_runaway_ = true;
       is_idle_ = false;
+      talk_.question().doubt_all();
       forget_toggle();
       return end(verdict::still_scanning, {}, now_ns);
     }

@@ -188,6 +188,24 @@ TEST_F(session_requests, RangingThatDoesNotMoveIsNotReached) {
                ">D1 <byte:2 >D0 <byte:2 >90 <info >D1 <byte:2 =not_reached:2");
 }
 
+TEST_F(session_requests, EndThoughNoMoveEverHolds) {
+  std::string went = bench.ask(requests::set(ranging_frequency::khz_9), "<byte:0");
+  int moves = 0;
+  unsigned now = 0;
+  for (int i = 0; i < 1000 && bench.talk.is_busy(); ++i) {
+    const std::string asked = went.substr(went.size() - 3);
+    if (asked == ">D0") {
+      ++moves;
+      now = (now + 1) % 3;
+    } else if (asked == ">D1") {
+      now = 0;  // it says something else each time it is read
+    }
+    went = bench.play(asked == ">90" ? "<info" : "<byte:" + std::to_string(now));
+  }
+  EXPECT_EQ(moves, 60);
+  EXPECT_EQ(bench.last.how, verdict::not_reached);
+}
+
 TEST_F(session_requests, FrequencyIsSteppedCoarselyThenFinely) {
   EXPECT_ASKED(bench, requests::set(scan_frequency{920}),
                ">0D <freq:700 >0B <freq:800 >0B <freq:900 >09 <freq:910 >09 <freq:920 >90 <info "
