@@ -40,7 +40,7 @@ device::machine::machine(const world& scene, const device_options& options,
   assert(std::all_of(faults.begin(), faults.end(),
                      [](const fault& f) { return problem_with(f).empty(); }));
   log.reserve(options.log_capacity);
-  head.hold(settings.constancy);
+  use_settings();
   if (options.boots_at_start) {
     power_on(true);
   } else {
@@ -176,8 +176,7 @@ void device::machine::power_on(bool keep_settings) noexcept {
   power_off();
   if (!keep_settings) {
     settings = first_settings(options_);
-    scanner_.set_ranging(settings.ranging);
-    head.hold(settings.constancy);
+    use_settings();
   }
   state_ = state::booting;
   booted_ns_ = now_ns_ + options_.boot_ns;

@@ -100,6 +100,7 @@ class device::machine {
   void execute(const pending_command& asked_for) noexcept;
   [[nodiscard]] bool obey(command code) noexcept;
   [[nodiscard]] bool obey_setting(command code) noexcept;
+  void use_settings() noexcept;
   [[nodiscard]] bool obey_start() noexcept;
   [[nodiscard]] health condition() const noexcept;
   void restart() noexcept;

@@ -78,14 +78,17 @@ bool device::machine::obey_setting(command code) noexcept {
   const std::optional<answer_bytes> answered = apply(code, settings, options_);
   if (!answered) return false;
   if (settings.protection != before) fed_ns_ = now_ns_;
-  scanner_.set_ranging(settings.ranging);
-  scanner_.set_turning(settings.direction == motor_direction::clockwise
-                           ? turning::clockwise
-                           : options_.counter_clockwise);
-  head.hold(settings.constancy);
+  use_settings();
   keep_motor();
   answer(*answered);
   return true;
+}
+
+void device::machine::use_settings() noexcept {
+  const bool clockwise = settings.direction == motor_direction::clockwise;
+  scanner_.set_ranging(settings.ranging);
+  scanner_.set_turning(clockwise ? turning::clockwise : options_.counter_clockwise);
+  head.hold(settings.constancy);
 }
 
 bool device::machine::obey_start() noexcept {

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+// Each kind of fault does what it is called, while it is at work, and nothing else.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "g4lidar/sim/device.hpp"
+#include "support/host_side.hpp"
+
+namespace {
+
+using namespace g4lidar;
+using sim::fault;
+using sim::fault_kind;
+using sim::forever_ns;
+using sim::make_fault;
+using test::byte_vector;
+using test::heard;
+using test::host_side;
+using test::ms;
+using test::second;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+const byte_vector information = [] {
+  host_side host;
+  return host.ask(command::device_info);
+}();
+
+fault with_rate(fault f, double rate) {
+  f.rate = rate;
+  return f;
+}
+fault with_amount(fault f, std::int64_t amount) {
+  f.amount = amount;
+  return f;
+}
+
+// A device without strays that starts to scan, and what 10 s of it sound like.
+heard ten_seconds(std::initializer_list<fault> faults) {
+  sim::device_options options;
+  options.stray_after_start = options.stray_before_zero = false;
+  host_side host(options, faults);
+  host.send(command::start);
+  return host.hear(10 * second);
+}
+
+TEST(SimFaults, FlipsBits) {
+  const heard clean = ten_seconds({});
+  const heard flipped = ten_seconds({with_rate(make_fault(fault_kind::flip), 0.001)});
+  ASSERT_EQ(flipped.bytes.size(), clean.bytes.size());
+  int wrong_bytes = 0;
+  for (std::size_t i = 0; i < clean.bytes.size(); ++i) {
+    const int wrong = std::popcount(static_cast<unsigned>(clean.bytes[i] ^ flipped.bytes[i]));
+    ASSERT_LE(wrong, 1);
+    wrong_bytes += wrong;
+  }
+  EXPECT_NEAR(wrong_bytes, 203, 60);
+  EXPECT_LT(flipped.packets, clean.packets - 100);
+}
+
+TEST(SimFaults, DropsAndInsertsBytes) {
+  const auto clean = static_cast<double>(ten_seconds({}).bytes.size());
+  const auto size = [](fault_kind kind) {
+    return static_cast<double>(ten_seconds({with_rate(make_fault(kind), 0.001)}).bytes.size());
+  };
+  EXPECT_NEAR(size(fault_kind::drop) - clean, -203.0, 60.0);
+  EXPECT_NEAR(size(fault_kind::insert) - clean, 203.0, 60.0);
+}
+
+TEST(SimFaults, BurstsAreAsLongAsSaid) {
+  const heard clean = ten_seconds({});
+  const heard hit = ten_seconds({with_amount(with_rate(make_fault(fault_kind::burst), 1e-4), 50)});
+  ASSERT_EQ(hit.bytes.size(), clean.bytes.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < clean.bytes.size(); ++i) wrong += clean.bytes[i] != hit.bytes[i];
+  EXPECT_NEAR(static_cast<double>(wrong), 20 * 50.0, 500.0);
+}
+
+TEST(SimFaults, TruncatesPackets) {
+  const heard clean = ten_seconds({});
+  const heard cut = ten_seconds({with_rate(make_fault(fault_kind::truncate), 0.1)});
+  EXPECT_NEAR(static_cast<double>(cut.packets), 0.9 * static_cast<double>(clean.packets), 60.0);
+  EXPECT_LT(cut.bytes.size(), clean.bytes.size());
+  EXPECT_GT(cut.skipped_bytes, 0U);
+}
+
+TEST(SimFaults, AStallKeepsBytesBackAndLosesNone) {
+  host_side host({}, {make_fault(fault_kind::stall, second, 100 * ms)});
+  (void)host.ask(command::start, second);
+  EXPECT_THAT(host.listen(99 * ms), IsEmpty());
+  EXPECT_GT(host.listen(2 * ms).size(), 2'000U);
+  const byte_vector steady = host.listen(100 * ms);
+  EXPECT_NEAR(static_cast<double>(steady.size()), 2'036.0, 100.0);
+}
+
+TEST(SimFaults, AStallForEverIsSilence) {
+  host_side host({}, {make_fault(fault_kind::stall, second)});
+  (void)host.ask(command::start, 1'010 * ms);
+  EXPECT_THAT(host.listen(10 * second), IsEmpty());
+}
+
+TEST(SimFaults, BatchesComeTogether) {
+  host_side host({}, {with_amount(make_fault(fault_kind::batch), 16 * ms)});
+  (void)host.ask(command::start, second);
+  std::int64_t longest = 0;
+  std::size_t batches = 0;
+  for (const std::int64_t begin = host.now_ns; host.now_ns < begin + 10 * second; ++batches) {
+    const std::int64_t before = host.now_ns;
+    while (host.twin.available(host.now_ns) == 0) {
+      host.now_ns = std::max(host.twin.next_ns(host.now_ns), host.now_ns + 1);
+    }
+    longest = std::max(longest, host.now_ns - before);
+    (void)host.listen(1);
+  }
+  EXPECT_NEAR(static_cast<double>(batches), 10'000.0 / 8.0, 100.0) << "8 ms in the mean";
+  EXPECT_GT(longest, 15 * ms);
+  EXPECT_LT(longest, 17 * ms);
+}
+
+TEST(SimFaults, AnswersComeLate) {
+  host_side host({}, {with_amount(make_fault(fault_kind::late), 300 * ms)});
+  EXPECT_THAT(host.ask(command::device_info, 299 * ms), IsEmpty());
+  EXPECT_EQ(host.listen(10 * ms), information);
+}
+
+TEST(SimFaults, AnswersAreWrongYetPossible) {
+  host_side host({}, {make_fault(fault_kind::wrong)});
+  for (int i = 0; i < 50; ++i) {
+    const heard got = test::taken_apart(host.ask(command::device_info));
+    ASSERT_EQ(got.responses.size(), 1U);
+    ASSERT_NE(got.responses.front(), response_kind::device_info);
+    ASSERT_EQ(got.skipped_bytes, 0U);
+  }
+}
+
+TEST(SimFaults, AnswersComeTwiceOrNever) {
+  host_side twice({}, {make_fault(fault_kind::twice)});
+  byte_vector both = information;
+  both.insert(both.end(), information.begin(), information.end());
+  EXPECT_EQ(twice.ask(command::device_info), both);
+  host_side never({}, {make_fault(fault_kind::mute, 0, second)});
+  EXPECT_THAT(never.ask(command::frequency_up_1_hz), IsEmpty());
+  EXPECT_EQ(never.twin.settings().scan_frequency_chz, 800) << "it was carried out";
+  (void)never.listen(second);
+  EXPECT_EQ(never.ask(command::device_info), information);
+}
+
+TEST(SimFaults, TheRateIsOfAllAnswers) {
+  host_side host({}, {with_rate(make_fault(fault_kind::mute), 0.25)});
+  int answered = 0;
+  for (int i = 0; i < 400; ++i) answered += host.ask(command::health, 10 * ms).empty() ? 0 : 1;
+  EXPECT_NEAR(answered, 300, 40);
+}
+
+TEST(SimFaults, ADeadTransmitLine) {
+  host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::deaf)});
+  (void)host.ask(command::stop);
+  EXPECT_TRUE(host.twin.is_scanning());
+  EXPECT_GT(host.hear(second).packets, 200U);
+  EXPECT_THAT(host.twin.log(), IsEmpty());
+}
+
+TEST(SimFaults, AlreadyScanningAtFullSpeed) {
+  host_side host({}, {make_fault(fault_kind::scanning)});
+  const heard got = host.hear(second);
+  EXPECT_THAT(got.responses, IsEmpty()) << "no header";
+  EXPECT_NEAR(static_cast<double>(got.zero_packets), 7.0, 1.0);
+  host_side later({}, {make_fault(fault_kind::scanning, second)});
+  EXPECT_THAT(later.listen(second), IsEmpty());
+  EXPECT_GT(later.hear(second).packets, 200U);
+}
+
+TEST(SimFaults, AWrongBaudRateIsGarbage) {
+  host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::baud)});
+  const heard got = host.hear(2 * second);
+  EXPECT_GT(got.bytes.size(), 15'000U);
+  EXPECT_EQ(got.packets, 0U);
+  (void)host.ask(command::stop);
+  EXPECT_TRUE(host.twin.is_scanning());
+}
+
+TEST(SimFaults, ABrownOutSilencesTheDeviceUntilItEnds) {
+  host_side host({}, {make_fault(fault_kind::brown_out, 0, 3 * second)});
+  EXPECT_EQ(host.ask(command::device_info), information) << "without the motor all is well";
+  const heard got = test::taken_apart(host.ask(command::start, second));
+  EXPECT_EQ(got.responses.size(), 1U);
+  EXPECT_LT(got.bytes.size(), 800U) << "30 ms of packets";
+  EXPECT_TRUE(host.twin.is_plugged(host.now_ns));
+  EXPECT_THAT(host.ask(command::device_info, second), IsEmpty());
+  EXPECT_EQ(host.hear(2 * second).responses.size(), 1U) << "it has booted";
+  EXPECT_GT(test::taken_apart(host.ask(command::start, second)).packets, 100U);
+}
+
+TEST(SimFaults, ABrownOutMayBootAgain) {
+  host_side host({}, {make_fault(fault_kind::reboot)});
+  for (int i = 0; i < 3; ++i) {
+    const heard got = test::taken_apart(host.ask(command::start, 2 * second));
+    EXPECT_THAT(got.responses,
+                ElementsAre(response_kind::scan_started, response_kind::device_info));
+    EXPECT_TRUE(host.twin.is_idle_and_silent(host.now_ns));
+  }
+}
+
+TEST(SimFaults, UnplugAndReplug) {
+  for (const bool outlives : {false, true}) {
+    sim::device_options options;
+    options.settings_outlive_power = outlives;
+    host_side host(options, {make_fault(fault_kind::unplug, second, second)});
+    (void)host.ask(command::frequency_up_1_hz);
+    (void)host.ask(command::start, 940 * ms);
+    EXPECT_TRUE(host.twin.is_plugged(second - 1));
+    EXPECT_EQ(host.twin.next_plug_ns(), second);
+    host.now_ns = second;
+    EXPECT_FALSE(host.twin.is_plugged(second));
+    EXPECT_THAT(host.ask(command::device_info, second - 1 - 1), IsEmpty());
+    EXPECT_EQ(host.twin.replugs(), 0U);
+    host.now_ns = 2 * second;
+    EXPECT_TRUE(host.twin.is_plugged(host.now_ns));
+    EXPECT_EQ(host.twin.replugs(), 1U);
+    EXPECT_FALSE(host.twin.is_up());
+    EXPECT_THAT(host.hear(second).responses, ElementsAre(response_kind::device_info));
+    EXPECT_EQ(host.twin.settings().scan_frequency_chz, outlives ? 800 : 700);
+  }
+}
+
+TEST(SimFaults, ThePlugCanBePulledByHand) {
+  host_side host;
+  (void)host.ask(command::start, second);
+  host.twin.unplug(host.now_ns);
+  EXPECT_FALSE(host.twin.is_plugged(host.now_ns));
+  EXPECT_EQ(host.twin.next_ns(host.now_ns), forever_ns);
+  EXPECT_THAT(host.listen(second), IsEmpty());
+  host.twin.replug(host.now_ns);
+  (void)host.listen(second);
+  EXPECT_EQ(host.ask(command::device_info), information);
+}
+
+TEST(SimFaults, HealthTurnsBadAndGoodAgain) {
+  host_side host({}, {make_fault(fault_kind::health, second, second)});
+  const auto status = [&host] { return host.ask(command::health).at(7); };
+  EXPECT_EQ(status(), 0);
+  (void)host.listen(second);
+  EXPECT_EQ(status(), 2);
+  (void)host.listen(second);
+  EXPECT_EQ(status(), 0);
+}
+
+TEST(SimFaults, JoltsMakeSuspectPackets) {
+  const heard got = ten_seconds({with_rate(make_fault(fault_kind::jolt), 0.1)});
+  EXPECT_GT(got.suspect, 100U);
+  EXPECT_EQ(ten_seconds({}).suspect, 0U);
+}
+
+TEST(SimFaults, AFaultIsOverWhenItsTimeIsOver) {
+  for (int kind = 0; kind <= static_cast<int>(fault_kind::jolt); ++kind) {
+    SCOPED_TRACE(name_of(static_cast<fault_kind>(kind)));
+    fault f = make_fault(static_cast<fault_kind>(kind), second, second);
+    if (f.rate < 1.0) f.rate = 0.01;
+    sim::device_options options;
+    options.stray_after_start = options.stray_before_zero = false;
+    host_side host(options, {f});
+    (void)host.ask(command::start, 3 * second);
+    (void)host.ask(command::stop, second);
+    (void)host.listen(second);
+    EXPECT_EQ(host.ask(command::device_info), information);
+    (void)host.ask(command::start, 2 * second);
+    const heard steady = host.hear(2 * second);
+    EXPECT_NEAR(static_cast<double>(steady.samples), 18'000.0, 80.0);
+    EXPECT_LE(steady.skipped_bytes, 2 * max_packet_size);
+    EXPECT_EQ(steady.suspect, 0U);
+  }
+}
+
+// Packets of which the twin says that they were whole arrive, and no others do (but for the
+// checksum's blind spots, of which these seeds have none).
+TEST(SimFaults, TheTruthKnowsWhatWasDamaged) {
+  for (const fault_kind kind : {fault_kind::flip, fault_kind::drop, fault_kind::insert,
+                                fault_kind::burst, fault_kind::truncate}) {
+    SCOPED_TRACE(name_of(kind));
+    host_side host({}, {make_fault(kind)});
+    std::vector<sim::sent_sample> truth(16'384);
+    const heard got = test::taken_apart(host.ask(command::start, 1'700 * ms));
+    truth.resize(host.twin.take_truth(truth));
+    std::vector<std::uint16_t> whole;
+    for (const sim::sent_sample& s : truth) {
+      if (s.whole) whole.push_back(s.truth.raw);
+    }
+    EXPECT_LT(whole.size(), truth.size());
+    std::vector<std::uint16_t> delivered;
+    for (const byte_vector& bytes : got.packet_bytes) {
+      const auto packet = packet_view::from(bytes);
+      for (std::size_t i = 0; i < packet->sample_count(); ++i) {
+        delivered.push_back(packet->sample(i));
+      }
+    }
+    ASSERT_LE(delivered.size(), whole.size());
+    EXPECT_LE(whole.size() - delivered.size(), 80U) << "but for what the bridge still holds";
+    EXPECT_TRUE(std::equal(delivered.begin(), delivered.end(), whole.begin()));
+  }
+}
+
+}  // namespace
