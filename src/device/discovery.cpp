@@ -59,7 +59,9 @@ bool is_serial_number(std::string_view digits) noexcept {
 
 result<port_info> with_serial_number(std::string_view digits, std::string_view which,
                                      const find_options& options) {
-  if (!is_serial_number(digits)) return failure(task::finding, problem::bad_option, which);
+  if (!is_serial_number(digits)) {
+    return failure(task::finding, problem::bad_option, std::string(which) + ", not 16 digits");
+  }
   const auto ports = candidates(options);
   if (!ports) return tl::unexpected(ports.error());
   std::optional<error> unasked;

@@ -1,34 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "port_holder.hpp"
 
-#include <dirent.h>
 #include <sys/sysmacros.h>
-#include <unistd.h>
 
 #include <array>
 #include <climits>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
 #include <optional>
 #include <string_view>
 
+#include "directory.hpp"
+
 namespace g4lidar {
 namespace {
-
-struct close_directory {
-  void operator()(DIR* open) const noexcept { ::closedir(open); }
-};
-using directory = std::unique_ptr<DIR, close_directory>;
-
-/// Calls `see(name)` for each entry of the directory; nothing where it may not be read.
-template <class See>
-void each_entry(const std::string& path, See see) {
-  const directory open(::opendir(path.c_str()));
-  if (!open) return;
-  while (const dirent* entry = ::readdir(open.get())) see(std::string_view(entry->d_name));
-}
 
 bool is_number(std::string_view text) noexcept {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
@@ -41,12 +27,6 @@ std::string program(std::string_view pid) {
   std::ifstream comm("/proc/" + number + "/comm");
   std::getline(comm, name);
   return name.empty() ? number : name + " (" + number + ")";
-}
-
-std::string link_target(const std::string& link) {
-  std::array<char, PATH_MAX> target{};
-  const ssize_t size = ::readlink(link.c_str(), target.data(), target.size());
-  return size > 0 ? std::string(target.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
 /// The process of a line of /proc/locks, where that is about the file:
@@ -108,6 +88,7 @@ std::string port_rival(const std::string& path) {
   std::array<char, PATH_MAX> real{};
   if (::realpath(path.c_str(), real.data()) == nullptr) return {};
   const std::string self = std::to_string(::getpid());
+  const bool is_pty = std::string_view(real.data()).starts_with("/dev/pts/");
   std::string rival;
   each_entry("/proc", [&](std::string_view pid) {
     if (!rival.empty() || !is_number(pid) || pid == self) return;
@@ -117,7 +98,7 @@ std::string port_rival(const std::string& path) {
     each_entry(files, [&](std::string_view fd) {
       const std::string target = link_target(files + std::string(fd));
       has_port = has_port || target == real.data();
-      has_master = has_master || target.ends_with("/ptmx");
+      has_master = has_master || (is_pty && target.ends_with("/ptmx"));
     });
     if (has_port && !has_master) rival = program(pid);
   });

@@ -114,7 +114,9 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                    const tcp_options& options,
                                                    const system_calls& calls) {
   const auto wanted = parse(address);
-  if (!wanted) return failure(task::opening, problem::bad_option, address);
+  if (!wanted) {
+    return failure(task::opening, problem::bad_option, std::string(address) + ", not host:port");
+  }
   std::string name = "tcp:" + wanted->host + ":" + wanted->port;
   const address_list list = addresses_of(*wanted);
   const std::int64_t deadline_ns =

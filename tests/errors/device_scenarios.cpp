@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// Trouble with the device itself: a driver on the simulated one, in virtual time.
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/sim/virtual_port.hpp"
+#include "scenario.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using namespace std::chrono_literals;
+using sim::fault_kind;
+using sim::make_fault;
+
+using faults = std::vector<sim::fault>;
+using trouble = std::optional<error>;
+
+constexpr std::int64_t second = 1'000'000'000;
+
+struct bench {
+  explicit bench(const faults& wrong = {}, const sim::device_options& options = {})
+      : twin(sim::built_in_world(), options, wrong) {}
+
+  [[nodiscard]] result<lidar> open(const lidar_options& options = {}) {
+    return lidar::open(std::make_unique<sim::virtual_connector>(twin, clock), options);
+  }
+
+  sim::device twin;
+  sim::virtual_clock clock;
+};
+
+/// Of `does(device)`, where opening went well.
+template <class Does>
+trouble once_open(bench& on, Does does, const lidar_options& options = {}) {
+  auto device = on.open(options);
+  if (!device) return device.error();
+  return does(*device);
+}
+
+/// The same, with the scan running.
+template <class Does>
+trouble once_scanning(bench& on, Does does, const lidar_options& options = {}) {
+  return once_open(
+      on,
+      [&](lidar& device) {
+        auto started = device.start();
+        return started ? does(device) : error_in(started);
+      },
+      options);
+}
+
+/// The loop of an application, for a minute.
+trouble application(lidar& device, const bench& on) {
+  while (on.clock.now_ns() < 60 * second) {
+    const auto scan = device.next_scan(500ms);
+    if (!scan && scan.error().is_fatal()) return scan.error();
+  }
+  return std::nullopt;
+}
+
+/// The time is four seconds past; by then all is as it should be.
+constexpr std::int64_t later = 4 * second;
+void wait_until(bench& on, std::int64_t then_ns) { on.clock.advance_to(then_ns); }
+
+trouble opening(const faults& wrong, const sim::device_options& options = {}) {
+  bench on(wrong, options);
+  return error_in(on.open());
+}
+
+trouble asking(fault_kind wrong, const request& wanted) {
+  bench on({make_fault(wrong, later)});
+  return once_open(on, [&](lidar& device) {
+    wait_until(on, later + 1);
+    return error_in(device.ask(wanted));
+  });
+}
+
+trouble running(const faults& wrong) {
+  bench on(wrong);
+  return once_scanning(on, [&](lidar& device) { return application(device, on); });
+}
+
+trouble unpowered() {
+  sim::device_options options;
+  options.boots_at_start = true;
+  options.boot_ns = 3600 * second;
+  return opening({}, options);
+}
+
+trouble dies_before_start() {
+  bench on({make_fault(fault_kind::stall, later)});
+  return once_open(on, [&](lidar& device) {
+    wait_until(on, later + 1);
+    return error_in(device.start());
+  });
+}
+
+trouble another_model() {
+  sim::device_options options;
+  options.info.model = 4;
+  return opening({}, options);
+}
+
+trouble deaf_when_stopped() {
+  bench on({make_fault(fault_kind::deaf, later)});
+  return once_scanning(on, [&](lidar& device) {
+    while (on.clock.now_ns() < later) static_cast<void>(device.next_scan(500ms));
+    return error_in(device.stop());
+  });
+}
+
+trouble deaf_when_asked() {
+  bench on({make_fault(fault_kind::deaf, later)});
+  return once_scanning(on, [&](lidar& device) {
+    while (on.clock.now_ns() < later) static_cast<void>(device.next_scan(500ms));
+    return error_in(device.ask(requests::health(), while_scanning::stop_and_resume));
+  });
+}
+
+trouble health_error() {
+  bench on({make_fault(fault_kind::health)});
+  return once_open(on, [](lidar& device) { return error_in(device.start()); });
+}
+
+trouble no_scan_yet() {
+  bench on;
+  return once_scanning(on, [](lidar& device) { return error_in(device.next_scan(10ms)); });
+}
+
+trouble frequency_out_of_reach() {
+  sim::device_options options;
+  options.scanner.scan_frequency_chz = 703;
+  options.frequency_at_limit = sim::at_limit::refuse;
+  bench on({}, options);
+  lidar_options wanted;
+  wanted.frequency = scan_frequency{1200};
+  return once_open(on, [](lidar& device) { return error_in(device.start()); }, wanted);
+}
+
+trouble frequency_too_high() {
+  bench on;
+  return once_open(
+      on, [](lidar& device) { return error_in(device.ask(requests::set(scan_frequency{1500}))); });
+}
+
+trouble asked_while_scanning() {
+  bench on;
+  return once_scanning(on, [](lidar& device) { return error_in(device.ask(requests::health())); });
+}
+
+trouble read_before_start() {
+  bench on;
+  return once_open(on, [](lidar& device) { return error_in(device.next_scan(10ms)); });
+}
+
+trouble unplugged_when_idle() {
+  bench on;
+  return once_open(on, [&](lidar& device) {
+    on.twin.unplug(on.clock.now_ns());
+    return error_in(device.ask(requests::health()));
+  });
+}
+
+trouble not_plugged() {
+  bench on;
+  on.twin.unplug(0);
+  return error_in(on.open());
+}
+
+trouble used_after_close() {
+  bench on;
+  return once_open(on, [&](lidar& device) {
+    static_cast<void>(device.close());
+    return error_in(device.start());
+  });
+}
+
+trouble woken() {
+  bench on;
+  return once_scanning(on, [](lidar& device) {
+    device.wake();
+    return error_in(device.next_scan(500ms));
+  });
+}
+
+trouble option_out_of_range() {
+  bench on;
+  lidar_options options;
+  options.frequency = scan_frequency{1300};
+  return error_in(on.open(options));
+}
+
+}  // namespace
+
+std::vector<scenario> device_scenarios() {
+  using enum problem;
+  return {
+      {"MuteDevice", silence, task::opening, true, "virtual:g4",
+       [] { return opening({make_fault(fault_kind::mute)}); }},
+      {"UnpoweredDevice", silence, task::opening, true, "virtual:g4", unpowered},
+      {"DiesBeforeStart", silence, task::starting, true, "virtual:g4", dies_before_start},
+      {"WrongBaudRateOfAnIdleDevice", silence, task::opening, true, "virtual:g4",
+       [] { return opening({make_fault(fault_kind::baud)}); }},
+      {"WrongBaudRateOfAScanningDevice", garbage, task::opening, true, "virtual:g4",
+       [] { return opening({make_fault(fault_kind::scanning), make_fault(fault_kind::baud)}); }},
+      {"AnotherModel", other_device, task::opening, true, "virtual:g4, model 4", another_model},
+      {"ScansAndIsDeaf", does_not_stop, task::opening, true, "virtual:g4",
+       [] { return opening({make_fault(fault_kind::scanning), make_fault(fault_kind::deaf)}); }},
+      {"DeafWhenStopped", does_not_stop, task::stopping, true, "virtual:g4", deaf_when_stopped},
+      {"DeafWhenAsked", does_not_stop, task::asking, true, "virtual:g4, health", deaf_when_asked},
+      {"HealthError", unhealthy, task::starting, true, "virtual:g4, error code", health_error},
+      {"NoScanYet", timeout, task::reading, false, "virtual:g4", no_scan_yet},
+      {"NoAnswer", timeout, task::asking, false, "virtual:g4, health",
+       [] { return asking(fault_kind::mute, requests::health()); }},
+      {"WrongAnswers", wrong_answer, task::asking, false, "virtual:g4, direction",
+       [] { return asking(fault_kind::wrong, requests::get_direction()); }},
+      {"FrequencyOutOfReach", not_reached, task::configuring, false, "scan frequency",
+       frequency_out_of_reach},
+      {"FrequencyTooHigh", not_reached, task::asking, false,
+       "virtual:g4, scan frequency 15 Hz (reached 12 Hz)", frequency_too_high},
+      {"AskedWhileScanning", scanning, task::asking, false, "virtual:g4, health",
+       asked_while_scanning},
+      {"ReadBeforeStart", not_scanning, task::reading, true, "virtual:g4", read_before_start},
+      {"NotPlugged", no_port, task::opening, true, "virtual:g4", not_plugged},
+      {"UnpluggedWhileScanning", gone, task::reading, true, "virtual:g4",
+       [] { return running({make_fault(fault_kind::unplug, later)}); }},
+      {"UnpluggedWhenIdle", gone, task::writing, true, "virtual:g4", unplugged_when_idle},
+      {"UsedAfterClose", gone, task::reading, true, "closed", used_after_close},
+      {"StreamStops", stalled, task::reading, true, "virtual:g4",
+       [] { return running({make_fault(fault_kind::stall, later)}); }},
+      {"DiesWithTheMotor", brown_out, task::starting, true, "virtual:g4",
+       [] { return running({make_fault(fault_kind::brown_out)}); }},
+      {"RebootsWithTheMotor", brown_out, task::starting, true, "virtual:g4",
+       [] { return running({make_fault(fault_kind::reboot)}); }},
+      {"Woken", cancelled, task::reading, false, "virtual:g4", woken},
+      {"OptionOutOfRange", bad_option, task::configuring, true, "frequency", option_out_of_range},
+  };
+}
+
+}  // namespace g4lidar::test
