@@ -65,6 +65,14 @@ install(FILES "${PROJECT_BINARY_DIR}/cmake/g4lidar-config.cmake"
         DESTINATION "${package_dir}"
 )
 
+# udev reads them below /usr and /usr/local.
+if(G4LIDAR_INSTALL_UDEV_RULE)
+  install(FILES "${PROJECT_SOURCE_DIR}/packaging/udev/72-g4lidar.rules"
+                "${PROJECT_SOURCE_DIR}/packaging/udev/91-g4lidar-no-brltty.rules"
+          DESTINATION lib/udev/rules.d
+  )
+endif()
+
 # ---- pkg-config --------------------------------------------------------------------------------
 cmake_path(APPEND pc_libdir "\${prefix}" "${CMAKE_INSTALL_LIBDIR}")
 cmake_path(APPEND pc_includedir "\${prefix}" "${CMAKE_INSTALL_INCLUDEDIR}")

@@ -5,21 +5,14 @@
 
 #include <charconv>
 #include <string_view>
+#include <utility>
+
+#include "directory.hpp"
 
 namespace g4lidar {
 namespace {
 
 std::string text_or_empty(const char* text) { return text != nullptr ? text : ""; }
-
-/// What udevd knows under this name, else what sysfs does.
-std::string property_or_attribute(udev_device* device, const char* property, udev_device* parent,
-                                  const char* attribute) {
-  const char* known = udev_device_get_property_value(device, property);
-  if (known == nullptr && parent != nullptr) {
-    known = udev_device_get_sysattr_value(parent, attribute);
-  }
-  return text_or_empty(known);
-}
 
 std::uint16_t hexadecimal(const std::string& digits) noexcept {
   std::uint16_t value = 0;
@@ -27,13 +20,19 @@ std::uint16_t hexadecimal(const std::string& digits) noexcept {
   return value;
 }
 
-std::string by_id_link(udev_device* device) {
-  udev_list_entry* link = udev_device_get_devlinks_list_entry(device);
-  for (; link != nullptr; link = udev_list_entry_get_next(link)) {
-    std::string name = text_or_empty(udev_list_entry_get_name(link));
-    if (name.starts_with("/dev/serial/by-id/")) return name;
-  }
-  return {};
+std::string_view file_name(std::string_view path) noexcept {
+  return path.substr(path.rfind('/') + 1);
+}
+
+/// Looked for where udevd makes it, and not asked of its data base, which a container may lack.
+std::string by_id_link(const std::string& node) {
+  const std::string links = "/dev/serial/by-id/";
+  std::string found;
+  each_entry(links, [&](std::string_view name) {
+    std::string link = links + std::string(name);
+    if (file_name(link_target(link)) == file_name(node)) found = std::move(link);
+  });
+  return found;
 }
 
 /// Of the device, or of what it hangs on: a tty itself has none.
@@ -60,16 +59,17 @@ std::optional<port_info> port_of(udev_device* device) {
   if (path.empty() || carrier == nullptr || is_empty_place(device)) return std::nullopt;
   port_info port;
   port.path = path;
-  port.by_id = by_id_link(device);
+  port.by_id = by_id_link(path);
   port.driver = driver_of(carrier);
   udev_device* usb = udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_device");
-  if (usb != nullptr) port.bus_path = text_or_empty(udev_device_get_sysname(usb));
-  port.vendor_id = hexadecimal(property_or_attribute(device, "ID_USB_VENDOR_ID", usb, "idVendor"));
-  port.product_id = hexadecimal(property_or_attribute(device, "ID_USB_MODEL_ID", usb, "idProduct"));
   if (usb == nullptr) return port;
+  // Out of sysfs, where it stands with and without udevd.
+  port.bus_path = text_or_empty(udev_device_get_sysname(usb));
   const auto says = [&](const char* attribute) {
     return text_or_empty(udev_device_get_sysattr_value(usb, attribute));
   };
+  port.vendor_id = hexadecimal(says("idVendor"));
+  port.product_id = hexadecimal(says("idProduct"));
   port.usb_serial = says("serial");
   port.manufacturer = says("manufacturer");
   port.product = says("product");

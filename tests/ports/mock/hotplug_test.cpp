@@ -107,6 +107,19 @@ TEST_F(Hotplug, List_IsOrderedAndHasTheOthersToo) {
   EXPECT_FALSE(is_g4_bridge((*ports)[3]));
 }
 
+TEST_F(Hotplug, List_KnowsTheLinkOfUdevd) {
+  bed.plug(first);
+  bed.plug(second);
+  const pty device;
+  connect(first, device);
+  std::filesystem::create_directories(bed.dev("serial/by-id"));
+  std::filesystem::create_symlink("../../ttyUSB0", bed.dev("serial/by-id/usb-CP2102_0001-port0"));
+  const auto ports = list_ports();
+  ASSERT_TRUE(ports);
+  EXPECT_EQ((*ports)[0].by_id, "/dev/serial/by-id/usb-CP2102_0001-port0");
+  EXPECT_EQ((*ports)[1].by_id, "");
+}
+
 // ---- watching ----------------------------------------------------------------------------------
 
 /// The next event, which comes within ten seconds or never.
