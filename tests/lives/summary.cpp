@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "text.hpp"
+
+namespace g4lidar::lives {
+
+void summary::add(const life_plan& plan, const life_report& lived) {
+  ++lives_;
+  failed_ += !lived.failure.empty();
+  healthy_ += plan.healthy;
+  truth_counts& truths = sum_.truths;
+  truths.points += lived.truths.points;
+  truths.packets += lived.truths.packets;
+  truths.damaged += lived.truths.damaged;
+  truths.passed_over += lived.truths.passed_over;
+  truths.blind_packets += lived.truths.blind_packets;
+  truths.blind_points += lived.truths.blind_points;
+  sum_.times.settled += lived.times.settled;
+  sum_.times.late += lived.times.late;
+  sum_.times.sum_of_squares += lived.times.sum_of_squares;
+  sum_.times.worst_ns = std::max(sum_.times.worst_ns, lived.times.worst_ns);
+  sum_.holes += lived.holes;
+  sum_.reconnects += lived.reconnects;
+  sum_.opens += lived.opens;
+  sum_.scans += lived.scans;
+  sum_.lived_ns += lived.lived_ns;
+  for (std::size_t i = 0; i < lived.events.size(); ++i) sum_.events[i] += lived.events[i];
+  sum_.longest_start_ns = std::max(sum_.longest_start_ns, lived.longest_start_ns);
+  sum_.longest_ask_ns = std::max(sum_.longest_ask_ns, lived.longest_ask_ns);
+  sum_.longest_stop_ns = std::max(sum_.longest_stop_ns, lived.longest_stop_ns);
+  recoveries_s_ += static_cast<double>(lived.recovery_ns) * 1e-9;
+  longest_recovery_ = std::max(longest_recovery_, static_cast<double>(lived.recovery_ns) /
+                                                      static_cast<double>(lived.allowed_ns));
+}
+
+std::string summary::problem() const {
+  const time_counts& times = sum_.times;
+  if (times.late * 1000 > times.settled) return "too many times are more than 1 ms off";
+  const truth_counts& truths = sum_.truths;
+  // The checksum misses a second flip in the column of the first, one of 16; of what is damaged most
+  // is damaged more or otherwise.
+  if (truths.blind_packets * 20 > truths.damaged + 20) return "too many blind spots";
+  return {};
+}
+
+std::string summary::text() const {
+  std::string text;
+  const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
+  const double lives = static_cast<double>(std::max<std::uint64_t>(lives_, 1));
+  text +=
+      text_of("%llu lives, %llu of them healthy, %llu failed; %.0f virtual s, %llu revolutions\n",
+              number(lives_), number(healthy_), number(failed_), in_seconds(sum_.lived_ns),
+              number(sum_.scans));
+  text += text_of(
+      "points %llu; packets %llu, damaged %llu, passed over undamaged %llu; blind spots %llu (%llu "
+      "points)\n",
+      number(sum_.truths.points), number(sum_.truths.packets), number(sum_.truths.damaged),
+      number(sum_.truths.passed_over), number(sum_.truths.blind_packets),
+      number(sum_.truths.blind_points));
+  text += text_of(
+      "opened %llu times, reconnected %llu times; seemingly whole revolutions with a hole %llu\n",
+      number(sum_.opens), number(sum_.reconnects), number(sum_.holes));
+  for (std::size_t i = 0; i < sum_.events.size(); ++i) {
+    text += text_of("%s%s %llu", i == 0 ? "events: " : ", ",
+                    name_of(static_cast<lidar_event::kind>(i)).data(), number(sum_.events[i]));
+  }
+  text += text_of("\nrecovered after %.3f s on average, %.2f of what is allowed at most\n",
+                  recoveries_s_ / lives, longest_recovery_);
+  const double settled = static_cast<double>(std::max<std::uint64_t>(sum_.times.settled, 1));
+  text += text_of("times of %llu settled points: %.1f us RMS, %llu beyond 1 ms, worst %.3f ms\n",
+                  number(sum_.times.settled), std::sqrt(sum_.times.sum_of_squares / settled) * 1e-3,
+                  number(sum_.times.late), in_seconds(sum_.times.worst_ns) * 1e3);
+  text += text_of("longest start %.3f s, ask %.3f s, stop or close %.3f s\n",
+                  in_seconds(sum_.longest_start_ns), in_seconds(sum_.longest_ask_ns),
+                  in_seconds(sum_.longest_stop_ns));
+  return text;
+}
+
+}  // namespace g4lidar::lives

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "truth_book.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "text.hpp"
+
+namespace g4lidar::lives {
+namespace {
+
+/// The manual's formula, in double precision and written anew.
+double corrected_deg(double first_level_deg, std::uint16_t raw) {
+  if (raw == 0) return first_level_deg;
+  const double range_mm = raw / 4.0;
+  const double turn_rad = std::atan(21.8 * (155.3 - range_mm) / (155.3 * range_mm));
+  return first_level_deg + turn_rad * 180.0 / std::numbers::pi;
+}
+
+double apart_deg(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
+
+/// First and last angle of a packet are rounded to 1/64 degree.
+constexpr double angle_slack_deg = 1.0 / 64 + 0.001;
+/// Nearer than half a turn of the fastest motor; a sample of another turn is farther.
+constexpr std::int64_t near_ns = 40'000'000;
+/// A packet's points must be told apart from those of others within so many.
+constexpr std::size_t most_open = 400;
+
+}  // namespace
+
+void truth_book::add(std::span<const sim::sent_sample> samples) {
+  for (const sim::sent_sample& s : samples) {
+    if (s.position == 0 || sent_.empty() || sent_.back().number != s.packet) {
+      sent_.push_back({{}, s.packet, s.count, 0, s.zero, s.whole});
+      ++counts_.packets;
+      counts_.damaged += !s.whole;
+    }
+    packet& into = sent_.back();
+    into.samples[s.position] = {static_cast<std::int64_t>(s.truth.index), s.truth.time_ns,
+                                corrected_deg(s.truth.first_level_deg, s.truth.raw), s.truth.raw};
+    ++into.known;
+  }
+}
+
+bool truth_book::fits(const packet& sent, std::size_t at) const {
+  if (sent.known != sent.count || sent.count > open_.size() - at) return false;
+  for (std::size_t i = 0; i < sent.count; ++i) {
+    const point& seen = open_[at + i];
+    const sample& truth = sent.samples[i];
+    if (static_cast<float>(truth.raw) * 0.25F != seen.range_mm) return false;
+    if (seen.is_revolution_start() != (sent.zero && i == 0)) return false;
+    if (apart_deg(truth.angle_deg, double{seen.angle_deg}) > angle_slack_deg) return false;
+  }
+  return true;
+}
+
+/// The packet that begins with this open point: of several that look the same, the one whose time is
+/// nearest.
+std::optional<std::size_t> truth_book::find(std::size_t at) const {
+  std::optional<std::size_t> best;
+  std::int64_t best_ns = 0;
+  for (std::size_t i = 0; i < sent_.size(); ++i) {
+    if (!fits(sent_[i], at)) continue;
+    const std::int64_t off_ns = std::abs(sent_[i].samples[0].time_ns - open_[at].time_ns);
+    if (off_ns < near_ns) return i;
+    if (!best || off_ns < best_ns) {
+      best = i;
+      best_ns = off_ns;
+    }
+  }
+  return best;
+}
+
+/// The first `blind` open points are of damaged packets, those behind them are of packet `found`.
+void truth_book::accept(std::size_t found, std::size_t blind) {
+  for (std::size_t i = 0; i < found; ++i) counts_.passed_over += sent_[i].whole;
+  for (; blind > 0; --blind) {
+    known_.push_back({open_.front(), -1, 0});
+    open_.pop_front();
+    ++counts_.blind_points;
+  }
+  const packet& sent = sent_[found];
+  for (std::size_t i = 0; i < sent.count; ++i) {
+    known_.push_back({open_.front(), sent.samples[i].index, sent.samples[i].time_ns});
+    open_.pop_front();
+    ++counts_.points;
+  }
+  sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(found + 1));
+}
+
+/// The first open point is of no packet as it was sent. A blind spot of the checksum, if there is a
+/// damaged packet just there for each packet of points.
+bool truth_book::settle_blind(bool all) {
+  for (std::size_t blind = 1; blind < open_.size(); ++blind) {
+    const auto found = find(blind);
+    if (!found) continue;
+    const auto end = sent_.begin() + static_cast<std::ptrdiff_t>(*found);
+    const auto damaged =
+        std::count_if(sent_.begin(), end, [](const packet& p) { return !p.whole; });
+    const auto packets = static_cast<std::ptrdiff_t>((blind + max_samples - 1) / max_samples);
+    if (damaged < packets) break;
+    counts_.blind_packets += static_cast<std::uint64_t>(packets);
+    accept(*found, blind);
+    return true;
+  }
+  const bool may_be =
+      std::any_of(sent_.begin(), sent_.end(), [](const packet& p) { return !p.whole; });
+  if (may_be && !all && open_.size() < most_open) return false;  // more must come
+  if (may_be && all && open_.size() <= max_samples) {
+    ++counts_.blind_packets;
+    counts_.blind_points += open_.size();
+    for (const point& p : open_) known_.push_back({p, -1, 0});
+    open_.clear();
+    return false;
+  }
+  problem_ = text_of("a point that was never sent: %.4f degrees, %.2f mm, %lld ns%s",
+                     double{open_[0].angle_deg}, double{open_[0].range_mm},
+                     static_cast<long long>(open_[0].time_ns),
+                     open_[0].is_revolution_start() ? ", a zero packet's" : "");
+  open_.clear();
+  return false;
+}
+
+bool truth_book::settle_one(bool all) {
+  const auto found = find(0);
+  if (!found) return settle_blind(all);
+  accept(*found, 0);
+  return true;
+}
+
+std::span<const known_point> truth_book::settle(bool all) {
+  known_.clear();
+  while (!open_.empty() && settle_one(all)) {
+  }
+  return known_;
+}
+
+}  // namespace g4lidar::lives

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Watches a driver from outside, at each call that it makes to its line: the invariants of a life.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "g4lidar/lidar.hpp"
+#include "plan.hpp"
+#include "stage.hpp"
+#include "truth_book.hpp"
+
+namespace g4lidar::lives {
+
+/// How far the times of points were from the truth, 5 s and more after the last break.
+struct time_counts {
+  std::uint64_t settled = 0;    ///< Points.
+  std::uint64_t late = 0;       ///< More than 1 ms off.
+  double sum_of_squares = 0.0;  ///< In ns^2.
+  std::int64_t worst_ns = 0;
+};
+
+/// *Single thread.* The first thing that is wrong is kept; what follows from it is not looked for.
+class watch {
+ public:
+  watch(const life_plan& plan, stage& on) : plan_(&plan), stage_(&on) {}
+
+  /// A lidar is there and is watched; it is not, any more.
+  void begin(lidar& opened);
+  void moved(lidar& here) { lidar_ = &here; }
+  void end();
+  /// The application has done something behind which packets may be passed over, and the clock of
+  /// the samples begins anew.
+  void breaks() { is_broken_ = true; }
+
+  /// Before each call of a line, and after each call of the driver.
+  void look();
+  /// The application calls.
+  void app_call() { ++app_calls_; }
+  /// Points as a call gave them: a stretch of those that the ring gave.
+  void check_stretch(std::span<const point> points, const char* whose);
+  void check_scan(const scan& found);
+  void check_taken(std::uint64_t taken, bool all);
+
+  void fail(const std::string& what);
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+  [[nodiscard]] const truth_counts& truths() const { return book_.counts(); }
+  [[nodiscard]] const time_counts& times() const { return times_; }
+  /// Revolutions over all lidars of this life.
+  [[nodiscard]] std::uint64_t scans() const { return scans_before_ + last_.scans; }
+  [[nodiscard]] std::uint64_t holes() const { return holes_; }
+
+ private:
+  void take_truth();
+  void take_points();
+  void check(const known_point& found);
+  void check_time(const known_point& found);
+  void check_counts();
+  void check_calls();
+
+  const life_plan* plan_;
+  stage* stage_;
+  lidar* lidar_ = nullptr;
+  std::optional<lidar_ring::reader> reader_;
+  truth_book book_;
+  std::deque<known_point> history_;
+  lidar_counts last_;
+  std::uint64_t scans_before_ = 0;
+  std::uint64_t read_ = 0;    // of the ring
+  std::uint64_t missed_ = 0;  // of the ring
+  std::uint64_t passed_over_ = 0;
+  std::uint64_t holes_ = 0;
+  std::int64_t last_time_ns_ = 0;
+  std::int64_t last_index_ = -1;
+  std::int64_t steady_since_ns_ = 0;
+  bool is_broken_ = true;
+  time_counts times_;
+  line_calls calls_then_;
+  std::uint64_t app_calls_ = 0;
+  std::uint64_t app_calls_then_ = 0;
+  std::int64_t second_began_ns_ = 0;
+  std::vector<sim::sent_sample> samples_ = std::vector<sim::sent_sample>(4096);
+  std::vector<point> points_ = std::vector<point>(16384);
+  std::string failure_;
+};
+
+}  // namespace g4lidar::lives
