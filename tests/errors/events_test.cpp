@@ -43,6 +43,7 @@ sim::device device_of(const story& of) {
 std::vector<lidar_event> lived(const story& of) {
   sim::device twin = device_of(of);
   sim::virtual_clock clock;
+  clock.advance_to(second);  // a device that scans has got up to speed by now
   lidar_options options;
   options.reconnect = true;
   if (of.asleep_ns > 0) options.protection = power_down_protection::on;
@@ -98,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
               4 * second},
         story{"FoundProtected", kind::protection_found_on, problem::timeout, none(), true},
         story{"StartedAgain", kind::restarted, problem::timeout,
-              make_fault(fault_kind::stall, 4 * second, 2 * second)},
+              make_fault(fault_kind::stall, 6 * second, 2 * second)},
         story{"WarnsOfItsHealth", kind::health_warning, problem::timeout,
               sim::fault{fault_kind::health, 0, sim::forever_ns, 0.0, 1}}),
     [](const auto& of) { return of.param.name; });

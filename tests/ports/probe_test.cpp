@@ -140,7 +140,7 @@ TEST(SelectPort, WrongForms_AreRefused) {
     const auto port = select_port(wrong);
     ASSERT_FALSE(port) << wrong;
     EXPECT_EQ(port.error().what(), problem::bad_option) << wrong;
-    EXPECT_EQ(port.error().subject(), wrong);
+    EXPECT_TRUE(port.error().subject().starts_with(wrong)) << port.error().subject();
   }
 }
 
