@@ -34,6 +34,7 @@ void test_transcripts();
 void test_points();
 void test_ring();
 void test_scans();
+void test_session();
 
 // ---- checks ------------------------------------------------------------------------------------
 void put_number(std::size_t number);

@@ -53,6 +53,7 @@ int main() {
   run("points", test_points);
   run("ring", test_ring);
   run("scans", test_scans);
+  run("session", test_session);
   run("board", test_board);
 #ifdef G4LIDAR_SELF_TEST_FAULT
   check(unknown(1) == 2);  // a run with a fault must be seen to fail

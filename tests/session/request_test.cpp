@@ -159,6 +159,26 @@ TEST_F(session_requests, AreGivenUpAfterFourLossesOrTenSeconds) {
                ">90 <info >D1 +300 >90 late >91 <health:0 =timed_out");
 }
 
+TEST_F(session_requests, AreNotAnsweredBeforeTheyAreSent) {
+  session talk;
+  const auto next = [&talk] {
+    const auto sent = talk.to_send();
+    return sent ? (*sent)[1] : 0xFF;
+  };
+  ASSERT_FALSE(talk.begin(requests::set(ranging_frequency::khz_8), 0));
+  EXPECT_EQ(next(), 0x00);
+  EXPECT_EQ(next(), 0x65);
+  talk.look(50 * ms);
+  take_reply(talk, info_reply(), 50 * ms);  // before 90 has been fetched
+  EXPECT_EQ(next(), 0x90);
+  take_reply(talk, info_reply(), 50 * ms);
+  EXPECT_EQ(next(), 0xD1);
+  take_reply(talk, byte_reply(2), 50 * ms);
+  take_reply(talk, byte_reply(2), 50 * ms);  // the second copy, read together with the first
+  EXPECT_EQ(next(), 0xD0);
+  EXPECT_EQ(next(), 0xFF);
+}
+
 // ---- moving commands ---------------------------------------------------------------------------
 TEST_F(session_requests, RangingIsSteppedRoundAndReadOnceMore) {
   EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_8),

@@ -20,9 +20,11 @@
 #include "g4lidar/packet.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/point_ring.hpp"
+#include "g4lidar/request.hpp"
 #include "g4lidar/response.hpp"
 #include "g4lidar/scan.hpp"
 #include "g4lidar/sensor_clock.hpp"
+#include "g4lidar/session.hpp"
 #include "g4lidar/stream_counts.hpp"
 #include "g4lidar/stream_parser.hpp"
 #include "g4lidar/version.hpp"
@@ -149,6 +151,26 @@ double restart(sensor_clock& clock, std::int64_t& bound_ns) {
   clock.reset(4000.0);
   bound_ns = clock.bound_ns();
   return clock.sample_rate_hz();
+}
+
+// ---- talk ------------------------------------------------------------------------------------
+std::optional<refusal> ask_device(session& talk, const request& wanted, std::int64_t now_ns) {
+  if (wanted.what == ask::restart) talk.reset();
+  return talk.begin(wanted, now_ns, while_scanning::stop_and_resume);
+}
+std::optional<outcome> hear(session& talk, const event& found, std::int64_t now_ns) {
+  talk.take(found, now_ns);
+  return talk.finished();
+}
+std::optional<std::array<std::uint8_t, 2>> wait(session& talk, std::int64_t& now_ns) {
+  now_ns = talk.next_look_ns();
+  talk.look(now_ns);
+  return talk.to_send();
+}
+std::uint64_t watch(session& talk, notice& told) {
+  told = talk.noticed();
+  return talk.retries() + (talk.is_busy() ? 1 : 0) + (talk.is_scanning() ? 1 : 0) +
+         (talk.protection() ? 1 : 0);
 }
 
 int major_version() { return header_version.major_number; }
