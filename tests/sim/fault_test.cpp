@@ -196,6 +196,22 @@ TEST(SimFaults, ABrownOutSilencesTheDeviceUntilItEnds) {
   EXPECT_GT(test::taken_apart(host.ask(command::start, second)).packets, 100U);
 }
 
+TEST(SimFaults, AMotorThatStopsInTimeCausesNoBrownOut) {
+  host_side host({}, {make_fault(fault_kind::brown_out)});
+  (void)host.ask(command::start, 20 * ms);
+  (void)host.ask(command::stop, second);
+  EXPECT_EQ(host.ask(command::device_info), information);
+}
+
+TEST(SimFaults, WhatWasNotSaidBeforeThePowerWentIsNeverSaid) {
+  host_side host({}, {make_fault(fault_kind::late)});
+  (void)host.ask(command::health, 100 * ms);
+  host.twin.unplug(host.now_ns);
+  host.twin.replug(host.now_ns);
+  EXPECT_EQ(host.hear(second).responses, std::vector{response_kind::device_info});
+  EXPECT_EQ(host.ask(command::device_info, second), information);
+}
+
 TEST(SimFaults, ABrownOutMayBootAgain) {
   host_side host({}, {make_fault(fault_kind::reboot)});
   for (int i = 0; i < 3; ++i) {
@@ -278,29 +294,47 @@ TEST(SimFaults, AFaultIsOverWhenItsTimeIsOver) {
 
 // Packets of which the twin says that they were whole arrive, and no others do (but for the
 // checksum's blind spots, of which these seeds have none).
+void expect_whole_packets_and_no_others(host_side& host, const heard& got) {
+  std::vector<sim::sent_sample> truth(16'384);
+  truth.resize(host.twin.take_truth(truth));
+  std::vector<std::uint16_t> whole;
+  for (const sim::sent_sample& s : truth) {
+    if (s.whole) whole.push_back(s.truth.raw);
+  }
+  EXPECT_LT(whole.size(), truth.size());
+  std::vector<std::uint16_t> delivered;
+  for (const byte_vector& bytes : got.packet_bytes) {
+    const auto packet = packet_view::from(bytes);
+    for (std::size_t i = 0; i < packet->sample_count(); ++i) {
+      delivered.push_back(packet->sample(i));
+    }
+  }
+  ASSERT_LE(delivered.size(), whole.size());
+  EXPECT_LE(whole.size() - delivered.size(), 80U) << "but for what the bridge still holds";
+  EXPECT_TRUE(std::equal(delivered.begin(), delivered.end(), whole.begin()));
+}
+
 TEST(SimFaults, TheTruthKnowsWhatWasDamaged) {
   for (const fault_kind kind : {fault_kind::flip, fault_kind::drop, fault_kind::insert,
                                 fault_kind::burst, fault_kind::truncate}) {
     SCOPED_TRACE(name_of(kind));
     host_side host({}, {make_fault(kind)});
-    std::vector<sim::sent_sample> truth(16'384);
     const heard got = test::taken_apart(host.ask(command::start, 1'700 * ms));
-    truth.resize(host.twin.take_truth(truth));
-    std::vector<std::uint16_t> whole;
-    for (const sim::sent_sample& s : truth) {
-      if (s.whole) whole.push_back(s.truth.raw);
+    expect_whole_packets_and_no_others(host, got);
+  }
+}
+
+TEST(SimFaults, TheTruthKnowsWhatWasPartedByAnAnswer) {
+  for (const sim::disturbance how : {sim::disturbance::mid_packet, sim::disturbance::drops}) {
+    sim::device_options options;
+    options.while_scanning = how;
+    host_side host(options);
+    byte_vector all = host.ask(command::start, 500 * ms);
+    for (int i = 0; i < 20; ++i) {
+      const byte_vector more = host.ask(command::device_info, 51 * ms);
+      all.insert(all.end(), more.begin(), more.end());
     }
-    EXPECT_LT(whole.size(), truth.size());
-    std::vector<std::uint16_t> delivered;
-    for (const byte_vector& bytes : got.packet_bytes) {
-      const auto packet = packet_view::from(bytes);
-      for (std::size_t i = 0; i < packet->sample_count(); ++i) {
-        delivered.push_back(packet->sample(i));
-      }
-    }
-    ASSERT_LE(delivered.size(), whole.size());
-    EXPECT_LE(whole.size() - delivered.size(), 80U) << "but for what the bridge still holds";
-    EXPECT_TRUE(std::equal(delivered.begin(), delivered.end(), whole.begin()));
+    expect_whole_packets_and_no_others(host, test::taken_apart(all));
   }
 }
 

@@ -35,6 +35,8 @@ TEST(SimScanning, TheMotorSpinsUpFromAStandstill) {
   const auto front = packet_view::from(first.packet_bytes.front());
   EXPECT_EQ(front->sample_count(), 40U);
   EXPECT_EQ(front->first_angle_64ths(), front->last_angle_64ths()) << "it stands";
+  EXPECT_EQ(host.twin.motor_mhz(60 * ms), 0U);
+  EXPECT_GT(host.twin.motor_mhz(80 * ms), 0U);
   EXPECT_LT(host.twin.motor_mhz(host.now_ns), 2'000U);
   const heard rising = host.hear(600 * ms);
   int last_span = 0;
@@ -165,6 +167,15 @@ TEST(SimScanning, ProtectionStopsAfterThreeSeconds) {
   EXPECT_FALSE(host.twin.is_scanning());
   EXPECT_FALSE(host.twin.motor_turns());
   EXPECT_THAT(host.listen(second), IsEmpty());
+}
+
+TEST(SimScanning, ProtectionThatIsTurnedOnWhileScanningCountsFromThen) {
+  host_side host;
+  (void)started(host, 10 * second);
+  (void)host.ask(command::protection_toggle, 2'900 * ms);
+  EXPECT_TRUE(host.twin.is_scanning());
+  (void)host.listen(200 * ms);
+  EXPECT_FALSE(host.twin.is_scanning());
 }
 
 TEST(SimScanning, AfterTheProtectionAStartMayBringNoHeader) {
