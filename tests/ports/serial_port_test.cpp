@@ -55,6 +55,10 @@ bool are_equal(const termios& one, const termios& other) {
 
 TEST(SerialPort, Open_IsRaw8N1AtTheRateOfAG4) {
   const pty device;
+  termios odd = settings_of(device);
+  odd.c_cflag |= static_cast<tcflag_t>(CSTOPB | PARENB | CRTSCTS);
+  odd.c_iflag |= static_cast<tcflag_t>(IXOFF | ISTRIP | PARMRK);
+  ASSERT_EQ(::tcsetattr(device.keep(), TCSANOW, &odd), 0);
   const auto port = opened(device);
   const termios now = settings_of(device);
   EXPECT_EQ(::cfgetospeed(&now), B230400);
@@ -242,6 +246,20 @@ TEST(SerialPort, Wake_EndsTheNextCallOnce) {
   EXPECT_EQ(paused.error().what(), problem::cancelled);
   EXPECT_FALSE(paused.error().is_fatal());
   EXPECT_TRUE(port->pause(in(*port, 1ms)));
+}
+
+TEST(SerialPort, WakeWithBytesWaiting_IsSeenFirst) {
+  const pty device;
+  const auto port = opened(device);
+  device.send("0123456789");
+  std::array<std::uint8_t, 4> buffer{};
+  ASSERT_EQ(port->read(buffer, in(*port, 10s))->count, 4U);  // more is known to wait
+  port->wake();
+  EXPECT_EQ(port->read(buffer, in(*port, 10s)).error().what(), problem::cancelled);
+  ASSERT_EQ(port->read(buffer, in(*port, 10s))->count, 4U);
+  port->wake();
+  EXPECT_EQ(port->read(buffer, port->now_ns()).error().what(), problem::cancelled);
+  EXPECT_EQ(port->read(buffer, port->now_ns())->count, 2U);
 }
 
 TEST(SerialPort, WakeFromAnotherThread_EndsWaiting) {

@@ -190,6 +190,14 @@ TEST(SerialCalls, WithoutWhatIsBestEffort_Live) {
   set_fault({});
 }
 
+TEST(SerialCalls, WhatIsNoCharacterDevice_IsNotOpened) {
+  const temporary_file file("bytes");
+  set_fault({});
+  EXPECT_EQ(open_serial_line(file.path(), {}, faulty_calls()).error().what(), problem::not_serial);
+  EXPECT_EQ(made(call::stat), 1);
+  EXPECT_EQ(made(call::open), 0);
+}
+
 TEST(SerialCalls, RateWithoutAName_NeedsIoctl) {
   const serial_life life;
   set_fault({});
