@@ -68,9 +68,11 @@ class sample_counter {
   [[nodiscard]] constexpr sample_gap gap_before(const decoded& packet, bool hinted,
                                                 double late_samples) const noexcept {
     if (!turning()) return {0, 0.0, !hinted};
-    const double missed = way_to(packet) / step_ - 1.0;
+    // A motor that spins up makes longer steps than those learnt; without a hint, that is no loss.
+    const double step = hinted ? step_ : std::max({step_, own_step_, own_step(packet)});
+    const double missed = way_to(packet) / step - 1.0;
     // Without a hint, what the steps between packets do all the time is no loss.
-    const double of_turn = turn / step_;
+    const double of_turn = turn / step;
     const double least = 0.5 + (hinted ? 0.0 : 4.0 * roughness_);
     if (missed < least && late_samples < of_turn / 2) return {};
     // Late by a little less than the truth, or by as much as bytes are held back.
@@ -94,7 +96,14 @@ class sample_counter {
     samples_ = 0.0;
   }
 
+  /// How far the motor turned from sample to sample of a packet; 0 where that is not said.
+  [[nodiscard]] static constexpr double own_step(const decoded& packet) noexcept {
+    if (packet.suspect || packet.sample_count < 8) return 0.0;  // the rounding of the angles
+    return static_cast<double>(packet.span_64ths) / (packet.sample_count - 1);
+  }
+
   constexpr void follow(const decoded& packet) noexcept {
+    if (const double own = own_step(packet); own > 0.0) own_step_ = own;
     if (packet.suspect) {
       at_ += step_ * packet.sample_count;
     } else {
@@ -107,6 +116,7 @@ class sample_counter {
 
   double at_ = 0.0;         // the angle of the last sample, 1/64 degree
   double step_ = 0.0;       // of one sample, 1/64 degree
+  double own_step_ = 0.0;   // of the last packet that was long enough to tell
   double way_ = 0.0;        // gone since `step_` was last brought up to date
   double samples_ = 0.0;    // in that way
   double roughness_ = 0.1;  // of the steps between packets, in samples
