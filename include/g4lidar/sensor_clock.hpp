@@ -219,7 +219,7 @@ class sensor_clock {
   [[nodiscard]] constexpr packet_times times_until(std::int64_t last_ns,
                                                    std::int64_t count) noexcept {
     const double steps = static_cast<double>(count - 1);
-    const double shortest_ns = line_.period_ns / 2.0;
+    const double shortest_ns = line_.period_ns / 4.0;
     const std::int64_t first_ns = last_ns - static_cast<std::int64_t>(steps * line_.period_ns);
     packet_times times;
     times.first_ns = first_ns;

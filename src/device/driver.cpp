@@ -152,12 +152,9 @@ result<void> lidar::driver::step(std::int64_t deadline_ns) {
 }
 
 result<void> lidar::driver::round(std::int64_t deadline_ns) {
+  static_cast<void>(is_delivering());
   if (line_->answers()) {
-    const std::int64_t now = now_ns();
-    if (session_.next_look_ns() <= now && input_.empty()) {
-      end_a_silent_frame();
-      session_.look(now);
-    }
+    if (auto looked = look_if_due(); !looked) return looked;
     if (auto told = take_notice(); !told) return told;
     if (auto gone_on = go_on_with_plan(); !gone_on) return gone_on;
     if (auto sent = send_commands(); !sent) return sent;
@@ -171,6 +168,24 @@ result<void> lidar::driver::round(std::int64_t deadline_ns) {
     if (input_.empty()) end_a_silent_frame();
   }
   digest();
+  return {};
+}
+
+/// Lets the time pass for the session, when it is due. What has come by then and was not read, since
+/// the program slept, is taken in before that: once, so that a line that never rests holds up nothing.
+result<void> lidar::driver::look_if_due() {
+  if (!input_.empty()) return {};
+  if (session_.next_look_ns() > now_ns()) {
+    has_read_first_ = false;
+    return {};
+  }
+  if (!std::exchange(has_read_first_, true)) {
+    if (auto got = receive(now_ns()); !got) return got;
+    if (!input_.empty()) return {};
+  }
+  has_read_first_ = false;
+  end_a_silent_frame();
+  session_.look(now_ns());
   return {};
 }
 
@@ -216,13 +231,20 @@ bool lidar::driver::keep_scan() {
 void lidar::driver::take(const event& found) {
   stream_counts_.add(found);
   if (line_ == nullptr || line_->answers()) session_.take(found, arrival_ns_);
-  if (!delivers_points()) return;
+  if (!is_delivering()) return;
   if (const auto* packet = std::get_if<packet_view>(&found)) {
     drop_scan();  // at the end of the bytes one may still wait, where the points of this go
-    stream_.packet(*packet, arrival_ns_);
+    stream_.packet(*packet, arrival_ns_, input_.size());
   } else if (const auto* gone = std::get_if<skipped>(&found)) {
     stream_.gone(*gone);
   }
+}
+
+/// A scan that goes on after a break, for whatever reason, begins anew.
+bool lidar::driver::is_delivering() {
+  const bool was_delivering = std::exchange(delivers_, delivers_points());
+  if (delivers_ && !was_delivering) stream_.begin(samples_per_second_);
+  return delivers_;
 }
 
 /// Packets of a device that is being stopped are nobody's.
@@ -333,9 +355,6 @@ result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
     }
   }
   asking_ = false;
-  if (session_.is_scanning() && how == while_scanning::stop_and_resume) {
-    stream_.begin(samples_per_second_);
-  }
   if (asked_->how == verdict::answered) return asked_->value;
   return tl::unexpected(error_of(*asked_));
 }

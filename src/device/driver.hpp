@@ -78,6 +78,7 @@ class lidar::driver {
   // One round of everything.
   result<void> step(std::int64_t deadline_ns);
   result<void> round(std::int64_t deadline_ns);
+  result<void> look_if_due();
   result<void> take_notice();
   bool digest();
   bool keep_scan();
@@ -86,6 +87,7 @@ class lidar::driver {
   void end_of_bytes();
   void end_a_silent_frame();
   [[nodiscard]] bool is_waiting_for_answer() const noexcept;
+  bool is_delivering();
   [[nodiscard]] bool delivers_points() const noexcept;
   [[nodiscard]] result<void> can_read() const noexcept;
 
@@ -96,6 +98,7 @@ class lidar::driver {
   result<void> finish_errand(const outcome& done);
   result<void> identified(const device_information& who);
   result<void> give_up(const error& why);
+  void learn_rate(const outcome& done);
   void started();
   void back_again();
   result<void> run_plan();
@@ -137,7 +140,9 @@ class lidar::driver {
   std::size_t plan_at_ = 0;
   std::optional<outcome> asked_;  // what became of an ask()
   bool asking_ = false;
-  bool has_outcome_ = false;  // one has been taken in this round
+  bool delivers_ = false;        // what comes are points of the scan
+  bool has_read_first_ = false;  // before the session is told that its time has come
+  bool has_outcome_ = false;     // one has been taken in this round
   std::uint32_t samples_per_second_ = 9000;
 
   std::int64_t last_bytes_ns_ = 0;

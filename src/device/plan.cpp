@@ -9,6 +9,7 @@
 namespace g4lidar {
 
 void lidar::driver::plan(request wanted, bool needed) {
+  if (plan_at_ == planned_) planned_ = plan_at_ = 0;  // all of it has been done
   if (planned_ < plan_.size()) plan_[planned_++] = {wanted, needed};
 }
 
@@ -28,8 +29,12 @@ void lidar::driver::plan_start() {
   plan(requests::start(), true);
 }
 
-/// Waits until all that is planned is done, or fails. It ends, since every request does.
+/// Waits until all that is planned is done, or fails. It ends, since every request does. Whoever asks
+/// again and again while the device is away finds it when it is back.
 result<void> lidar::driver::run_plan() {
+  if (stage_ == stage::lost) {
+    if (auto tried = step(now_ns()); !tried) return tried;
+  }
   if (stage_ == stage::closed || stage_ == stage::lost) return tl::unexpected(lost_);
   while (plan_at_ < planned_ || session_.is_busy()) {
     drop_scan();
@@ -45,6 +50,7 @@ result<void> lidar::driver::go_on_with_plan() {
   while (true) {
     if (const auto done = session_.finished()) {
       has_outcome_ = true;
+      learn_rate(*done);
       if (asking_) {
         asked_ = done;
       } else if (plan_at_ < planned_) {
@@ -62,6 +68,14 @@ result<void> lidar::driver::go_on_with_plan() {
   }
 }
 
+/// Whoever has asked, and whether or not it still waits.
+void lidar::driver::learn_rate(const outcome& done) {
+  const auto* ranging = std::get_if<ranging_frequency>(&done.value);
+  if (ranging == nullptr || samples_per_second(*ranging) == samples_per_second_) return;
+  samples_per_second_ = samples_per_second(*ranging);
+  if (delivers_) stream_.begin(samples_per_second_);
+}
+
 result<void> lidar::driver::finish_errand(const outcome& done) {
   const errand current = plan_[plan_at_++];
   if (done.how != verdict::answered) {
@@ -76,9 +90,6 @@ result<void> lidar::driver::finish_errand(const outcome& done) {
       return give_up(error(task::starting, problem::unhealthy, code));
     }
     if (said->status == health_status::warning) tell(lidar_event::kind::health_warning);
-  }
-  if (const auto* ranging = std::get_if<ranging_frequency>(&done.value)) {
-    samples_per_second_ = samples_per_second(*ranging);
   }
   if (const auto* who = std::get_if<device_information>(&done.value)) return identified(*who);
   if (current.wanted.what == ask::start) started();

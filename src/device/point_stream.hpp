@@ -24,6 +24,7 @@ class point_stream {
  public:
   point_stream(std::uint32_t baud, std::int64_t transport_delay_ns, bool partial_scans)
       : partial_scans_(partial_scans),
+        byte_ns_(baud == 0 ? 0 : 10'000'000'000 / baud),
         clock_({.sample_rate_hz = 9000.0, .transport_delay_ns = transport_delay_ns, .baud = baud}),
         storage_(largest_scan),
         assembler_(storage_) {}
@@ -33,7 +34,7 @@ class point_stream {
     end();
     scans_at_begin_ = scans_;
     clock_.reset(samples_per_second);
-    last_packet_ns_ = 0;
+    last_packet_ns_ = first_read_ns_ = 0;
   }
 
   /// The scan is over; what there is of a revolution is counted.
@@ -44,7 +45,14 @@ class point_stream {
   /// Whether a whole revolution has come since begin().
   [[nodiscard]] bool has_begun() const noexcept { return scans_ > scans_at_begin_; }
 
-  void packet(packet_view found, std::int64_t arrival_ns) noexcept {
+  /// `behind` bytes that came behind it have been read together with it, by `read_ns`.
+  void packet(packet_view found, std::int64_t read_ns, std::size_t behind) noexcept {
+    if (first_read_ns_ == 0) first_read_ns_ = read_ns;
+    // The clock, which knows how often samples are measured, sees by itself that a program has slept;
+    // but not at first. Then it helps that bytes come one after the other, however late they are read.
+    const bool is_first = read_ns == first_read_ns_;
+    const std::int64_t arrival_ns =
+        is_first ? read_ns - static_cast<std::int64_t>(behind) * byte_ns_ : read_ns;
     open_ = decode(found, *correction_, revolutions_.count(found), memory_);
     const packet_times times = clock_.stamp(open_, arrival_ns);
     const std::span<point> points = std::span(memory_).first(open_.points.size());
@@ -103,6 +111,7 @@ class point_stream {
   }
 
   bool partial_scans_;
+  std::int64_t byte_ns_;  // that a byte takes on the line
   std::unique_ptr<const table_correction> correction_ = std::make_unique<table_correction>();
   std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
   sensor_clock clock_;
@@ -112,6 +121,7 @@ class point_stream {
   std::array<point, max_samples> memory_{};
   decoded open_{};
   bool is_open_ = false;
+  std::int64_t first_read_ns_ = 0;  // since begin()
   std::int64_t last_packet_ns_ = 0;
   std::int64_t largest_gap_ns_ = 0;
   std::uint64_t samples_lost_ = 0;

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// What the seeded lives of tests/lives have found, each as short as it goes.
+#include <gtest/gtest.h>
+
+#include "g4lidar/lidar.hpp"
+#include "support/virtual_line.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+using test::open_virtual;
+using test::virtual_bench;
+
+constexpr std::int64_t ms = 1'000'000;
+
+TEST(FoundByLives, ItStartsAsOftenAsItIsStopped) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(lidar->start());
+    ASSERT_TRUE(bench.device.is_scanning()) << i;
+    ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+    ASSERT_TRUE(lidar->stop());
+    ASSERT_FALSE(bench.device.is_scanning()) << i;
+  }
+}
+
+TEST(FoundByLives, WhatCameWhileTheProgramSleptIsNoSilence) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->next_scan(2000ms));
+  bench.now_ns += 2000 * ms;  // longer than a scan may be silent
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(lidar->next_scan(500ms)) << i;
+  EXPECT_FALSE(lidar->next_event());
+  EXPECT_EQ(lidar->counts().samples_lost, 0U);
+}
+
+TEST(FoundByLives, AStartThatIsTriedAgainFindsTheDeviceAgain) {
+  const sim::fault faults[] = {sim::make_fault(sim::fault_kind::unplug, 2000 * ms, 1000 * ms)};
+  virtual_bench bench({}, faults);
+  lidar_options options;
+  options.reconnect = true;
+  auto lidar = open_virtual(bench, options);
+  ASSERT_TRUE(lidar);
+  bench.now_ns = 2500 * ms;
+  EXPECT_FALSE(lidar->start());
+  while (bench.now_ns < 6000 * ms && !lidar->start()) bench.now_ns += 100 * ms;
+  EXPECT_TRUE(lidar->is_scanning());
+  EXPECT_TRUE(lidar->next_scan(2000ms));
+}
+
+TEST(FoundByLives, AnAskThatWasWokenBreaksTheScanAsAnyOther) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  lidar->wake();
+  const auto woken = lidar->ask(requests::health(), while_scanning::stop_and_resume);
+  ASSERT_FALSE(woken);
+  EXPECT_EQ(woken.error().what(), problem::cancelled);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+  EXPECT_EQ(lidar->counts().samples_lost, 0U);
+}
+
+TEST(FoundByLives, TimesFollowARangingFrequencyThatWasSetByAsking) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->ask(requests::set(ranging_frequency::khz_4), while_scanning::stop_and_resume));
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+  const auto scan = lidar->next_scan(2000ms);
+  ASSERT_TRUE(scan);
+  const auto took_ns = scan->points.back().time_ns - scan->points.front().time_ns;
+  EXPECT_NEAR(static_cast<double>(took_ns) / static_cast<double>(scan->points.size() - 1), 250e3,
+              2.5e3);
+}
+
+TEST(FoundByLives, NoTimeIsInTheFutureAfterASleepAtTheBegin) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  bench.now_ns += 800 * ms;
+  const auto points = lidar->next_points(0ms);
+  ASSERT_TRUE(points);
+  ASSERT_GT(points->size(), 4000U);
+  EXPECT_LT(points->back().time_ns, bench.now_ns + 1 * ms);
+}
+
+TEST(FoundByLives, AMotorThatSpinsUpQuicklyLosesNothing) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    sim::device_options options;
+    options.scanner.seed = seed;
+    options.scanner.scan_frequency_chz = 1150;
+    options.acceleration_mhz_per_s = 25'000;
+    virtual_bench bench(options);
+    auto lidar = open_virtual(bench);
+    ASSERT_TRUE(lidar);
+    ASSERT_TRUE(lidar->start());
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
+    EXPECT_EQ(lidar->counts().samples_lost, 0U) << seed;
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar
