@@ -72,10 +72,12 @@ class life {
     }
     if (!is_well() && report_.failed_ns == 0) report_.failed_ns = now();
     tell_events();
+    tell_state();
     return took_ns;
   }
 
   void tell_events();
+  void tell_state();
   void wake();
   void sleep_until(std::int64_t until_ns);
   void act();
@@ -106,6 +108,7 @@ class life {
   std::uint64_t scans_seen_ = 0;
   std::int64_t scan_seen_ns_ = 0;
   bool recovered_ = false;
+  std::int64_t told_s_ = 0;
   life_report report_;
 };
 
@@ -118,6 +121,22 @@ void life::tell_events() {
     watch_.breaks();
     if (plan_.healthy) fail("an event in a healthy life: " + std::string(name_of(event->what)));
   }
+}
+
+/// Once a second.
+void life::tell_state() {
+  if (!verbose_ || now() / second == told_s_) return;
+  told_s_ = now() / second;
+  const auto log = stage_.device.log();
+  std::string codes;
+  for (const sim::asked& a : log)
+    codes += text_of(" %s%02x", a.obeyed ? "" : "!", unsigned{a.code});
+  stage_.device.clear_log();
+  say(text_of("  device %s%s; lidar %s, %llu revolutions; asked%s",
+              stage_.device.is_up() ? "up" : "down",
+              stage_.device.is_scanning() ? ", scanning" : "",
+              lidar_ && lidar_->is_scanning() ? "scanning" : "idle",
+              static_cast<unsigned long long>(watch_.scans()), codes.c_str()));
 }
 
 void life::wake() {

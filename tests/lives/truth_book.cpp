@@ -23,8 +23,6 @@ double apart_deg(double a, double b) { return std::abs(std::remainder(a - b, 360
 
 /// First and last angle of a packet are rounded to 1/64 degree.
 constexpr double angle_slack_deg = 1.0 / 64 + 0.001;
-/// Nearer than half a turn of the fastest motor; a sample of another turn is farther.
-constexpr std::int64_t near_ns = 40'000'000;
 /// A packet's points must be told apart from those of others within so many.
 constexpr std::size_t most_open = 400;
 
@@ -56,6 +54,16 @@ bool truth_book::fits(const packet& sent, std::size_t at) const {
   return true;
 }
 
+/// Whether a packet that fits is no other that looks the same: those of one sample and those that saw
+/// nothing do, a turn later. Then the next packet must fit as well.
+bool truth_book::is_sure(std::size_t which, std::size_t at) const {
+  const packet& sent = sent_[which];
+  const auto begin = sent.samples.begin();
+  const auto end = begin + static_cast<std::ptrdiff_t>(sent.count);
+  if (std::count_if(begin, end, [](const sample& s) { return s.raw != 0; }) >= 5) return true;
+  return which + 1 < sent_.size() && fits(sent_[which + 1], at + sent.count);
+}
+
 /// The packet that begins with this open point: of several that look the same, the one whose time is
 /// nearest.
 std::optional<std::size_t> truth_book::find(std::size_t at) const {
@@ -63,12 +71,11 @@ std::optional<std::size_t> truth_book::find(std::size_t at) const {
   std::int64_t best_ns = 0;
   for (std::size_t i = 0; i < sent_.size(); ++i) {
     if (!fits(sent_[i], at)) continue;
+    if (is_sure(i, at)) return i;
     const std::int64_t off_ns = std::abs(sent_[i].samples[0].time_ns - open_[at].time_ns);
-    if (off_ns < near_ns) return i;
-    if (!best || off_ns < best_ns) {
-      best = i;
-      best_ns = off_ns;
-    }
+    if (best && off_ns >= best_ns) continue;
+    best = i;
+    best_ns = off_ns;
   }
   return best;
 }
@@ -123,7 +130,17 @@ bool truth_book::settle_blind(bool all) {
   return false;
 }
 
+void truth_book::drop_rest_of_packet() {
+  is_cut_ = false;
+  for (std::size_t rest = 0; rest < std::min(open_.size(), max_samples); ++rest) {
+    if (!find(rest)) continue;
+    open_.erase(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(rest));
+    return;
+  }
+}
+
 bool truth_book::settle_one(bool all) {
+  if (is_cut_) drop_rest_of_packet();
   const auto found = find(0);
   if (!found) return settle_blind(all);
   accept(*found, 0);

@@ -42,6 +42,12 @@ class truth_book {
     open_.insert(open_.end(), points.begin(), points.end());
   }
 
+  /// Points were missed here: the next ones may begin in the middle of a packet.
+  void cut() {
+    open_.clear();
+    is_cut_ = true;
+  }
+
   /// Finds for each open point its sample, and gives them. A sentence in problem() where one has none.
   std::span<const known_point> settle(bool all);
   [[nodiscard]] const std::string& problem() const { return problem_; }
@@ -64,8 +70,10 @@ class truth_book {
   };
 
   [[nodiscard]] bool fits(const packet& sent, std::size_t at) const;
+  [[nodiscard]] bool is_sure(std::size_t which, std::size_t at) const;
   [[nodiscard]] std::optional<std::size_t> find(std::size_t at) const;
   bool settle_one(bool all);
+  void drop_rest_of_packet();
   bool settle_blind(bool all);
   void accept(std::size_t found, std::size_t blind);
 
@@ -74,6 +82,7 @@ class truth_book {
   std::vector<known_point> known_;
   truth_counts counts_;
   std::string problem_;
+  bool is_cut_ = false;
 };
 
 }  // namespace g4lidar::lives

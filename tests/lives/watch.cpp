@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "text.hpp"
+
 namespace g4lidar::lives {
 namespace {
 
 /// More than the ring and a scan hold together.
 constexpr std::size_t longest_history = 50'000;
+/// Where the clock of the samples has started anew, times that must grow may be ahead a little.
+constexpr std::int64_t most_ahead_ns = 1 * ms;
 
 }  // namespace
 
@@ -59,6 +63,7 @@ void watch::take_points() {
     if (read.missed > 0) {  // more came in one reading than the ring holds
       is_broken_ = true;
       history_.clear();
+      book_.cut();
     }
     if (read.points == 0) break;
     book_.add(std::span<const point>(points_).first(read.points));
@@ -70,7 +75,10 @@ void watch::take_points() {
 void watch::check(const known_point& found) {
   if (found.seen.time_ns <= last_time_ns_) fail("the times of points do not grow");
   last_time_ns_ = found.seen.time_ns;
-  if (found.seen.time_ns > stage_->clock.now_ns()) fail("a point of the future");
+  if (const std::int64_t ahead_ns = found.seen.time_ns - stage_->clock.now_ns();
+      ahead_ns > most_ahead_ns) {
+    fail(text_of("a point is %.6f s in the future", in_seconds(ahead_ns)));
+  }
   history_.push_back(found);
   if (history_.size() > longest_history) history_.pop_front();
 
@@ -117,7 +125,10 @@ void watch::check_counts() {
   if (read_ + missed_ != lidar_->points().written()) fail("points were written and not read");
   if (lidar_->points().written() > now.stream.points) fail("more points than the stream had");
   if (now.scans_missed > now.scans + now.partial_scans) fail("more scans missed than there were");
-  if (plan_->healthy && now.samples_lost > 0) fail("samples were lost without a fault");
+  if (plan_->healthy && now.samples_lost > 0) {
+    fail(text_of("%llu samples were lost without a fault",
+                 static_cast<unsigned long long>(now.samples_lost)));
+  }
   if (plan_->healthy && now.stream.suspect > 0) fail("a suspect packet without a fault");
   last_ = now;
 }
