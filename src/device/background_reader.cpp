@@ -43,7 +43,9 @@ struct background_reader::state {
     if (!thread.joinable()) return;
     device.wake();
     thread.join();
-    static_cast<void>(device.stop());
+    // The thread may have ended without having been woken.
+    const auto stopped = device.stop();
+    if (!stopped && stopped.error().what() == problem::cancelled) static_cast<void>(device.stop());
     publish();
   }
 

@@ -42,10 +42,7 @@ lidar::driver::~driver() { static_cast<void>(close()); }
 result<void> lidar::driver::connect() {
   auto made = connector_->connect();
   if (!made) return tl::unexpected(made.error());
-  {
-    const std::lock_guard lock(line_mutex_);
-    line_ = std::move(*made);
-  }
+  static_cast<void>(exchange_line(std::move(*made)));
   ready_.follow(line_->native_handle());
   session_.reset();
   last_bytes_ns_ = last_read_ns_ = now_ns();
@@ -60,13 +57,19 @@ result<void> lidar::driver::connect() {
   return {};
 }
 
+std::unique_ptr<transport> lidar::driver::exchange_line(std::unique_ptr<transport> made) noexcept {
+  while (line_changes_.test_and_set()) {
+    // For the moment in which another thread wakes it.
+  }
+  line_.swap(made);
+  line_changes_.clear();
+  pass_on_wake();
+  return made;
+}
+
 void lidar::driver::release_line() noexcept {
   ready_.follow(-1);
-  std::unique_ptr<transport> old;
-  {
-    const std::lock_guard lock(line_mutex_);
-    old = std::move(line_);
-  }
+  exchange_line(nullptr).reset();
   input_ = {};
   end_of_bytes();
   planned_ = plan_at_ = 0;
@@ -76,7 +79,7 @@ void lidar::driver::release_line() noexcept {
 void lidar::driver::leave_stopped(const error& why) noexcept {
   if (line_ == nullptr || !line_->answers() || why.what() == problem::gone) return;
   for (const command each : {command::forced_stop, command::stop}) {
-    if (!line_->write(encode(each), now_ns() + write_time_ns)) return;
+    if (!send(encode(each))) return;
   }
 }
 
@@ -104,19 +107,25 @@ result<void> lidar::driver::hang_up(const error& broken) {
 
 result<void> lidar::driver::wait_for_line(std::int64_t deadline_ns) {
   if (now_ns() < next_attempt_ns_) {
-    if (!connector_->pause(std::min(deadline_ns, next_attempt_ns_))) {
-      return failure(task::reading, problem::cancelled);
-    }
+    connector_->pause(std::min(deadline_ns, next_attempt_ns_));
     if (now_ns() < next_attempt_ns_) return {};
   }
   if (auto connected = connect(); !connected) return hang_up(connected.error());
-  return {};
+  return serve();
+}
+
+/// A command of which a part had gone out would be worse than one that came late: a wake-up does not
+/// stop it.
+result<void> lidar::driver::send(bytes command) {
+  while (true) {
+    auto sent = line_->write(command, now_ns() + write_time_ns);
+    if (sent || sent.error().what() != problem::cancelled) return sent;
+  }
 }
 
 result<void> lidar::driver::send_commands() {
   while (const auto command = session_.to_send()) {
-    const auto sent = line_->write(*command, now_ns() + write_time_ns);
-    if (!sent) return tl::unexpected(sent.error());
+    if (auto sent = send(*command); !sent) return sent;
   }
   return {};
 }
@@ -127,11 +136,13 @@ result<void> lidar::driver::receive(std::int64_t deadline_ns) {
   if (batch_ns > 0 && stage_ == stage::scanning) {
     const std::int64_t until = std::min(last_read_ns_ + batch_ns, deadline_ns);
     if (until > now_ns()) {
-      if (auto paused = line_->pause(until); !paused) return paused;
+      const auto paused = line_->pause(until);
+      if (!paused && paused.error().what() != problem::cancelled) return paused;
     }
     deadline_ns = until;  // what is there now, or nothing: without another wait
   }
   const auto got = line_->read(buffer_, deadline_ns);
+  if (!got && got.error().what() == problem::cancelled) return {};  // step() knows
   if (!got) return tl::unexpected(got.error());
   last_read_ns_ = batch_ns > 0 ? now_ns() : 0;
   if (got->count == 0) return {};
@@ -143,22 +154,24 @@ result<void> lidar::driver::receive(std::int64_t deadline_ns) {
 // ---- one round ----------------------------------------------------------------------------------
 
 /// Does everything that is due, and waits for bytes until the deadline at most once. Stops at a scan.
+/// Who is woken has still got on: calls that are woken again and again come to their end.
 result<void> lidar::driver::step(std::int64_t deadline_ns) {
   if (stage_ == stage::closed) return tl::unexpected(lost_);
-  if (stage_ == stage::lost) return wait_for_line(deadline_ns);
-  const auto done = round(deadline_ns);
-  if (done || done.error().what() == problem::cancelled) return done;
-  return hang_up(done.error());
+  const std::int64_t until = woken_.load(std::memory_order_relaxed) ? now_ns() : deadline_ns;
+  auto done = stage_ == stage::lost ? wait_for_line(until) : round(until);
+  if (!done && stage_ != stage::closed) done = hang_up(done.error());
+  if (done && woken_.load(std::memory_order_relaxed) && woken_.exchange(false)) {
+    return failure(task::reading, problem::cancelled, name());
+  }
+  return done;
 }
 
 result<void> lidar::driver::round(std::int64_t deadline_ns) {
   static_cast<void>(is_delivering());
   if (line_->answers()) {
     if (auto looked = look_if_due(); !looked) return looked;
-    if (auto told = take_notice(); !told) return told;
-    if (auto gone_on = go_on_with_plan(); !gone_on) return gone_on;
-    if (auto sent = send_commands(); !sent) return sent;
   }
+  if (auto served = serve(); !served) return served;
   if (digest()) return {};
   if (input_.empty()) {
     // Whoever waits for an outcome wants to know of it first.
@@ -167,8 +180,19 @@ result<void> lidar::driver::round(std::int64_t deadline_ns) {
     if (auto got = receive(until); !got) return got;
     if (input_.empty()) end_a_silent_frame();
   }
-  digest();
-  return {};
+  if (digest()) return {};
+  // An event loop may not come back before something is heard: nothing is left to be said.
+  auto served = serve();
+  has_outcome_ = false;
+  return served;
+}
+
+/// What follows from what was heard: notices, the next of the plan, commands.
+result<void> lidar::driver::serve() {
+  if (!line_->answers()) return {};
+  if (auto told = take_notice(); !told) return told;
+  if (auto gone_on = go_on_with_plan(); !gone_on) return gone_on;
+  return send_commands();
 }
 
 /// Lets the time pass for the session, when it is due. What has come by then and was not read, since
@@ -299,6 +323,10 @@ result<void> lidar::driver::open() {
 result<void> lidar::driver::start() {
   if (stage_ == stage::scanning) return {};
   if (auto ready = run_plan(); !ready) return ready;
+  if (stage_ == stage::scanning) {  // a start that was woken, and has now come to its end
+    wants_scan_ = true;
+    return {};
+  }
   if (!line_->answers()) {
     stage_ = stage::scanning;
     wants_scan_ = true;
@@ -331,7 +359,10 @@ result<void> lidar::driver::stop() {
 
 result<void> lidar::driver::close() {
   result<void> stopped;
-  if (stage_ == stage::scanning || stage_ == stage::preparing) stopped = stop();
+  while (stage_ == stage::scanning || stage_ == stage::preparing) {
+    stopped = stop();
+    if (stopped || stopped.error().what() != problem::cancelled) break;
+  }
   if (line_ != nullptr) release_line();
   stage_ = stage::closed;
   lost_ = error(task::reading, problem::gone, "this lidar, which was closed");
@@ -406,11 +437,17 @@ void lidar::driver::drop_scan() noexcept {
 }
 
 void lidar::driver::wake() noexcept {
-  const std::lock_guard lock(line_mutex_);
-  if (line_ != nullptr) {
-    line_->wake();
-  } else {
-    connector_->wake();
+  woken_.store(true);
+  to_kick_.store(true);
+  pass_on_wake();
+}
+
+/// Ends the wait of whoever waits. Whoever finds the line held leaves this to the holder, who comes
+/// here behind it: in a signal handler there is nothing to wait for.
+void lidar::driver::pass_on_wake() noexcept {
+  while (to_kick_.load() && !line_changes_.test_and_set()) {
+    if (to_kick_.exchange(false)) line_ != nullptr ? line_->wake() : connector_->wake();
+    line_changes_.clear();
   }
 }
 

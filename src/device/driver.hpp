@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -70,7 +70,10 @@ class lidar::driver {
   result<void> connect();
   result<void> hang_up(const error& broken);
   void leave_stopped(const error& why) noexcept;
+  std::unique_ptr<transport> exchange_line(std::unique_ptr<transport> made) noexcept;
   void release_line() noexcept;
+  void pass_on_wake() noexcept;
+  result<void> send(bytes command);
   result<void> send_commands();
   result<void> receive(std::int64_t deadline_ns);
   result<void> wait_for_line(std::int64_t deadline_ns);
@@ -78,6 +81,7 @@ class lidar::driver {
   // One round of everything.
   result<void> step(std::int64_t deadline_ns);
   result<void> round(std::int64_t deadline_ns);
+  result<void> serve();
   result<void> look_if_due();
   result<void> take_notice();
   bool digest();
@@ -110,7 +114,9 @@ class lidar::driver {
 
   lidar_options options_;
   std::unique_ptr<connector> connector_;
-  mutable std::mutex line_mutex_;  // held when line_ changes, and by wake(), which reads it
+  std::atomic_flag line_changes_;     // held while line_ changes, and by wake(), which reads it
+  std::atomic<bool> woken_ = false;    // a call is to end; seen by step()
+  std::atomic<bool> to_kick_ = false;  // and whoever waits is to be told
   std::unique_ptr<transport> line_;
   ready_handle ready_;
   stage stage_ = stage::closed;
