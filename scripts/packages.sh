@@ -18,7 +18,7 @@ packages_test=(
 # What it takes to build and run the benchmarks.
 packages_bench=(
   "${packages_demo[@]}"
-  libbenchmark-dev python3-minimal
+  libbenchmark-dev python3-minimal strace valgrind
 )
 
 # And everything that .ci/run does.

@@ -31,19 +31,15 @@ void portable_to_xy(packet_view packet, frame to, std::span<xy_point, max_sample
 
 const kernels portable_kernels{portable_to_points, portable_to_xy};
 
-}  // namespace bulk
-
-namespace {
-
-const bulk::kernels& kernels_of(instruction_set set) noexcept {
+const kernels& kernels_of(instruction_set set) noexcept {
 #if G4LIDAR_HAS_AVX2_KERNELS
-  if (set == instruction_set::avx2) return bulk::avx2_kernels;
+  if (set == instruction_set::avx2) return avx2_kernels;
 #endif
   static_cast<void>(set);
-  return bulk::portable_kernels;
+  return portable_kernels;
 }
 
-}  // namespace
+}  // namespace bulk
 
 instruction_set best_instruction_set() noexcept {
 #if G4LIDAR_HAS_AVX2_KERNELS
@@ -123,13 +119,12 @@ struct ended {
   void go_back(bytes /*to*/) const noexcept {}
 };
 
-auto points_with(instruction_set set) noexcept { return kernels_of(set).to_points; }
+auto points_with(instruction_set set) noexcept { return bulk::kernels_of(set).to_points; }
 
 auto places_with(instruction_set set, frame to) noexcept {
-  return [kernel = kernels_of(set).to_xy, to](packet_view packet, std::uint32_t /*revolution*/,
-                                              std::span<xy_point, max_samples> out) noexcept {
-    kernel(packet, to, out);
-  };
+  return [kernel = bulk::kernels_of(set).to_xy, to](
+             packet_view packet, std::uint32_t /*revolution*/,
+             std::span<xy_point, max_samples> out) noexcept { kernel(packet, to, out); };
 }
 
 }  // namespace

@@ -30,4 +30,7 @@ extern const kernels avx2_kernels;
 #define G4LIDAR_HAS_AVX2_KERNELS 0
 #endif
 
+/// Those of an instruction set that this processor has.
+[[nodiscard]] const kernels& kernels_of(instruction_set set) noexcept;
+
 }  // namespace g4lidar::bulk

@@ -130,6 +130,8 @@ class device_talk {
     return encode(queue_[fetched_++]);
   }
 
+  /// Whether a command has not been fetched yet: what comes now is no answer to it.
+  [[nodiscard]] constexpr bool is_unsent() const noexcept { return fetched_ != queued_; }
   [[nodiscard]] constexpr bool is_at_rest() const noexcept { return act_ == act::none; }
   [[nodiscard]] constexpr bool is_draining() const noexcept { return act_ == act::draining; }
   [[nodiscard]] constexpr pending_question& question() noexcept { return question_; }
@@ -141,9 +143,6 @@ class device_talk {
   enum class act : std::uint8_t { none, draining, asking, starting, booting, probing };
 
   static constexpr int max_drains = 3;  // times that a device is told to stop
-
-  /// Whether a command has not been fetched yet: what comes now is no answer to it.
-  [[nodiscard]] constexpr bool is_unsent() const noexcept { return fetched_ != queued_; }
 
   constexpr void enter(act next, std::int64_t deadline_ns) noexcept {
     act_ = next;

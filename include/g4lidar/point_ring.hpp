@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <type_traits>
 
@@ -120,9 +121,12 @@ class point_ring {
   /// Appends points. The producer only. Never waits.
   void push(std::span<const point> points) noexcept {
     while (!points.empty()) {
-      const std::size_t count = std::min(points.size(), batch);
+      const std::size_t begin = static_cast<std::size_t>(next_) % Capacity;
+      const std::size_t count = std::min({points.size(), batch, Capacity - begin});
       claimed_.store(next_ + count);
-      for (std::size_t i = 0; i < count; ++i) store(next_ + i, points[i]);
+      slot* to = slots_.data() + begin;
+#pragma GCC unroll 8
+      for (const point& p : points.first(count)) store(*to++, p);
       next_ += count;
       written_.store(next_);
       points = points.subspan(count);
@@ -143,18 +147,23 @@ class point_ring {
  private:
   static constexpr std::size_t words = sizeof(point) / sizeof(Word);
   /// Points claimed at a time: few, so that a reader close behind loses few.
-  static constexpr std::size_t batch = std::min<std::size_t>(Capacity, 32);
+  static constexpr std::size_t batch = std::min<std::size_t>(Capacity, 64);
   using point_words = std::array<Word, words>;
   using slot = std::array<std::atomic<Word>, words>;
 
-  void store(std::uint64_t number, const point& p) noexcept {
-    const auto raw = std::bit_cast<point_words>(p);
-    slot& to = slots_[static_cast<std::size_t>(number % Capacity)];
-    for (std::size_t i = 0; i < words; ++i) to[i].store(raw[i], std::memory_order_release);
+  static void store(slot& to, const point& p) noexcept {
+    const auto* const raw = reinterpret_cast<const unsigned char*>(&p);
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < words; ++i) {
+      Word word;  // one by one: an array of them would go by way of the stack
+      std::memcpy(&word, raw + i * sizeof(Word), sizeof(Word));
+      to[i].store(word, std::memory_order_release);
+    }
   }
   [[nodiscard]] point load(std::uint64_t number) const noexcept {
     point_words raw;
     const slot& from = slots_[static_cast<std::size_t>(number % Capacity)];
+#pragma GCC unroll 8
     for (std::size_t i = 0; i < words; ++i) raw[i] = from[i].load(std::memory_order_acquire);
     return std::bit_cast<point>(raw);
   }

@@ -117,6 +117,11 @@ class session {
   /// Whether a request is under way or its outcome is still to be fetched.
   [[nodiscard]] constexpr bool is_busy() const noexcept { return has_request_ || is_done_; }
 
+  /// Whether to_send(), finished() and noticed() all have nothing: one question for the three.
+  [[nodiscard]] constexpr bool has_nothing() const noexcept {
+    return !is_done_ && notice_ == notice::none && !talk_.is_unsent();
+  }
+
   /// Whether the device scans because it was asked to, or is being brought back to it.
   [[nodiscard]] constexpr bool is_scanning() const noexcept { return scanning_; }
 

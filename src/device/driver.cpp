@@ -189,6 +189,7 @@ result<void> lidar::driver::round(std::int64_t deadline_ns) {
 
 /// What follows from what was heard: notices, the next of the plan, commands.
 result<void> lidar::driver::serve() {
+  if (session_.has_nothing() && plan_at_ == planned_) return {};  // as most of the time
   if (!line_->answers()) return {};
   if (auto told = take_notice(); !told) return told;
   if (auto gone_on = go_on_with_plan(); !gone_on) return gone_on;

@@ -114,7 +114,7 @@ class lidar::driver {
 
   lidar_options options_;
   std::unique_ptr<connector> connector_;
-  std::atomic_flag line_changes_;     // held while line_ changes, and by wake(), which reads it
+  std::atomic_flag line_changes_;      // held while line_ changes, and by wake(), which reads it
   std::atomic<bool> woken_ = false;    // a call is to end; seen by step()
   std::atomic<bool> to_kick_ = false;  // and whoever waits is to be told
   std::unique_ptr<transport> line_;

@@ -37,7 +37,8 @@ result<void> lidar::driver::run_plan() {
   }
   if (stage_ == stage::closed || stage_ == stage::lost) return tl::unexpected(lost_);
   while (plan_at_ < planned_ || session_.is_busy()) {
-    drop_scan();
+    // A scan may be complete before the start is done: that one is for next_scan().
+    if (!(stage_ == stage::preparing && session_.is_scanning())) drop_scan();
     if (auto done = step(never_ns); !done) return done;
     if (stage_ == stage::lost) return tl::unexpected(lost_);
     if (refused_) return tl::unexpected(*std::exchange(refused_, std::nullopt));

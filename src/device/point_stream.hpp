@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "g4lidar/correction.hpp"
+#include "../bulk_kernels.hpp"
 #include "g4lidar/decode.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/scan.hpp"
@@ -53,7 +53,11 @@ class point_stream {
     const bool is_first = read_ns == first_read_ns_;
     const std::int64_t arrival_ns =
         is_first ? read_ns - static_cast<std::int64_t>(behind) * byte_ns_ : read_ns;
-    open_ = decode(found, *correction_, revolutions_.count(found), memory_);
+    open_ = without_points(found, revolutions_.count(found));
+    if (!open_.suspect) {
+      to_points_(found, open_.revolution, memory_);
+      open_.points = std::span(memory_).first(found.sample_count());
+    }
     const packet_times times = clock_.stamp(open_, arrival_ns);
     const std::span<point> points = std::span(memory_).first(open_.points.size());
     times.write_to(points);
@@ -112,7 +116,8 @@ class point_stream {
 
   bool partial_scans_;
   std::int64_t byte_ns_;  // that a byte takes on the line
-  std::unique_ptr<const table_correction> correction_ = std::make_unique<table_correction>();
+  decltype(bulk::kernels::to_points) to_points_ =
+      bulk::kernels_of(best_instruction_set()).to_points;
   std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
   sensor_clock clock_;
   std::vector<point> storage_;

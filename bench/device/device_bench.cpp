@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+// What the driver costs: on a pty in real time, on a flooded pty, and per sample in memory.
+//   device_bench delay SECONDS    from a zero packet's writing to the scan in hand, and the first scan
+//   device_bench stream SECONDS [BATCH_MS]  CPU time, context switches, memory while streaming
+//   device_bench flood MEGABYTES  bytes a second against a reader that only counts
+//   device_bench memory SCANS [BURST]  so many scans from memory, in bursts of so many bytes, for
+//                                 counting instructions
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <thread>
+
+#include "feeder.hpp"
+#include "g4lidar/lidar.hpp"
+
+namespace {
+
+using namespace g4lidar;
+using namespace std::chrono_literals;
+using bench::steady_ns;
+
+constexpr std::int64_t second = 1'000'000'000;
+
+[[noreturn]] void fail(const error& why) {
+  std::fprintf(stderr, "%s\n", why.message().c_str());
+  std::exit(1);
+}
+
+lidar open_and_start(const std::string& path, int batch_ms = 0) {
+  lidar_options options;
+  options.device = path;
+  options.batch = std::chrono::milliseconds(batch_ms);
+  auto opened = lidar::open(options);
+  if (!opened) fail(opened.error());
+  if (auto started = opened->start(); !started) fail(started.error());
+  return std::move(*opened);
+}
+
+double ms_of(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
+
+int delay(int seconds) {
+  const bench::pty line;
+  std::vector<std::int64_t> written;
+  const std::int64_t end = steady_ns() + seconds * second;
+  std::thread feeder([&] { bench::feed_in_real_time(line.master(), end + 2 * second, written); });
+  const std::int64_t begin = steady_ns();
+  std::int64_t opened = 0;
+  std::int64_t first = 0;
+  std::vector<std::pair<std::uint32_t, std::int64_t>> taken;  // revolution, when
+  {
+    lidar device = open_and_start(line.path());
+    opened = steady_ns();
+    while (steady_ns() < end) {
+      const auto scan = device.next_scan(500ms);
+      const std::int64_t now = steady_ns();
+      if (!scan) continue;
+      if (first == 0) first = now;
+      taken.emplace_back(scan->revolution, now);
+    }
+  }
+  feeder.join();
+  // The revolution r ends with the zero packet number r: number 0 is the end of the partial one.
+  std::vector<double> delays;
+  for (const auto& [revolution, when] : taken) {
+    if (revolution < written.size()) delays.push_back(ms_of(when - written[revolution]));
+  }
+  if (delays.empty()) return 1;
+  std::sort(delays.begin(), delays.end());
+  std::printf(
+      "delay_median_ms %.3f\ndelay_p99_ms %.3f\nopen_and_start_ms %.1f\nfirst_scan_ms %.1f\n"
+      "scans %zu\n",
+      delays[delays.size() / 2], delays[delays.size() * 99 / 100], ms_of(opened - begin),
+      ms_of(first - begin), delays.size());
+  return 0;
+}
+
+int stream(int seconds, int batch_ms) {
+  const bench::pty line;
+  const std::int64_t end = steady_ns() + (seconds + 3) * second;
+  const pid_t feeder = fork();
+  if (feeder == 0) {
+    std::vector<std::int64_t> ignored;
+    bench::feed_in_real_time(line.master(), end + second, ignored);
+    _exit(0);
+  }
+  {
+    lidar device = open_and_start(line.path(), batch_ms);
+    const auto until = [&](std::int64_t time) {
+      while (steady_ns() < time) static_cast<void>(device.next_scan(500ms));
+    };
+    until(end - (seconds + 1) * second);
+    // What is counted lies between these two marks; a tracer sees them.
+    static_cast<void>(::write(STDERR_FILENO, "begin\n", 6));
+    rusage before{};
+    rusage after{};
+    getrusage(RUSAGE_SELF, &before);
+    const lidar_counts counts = device.counts();
+    until(steady_ns() + seconds * second);
+    getrusage(RUSAGE_SELF, &after);
+    static_cast<void>(::write(STDERR_FILENO, "end\n", 4));
+    const auto seconds_of = [](const timeval& t) {
+      return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+    };
+    const double cpu = seconds_of(after.ru_utime) + seconds_of(after.ru_stime) -
+                       seconds_of(before.ru_utime) - seconds_of(before.ru_stime);
+    std::printf(
+        "cpu_s_per_minute %.3f\nswitches_per_s %.0f\npeak_memory_kib %ld\nscans %llu\n"
+        "samples_lost %llu\n",
+        cpu * 60 / seconds,
+        static_cast<double>(after.ru_nvcsw + after.ru_nivcsw - before.ru_nvcsw - before.ru_nivcsw) /
+            seconds,
+        after.ru_maxrss, static_cast<unsigned long long>(device.counts().scans - counts.scans),
+        static_cast<unsigned long long>(device.counts().samples_lost));
+  }
+  waitpid(feeder, nullptr, 0);
+  return 0;
+}
+
+/// Bytes a second of a reader that polls, reads, and counts.
+double counting_rate(std::size_t bytes_wanted) {
+  const bench::pty line;
+  const bench::recording revolutions = bench::record(20);
+  std::atomic<bool> done = false;
+  std::thread feeder([&] {
+    bench::flood(line.master(), revolutions.data, bytes_wanted);
+    done = true;
+  });
+  const int port = ::open(line.path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  const auto start = encode(command::start);
+  static_cast<void>(::write(port, start.data(), start.size()));
+  std::vector<std::uint8_t> buffer(65536);
+  std::size_t seen = 0;
+  std::int64_t begin = 0;
+  while (seen < bytes_wanted) {
+    pollfd ready{port, POLLIN, 0};
+    static_cast<void>(poll(&ready, 1, 1000));
+    const ssize_t count = ::read(port, buffer.data(), buffer.size());
+    if (count > 0) seen += static_cast<std::size_t>(count);
+    if (begin == 0 && seen > 1000) begin = steady_ns();
+  }
+  const double rate = static_cast<double>(seen) * 1e9 / static_cast<double>(steady_ns() - begin);
+  while (!done) static_cast<void>(::read(port, buffer.data(), buffer.size()));
+  feeder.join();
+  ::close(port);
+  return rate;
+}
+
+/// Bytes a second of the driver, and the scans that it lost.
+double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
+  const bench::pty line;
+  const bench::recording revolutions = bench::record(20);
+  const std::size_t rounds = (bytes_wanted + revolutions.data.size() - 1) / revolutions.data.size();
+  std::atomic<bool> done = false;
+  std::thread feeder([&] {
+    bench::flood(line.master(), revolutions.data, bytes_wanted);
+    done = true;
+  });
+  lidar device = open_and_start(line.path());
+  const auto expected = static_cast<std::int64_t>(rounds * 20 - 1);  // the last one has no end
+  std::int64_t scans = 0;
+  std::int64_t begin = 0;
+  while (scans < expected) {
+    const auto scan = device.next_scan(1000ms);
+    if (!scan) break;
+    if (begin == 0) begin = steady_ns();
+    ++scans;
+  }
+  const double rate =
+      static_cast<double>(device.counts().bytes) * 1e9 / static_cast<double>(steady_ns() - begin);
+  lost = expected - scans;
+  while (!done) static_cast<void>(device.next_points(1ms));
+  feeder.join();
+  return rate;
+}
+
+int flood(int megabytes) {
+  const std::size_t wanted = static_cast<std::size_t>(megabytes) * 1'000'000;
+  std::int64_t lost = 0;
+  std::vector<double> ratios;
+  double counting = 0.0;
+  for (int round = 0; round < 5; ++round) {
+    counting = counting_rate(wanted);
+    ratios.push_back(driver_rate(wanted, lost) / counting);
+    if (lost != 0) break;
+  }
+  std::sort(ratios.begin(), ratios.end());
+  std::printf("flood_ratio %.2f\ncounting_mb_per_s %.1f\nscans_lost %lld\n",
+              ratios[ratios.size() / 2], counting / 1e6, static_cast<long long>(lost));
+  return 0;
+}
+
+/// A line that gives a recording in bursts, as they come at the line rate, and answers the commands of
+/// a start.
+class memory_line final : public transport {
+ public:
+  memory_line(const bench::recording& from, std::size_t scans, std::size_t burst, std::int64_t& now)
+      : from_(from), left_(scans / 20), burst_(burst), now_(now) {}
+
+  result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
+    if (!scanning_) {
+      now_ += 100'000;
+      const std::size_t count = twin_.read(out, now_);
+      if (count == 0 && now_ < deadline_ns) now_ = std::min(deadline_ns, now_ + 10'000'000);
+      return received{count, now_};
+    }
+    if (place_ == from_.data.size()) {
+      place_ = 0;
+      if (--left_ == 0) return failure(task::reading, problem::end_of_input);
+    }
+    const std::size_t count = std::min(burst_, from_.data.size() - place_);
+    std::memcpy(out.data(), from_.data.data() + place_, count);
+    place_ += count;
+    now_ += static_cast<std::int64_t>(count) * 43'402;
+    return received{count, now_};
+  }
+  result<void> write(bytes data, std::int64_t /*deadline_ns*/) noexcept override {
+    if (scanning_) return {};  // the recording is all that there is from now on
+    twin_.write(data, now_);
+    scanning_ =
+        scanning_ || (data.size() == 2 && data[1] == static_cast<std::uint8_t>(command::start));
+    return {};
+  }
+  result<void> pause(std::int64_t deadline_ns) noexcept override {
+    now_ = deadline_ns;
+    return {};
+  }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
+  void wake() noexcept override {}
+  [[nodiscard]] std::string_view name() const noexcept override { return "memory"; }
+
+ private:
+  const bench::recording& from_;
+  std::size_t left_;
+  std::size_t burst_;
+  std::size_t place_ = 0;
+  std::int64_t& now_;
+  bool scanning_ = false;
+  sim::device twin_{sim::built_in_world()};
+};
+
+class memory_connector final : public connector {
+ public:
+  memory_connector(const bench::recording& from, std::size_t scans, std::size_t burst)
+      : next_(std::make_unique<memory_line>(from, scans, burst, now_)) {}
+  result<std::unique_ptr<transport>> connect() noexcept override { return std::move(next_); }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
+  bool pause(std::int64_t /*deadline_ns*/) noexcept override { return true; }
+  void wake() noexcept override {}
+
+ private:
+  std::int64_t now_ = 1'000'000'000;
+  std::unique_ptr<transport> next_;
+};
+
+int memory(int scans, int burst) {
+  const bench::recording revolutions = bench::record(20);
+  lidar_options options;
+  auto opened =
+      lidar::open(std::make_unique<memory_connector>(revolutions, static_cast<std::size_t>(scans),
+                                                     static_cast<std::size_t>(burst)),
+                  options);
+  if (!opened) fail(opened.error());
+  if (auto started = opened->start(); !started) fail(started.error());
+  std::size_t samples = 0;
+  std::size_t whole = 0;
+  while (true) {
+    const auto scan = opened->next_scan(1000ms);
+    if (!scan) break;
+    samples += scan->points.size();
+    whole += scan->is_whole();
+  }
+  std::printf("samples %zu\nscans %zu\n", samples, whole);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view mode = argc > 1 ? argv[1] : "";
+  const int amount = argc > 2 ? std::atoi(argv[2]) : 10;
+  if (mode == "delay") return delay(amount);
+  if (mode == "stream") return stream(amount, argc > 3 ? std::atoi(argv[3]) : 0);
+  if (mode == "flood") return flood(amount);
+  if (mode == "memory") return memory(amount, argc > 3 ? std::atoi(argv[3]) : 256);
+  std::fprintf(stderr, "device_bench delay|stream|flood|memory AMOUNT: see the source\n");
+  return 2;
+}
