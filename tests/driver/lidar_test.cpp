@@ -87,8 +87,8 @@ TEST(Lidar, RefusesToDisturbAScan) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().what(), problem::scanning);
   EXPECT_FALSE(refused.error().is_fatal());
-  const auto health = lidar->ask_for<g4lidar::health>(requests::health(),
-                                                      while_scanning::stop_and_resume);
+  const auto health =
+      lidar->ask_for<g4lidar::health>(requests::health(), while_scanning::stop_and_resume);
   ASSERT_TRUE(health) << health.error().message();
   EXPECT_EQ(health->status, health_status::ok);
   EXPECT_TRUE(lidar->next_scan(2000ms));
