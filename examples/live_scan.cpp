@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// A line for each revolution of a G4, until Ctrl-C: the program in the README.
+#include <csignal>
+#include <cstdio>
+#include <g4lidar/lidar.hpp>
+
+volatile std::sig_atomic_t running = 1;
+
+int report(const g4lidar::error& why) {
+  std::fprintf(stderr, "%s\n", why.message().c_str());
+  return 1;
+}
+
+void use(const g4lidar::scan& scan) {
+  g4lidar::polar nearest{0, 99};
+  for (const g4lidar::point& p : scan.points) {
+    const auto seen = to_polar(p, g4lidar::frame::robot);  // x forward, y to the left
+    if (!p.is_no_return() && seen.range_m < nearest.range_m) nearest = seen;
+  }
+  std::printf("%3u: %zu points at %.2f Hz, the nearest %.3f m away, %+.2f rad from ahead\n",
+              scan.revolution, scan.points.size(), double{scan.measured_frequency_hz(9000)},
+              double{nearest.range_m}, double{nearest.bearing_rad});
+  std::fflush(stdout);
+}
+
+int main(int count, char** words) {
+  using namespace std::chrono_literals;
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { running = 0; });
+  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "");  // "": the only G4
+  if (!lidar) return report(lidar.error());
+  if (auto started = lidar->start(); !started) return report(started.error());
+  while (running) {
+    auto scan = lidar->next_scan(500ms);  // a view, good until the next call
+    if (scan) {
+      use(*scan);
+    } else if (scan.error().is_fatal()) {
+      return report(scan.error());
+    }
+  }
+}  // the motor stops

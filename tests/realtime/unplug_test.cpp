@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// The plug is pulled in each state of the driver: that is known at once, and the device comes back.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "realtime/twin_on_pty.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+using test::quick_g4;
+using test::twin_on_pty;
+using clock = std::chrono::steady_clock;
+
+/// Calls `work` until it fails fatally; nothing where it does not within ten seconds.
+std::optional<error> fate_of(const std::function<result<void>()>& work) {
+  const auto end = clock::now() + 10s;
+  while (clock::now() < end) {
+    const auto done = work();
+    if (!done && done.error().is_fatal()) return done.error();
+  }
+  return std::nullopt;
+}
+
+template <class T>
+result<void> without_value(const result<T>& given) {
+  if (!given) return tl::unexpected(given.error());
+  return {};
+}
+
+/// What a program is doing when the plug is pulled.
+struct activity {
+  const char* name;
+  bool scans;  ///< It has been started before.
+  std::function<result<void>(lidar&)> work;
+};
+
+std::vector<activity> activities() {
+  return {
+      {"waiting", false, [](lidar& device) { return device.process(); }},
+      {"asking", false,
+       [](lidar& device) { return without_value(device.ask(requests::health())); }},
+      {"starting and stopping", false,
+       [](lidar& device) {
+         if (auto started = device.start(); !started) return started;
+         return device.stop();
+       }},
+      {"scanning", true, [](lidar& device) { return without_value(device.next_scan(5s)); }},
+      {"taking points", true, [](lidar& device) { return without_value(device.next_points(5s)); }},
+      {"asking while scanning", true,
+       [](lidar& device) {
+         return without_value(device.ask(requests::health(), while_scanning::stop_and_resume));
+       }},
+  };
+}
+
+class Unplug : public testing::TestWithParam<activity> {};
+
+// Within 100 ms, where the machine has time for us: the best of a few counts. The waits differ, so
+// that it comes at different moments of the work.
+TEST_P(Unplug, IsKnownAtOnce) {
+  auto best = clock::duration::max();
+  for (const auto before : {1ms, 12ms, 30ms, 55ms, 90ms, 170ms}) {
+    twin_on_pty twin;
+    auto device = lidar::open(twin.path());
+    ASSERT_TRUE(device) << device.error().message();
+    if (GetParam().scans) {
+      ASSERT_TRUE(device->start());
+    }
+    clock::time_point pulled;
+    std::thread hand([&] {
+      std::this_thread::sleep_for(before);
+      pulled = twin.unplug();
+    });
+    const auto fate = fate_of([&] { return GetParam().work(*device); });
+    const auto known = clock::now();
+    hand.join();
+    ASSERT_TRUE(fate) << "after " << before.count() << " ms";
+    EXPECT_EQ(fate->what(), problem::gone) << fate->message();
+    best = std::min(best, known - pulled);
+    EXPECT_EQ(device->process().error().what(), problem::gone);  // and it stays so
+    EXPECT_EQ(device->start().error().what(), problem::gone);
+    test::expect_identity(device->counts());
+  }
+  EXPECT_LT(best, 100ms);
+}
+
+// Nobody has to do anything: it is set and started as before.
+TEST_P(Unplug, IsMadeUpForWhenTheDeviceComesBack) {
+  twin_on_pty twin;
+  lidar_options options;
+  options.device = twin.path();
+  options.reconnect = true;
+  options.frequency = scan_frequency{1000};
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  if (GetParam().scans) {
+    ASSERT_TRUE(device->start());
+  }
+  std::thread hand([&] {
+    std::this_thread::sleep_for(20ms);
+    twin.unplug();
+    std::this_thread::sleep_for(150ms);
+    twin.replug();
+  });
+  const auto end = clock::now() + 30s;
+  while (device->counts().reconnects == 0 && clock::now() < end) {
+    static_cast<void>(GetParam().work(*device));
+  }
+  hand.join();
+  ASSERT_EQ(device->counts().reconnects, 1U);
+  std::vector<lidar_event::kind> told;
+  while (const auto event = device->next_event()) told.push_back(event->what);
+  ASSERT_GE(told.size(), 2U);
+  EXPECT_EQ(told[0], lidar_event::kind::lost);
+  EXPECT_EQ(told[1], lidar_event::kind::reconnected);
+
+  ASSERT_TRUE(device->start());
+  EXPECT_EQ(device->information().serial_number(), "2021101000070073");
+  const auto scan = device->next_scan(10s);
+  ASSERT_TRUE(scan) << scan.error().message();
+  EXPECT_EQ(twin.settings().scan_frequency_chz, 1000);
+  ASSERT_TRUE(device->stop());
+  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  test::expect_identity(device->counts());
+}
+
+INSTANTIATE_TEST_SUITE_P(While, Unplug, testing::ValuesIn(activities()), [](const auto& which) {
+  std::string name = which.param.name;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+// Another lidar at the old place is not ours.
+TEST(Unplug, AnotherDeviceIsNotTakenForOurs) {
+  test::scratch_directory directory;
+  const std::string path = directory.file("g4");
+  const auto plugged = [&](char last_digit) {
+    auto options = quick_g4();
+    options.info.serial_digits.back() = last_digit;
+    return sim::background_pty::open(sim::device(sim::built_in_world(), options), path);
+  };
+  lidar_options options;
+  options.device = path;
+  options.reconnect = true;
+  std::optional<sim::background_pty> twin = std::move(*plugged('3'));
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  ASSERT_TRUE(device->next_scan(10s));
+  const auto read_for = [&](std::chrono::milliseconds time) {
+    std::size_t scans = 0;
+    const auto end = clock::now() + time;
+    while (clock::now() < end) scans += device->next_scan(50ms) ? 1U : 0U;
+    return scans;
+  };
+  twin.reset();
+  twin = std::move(*plugged('4'));
+  read_for(300ms);  // what had been read before may still come
+  EXPECT_EQ(read_for(1s), 0U);
+  EXPECT_EQ(device->counts().reconnects, 0U);
+  twin.reset();
+  twin = std::move(*plugged('3'));
+  const auto end = clock::now() + 20s;
+  while (device->counts().reconnects == 0 && clock::now() < end) read_for(100ms);
+  EXPECT_EQ(device->counts().reconnects, 1U);
+  EXPECT_TRUE(device->next_scan(10s));
+}
+
+}  // namespace
+}  // namespace g4lidar

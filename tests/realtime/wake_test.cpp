@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+// Calls that wait are ended from elsewhere; the reader with a thread of its own ends in any order.
+#include <gtest/gtest.h>
+#include <pthread.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "g4lidar/background_reader.hpp"
+#include "realtime/twin_on_pty.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+using test::twin_on_pty;
+using clock = std::chrono::steady_clock;
+
+/// The outcome of a long wait for a revolution that does not come.
+result<scan> wait_for_nothing(lidar& device) {
+  while (true) {
+    auto scan = device.next_scan(60s);
+    if (!scan) return scan;
+  }
+}
+
+/// Answers, and then sends nothing more for a minute: a stall.
+sim::fault silent_from(std::chrono::nanoseconds begin) {
+  return sim::make_fault(sim::fault_kind::stall, begin.count(), 60'000'000'000);
+}
+
+result<lidar> patient(const twin_on_pty& twin) {
+  lidar_options options;
+  options.device = twin.path();
+  options.stall_time = 60s;
+  return lidar::open(options);
+}
+
+TEST(Wake, EndsAWaitFromAnotherThread) {
+  const sim::fault faults[] = {silent_from(1500ms)};
+  twin_on_pty twin(test::quick_g4(), faults);
+  auto device = patient(twin);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  const auto begin = clock::now();
+  std::thread other([&] {
+    std::this_thread::sleep_for(2s);
+    device->wake();
+  });
+  const auto ended = wait_for_nothing(*device);
+  EXPECT_EQ(ended.error().what(), problem::cancelled) << ended.error().message();
+  EXPECT_GE(clock::now() - begin, 2s);
+  EXPECT_LT(clock::now() - begin, 20s);
+  other.join();
+  EXPECT_EQ(device->next_scan(10ms).error().what(), problem::timeout);  // once
+}
+
+std::atomic<lidar*> to_wake = nullptr;
+extern "C" void wake_it(int) {
+  if (lidar* const device = to_wake) device->wake();
+}
+
+TEST(Wake, EndsAWaitFromASignalHandler) {
+  struct sigaction action{};
+  action.sa_handler = wake_it;
+  struct sigaction before{};
+  ASSERT_EQ(::sigaction(SIGUSR2, &action, &before), 0);
+  twin_on_pty twin;
+  auto device = patient(twin);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  to_wake = &*device;
+  const pthread_t reader = ::pthread_self();
+  std::thread other([&] {
+    std::this_thread::sleep_for(100ms);
+    ::pthread_kill(reader, SIGUSR2);
+  });
+  const auto ended = wait_for_nothing(*device);
+  EXPECT_EQ(ended.error().what(), problem::cancelled) << ended.error().message();
+  other.join();
+  to_wake = nullptr;
+  ::sigaction(SIGUSR2, &before, nullptr);
+  EXPECT_TRUE(device->next_scan(10s));
+}
+
+// While the line comes and goes too: a handler that interrupts that finds everything locked.
+TEST(Wake, AStormOfItFromASignalHandlerHoldsNothingUp) {
+  struct sigaction action{};
+  action.sa_handler = wake_it;
+  struct sigaction before{};
+  ASSERT_EQ(::sigaction(SIGUSR2, &action, &before), 0);
+  twin_on_pty twin;
+  lidar_options options;
+  options.device = twin.path();
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  to_wake = &*device;
+  std::atomic<bool> over = false;
+  const pthread_t reader = ::pthread_self();
+  std::thread storm([&] {
+    while (!over) {
+      ::pthread_kill(reader, SIGUSR2);
+      std::this_thread::sleep_for(300us);
+    }
+  });
+  const auto end = clock::now() + 30s;
+  while (!device->is_scanning() && clock::now() < end) static_cast<void>(device->start());
+  EXPECT_TRUE(device->is_scanning());
+  for (std::uint64_t plugs = 1; plugs <= 3; ++plugs) {
+    twin.unplug();
+    std::this_thread::sleep_for(20ms);
+    twin.replug();
+    while (device->counts().reconnects < plugs && clock::now() < end) {
+      static_cast<void>(device->next_scan(100ms));
+    }
+    EXPECT_EQ(device->counts().reconnects, plugs);
+  }
+  over = true;
+  storm.join();
+  to_wake = nullptr;
+  ::sigaction(SIGUSR2, &before, nullptr);
+}
+
+TEST(Wake, LeavesStartAndStopWhole) {
+  twin_on_pty twin;
+  auto device = lidar::open(twin.path());
+  ASSERT_TRUE(device) << device.error().message();
+  for (int i = 0; i < 3; ++i) {
+    device->wake();
+    EXPECT_EQ(device->start().error().what(), problem::cancelled);
+    ASSERT_TRUE(device->start());
+    device->wake();
+    EXPECT_EQ(device->stop().error().what(), problem::cancelled);
+    ASSERT_TRUE(device->stop());
+  }
+  EXPECT_EQ(device->counts().command_retries, 0U);
+  EXPECT_TRUE(twin.becomes_idle_and_silent());
+}
+
+/// Waits for something that happens in another thread; false if it does not within 20 s.
+template <class Condition>
+bool comes_true(Condition&& condition) {
+  const auto end = clock::now() + 20s;
+  while (!condition()) {
+    if (clock::now() > end) return false;
+    std::this_thread::sleep_for(1ms);
+  }
+  return true;
+}
+
+TEST(BackgroundReaderOnPty, FeedsReadersInOtherThreads) {
+  twin_on_pty twin;
+  auto device = lidar::open(twin.path());
+  ASSERT_TRUE(device) << device.error().message();
+  auto reader = background_reader::start(std::move(*device));
+  ASSERT_TRUE(reader) << reader.error().message();
+  const auto consume = [&] {
+    auto points = reader->points().make_reader();
+    std::vector<point> some(512);
+    std::uint64_t seen = 0;
+    std::uint64_t missed = 0;
+    EXPECT_TRUE(comes_true([&] {
+      const ring_read read = points.read(some);
+      seen += read.points;
+      missed += read.missed;
+      return seen > 9'000;
+    }));
+    EXPECT_EQ(missed, 0U);
+  };
+  std::thread other(consume);
+  consume();
+  other.join();
+  reader->stop();
+  // Stopped means stopped, while the reader still lives.
+  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  EXPECT_FALSE(reader->failed());
+  test::expect_identity(reader->counts());
+}
+
+TEST(BackgroundReaderOnPty, EndsInAnyOrder) {
+  for (int i = 0; i < 12; ++i) {
+    auto twin = std::make_unique<twin_on_pty>();
+    auto device = lidar::open(twin->path());
+    ASSERT_TRUE(device) << device.error().message();
+    auto begun = background_reader::start(std::move(*device));
+    ASSERT_TRUE(begun) << begun.error().message();
+    auto reader = std::make_unique<background_reader>(std::move(*begun));
+    std::this_thread::sleep_for(i * 7ms);
+    switch (i % 4) {
+      case 0:  // stopped by several at once, then destroyed
+      {
+        std::thread other([&] { reader->stop(); });
+        reader->stop();
+        other.join();
+        EXPECT_TRUE(twin->becomes_idle_and_silent()) << i;
+        break;
+      }
+      case 1:  // destroyed
+        reader.reset();
+        EXPECT_TRUE(twin->becomes_idle_and_silent()) << i;
+        break;
+      case 2:  // the device goes first
+        twin.reset();
+        break;
+      default:  // both at once
+      {
+        std::thread other([&] { twin.reset(); });
+        reader.reset();
+        other.join();
+      }
+    }
+  }
+}
+
+TEST(BackgroundReaderOnPty, EndsWhileItReconnects) {
+  twin_on_pty twin;
+  lidar_options options;
+  options.device = twin.path();
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  auto reader = background_reader::start(std::move(*device));
+  ASSERT_TRUE(reader) << reader.error().message();
+  twin.unplug();
+  ASSERT_TRUE(comes_true([&] {
+    const auto event = reader->next_event();
+    return event && event->what == lidar_event::kind::lost;
+  }));
+  std::this_thread::sleep_for(100ms);
+  const auto begin = clock::now();
+  reader->stop();
+  EXPECT_LT(clock::now() - begin, 10s);
+  EXPECT_FALSE(reader->failed());
+}
+
+}  // namespace
+}  // namespace g4lidar
