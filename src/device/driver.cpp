@@ -205,7 +205,9 @@ result<void> lidar::driver::look_if_due() {
     return {};
   }
   if (!std::exchange(has_read_first_, true)) {
-    if (auto got = receive(now_ns()); !got) return got;
+    for (int i = 0; i < 2 && input_.empty(); ++i) {  // a wake-up may end the first one early
+      if (auto got = receive(now_ns()); !got) return got;
+    }
     if (!input_.empty()) return {};
   }
   has_read_first_ = false;
