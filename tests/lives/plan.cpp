@@ -77,6 +77,8 @@ void draw_device(dice& d, life_plan& plan) {
   draw_scanner(d, plan.seed, plan.device.scanner);
   draw_motor(d, plan.device);
   draw_questions(d, plan.device);
+  // Such a header would stand in the middle of a packet.
+  if (plan.healthy) plan.device.start_again_answers = false;
   draw_memory(d, plan.healthy, plan.device.initial);
   plan.device.batch_min_ns = d.chance(0.7) ? 0 : d.between(0, 2 * ms);
   const std::int64_t most = d.chance(0.5) ? ms : 16 * ms;
@@ -101,7 +103,6 @@ void draw_options(dice& d, life_plan& plan) {
   if (d.chance(0.2)) o.answer_time = milliseconds(d.between(100, 600));
   if (d.chance(0.3)) o.stall_time = milliseconds(d.between(300, 2000));
   if (d.chance(0.3)) o.batch = milliseconds(d.between(1, 40));
-  o.transport_delay = std::chrono::nanoseconds(plan.device.batch_min_ns);
   o.partial_scans = d.chance(0.3);
 }
 
