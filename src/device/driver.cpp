@@ -145,6 +145,7 @@ result<void> lidar::driver::receive(std::int64_t deadline_ns) {
   if (!got && got.error().what() == problem::cancelled) return {};  // step() knows
   if (!got) return tl::unexpected(got.error());
   last_read_ns_ = batch_ns > 0 ? now_ns() : 0;
+  read_until_ns_ = got->count == 0 ? now_ns() : got->arrival_ns;
   if (got->count == 0) return {};
   input_ = bytes(buffer_).first(got->count);
   arrival_ns_ = last_bytes_ns_ = got->arrival_ns;
@@ -196,21 +197,17 @@ result<void> lidar::driver::serve() {
   return send_commands();
 }
 
-/// Lets the time pass for the session, when it is due. What has come by then and was not read, since
-/// the program slept, is taken in before that: once, so that a line that never rests holds up nothing.
+/// Lets the time pass for the session, when it is due. What had come by then and was not read, since
+/// the program slept, is taken in before that.
 result<void> lidar::driver::look_if_due() {
-  if (!input_.empty()) return {};
-  if (session_.next_look_ns() > now_ns()) {
-    has_read_first_ = false;
-    return {};
-  }
-  if (!std::exchange(has_read_first_, true)) {
+  const std::int64_t due_ns = session_.next_look_ns();
+  if (!input_.empty() || due_ns > now_ns()) return {};
+  if (read_until_ns_ < due_ns) {
     for (int i = 0; i < 2 && input_.empty(); ++i) {  // a wake-up may end the first one early
       if (auto got = receive(now_ns()); !got) return got;
     }
     if (!input_.empty()) return {};
   }
-  has_read_first_ = false;
   end_a_silent_frame();
   session_.look(now_ns());
   return {};

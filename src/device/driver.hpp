@@ -146,13 +146,13 @@ class lidar::driver {
   std::size_t plan_at_ = 0;
   std::optional<outcome> asked_;  // what became of an ask()
   bool asking_ = false;
-  bool delivers_ = false;        // what comes are points of the scan
-  bool has_read_first_ = false;  // before the session is told that its time has come
-  bool has_outcome_ = false;     // one has been taken in this round
+  bool delivers_ = false;     // what comes are points of the scan
+  bool has_outcome_ = false;  // one has been taken in this round
   std::uint32_t samples_per_second_ = 9000;
 
   std::int64_t last_bytes_ns_ = 0;
   std::int64_t last_read_ns_ = 0;
+  std::int64_t read_until_ns_ = 0;  // what had come by then has been read
   std::int64_t next_attempt_ns_ = 0;
   std::int64_t backoff_ns_ = 0;
   std::uint64_t reconnects_ = 0;
