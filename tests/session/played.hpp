@@ -2,7 +2,11 @@
 // Dialogues with a session as text: what the device and the time do, and what comes of it.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <sstream>
@@ -190,6 +194,8 @@ class played {
   }
 
   void collect() {
+    const std::size_t before = out_.size();
+    const bool has_nothing = talk.has_nothing();
     while (const auto sent = talk.to_send()) {
       std::array<char, 8> text{};
       std::snprintf(text.data(), text.size(), ">%02X", static_cast<unsigned>((*sent)[1]));
@@ -200,6 +206,7 @@ class played {
       last = *done;
       add("=" + word_for(done->how) + word_for(done->value));
     }
+    EXPECT_EQ(has_nothing, out_.size() == before);
   }
 
   void add(const std::string& word) {

@@ -337,8 +337,8 @@ class explorer {
   }
 
   void spread(const watched& from) {
-    for (const auto& [name, reply] : all_replies()) {
-      after(from, name, [&reply = reply](watched& next) { next.show(reply); });
+    for (const named_reply& heard : all_replies()) {
+      after(from, heard.name, [&](watched& next) { next.show(heard.frame); });
     }
     after(from, "<packet", [](watched& next) { next.show_packet(); });
     after(from, "<noise", [](watched& next) {
@@ -351,7 +351,8 @@ class explorer {
     for (const request& wanted : wanted_) {
       for (const auto how : {while_scanning::refuse, while_scanning::stop_and_resume}) {
         const std::string name = "ask" + std::to_string(static_cast<int>(wanted.what));
-        after(from, name, [&](watched& next) { static_cast<void>(next.begin(wanted, how)); });
+        after(from, name,
+              [&wanted, how](watched& next) { static_cast<void>(next.begin(wanted, how)); });
       }
     }
   }
@@ -374,18 +375,19 @@ constexpr std::int64_t longest_wait() {
   return 4 * times.quiet_ns + std::max(asking, booting) + 3 * times.start_ns;
 }
 
-/// The largest of them are gone through wholly at a larger scale only.
+/// The largest of them are gone through wholly at a larger scale only, and where all takes ten times
+/// as long (without optimisation, with sanitizers, under an emulator) only the nearest of all.
+#if defined(G4LIDAR_EMULATED) || !defined(__OPTIMIZE__)
+constexpr int most_states = 12'000;
+#else
 constexpr int most_states = 200'000;
+#endif
 
 class session_states : public ::testing::TestWithParam<request> {};
 
 TEST_P(session_states, AreNoDeadEndsAndNeverMoveBlindlyNorDisturbAStream) {
   explorer all({GetParam(), requests::start(), requests::stop()});
-#ifdef G4LIDAR_EMULATED
-  const auto most = static_cast<std::size_t>(scaled(most_states / 16));
-#else
   const auto most = static_cast<std::size_t>(scaled(most_states));
-#endif
   all.go(most);
   EXPECT_TRUE(all.is_complete() || all.states() > most);
   EXPECT_LE(all.longest(), longest_wait());
