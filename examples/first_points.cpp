@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes of a G4 on standard input, points on standard output: the program in the README.
+// Bytes of a G4 on standard input, points on standard output.
 #include <array>
 #include <cstdio>
 #include <g4lidar/bulk_decoder.hpp>

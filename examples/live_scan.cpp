@@ -18,8 +18,9 @@ void use(const g4lidar::scan& scan) {
     if (!p.is_no_return() && seen.range_m < nearest.range_m) nearest = seen;
   }
   std::printf("%3u: %zu points at %.2f Hz, the nearest %.3f m away, %+.2f rad from ahead\n",
-              scan.revolution, scan.points.size(), double{scan.measured_frequency_hz(9000)},
-              double{nearest.range_m}, double{nearest.bearing_rad});
+              scan.revolution, scan.points.size(),
+              static_cast<double>(scan.measured_frequency_hz(9000)),
+              static_cast<double>(nearest.range_m), static_cast<double>(nearest.bearing_rad));
   std::fflush(stdout);
 }
 

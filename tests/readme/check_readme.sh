@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The program in the README is examples/first_points.cpp, and prints what the README shows; the files
-# and commands that the README names are there, and so are the documents that the sources name. Wants
-# G4_DUMP, FIRST_POINTS and G4LIDAR_SOURCE_DIR.
+# The program in the README is examples/live_scan.cpp, and prints such lines as the README shows; the
+# files and commands that the README names are there, and so are the documents that the sources name.
+# Wants G4_DUMP, FIRST_POINTS, LIVE_SCAN and G4LIDAR_SOURCE_DIR.
 set -euo pipefail
 cd "$G4LIDAR_SOURCE_DIR"
 
@@ -14,19 +14,40 @@ block() {
 }
 
 # The SPDX line and the sentence below it are not shown.
-if ! diff <(block cpp) <(tail -n +3 examples/first_points.cpp); then
-  echo "The program in README.md differs from examples/first_points.cpp" >&2
+if ! diff <(block cpp) <(tail -n +3 examples/live_scan.cpp); then
+  echo "The program in README.md differs from examples/live_scan.cpp" >&2
   exit 1
 fi
 
-# The program, fed as the README says, prints what the README says.
+# The program, on a simulated G4, prints what the README says, but for the measured numbers.
 shown=$(block text)
 lines=$(wc -l <<<"$shown")
+scratch=$(mktemp -d)
+"$G4_DUMP" sim --link "$scratch/g4" 2>/dev/null &
+trap 'kill %1 2>/dev/null || true; rm -rf "$scratch"' EXIT
+for ((i = 0; i < 300; ++i)); do
+  if [[ -e $scratch/g4 ]]; then break; fi
+  sleep 0.1
+done
 set +o pipefail # head ends before the others
-printed=$("$G4_DUMP" sim --seconds 1 --seed 1 2>/dev/null | "$FIRST_POINTS" | head -n "$lines")
+printed=$(timeout 60 "$LIVE_SCAN" "$scratch/g4" | head -n "$lines")
 set -o pipefail
-if ! diff <(echo "$shown") <(echo "$printed"); then
-  echo "The program prints other points than README.md shows" >&2
+form='s/[+-]/S/g; s/[0-9]+/N/g; s/ +/ /g'
+if ! diff <(sed -E "$form" <<<"$shown") <(sed -E "$form" <<<"$printed"); then
+  echo "The program prints other lines than README.md shows" >&2
+  exit 1
+fi
+
+# The example that decodes prints the same points everywhere.
+points='60.672 degrees 3670.50 mm
+60.952 degrees 3660.25 mm
+61.233 degrees 3650.50 mm
+61.514 degrees 3640.75 mm'
+set +o pipefail
+printed=$("$G4_DUMP" sim --seconds 1 --seed 1 2>/dev/null | "$FIRST_POINTS" | head -n 4)
+set -o pipefail
+if ! diff <(echo "$points") <(echo "$printed"); then
+  echo "examples/first_points.cpp prints other points" >&2
   exit 1
 fi
 
