@@ -107,7 +107,7 @@ result<void> lidar::driver::hang_up(const error& broken) {
 
 result<void> lidar::driver::wait_for_line(std::int64_t deadline_ns) {
   if (now_ns() < next_attempt_ns_) {
-    connector_->pause(std::min(deadline_ns, next_attempt_ns_));
+    static_cast<void>(connector_->pause(std::min(deadline_ns, next_attempt_ns_)));
     if (now_ns() < next_attempt_ns_) return {};
   }
   if (auto connected = connect(); !connected) return hang_up(connected.error());
