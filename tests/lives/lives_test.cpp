@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "life.hpp"
+#include "soak.hpp"
 #include "summary.hpp"
 #include "support/test_scale.hpp"
 
@@ -29,6 +30,11 @@ TEST(Lives, AreTheSameEachTime) {
   EXPECT_EQ(once.truths.points, again.truths.points);
   EXPECT_EQ(once.lived_ns, again.lived_ns);
   EXPECT_EQ(once.scans, again.scans);
+}
+
+TEST(Lives, GoOnOverAnyNumberOfUnplugs) {
+  const soak_report soaked = soak(static_cast<std::uint64_t>(test::scaled(200)));
+  EXPECT_EQ(soaked.failure, "");
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ void summary::add(const life_plan& plan, const life_report& lived) {
   truths.blind_packets += lived.truths.blind_packets;
   truths.blind_points += lived.truths.blind_points;
   sum_.times.settled += lived.times.settled;
+  sum_.times.ahead += lived.times.ahead;
   sum_.times.late += lived.times.late;
   sum_.times.sum_of_squares += lived.times.sum_of_squares;
   sum_.times.worst_ns = std::max(sum_.times.worst_ns, lived.times.worst_ns);
@@ -74,6 +75,7 @@ std::string summary::text() const {
   text += text_of("times of %llu settled points: %.1f us RMS, %llu beyond 1 ms, worst %.3f ms\n",
                   number(sum_.times.settled), std::sqrt(sum_.times.sum_of_squares / settled) * 1e-3,
                   number(sum_.times.late), in_seconds(sum_.times.worst_ns) * 1e3);
+  text += text_of("points with times in the future %llu\n", number(sum_.times.ahead));
   text += text_of("longest start %.3f s, ask %.3f s, stop or close %.3f s\n",
                   in_seconds(sum_.longest_start_ns), in_seconds(sum_.longest_ask_ns),
                   in_seconds(sum_.longest_stop_ns));

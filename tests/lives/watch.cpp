@@ -11,8 +11,10 @@ namespace {
 
 /// More than the ring and a scan hold together.
 constexpr std::size_t longest_history = 50'000;
-/// Where the clock of the samples has started anew, times that must grow may be ahead a little.
-constexpr std::int64_t most_ahead_ns = 1 * ms;
+/// Where the clock of the samples has started anew, times that must grow may be ahead a little; more
+/// where it does so amid what has gathered while the program slept.
+constexpr std::int64_t healthy_ahead_ns = 1 * ms;
+constexpr std::int64_t most_ahead_ns = 500 * ms;
 
 }  // namespace
 
@@ -75,8 +77,9 @@ void watch::take_points() {
 void watch::check(const known_point& found) {
   if (found.seen.time_ns <= last_time_ns_) fail("the times of points do not grow");
   last_time_ns_ = found.seen.time_ns;
-  if (const std::int64_t ahead_ns = found.seen.time_ns - stage_->clock.now_ns();
-      ahead_ns > most_ahead_ns) {
+  const std::int64_t ahead_ns = found.seen.time_ns - stage_->clock.now_ns();
+  times_.ahead += ahead_ns > 0;
+  if (ahead_ns > (plan_->healthy ? healthy_ahead_ns : most_ahead_ns)) {
     fail(text_of("a point is %.6f s in the future", in_seconds(ahead_ns)));
   }
   history_.push_back(found);
@@ -88,7 +91,12 @@ void watch::check(const known_point& found) {
   }
   passed_over_ = passed_over;
   if (found.index < 0) return;
-  if (is_broken_ || found.index != last_index_ + 1) steady_since_ns_ = found.time_ns;
+  const bool is_struck =
+      std::any_of(plan_->faults.begin(), plan_->faults.end(), [&](const sim::fault& f) {
+        return found.time_ns >= f.begin_ns - second &&
+               found.time_ns <= f.begin_ns + f.duration_ns + second;
+      });
+  if (is_broken_ || is_struck || found.index != last_index_ + 1) steady_since_ns_ = found.time_ns;
   is_broken_ = false;
   last_index_ = found.index;
   check_time(found);

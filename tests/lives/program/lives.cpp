@@ -4,6 +4,7 @@
 //     lives --seed 7 --verbose           one life, and what happens in it
 //     lives --from 1 --count 100         a hundred
 //     lives --from 1 --step 2 --minutes 3   every second one, as many as there is time for
+//     lives --unplugs 10000              a single long one, unplugged again and again
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <string_view>
 
 #include "lives/life.hpp"
+#include "lives/soak.hpp"
 #include "lives/summary.hpp"
 
 namespace {
@@ -22,6 +24,7 @@ struct wishes {
   std::uint64_t from = 1;
   std::uint64_t count = 1;
   std::uint64_t step = 1;
+  std::uint64_t unplugs = 0;
   double minutes = 0.0;  // 0: `count` of them
   bool verbose = false;
   bool good = true;
@@ -41,6 +44,8 @@ wishes read_wishes(int count, char** words) {
       read.from = number();
     } else if (word == "--count") {
       read.count = number();
+    } else if (word == "--unplugs") {
+      read.unplugs = number();
     } else if (word == "--step") {
       read.step = number();
     } else if (word == "--minutes") {
@@ -52,16 +57,32 @@ wishes read_wishes(int count, char** words) {
   return read;
 }
 
+int run_soak(std::uint64_t unplugs) {
+  const soak_report soaked = soak(unplugs);
+  std::printf(
+      "%llu unplugs, came back %llu times, after %.3f s at the latest; memory grown by %lld bytes, "
+      "%lld descriptors\n",
+      static_cast<unsigned long long>(soaked.unplugs),
+      static_cast<unsigned long long>(soaked.reconnects),
+      static_cast<double>(soaked.slowest_ns) * 1e-9, static_cast<long long>(soaked.grown_bytes),
+      static_cast<long long>(soaked.grown_handles));
+  if (soaked.failure.empty()) return 0;
+  std::printf("failed: %s\n", soaked.failure.c_str());
+  return 1;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   const wishes wanted = read_wishes(count, words);
   if (!wanted.good) {
     std::fputs(
-        "usage: lives [--seed N | --from N] [--count N | --minutes M] [--step N] [--verbose]\n",
+        "usage: lives [--seed N | --from N] [--count N | --minutes M] [--step N] [--verbose] "
+        "[--unplugs N]\n",
         stderr);
     return 2;
   }
+  if (wanted.unplugs > 0) return run_soak(wanted.unplugs);
   using clock = std::chrono::steady_clock;
   const auto end = clock::now() + std::chrono::duration<double, std::ratio<60>>(wanted.minutes);
   summary all;
