@@ -48,11 +48,11 @@ class point_stream {
   /// `behind` bytes that came behind it have been read together with it, by `read_ns`.
   void packet(packet_view found, std::int64_t read_ns, std::size_t behind) noexcept {
     if (first_read_ns_ == 0) first_read_ns_ = read_ns;
-    // The clock, which knows how often samples are measured, sees by itself that a program has slept;
-    // but not at first. Then it helps that bytes come one after the other, however late they are read.
+    // Bytes come one after the other, however late they are read. At first that is all there is to go
+    // by; later the clock sees by itself that a program has slept, but not if all looks as if in time.
+    const auto line_ns = static_cast<std::int64_t>(behind) * byte_ns_;
     const bool is_first = read_ns == first_read_ns_;
-    const std::int64_t arrival_ns =
-        is_first ? read_ns - static_cast<std::int64_t>(behind) * byte_ns_ : read_ns;
+    const std::int64_t arrival_ns = read_ns - (is_first ? line_ns : line_ns / 2);
     open_ = without_points(found, revolutions_.count(found));
     if (!open_.suspect) {
       to_points_(found, open_.revolution, memory_);
@@ -62,7 +62,10 @@ class point_stream {
     const std::span<point> points = std::span(memory_).first(open_.points.size());
     times.write_to(points);
     ring_->push(points);
-    samples_lost_ += static_cast<std::uint64_t>(std::max<std::int64_t>(times.lost, 0));
+    if (times.lost > 0) {
+      samples_lost_ += static_cast<std::uint64_t>(times.lost);
+      assembler_.lost();  // where whole packets are gone, no bytes were skipped
+    }
     if (last_packet_ns_ != 0) {
       largest_gap_ns_ = std::max(largest_gap_ns_, arrival_ns - last_packet_ns_);
     }
