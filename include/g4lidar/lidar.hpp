@@ -151,8 +151,9 @@ class lidar {
   /// Takes in what is there. Scans that are not taken by next_scan() are counted as missed.
   result<void> process();
 
-  /// Makes a call that waits, or the next one, end early with cancelled. *Any thread*, as long as the
-  /// lidar lives and is not being moved.
+  /// Makes a call that waits, or the next one, end early with cancelled, once. What it had begun goes
+  /// on in the calls that follow. *Any thread*, and a signal handler, as long as the lidar lives and is
+  /// not being moved.
   void wake() noexcept;
 
   /// Asks the device. While it scans this is refused with problem::scanning, unless the second
