@@ -203,7 +203,7 @@ class device_talk {
         break;
       case act::probing:
         if (heard.kind() != response_kind::device_info) break;
-        question_.doubt_all();  // it may have said so by itself
+        question_.take_unasked(heard);  // it may have said so by itself, and answer yet
         return talk_state::restarted;
       case act::none:
       case act::draining:

@@ -96,8 +96,8 @@ class scan_watch {
     ++restarts_;
     const std::int64_t lived_ns = last_packet_ns_ - last_start_ns_;
     const std::int64_t slack_ns = times.protected_ns / 6;
-    const bool unfed = has_packets_ && lived_ns > times.protected_ns - slack_ns &&
-                       lived_ns < times.protected_ns + slack_ns;
+    const bool unfed =
+        lived_ns > times.protected_ns - slack_ns && lived_ns < times.protected_ns + slack_ns;
     if (is_protected() || !unfed) return scan_need::restart;
     protection_ = power_down_protection::on;
     return scan_need::found_protected;

@@ -306,6 +306,7 @@ std::int64_t lidar::driver::next_deadline_ns() const noexcept {
   if (stage_ == stage::closed) return never_ns;
   if (stage_ == stage::lost) return next_attempt_ns_;
   if (scan_ || !input_.empty() || stream_.has_more()) return now_ns();
+  if (line_->answers() && !session_.has_nothing()) return now_ns();
   std::int64_t next = line_->answers() ? session_.next_look_ns() : never_ns;
   if (is_waiting_for_answer() && parser_.held() > 0) {
     next = std::min(next, last_bytes_ns_ + frame_pause_ns);
@@ -321,9 +322,10 @@ result<void> lidar::driver::open() {
 }
 
 result<void> lidar::driver::start() {
-  if (stage_ == stage::scanning) return {};
+  if (stage_ == stage::scanning && wants_scan_) return {};
   if (auto ready = run_plan(); !ready) return ready;
-  if (stage_ == stage::scanning) {  // a start that was woken, and has now come to its end
+  const bool scans = !line_->answers() || session_.is_scanning();  // or a stop was woken
+  if (stage_ == stage::scanning && scans) {  // a start that was woken, and has now come to its end
     wants_scan_ = true;
     return {};
   }

@@ -67,6 +67,33 @@ TEST(FoundByLives, AnAskThatWasWokenBreaksTheScanAsAnyOther) {
   EXPECT_EQ(lidar->counts().samples_lost, 0U);
 }
 
+TEST(FoundByLives, AfterAStopThatWasWokenItStarts) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->next_scan(2000ms));
+  lidar->wake();
+  EXPECT_FALSE(lidar->stop());
+  ASSERT_TRUE(lidar->start());
+  EXPECT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_TRUE(bench.device.is_scanning());
+}
+
+TEST(FoundByLives, AWakeUpAfterASleepIsNoSilence) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(lidar->next_scan(2000ms));
+    bench.now_ns += 1500 * ms;
+    lidar->wake();
+    static_cast<void>(lidar->next_scan(100ms));
+  }
+  EXPECT_FALSE(lidar->next_event());
+}
+
 TEST(FoundByLives, TimesFollowARangingFrequencyThatWasSetByAsking) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);

@@ -39,7 +39,10 @@ class life {
 
   life_report run() {
     if (verbose_) std::fputs(describe(plan_).c_str(), stdout);
-    while (is_well() && now() < plan_.calm_ns) act();
+    while (is_well() && now() < plan_.calm_ns) {
+      act();
+      check_progress();
+    }
     calm_down();
     while (is_well() && now() < plan_.end_ns) read_calmly();
     if (is_well()) finish();
@@ -76,6 +79,7 @@ class life {
     return took_ns;
   }
 
+  void check_progress();
   void tell_events();
   void tell_state();
   void wake();
@@ -109,8 +113,17 @@ class life {
   std::int64_t scan_seen_ns_ = 0;
   bool recovered_ = false;
   std::int64_t told_s_ = 0;
+  std::int64_t acted_ns_ = 0;
+  int acts_ = 0;
   life_report report_;
 };
+
+/// The application does not act again and again at one time: each act that is refused waits.
+void life::check_progress() {
+  acts_ = now() - acted_ns_ < ms ? acts_ + 1 : 0;
+  if (acts_ == 0) acted_ns_ = now();
+  if (acts_ > 3000) fail("the application gets nowhere");
+}
 
 void life::tell_events() {
   if (!lidar_) return;

@@ -142,6 +142,12 @@ TEST_F(session_requests, DoNotTakeTheSecondCopyOfAnAnswerForAnother) {
   EXPECT_ASKED(bench, requests::get_ranging(), ">90 <byte:1 <info >D1 <info <byte:2 =answered:2");
 }
 
+TEST_F(session_requests, DoNotTakeAnAnswerThatCameUnaskedForTheirOwn) {
+  EXPECT_ASKED(bench, requests::health(), ">91 <health:0 =answered:0");
+  EXPECT_PLAYED(bench, "<byte:1");
+  EXPECT_ASKED(bench, requests::get_ranging(), ">90 <byte:1 <info >D1 <byte:2 =answered:2");
+}
+
 TEST_F(session_requests, AskByTurnsWhereEvenTheKnownAnswersComeLate) {
   // Each answer comes 350 ms after its question: the third time it is waited for longer.
   EXPECT_ASKED(bench, requests::get_ranging(),
@@ -303,6 +309,13 @@ TEST_F(session_requests, RestartIsOverWhenTheDeviceAnswersAgain) {
   EXPECT_ASKED(bench, requests::restart(), ">80 +300 <noise <noise <info wait >90 <info =answered");
   EXPECT_ASKED(bench, requests::restart(),  // silent for a while after its text
                ">80 +300 <noise wait >90 wait >90 <noise <info =answered");
+}
+
+TEST_F(session_requests, RestartMayBeFollowedByOneMoreInformation) {
+  EXPECT_ASKED(bench, requests::health(), ">91 <health:0 =answered:0");
+  EXPECT_ASKED(bench, requests::restart(), ">80 <noise wait >90 <info =answered");
+  EXPECT_ASKED(bench, requests::get_ranging(), ">D1 <info <byte:2 =answered:2");
+  EXPECT_EQ(bench.last.wrong_answers, 0);
 }
 
 TEST_F(session_requests, RestartIsToldInTheOldWayToADeviceThatSaysNothing) {
