@@ -73,6 +73,7 @@ void lidar::driver::release_line() noexcept {
   input_ = {};
   end_of_bytes();
   planned_ = plan_at_ = 0;
+  setting_up_again_ = false;
 }
 
 /// Nobody will see to it any more. It may hear this, even if nothing is heard of it.
@@ -290,9 +291,11 @@ result<void> lidar::driver::take_notice() {
       break;
     case notice::protection_found_on:
       tell(lidar_event::kind::protection_found_on);
+      set_up_again();
       break;
     case notice::restarted:
       tell(lidar_event::kind::restarted);
+      set_up_again();
       break;
     case notice::stalled:
       return has_streamed_ ? failure(task::reading, problem::stalled, name())
@@ -388,8 +391,13 @@ result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
     }
   }
   asking_ = false;
-  if (asked_->how == verdict::answered) return asked_->value;
-  return tl::unexpected(error_of(*asked_));
+  if (asked_->how != verdict::answered) return tl::unexpected(error_of(*asked_));
+  remember(*asked_);
+  if (wanted.what == ask::restart && wants_scan_) {
+    set_up_again();
+    if (auto ready = run_plan(); !ready) return tl::unexpected(ready.error());
+  }
+  return asked_->value;
 }
 
 result<scan> lidar::driver::next_scan(std::int64_t timeout_ns) {

@@ -233,8 +233,6 @@ void life::stop() {
   if (dice_.chance(0.3)) ask();
 }
 
-/// A restart makes a device forget what the driver has set, and a scan that is resumed behind it has not
-/// been set anew: it is asked for while the device is idle only.
 request some_request(dice& d, bool may_restart) {
   switch (d.between(0, may_restart ? 9 : 8)) {
     case 0:
@@ -263,7 +261,7 @@ request some_request(dice& d, bool may_restart) {
 void life::ask() {
   if (!lidar_) return;
   const bool may_stop = dice_.chance(0.7);
-  const request wanted = some_request(dice_, !plan_.healthy && !wants_scan_);
+  const request wanted = some_request(dice_, !plan_.healthy);
   if (may_stop) watch_.is_breaking(true);
   result<answer> got = g4lidar::failure(task::asking, problem::timeout);
   const std::int64_t took_ns = within(request_ns + 5 * second, "ask()", [&] {
