@@ -283,7 +283,7 @@ class sensor_clock {
   std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
   std::size_t seen_bytes_ = 0;  // of the next packet, and what they tell
   std::int64_t seen_before_ns_ = 0;
-  std::int64_t in_time_ = 0;    // the last sample of a packet that was not too late
+  std::int64_t in_time_ = 0;        // the last sample of a packet that was not too late
   std::int64_t late_since_ns_ = 0;  // and not less by much since then
   double least_late_ns_ = 0.0;
   std::int64_t last_ns_ = 0;  // the time of the last sample

@@ -34,7 +34,7 @@ class point_stream {
     end();
     scans_at_begin_ = scans_;
     clock_.reset(samples_per_second);
-    last_packet_ns_ = first_read_ns_ = 0;
+    last_packet_ns_ = 0;
   }
 
   /// The scan is over; what there is of a revolution is counted.
@@ -47,12 +47,12 @@ class point_stream {
 
   /// `behind` bytes that came behind it have been read together with it, by `read_ns`.
   void packet(packet_view found, std::int64_t read_ns, std::size_t behind) noexcept {
-    if (first_read_ns_ == 0) first_read_ns_ = read_ns;
-    // Bytes come one after the other, however late they are read. At first that is all there is to go
-    // by; later the clock sees by itself that a program has slept, but not if all looks as if in time.
+    // Bytes come one after the other, however late they are read. For the first packet that is all
+    // there is to go by. Later the clock sees by itself that a program has slept, since packets are
+    // less and less late, but not if all look as if nearly in time.
     const auto line_ns = static_cast<std::int64_t>(behind) * byte_ns_;
-    const bool is_first = read_ns == first_read_ns_;
-    const std::int64_t arrival_ns = read_ns - (is_first ? line_ns : line_ns / 2);
+    const bool slept = last_packet_ns_ != 0 && line_ns > longest_batch_ns;
+    const std::int64_t arrival_ns = read_ns - (slept ? line_ns / 2 : line_ns);
     open_ = without_points(found, revolutions_.count(found));
     if (!open_.suspect) {
       to_points_(found, open_.revolution, memory_);
@@ -106,6 +106,8 @@ class point_stream {
  private:
   /// 9 kHz at 5 Hz make 1,800 points; a motor that spins up makes more in one turn.
   static constexpr std::size_t largest_scan = 8192;
+  /// What has gathered for longer has not been read in time.
+  static constexpr std::int64_t longest_batch_ns = 50'000'000;
 
   /// Counts a scan; true if it is a revolution from zero packet to zero packet, though points in it
   /// may have been lost.
@@ -129,8 +131,7 @@ class point_stream {
   std::array<point, max_samples> memory_{};
   decoded open_{};
   bool is_open_ = false;
-  std::int64_t first_read_ns_ = 0;  // since begin()
-  std::int64_t last_packet_ns_ = 0;
+  std::int64_t last_packet_ns_ = 0;  // since begin()
   std::int64_t largest_gap_ns_ = 0;
   std::uint64_t samples_lost_ = 0;
   std::uint64_t scans_ = 0;

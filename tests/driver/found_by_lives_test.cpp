@@ -134,6 +134,37 @@ TEST(FoundByLives, WhatWasSetByAskingIsSetAgainBehindARestart) {
   EXPECT_EQ(*frequency, scan_frequency{1100});
 }
 
+TEST(FoundByLives, WhoSleepsAtTheStartLosesNothing) {
+  for (const double ratio : {0.97, 1.0, 1.03}) {
+    sim::device_options slow;
+    slow.scanner.sample_rate_ratio = ratio;
+    virtual_bench bench(slow);
+    auto lidar = open_virtual(bench);
+    ASSERT_TRUE(lidar);
+    ASSERT_TRUE(lidar->start());
+    bench.now_ns += 1400 * ms;
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(lidar->next_scan(500ms)) << ratio << ", scan " << i;
+    EXPECT_EQ(lidar->counts().samples_lost, 0U) << ratio;
+  }
+}
+
+// The host holds 64 KiB back; of what came behind them nobody knows how many turns it was.
+TEST(FoundByLives, WhatTheHostLostWhileTheProgramSleptDoesNotShiftTheTimes) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 5; ++i) {
+    bench.now_ns += 4500 * ms;
+    for (int scans = 0; scans < 3; ++scans) static_cast<void>(lidar->next_scan(500ms));
+  }
+  const std::int64_t end_ns = bench.now_ns + 1000 * ms;
+  while (bench.now_ns < end_ns) static_cast<void>(lidar->next_scan(500ms));
+  const auto scan = lidar->next_scan(500ms);
+  ASSERT_TRUE(scan);
+  EXPECT_LT(bench.now_ns - scan->points.back().time_ns, 20 * ms);
+}
+
 TEST(FoundByLives, TimesFollowARangingFrequencyThatWasSetByAsking) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
