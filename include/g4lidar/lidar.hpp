@@ -61,8 +61,8 @@ struct lidar_event {
     reconnected,          ///< The same device is there again, set and started as before.
     found_scanning,       ///< It scanned although nobody had asked; it was stopped.
     protection_starved,   ///< The caller looked too late to feed the protection; started again.
-    protection_found_on,  ///< The protection was on unexpectedly: started again, and fed.
-    restarted,            ///< The scan had ended by itself and was started again.
+    protection_found_on,  ///< The protection was on unexpectedly: the same, and it is fed.
+    restarted,            ///< The scan had ended by itself; the device is set and started again.
     health_warning,       ///< The device warns of its health when it is started.
     overflow,             ///< Events before this one were lost: nobody asked for them.
   };
@@ -158,8 +158,9 @@ class lidar {
   void wake() noexcept;
 
   /// Asks the device. While it scans this is refused with problem::scanning, unless the second
-  /// argument allows to stop, ask, and start again. Errors: scanning, timeout, wrong_answer,
-  /// not_reached, silence, garbage, gone, ...
+  /// argument allows to stop, ask, and start again. What is set so is set again like an option, at
+  /// each start and after a reconnect. Errors: scanning, timeout, wrong_answer, not_reached, silence,
+  /// garbage, gone, ...
   [[nodiscard]] result<answer> ask(const request& wanted,
                                    while_scanning how = while_scanning::refuse);
   /// The same in the type of the answer: ask_for<device_information>(requests::device_info()).

@@ -218,7 +218,10 @@ class request_steps {
   [[nodiscard]] constexpr bool is_at_end() const noexcept {
     return stuck_ || (coarse_stuck_ && wanted_.what == ask::step_scan_frequency);
   }
+  /// A device that refuses the last step to the end of its range is as near as it comes.
   [[nodiscard]] constexpr verdict verdict_at_end() const noexcept {
+    const bool is_near = missing() < fine_chz && -missing() < fine_chz;
+    if (wanted_.what == ask::set_scan_frequency && is_near) return verdict::answered;
     return wanted_.what == ask::step_scan_frequency ? verdict::answered : verdict::not_reached;
   }
 

@@ -137,8 +137,14 @@ class sensor_clock {
  private:
   /// A packet that is later than this was not merely batched.
   static constexpr double late_ns = 25e6;
-  /// After so much time without a packet in time, samples were lost that were not counted.
+  /// A stream whose packets are usually later than that is none.
+  static constexpr double most_delay_ns = 10e6;
+  /// After so much time without a packet in time, and without getting nearer to it by so much, samples
+  /// were lost that were not counted.
   static constexpr double all_late_ns = 40e6;
+  static constexpr double catching_up_ns = 5e6;
+  /// A window that is longer than this tells the rate by itself.
+  static constexpr double enough_ns = 4e9;
   /// An arrival that is earlier than this, and than the bound allows, refutes the count.
   static constexpr double early_ns = 1e6;
   /// A count of lost samples that is in doubt by more than this tells no times.
@@ -199,6 +205,8 @@ class sensor_clock {
     const double too_early = std::max(early_ns, 3.0 * line_.bound_ns);
     if (late < -too_early || stays_late(late, next)) {
       if (late > 0.0) missed = static_cast<std::int64_t>(late / line_.period_ns);
+      if (window_.span_ns() <= enough_ns) rate_known_ = false;  // it may be what was wrong
+      mean_late_ns_ = unknown_late_ns;
       restart();
       late = 0.0;
     }
@@ -207,7 +215,7 @@ class sensor_clock {
     started_ = true;
     mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;
     if (!window_.add(next, line_.period_ns)) return missed;
-    if (window_.span_ns() > 4e9) {
+    if (window_.span_ns() > enough_ns) {
       rate_known_ = true;
       slopes_ = {-widest, widest};
     }
@@ -216,15 +224,16 @@ class sensor_clock {
   }
 
   /// Whether packets have come too late for too long: then samples were lost that were not counted. A
-  /// program that slept finds packets of a long time that came within a short one.
+  /// program that slept finds packets that are less and less late.
   [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
     const bool was_late = is_late_;
-    is_late_ = late > std::max(late_ns, 8.0 * line_.mean_delay_ns);
+    is_late_ = late > std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
     if (!is_late_) return false;
-    if (!was_late) late_since_ = next;
-    const double passed_ns = static_cast<double>(next.time_ns - late_since_.time_ns);
-    const auto samples = static_cast<double>(next.sample - late_since_.sample);
-    return passed_ns > all_late_ns && passed_ns > 0.6 * samples * line_.period_ns;
+    if (!was_late || late < least_late_ns_ - catching_up_ns) {
+      least_late_ns_ = late;
+      late_since_ns_ = next.time_ns;
+    }
+    return static_cast<double>(next.time_ns - late_since_ns_) > all_late_ns;
   }
 
   /// The times of `count` samples of which the last one is to be at `last_ns`. Where that would not
@@ -262,7 +271,8 @@ class sensor_clock {
   std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
   std::size_t seen_bytes_ = 0;  // of the next packet, and what they tell
   std::int64_t seen_before_ns_ = 0;
-  arrival late_since_;
+  std::int64_t late_since_ns_ = 0;  // and not less by much since then
+  double least_late_ns_ = 0.0;
   std::int64_t last_ns_ = 0;  // the time of the last sample
   std::int64_t bound_ns_ = 0;
   double mean_late_ns_ = unknown_late_ns;

@@ -74,6 +74,7 @@ void lidar::driver::release_line() noexcept {
   input_ = {};
   end_of_bytes();
   planned_ = plan_at_ = 0;
+  setting_up_again_ = false;
 }
 
 /// Nobody will see to it any more. It may hear this, even if nothing is heard of it.
@@ -293,9 +294,11 @@ result<void> lidar::driver::take_notice() {
       break;
     case notice::protection_found_on:
       tell(lidar_event::kind::protection_found_on);
+      set_up_again();
       break;
     case notice::restarted:
       tell(lidar_event::kind::restarted);
+      set_up_again();
       break;
     case notice::stalled:
       return has_streamed_ ? failure(task::reading, problem::stalled, name())
@@ -352,8 +355,8 @@ result<void> lidar::driver::stop() {
   if (auto ready = run_plan(); !ready) return ready;
   scan_.reset();
   if (line_->answers()) {
-    if (!std::exchange(stops_, true))
-      plan(requests::stop(), true);  // else it was woken, and went on
+    // A stop that was woken has gone on meanwhile.
+    if (!std::exchange(stops_, true)) plan(requests::stop(), true);
     if (auto stopped = run_plan(); !stopped) return stopped;
     stops_ = false;
   }
@@ -398,8 +401,15 @@ result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
     if (is_woken) woken_question_ = wanted;
     return tl::unexpected(done ? lost_ : done.error());
   }
-  if (asked_->how == verdict::answered) return asked_->value;
-  return tl::unexpected(error_of(*asked_));
+  if (asked_->how != verdict::answered) return tl::unexpected(error_of(*asked_));
+  remember(*asked_);
+  if (wanted.what == ask::restart && wants_scan_) {
+    set_up_again();
+    const auto ready = run_plan();
+    if (!ready && ready.error().what() != problem::cancelled) return tl::unexpected(ready.error());
+    if (!ready) woken_.store(true);  // it goes on in the next call
+  }
+  return asked_->value;
 }
 
 result<void> lidar::driver::begin_question(const request& wanted, while_scanning how) {

@@ -28,7 +28,8 @@ namespace g4lidar {
 ///                                                        lost, if it is somebody else
 ///     idle         what it is asked                      preparing, by start()
 ///     preparing    health, settings, start               scanning
-///     scanning     reads                                 idle, by stop()
+///     scanning     reads                                 idle, by stop(); preparing, if the device
+///                                                        seems to have begun anew
 ///
 /// Any of them is left for lost when the line breaks, or for closed where reconnecting is off.
 class lidar::driver {
@@ -100,11 +101,13 @@ class lidar::driver {
   // The plan.
   void plan(request wanted, bool needed);
   void plan_start();
+  void set_up_again();
   result<void> go_on_with_plan();
   result<void> finish_errand(const outcome& done);
   result<void> identified(const device_information& who);
   result<void> give_up(const error& why);
   void learn_rate(const outcome& done);
+  void remember(const outcome& done) noexcept;
   void started();
   void back_again();
   result<void> run_plan();
@@ -128,6 +131,7 @@ class lidar::driver {
   bool stops_ = false;                        // a stop is planned, and was perhaps woken
   bool has_streamed_ = false;                 // a whole revolution has come since the start
   bool reconnecting_ = false;                 // connected again, and not yet as before
+  bool setting_up_again_ = false;             // it may have forgotten what was set
   error lost_{task::reading, problem::gone};  // why it is lost or closed
   std::optional<error> refused_;  // why a plan ended, though the line is good; see step()
   device_information information_{};

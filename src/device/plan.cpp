@@ -31,6 +31,14 @@ void lidar::driver::plan_start() {
   plan(requests::start(), true);
 }
 
+/// The device ended a scan by itself. If it began anew, it has forgotten what was set.
+void lidar::driver::set_up_again() {
+  planned_ = plan_at_ = 0;
+  setting_up_again_ = true;
+  plan(requests::stop(), true);
+  plan_start();
+}
+
 /// Waits until all that is planned is done, or fails. It ends, since every request does. Whoever asks
 /// again and again while the device is away finds it when it is back.
 result<void> lidar::driver::run_plan() {
@@ -78,6 +86,30 @@ void lidar::driver::learn_rate(const outcome& done) {
   if (delivers_) stream_.begin(samples_per_second_);
 }
 
+/// What was set by asking is set again like what the options say.
+void lidar::driver::remember(const outcome& done) noexcept {
+  const auto keep = [&]<class Setting>(std::optional<Setting>& option) {
+    if (const auto* value = std::get_if<Setting>(&done.value)) option = *value;
+  };
+  switch (done.asked.what) {
+    case ask::set_low_power:
+      return keep(options_.idle);
+    case ask::set_direction:
+      return keep(options_.direction);
+    case ask::step_scan_frequency:
+    case ask::set_scan_frequency:
+      return keep(options_.frequency);
+    case ask::set_constant_frequency:
+      return keep(options_.constant);
+    case ask::set_ranging:
+      return keep(options_.ranging);
+    case ask::set_protection:
+      return keep(options_.protection);
+    default:
+      return;
+  }
+}
+
 result<void> lidar::driver::finish_errand(const outcome& done) {
   const errand current = plan_[plan_at_++];
   if (done.how != verdict::answered) {
@@ -102,7 +134,8 @@ result<void> lidar::driver::finish_errand(const outcome& done) {
 result<void> lidar::driver::give_up(const error& why) {
   planned_ = plan_at_ = 0;
   const bool of_use = stage_ == stage::preparing && why.what() != problem::silence;
-  if (!of_use || (wants_scan_ && reconnecting_)) return tl::unexpected(why);
+  const bool goes_on = wants_scan_ && (reconnecting_ || setting_up_again_);
+  if (!of_use || goes_on) return tl::unexpected(why);
   stage_ = stage::idle;
   wants_scan_ = false;
   refused_ = why;
@@ -133,6 +166,7 @@ result<void> lidar::driver::identified(const device_information& who) {
 
 void lidar::driver::started() {
   stage_ = stage::scanning;
+  setting_up_again_ = false;
   if (reconnecting_) back_again();
 }
 

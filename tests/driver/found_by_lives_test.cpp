@@ -94,6 +94,46 @@ TEST(FoundByLives, AWakeUpAfterASleepIsNoSilence) {
   EXPECT_FALSE(lidar->next_event());
 }
 
+/// A device that forgets its settings when it begins anew, and does so while it scans.
+sim::device_options forgetful() {
+  sim::device_options options;
+  options.settings_outlive_restart = false;
+  options.settings_outlive_power = false;
+  return options;
+}
+
+TEST(FoundByLives, WhatADeviceForgetsThatBeganAnewIsSetAgain) {
+  const sim::fault faults[] = {sim::make_fault(sim::fault_kind::reboot, 0, 1500 * ms)};
+  virtual_bench bench(forgetful(), faults);
+  lidar_options options;
+  options.ranging = ranging_frequency::khz_4;
+  auto lidar = open_virtual(bench, options);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 20; ++i) static_cast<void>(lidar->next_scan(500ms));
+  const auto event = lidar->next_event();
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->what, lidar_event::kind::restarted);
+  ASSERT_TRUE(lidar->is_scanning());
+  EXPECT_EQ(
+      *lidar->ask_for<ranging_frequency>(requests::get_ranging(), while_scanning::stop_and_resume),
+      ranging_frequency::khz_4);
+}
+
+TEST(FoundByLives, WhatWasSetByAskingIsSetAgainBehindARestart) {
+  virtual_bench bench(forgetful());
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->ask(requests::set(scan_frequency{1100})));
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->next_scan(2000ms));
+  ASSERT_TRUE(lidar->ask(requests::restart(), while_scanning::stop_and_resume));
+  EXPECT_TRUE(lidar->next_scan(2000ms));
+  const auto frequency = lidar->ask_for<scan_frequency>(requests::get_scan_frequency(),
+                                                        while_scanning::stop_and_resume);
+  EXPECT_EQ(*frequency, scan_frequency{1100});
+}
+
 TEST(FoundByLives, TimesFollowARangingFrequencyThatWasSetByAsking) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);

@@ -19,6 +19,8 @@ using std::chrono::milliseconds;
 constexpr std::int64_t read_slack_ns = 3 * ms;
 /// A request asks nothing after 10 s; what is under way then ends within 5 s.
 constexpr std::int64_t request_ns = 15 * second;
+/// Between two sleeps all that has come is read, and the protection fed.
+constexpr std::int64_t awake_between_ns = 300 * ms;
 /// A start makes at most 9 requests.
 constexpr std::int64_t start_ns = 9 * request_ns;
 /// What is told the application is looked at so often, in a fault as well.
@@ -113,6 +115,7 @@ class life {
   std::int64_t scan_seen_ns_ = 0;
   bool recovered_ = false;
   std::int64_t told_s_ = 0;
+  std::int64_t awake_ns_ = 0;  // since it slept
   std::int64_t acted_ns_ = 0;
   int acts_ = 0;
   life_report report_;
@@ -204,8 +207,9 @@ void life::close(bool politely) {
 
 void life::start() {
   result<void> done;
-  watch_.breaks();
+  watch_.is_breaking(true);
   const std::int64_t took_ns = within(start_ns, "start()", [&] { done = lidar_->start(); });
+  if (done) watch_.is_breaking(false);
   report_.longest_start_ns = std::max(report_.longest_start_ns, took_ns);
   wants_scan_ = done.has_value();
   if (done) return say(text_of("start took %.3f s", in_seconds(took_ns)));
@@ -219,7 +223,7 @@ void life::start() {
 
 void life::stop() {
   result<void> done;
-  watch_.breaks();
+  watch_.is_breaking(true);
   const std::int64_t took_ns = within(request_ns, "stop()", [&] { done = lidar_->stop(); });
   report_.longest_stop_ns = std::max(report_.longest_stop_ns, took_ns);
   say(text_of("stop: %s", done ? "done" : done.error().message().c_str()));
@@ -229,8 +233,6 @@ void life::stop() {
   if (dice_.chance(0.3)) ask();
 }
 
-/// A restart makes a device forget what the driver has set, and a scan that is resumed behind it has not
-/// been set anew: it is asked for while the device is idle only.
 request some_request(dice& d, bool may_restart) {
   switch (d.between(0, may_restart ? 9 : 8)) {
     case 0:
@@ -259,14 +261,15 @@ request some_request(dice& d, bool may_restart) {
 void life::ask() {
   if (!lidar_) return;
   const bool may_stop = dice_.chance(0.7);
-  const request wanted = some_request(dice_, !plan_.healthy && !wants_scan_);
-  if (may_stop) watch_.breaks();
+  const request wanted = some_request(dice_, !plan_.healthy);
+  if (may_stop) watch_.is_breaking(true);
   result<answer> got = g4lidar::failure(task::asking, problem::timeout);
   const std::int64_t took_ns = within(request_ns + 5 * second, "ask()", [&] {
     got = lidar_->ask(wanted, may_stop ? while_scanning::stop_and_resume : while_scanning::refuse);
   });
   report_.longest_ask_ns = std::max(report_.longest_ask_ns, took_ns);
-  if (may_stop) watch_.breaks();
+  // One that was woken goes on, until the next call has brought it to its end.
+  if (got || got.error().what() != problem::cancelled) watch_.is_breaking(false);
   say(text_of("ask %d: %s after %.3f s", static_cast<int>(wanted.what),
               got ? "answered" : got.error().message().c_str(), in_seconds(took_ns)));
   if (!got) return judge(got.error());
@@ -339,10 +342,12 @@ void life::act() {
       stage_.wake_ns = now() + dice_.between(0, second);
     }
   }
-  if (dice_.chance(m.sleep)) {
+  if (dice_.chance(m.sleep) && now() - awake_ns_ >= awake_between_ns) {
     const std::int64_t slept_ns = dice_.between(0, m.longest_sleep_ns);
     say(text_of("sleep %.3f s", in_seconds(slept_ns)));
-    return sleep_until(std::min(now() + slept_ns, plan_.calm_ns));
+    sleep_until(std::min(now() + slept_ns, plan_.calm_ns));
+    awake_ns_ = now();
+    return;
   }
   if (dice_.chance(m.ask)) return ask();
   if (dice_.chance(m.stop)) return stop();

@@ -31,11 +31,17 @@ constexpr std::size_t most_open = 400;
 void truth_book::add(std::span<const sim::sent_sample> samples) {
   for (const sim::sent_sample& s : samples) {
     if (s.position == 0 || sent_.empty() || sent_.back().number != s.packet) {
-      sent_.push_back({{}, s.packet, s.count, 0, s.zero, s.whole});
+      sent_.push_back({{}, s.packet, s.count, 0, s.truth.first_level_deg, s.zero, s.whole});
       ++counts_.packets;
       counts_.damaged += !s.whole;
     }
     packet& into = sent_.back();
+    // A head that went back through 0 looks as if it had gone round.
+    const bool is_smeared = into.first_deg < 90.0 && s.truth.first_level_deg > 270.0;
+    if (is_smeared && into.whole) {
+      into.whole = false;
+      ++counts_.damaged;
+    }
     into.samples[s.position] = {static_cast<std::int64_t>(s.truth.index), s.truth.time_ns,
                                 corrected_deg(s.truth.first_level_deg, s.truth.raw), s.truth.raw};
     ++into.known;
@@ -54,34 +60,36 @@ bool truth_book::fits(const packet& sent, std::size_t at) const {
   return true;
 }
 
-/// Whether a packet that fits is no other that looks the same: those of one sample and those that saw
-/// nothing do, a turn later. Then the next packet must fit as well.
-bool truth_book::is_sure(std::size_t which, std::size_t at) const {
-  const packet& sent = sent_[which];
-  const auto begin = sent.samples.begin();
-  const auto end = begin + static_cast<std::ptrdiff_t>(sent.count);
-  if (std::count_if(begin, end, [](const sample& s) { return s.raw != 0; }) >= 5) return true;
-  return which + 1 < sent_.size() && fits(sent_[which + 1], at + sent.count);
+/// How surely a packet is the one that was delivered: those of one sample and those that saw nothing
+/// look the same a turn later. Then what was delivered behind it decides.
+truth_book::likeness truth_book::compare(std::size_t which, std::size_t at) const {
+  if (!fits(sent_[which], at)) return likeness::none;
+  for (; which < sent_.size() && fits(sent_[which], at); at += sent_[which++].count) {
+    const auto begin = sent_[which].samples.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(sent_[which].count);
+    const auto returns = std::count_if(begin, end, [](const sample& s) { return s.raw != 0; });
+    if (returns >= 5) return likeness::sure;
+  }
+  const bool ran_out = which == sent_.size() || open_.size() - at < sent_[which].count;
+  return ran_out ? likeness::open : likeness::some;
 }
 
-/// The packet that begins with this open point: of several that look the same, the one whose time is
-/// nearest.
-std::optional<std::size_t> truth_book::find(std::size_t at) const {
-  std::optional<std::size_t> best;
-  std::int64_t best_ns = 0;
+/// The packet that begins with this open point: of several that look the same, the first, so that none
+/// that may follow is passed over.
+truth_book::finding truth_book::find(std::size_t at, bool all) const {
+  finding best{};
   for (std::size_t i = 0; i < sent_.size(); ++i) {
-    if (!fits(sent_[i], at)) continue;
-    if (is_sure(i, at)) return i;
-    const std::int64_t off_ns = std::abs(sent_[i].samples[0].time_ns - open_[at].time_ns);
-    if (best && off_ns >= best_ns) continue;
-    best = i;
-    best_ns = off_ns;
+    const likeness like = compare(i, at);
+    if (like == likeness::none) continue;
+    if (like == likeness::sure) return {i, true, false};
+    best.waits = best.waits || (like == likeness::open && !all && open_.size() - at < most_open);
+    if (!best.packet) best.packet = i;
   }
   return best;
 }
 
 /// The first `blind` open points are of damaged packets, those behind them are of packet `found`.
-void truth_book::accept(std::size_t found, std::size_t blind) {
+void truth_book::accept(std::size_t found, bool is_sure, std::size_t blind) {
   for (std::size_t i = 0; i < found; ++i) counts_.passed_over += sent_[i].whole;
   for (; blind > 0; --blind) {
     known_.push_back({open_.front(), -1, 0});
@@ -90,27 +98,36 @@ void truth_book::accept(std::size_t found, std::size_t blind) {
   }
   const packet& sent = sent_[found];
   for (std::size_t i = 0; i < sent.count; ++i) {
-    known_.push_back({open_.front(), sent.samples[i].index, sent.samples[i].time_ns});
+    known_.push_back(
+        {open_.front(), is_sure ? sent.samples[i].index : -1, sent.samples[i].time_ns});
     open_.pop_front();
     ++counts_.points;
   }
   sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(found + 1));
 }
 
-/// The first open point is of no packet as it was sent. A blind spot of the checksum, if there is a
-/// damaged packet just there for each packet of points.
-bool truth_book::settle_blind(bool all) {
+/// Takes the first `blind` open points for those of damaged packets that the checksum has let pass: if
+/// there is one just there for each packet of points, and what follows is known.
+bool truth_book::settle_blind(std::size_t blind) {
+  if (blind >= open_.size()) return false;
+  const finding found = find(blind, true);
+  if (!found.packet) return false;
+  const auto end = sent_.begin() + static_cast<std::ptrdiff_t>(*found.packet);
+  const auto damaged = std::count_if(sent_.begin(), end, [](const packet& p) { return !p.whole; });
+  const auto packets = static_cast<std::ptrdiff_t>((blind + max_samples - 1) / max_samples);
+  if (damaged < packets) return false;
+  counts_.blind_packets += static_cast<std::uint64_t>(packets);
+  accept(*found.packet, found.is_sure, blind);
+  return true;
+}
+
+/// The first open point is of no packet as it was sent.
+bool truth_book::settle_unknown(bool all) {
+  for (const packet& sent : sent_) {  // most keep their length
+    if (!sent.whole && settle_blind(sent.count)) return true;
+  }
   for (std::size_t blind = 1; blind < open_.size(); ++blind) {
-    const auto found = find(blind);
-    if (!found) continue;
-    const auto end = sent_.begin() + static_cast<std::ptrdiff_t>(*found);
-    const auto damaged =
-        std::count_if(sent_.begin(), end, [](const packet& p) { return !p.whole; });
-    const auto packets = static_cast<std::ptrdiff_t>((blind + max_samples - 1) / max_samples);
-    if (damaged < packets) break;
-    counts_.blind_packets += static_cast<std::uint64_t>(packets);
-    accept(*found, blind);
-    return true;
+    if (settle_blind(blind)) return true;
   }
   const bool may_be =
       std::any_of(sent_.begin(), sent_.end(), [](const packet& p) { return !p.whole; });
@@ -133,7 +150,7 @@ bool truth_book::settle_blind(bool all) {
 void truth_book::drop_rest_of_packet() {
   is_cut_ = false;
   for (std::size_t rest = 0; rest < std::min(open_.size(), max_samples); ++rest) {
-    if (!find(rest)) continue;
+    if (!find(rest, true).packet) continue;
     open_.erase(open_.begin(), open_.begin() + static_cast<std::ptrdiff_t>(rest));
     return;
   }
@@ -141,9 +158,10 @@ void truth_book::drop_rest_of_packet() {
 
 bool truth_book::settle_one(bool all) {
   if (is_cut_) drop_rest_of_packet();
-  const auto found = find(0);
-  if (!found) return settle_blind(all);
-  accept(*found, 0);
+  const finding found = find(0, all);
+  if (found.waits) return false;
+  if (!found.packet) return settle_unknown(all);
+  accept(*found.packet, found.is_sure, 0);
   return true;
 }
 

@@ -29,7 +29,8 @@ struct truth_counts {
 /// A delivered point and the sample that it is.
 struct known_point {
   point seen;
-  std::int64_t index;    ///< Of the sample in the device; -1 for a blind spot.
+  std::int64_t
+      index;  ///< Of the sample in the device; -1 where it may be another, and for a blind spot.
   std::int64_t time_ns;  ///< When it was truly measured.
 };
 
@@ -65,17 +66,31 @@ class truth_book {
     std::uint64_t number;
     std::size_t count;  ///< That its header claims.
     std::size_t known;  ///< That have come of them.
+    double first_deg;   ///< The first-level angle of the first one.
     bool zero;
-    bool whole;
+    bool whole;  ///< As it was sent, and its angles tell how the head turned.
   };
 
   [[nodiscard]] bool fits(const packet& sent, std::size_t at) const;
-  [[nodiscard]] bool is_sure(std::size_t which, std::size_t at) const;
-  [[nodiscard]] std::optional<std::size_t> find(std::size_t at) const;
+  /// Of a packet that was sent with the open points from one on.
+  enum class likeness : std::uint8_t {
+    none,
+    some,
+    open,  ///< More must be delivered to be sure.
+    sure,
+  };
+  struct finding {
+    std::optional<std::size_t> packet;
+    bool is_sure;
+    bool waits;  ///< More may be delivered that tells.
+  };
+  [[nodiscard]] likeness compare(std::size_t which, std::size_t at) const;
+  [[nodiscard]] finding find(std::size_t at, bool all) const;
   bool settle_one(bool all);
   void drop_rest_of_packet();
-  bool settle_blind(bool all);
-  void accept(std::size_t found, std::size_t blind);
+  bool settle_blind(std::size_t blind);
+  bool settle_unknown(bool all);
+  void accept(std::size_t found, bool is_sure, std::size_t blind);
 
   std::deque<packet> sent_;
   std::deque<point> open_;

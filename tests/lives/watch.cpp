@@ -26,11 +26,13 @@ void watch::begin(lidar& opened) {
   last_time_ns_ = 0;
   history_.clear();
   is_broken_ = true;
+  is_breaking_ = false;
 }
 
 void watch::end() {
   if (lidar_ == nullptr) return;
   look();
+  settle(true);
   scans_before_ += last_.scans;
   last_ = {};
   lidar_ = nullptr;
@@ -69,9 +71,13 @@ void watch::take_points() {
     }
     if (read.points == 0) break;
     book_.add(std::span<const point>(points_).first(read.points));
-    for (const known_point& found : book_.settle(false)) check(found);
+    settle(false);
   }
   if (!book_.problem().empty()) fail(book_.problem());
+}
+
+void watch::settle(bool all) {
+  for (const known_point& found : book_.settle(all)) check(found);
 }
 
 void watch::check(const known_point& found) {
@@ -97,7 +103,7 @@ void watch::check(const known_point& found) {
                found.time_ns <= f.begin_ns + f.duration_ns + second;
       });
   if (is_broken_ || is_struck || found.index != last_index_ + 1) steady_since_ns_ = found.time_ns;
-  is_broken_ = false;
+  is_broken_ = is_breaking_;
   last_index_ = found.index;
   check_time(found);
 }

@@ -37,6 +37,11 @@ class watch {
   /// The application has done something behind which packets may be passed over, and the clock of
   /// the samples begins anew.
   void breaks() { is_broken_ = true; }
+  /// The same, again and again until it is over.
+  void is_breaking(bool now) {
+    is_breaking_ = now;
+    is_broken_ = true;
+  }
 
   /// Before each call of a line, and after each call of the driver.
   void look();
@@ -58,6 +63,7 @@ class watch {
  private:
   void take_truth();
   void take_points();
+  void settle(bool all);
   void check(const known_point& found);
   void check_time(const known_point& found);
   void check_counts();
@@ -79,6 +85,7 @@ class watch {
   std::int64_t last_index_ = -1;
   std::int64_t steady_since_ns_ = 0;
   bool is_broken_ = true;
+  bool is_breaking_ = false;
   time_counts times_;
   line_calls calls_then_;
   std::uint64_t app_calls_ = 0;
