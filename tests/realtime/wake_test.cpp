@@ -29,10 +29,10 @@ result<scan> wait_for_nothing(lidar& device) {
   }
 }
 
-/// It answers, and its motor needs an hour to begin to move.
+/// It answers, and its motor needs a minute to begin to move.
 sim::device_options lazy_g4() {
   auto options = test::quick_g4();
-  options.standstill_ns = 3'600'000'000'000;
+  options.standstill_ns = 60'000'000'000;
   return options;
 }
 
