@@ -151,6 +151,8 @@ class sensor_clock {
   static constexpr double most_doubt_ns = 1e6;
   /// By how much the period may differ from the nominal one, and a little more.
   static constexpr double widest = 0.05;
+  /// By how much a rate that was learnt may be wrong.
+  static constexpr double known_rate = 300e-6;
   /// How late packets are until something is known, and at least.
   static constexpr double unknown_late_ns = 8e6;
   static constexpr double least_late_ns = 1e3;
@@ -183,7 +185,7 @@ class sensor_clock {
   /// Forgets the window. The rate is kept: a device that starts again has the oscillator it had.
   constexpr void restart() noexcept {
     const double slope = line_.period_ns / nominal_ns_ - 1.0;
-    const double doubt = rate_known_ ? 300e-6 : 2.0 * widest;
+    const double doubt = rate_known_ ? known_rate : 2.0 * widest;
     slopes_ = {std::max(-widest, slope - doubt), std::min(widest, slope + doubt)};
     window_.clear();
     started_ = false;
@@ -213,6 +215,7 @@ class sensor_clock {
     if (is_late_) return 0;
     if (-late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
     started_ = true;
+    in_time_ = next.sample;
     mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;
     if (!window_.add(next, line_.period_ns)) return missed;
     if (window_.span_ns() > enough_ns) {
@@ -227,13 +230,22 @@ class sensor_clock {
   /// program that slept finds packets that are less and less late.
   [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
     const bool was_late = is_late_;
-    is_late_ = late > std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
+    const double usual_ns = std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
+    is_late_ = late > usual_ns + drift_since_ns(next);
     if (!is_late_) return false;
     if (!was_late || late < least_late_ns_ - catching_up_ns) {
       least_late_ns_ = late;
       late_since_ns_ = next.time_ns;
     }
     return static_cast<double>(next.time_ns - late_since_ns_) > all_late_ns;
+  }
+
+  /// How late packets can be since the last one in time, if the rate is not what it is taken for.
+  [[nodiscard]] constexpr double drift_since_ns(arrival next) const noexcept {
+    const double slope = line_.period_ns / nominal_ns_ - 1.0;
+    const bool known = rate_known_ || window_.span_ns() > enough_ns;
+    const double doubt = known ? known_rate : std::max(slopes_.highest - slope, known_rate);
+    return doubt * static_cast<double>(next.sample - in_time_) * nominal_ns_;
   }
 
   /// The times of `count` samples of which the last one is to be at `last_ns`. Where that would not
@@ -271,6 +283,7 @@ class sensor_clock {
   std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
   std::size_t seen_bytes_ = 0;  // of the next packet, and what they tell
   std::int64_t seen_before_ns_ = 0;
+  std::int64_t in_time_ = 0;    // the last sample of a packet that was not too late
   std::int64_t late_since_ns_ = 0;  // and not less by much since then
   double least_late_ns_ = 0.0;
   std::int64_t last_ns_ = 0;  // the time of the last sample

@@ -103,7 +103,7 @@ void watch::check(const known_point& found) {
                found.time_ns <= f.begin_ns + f.duration_ns + second;
       });
   if (is_broken_ || is_struck || found.index != last_index_ + 1) steady_since_ns_ = found.time_ns;
-  is_broken_ = is_breaking_;
+  is_broken_ = is_breaking_ || (is_broken_ && found.time_ns < broke_ns_);
   last_index_ = found.index;
   check_time(found);
 }
@@ -157,7 +157,8 @@ void watch::check_calls() {
   const std::uint64_t of_use = now.reads - calls_then_.reads + app_calls_ - app_calls_then_;
   const auto batch_ns = std::chrono::nanoseconds(plan_->options.batch).count();
   const auto for_batches = static_cast<std::uint64_t>(batch_ns == 0 ? 0 : second / batch_ns);
-  if (vain > 300 + 3 * of_use + 2 * for_batches) {
+  const auto attempts = static_cast<std::uint64_t>(1000 / plan_->options.longest_backoff.count());
+  if (vain > 300 + 3 * of_use + 2 * for_batches + 2 * attempts) {
     fail("spins: " + std::to_string(vain) + " calls in vain in a second, and " +
          std::to_string(of_use) + " of use");
   }

@@ -36,11 +36,14 @@ class watch {
   void end();
   /// The application has done something behind which packets may be passed over, and the clock of
   /// the samples begins anew.
-  void breaks() { is_broken_ = true; }
+  void breaks() {
+    is_broken_ = true;
+    broke_ns_ = stage_->clock.now_ns();
+  }
   /// The same, again and again until it is over.
   void is_breaking(bool now) {
     is_breaking_ = now;
-    is_broken_ = true;
+    breaks();
   }
 
   /// Before each call of a line, and after each call of the driver.
@@ -86,6 +89,7 @@ class watch {
   std::int64_t steady_since_ns_ = 0;
   bool is_broken_ = true;
   bool is_breaking_ = false;
+  std::int64_t broke_ns_ = 0;  // points from before then may still come
   time_counts times_;
   line_calls calls_then_;
   std::uint64_t app_calls_ = 0;
