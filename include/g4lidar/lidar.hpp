@@ -152,8 +152,9 @@ class lidar {
   result<void> process();
 
   /// Makes a call that waits, or the next one, end early with cancelled, once. What it had begun goes
-  /// on in the calls that follow. *Any thread*, and a signal handler, as long as the lidar lives and is
-  /// not being moved.
+  /// on in the calls that follow, and the same call made again goes on with it: start(), stop() and
+  /// ask() come to their end however often they are woken. *Any thread*, and a signal handler, as long
+  /// as the lidar lives and is not being moved.
   void wake() noexcept;
 
   /// Asks the device. While it scans this is refused with problem::scanning, unless the second

@@ -45,6 +45,7 @@ result<void> lidar::driver::connect() {
   static_cast<void>(exchange_line(std::move(*made)));
   ready_.follow(line_->native_handle());
   session_.reset();
+  stops_ = false;
   last_bytes_ns_ = last_read_ns_ = now_ns();
   planned_ = plan_at_ = 0;
   stage_ = stage::identifying;
@@ -142,8 +143,11 @@ result<void> lidar::driver::receive(std::int64_t deadline_ns) {
     }
     deadline_ns = until;  // what is there now, or nothing: without another wait
   }
-  const auto got = line_->read(buffer_, deadline_ns);
-  if (!got && got.error().what() == problem::cancelled) return {};  // step() knows
+  auto got = line_->read(buffer_, deadline_ns);
+  const auto is_woken = [&] { return !got && got.error().what() == problem::cancelled; };
+  // Who is woken before each call must get on, too: what is there is taken.
+  if (is_woken()) got = line_->read(buffer_, now_ns());
+  if (is_woken()) return {};  // step() knows
   if (!got) return tl::unexpected(got.error());
   last_read_ns_ = batch_ns > 0 ? now_ns() : 0;
   read_until_ns_ = got->count == 0 ? now_ns() : got->arrival_ns;
@@ -162,6 +166,7 @@ result<void> lidar::driver::step(std::int64_t deadline_ns) {
   const std::int64_t until = woken_.load(std::memory_order_relaxed) ? now_ns() : deadline_ns;
   auto done = stage_ == stage::lost ? wait_for_line(until) : round(until);
   if (!done && stage_ != stage::closed) done = hang_up(done.error());
+  if (done && refused_) done = tl::unexpected(*std::exchange(refused_, std::nullopt));
   if (done && woken_.load(std::memory_order_relaxed) && woken_.exchange(false)) {
     return failure(task::reading, problem::cancelled, name());
   }
@@ -204,9 +209,7 @@ result<void> lidar::driver::look_if_due() {
   const std::int64_t due_ns = session_.next_look_ns();
   if (!input_.empty() || due_ns > now_ns()) return {};
   if (read_until_ns_ < due_ns) {
-    for (int i = 0; i < 2 && input_.empty(); ++i) {  // a wake-up may end the first one early
-      if (auto got = receive(now_ns()); !got) return got;
-    }
+    if (auto got = receive(now_ns()); !got) return got;
     if (!input_.empty()) return {};
   }
   end_a_silent_frame();
@@ -341,7 +344,8 @@ result<void> lidar::driver::start() {
   wants_scan_ = true;
   plan_start();
   const auto started = run_plan();
-  if (!started) wants_scan_ = false;
+  // One that is woken goes on in the calls that follow, be they next_scan().
+  if (!started && started.error().what() != problem::cancelled) wants_scan_ = false;
   return started;
 }
 
@@ -351,8 +355,10 @@ result<void> lidar::driver::stop() {
   if (auto ready = run_plan(); !ready) return ready;
   scan_.reset();
   if (line_->answers()) {
-    plan(requests::stop(), true);
+    // A stop that was woken has gone on meanwhile.
+    if (!std::exchange(stops_, true)) plan(requests::stop(), true);
     if (auto stopped = run_plan(); !stopped) return stopped;
+    stops_ = false;
   }
   input_ = {};
   end_of_bytes();
@@ -375,29 +381,44 @@ result<void> lidar::driver::close() {
 }
 
 result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
-  if (auto ready = run_plan(); !ready) return tl::unexpected(ready.error());
-  if (!line_->answers()) return failure(task::asking, problem::read_only, name());
-  if (const auto refused = session_.begin(wanted, now_ns(), how)) {
-    return failure(task::asking, problem::scanning, subject(name()).add(wanted));
+  const bool goes_on = woken_question_ == wanted && session_.is_busy();
+  woken_question_.reset();
+  if (!goes_on) {
+    if (auto begun = begin_question(wanted, how); !begun) return tl::unexpected(begun.error());
   }
   asked_.reset();
   asking_ = true;
-  while (!asked_) {
+  auto done = result<void>();
+  while (done && line_ != nullptr && !asked_) {
     drop_scan();
-    const auto done = step(never_ns);
-    if (!done || line_ == nullptr) {
-      asking_ = false;
-      return tl::unexpected(done ? lost_ : done.error());
-    }
+    done = step(never_ns);
   }
   asking_ = false;
+  const bool is_woken = !done && done.error().what() == problem::cancelled;
+  if (is_woken && asked_) {
+    woken_.store(true);  // for the next call: this one has got its answer
+  } else if (!done || !asked_) {
+    if (is_woken) woken_question_ = wanted;
+    return tl::unexpected(done ? lost_ : done.error());
+  }
   if (asked_->how != verdict::answered) return tl::unexpected(error_of(*asked_));
   remember(*asked_);
   if (wanted.what == ask::restart && wants_scan_) {
     set_up_again();
-    if (auto ready = run_plan(); !ready) return tl::unexpected(ready.error());
+    const auto ready = run_plan();
+    if (!ready && ready.error().what() != problem::cancelled) return tl::unexpected(ready.error());
+    if (!ready) woken_.store(true);  // it goes on in the next call
   }
   return asked_->value;
+}
+
+result<void> lidar::driver::begin_question(const request& wanted, while_scanning how) {
+  if (auto ready = run_plan(); !ready) return ready;
+  if (!line_->answers()) return failure(task::asking, problem::read_only, name());
+  if (session_.begin(wanted, now_ns(), how)) {
+    return failure(task::asking, problem::scanning, subject(name()).add(wanted));
+  }
+  return {};
 }
 
 result<scan> lidar::driver::next_scan(std::int64_t timeout_ns) {

@@ -53,7 +53,9 @@ class lidar::driver {
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
   [[nodiscard]] std::string_view name() const noexcept;
-  [[nodiscard]] bool is_scanning() const noexcept { return stage_ == stage::scanning; }
+  [[nodiscard]] bool is_scanning() const noexcept {
+    return stage_ == stage::scanning && wants_scan_;  // else a stop was woken
+  }
   [[nodiscard]] lidar_counts counts() const noexcept;
   [[nodiscard]] std::optional<lidar_event> next_event() noexcept { return events_.take(); }
   [[nodiscard]] lidar_ring& points() noexcept { return stream_.ring(); }
@@ -109,6 +111,7 @@ class lidar::driver {
   void started();
   void back_again();
   result<void> run_plan();
+  result<void> begin_question(const request& wanted, while_scanning how);
   [[nodiscard]] error error_of(const outcome& done) const;
   [[nodiscard]] error spoilt(const error& why) const;
 
@@ -125,11 +128,12 @@ class lidar::driver {
   stage stage_ = stage::closed;
   bool opened_ = false;                       // who it is is known
   bool wants_scan_ = false;                   // started, and not stopped
+  bool stops_ = false;                        // a stop is planned, and was perhaps woken
   bool has_streamed_ = false;                 // a whole revolution has come since the start
   bool reconnecting_ = false;                 // connected again, and not yet as before
   bool setting_up_again_ = false;             // it may have forgotten what was set
   error lost_{task::reading, problem::gone};  // why it is lost or closed
-  std::optional<error> refused_;              // why a plan ended, though the line is good
+  std::optional<error> refused_;  // why a plan ended, though the line is good; see step()
   device_information information_{};
 
   session session_;
@@ -150,8 +154,9 @@ class lidar::driver {
   std::size_t plan_at_ = 0;
   std::optional<outcome> asked_;  // what became of an ask()
   bool asking_ = false;
-  bool delivers_ = false;     // what comes are points of the scan
-  bool has_outcome_ = false;  // one has been taken in this round
+  std::optional<request> woken_question_;  // of an ask() that was woken, and goes on
+  bool delivers_ = false;                  // what comes are points of the scan
+  bool has_outcome_ = false;               // one has been taken in this round
   std::uint32_t samples_per_second_ = 9000;
 
   std::int64_t last_bytes_ns_ = 0;

@@ -10,11 +10,13 @@ namespace g4lidar {
 
 void lidar::driver::plan(request wanted, bool needed) {
   if (plan_at_ == planned_) planned_ = plan_at_ = 0;  // all of it has been done
+  woken_question_.reset();
   if (planned_ < plan_.size()) plan_[planned_++] = {wanted, needed};
 }
 
 void lidar::driver::plan_start() {
   stage_ = stage::preparing;
+  stops_ = false;
   plan(requests::health(), false);
   if (options_.ranging) {
     plan(requests::set(*options_.ranging), true);
@@ -49,7 +51,6 @@ result<void> lidar::driver::run_plan() {
     if (!(stage_ == stage::preparing && session_.is_scanning())) drop_scan();
     if (auto done = step(never_ns); !done) return done;
     if (stage_ == stage::lost) return tl::unexpected(lost_);
-    if (refused_) return tl::unexpected(*std::exchange(refused_, std::nullopt));
   }
   return {};
 }
@@ -136,6 +137,7 @@ result<void> lidar::driver::give_up(const error& why) {
   const bool goes_on = wants_scan_ && (reconnecting_ || setting_up_again_);
   if (!of_use || goes_on) return tl::unexpected(why);
   stage_ = stage::idle;
+  wants_scan_ = false;
   refused_ = why;
   return {};
 }

@@ -43,14 +43,14 @@ class scratch_directory {
 };
 
 /// A healthy G4 with a quick motor, of which no two samples are alike, so that scans can be told
-/// apart. It keeps the truth of 200,000 samples, 22 s.
+/// apart. It keeps the truth of 300,000 samples, 33 s.
 inline sim::device_options quick_g4(std::uint64_t seed = 1) {
   sim::device_options options;
   options.scanner.seed = seed;
   options.scanner.noise_mm = 20.0;
   options.acceleration_mhz_per_s = 60'000;
   options.standstill_ns = 10'000'000;
-  options.truth_capacity = 200'000;
+  options.truth_capacity = 300'000;
   return options;
 }
 
@@ -63,6 +63,28 @@ inline readings readings_of(const scan& seen) {
     all.push_back(static_cast<std::uint16_t>(std::lround(p.range_mm * 4.0F)));
   }
   return all;
+}
+
+/// For tests of something else than the driver's patience, which another program on the machine may
+/// try for a second.
+inline lidar_options patient_options(std::string device = {}) {
+  lidar_options options;
+  options.device = std::move(device);
+  options.answer_time = std::chrono::seconds(10);
+  options.stall_time = std::chrono::seconds(60);
+  return options;
+}
+
+/// The shortest of some measurements, of which there are more only until one is below `bound`: the
+/// machine may be busy with something else.
+template <class Measure>
+std::chrono::nanoseconds best_of(int most, std::chrono::nanoseconds bound, Measure&& measure) {
+  auto best = std::chrono::nanoseconds::max();
+  for (int i = 0; i < most && best >= bound; ++i) {
+    best = std::min<std::chrono::nanoseconds>(best, measure());
+    if (testing::Test::HasFatalFailure()) break;
+  }
+  return best;
 }
 
 class twin_on_pty {
@@ -95,9 +117,13 @@ class twin_on_pty {
     with([](sim::device& twin, std::int64_t now_ns) { twin.replug(now_ns); });
   }
 
-  /// Whether it becomes so within five seconds.
+  /// What was sent and found no place on the line, since we did not read: an accident of the machine,
+  /// or of the driver, if it happens each time.
+  [[nodiscard]] std::uint64_t bytes_lost() const { return port_->bytes_lost(); }
+
+  /// Whether it becomes so within thirty seconds.
   [[nodiscard]] bool becomes_idle_and_silent() {
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 3000; ++i) {
       bool idle = false;
       with([&](sim::device& twin, std::int64_t now_ns) { idle = twin.is_idle_and_silent(now_ns); });
       if (idle) return true;
@@ -153,6 +179,17 @@ inline std::size_t found_in_order(const std::vector<readings>& scans,
     ++found;
   }
   return found;
+}
+
+/// Makes an attempt that loses nothing, and gives whether it was one in which the line lost nothing
+/// either: a machine that is held up for longer than a pseudo-terminal can hold what comes is no fault
+/// of ours, unless it is so each time.
+template <class Attempt>
+void until_the_line_holds(Attempt&& attempt) {
+  for (int i = 0; i < 6; ++i) {
+    if (attempt() || testing::Test::HasFatalFailure()) return;
+  }
+  ADD_FAILURE() << "the line is not read in time";
 }
 
 inline void expect_identity(const lidar_counts& counts) {

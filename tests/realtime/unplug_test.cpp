@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "realtime/twin_on_pty.hpp"
@@ -18,9 +19,9 @@ using test::quick_g4;
 using test::twin_on_pty;
 using clock = std::chrono::steady_clock;
 
-/// Calls `work` until it fails fatally; nothing where it does not within ten seconds.
+/// Calls `work` until it fails fatally; nothing where it does not within half a minute.
 std::optional<error> fate_of(const std::function<result<void>()>& work) {
-  const auto end = clock::now() + 10s;
+  const auto end = clock::now() + 30s;
   while (clock::now() < end) {
     const auto done = work();
     if (!done && done.error().is_fatal()) return done.error();
@@ -62,33 +63,40 @@ std::vector<activity> activities() {
 
 class Unplug : public testing::TestWithParam<activity> {};
 
-// Within 100 ms, where the machine has time for us: the best of a few counts. The waits differ, so
-// that it comes at different moments of the work.
-TEST_P(Unplug, IsKnownAtOnce) {
-  auto best = clock::duration::max();
-  for (const auto before : {1ms, 12ms, 30ms, 55ms, 90ms, 170ms}) {
-    twin_on_pty twin;
-    auto device = lidar::open(twin.path());
-    ASSERT_TRUE(device) << device.error().message();
-    if (GetParam().scans) {
-      ASSERT_TRUE(device->start());
-    }
-    clock::time_point pulled;
-    std::thread hand([&] {
-      std::this_thread::sleep_for(before);
-      pulled = twin.unplug();
-    });
-    const auto fate = fate_of([&] { return GetParam().work(*device); });
-    const auto known = clock::now();
-    hand.join();
-    ASSERT_TRUE(fate) << "after " << before.count() << " ms";
-    EXPECT_EQ(fate->what(), problem::gone) << fate->message();
-    best = std::min(best, known - pulled);
-    EXPECT_EQ(device->process().error().what(), problem::gone);  // and it stays so
-    EXPECT_EQ(device->start().error().what(), problem::gone);
-    test::expect_identity(device->counts());
+/// How long it took to know, after the plug was pulled so long after the work began.
+clock::duration time_to_know(const activity& doing, std::chrono::milliseconds before) {
+  twin_on_pty twin;
+  auto device = lidar::open(test::patient_options(twin.path()));
+  EXPECT_TRUE(device) << device.error().message();
+  if (!device) return clock::duration(0);
+  if (doing.scans) {
+    EXPECT_TRUE(device->start());
   }
-  EXPECT_LT(best, 100ms);
+  clock::time_point pulled;
+  std::thread hand([&] {
+    std::this_thread::sleep_for(before);
+    pulled = twin.unplug();
+  });
+  const auto fate = fate_of([&] { return doing.work(*device); });
+  const auto known = clock::now();
+  hand.join();
+  EXPECT_TRUE(fate) << "after " << before.count() << " ms";
+  if (fate) {
+    EXPECT_EQ(fate->what(), problem::gone) << fate->message();
+  }
+  EXPECT_EQ(device->process().error().what(), problem::gone);  // and it stays so
+  EXPECT_EQ(device->start().error().what(), problem::gone);
+  test::expect_identity(device->counts());
+  return known - pulled;
+}
+
+// Within 100 ms, where the machine has time for us. The waits differ, so that it comes at different
+// moments of the work.
+TEST_P(Unplug, IsKnownAtOnce) {
+  for (const auto before : {1ms, 12ms, 30ms, 55ms, 90ms, 170ms}) {
+    const auto measure = [&] { return time_to_know(GetParam(), before); };
+    EXPECT_LT(test::best_of(8, 100ms, measure), 100ms) << before.count();
+  }
 }
 
 // Nobody has to do anything: it is set and started as before.
@@ -109,7 +117,7 @@ TEST_P(Unplug, IsMadeUpForWhenTheDeviceComesBack) {
     std::this_thread::sleep_for(150ms);
     twin.replug();
   });
-  const auto end = clock::now() + 30s;
+  const auto end = clock::now() + 60s;
   while (device->counts().reconnects == 0 && clock::now() < end) {
     static_cast<void>(GetParam().work(*device));
   }
@@ -123,7 +131,7 @@ TEST_P(Unplug, IsMadeUpForWhenTheDeviceComesBack) {
 
   ASSERT_TRUE(device->start());
   EXPECT_EQ(device->information().serial_number(), "2021101000070073");
-  const auto scan = device->next_scan(10s);
+  const auto scan = device->next_scan(30s);
   ASSERT_TRUE(scan) << scan.error().message();
   EXPECT_EQ(twin.settings().scan_frequency_chz, 1000);
   ASSERT_TRUE(device->stop());
@@ -136,6 +144,70 @@ INSTANTIATE_TEST_SUITE_P(While, Unplug, testing::ValuesIn(activities()), [](cons
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 });
+
+// While it is being opened, at any moment of that.
+TEST(Unplug, WhileItIsOpenedIsKnownAtOnce) {
+  for (const auto before : {0ms, 1ms, 2ms, 5ms, 10ms, 20ms, 40ms, 55ms}) {
+    const auto time = test::best_of(8, 100ms, [&] {
+      twin_on_pty twin;
+      clock::time_point pulled;
+      std::thread hand([&] {
+        std::this_thread::sleep_for(before);
+        pulled = twin.unplug();
+      });
+      const auto device = lidar::open(test::patient_options(twin.path()));
+      const auto known = clock::now();
+      hand.join();
+      if (device) return clock::duration(0);  // it was quicker
+      const auto what = device.error().what();
+      EXPECT_TRUE(what == problem::gone || what == problem::no_port) << device.error().message();
+      return known - pulled;
+    });
+    EXPECT_LT(time, 100ms) << before.count();
+  }
+}
+
+// While it is coming back: lost again, identified, being prepared, spinning up, scanning.
+TEST(Unplug, AgainAndAgainWhileItComesBack) {
+  twin_on_pty twin;
+  lidar_options options;
+  options.device = twin.path();
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  const auto read_for = [&](std::chrono::milliseconds time) {
+    const auto end = clock::now() + time;
+    while (clock::now() < end) {
+      const auto scan = device->next_scan(5ms);
+      EXPECT_TRUE(scan || !scan.error().is_fatal()) << scan.error().message();
+    }
+  };
+  for (const auto in : {300ms, 0ms, 5ms, 15ms, 30ms, 50ms, 70ms, 90ms, 120ms, 180ms, 300ms}) {
+    read_for(in);
+    twin.unplug();
+    read_for(30ms);
+    twin.replug();
+  }
+  const std::uint64_t before = device->counts().reconnects;
+  const auto end = clock::now() + 60s;
+  while (device->counts().reconnects == before && clock::now() < end) read_for(20ms);
+  EXPECT_GT(device->counts().reconnects, before);
+  EXPECT_TRUE(device->next_scan(30s));
+  // Each loss and each return is told once, in turn.
+  bool is_lost = false;
+  while (const auto event = device->next_event()) {
+    if (event->what == lidar_event::kind::lost) {
+      EXPECT_FALSE(std::exchange(is_lost, true));
+    } else if (event->what == lidar_event::kind::reconnected) {
+      EXPECT_TRUE(std::exchange(is_lost, false));
+    }
+  }
+  EXPECT_FALSE(is_lost);
+  EXPECT_TRUE(device->stop());
+  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  test::expect_identity(device->counts());
+}
 
 // Another lidar at the old place is not ours.
 TEST(Unplug, AnotherDeviceIsNotTakenForOurs) {
@@ -153,7 +225,7 @@ TEST(Unplug, AnotherDeviceIsNotTakenForOurs) {
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(10s));
+  ASSERT_TRUE(device->next_scan(30s));
   const auto read_for = [&](std::chrono::milliseconds time) {
     std::size_t scans = 0;
     const auto end = clock::now() + time;
@@ -167,10 +239,10 @@ TEST(Unplug, AnotherDeviceIsNotTakenForOurs) {
   EXPECT_EQ(device->counts().reconnects, 0U);
   twin.reset();
   twin = std::move(*plugged('3'));
-  const auto end = clock::now() + 20s;
+  const auto end = clock::now() + 60s;
   while (device->counts().reconnects == 0 && clock::now() < end) read_for(100ms);
   EXPECT_EQ(device->counts().reconnects, 1U);
-  EXPECT_TRUE(device->next_scan(10s));
+  EXPECT_TRUE(device->next_scan(30s));
 }
 
 }  // namespace

@@ -29,33 +29,27 @@ result<scan> wait_for_nothing(lidar& device) {
   }
 }
 
-/// Answers, and then sends nothing more for a minute: a stall.
-sim::fault silent_from(std::chrono::nanoseconds begin) {
-  return sim::make_fault(sim::fault_kind::stall, begin.count(), 60'000'000'000);
-}
-
-result<lidar> patient(const twin_on_pty& twin) {
-  lidar_options options;
-  options.device = twin.path();
-  options.stall_time = 60s;
-  return lidar::open(options);
+/// It answers, and its motor needs a minute to begin to move.
+sim::device_options lazy_g4() {
+  auto options = test::quick_g4();
+  options.standstill_ns = 60'000'000'000;
+  return options;
 }
 
 TEST(Wake, EndsAWaitFromAnotherThread) {
-  const sim::fault faults[] = {silent_from(1500ms)};
-  twin_on_pty twin(test::quick_g4(), faults);
-  auto device = patient(twin);
+  twin_on_pty twin(lazy_g4());
+  auto device = lidar::open(test::patient_options(twin.path()));
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
   const auto begin = clock::now();
   std::thread other([&] {
-    std::this_thread::sleep_for(2s);
+    std::this_thread::sleep_for(200ms);
     device->wake();
   });
   const auto ended = wait_for_nothing(*device);
   EXPECT_EQ(ended.error().what(), problem::cancelled) << ended.error().message();
-  EXPECT_GE(clock::now() - begin, 2s);
-  EXPECT_LT(clock::now() - begin, 20s);
+  EXPECT_GE(clock::now() - begin, 200ms);
+  EXPECT_LT(clock::now() - begin, 30s);
   other.join();
   EXPECT_EQ(device->next_scan(10ms).error().what(), problem::timeout);  // once
 }
@@ -71,7 +65,7 @@ TEST(Wake, EndsAWaitFromASignalHandler) {
   struct sigaction before{};
   ASSERT_EQ(::sigaction(SIGUSR2, &action, &before), 0);
   twin_on_pty twin;
-  auto device = patient(twin);
+  auto device = lidar::open(test::patient_options(twin.path()));
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
   to_wake = &*device;
@@ -85,7 +79,7 @@ TEST(Wake, EndsAWaitFromASignalHandler) {
   other.join();
   to_wake = nullptr;
   ::sigaction(SIGUSR2, &before, nullptr);
-  EXPECT_TRUE(device->next_scan(10s));
+  EXPECT_TRUE(device->next_scan(30s));
 }
 
 // While the line comes and goes too: a handler that interrupts that finds everything locked.
@@ -109,18 +103,31 @@ TEST(Wake, AStormOfItFromASignalHandlerHoldsNothingUp) {
       std::this_thread::sleep_for(300us);
     }
   });
-  const auto end = clock::now() + 30s;
-  while (!device->is_scanning() && clock::now() < end) static_cast<void>(device->start());
-  EXPECT_TRUE(device->is_scanning());
+  const auto does = [](auto&& work) {
+    const auto end = clock::now() + 60s;
+    while (clock::now() < end) {
+      if (work()) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(does([&] { return device->start().has_value(); }));
   for (std::uint64_t plugs = 1; plugs <= 3; ++plugs) {
     twin.unplug();
     std::this_thread::sleep_for(20ms);
     twin.replug();
-    while (device->counts().reconnects < plugs && clock::now() < end) {
+    EXPECT_TRUE(does([&] {
       static_cast<void>(device->next_scan(100ms));
-    }
-    EXPECT_EQ(device->counts().reconnects, plugs);
+      return device->counts().reconnects >= plugs;
+    }));
+    EXPECT_TRUE(does([&] { return device->next_scan(100ms).has_value(); }));
   }
+  EXPECT_TRUE(does([&] {
+    return device->ask(requests::health(), while_scanning::stop_and_resume).has_value();
+  }));
+  EXPECT_TRUE(does([&] { return device->stop().has_value(); }));
+  EXPECT_TRUE(does([&] { return device->start().has_value(); }));
+  static_cast<void>(device->close());
+  EXPECT_TRUE(twin.becomes_idle_and_silent());
   over = true;
   storm.join();
   to_wake = nullptr;
@@ -129,7 +136,7 @@ TEST(Wake, AStormOfItFromASignalHandlerHoldsNothingUp) {
 
 TEST(Wake, LeavesStartAndStopWhole) {
   twin_on_pty twin;
-  auto device = lidar::open(twin.path());
+  auto device = lidar::open(test::patient_options(twin.path()));
   ASSERT_TRUE(device) << device.error().message();
   for (int i = 0; i < 3; ++i) {
     device->wake();
@@ -143,10 +150,10 @@ TEST(Wake, LeavesStartAndStopWhole) {
   EXPECT_TRUE(twin.becomes_idle_and_silent());
 }
 
-/// Waits for something that happens in another thread; false if it does not within 20 s.
+/// Waits for something that happens in another thread; false if it does not within a minute.
 template <class Condition>
 bool comes_true(Condition&& condition) {
-  const auto end = clock::now() + 20s;
+  const auto end = clock::now() + 60s;
   while (!condition()) {
     if (clock::now() > end) return false;
     std::this_thread::sleep_for(1ms);
@@ -156,7 +163,7 @@ bool comes_true(Condition&& condition) {
 
 TEST(BackgroundReaderOnPty, FeedsReadersInOtherThreads) {
   twin_on_pty twin;
-  auto device = lidar::open(twin.path());
+  auto device = lidar::open(test::patient_options(twin.path()));
   ASSERT_TRUE(device) << device.error().message();
   auto reader = background_reader::start(std::move(*device));
   ASSERT_TRUE(reader) << reader.error().message();
@@ -181,6 +188,22 @@ TEST(BackgroundReaderOnPty, FeedsReadersInOtherThreads) {
   EXPECT_TRUE(twin.becomes_idle_and_silent());
   EXPECT_FALSE(reader->failed());
   test::expect_identity(reader->counts());
+}
+
+TEST(BackgroundReaderOnPty, KnowsOfAnUnplugAtOnce) {
+  const auto best = test::best_of(8, 100ms, [] {
+    twin_on_pty twin;
+    auto device = lidar::open(test::patient_options(twin.path()));
+    EXPECT_TRUE(device) << device.error().message();
+    auto reader = background_reader::start(std::move(*device));
+    EXPECT_TRUE(reader) << reader.error().message();
+    const auto pulled = twin.unplug();
+    EXPECT_TRUE(comes_true([&] { return reader->failed().has_value(); }));
+    const auto known = clock::now();
+    EXPECT_EQ(reader->failed()->what(), problem::gone);
+    return known - pulled;
+  });
+  EXPECT_LT(best, 100ms);
 }
 
 TEST(BackgroundReaderOnPty, EndsInAnyOrder) {
@@ -235,7 +258,7 @@ TEST(BackgroundReaderOnPty, EndsWhileItReconnects) {
   std::this_thread::sleep_for(100ms);
   const auto begin = clock::now();
   reader->stop();
-  EXPECT_LT(clock::now() - begin, 10s);
+  EXPECT_LT(clock::now() - begin, 30s);
   EXPECT_FALSE(reader->failed());
 }
 

@@ -171,7 +171,7 @@ TEST_F(SimPty, ASlowReaderLosesBytesAndHoldsNothingUp) {
   port.with([](sim::device& device, std::int64_t now_ns) {
     device.write(std::array<std::uint8_t, 2>{0xA5, 0x60}, now_ns);
   });
-  std::this_thread::sleep_for(4s);
+  EXPECT_TRUE(soon([&] { return port.bytes_lost() > 1'000; }));
   ASSERT_TRUE(program.send(0x65));
   EXPECT_TRUE(soon([&] {
     bool scanning = true;
@@ -195,6 +195,7 @@ TEST_F(SimPty, IsAsNewForEachProgram) {
     std::this_thread::sleep_for(300ms);
   }
   std::this_thread::sleep_for(300ms);
+  EXPECT_EQ(port->bytes_lost(), 0U) << "nobody was there to lose them";
   const visitor program(port->path());
   int exclusive = 1;
   ASSERT_EQ(::ioctl(program.fd(), TIOCGEXCL, &exclusive), 0);

@@ -33,6 +33,9 @@ class pty_port {
   /// The time of the device.
   [[nodiscard]] std::int64_t now_ns() const noexcept;
   [[nodiscard]] device& twin() noexcept;
+  /// How many bytes were lost since no program had read those before them: a pseudo-terminal holds
+  /// 4 KiB at least, and some 16 KiB as a rule.
+  [[nodiscard]] std::uint64_t bytes_lost() const noexcept;
 
   /// Carries bytes both ways as far as that goes without waiting; when to call again at the latest,
   /// in ns of now_ns(). Fails with system where a replug could not be brought about.
@@ -68,6 +71,8 @@ class background_pty {
   [[nodiscard]] const std::string& path() const noexcept;
   /// Looks at the device, or pulls its plug, between two steps of the thread.
   void with(const std::function<void(device& twin, std::int64_t now_ns)>& look);
+  /// As pty_port's.
+  [[nodiscard]] std::uint64_t bytes_lost() const;
 
  private:
   class state;

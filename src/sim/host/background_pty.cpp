@@ -38,6 +38,10 @@ class background_pty::state {
     look(port_.twin(), port_.now_ns());
     ring();
   }
+  [[nodiscard]] std::uint64_t bytes_lost() {
+    const std::lock_guard lock(mutex_);
+    return port_.bytes_lost();
+  }
 
  private:
   void ring() const noexcept {
@@ -100,5 +104,7 @@ const std::string& background_pty::path() const noexcept { return state_->path()
 void background_pty::with(const std::function<void(device&, std::int64_t)>& look) {
   state_->with(look);
 }
+
+std::uint64_t background_pty::bytes_lost() const { return state_->bytes_lost(); }
 
 }  // namespace g4lidar::sim

@@ -83,14 +83,15 @@ std::size_t pty::read(std::span<std::uint8_t> out) noexcept {
   return count > 0 ? static_cast<std::size_t>(count) : 0;
 }
 
-void pty::write(bytes data) noexcept {
-  if (watch_ && visitors_ <= 0) return;
+std::size_t pty::write(bytes data) noexcept {
+  if (watch_ && visitors_ <= 0) return 0;
   while (!data.empty()) {
     const ssize_t count = ::write(master(), data.data(), data.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return;
+    if (count <= 0) break;
     data = data.subspan(static_cast<std::size_t>(count));
   }
+  return data.size();
 }
 
 }  // namespace g4lidar::sim

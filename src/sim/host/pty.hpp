@@ -23,8 +23,9 @@ class pty {
 
   /// What programs have written; 0: nothing.
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept;
-  /// As much as is taken; the rest is lost, and all of it while no program has it open.
-  void write(bytes data) noexcept;
+  /// As much as is taken; the rest is lost, and all of it while no program has it open. How much a
+  /// program that has it open has lost by this.
+  std::size_t write(bytes data) noexcept;
   /// Learns who has opened and closed it. When the last one has gone, it is as new.
   void look_for_visitors() noexcept;
 

@@ -99,6 +99,7 @@ class pty_port::state {
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return steady_ns() - begin_ns_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::uint64_t bytes_lost() const noexcept { return bytes_lost_; }
   [[nodiscard]] handles native_handles() const noexcept {
     return line_ ? handles{line_->master(), line_->watch()} : handles{-1, -1};
   }
@@ -115,13 +116,16 @@ class pty_port::state {
       if (count == 0) break;
       twin.write(bytes(data).first(count), now);
     }
-    while (const std::size_t count = twin.read(data, now)) line_->write(bytes(data).first(count));
+    while (const std::size_t count = twin.read(data, now)) {
+      bytes_lost_ += line_->write(bytes(data).first(count));
+    }
   }
 
   std::string link_;
   std::string path_;
   std::optional<pty> line_;
   std::uint64_t replugs_ = 0;
+  std::uint64_t bytes_lost_ = 0;
   std::int64_t begin_ns_ = steady_ns();
 };
 
@@ -143,6 +147,7 @@ result<pty_port> pty_port::open(device twin, const std::string& link) {
 const std::string& pty_port::path() const noexcept { return state_->path(); }
 std::int64_t pty_port::now_ns() const noexcept { return state_->now_ns(); }
 device& pty_port::twin() noexcept { return state_->twin; }
+std::uint64_t pty_port::bytes_lost() const noexcept { return state_->bytes_lost(); }
 result<std::int64_t> pty_port::process() { return state_->process(); }
 pty_port::handles pty_port::native_handles() const noexcept { return state_->native_handles(); }
 
