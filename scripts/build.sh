@@ -18,6 +18,12 @@ run_quietly() {
   fi
 }
 
+# ccache asks the compiler itself what a source included, which saves its first run over each; it
+# takes precompiled headers; and two build directories may share what is compiled the same.
+export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
+export CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
+
 # configure <build directory> <cmake argument>...
 configure() {
   local directory=$1
@@ -43,4 +49,13 @@ build() {
   local targets=()
   if (($# > 0)); then targets=(--target "$@"); fi
   run_quietly "Building $directory" cmake --build "$directory" "${targets[@]}" -- --quiet
+}
+
+# run_tests <preset> <ctest argument>...: as many at once as there are processors. The time that one
+# may take is the preset's; where the random ones are longer (G4LIDAR_TEST_SCALE), so is it.
+run_tests() {
+  local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=()
+  shift
+  if ((scale > 1)); then longer=(--timeout $((600 * scale))); fi
+  ctest --preset "$preset" --parallel "$(nproc)" "${longer[@]}" "$@"
 }
