@@ -106,7 +106,7 @@ class sensor_clock {
   /// Gaps are counted without it too; with it, short ones are counted better, and such that are
   /// longer than a turn at once.
   constexpr void lost(std::size_t count) noexcept {
-    hinted_ = true;
+    hinted_ = is_torn_ = true;
     skipped_bytes_ += static_cast<double>(count);
     seen_bytes_ = 0;
   }
@@ -143,6 +143,8 @@ class sensor_clock {
   /// were lost that were not counted.
   static constexpr double all_late_ns = 40e6;
   static constexpr double catching_up_ns = 5e6;
+  /// The same where no byte was skipped: what is lost nearly always tears a frame.
+  static constexpr double surely_late_ns = 1e9;
   /// A window that is longer than this tells the rate by itself.
   static constexpr double enough_ns = 4e9;
   /// An arrival that is earlier than this, and than the bound allows, refutes the count.
@@ -189,7 +191,7 @@ class sensor_clock {
     slopes_ = {std::max(-widest, slope - doubt), std::min(widest, slope + doubt)};
     window_.clear();
     started_ = false;
-    is_late_ = false;
+    is_late_ = is_torn_ = false;
   }
 
   /// A gap that was not counted surely widens the bound; one of which nothing is known parts the times
@@ -206,7 +208,7 @@ class sensor_clock {
     std::int64_t missed = 0;
     const double too_early = std::max(early_ns, 3.0 * line_.bound_ns);
     if (late < -too_early || stays_late(late, next)) {
-      if (late > 0.0) missed = static_cast<std::int64_t>(late / line_.period_ns);
+      if (late > 0.0) missed = unseen_samples(late);
       if (window_.span_ns() <= enough_ns) rate_known_ = false;  // it may be what was wrong
       mean_late_ns_ = unknown_late_ns;
       restart();
@@ -226,18 +228,33 @@ class sensor_clock {
     return missed;
   }
 
+  /// How many samples were lost where packets stay late by so much: whole turns, since the angles have
+  /// told the rest. What is more was the machine's delay.
+  [[nodiscard]] constexpr std::int64_t unseen_samples(double late) const noexcept {
+    const double samples = late / line_.period_ns;
+    const double step = counter_.step_64ths();
+    if (step <= 0.0) return static_cast<std::int64_t>(samples);
+    const double of_turn = turn_64ths / step;
+    const auto turns = static_cast<std::int64_t>(samples / of_turn + 0.5);
+    return static_cast<std::int64_t>(static_cast<double>(turns) * of_turn + 0.5);
+  }
+
   /// Whether packets have come too late for too long: then samples were lost that were not counted. A
-  /// program that slept finds packets that are less and less late.
+  /// program that slept finds packets that are less and less late, but for when it is held up again.
   [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
     const bool was_late = is_late_;
     const double usual_ns = std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
     is_late_ = late > usual_ns + drift_since_ns(next);
+    if (!is_late_) is_torn_ = false;
     if (!is_late_) return false;
     if (!was_late || late < least_late_ns_ - catching_up_ns) {
       least_late_ns_ = late;
-      late_since_ns_ = next.time_ns;
+      late_since_ns_ = steady_since_ns_ = next.time_ns;
     }
-    return static_cast<double>(next.time_ns - late_since_ns_) > all_late_ns;
+    if (late > least_late_ns_ + late_ns) steady_since_ns_ = next.time_ns;
+    const auto late_for_ns = static_cast<double>(next.time_ns - late_since_ns_);
+    const auto steady_for_ns = static_cast<double>(next.time_ns - steady_since_ns_);
+    return (is_torn_ && steady_for_ns > all_late_ns) || late_for_ns > surely_late_ns;
   }
 
   /// How late packets can be since the last one in time, if the rate is not what it is taken for.
@@ -283,8 +300,9 @@ class sensor_clock {
   std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
   std::size_t seen_bytes_ = 0;  // of the next packet, and what they tell
   std::int64_t seen_before_ns_ = 0;
-  std::int64_t in_time_ = 0;        // the last sample of a packet that was not too late
-  std::int64_t late_since_ns_ = 0;  // and not less by much since then
+  std::int64_t in_time_ = 0;          // the last sample of a packet that was not too late
+  std::int64_t late_since_ns_ = 0;    // and not less by much since then
+  std::int64_t steady_since_ns_ = 0;  // and without a further delay since then
   double least_late_ns_ = 0.0;
   std::int64_t last_ns_ = 0;  // the time of the last sample
   std::int64_t bound_ns_ = 0;
@@ -294,6 +312,7 @@ class sensor_clock {
   bool started_ = false;        // there is a line
   bool rate_known_ = false;
   bool is_late_ = false;
+  bool is_torn_ = false;  // bytes were skipped since the last packet in time
   bool hinted_ = false;
   bool any_ = false;  // times were given
 };
