@@ -294,15 +294,14 @@ result<void> lidar::driver::take_notice() {
       break;
     case notice::protection_found_on:
       tell(lidar_event::kind::protection_found_on);
-      set_up_again();
+      if (!set_up_again()) return tl::unexpected(fallen_silent());
       break;
     case notice::restarted:
       tell(lidar_event::kind::restarted);
-      set_up_again();
+      if (!set_up_again()) return tl::unexpected(fallen_silent());
       break;
     case notice::stalled:
-      return has_streamed_ ? failure(task::reading, problem::stalled, name())
-                           : failure(task::starting, problem::brown_out, name());
+      return tl::unexpected(fallen_silent());
   }
   stream_.begin(samples_per_second_);
   return {};
@@ -402,9 +401,7 @@ result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {
     return tl::unexpected(done ? lost_ : done.error());
   }
   if (asked_->how != verdict::answered) return tl::unexpected(error_of(*asked_));
-  remember(*asked_);
-  if (wanted.what == ask::restart && wants_scan_) {
-    set_up_again();
+  if (plan_at_ < planned_) {  // behind a restart
     const auto ready = run_plan();
     if (!ready && ready.error().what() != problem::cancelled) return tl::unexpected(ready.error());
     if (!ready) woken_.store(true);  // it goes on in the next call

@@ -101,18 +101,19 @@ class lidar::driver {
   // The plan.
   void plan(request wanted, bool needed);
   void plan_start();
-  void set_up_again();
+  bool set_up_again();
   result<void> go_on_with_plan();
   result<void> finish_errand(const outcome& done);
   result<void> identified(const device_information& who);
   result<void> give_up(const error& why);
   void learn_rate(const outcome& done);
-  void remember(const outcome& done) noexcept;
+  void remember(const outcome& done);
   void started();
   void back_again();
   result<void> run_plan();
   result<void> begin_question(const request& wanted, while_scanning how);
   [[nodiscard]] error error_of(const outcome& done) const;
+  [[nodiscard]] error fallen_silent() const;
   [[nodiscard]] error spoilt(const error& why) const;
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connector_->now_ns(); }
@@ -132,6 +133,8 @@ class lidar::driver {
   bool has_streamed_ = false;                 // a whole revolution has come since the start
   bool reconnecting_ = false;                 // connected again, and not yet as before
   bool setting_up_again_ = false;             // it may have forgotten what was set
+  int set_ups_ = 0;                           // one soon after the other
+  std::int64_t set_up_ns_ = 0;                // the last one
   error lost_{task::reading, problem::gone};  // why it is lost or closed
   std::optional<error> refused_;  // why a plan ended, though the line is good; see step()
   device_information information_{};

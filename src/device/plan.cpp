@@ -7,6 +7,13 @@
 #include "subject.hpp"
 
 namespace g4lidar {
+namespace {
+
+/// Set-ups one soon after the other, of a device that never scans for so long.
+constexpr int max_set_ups = 3;
+constexpr std::int64_t long_life_ns = 6'000'000'000;
+
+}  // namespace
 
 void lidar::driver::plan(request wanted, bool needed) {
   if (plan_at_ == planned_) planned_ = plan_at_ = 0;  // all of it has been done
@@ -31,12 +38,18 @@ void lidar::driver::plan_start() {
   plan(requests::start(), true);
 }
 
-/// The device ended a scan by itself. If it began anew, it has forgotten what was set.
-void lidar::driver::set_up_again() {
+/// The device ended a scan by itself. If it began anew, it has forgotten what was set. False if it does
+/// so again and again.
+bool lidar::driver::set_up_again() {
+  const bool is_soon = set_ups_ > 0 && now_ns() - set_up_ns_ < long_life_ns;
+  if (is_soon && set_ups_ == max_set_ups) return false;
+  set_ups_ = is_soon ? set_ups_ + 1 : 1;
+  set_up_ns_ = now_ns();
   planned_ = plan_at_ = 0;
   setting_up_again_ = true;
   plan(requests::stop(), true);
   plan_start();
+  return true;
 }
 
 /// Waits until all that is planned is done, or fails. It ends, since every request does. Whoever asks
@@ -61,24 +74,24 @@ result<void> lidar::driver::go_on_with_plan() {
     if (const auto done = session_.finished()) {
       has_outcome_ = true;
       learn_rate(*done);
-      if (asking_) {
-        asked_ = done;
-      } else if (plan_at_ < planned_) {
+      if (plan_at_ < planned_ && !asking_) {
         if (auto good = finish_errand(*done); !good) return good;
+      } else {
+        remember(*done);  // whoever has asked, and whether or not it still waits
       }
+      if (asking_) asked_ = done;
     }
     if (asking_ || plan_at_ == planned_ || session_.is_busy()) return {};
     const request& next = plan_[plan_at_].wanted;
     if (next.what == ask::start) {
       stream_.begin(samples_per_second_);
-      has_streamed_ = false;
+      has_streamed_ = has_streamed_ && setting_up_again_;
     }
     if (session_.begin(next, now_ns())) return {};  // busy with what it found by itself
     if (session_.is_busy()) return {};
   }
 }
 
-/// Whoever has asked, and whether or not it still waits.
 void lidar::driver::learn_rate(const outcome& done) {
   const auto* ranging = std::get_if<ranging_frequency>(&done.value);
   if (ranging == nullptr || samples_per_second(*ranging) == samples_per_second_) return;
@@ -86,8 +99,10 @@ void lidar::driver::learn_rate(const outcome& done) {
   if (delivers_) stream_.begin(samples_per_second_);
 }
 
-/// What was set by asking is set again like what the options say.
-void lidar::driver::remember(const outcome& done) noexcept {
+/// What was set by asking is set again like what the options say, and behind a restart at once.
+void lidar::driver::remember(const outcome& done) {
+  if (done.asked.what == ask::restart && wants_scan_) set_up_again();
+  if (done.how != verdict::answered) return;
   const auto keep = [&]<class Setting>(std::optional<Setting>& option) {
     if (const auto* value = std::get_if<Setting>(&done.value)) option = *value;
   };
@@ -133,6 +148,8 @@ result<void> lidar::driver::finish_errand(const outcome& done) {
 /// A device that answers, but not as it should, need not be given up: what was asked of it is.
 result<void> lidar::driver::give_up(const error& why) {
   planned_ = plan_at_ = 0;
+  const bool is_silent = why.what() == problem::silence || why.what() == problem::timeout;
+  if (setting_up_again_ && is_silent) return tl::unexpected(fallen_silent());
   const bool of_use = stage_ == stage::preparing && why.what() != problem::silence;
   const bool goes_on = wants_scan_ && (reconnecting_ || setting_up_again_);
   if (!of_use || goes_on) return tl::unexpected(why);
@@ -175,6 +192,12 @@ void lidar::driver::back_again() {
   backoff_ns_ = 0;
   ++reconnects_;
   tell(lidar_event::kind::reconnected);
+}
+
+/// Of a device that has ended a scan, and does not come back.
+error lidar::driver::fallen_silent() const {
+  if (has_streamed_) return {task::reading, problem::stalled, name()};
+  return {task::starting, problem::brown_out, name()};
 }
 
 error lidar::driver::error_of(const outcome& done) const {

@@ -134,6 +134,21 @@ TEST(FoundByLives, WhatWasSetByAskingIsSetAgainBehindARestart) {
   EXPECT_EQ(*frequency, scan_frequency{1100});
 }
 
+TEST(FoundByLives, TheSameWhereTheRestartWasWoken) {
+  virtual_bench bench(forgetful());
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->ask(requests::set(scan_frequency{1100})));
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->next_scan(2000ms));
+  lidar->wake();
+  EXPECT_FALSE(lidar->ask(requests::restart(), while_scanning::stop_and_resume));
+  EXPECT_TRUE(lidar->next_scan(5000ms));
+  const auto frequency = lidar->ask_for<scan_frequency>(requests::get_scan_frequency(),
+                                                        while_scanning::stop_and_resume);
+  EXPECT_EQ(*frequency, scan_frequency{1100});
+}
+
 /// Devices that measure faster or slower than they should.
 result<lidar> open_with(virtual_bench& bench, std::chrono::milliseconds batch) {
   lidar_options options;

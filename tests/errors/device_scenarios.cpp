@@ -131,16 +131,6 @@ trouble no_scan_yet() {
   return once_scanning(on, [](lidar& device) { return error_in(device.next_scan(10ms)); });
 }
 
-trouble frequency_out_of_reach() {
-  sim::device_options options;
-  options.scanner.scan_frequency_chz = 703;
-  options.frequency_at_limit = sim::at_limit::refuse;
-  bench on({}, options);
-  lidar_options wanted;
-  wanted.frequency = scan_frequency{1200};
-  return once_open(on, [](lidar& device) { return error_in(device.start()); }, wanted);
-}
-
 trouble frequency_too_high() {
   bench on;
   return once_open(
@@ -218,8 +208,6 @@ std::vector<scenario> device_scenarios() {
        [] { return asking(fault_kind::mute, requests::health()); }},
       {"WrongAnswers", wrong_answer, task::asking, false, "virtual:g4, direction",
        [] { return asking(fault_kind::wrong, requests::get_direction()); }},
-      {"FrequencyOutOfReach", not_reached, task::configuring, false, "scan frequency",
-       frequency_out_of_reach},
       {"FrequencyTooHigh", not_reached, task::asking, false,
        "virtual:g4, scan frequency 15 Hz (reached 12 Hz)", frequency_too_high},
       {"AskedWhileScanning", scanning, task::asking, false, "virtual:g4, health",
