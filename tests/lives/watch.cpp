@@ -15,6 +15,8 @@ constexpr std::size_t longest_history = 50'000;
 /// where it does so amid what has gathered while the program slept.
 constexpr std::int64_t healthy_ahead_ns = 1 * ms;
 constexpr std::int64_t most_ahead_ns = 500 * ms;
+/// What the application reads later than that it has slept over.
+constexpr std::int64_t longest_batch_ns = 200 * ms;
 
 }  // namespace
 
@@ -102,7 +104,9 @@ void watch::check(const known_point& found) {
         return found.time_ns >= f.begin_ns - second &&
                found.time_ns <= f.begin_ns + f.duration_ns + second;
       });
-  if (is_broken_ || is_struck || found.index != last_index_ + 1) steady_since_ns_ = found.time_ns;
+  const bool slept = stage_->clock.now_ns() - found.time_ns > longest_batch_ns;
+  const bool goes_on = !is_broken_ && !is_struck && !slept && found.index == last_index_ + 1;
+  if (!goes_on) steady_since_ns_ = found.time_ns;
   is_broken_ = is_breaking_ || (is_broken_ && found.time_ns < broke_ns_);
   last_index_ = found.index;
   check_time(found);

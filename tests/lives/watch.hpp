@@ -16,7 +16,7 @@
 
 namespace g4lidar::lives {
 
-/// How far the times of points were from the truth, 5 s and more after the last break.
+/// How far the times of points were from the truth, 5 s and more after the last break and the last sleep.
 struct time_counts {
   std::uint64_t settled = 0;    ///< Points.
   std::uint64_t ahead = 0;      ///< Of all points: told before they were measured, as it seems.
