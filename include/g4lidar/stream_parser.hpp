@@ -151,6 +151,11 @@ class stream_parser {
   /// How many bytes of an unfinished frame are held, below max_packet_size.
   [[nodiscard]] constexpr std::size_t held() const noexcept { return held_; }
 
+  /// At least so many more bytes are needed until there can be another event.
+  [[nodiscard]] constexpr std::size_t missing() const noexcept {
+    return needed_ > held_ ? needed_ - held_ : 1;
+  }
+
  private:
   /// The bytes a refused frame had claimed and that are still to come.
   struct claim {

@@ -10,6 +10,8 @@ namespace g4lidar {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
+/// A deadline that has passed.
+constexpr std::int64_t at_once = 0;
 constexpr std::size_t buffer_size = 65536;
 /// A command of two bytes that does not go out in this time never will.
 constexpr std::int64_t write_time_ns = 100 * ms;
@@ -46,7 +48,8 @@ result<void> lidar::driver::connect() {
   ready_.follow(line_->native_handle());
   session_.reset();
   stops_ = false;
-  last_bytes_ns_ = last_read_ns_ = now_ns();
+  last_bytes_ns_ = read_until_ns_ = now_ns();
+  pace_.reset(line_->answers() ? line_->baud() : 0);
   planned_ = plan_at_ = 0;
   stage_ = stage::identifying;
   if (line_->answers()) {
@@ -132,28 +135,43 @@ result<void> lidar::driver::send_commands() {
   return {};
 }
 
+/// When a reading is worth its system calls; what comes before that is not waited for.
+std::int64_t lidar::driver::read_again_ns() const noexcept {
+  if (stage_ != stage::scanning) return 0;
+  if (is_batched()) return read_until_ns_ + std::chrono::nanoseconds(options_.batch).count();
+  if (is_waiting_for_answer()) return 0;
+  return pace_.next_ns(parser_.held(), parser_.missing());
+}
+
+/// Waits until a reading is worth it, then for bytes. After a wait they are there, most often, and to
+/// look for them first would be one call more.
+result<received> lidar::driver::read(std::int64_t deadline_ns) {
+  const std::int64_t until = std::min(read_again_ns(), deadline_ns);
+  if (until > now_ns()) {
+    const auto paused = line_->pause(until);
+    const bool is_woken = !paused && paused.error().what() == problem::cancelled;
+    if (paused || is_woken) {  // a line that broke off is read to its end, as any other
+      const auto got = line_->read(buffer_, at_once);
+      if (is_woken || is_batched() || until == deadline_ns || !got || got->count > 0) return got;
+      pace_.in_vain();
+    }
+  }
+  return line_->read(buffer_, is_batched() ? at_once : deadline_ns);
+}
+
 /// One reading, which waits until something comes or the deadline.
 result<void> lidar::driver::receive(std::int64_t deadline_ns) {
-  const std::int64_t batch_ns = std::chrono::nanoseconds(options_.batch).count();
-  if (batch_ns > 0 && stage_ == stage::scanning) {
-    const std::int64_t until = std::min(last_read_ns_ + batch_ns, deadline_ns);
-    if (until > now_ns()) {
-      const auto paused = line_->pause(until);
-      if (!paused && paused.error().what() != problem::cancelled) return paused;
-    }
-    deadline_ns = until;  // what is there now, or nothing: without another wait
-  }
-  auto got = line_->read(buffer_, deadline_ns);
+  auto got = read(deadline_ns);
   const auto is_woken = [&] { return !got && got.error().what() == problem::cancelled; };
   // Who is woken before each call must get on, too: what is there is taken.
-  if (is_woken()) got = line_->read(buffer_, now_ns());
+  if (is_woken()) got = line_->read(buffer_, at_once);
   if (is_woken()) return {};  // step() knows
   if (!got) return tl::unexpected(got.error());
-  last_read_ns_ = batch_ns > 0 ? now_ns() : 0;
   read_until_ns_ = got->count == 0 ? now_ns() : got->arrival_ns;
   if (got->count == 0) return {};
   input_ = bytes(buffer_).first(got->count);
   arrival_ns_ = last_bytes_ns_ = got->arrival_ns;
+  pace_.came(got->count, got->arrival_ns);
   return {};
 }
 
@@ -263,6 +281,7 @@ void lidar::driver::take(const event& found) {
   if (const auto* packet = std::get_if<packet_view>(&found)) {
     drop_scan();  // at the end of the bytes one may still wait, where the points of this go
     stream_.packet(*packet, arrival_ns_, input_.size());
+    pace_.packet(*packet, input_.size(), stream_.period_ns());
   } else if (const auto* gone = std::get_if<skipped>(&found)) {
     stream_.gone(*gone);
   }

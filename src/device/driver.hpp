@@ -14,6 +14,7 @@
 #include "g4lidar/session.hpp"
 #include "g4lidar/stream_parser.hpp"
 #include "point_stream.hpp"
+#include "read_pace.hpp"
 #include "ready_handle.hpp"
 
 namespace g4lidar {
@@ -79,6 +80,11 @@ class lidar::driver {
   result<void> send(bytes command);
   result<void> send_commands();
   result<void> receive(std::int64_t deadline_ns);
+  result<received> read(std::int64_t deadline_ns);
+  [[nodiscard]] std::int64_t read_again_ns() const noexcept;
+  [[nodiscard]] bool is_batched() const noexcept {
+    return options_.batch.count() > 0 && stage_ == stage::scanning;
+  }
   result<void> wait_for_line(std::int64_t deadline_ns);
 
   // One round of everything.
@@ -147,6 +153,7 @@ class lidar::driver {
   std::uint64_t bytes_ = 0;
 
   std::vector<std::uint8_t> buffer_;
+  read_pace pace_;
   bytes input_;  // of the buffer, not parsed yet
   std::int64_t arrival_ns_ = 0;
   std::optional<scan> scan_;  // complete, and not taken
@@ -163,7 +170,6 @@ class lidar::driver {
   std::uint32_t samples_per_second_ = 9000;
 
   std::int64_t last_bytes_ns_ = 0;
-  std::int64_t last_read_ns_ = 0;
   std::int64_t read_until_ns_ = 0;  // what had come by then has been read
   std::int64_t next_attempt_ns_ = 0;
   std::int64_t backoff_ns_ = 0;

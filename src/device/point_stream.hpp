@@ -97,6 +97,8 @@ class point_stream {
   /// Whether the packet last shown may hold more scans.
   [[nodiscard]] bool has_more() const noexcept { return is_open_; }
 
+  /// From one sample to the next, as far as is known.
+  [[nodiscard]] double period_ns() const noexcept { return 1e9 / clock_.sample_rate_hz(); }
   [[nodiscard]] lidar_ring& ring() noexcept { return *ring_; }
   [[nodiscard]] std::uint64_t scans() const noexcept { return scans_; }
   [[nodiscard]] std::uint64_t partial_scans() const noexcept { return partials_; }
