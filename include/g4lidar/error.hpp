@@ -50,7 +50,7 @@ enum class problem : std::uint8_t {
   interference,    ///< Another program reads from or writes to the port.
   read_only,       ///< A file was to be asked or set, as if it were a device.
   end_of_input,    ///< A file or connection has ended.
-  cancelled,       ///< Woken from another thread.
+  cancelled,       ///< Woken, from another thread or a signal handler.
   system,          ///< The system refused for a reason of its own; see `system_errno`.
 };
 

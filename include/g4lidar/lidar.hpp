@@ -31,7 +31,8 @@ struct lidar_options {
   /// `usb:1-1.4` (a bus path); `tcp:host:port` (a raw bridge); `file:PATH` (bytes as they came from a
   /// port).
   std::string device;
-  std::uint32_t baud = 230400;  ///< Bits a second.
+  /// Bits a second, of a serial port and of the one behind `tcp:`; others know their own.
+  std::uint32_t baud = 230400;
 
   std::optional<ranging_frequency> ranging;         ///< Measurements a second.
   std::optional<scan_frequency> frequency;          ///< Revolutions a second, 5 to 12 Hz.

@@ -15,4 +15,10 @@ using ioctl_call = int (*)(int fd, unsigned long request, void* argument);
 /// The rate that the port has; 0, and errno, where the system does not tell.
 [[nodiscard]] std::uint32_t custom_baud(ioctl_call ioctl, int fd) noexcept;
 
+/// Off by at most 2 %: what a line still bears, and what the kernel takes for the same.
+[[nodiscard]] constexpr bool is_near(std::uint32_t baud, std::uint32_t wanted) noexcept {
+  const std::uint64_t off = baud > wanted ? baud - wanted : wanted - baud;
+  return off * 50 <= wanted;
+}
+
 }  // namespace g4lidar

@@ -32,7 +32,7 @@ lidar::driver::driver(std::unique_ptr<connector> connector, const lidar_options&
     : options_(options),
       connector_(std::move(connector)),
       session_(times_for(options)),
-      stream_(options.baud, options.transport_delay.count(), options.partial_scans),
+      stream_(options.transport_delay.count(), options.partial_scans),
       buffer_(buffer_size),
       reader_(stream_.ring().make_reader()),
       points_(buffer_size / 8) {}
@@ -49,6 +49,7 @@ result<void> lidar::driver::connect() {
   session_.reset();
   stops_ = false;
   last_bytes_ns_ = read_until_ns_ = now_ns();
+  stream_.follow(line_->baud());
   pace_.reset(line_->answers() ? line_->baud() : 0);
   planned_ = plan_at_ = 0;
   stage_ = stage::identifying;

@@ -22,12 +22,19 @@ namespace g4lidar {
 /// *Allocates on open.* Show it the events one after the other; behind each packet, take the scans.
 class point_stream {
  public:
-  point_stream(std::uint32_t baud, std::int64_t transport_delay_ns, bool partial_scans)
+  point_stream(std::int64_t transport_delay_ns, bool partial_scans)
       : partial_scans_(partial_scans),
-        byte_ns_(baud == 0 ? 0 : 10'000'000'000 / baud),
-        clock_({.sample_rate_hz = 9000.0, .transport_delay_ns = transport_delay_ns, .baud = baud}),
+        transport_delay_ns_(transport_delay_ns),
         storage_(largest_scan),
         assembler_(storage_) {}
+
+  /// What follows comes over another line, see transport::baud(). Before begin().
+  void follow(std::uint32_t baud) noexcept {
+    if (baud == baud_) return;  // the clock may go on
+    baud_ = baud;
+    byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
+    clock_ = sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud});
+  }
 
   /// A scan begins, or goes on after a break. `samples_per_second` nominally.
   void begin(std::uint32_t samples_per_second) noexcept {
@@ -122,7 +129,9 @@ class point_stream {
   }
 
   bool partial_scans_;
-  std::int64_t byte_ns_;  // that a byte takes on the line
+  std::int64_t transport_delay_ns_;
+  std::optional<std::uint32_t> baud_;  // of the line that it follows
+  std::int64_t byte_ns_ = 0;           // that a byte takes on it
   decltype(bulk::kernels::to_points) to_points_ =
       bulk::kernels_of(best_instruction_set()).to_points;
   std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();

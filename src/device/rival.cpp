@@ -5,9 +5,12 @@
 
 #include <termios.h>
 
+#include <new>
 #include <string>
 
+#include "custom_baud.hpp"
 #include "port_holder.hpp"
+#include "system_calls.hpp"
 
 namespace g4lidar {
 namespace {
@@ -33,14 +36,12 @@ bool has_other_settings(const transport& line) noexcept {
   termios now{};
   if (line.native_handle() < 0 || ::tcgetattr(line.native_handle(), &now) != 0) return false;
   if ((now.c_lflag & (ICANON | ECHO)) != 0 || (now.c_iflag & IXON) != 0) return true;
-  return line.baud() == 230400 && cfgetospeed(&now) != B230400;
+  const std::uint32_t baud = custom_baud(real_system_calls().ioctl, line.native_handle());
+  return baud != 0 && !is_near(baud, line.baud());
 }
 
-}  // namespace
-
-error with_rivals(const error& why, const transport& line) {
+error looked_into(const error& why, const transport& line) {
   const std::string path(line.name());
-  if (!can_come_of_rivals(why.what()) || !path.starts_with("/")) return why;
   if (const std::string rival = port_rival(path); !rival.empty()) {
     return {why.doing(), problem::interference, path + ", also used by " + rival};
   }
@@ -48,6 +49,17 @@ error with_rivals(const error& why, const transport& line) {
     return {why.doing(), problem::interference, path + ", whose settings were changed"};
   }
   return why;
+}
+
+}  // namespace
+
+error with_rivals(const error& why, const transport& line) noexcept {
+  if (!can_come_of_rivals(why.what()) || !line.name().starts_with('/')) return why;
+  try {
+    return looked_into(why, line);
+  } catch (const std::bad_alloc&) {
+    return why;
+  }
 }
 
 }  // namespace g4lidar

@@ -46,12 +46,6 @@ bool has_name(speed_t speed) noexcept {
          std::ranges::find(named_speeds, speed, &named_speed::speed) != named_speeds.end();
 }
 
-/// Off by at most 2 %: what a line still bears, and what the kernel takes for the same.
-bool is_near(std::uint32_t baud, std::uint32_t wanted) noexcept {
-  const std::uint64_t off = baud > wanted ? baud - wanted : wanted - baud;
-  return off * 50 <= wanted;
-}
-
 /// The flag would outlive a killed program where somebody keeps the slave of a pty open, as
 /// simulators do; there is nobody to keep out but programs that respect the lock.
 bool is_pty(const struct stat& file) noexcept {

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <ctime>
+#include <new>
 #include <utility>
 
 #include "g4lidar/byte_file.hpp"
@@ -35,9 +37,22 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
   return std::unique_ptr<connector>(new system_connector(device, baud));
 }
 
+/// A lidar that is found again must not end the program for want of memory.
 result<std::unique_ptr<transport>> system_connector::connect() noexcept {
+  try {
+    return open_line();
+  } catch (const std::bad_alloc&) {
+    return failure(task::opening, problem::system, device_, ENOMEM);
+  }
+}
+
+result<std::unique_ptr<transport>> system_connector::open_line() {
   const std::string_view device = device_;
-  if (device.starts_with(tcp_prefix)) return tcp_port::open(device.substr(tcp_prefix.size()));
+  if (device.starts_with(tcp_prefix)) {
+    tcp_options how;
+    how.baud = baud_;
+    return tcp_port::open(device.substr(tcp_prefix.size()), how);
+  }
   if (device.starts_with(file_prefix)) return byte_file::open(device.substr(file_prefix.size()));
   return path_.empty() ? first_connect() : connect_again();
 }

@@ -29,6 +29,7 @@ class system_connector final : public connector {
  private:
   system_connector(std::string_view device, std::uint32_t baud);
 
+  [[nodiscard]] result<std::unique_ptr<transport>> open_line();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
 

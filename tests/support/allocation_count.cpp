@@ -9,9 +9,11 @@
 namespace {
 
 std::atomic<std::size_t> calls{0};
+std::atomic<bool> is_refused{false};
 
 void* counted(std::size_t size, std::size_t alignment) {
   ++calls;
+  if (is_refused) return nullptr;
   const std::size_t wanted = size == 0 ? 1 : size;
   if (alignment <= alignof(std::max_align_t)) return std::malloc(wanted);
   return std::aligned_alloc(alignment, (wanted + alignment - 1) / alignment * alignment);
@@ -60,3 +62,4 @@ void operator delete(void* p, std::align_val_t, const std::nothrow_t&) noexcept 
 void operator delete[](void* p, std::align_val_t, const std::nothrow_t&) noexcept { release(p); }
 
 std::size_t g4lidar::test::allocations_so_far() { return calls; }
+void g4lidar::test::refuse_memory(bool refused) { is_refused = refused; }

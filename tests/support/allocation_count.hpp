@@ -10,6 +10,17 @@ namespace g4lidar::test {
 /// Defined by allocation_count.cpp, which replaces them all.
 [[nodiscard]] std::size_t allocations_so_far();
 
+/// Whether from now on there is no memory for any operator new. Defined there, too.
+void refuse_memory(bool refused);
+
+/// Does `work`, which does not throw, while there is none.
+template <class Work>
+void without_memory(Work&& work) {
+  refuse_memory(true);
+  work();
+  refuse_memory(false);
+}
+
 /// How often `work` allocates or frees.
 template <class Work>
 [[nodiscard]] std::size_t allocations_in(Work&& work) {

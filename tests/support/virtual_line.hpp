@@ -24,6 +24,7 @@ struct virtual_bench {
   sim::device device;
   std::int64_t now_ns = 1'000'000'000;
   std::int64_t step_ns = 1'000;  ///< That each call takes.
+  std::uint32_t baud = 230400;  // that the line says it has
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
   std::uint64_t pauses = 0;
@@ -68,7 +69,7 @@ class virtual_line final : public transport {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return bench_->now_ns; }
   void wake() noexcept override { bench_->wake = true; }
   [[nodiscard]] std::string_view name() const noexcept override { return "virtual"; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return 230400; }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return bench_->baud; }
 
  private:
   /// A line that was opened before the plug was pulled stays dead.

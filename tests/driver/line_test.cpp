@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// What a driver takes from its line and from its options; and lines without memory.
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <optional>
+
+#include "device/rival.hpp"
+#include "device/system_connector.hpp"
+#include "support/allocation_count.hpp"
+#include "support/virtual_line.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// How long ago the last sample of the first packet was measured, when it came over a line that says
+/// it has `baud`.
+std::int64_t age_of_first_packet_ns(std::uint32_t baud) {
+  test::virtual_bench bench;
+  bench.baud = baud;
+  auto lidar = test::open_virtual(bench);
+  if (!lidar || !lidar->start()) return -1;
+  const auto points = lidar->next_points(2000ms);
+  return points ? bench.now_ns - points->back().time_ns : -1;
+}
+
+TEST(Line, TheTimeOfAByteIsThatOfTheLineAndNotOfAnOption) {
+  const std::int64_t none = age_of_first_packet_ns(0);
+  ASSERT_GE(none, 0);
+  EXPECT_GT(age_of_first_packet_ns(23'040), none + 5 * ms);  // 12 bytes at least
+}
+
+TEST(Line, WithoutMemoryThereIsNoLineAndTheProgramGoesOn) {
+  for (const char* device : {"file:/dev/a-name-that-needs-memory", "tcp:a-name-that-needs-memory:1",
+                             "/dev/a-name-that-needs-memory"}) {
+    const auto connector = system_connector::make(device, 230'400);
+    ASSERT_TRUE(connector);
+    std::optional<error> refused;
+    test::without_memory([&] {
+      if (const auto line = (*connector)->connect(); !line) refused = line.error();
+    });
+    ASSERT_TRUE(refused) << device;
+    EXPECT_EQ(refused->what(), problem::system) << device;
+    EXPECT_EQ(refused->system_errno(), ENOMEM) << device;
+  }
+}
+
+/// A port with a name that needs memory, from which nothing comes.
+class silent_line final : public transport {
+ public:
+  result<received> read(std::span<std::uint8_t>, std::int64_t) noexcept override { return {}; }
+  result<void> write(bytes, std::int64_t) noexcept override { return {}; }
+  result<void> pause(std::int64_t) noexcept override { return {}; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return 0; }
+  void wake() noexcept override {}
+  [[nodiscard]] std::string_view name() const noexcept override {
+    return "/dev/a-name-that-needs-memory";
+  }
+};
+
+TEST(Line, WithoutMemoryNobodyElseIsLookedForAndTheErrorIsTold) {
+  const error why(task::asking, problem::timeout, "what was asked");
+  std::optional<error> told;
+  test::without_memory([&] { told = with_rivals(why, silent_line()); });
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->what(), problem::timeout);
+  EXPECT_EQ(told->subject(), "what was asked");
+}
+
+}  // namespace
+}  // namespace g4lidar
