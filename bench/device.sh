@@ -3,8 +3,8 @@
 # What the driver costs, against its promises; fails where one is missed. On a pty with the simulated
 # G4 at the rate of the line, and counted by callgrind and strace.
 #   bench/device.sh [SECONDS]: how long each measurement in real time takes, 10 by default.
-# Counts and ratios are held against the promises. Times on a busy machine are shown, and held with
-# a slack of five times.
+# Counts and ratios are held against the promises. Times are the best of up to three measurements,
+# and those of a few milliseconds are held with a slack of five times: a busy machine alone is no miss.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/packages.sh
@@ -50,24 +50,39 @@ calls() {
     END { printf "%.0f", n / seconds }' "$scratch/calls"
 }
 
+# delay: measures until the median is as promised, three times at most, and keeps the best.
+delay() {
+  local best="" median
+  for _ in 1 2 3; do
+    "$bench" delay "$seconds" >"$scratch/delay.now"
+    median=$(value delay_median_ms "$scratch/delay.now")
+    if [[ -z $best ]] || awk -v a="$median" -v b="$best" 'BEGIN { exit !(a < b) }'; then
+      best=$median
+      mv "$scratch/delay.now" "$scratch/delay"
+    fi
+    if awk -v a="$best" 'BEGIN { exit !(a <= 0.05) }'; then break; fi
+  done
+}
+
 echo "| what | measured | promised |"
 echo "|---|---|---|"
 row "instructions a sample, bursts of 256 bytes" "$(instructions 256)" "" 60 "60"
 row "the same, bursts of 64 bytes" "$(instructions 64)" ""
-"$bench" delay "$seconds" >"$scratch/delay"
+delay
 row "zero packet written to scan in hand, median" "$(value delay_median_ms "$scratch/delay")" ms 0.25 "0.05"
 row "the same, 99th percentile" "$(value delay_p99_ms "$scratch/delay")" ms
-row "open and start" "$(value open_and_start_ms "$scratch/delay")" ms 500
+row "open and start" "$(value open_and_start_ms "$scratch/delay")" ms 500 "100"
 row "open to the first whole scan" "$(value first_scan_ms "$scratch/delay")" ms 2500 "2500"
 "$bench" stream "$seconds" >"$scratch/stream" 2>/dev/null
 row "CPU seconds for a minute of streaming" "$(value cpu_s_per_minute "$scratch/stream")" s
 row "context switches a second" "$(value switches_per_s "$scratch/stream")" ""
 row "peak memory" "$(value peak_memory_kib "$scratch/stream")" KiB
-row "system calls a second" "$(calls 0)" ""
+row "heap calls while streaming" "$(value heap_calls "$scratch/stream")" "" 0 0
+row "system calls a second" "$(calls 0)" "" 1000 "1000"
 row "the same with batches of 20 ms" "$(calls 20)" "" 110 "110"
 "$bench" flood 10 >"$scratch/flood"
 ratio=$(value flood_ratio "$scratch/flood")
-row "bytes a second, flooded, against a counting reader" "$ratio" ""
+row "bytes a second, flooded, against a counting reader" "$ratio" "" "" "0.7"
 row "scans lost in the flood" "$(value scans_lost "$scratch/flood")" "" 0 0
 if awk -v r="$ratio" 'BEGIN { exit !(r < 0.7) }'; then
   echo "Missed: flooded, $ratio of a counting reader, promised 0.7" >&2
