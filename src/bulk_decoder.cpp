@@ -27,9 +27,16 @@ void portable_to_xy(packet_view packet, frame to, std::span<xy_point, max_sample
   to_xy(std::span(points).first(packet.sample_count()), to, out);
 }
 
+void portable_to_timed_points(packet_view packet, std::uint32_t revolution,
+                              const packet_times& times,
+                              std::span<point, max_samples> out) noexcept {
+  portable_to_points(packet, revolution, out);
+  times.write_to(out.first(packet.sample_count()));
+}
+
 }  // namespace
 
-const kernels portable_kernels{portable_to_points, portable_to_xy};
+const kernels portable_kernels{portable_to_points, portable_to_timed_points, portable_to_xy};
 
 const kernels& kernels_of(instruction_set set) noexcept {
 #if G4LIDAR_HAS_AVX2_KERNELS

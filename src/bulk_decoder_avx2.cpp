@@ -60,34 +60,61 @@ static_assert(offsetof(point, angle_deg) == 0 && offsetof(point, range_mm) == 4 
               offsetof(point, time_ns) == 8 && offsetof(point, revolution) == 16 &&
               offsetof(point, marks) == 20);
 
-/// Four points of 24 bytes, put together from pairs A (angle, range) and B (revolution, marks): in
-/// three registers A0 0 B0 A1 | 0 B1 A2 0 | B2 A3 0 B3. This is the order in which no pair has to
-/// move: `a` holds A0 A3 A2 A1, and `b` holds B2 B1 B0 B3.
+/// Four points of 24 bytes, put together from pairs A (angle, range) and B (revolution, marks), and
+/// the times T: in three registers A0 T0 B0 A1 | T1 B1 A2 T2 | B2 A3 T3 B3. This is the order in which
+/// none has to move: `a` holds A0 A3 A2 A1, `b` holds B2 B1 B0 B3, and `times` T1 T0 T3 T2.
 constexpr lane_order point_order{0, 3, 4, 7, 2, 1, 6, 5};
 
-G4LIDAR_AVX2 void store_four(__m256i a, __m256i b, point* out) {
-  const __m256i zero = _mm256_setzero_si256();
+G4LIDAR_AVX2 void store_four(__m256i a, __m256i b, __m256i times, point* out) {
   const __m256i first = _mm256_blend_epi32(a, b, 0b00110000);
   const __m256i second = _mm256_blend_epi32(a, b, 0b00001100);
   const __m256i third = _mm256_blend_epi32(b, a, 0b00001100);
   auto* const to = reinterpret_cast<__m256i*>(out);
-  _mm256_storeu_si256(to, _mm256_blend_epi32(first, zero, 0b00001100));
-  _mm256_storeu_si256(to + 1, _mm256_blend_epi32(second, zero, 0b11000011));
-  _mm256_storeu_si256(to + 2, _mm256_blend_epi32(third, zero, 0b00110000));
+  _mm256_storeu_si256(to, _mm256_blend_epi32(first, times, 0b00001100));
+  _mm256_storeu_si256(to + 1, _mm256_blend_epi32(second, times, 0b11000011));
+  _mm256_storeu_si256(to + 2, _mm256_blend_epi32(third, times, 0b00110000));
 }
 
+/// The times of the points, four after four, as store_four() wants them: none, or those of a packet,
+/// to the bit as packet_times::at() has them.
+struct no_times {
+  G4LIDAR_AVX2 __m256i next() { return _mm256_setzero_si256(); }
+};
+class running_times {
+ public:
+  G4LIDAR_AVX2 explicit running_times(const packet_times& times)
+      : first_(_mm256_set1_epi64x(times.first_ns)) {
+    const auto step = static_cast<long long>(times.step_ns * (1 << fraction_bits));
+    way_ = _mm256_setr_epi64x(step, 0, 3 * step, 2 * step);
+    ahead_ = _mm256_set1_epi64x(4 * step);
+  }
+  G4LIDAR_AVX2 __m256i next() {
+    const __m256i now = _mm256_add_epi64(first_, _mm256_srli_epi64(way_, fraction_bits));
+    way_ = _mm256_add_epi64(way_, ahead_);
+    return now;
+  }
+
+ private:
+  static constexpr int fraction_bits = 20;
+  __m256i first_;
+  __m256i way_;
+  __m256i ahead_;
+};
+
+template <class Times>
 G4LIDAR_AVX2 void store_eight(floats angle, floats range, words revolution, words marks,
-                              point* out) {
+                              Times& times, point* out) {
   const __m256i swapped = _mm256_permute2x128_si256(marks.v, marks.v, 1);
   store_four(_mm256_castps_si256(_mm256_unpacklo_ps(angle.v, range.v)),
-             _mm256_unpacklo_epi32(revolution.v, swapped), out);
+             _mm256_unpacklo_epi32(revolution.v, swapped), times.next(), out);
   store_four(_mm256_castps_si256(_mm256_unpackhi_ps(angle.v, range.v)),
-             _mm256_unpackhi_epi32(revolution.v, swapped), out + 4);
+             _mm256_unpackhi_epi32(revolution.v, swapped), times.next(), out + 4);
 }
 
-/// A packet with a sample below 100 mm, which is rare, is left to the portable kernel.
-__attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint32_t revolution,
-                                                   std::span<point, max_samples> out) noexcept {
+/// False where there is a sample below 100 mm, which is rare: that is left to the portable kernel.
+template <class Times>
+G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, Times times,
+                          std::span<point, max_samples> out) {
   const eights<point_order> raw(packet);
   per_packet<floats> range;
   const first_level_angles<float> angles(packet);
@@ -103,7 +130,7 @@ __attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint
     angle[i] = first + times_plus(raw.places(i), step, correction);
   }
   if (any(equal(unsigned_min(nearest, every(static_cast<int>(nearest_raw) - 2)), nearest))) {
-    return portable_kernels.to_points(packet, revolution, out);
+    return false;
   }
   if (touches_zero(packet)) {
     for (std::size_t i = 0; i < raw.count(); ++i) angle[i] = wrapped(angle[i]);
@@ -112,9 +139,24 @@ __attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint
   for (std::size_t i = 0; i < raw.count(); ++i) {
     static_assert(static_cast<int>(point_marks::no_return) == 1);
     const words marks = every(0) - none(raw[i]);
-    store_eight(angle[i], range[i], revolutions, marks, out.data() + lanes * i);
+    store_eight(angle[i], range[i], revolutions, marks, times, out.data() + lanes * i);
   }
   if (packet.is_zero()) out[0].marks = out[0].marks | point_marks::revolution_start;
+  return true;
+}
+
+__attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint32_t revolution,
+                                                   std::span<point, max_samples> out) noexcept {
+  if (!convert(packet, revolution, no_times(), out)) {
+    portable_kernels.to_points(packet, revolution, out);
+  }
+}
+__attribute__((target("avx2,fma"))) void to_timed_points(
+    packet_view packet, std::uint32_t revolution, const packet_times& times,
+    std::span<point, max_samples> out) noexcept {
+  if (!convert(packet, revolution, running_times(times), out)) {
+    portable_kernels.to_timed_points(packet, revolution, times, out);
+  }
 }
 
 /// See sine_cosine_deg().
@@ -225,7 +267,7 @@ __attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to,
 
 }  // namespace
 
-const kernels avx2_kernels{to_points, to_xy};
+const kernels avx2_kernels{to_points, to_timed_points, to_xy};
 
 }  // namespace g4lidar::bulk
 

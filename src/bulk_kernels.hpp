@@ -9,14 +9,18 @@
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/packet.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/sensor_clock.hpp"
 
 namespace g4lidar::bulk {
 
-/// Both write the samples of a packet that is not suspect to the front of `out`. What lies behind
+/// They write the samples of a packet that is not suspect to the front of `out`. What lies behind
 /// them in `out` may be written to.
 struct kernels {
   void (*to_points)(packet_view packet, std::uint32_t revolution,
                     std::span<point, max_samples> out) noexcept;
+  /// With their times.
+  void (*to_timed_points)(packet_view packet, std::uint32_t revolution, const packet_times& times,
+                          std::span<point, max_samples> out) noexcept;
   void (*to_xy)(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept;
 };
 

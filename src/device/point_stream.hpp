@@ -61,14 +61,12 @@ class point_stream {
     const bool slept = last_packet_ns_ != 0 && line_ns > longest_batch_ns;
     const std::int64_t arrival_ns = read_ns - (slept ? line_ns / 2 : line_ns);
     open_ = without_points(found, revolutions_.count(found));
+    const packet_times times = clock_.stamp(open_, arrival_ns);
     if (!open_.suspect) {
-      to_points_(found, open_.revolution, memory_);
+      to_points_(found, open_.revolution, times, memory_);
       open_.points = std::span(memory_).first(found.sample_count());
     }
-    const packet_times times = clock_.stamp(open_, arrival_ns);
-    const std::span<point> points = std::span(memory_).first(open_.points.size());
-    times.write_to(points);
-    ring_->push(points);
+    ring_->push(open_.points);
     if (times.lost > 0) {
       samples_lost_ += static_cast<std::uint64_t>(times.lost);
       assembler_.lost();  // where whole packets are gone, no bytes were skipped
@@ -132,8 +130,8 @@ class point_stream {
   std::int64_t transport_delay_ns_;
   std::optional<std::uint32_t> baud_;  // of the line that it follows
   std::int64_t byte_ns_ = 0;           // that a byte takes on it
-  decltype(bulk::kernels::to_points) to_points_ =
-      bulk::kernels_of(best_instruction_set()).to_points;
+  decltype(bulk::kernels::to_timed_points) to_points_ =
+      bulk::kernels_of(best_instruction_set()).to_timed_points;
   std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
   sensor_clock clock_;
   std::vector<point> storage_;

@@ -40,7 +40,8 @@ struct PaceFarFromTheEnd : testing::Test {
 };
 
 TEST_F(PaceFarFromTheEnd, TheNextPacketIsExpectedWhenItsSamplesAreMeasured) {
-  EXPECT_NEAR(static_cast<double>(pace.next_ns(0, 1)), static_cast<double>(now_ns + packet_ns), 50e3);
+  EXPECT_NEAR(static_cast<double>(pace.next_ns(0, 1)), static_cast<double>(now_ns + packet_ns),
+              50e3);
 }
 
 TEST_F(PaceFarFromTheEnd, AnExpectedPacketIsReadALittleEarlierEachTime) {
@@ -81,7 +82,8 @@ TEST_F(PaceFarFromTheEnd, WithoutAZeroPacketAnyMayBeTheEnd) {
 TEST_F(PaceFarFromTheEnd, APacketThatWasCutOffSaysNothingOfTheNext) {
   take(made::packet(0, 350 * 64, 359 * 64, 36));
   take(made::packet(1, 0, 0, 1));
-  EXPECT_NEAR(static_cast<double>(pace.next_ns(0, 1)), static_cast<double>(now_ns + packet_ns), 50e3);
+  EXPECT_NEAR(static_cast<double>(pace.next_ns(0, 1)), static_cast<double>(now_ns + packet_ns),
+              50e3);
 }
 
 TEST_F(PaceFarFromTheEnd, AFloodIsReadWithoutRest) {

@@ -24,7 +24,7 @@ struct virtual_bench {
   sim::device device;
   std::int64_t now_ns = 1'000'000'000;
   std::int64_t step_ns = 1'000;  ///< That each call takes.
-  std::uint32_t baud = 230400;  // that the line says it has
+  std::uint32_t baud = 230400;   // that the line says it has
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
   std::uint64_t pauses = 0;
