@@ -129,6 +129,21 @@ TEST(LidarReading, AWakeEndsAWaitOnce) {
   EXPECT_TRUE(lidar->next_scan(2000ms));
 }
 
+TEST(LidarReading, AStartThatIsWokenAgainAndAgainComesToItsEnd) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  bench.step_ns = 50'000;  // time passes in calls alone
+  for (int i = 0; i < 100'000 && !lidar->is_scanning(); ++i) {
+    lidar->wake();
+    static_cast<void>(lidar->start());
+  }
+  ASSERT_TRUE(lidar->is_scanning());
+  auto scan = lidar->next_scan(2000ms);
+  if (!scan && scan.error().what() == problem::cancelled) scan = lidar->next_scan(2000ms);
+  EXPECT_TRUE(scan) << scan.error().message();
+}
+
 TEST(LidarReading, NothingIsAllocatedWhileItStreams) {
   virtual_bench bench;
   auto lidar = open_and_start(bench);
