@@ -54,12 +54,7 @@ class point_stream {
 
   /// `behind` bytes that came behind it have been read together with it, by `read_ns`.
   void packet(packet_view found, std::int64_t read_ns, std::size_t behind) noexcept {
-    // Bytes come one after the other, however late they are read. For the first packet that is all
-    // there is to go by. Later the clock sees by itself that a program has slept, since packets are
-    // less and less late, but not if all look as if nearly in time.
-    const auto line_ns = static_cast<std::int64_t>(behind) * byte_ns_;
-    const bool slept = last_packet_ns_ != 0 && line_ns > longest_batch_ns;
-    const std::int64_t arrival_ns = read_ns - (slept ? line_ns / 2 : line_ns);
+    const std::int64_t arrival_ns = read_ns - gathered_for_ns(found, behind);
     open_ = without_points(found, revolutions_.count(found));
     const packet_times times = clock_.stamp(open_, arrival_ns);
     if (!open_.suspect) {
@@ -115,6 +110,19 @@ class point_stream {
   static constexpr std::size_t largest_scan = 8192;
   /// What has gathered for longer has not been read in time.
   static constexpr std::int64_t longest_batch_ns = 50'000'000;
+
+  /// For how long `behind` bytes have gathered behind a packet at least. They come one after the other,
+  /// and not sooner than their samples are measured: for the first packet that is all there is to go by.
+  /// Later the clock sees by itself that a program has slept, since packets are less and less late, but
+  /// not if all look as if nearly in time.
+  [[nodiscard]] std::int64_t gathered_for_ns(packet_view first, std::size_t behind) const noexcept {
+    const auto line_ns = static_cast<std::int64_t>(behind) * byte_ns_;
+    if (last_packet_ns_ != 0) return line_ns > longest_batch_ns ? line_ns / 2 : line_ns;
+    const std::size_t count = std::min<std::size_t>(first.sample_count(), 40);
+    const auto samples =
+        static_cast<double>(behind * count) / static_cast<double>(packet_size(count));
+    return std::max(line_ns, static_cast<std::int64_t>(0.95 * samples * period_ns()));
+  }
 
   /// Counts a scan; true if it is a revolution from zero packet to zero packet, though points in it
   /// may have been lost.
