@@ -41,85 +41,6 @@ lidar::driver::~driver() { static_cast<void>(close()); }
 
 // ---- the line -----------------------------------------------------------------------------------
 
-result<void> lidar::driver::connect() {
-  auto made = connector_->connect();
-  if (!made) return tl::unexpected(made.error());
-  static_cast<void>(exchange_line(std::move(*made)));
-  ready_.follow(line_->native_handle());
-  session_.reset();
-  stops_ = false;
-  last_bytes_ns_ = read_until_ns_ = now_ns();
-  stream_.follow(line_->baud());
-  pace_.reset(line_->answers() ? line_->baud() : 0);
-  planned_ = plan_at_ = 0;
-  stage_ = stage::identifying;
-  if (line_->answers()) {
-    plan(requests::device_info(), true);
-  } else {
-    opened_ = true;
-    stage_ = stage::idle;
-  }
-  return {};
-}
-
-std::unique_ptr<transport> lidar::driver::exchange_line(std::unique_ptr<transport> made) noexcept {
-  while (line_changes_.test_and_set()) {
-    // For the moment in which another thread wakes it.
-  }
-  line_.swap(made);
-  line_changes_.clear();
-  pass_on_wake();
-  return made;
-}
-
-void lidar::driver::release_line() noexcept {
-  ready_.follow(-1);
-  exchange_line(nullptr).reset();
-  input_ = {};
-  end_of_bytes();
-  planned_ = plan_at_ = 0;
-  setting_up_again_ = false;
-}
-
-/// Nobody will see to it any more. It may hear this, even if nothing is heard of it.
-void lidar::driver::leave_stopped(const error& why) noexcept {
-  if (line_ == nullptr || !line_->answers() || why.what() == problem::gone) return;
-  for (const command each : {command::forced_stop, command::stop}) {
-    if (!send(encode(each))) return;
-  }
-}
-
-/// The line has broken, or is of no use. Gives an error if that is the end.
-result<void> lidar::driver::hang_up(const error& broken) {
-  const bool was_up = stage_ > stage::identifying;
-  const error why = spoilt(broken);
-  if (was_up) leave_stopped(why);
-  release_line();
-  if (was_up) {
-    tell(lidar_event::kind::lost, why.what());
-    backoff_ns_ = 0;
-  }
-  lost_ = why;
-  if (options_.reconnect && opened_) {
-    stage_ = stage::lost;
-    next_attempt_ns_ = now_ns() + backoff_ns_;
-    const auto longest = std::chrono::nanoseconds(options_.longest_backoff).count();
-    backoff_ns_ = std::min(std::max(2 * backoff_ns_, 20 * ms), longest);
-    return {};
-  }
-  stage_ = stage::closed;
-  return tl::unexpected(why);
-}
-
-result<void> lidar::driver::wait_for_line(std::int64_t deadline_ns) {
-  if (now_ns() < next_attempt_ns_) {
-    static_cast<void>(connector_->pause(std::min(deadline_ns, next_attempt_ns_)));
-    if (now_ns() < next_attempt_ns_) return {};
-  }
-  if (auto connected = connect(); !connected) return hang_up(connected.error());
-  return serve();
-}
-
 /// A command of which a part had gone out would be worse than one that came late: a wake-up does not
 /// stop it.
 result<void> lidar::driver::send(bytes command) {
@@ -482,21 +403,6 @@ void lidar::driver::drop_scan() noexcept {
   if (!scan_) return;
   ++scans_missed_;
   scan_.reset();
-}
-
-void lidar::driver::wake() noexcept {
-  woken_.store(true);
-  to_kick_.store(true);
-  pass_on_wake();
-}
-
-/// Ends the wait of whoever waits. Whoever finds the line held leaves this to the holder, who comes
-/// here behind it: in a signal handler there is nothing to wait for.
-void lidar::driver::pass_on_wake() noexcept {
-  while (to_kick_.load() && !line_changes_.test_and_set()) {
-    if (to_kick_.exchange(false)) line_ != nullptr ? line_->wake() : connector_->wake();
-    line_changes_.clear();
-  }
 }
 
 // ---- what it tells ------------------------------------------------------------------------------
