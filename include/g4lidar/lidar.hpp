@@ -25,7 +25,8 @@
 namespace g4lidar {
 
 /// How a lidar is opened and used. Nothing need be set. A setting of the device that is not given
-/// stays as the device has it; one that is given is set at each start, and again after a reconnect.
+/// stays as the device has it; one that is given is set at each start, and again after a reconnect or
+/// when the device seems to have begun anew.
 struct lidar_options {
   /// Which one: empty for the only G4; a path; `serial:2021101000070073` (the lidar's own number);
   /// `usb:1-1.4` (a bus path); `tcp:host:port` (a raw bridge); `file:PATH` (bytes as they came from a
