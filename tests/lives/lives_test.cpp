@@ -12,7 +12,7 @@ namespace {
 
 TEST(Lives, GoWell) {
   summary all;
-  const auto count = static_cast<std::uint64_t>(test::scaled(24));
+  const auto count = static_cast<std::uint64_t>(test::scaled(12));
   for (std::uint64_t seed = 1; seed <= count; ++seed) {
     const life_plan plan = draw_life(seed);
     const life_report lived = live(plan, false);
