@@ -168,9 +168,10 @@ class sensor_clock {
   /// so many bytes were not skipped, for then the program may have slept.
   [[nodiscard]] constexpr double late_samples(std::int64_t count,
                                               std::int64_t arrival_ns) const noexcept {
+    if (!started_ || skipped_bytes_ <= 0.0) return 0.0;
     const std::int64_t expected = line_.at(next_ + count - 1) + options_.transport_delay_ns;
     const double late = static_cast<double>(arrival_ns - expected) / line_.period_ns;
-    return started_ && late < skipped_bytes_ ? late : 0.0;  // at least two bytes each
+    return late < skipped_bytes_ ? late : 0.0;  // at least two bytes each
   }
 
   /// A time before which the last one of the `count` samples of a packet was measured.
@@ -244,9 +245,11 @@ class sensor_clock {
   [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
     const bool was_late = is_late_;
     const double usual_ns = std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
-    is_late_ = late > usual_ns + drift_since_ns(next);
-    if (!is_late_) is_torn_ = false;
-    if (!is_late_) return false;
+    is_late_ = late > usual_ns && late > usual_ns + drift_since_ns(next);
+    if (!is_late_) {
+      is_torn_ = false;
+      return false;
+    }
     if (!was_late || late < least_late_ns_ - catching_up_ns) {
       least_late_ns_ = late;
       late_since_ns_ = steady_since_ns_ = next.time_ns;

@@ -264,8 +264,9 @@ class session {
   }
 
   constexpr void on_answer(const response_view& heard, std::int64_t now_ns) noexcept {
-    if (talk_.question().code() == command::protection_toggle) {
-      watch_.set_protection(reply_byte<power_down_protection>(*heard.as_byte()));
+    const auto byte = heard.as_byte();
+    if (byte && talk_.question().code() == command::protection_toggle) {
+      watch_.set_protection(reply_byte<power_down_protection>(*byte));
     }
     follow(steps_.answered(heard), now_ns);
   }

@@ -93,7 +93,7 @@ class pty_port::state {
     if (plugged && !line_) {
       if (const result<void> back = plug(); !back) return tl::unexpected<error>(back.error());
     }
-    if (line_) carry(now);
+    if (line_) carry(*line_, now);
     return std::max(twin.next_ns(now), now + shortest_sleep_ns);
   }
 
@@ -107,17 +107,17 @@ class pty_port::state {
   device twin;
 
  private:
-  void carry(std::int64_t now) noexcept {
-    line_->look_for_visitors();
+  void carry(pty& line, std::int64_t now) noexcept {
+    line.look_for_visitors();
     std::array<std::uint8_t, 4096> data;
     // A program that floods the line gets its turn, and no more.
     for (int turn = 0; turn < 4; ++turn) {
-      const std::size_t count = line_->read(data);
+      const std::size_t count = line.read(data);
       if (count == 0) break;
       twin.write(bytes(data).first(count), now);
     }
     while (const std::size_t count = twin.read(data, now)) {
-      bytes_lost_ += line_->write(bytes(data).first(count));
+      bytes_lost_ += line.write(bytes(data).first(count));
     }
   }
 
