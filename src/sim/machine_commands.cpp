@@ -137,7 +137,7 @@ answer_bytes device::machine::another_than(const answer_bytes& right) noexcept {
                   std::array{static_cast<std::uint8_t>(faults_.draw(fault_kind::wrong, 2))}),
       answer_with(response_kind::frequency, std::array<std::uint8_t, 4>{0xBC, 0x02, 0, 0}),
       answer_with(condition()), answer_with(options_.info)};
-  std::size_t which = faults_.draw(fault_kind::wrong, others.size());
+  auto which = static_cast<std::size_t>(faults_.draw(fault_kind::wrong, others.size()));
   if (others[which].size == right.size) which = (which + 1) % others.size();
   return others[which];
 }
