@@ -55,7 +55,8 @@ bool truth_book::fits(const packet& sent, std::size_t at) const {
     const sample& truth = sent.samples[i];
     if (static_cast<float>(truth.raw) * 0.25F != seen.range_mm) return false;
     if (seen.is_revolution_start() != (sent.zero && i == 0)) return false;
-    if (apart_deg(truth.angle_deg, double{seen.angle_deg}) > angle_slack_deg) return false;
+    if (apart_deg(truth.angle_deg, static_cast<double>(seen.angle_deg)) > angle_slack_deg)
+      return false;
   }
   return true;
 }
@@ -139,10 +140,11 @@ bool truth_book::settle_unknown(bool all) {
     open_.clear();
     return false;
   }
-  problem_ = text_of("a point that was never sent: %.4f degrees, %.2f mm, %lld ns%s",
-                     double{open_[0].angle_deg}, double{open_[0].range_mm},
-                     static_cast<long long>(open_[0].time_ns),
-                     open_[0].is_revolution_start() ? ", a zero packet's" : "");
+  problem_ =
+      text_of("a point that was never sent: %.4f degrees, %.2f mm, %lld ns%s",
+              static_cast<double>(open_[0].angle_deg), static_cast<double>(open_[0].range_mm),
+              static_cast<long long>(open_[0].time_ns),
+              open_[0].is_revolution_start() ? ", a zero packet's" : "");
   open_.clear();
   return false;
 }
