@@ -101,7 +101,10 @@ void lidar::driver::learn_rate(const outcome& done) {
 
 /// What was set by asking is set again like what the options say, and behind a restart at once.
 void lidar::driver::remember(const outcome& done) {
-  if (done.asked.what == ask::restart && wants_scan_) set_up_again();
+  if (done.asked.what == ask::restart && wants_scan_) {
+    set_ups_ = 0;  // however often somebody wishes it
+    set_up_again();
+  }
   if (done.how != verdict::answered) return;
   const auto keep = [&]<class Setting>(std::optional<Setting>& option) {
     if (const auto* value = std::get_if<Setting>(&done.value)) option = *value;

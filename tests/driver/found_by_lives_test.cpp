@@ -134,6 +134,21 @@ TEST(FoundByLives, WhatWasSetByAskingIsSetAgainBehindARestart) {
   EXPECT_EQ(*frequency, scan_frequency{1100});
 }
 
+TEST(FoundByLives, TheSameHoweverOftenItIsRestarted) {
+  virtual_bench bench(forgetful());
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->ask(requests::set(ranging_frequency::khz_4)));
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 6; ++i) {
+    ASSERT_TRUE(lidar->ask(requests::restart(), while_scanning::stop_and_resume)) << i;
+    EXPECT_EQ(*lidar->ask_for<ranging_frequency>(requests::get_ranging(),
+                                                 while_scanning::stop_and_resume),
+              ranging_frequency::khz_4)
+        << i;
+  }
+}
+
 TEST(FoundByLives, TheSameWhereTheRestartWasWoken) {
   virtual_bench bench(forgetful());
   auto lidar = open_virtual(bench);
