@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// What a service tells its manager, heard by a test that plays systemd with a datagram socket.
+#include "service_watch.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace {
+
+using g4_dump::service_watch;
+constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t second_ns = 1'000'000'000;
+
+/// systemd's end of the socket, a path or an abstract name, and the environment that names it.
+class manager {
+ public:
+  explicit manager(const std::string& name) : fd_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::copy(name.begin(), name.end(), std::begin(address.sun_path));
+    const bool is_abstract = name.front() == '@';
+    if (is_abstract) address.sun_path[0] = '\0';
+    const std::size_t size = offsetof(sockaddr_un, sun_path) + name.size() + (is_abstract ? 0 : 1);
+    EXPECT_EQ(
+        ::bind(fd_, reinterpret_cast<const sockaddr*>(&address), static_cast<socklen_t>(size)), 0);
+    ::setenv("NOTIFY_SOCKET", name.c_str(), 1);
+  }
+  manager(const manager&) = delete;
+  manager& operator=(const manager&) = delete;
+  ~manager() {
+    ::close(fd_);
+    for (const char* name : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) ::unsetenv(name);
+  }
+
+  /// Every datagram that has come.
+  [[nodiscard]] std::vector<std::string> heard() const {
+    std::vector<std::string> all;
+    std::array<char, 4096> text;
+    while (true) {
+      const ssize_t size = ::recv(fd_, text.data(), text.size(), MSG_DONTWAIT);
+      if (size < 0) return all;
+      all.emplace_back(text.data(), static_cast<std::size_t>(size));
+    }
+  }
+
+ private:
+  int fd_;
+};
+
+using words = std::vector<std::string>;
+
+class ServiceWatch : public cli::scratch {};
+
+TEST_F(ServiceWatch, EachWordIsSentOnce) {
+  const manager systemd(path("notify"));
+  service_watch watch;
+  EXPECT_TRUE(watch.is_heard());
+  EXPECT_EQ(systemd.heard(), words{});
+  watch.ready();
+  watch.ready();
+  EXPECT_EQ(systemd.heard(), words{"READY=1"});
+  watch.status("7.00 Hz");
+  watch.status("7.00 Hz");
+  watch.status("6.98 Hz,\n1 packet lost");
+  EXPECT_EQ(systemd.heard(), (words{"STATUS=7.00 Hz", "STATUS=6.98 Hz, 1 packet lost"}));
+  watch.stopping();
+  watch.stopping();
+  EXPECT_EQ(systemd.heard(), words{"STOPPING=1"});
+}
+
+TEST_F(ServiceWatch, AnAbstractNameDoes) {
+  const manager systemd("@g4lidar-test-" + std::to_string(::getpid()));
+  service_watch watch;
+  watch.ready();
+  EXPECT_EQ(systemd.heard(), words{"READY=1"});
+}
+
+TEST_F(ServiceWatch, TheWatchdogHearsAtHalfOfItsTime) {
+  const manager systemd(path("notify"));
+  ::setenv("WATCHDOG_USEC", "10000000", 1);
+  ::setenv("WATCHDOG_PID", std::to_string(::getpid()).c_str(), 1);
+  service_watch watch;
+  EXPECT_EQ(watch.longest_wait_ns(), 5 * second_ns);
+  std::size_t heard = 0;
+  for (std::int64_t now_ns = 100 * second_ns; now_ns <= 120 * second_ns;
+       now_ns += second_ns / 100) {
+    watch.alive(now_ns);
+    heard += systemd.heard().size();
+  }
+  EXPECT_EQ(heard, 5U) << "at 0, 5, 10, 15 and 20 seconds";
+  watch.alive(125 * second_ns - 1);
+  EXPECT_EQ(systemd.heard(), words{});
+  watch.alive(125 * second_ns);
+  EXPECT_EQ(systemd.heard(), words{"WATCHDOG=1"});
+}
+
+TEST_F(ServiceWatch, TheClockOfTheSystemDoesToo) {
+  const manager systemd(path("notify"));
+  ::setenv("WATCHDOG_USEC", "3600000000", 1);
+  service_watch watch;
+  watch.alive();
+  watch.alive();
+  EXPECT_EQ(systemd.heard(), words{"WATCHDOG=1"});
+}
+
+TEST_F(ServiceWatch, NobodyWatchesWhereNothingOrAnotherIsWatched) {
+  const manager systemd(path("notify"));
+  const auto silent = [&] {
+    service_watch watch;
+    watch.alive(second_ns);
+    watch.alive();
+    const bool is_silent = systemd.heard().empty();
+    return is_silent && watch.longest_wait_ns() == never_ns;
+  };
+  EXPECT_TRUE(silent());
+  for (const char* const nonsense : {"", "0", "-5", "10s", "99999999999999999999"}) {
+    ::setenv("WATCHDOG_USEC", nonsense, 1);
+    EXPECT_TRUE(silent()) << nonsense;
+  }
+  ::setenv("WATCHDOG_USEC", "1000000", 1);
+  EXPECT_FALSE(silent());
+  ::setenv("WATCHDOG_PID", "1", 1);
+  EXPECT_TRUE(silent()) << "it is another process that is watched";
+}
+
+TEST_F(ServiceWatch, AFullSocketHoldsNothingUpAndWhatWasLostIsSentAgain) {
+  const manager systemd(path("notify"));
+  ::setenv("WATCHDOG_USEC", "2", 1);
+  service_watch watch;
+  std::int64_t now_ns = 0;
+  for (int i = 0; i < 10'000; ++i) watch.alive(now_ns += 1000);  // more than a socket holds
+  watch.status("told late");
+  const std::size_t held = systemd.heard().size();
+  EXPECT_GT(held, 0U);
+  EXPECT_LT(held, 10'000U);
+  watch.status("told late");
+  watch.alive(now_ns);
+  EXPECT_EQ(systemd.heard(), (words{"STATUS=told late", "WATCHDOG=1"}));
+}
+
+TEST_F(ServiceWatch, AManagerThatIsNotThereIsNoTrouble) {
+  const auto all_is_well = [] {
+    service_watch watch;
+    watch.ready();
+    watch.alive(second_ns);
+    watch.status("fine");
+    watch.stopping();
+    return !watch.is_heard();
+  };
+  ::unsetenv("NOTIFY_SOCKET");
+  ::setenv("WATCHDOG_USEC", "1000000", 1);
+  EXPECT_TRUE(all_is_well());
+  for (const std::string& name : {std::string(), std::string("@"), std::string("vsock:2:1"),
+                                  path("none"), "/" + std::string(200, 'x')}) {
+    ::setenv("NOTIFY_SOCKET", name.c_str(), 1);
+    EXPECT_TRUE(all_is_well()) << name;
+  }
+  ::unsetenv("NOTIFY_SOCKET");
+  ::unsetenv("WATCHDOG_USEC");
+  {
+    auto systemd = std::make_unique<manager>(path("notify"));
+    service_watch watch;
+    systemd.reset();  // it has been restarted, say
+    watch.ready();
+    watch.status("fine");
+  }
+}
+
+}  // namespace
