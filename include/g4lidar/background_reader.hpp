@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/lidar.hpp"
 
 namespace g4lidar {
@@ -17,7 +18,7 @@ namespace g4lidar {
 ///     auto reader = background_reader::start(std::move(*lidar));
 ///     auto points = (*reader).points().make_reader();
 ///     while (running) use(points);
-class background_reader {
+class G4LIDAR_API background_reader {
  public:
   /// Starts the scan, then the thread. Errors: those of lidar::start(), system.
   [[nodiscard]] static result<background_reader> start(lidar&& device);

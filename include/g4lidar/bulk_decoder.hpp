@@ -10,6 +10,7 @@
 #include "g4lidar/bytes.hpp"
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/decode.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/stream_counts.hpp"
 #include "g4lidar/stream_parser.hpp"
@@ -24,11 +25,11 @@ enum class instruction_set : std::uint8_t {
 
 /// The best of them that this processor has. *Pure*, for the answer never changes while a program
 /// runs; not `constexpr`, for the compiler does not know where that will be.
-[[nodiscard]] instruction_set best_instruction_set() noexcept;
+[[nodiscard]] G4LIDAR_API instruction_set best_instruction_set() noexcept;
 
 /// The name of an instruction set, for people; it lives for ever. *Pure*; not `constexpr`, for it is
 /// compiled with the rest.
-[[nodiscard]] const char* name_of(instruction_set set) noexcept;
+[[nodiscard]] G4LIDAR_API const char* name_of(instruction_set set) noexcept;
 
 /// The whole way from bytes to points: a stream_parser, the count of revolutions and the arithmetic,
 /// which is chosen by the processor at run time. *Single thread, never allocates.* Times are left 0,
@@ -36,7 +37,7 @@ enum class instruction_set : std::uint8_t {
 ///
 /// The points are those of decode() with any correction form: the angles within 4e-5 degrees of the
 /// exact one whatever the instruction set, everything else identical.
-class bulk_decoder {
+class G4LIDAR_API bulk_decoder {
  public:
   /// Computes with `wanted` if this processor has it, else with `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/transport.hpp"
 
 namespace g4lidar {
@@ -22,7 +23,7 @@ struct byte_file_options {
 /// swallowed, so nothing answers. Its baud() is ten times its bytes a second.
 ///
 /// *Allocates on open*; afterwards it does not.
-class byte_file {
+class G4LIDAR_API byte_file {
  public:
   byte_file() = delete;
 

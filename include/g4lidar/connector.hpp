@@ -6,13 +6,14 @@
 #include <memory>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/transport.hpp"
 
 namespace g4lidar {
 
 /// Opens the line to a device, the first time and after each loss. *Single thread* but for wake().
 /// Simulations and tests bring one of their own.
-class connector {
+class G4LIDAR_API connector {
  public:
   virtual ~connector() = default;
   connector(const connector&) = delete;

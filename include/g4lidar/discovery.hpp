@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/response.hpp"
 #include "g4lidar/transport.hpp"
 
@@ -37,16 +38,16 @@ struct port_info {
 /// Every serial port, ordered by path. Works without udevd: what it would add (by_id, and the names
 /// out of its data base) is then empty or comes from the bridge itself. *Allocates.*
 /// Fails with system.
-[[nodiscard]] result<std::vector<port_info>> list_ports();
+[[nodiscard]] G4LIDAR_API result<std::vector<port_info>> list_ports();
 
 /// Says in each port who has it open, "screen (1234)", as far as this user may see that: the programs
 /// of others only root may. Looks through all processes, some ten milliseconds. *Allocates.*
-void find_holders(std::span<port_info> ports);
+G4LIDAR_API void find_holders(std::span<port_info> ports);
 
 /// Whether the port is behind the bridge that comes with a G4: a CP2102, USB 10c4:ea60. Other lidars
 /// of the maker come behind 0483:5740 (STM32) and 067b:2303 (PL2303) too; those are not counted, and
 /// a CP2102 can be in front of anything. *Never waits.*
-[[nodiscard]] bool is_g4_bridge(const port_info& port) noexcept;
+[[nodiscard]] G4LIDAR_API bool is_g4_bridge(const port_info& port) noexcept;
 
 /// A port that came or went.
 struct port_event {
@@ -57,7 +58,7 @@ struct port_event {
 /// Tells of ports that come and go. *Single thread.* It listens to udevd where that runs, for then a
 /// port's links and permissions are right when it is told; else to the kernel. In a container that is
 /// given neither, nothing is ever told: call list_ports() from time to time there.
-class port_monitor {
+class G4LIDAR_API port_monitor {
  public:
   /// Begins to listen; ports that come from now on are told. *Allocates.* Fails with system.
   [[nodiscard]] static result<port_monitor> open();
@@ -84,7 +85,8 @@ class port_monitor {
 ///
 /// Fails with silence, garbage (bytes came, and no answer among them), other_device (it answers, and
 /// is no G4), does_not_stop, or as the transport does.
-[[nodiscard]] result<device_information> probe(transport& port, std::int64_t deadline_ns);
+[[nodiscard]] G4LIDAR_API result<device_information> probe(transport& port,
+                                                           std::int64_t deadline_ns);
 
 /// A port, and the lidar behind it.
 struct found_lidar {
@@ -104,7 +106,8 @@ struct find_options {
 /// Every G4 that answers, ordered by path. Opens the ports one after the other and leaves them as
 /// they were; those that cannot be opened, or where no G4 answers, are passed over. *Allocates.*
 /// Fails with system.
-[[nodiscard]] result<std::vector<found_lidar>> find_lidars(const find_options& options = {});
+[[nodiscard]] G4LIDAR_API result<std::vector<found_lidar>> find_lidars(
+    const find_options& options = {});
 
 /// The one port that `which` means; where it can be told without, no port is written to:
 /// - "/dev/...", or any path: that port, of which nothing else is then told;
@@ -116,7 +119,7 @@ struct find_options {
 /// The path is not opened and need not exist: opening it will tell. Fails with bad_option, no_port,
 /// several_ports (the subject lists them), or system; with serial: also with permission or busy, if
 /// that kept a port from being asked and no other has that number.
-[[nodiscard]] result<port_info> select_port(std::string_view which,
-                                            const find_options& options = {});
+[[nodiscard]] G4LIDAR_API result<port_info> select_port(std::string_view which,
+                                                        const find_options& options = {});
 
 }  // namespace g4lidar

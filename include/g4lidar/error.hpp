@@ -10,6 +10,8 @@
 
 #include <tl/expected.hpp>
 
+#include "g4lidar/export.hpp"
+
 namespace g4lidar {
 
 /// What was being done when something went wrong.
@@ -58,7 +60,7 @@ enum class problem : std::uint8_t {
 inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::system) + 1;
 
 /// One error. Trivially copyable, never allocates.
-class error {
+class G4LIDAR_API error {
  public:
   /// `subject` is what it is about (a path, an option and its value); cut at 95 bytes.
   error(task doing, problem what, std::string_view subject = {}, int system_errno = 0) noexcept;
@@ -91,8 +93,8 @@ class error {
 };
 
 /// The words of the tools and documents: "permission", "no_port". They live for ever.
-[[nodiscard]] std::string_view name_of(problem what) noexcept;
-[[nodiscard]] std::string_view name_of(task doing) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view name_of(problem what) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view name_of(task doing) noexcept;
 
 /// A value, or the error that there is in its place.
 template <class T>

@@ -13,6 +13,7 @@
 #include "g4lidar/command.hpp"
 #include "g4lidar/connector.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/point_ring.hpp"
 #include "g4lidar/request.hpp"
@@ -54,7 +55,7 @@ struct lidar_options {
 };
 
 /// What is wrong with `options`, as an error that names it; nothing where all is well. *Pure.*
-[[nodiscard]] std::optional<error> problem_with(const lidar_options& options) noexcept;
+[[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;
 
 /// Something that happened by itself.
 struct lidar_event {
@@ -74,7 +75,7 @@ struct lidar_event {
 };
 
 /// The words of the tools and documents; they live for ever.
-[[nodiscard]] std::string_view name_of(lidar_event::kind what) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view name_of(lidar_event::kind what) noexcept;
 
 /// Counts since open(), over all reconnects. At every moment bytes == stream.frame_bytes +
 /// stream.skipped_bytes() + held.
@@ -108,7 +109,7 @@ using lidar_ring = point_ring<16384>;
 ///     }
 ///
 /// The motor is stopped by stop(), close() and destruction. Signals are the application's.
-class lidar {
+class G4LIDAR_API lidar {
  public:
   using milliseconds = std::chrono::milliseconds;
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/transport.hpp"
 
 namespace g4lidar {
@@ -26,7 +27,7 @@ struct serial_options {
 /// - has the port's own descriptor as its native_handle(); a wake() does not make that readable.
 ///
 /// *Allocates on open*; afterwards it does not.
-class serial_port {
+class G4LIDAR_API serial_port {
  public:
   serial_port() = delete;
 

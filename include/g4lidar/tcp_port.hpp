@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/transport.hpp"
 
 namespace g4lidar {
@@ -24,7 +25,7 @@ struct tcp_options {
 /// seconds.
 ///
 /// *Allocates on open*; afterwards it does not.
-class tcp_port {
+class G4LIDAR_API tcp_port {
  public:
   tcp_port() = delete;
 

@@ -10,6 +10,7 @@
 
 #include "g4lidar/bytes.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 
 namespace g4lidar {
 
@@ -24,7 +25,7 @@ struct received {
 
 /// A line to a device. *Single thread* but for wake(). Every call returns by its deadline; all times
 /// are nanoseconds of now_ns(), which is std::chrono::steady_clock but for simulations.
-class transport {
+class G4LIDAR_API transport {
  public:
   virtual ~transport() = default;
   transport(const transport&) = delete;

@@ -11,7 +11,7 @@
 
 namespace g4lidar {
 
-struct background_reader::state {
+struct G4LIDAR_HIDDEN background_reader::state {
   explicit state(lidar&& given) noexcept : device(std::move(given)) {}
 
   void run() {

@@ -33,7 +33,7 @@ namespace g4lidar {
 ///                                                        seems to have begun anew
 ///
 /// Any of them is left for lost when the line breaks, or for closed where reconnecting is off.
-class lidar::driver {
+class G4LIDAR_HIDDEN lidar::driver {
  public:
   driver(std::unique_ptr<connector> connector, const lidar_options& options);
   driver(const driver&) = delete;

@@ -19,7 +19,7 @@ const char* teller() noexcept {
 
 }  // namespace
 
-struct port_monitor::state {
+struct G4LIDAR_HIDDEN port_monitor::state {
   udev_owner<udev> context;
   udev_owner<udev_monitor> monitor;
   std::map<std::string, port_info> known;  // by path: of one that has gone, sysfs tells nothing

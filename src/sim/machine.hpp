@@ -20,7 +20,7 @@
 
 namespace g4lidar::sim {
 
-class device::machine {
+class G4LIDAR_HIDDEN device::machine {
  public:
   machine(const world& scene, const device_options& options, std::span<const fault> faults);
 

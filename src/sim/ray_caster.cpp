@@ -110,7 +110,7 @@ roots roots_between(const gap& f, end low, end high) noexcept {
 
 }  // namespace
 
-struct ray_caster::beam {
+struct G4LIDAR_HIDDEN ray_caster::beam {
   double e_x, e_y;
 };
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "g4lidar/bytes.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/fault.hpp"
 #include "g4lidar/sim/world.hpp"
@@ -37,7 +38,7 @@ struct sent_sample {
 /// does not depend on how often it is looked at, but for what a slow reader loses. Same options,
 /// world, faults and writes: same bytes, on every processor. *Single thread. Allocates on
 /// construction only.*
-class device {
+class G4LIDAR_API device {
  public:
   /// `problem_with` is empty for the options and each fault; a mistake there is an assertion.
   explicit device(const world& scene, const device_options& options = {},

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "g4lidar/command.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/response.hpp"
 #include "g4lidar/sim/scanner.hpp"
 
@@ -103,6 +104,6 @@ struct device_options {
 };
 
 /// What is wrong with `options`, a sentence to be shown to a person; empty if nothing is. *Pure.*
-[[nodiscard]] std::string_view problem_with(const device_options& options) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view problem_with(const device_options& options) noexcept;
 
 }  // namespace g4lidar::sim

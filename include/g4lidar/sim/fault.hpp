@@ -8,6 +8,8 @@
 #include <string_view>
 #include <variant>
 
+#include "g4lidar/export.hpp"
+
 namespace g4lidar::sim {
 
 /// A time that never comes.
@@ -47,14 +49,14 @@ struct fault {
 };
 
 /// A fault of this kind with the rate and the amount that stand in braces above, always. *Pure.*
-[[nodiscard]] fault make_fault(fault_kind kind, std::int64_t begin_ns = 0,
-                               std::int64_t duration_ns = forever_ns) noexcept;
+[[nodiscard]] G4LIDAR_API fault make_fault(fault_kind kind, std::int64_t begin_ns = 0,
+                                           std::int64_t duration_ns = forever_ns) noexcept;
 
 /// What is wrong with `f`, a sentence to be shown to a person; empty if nothing is. *Pure.*
-[[nodiscard]] std::string_view problem_with(const fault& f) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view problem_with(const fault& f) noexcept;
 
 /// The word for a kind: the enumerator. It lives for ever. *Pure.*
-[[nodiscard]] std::string_view name_of(fault_kind kind) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view name_of(fault_kind kind) noexcept;
 
 /// Why a text is not a fault: a sentence without a full stop, to be shown to a person.
 struct fault_error {
@@ -65,6 +67,6 @@ struct fault_error {
 /// "unplug@5s+2s", "flip*0.001", "batch=16ms@1s", "burst=30*0.01%@500ms+1s". Times are decimal
 /// numbers with ns, us, ms, s or min behind them (a bare 0 needs none); docs/sim.md has it all.
 /// Independent of the locale. Throws nothing but std::bad_alloc.
-[[nodiscard]] std::variant<fault, fault_error> parse_fault(std::string_view text);
+[[nodiscard]] G4LIDAR_API std::variant<fault, fault_error> parse_fault(std::string_view text);
 
 }  // namespace g4lidar::sim

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/sim/device.hpp"
 
 namespace g4lidar::sim {
@@ -17,7 +18,7 @@ namespace g4lidar::sim {
 /// neither port nor link; putting it in again makes a new port and moves the link to it. A program
 /// that does not read loses bytes, as on a real line, and never holds the device up.
 /// *Single thread. Allocates on open and on each replug.*
-class pty_port {
+class G4LIDAR_API pty_port {
  public:
   /// Opens a pty in raw mode. `link`, where not empty, becomes a symbolic link to it until the end;
   /// one that leads to another pty is taken over, anything else there is left alone. Fails with
@@ -55,11 +56,11 @@ class pty_port {
 
 /// Serves them all until `stop` becomes readable or hangs up. `after_each`, where given, is called
 /// whenever something may have happened. Waits without spinning. Fails as process() does.
-[[nodiscard]] result<void> serve(std::span<pty_port> ports, int stop,
-                                 const std::function<void()>& after_each = {});
+[[nodiscard]] G4LIDAR_API result<void> serve(std::span<pty_port> ports, int stop,
+                                             const std::function<void()>& after_each = {});
 
 /// One device served by a thread of its own, for tests of programs that want a path.
-class background_pty {
+class G4LIDAR_API background_pty {
  public:
   [[nodiscard]] static result<background_pty> open(device twin, const std::string& link = {});
   background_pty(background_pty&&) noexcept;

@@ -6,13 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include "g4lidar/export.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {
 
 /// The second-level correction of a target at `range_mm` > 0, in degrees, in double precision and
 /// written independently of the core's. *Pure.* (protocol: Point packets, second-level correction)
-[[nodiscard]] double correction_deg(double range_mm) noexcept;
+[[nodiscard]] G4LIDAR_API double correction_deg(double range_mm) noexcept;
 
 /// The limit of the correction for far targets, in degrees.
 inline constexpr double far_correction_deg = -7.990596267964585603;
@@ -27,7 +28,7 @@ struct sighting {
 /// Answers which wall the beam meets first. Since the correction depends on the range, the beam is
 /// no straight line but a curve: its point at range d stands at the bearing theta + correction(d).
 /// Allocates on construction only; a `const` caster may be used by any number of threads at once.
-class ray_caster {
+class G4LIDAR_API ray_caster {
  public:
   /// `scene` is copied as far as it is needed.
   explicit ray_caster(const world& scene);

@@ -11,6 +11,7 @@
 
 #include "g4lidar/bytes.hpp"
 #include "g4lidar/command.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/packet.hpp"
 #include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/ray_caster.hpp"
@@ -48,7 +49,7 @@ struct scanner_options {
 };
 
 /// What is wrong with `options`, a sentence to be shown to a person; empty if nothing is. *Pure.*
-[[nodiscard]] std::string_view problem_with(const scanner_options& options) noexcept;
+[[nodiscard]] G4LIDAR_API std::string_view problem_with(const scanner_options& options) noexcept;
 
 /// What a sample truly was, before it was squeezed into the wire's format.
 struct sample_truth {
@@ -72,12 +73,12 @@ struct sent_packet {
 
 /// What a device sends first when scanning starts: the reply to the start command, 7 bytes, good
 /// for ever. (protocol: Commands, 60)
-[[nodiscard]] bytes scan_start_reply() noexcept;
+[[nodiscard]] G4LIDAR_API bytes scan_start_reply() noexcept;
 
 /// A turning head that measures in virtual time: each next() is one packet further. Same options
 /// and same world, same bytes, on every processor. *Single thread. Allocates on construction only.*
 /// A copy lives on independently.
-class scanner {
+class G4LIDAR_API scanner {
  public:
   /// `problem_with(options)` is empty; a mistake there is an assertion.
   scanner(const world& scene, const scanner_options& options);

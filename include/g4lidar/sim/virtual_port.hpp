@@ -12,6 +12,7 @@
 
 #include "g4lidar/connector.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/export.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/transport.hpp"
 
@@ -43,7 +44,7 @@ class virtual_clock {
 
 /// A transport to a device in virtual time. The device and the clock are the caller's and outlive
 /// it. A port is dead once the plug was out, as a descriptor is. *Never allocates.*
-class virtual_port final : public transport {
+class G4LIDAR_API virtual_port final : public transport {
  public:
   /// `name` lives as long as the port.
   virtual_port(device& twin, virtual_clock& clock, std::string_view name = "virtual:g4") noexcept;
@@ -68,7 +69,7 @@ class virtual_port final : public transport {
 };
 
 /// Connects to simulated devices, whichever of them are plugged in, in turn.
-class virtual_connector final : public connector {
+class G4LIDAR_API virtual_connector final : public connector {
  public:
   /// The devices and the clock are the caller's and outlive it.
   virtual_connector(std::vector<device*> twins, virtual_clock& clock)

@@ -8,6 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "g4lidar/export.hpp"
+
 namespace g4lidar::sim {
 
 /// A wall from one point to the other, in metres, seen from above: x to the right, y up.
@@ -35,7 +37,7 @@ struct world {
 
 /// A flat of a few rooms: a living room with oblique furniture, a pillar and a post nearer than a
 /// G4 can measure; a kitchen behind an open door; a hall, the far end of which is beyond 16 m.
-[[nodiscard]] world built_in_world();
+[[nodiscard]] G4LIDAR_API world built_in_world();
 
 /// Why a text is not a world.
 struct world_error {
@@ -54,6 +56,6 @@ inline constexpr double min_clearance_m = 0.01;
 
 /// The world that `text` describes (docs/sim.md has the format), or the first error in it.
 /// Independent of the locale. Throws nothing but std::bad_alloc.
-[[nodiscard]] std::variant<world, world_error> parse_world(std::string_view text);
+[[nodiscard]] G4LIDAR_API std::variant<world, world_error> parse_world(std::string_view text);
 
 }  // namespace g4lidar::sim

@@ -17,7 +17,7 @@
 
 namespace g4lidar::sim {
 
-class background_pty::state {
+class G4LIDAR_HIDDEN background_pty::state {
  public:
   state(pty_port port, std::array<file_handle, 2> bell)
       : port_(std::move(port)), path_(port_.path()), bell_(std::move(bell)) {

@@ -61,7 +61,7 @@ void unpoint(const fs::path& link, const std::string& target) {
 
 }  // namespace
 
-class pty_port::state {
+class G4LIDAR_HIDDEN pty_port::state {
  public:
   state(device of, const std::string& link) : twin(std::move(of)), link_(link) {}
   ~state() { unplug(); }
