@@ -106,9 +106,8 @@ TEST_F(Failure, WrongCommandLine) {
     EXPECT_THAT(done.err, HasSubstr("See: g4-dump"));
     EXPECT_EQ(cli::lines_of(done.err).size(), 1U);
   };
-  expect_usage({}, "say what to do: decode or sim");
-  expect_usage({"encode"}, "'encode' is no verb");
-  expect_usage({"--colour"}, "'--colour' is no option");
+  expect_usage({"encode"}, "'encode' is no verb; say what to do: dump, scan");
+  expect_usage({"--colour"}, "'--colour' is no option. See: g4-dump dump --help");
   expect_usage({"decode", "--colour"}, "'--colour' is no option. See: g4-dump decode --help");
   expect_usage({"decode", "--colour", "x", "y"}, "'--colour' is no option");
   expect_usage({"decode", "one", "two", "three"}, "'two' is one argument too many");
@@ -120,6 +119,7 @@ TEST_F(Failure, WrongCommandLine) {
   for (const char* const rate : {"0", "-9000", "fast", "1000001", "9000.5", ""}) {
     expect_usage({"decode", "--rate", rate}, "--rate");
   }
+  expect_usage({"decode", "--rate"}, "--rate wants one value");
   for (const char* const seconds : {"-1", "long", "1e10", "nan", "inf"}) {
     expect_usage({"sim", "--seconds", seconds}, "--seconds");
   }

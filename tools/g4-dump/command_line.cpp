@@ -1,229 +1,142 @@
 // SPDX-License-Identifier: MIT
-// The verbs and options, declared once; the only place that sees CLI11.
+// The table of verbs as CLI11 wants it; the only place that sees CLI11.
 #include "command_line.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cstdint>
-#include <cstdio>
-#include <map>
+#include <algorithm>
+#include <memory>
 #include <string>
-#include <system_error>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exit_code.hpp"
 #include "file_id.hpp"
 #include "g4lidar/version.hpp"
-#include "say.hpp"
+#include "manners.hpp"
+#include "report.hpp"
+#include "verb.hpp"
+#include "verbs.hpp"
 
 namespace g4_dump {
 namespace {
 
-template <class Value>
-using names = std::map<std::string, Value>;
+constexpr std::string_view default_verb = "dump";
 
-const names<text_format> text_formats{
-    {"csv", text_format::csv}, {"jsonl", text_format::jsonl}, {"text", text_format::text}};
-const names<stats_format> stats_formats{{"words", stats_format::words},
-                                        {"json", stats_format::json}};
-const names<g4lidar::ranging_frequency> ranging_frequencies{
-    {"4000", g4lidar::ranging_frequency::khz_4},
-    {"8000", g4lidar::ranging_frequency::khz_8},
-    {"9000", g4lidar::ranging_frequency::khz_9}};
-
-/// A range that the help does not spell out. What is no number lies in none.
-template <class Value>
-CLI::Validator within(Value least, Value most) {
-  const auto check = [least, most](const std::string& text) {
-    Value value{};
-    const bool is_number = CLI::detail::lexical_cast(text, value);
-    if (is_number && least <= value && value <= most) return std::string();
-    return fmt::format("'{}' is not in the range {} to {}", text, least, most);
-  };
-  return {check, ""};
+/// Words that CLI11 hands to a row; what is wrong with one gets the option's name from CLI11.
+void hand_over(const std::function<void(const std::string&)>& take, const std::string& word,
+               const std::string& name) {
+  try {
+    take(word);
+  } catch (const bad_value& reason) {
+    throw CLI::ValidationError(name, reason.what());
+  }
 }
 
-/// A whole number of 64 bits: one with a sign or too large would be taken for another one.
-CLI::Validator whole_number() {
-  const auto check = [](const std::string& text) {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error == std::errc() && end == text.data() + text.size()) return std::string();
-    return fmt::format("'{}' is no whole number from 0 to {}", text, UINT64_MAX);
-  };
-  return {check, ""};
+/// "--output" of "-o,--output".
+std::string long_name(const std::string& names) {
+  const std::size_t comma = names.rfind(',');
+  return comma == std::string::npos ? names : names.substr(comma + 1);
 }
 
-/// One of a few words: refuses any other with the list of them.
-template <class Value>
-CLI::Option* add_choice(CLI::App& verb, const std::string& name, Value& value,
-                        const names<Value>& choices, const std::string& help,
-                        const std::string& shown) {
-  const auto take = [&value, &choices](const std::string& word) {
-    const auto found = choices.find(word);
-    if (found == choices.end()) {
-      std::string known;
-      for (const auto& [choice, meaning] : choices) known += (known.empty() ? "" : ", ") + choice;
-      throw CLI::ValidationError(fmt::format("'{}' is none of {}", word, known));
+CLI::Option* add(CLI::App& app, const option_row& row) {
+  const std::string name = long_name(row.names);
+  CLI::Option* option = nullptr;
+  if (row.value.empty()) {
+    const auto take = row.take;
+    option = app.add_flag_function(
+        row.names, [take, name](std::int64_t) { hand_over(take, "", name); }, row.help);
+  } else {
+    const auto take = [row, name](const std::vector<std::string>& words) {
+      for (const std::string& word : words) hand_over(row.take, word, name);
+    };
+    option = app.add_option_function<std::vector<std::string>>(row.names, take, row.help)
+                 ->type_name(row.value)
+                 ->expected(1)
+                 ->allow_extra_args(false)
+                 ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
+                                                      : CLI::MultiOptionPolicy::Throw);
+  }
+  if (!row.group.empty()) option->group(row.group);
+  return option;
+}
+
+void add(CLI::App& app, const argument_row& row) {
+  CLI::Option* option = nullptr;
+  if (row.repeatable) {
+    const auto take = [row](const std::vector<std::string>& words) {
+      for (const std::string& word : words) hand_over(row.take, word, row.name);
+    };
+    option = app.add_option_function<std::vector<std::string>>(row.name, take, row.help);
+  } else {
+    const auto take = [row](const std::string& word) { hand_over(row.take, word, row.name); };
+    option = app.add_option_function<std::string>(row.name, take, row.help);
+  }
+  option->type_name("")->required(row.required);
+}
+
+/// The codes that are among `wanted`, or all, in lines that fit a terminal.
+std::string exit_code_list(const std::vector<int>& wanted) {
+  constexpr std::size_t width = 98;
+  std::string text = "Exit codes:";
+  std::size_t begin = 0;  // of the line
+  bool first = true;
+  for (const exit_code_row& row : exit_codes()) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), row.code) == wanted.end()) {
+      continue;
     }
-    value = found->second;
-  };
-  return verb.add_option_function<std::string>(name, take, help)->type_name(shown);
+    const std::string piece = fmt::format("{} {}", row.code, row.meaning);
+    if (!first) text += ',';
+    if (text.size() - begin + piece.size() + 2 > width) {
+      text += '\n';
+      begin = text.size();
+    } else {
+      text += ' ';
+    }
+    text += piece;
+    first = false;
+  }
+  return text + '.';
 }
 
-constexpr const char* decode_footer =
-    R"(Columns of csv: scan (0, and one more with each start of a revolution that is not the first
-packet), angle_deg (clockwise, 0 at the cable, below 360), range_mm (0.00: nothing came back),
-time_ns (since the first point: raw bytes carry no times, so it is counted at --rate; samples of
-suspect packets count, samples that were lost do not). More columns may follow these.
-jsonl adds to each point no_return, too_near, and partial: its revolution was not seen whole. It
-is therefore written revolution by revolution.
---scans: csv and text have a line, jsonl an object with all points, for each revolution. Columns of
-csv: scan, time_ns (of its first point), points, returns (points from which something came back),
-partial (true, false), why (what makes it partial, joined by +: start_missing, end_missing,
-data_lost, turn_short), turned_deg (how far the angle went, about 360), reported_hz and measured_hz
-(of the rotation; empty where not known).
-
-A file that OUT names appears when all went well, and not before. ^C ends a recording in good
-order: what came so far is written.
-
-Examples:
-  g4-dump decode walk.bin -o walk.csv
-  g4-dump decode walk.bin --format jsonl --scans --valid
-  g4-dump sim --seconds 60 | g4-dump decode --format text --scans
-  stty -F /dev/ttyUSB0 230400 raw -echo && g4-dump decode /dev/ttyUSB0 --format text
-  tail -c +1 -f growing.bin | g4-dump decode -
-
-Exit codes: 0 well, 2 wrong command line, 10 bad file or no packet in it, 130 after ^C.)";
-
-constexpr const char* sim_footer =
-    R"(The same options give the same bytes on every computer. The bytes begin with the answer to the
-command that starts scanning; whole packets follow, all that were complete before N seconds.
---truth: index, time_ns, scan, first_level_deg, bearing_deg (where the target stands), range_mm
-(of the target, exact; 0: there is none), raw (as sent, in quarters of a millimetre).
-
---link: a whole device that answers commands, on a pseudo-terminal that PATH leads to, instead.
-
-Examples:
-  g4-dump sim --seconds 60 --seed 7 -o room.bin --truth room.csv
-  g4-dump sim --seconds 5 --noise-mm 8 --dropout 0.02 | g4-dump decode --format text
-  g4-dump sim --link /tmp/lidar --log
-  g4-dump sim --link /tmp/front --link /tmp/rear --fault unplug@5s+2s --fault 'flip*0.01%'
-
-Exit codes: 0 well, 2 wrong command line, 10 a file that cannot be read or written, 130 after ^C.)";
-
-CLI::App* add_decode(CLI::App& app, decode_options& options) {
-  CLI::App* const verb =
-      app.add_subcommand("decode", "Raw bytes from the port to points")->group("Verbs");
-  verb->footer(decode_footer);
-  verb->add_option("FILE", options.input,
-                   "Bytes as they came from the port; - or nothing: standard input")
-      ->type_name("");
-  verb->add_option("-o,--output", options.output, "Where to write; - or nothing: standard output")
-      ->type_name("OUT");
-  add_choice(*verb, "-f,--format", options.style.format, text_formats,
-             "How to write (csv); text is for people", "csv|jsonl|text");
-  verb->add_flag("--scans", options.style.scans, "A record for each revolution, not each point");
-  verb->add_flag("--valid", options.style.valid_only,
-                 "Leave out the points from which nothing came back");
-  verb->add_option("--rate", options.style.rate_hz,
-                   "Samples a second, from which time_ns is counted (9000)")
-      ->type_name("HZ")
-      ->check(within(std::uint32_t{1}, std::uint32_t{1'000'000}));
-  add_choice(*verb, "--stats", options.stats, stats_formats,
-             "The counts at the end, on standard error (words)", "words|json");
-  return verb;
+std::string footer_of(const verb& shown) {
+  std::string text = shown.details;
+  if (!shown.examples.empty()) text += "\n\nExamples:";
+  for (const std::string& line : shown.examples) text += "\n  " + line;
+  return text + (text.empty() ? "" : "\n\n") + exit_code_list(shown.exits);
 }
 
-/// The options that make it serve ptys, and those that then mean nothing.
-void add_served(CLI::App& verb, sim_options& options, const std::vector<CLI::Option*>& not_then) {
-  // Each takes one value, and may be given again.
-  const auto add = [&verb](const std::string& name, std::vector<std::string>& values,
-                           const std::string& help, const std::string& shown) {
-    return verb.add_option(name, values, help)
-        ->type_name(shown)
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->group("A device on a pseudo-terminal, in real time");
-  };
-  CLI::Option* const link =
-      add("--link", options.links, "Serve a device here, until ^C; again for one more", "PATH");
-  for (CLI::Option* const other : not_then) link->excludes(other);
-  add("--serial", options.serials, "Of the devices, in turn: 16 digits each", "DIGITS")
-      ->needs(link);
-  add("--fault", options.faults, "KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]]; see docs/sim.md",
-      "FAULT")
-      ->needs(link);
-  verb.add_flag("--log", options.log, "What they are asked, on standard error")
-      ->group("A device on a pseudo-terminal, in real time")
-      ->needs(link);
+CLI::App* add(CLI::App& app, const verb& added) {
+  CLI::App* const made = app.add_subcommand(added.name, added.summary)->group("Verbs");
+  made->footer(footer_of(added));
+  for (const argument_row& row : added.arguments) add(*made, row);
+  for (const option_row& row : added.options) add(*made, row);
+  for (const option_row& row : added.options) {
+    CLI::Option* const option = made->get_option(long_name(row.names));
+    for (const std::string& other : row.needs) option->needs(made->get_option(other));
+    for (const std::string& other : row.excludes) option->excludes(made->get_option(other));
+  }
+  return made;
 }
 
-CLI::App* add_sim(CLI::App& app, sim_options& options) {
-  CLI::App* const verb =
-      app.add_subcommand("sim", "The bytes that a G4 in a world of walls would send")
-          ->group("Verbs");
-  verb->footer(sim_footer);
-  g4lidar::sim::scanner_options& scanner = options.scanner;
-  CLI::Option* const seconds =
-      verb->add_option("--seconds", options.seconds, "How long it scans (10)")
-          ->type_name("N")
-          ->check(within(0.0, 1e9));
-  verb->add_option("--seed", scanner.seed, "Of all that is random (1)")
-      ->type_name("S")
-      ->check(whole_number());
-  CLI::Option* const output = verb->add_option("-o,--output", options.output,
-                                               "Where to write; - or nothing: standard output")
-                                  ->type_name("FILE");
-  CLI::Option* const truth =
-      verb->add_option("--truth", options.truth, "What each sample truly was, as csv")
-          ->type_name("FILE");
-  verb->add_option("--world", options.world, "The walls (a flat of a few rooms); see docs/sim.md")
-      ->type_name("FILE");
-  verb->add_option_function<double>(
-          "--frequency",
-          [&scanner](double hz) {
-            scanner.scan_frequency_chz = static_cast<std::uint16_t>(hz * 100.0 + 0.5);
-          },
-          "Revolutions a second, 5 to 12 (7)")
-      ->type_name("HZ")
-      ->check(within(5.0, 12.0));
-  add_choice(*verb, "--rate", scanner.ranging, ranging_frequencies, "Samples a second (9000)",
-             "4000|8000|9000");
-  verb->add_option("--samples", scanner.samples_per_packet, "In a packet, 1 to 80 (40)")
-      ->type_name("N");
-  verb->add_option("--start-deg", scanner.start_deg, "The angle of the first sample (random)")
-      ->type_name("DEG");
-  verb->add_option("--index-deg", scanner.index_deg, "Where a revolution starts (0)")
-      ->type_name("DEG");
-  verb->add_option("--noise-mm", scanner.noise_mm, "Standard deviation of each range (0)")
-      ->type_name("MM");
-  verb->add_option("--noise-ratio", scanner.noise_ratio, "And what each mm of range adds to it (0)")
-      ->type_name("RATIO");
-  verb->add_option("--dropout", scanner.dropout_ratio,
-                   "How many of all samples see nothing for no reason, 0 to 1 (0)")
-      ->type_name("RATIO");
-  verb->add_flag_function(
-      "--no-reported-frequency", [&scanner](std::int64_t) { scanner.reports_frequency = false; },
-      "Packets do not tell the scan frequency");
-  add_served(*verb, options, {seconds, output, truth});
-  return verb;
+std::string known_verbs(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* const each : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names += (names.empty() ? "" : ", ") + each->get_name();
+  }
+  return names;
 }
 
 /// What is wrong with the command line, without a full stop.
 std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   if (app.get_subcommands().empty()) {
-    std::string verbs;
-    for (const CLI::App* const verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-      verbs += (verbs.empty() ? "" : " or ") + verb->get_name();
-    }
     const std::vector<std::string> rest = app.remaining();
-    if (rest.empty()) return "say what to do: " + verbs;
+    if (rest.empty()) return "say what to do: " + known_verbs(app);
     const bool is_option = rest.front().front() == '-';
     return fmt::format("{} is no {}; say what to do: {}", in_quotes(rest.front()),
-                       is_option ? "option" : "verb", verbs);
+                       is_option ? "option" : "verb", known_verbs(app));
   }
   const std::vector<std::string> rest = app.remaining(true);
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty()) {
@@ -231,44 +144,91 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
     return in_quotes(rest.front()) + (is_option ? " is no option" : " is one argument too many");
   }
   std::string words = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    words = words.substr(0, words.find(':')) + " wants one value";
+  }
   if (!words.empty() && words.back() == '.') words.pop_back();
   return words;
 }
 
-int explain(const CLI::App& app, const CLI::ParseError& error) {
-  std::string verb;
-  for (const CLI::App* const chosen : app.get_subcommands()) verb = " " + chosen->get_name();
-  say(fmt::format("g4-dump: {}. See: g4-dump{} --help\n", problem_with(app, error), verb));
+std::string verb_of(const CLI::App& app) {
+  std::string name;
+  for (const CLI::App* const chosen : app.get_subcommands()) name = " " + chosen->get_name();
+  return name;
+}
+
+int explain(const std::string& problem, const std::string& verb) {
+  report(fmt::format("{}. See: g4-dump{} --help", problem, verb), exit_code::usage);
   return static_cast<int>(exit_code::usage);
+}
+
+/// Whether the first word is none of a verb's place: an option or a source for the verb that needs
+/// not be named. `--help` and `--version` are the program's own.
+bool leaves_out_verb(int argc, const char* const* argv) {
+  if (argc < 2) return true;
+  const std::string_view first = argv[1];
+  if (first == "-h" || first == "--help" || first == "--version") return false;
+  if (first.empty() || first.front() == '-') return true;
+  return first.find_first_of("/:.") != std::string_view::npos;
+}
+
+std::string app_footer() {
+  return fmt::format(
+      "\nWithout a verb: {}. SOURCE is /dev/ttyUSB0, serial:2021101000070073 (the lidar's own\n"
+      "number), usb:1-1.4, tcp:HOST:PORT, a recording, raw bytes in a file or -, or sim: (with\n"
+      "?world=FILE&seed=N&fault=FAULT); without one: the only G4.\n"
+      "Data goes to standard output, words to standard error.\n"
+      "{}\n"
+      "More about a verb: g4-dump VERB --help",
+      default_verb, exit_code_list({}));
+}
+
+void say_version() {
+  fmt::print("g4-dump {}.{}.{}\n", G4LIDAR_VERSION_MAJOR, G4LIDAR_VERSION_MINOR,
+             G4LIDAR_VERSION_PATCH);
 }
 
 }  // namespace
 
-command read_command_line(int argc, const char* const* argv) {
-  decode_options decode;
-  sim_options sim;
-  CLI::App app("The console tool for the YDLIDAR G4: points from its bytes", "g4-dump");
-  app.set_version_flag("--version", fmt::format("g4-dump {}.{}.{}", G4LIDAR_VERSION_MAJOR,
-                                                G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH));
-  app.require_subcommand(1);
+std::function<int()> read_command_line(int argc, const char* const* argv) {
+  const std::vector<verb> verbs = all_verbs();
+  CLI::App app("The console tool for the YDLIDAR G4", "g4-dump");
+  bool asks_version = false;
+  app.add_flag("--version", asks_version, "Print the version and exit");
   app.fallthrough();
-  app.footer(
-      "\nData goes to standard output, words to standard error.\n"
-      "More about a verb: g4-dump VERB --help");
+  app.footer(app_footer());
   app.get_formatter()->label("SUBCOMMAND", "VERB");
   app.get_formatter()->column_width(36);
-  const CLI::App* const decode_verb = add_decode(app, decode);
-  const CLI::App* const sim_verb = add_sim(app, sim);
+  for (const option_row& row : manners_rows()) add(app, row);
+  std::vector<std::pair<const CLI::App*, const verb*>> made;
+  for (const verb& each : verbs) made.emplace_back(add(app, each), &each);
+  std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given
+  if (leaves_out_verb(argc, argv)) words.insert(words.begin(), std::string(default_verb));
+  std::vector<std::string> backwards(words.rbegin(), words.rend());  // as CLI11 takes them
+  const auto done = [](int code) { return [code] { return code; }; };
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& wanted) {  // --help, --version
-    return nothing_to_do{app.exit(wanted)};
+    app.parse(backwards);
+    if (asks_version) {
+      say_version();
+      return done(0);
+    }
+    app.require_subcommand(1);
+  } catch (const CLI::Success& wanted) {  // --help
+    return done(app.exit(wanted));
   } catch (const CLI::ParseError& error) {
-    return nothing_to_do{explain(app, error)};
+    return done(explain(problem_with(app, error), verb_of(app)));
   }
-  if (decode_verb->parsed()) return decode;
-  if (sim_verb->parsed()) return sim;
-  return nothing_to_do{static_cast<int>(exit_code::usage)};
+  for (const auto& [parsed, each] : made) {
+    if (!parsed->parsed()) continue;
+    return [run = each->run, name = " " + each->name] {
+      try {
+        return run();
+      } catch (const bad_value& reason) {
+        return explain(reason.what(), name);
+      }
+    };
+  }
+  return done(explain("say what to do: " + known_verbs(app), ""));
 }
 
 }  // namespace g4_dump

@@ -37,20 +37,6 @@ std::string read_all(input& in) {
   return text;
 }
 
-g4lidar::sim::world load_world(const sim_options& options, const output* out) {
-  if (!options.world) return g4lidar::sim::built_in_world();
-  input in(*options.world, "Give a text file of walls, or leave --world out for a built-in flat.");
-  if (out != nullptr) refuse_same_file(in.id(), *out);
-  const auto read = g4lidar::sim::parse_world(read_all(in));
-  if (const auto* error = std::get_if<g4lidar::sim::world_error>(&read)) {
-    const std::string where = error->line > 0 ? fmt::format(", line {}", error->line) : "";
-    throw failure(exit_code::bad_file,
-                  fmt::format("{}{}: {}. docs/sim.md has the format of worlds.", in.title(), where,
-                              error->message));
-  }
-  return std::get<g4lidar::sim::world>(read);
-}
-
 void write(g4lidar::bytes data, output& out) {
   char* at = out.room(data.size());
   for (const std::uint8_t byte : data) *at++ = static_cast<char>(byte);
@@ -92,6 +78,20 @@ void refuse_nonsense(const sim_options& options) {
 }
 
 }  // namespace
+
+g4lidar::sim::world load_world(const sim_options& options, const output* out) {
+  if (!options.world) return g4lidar::sim::built_in_world();
+  input in(*options.world, "Give a text file of walls, or leave --world out for a built-in flat.");
+  if (out != nullptr) refuse_same_file(in.id(), *out);
+  const auto read = g4lidar::sim::parse_world(read_all(in));
+  if (const auto* error = std::get_if<g4lidar::sim::world_error>(&read)) {
+    const std::string where = error->line > 0 ? fmt::format(", line {}", error->line) : "";
+    throw failure(exit_code::bad_file,
+                  fmt::format("{}{}: {}. docs/sim.md has the format of worlds.", in.title(), where,
+                              error->message));
+  }
+  return std::get<g4lidar::sim::world>(read);
+}
 
 int run(const sim_options& options) {
   refuse_nonsense(options);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "g4lidar/sim/scanner.hpp"
+#include "g4lidar/sim/world.hpp"
 
 namespace g4_dump {
 
@@ -22,6 +23,11 @@ struct sim_options {
   std::vector<std::string> faults;   ///< Of each of them.
   bool log = false;
 };
+
+class output;
+
+/// The walls that the options name; not in the file that `out` writes. Throws a failure.
+[[nodiscard]] g4lidar::sim::world load_world(const sim_options& options, const output* out);
 
 /// Returns the exit code; throws a failure.
 [[nodiscard]] int run(const sim_options& options);

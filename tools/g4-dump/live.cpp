@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "live.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+
+#include "exit_code.hpp"
+#include "interrupt.hpp"
+#include "manners.hpp"
+#include "output.hpp"
+
+namespace g4_dump {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+constexpr auto pulse_time = 100ms;
+
+void tell_events(g4lidar::lidar& lidar) {
+  while (const auto event = lidar.next_event()) {
+    const bool is_loss = event->what == g4lidar::lidar_event::kind::lost;
+    tell(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what), is_loss ? ", " : "",
+                     is_loss ? name_of(event->reason) : ""));
+  }
+}
+
+class live_loop {
+ public:
+  live_loop(g4lidar::lidar& lidar, const common_options& options, const live_sink& sink,
+            output& out)
+      : lidar_(lidar), options_(options), sink_(sink), out_(out) {}
+
+  void run() {
+    while (!is_over()) {
+      const bool got = read();
+      tell_events(lidar_);
+      if (ended_) return;
+      if (got) {
+        last_ = clock::now();
+      } else {
+        out_.flush();
+        wait();
+      }
+      if (sink_.pulse) sink_.pulse();
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_over() const {
+    const auto now = clock::now();
+    return interrupt() != 0 || out_.is_closed() ||
+           (options_.count > 0 && records_ >= options_.count) ||
+           (options_.duration.count() > 0 && now - begin_ >= options_.duration) ||
+           (options_.idle.count() > 0 && now - last_ >= options_.idle);
+  }
+
+  /// Takes what is there, without waiting where poll() can do that; false if nothing was.
+  bool read() {
+    const auto longest = lidar_.native_handle() < 0 ? 50ms : 0ms;
+    const auto why = sink_.scan ? take_scan(longest) : take_points(longest);
+    if (!why) return true;
+    using enum g4lidar::problem;
+    if (why->what() == end_of_input) {
+      ended_ = true;
+      return false;
+    }
+    if (why->is_fatal()) {
+      tell_events(lidar_);
+      throw failure(*why, true);
+    }
+    return false;
+  }
+
+  std::optional<g4lidar::error> take_scan(std::chrono::milliseconds longest) {
+    const auto got = lidar_.next_scan(longest);
+    if (!got) return got.error();
+    records_ += sink_.scan(*got);
+    return std::nullopt;
+  }
+
+  std::optional<g4lidar::error> take_points(std::chrono::milliseconds longest) {
+    const auto got = lidar_.next_points(longest);
+    if (!got) return got.error();
+    auto wanted = *got;
+    if (options_.count > 0) {
+      wanted = wanted.first(std::min<std::uint64_t>(wanted.size(), options_.count - records_));
+    }
+    records_ += sink_.points(wanted);
+    return std::nullopt;
+  }
+
+  void wait() const {
+    if (lidar_.native_handle() < 0) return;  // it has waited itself
+    const auto now = clock::now();
+    auto until = now + pulse_time;
+    const std::int64_t due_ns = lidar_.next_deadline_ns();
+    if (due_ns != g4lidar::never_ns) {
+      until = std::min(until, clock::time_point(std::chrono::nanoseconds(due_ns)));
+    }
+    if (options_.duration.count() > 0) until = std::min(until, begin_ + options_.duration);
+    if (options_.idle.count() > 0) until = std::min(until, last_ + options_.idle);
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - now);
+    std::array<pollfd, 3> waiting{{{lidar_.native_handle(), POLLIN, 0},
+                                   {interrupt_handle(), POLLIN, 0},
+                                   {out_.descriptor(), 0, 0}}};
+    ::poll(waiting.data(), waiting.size(), static_cast<int>(std::max(left, 0ms).count()));
+  }
+
+  g4lidar::lidar& lidar_;
+  const common_options& options_;
+  const live_sink& sink_;
+  output& out_;
+  clock::time_point begin_ = clock::now();
+  clock::time_point last_ = begin_;
+  std::uint64_t records_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+void run_live(g4lidar::lidar& lidar, const common_options& options, const live_sink& sink,
+              output& out) {
+  if (const auto started = lidar.start(); !started) throw failure(started.error());
+  live_loop(lidar, options, sink, out).run();
+  static_cast<void>(lidar.stop());  // what has come is good, whatever the device says to that
+  tell_events(lidar);
+}
+
+void tell_counts(const g4lidar::lidar& lidar) {
+  const g4lidar::lidar_counts counts = lidar.counts();
+  tell(fmt::format(
+      "{} bytes: {} packets ({} suspect) with {} points in {} scans and {} pieces\n"
+      "{} bytes skipped, {} samples lost, {} points and {} scans missed, {} reconnects\n",
+      counts.bytes, counts.stream.packets, counts.stream.suspect, counts.stream.points,
+      counts.scans, counts.partial_scans, counts.stream.skipped_bytes(), counts.samples_lost,
+      counts.points_missed, counts.scans_missed, counts.reconnects));
+}
+
+}  // namespace g4_dump

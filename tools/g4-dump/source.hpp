@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What the word SOURCE means, and the lidar behind it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common_options.hpp"
+#include "g4lidar/lidar.hpp"
+
+namespace g4_dump {
+
+enum class source_kind : unsigned char {
+  device,     ///< A port, a bridge, a number: what lidar_options::device names.
+  recording,  ///< A file with times, which is a device too.
+  bytes,      ///< Raw bytes without times, in a file or a pipe; `-`.
+  simulated,  ///< `sim:`
+};
+
+/// By its form, and what lies there. A name that is none of a file is a device's.
+[[nodiscard]] source_kind kind_of(const std::string& source);
+
+/// A lidar, and the simulated device that it is on, if it is on one.
+class opened_source {
+ public:
+  /// Opens anything but raw bytes. `how` is as it is to be but for device, baud and reconnect. With
+  /// loss_rule::wait it tries until there is one or a signal comes (`interrupted`). Throws a failure.
+  explicit opened_source(const common_options& options, g4lidar::lidar_options how = {});
+  opened_source(const opened_source&) = delete;
+  opened_source& operator=(const opened_source&) = delete;
+  ~opened_source();
+
+  [[nodiscard]] g4lidar::lidar& lidar() noexcept { return *lidar_; }
+
+ private:
+  class simulation;
+  std::unique_ptr<simulation> simulation_;  // outlives the lidar
+  std::optional<g4lidar::lidar> lidar_;
+};
+
+}  // namespace g4_dump

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Every verb of g4-dump, in the order of the help. Each is made in the file of its command.
+#pragma once
+
+#include <vector>
+
+#include "verb.hpp"
+
+namespace g4_dump {
+
+[[nodiscard]] verb make_dump_verb();
+[[nodiscard]] verb make_scan_verb();
+[[nodiscard]] verb make_decode_verb();
+[[nodiscard]] verb make_sim_verb();
+
+/// All of them. What they share with their options lives as long as they do.
+[[nodiscard]] std::vector<verb> all_verbs();
+
+/// The exit codes and what they mean, for the help and the man page.
+struct exit_code_row {
+  int code;
+  const char* meaning;
+};
+[[nodiscard]] const std::vector<exit_code_row>& exit_codes();
+
+}  // namespace g4_dump
