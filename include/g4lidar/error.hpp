@@ -51,6 +51,7 @@ enum class problem : std::uint8_t {
   brown_out,       ///< The bytes stopped when the motor started: too little power.
   interference,    ///< Another program reads from or writes to the port.
   read_only,       ///< A file was to be asked or set, as if it were a device.
+  bad_file,        ///< A file that holds nothing of use: no recording, or nothing in it is whole.
   end_of_input,    ///< A file or connection has ended.
   cancelled,       ///< Woken, from another thread or a signal handler.
   system,          ///< The system refused for a reason of its own; see `system_errno`.

@@ -30,8 +30,8 @@ namespace g4lidar {
 /// when the device seems to have begun anew.
 struct lidar_options {
   /// Which one: empty for the only G4; a path; `serial:2021101000070073` (the lidar's own number);
-  /// `usb:1-1.4` (a bus path); `tcp:host:port` (a raw bridge); `file:PATH` (bytes as they came from a
-  /// port).
+  /// `usb:1-1.4` (a bus path); `tcp:host:port` (a raw bridge); `file:PATH` (a recording, or bytes as
+  /// they came from a port). A recording can be named by its path alone.
   std::string device;
   /// Bits a second, of a serial port and of the one behind `tcp:`; others know their own.
   std::uint32_t baud = 230400;
@@ -56,6 +56,12 @@ struct lidar_options {
 
 /// What is wrong with `options`, as an error that names it; nothing where all is well. *Pure.*
 [[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;
+
+/// The lines to the device that `options` name, for who puts something between them and the driver; see
+/// recorded(). lidar::open(options) is open(connector_for(options), options). Fails with bad_option,
+/// bad_file or system.
+[[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> connector_for(
+    const lidar_options& options);
 
 /// Something that happened by itself.
 struct lidar_event {

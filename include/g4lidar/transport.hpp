@@ -5,14 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "g4lidar/bytes.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/export.hpp"
+#include "g4lidar/line_note.hpp"
 
 namespace g4lidar {
+
+struct recorded_device;
 
 /// A time that never comes.
 inline constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
@@ -61,6 +65,21 @@ class G4LIDAR_API transport {
 
   /// The rate of the line in bits a second, 10 to the byte; 0 where bytes take no time.
   [[nodiscard]] virtual std::uint32_t baud() const noexcept { return 0; }
+
+  // Of recordings; a line to a device does without.
+
+  /// The driver tells what it makes of the bytes; a line that is being recorded keeps it.
+  virtual void note(const line_note& /*what*/) noexcept {}
+  /// What had happened, when this was recorded, between the last reading and the next one: call until
+  /// it gives nothing. Good until the next call of anything.
+  [[nodiscard]] virtual std::optional<line_note> noted() noexcept { return std::nullopt; }
+  /// What is known of the lidar that was recorded; nothing where this is no recording. Good as long as
+  /// this.
+  [[nodiscard]] virtual const recorded_device* recorded() const noexcept { return nullptr; }
+  /// How far the wall clock is ahead of now_ns(), where the line knows better than the system.
+  [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
+    return std::nullopt;
+  }
 
  protected:
   transport() = default;

@@ -73,6 +73,8 @@ constexpr std::array<words, problem_count> all_words{{
      "brltty off the port."},
     {problem::read_only, "read_only", "a file cannot be asked anything",
      "A file only gives its points: open the lidar itself for that."},
+    {problem::bad_file, "bad_file", "there is nothing of use in this file",
+     "Name a recording; what does not begin as one is read as bytes from a line with file:PATH."},
     {problem::end_of_input, "end_of_input", "there is no more to read",
      "A recording ends, a connection is closed by its other end: open it again."},
     {problem::cancelled, "cancelled", "woken by this program", "Nothing is wrong."},

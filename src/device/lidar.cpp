@@ -55,9 +55,13 @@ lidar::lidar(lidar&&) noexcept = default;
 lidar& lidar::operator=(lidar&&) noexcept = default;
 lidar::~lidar() = default;
 
-result<lidar> lidar::open(const lidar_options& options) {
+result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
-  auto line = system_connector::make(options.device, options.baud);
+  return system_connector::make(options.device, options.baud);
+}
+
+result<lidar> lidar::open(const lidar_options& options) {
+  auto line = connector_for(options);
   if (!line) return tl::unexpected(line.error());
   return open(std::move(*line), options);
 }

@@ -14,6 +14,8 @@
 
 #include "g4lidar/byte_file.hpp"
 #include "g4lidar/discovery.hpp"
+#include "g4lidar/recording_reader.hpp"
+#include "g4lidar/replay.hpp"
 #include "g4lidar/serial_port.hpp"
 #include "g4lidar/tcp_port.hpp"
 
@@ -34,6 +36,9 @@ system_connector::~system_connector() {
 
 result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
                                                           std::uint32_t baud) {
+  std::string_view path = device;
+  if (path.starts_with(file_prefix)) path.remove_prefix(file_prefix.size());
+  if (is_recording(path)) return replay::open(path);
   return std::unique_ptr<connector>(new system_connector(device, baud));
 }
 

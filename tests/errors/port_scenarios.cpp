@@ -229,6 +229,11 @@ trouble recording_asked() {
   return error_in(recording->ask(requests::health()));
 }
 
+trouble no_recording() {
+  const temporary_file file("\x89MCAP0\r\nand nothing more");
+  return error_in(lidar::open("file:" + file.path()));
+}
+
 }  // namespace
 
 std::vector<scenario> port_scenarios() {
@@ -255,6 +260,7 @@ std::vector<scenario> port_scenarios() {
       {"BridgeCloses", end_of_input, task::reading, true, "tcp:127.0.0.1:", bridge_closes},
       {"RecordingEnds", end_of_input, task::reading, true, "bytes-", recording_ends},
       {"RecordingAsked", read_only, task::asking, false, "bytes-", recording_asked},
+      {"NotARecording", bad_file, task::opening, true, "bytes-", no_recording},
       {"NoSuchRecording", system, task::opening, true, "/dev/no-recording",
        [] { return opening("file:/dev/no-recording"); }},
       {"NoRecording", bad_option, task::opening, true, "/dev is not a file",
