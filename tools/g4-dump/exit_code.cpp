@@ -38,6 +38,7 @@ exit_code exit_code_for(const g4lidar::error& why, bool was_running) noexcept {
       return exit_code::lost;
     case read_only:
     case end_of_input:
+    case g4lidar::problem::bad_file:
       return exit_code::bad_file;
     case cancelled:
     case system:
