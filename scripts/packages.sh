@@ -29,6 +29,7 @@ packages_ci=(
   g++-11 python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
+  fish mandoc zsh
   g++-s390x-linux-gnu g++-aarch64-linux-gnu g++-arm-linux-gnueabihf
   gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-system-arm
 )

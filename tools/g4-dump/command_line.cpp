@@ -16,6 +16,7 @@
 #include "file_id.hpp"
 #include "g4lidar/version.hpp"
 #include "manners.hpp"
+#include "manual.hpp"
 #include "report.hpp"
 #include "verb.hpp"
 #include "verbs.hpp"
@@ -191,6 +192,9 @@ void say_version() {
 }  // namespace
 
 std::function<int()> read_command_line(int argc, const char* const* argv) {
+  if (argc == 3 && std::string_view(argv[1]) == "--generate") {
+    return [what = std::string_view(argv[2])] { return generate(what); };
+  }
   const std::vector<verb> verbs = all_verbs();
   CLI::App app("The console tool for the YDLIDAR G4", "g4-dump");
   bool asks_version = false;
