@@ -1,0 +1,191 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Does what a document says: check_document.sh BLOCKS [N]
+# BLOCKS is what extract.sh made of it. Without N the command lines and the CMake projects are gone through,
+# in order and in one scratch directory, and the outputs that are shown are compared; with N the program of
+# that number is run, and its output compared.
+#
+# Programs get a simulated G4 as argument and recorded bytes on standard input, and are asked to end with
+# SIGINT when they have printed enough. In command lines /dev/ttyUSB0 is a simulated G4, and /tmp the
+# scratch directory. What the marks mean is said in CONTRIBUTING.md.
+#
+# Wants G4_DUMP; for command lines PROGRAMS, directories to be found in PATH, and for projects PREFIX, where
+# the library is installed. No message but of what is wrong.
+set -euo pipefail
+blocks=$(cd "$1" && pwd)
+only=${2:-}
+document=${DOCUMENT:-$blocks}
+
+scratch=$(mktemp -d)
+g4=$scratch/ttyUSB0
+leave() {
+  local left
+  mapfile -t left < <(jobs -p)
+  if ((${#left[@]} > 0)); then kill "${left[@]}" 2>/dev/null || true; fi
+  wait 2>/dev/null || true
+  rm -rf "$scratch"
+}
+trap leave EXIT
+mkdir "$scratch/here"
+cd "$scratch/here"
+set -m # a job of its own may be interrupted, and is a group that ends as a whole
+PATH=${PROGRAMS:-}${PROGRAMS:+:}$(dirname "$G4_DUMP"):$PATH
+
+# refuse <line> <words>...: says what is wrong with the document there, and ends.
+refuse() {
+  echo "$document:$1: ${*:2}" >&2
+  for name in out err; do
+    if [[ -s $scratch/$name ]]; then sed "s/^/  ${name}: /" "$scratch/$name" | head -n 40 >&2; fi
+  done
+  exit 1
+}
+
+# await <path>: until it is there.
+await() {
+  local i
+  for ((i = 0; i < 600; ++i)); do
+    if [[ -e $1 ]]; then return 0; fi
+    sleep 0.05
+  done
+  return 1
+}
+
+# A simulated G4 at $g4, when it is first wanted.
+need_g4() {
+  if [[ -e $g4 ]]; then return 0; fi
+  "$G4_DUMP" sim --link "$g4" >/dev/null 2>"$scratch/twin" &
+  await "$g4" || { echo "g4-dump sim gave no device" >&2; exit 1; }
+}
+
+# interrupted <lines> <command>...: runs it until it has printed so many lines, or ends; its code.
+interrupted() {
+  local lines=$1 pid i code=0
+  shift
+  "$@" >"$scratch/out" 2>"$scratch/err" &
+  pid=$!
+  for ((i = 0; i < 1200; ++i)); do
+    if ! kill -0 "$pid" 2>/dev/null; then break; fi
+    if (($(wc -l <"$scratch/out") >= lines)); then break; fi
+    sleep 0.05
+  done
+  kill -INT -- "-$pid" 2>/dev/null || true
+  wait "$pid" || code=$?
+  return "$code"
+}
+
+# compare <line> <shown> <mark>: the first lines of what was printed are those.
+compare() {
+  local form='' at=$1 shown=$2
+  if [[ $3 == *numbers ]]; then form='s/[+-]([0-9])/S\1/g; s/[0-9]+/N/g; s/ +/ /g; s/N(\.N)+/N/g'; fi
+  if ! diff <(sed -E "$form" "$shown") \
+    <(head -n "$(wc -l <"$shown")" "$scratch/out" | sed -e "s#$g4#/dev/ttyUSB0#g; s#$scratch#/tmp#g" | sed -E "$form"); then
+    refuse "$at" "this is not what is printed"
+  fi
+}
+
+# run_line <line> <mark> <command>: one command line, as a person would type it.
+run_line() {
+  local at=$1 mark=$2 words=$3 code=0 wanted=0
+  words=${words//\/tmp\//$scratch/}
+  words=${words//\/dev\/ttyUSB0/$g4}
+  if [[ $mark == "the only G4" ]]; then words=$(sed -E "s@[[:space:]]*([#|]|\$)@ $g4 \1@" <<<"$words"); fi
+  if [[ $words == *"$g4"* ]]; then need_g4; fi
+  if [[ $mark == "until ^C" ]]; then
+    interrupted 1 bash -c "$words" </dev/null || code=$?
+    if ((code == 130)); then code=0; fi
+    cat "$scratch/out" >>"$scratch/all"
+  else
+    if [[ $mark == "exit "* ]]; then wanted=${mark#exit }; fi
+    set +e
+    eval "$words" >"$scratch/out" 2>"$scratch/err" </dev/null
+    code=$?
+    set -e
+    cat "$scratch/out" >>"$scratch/all"
+    # Who reads only the beginning ends the others.
+    if [[ $words == *"|"* ]] && ((code == 141)); then code=0; fi
+  fi
+  if ((code != wanted)); then refuse "$at" "'$3' ended with $code"; fi
+  # A device that is served from now on is there before the next line is typed.
+  if [[ $words == *"&" ]]; then
+    local link
+    while read -r _ link; do
+      await "$link" || refuse "$at" "'$3' made no $link"
+    done < <(grep -oE -e '--link [^ ]+' <<<"$words")
+  fi
+}
+
+# run_lines <first line> <mark> <file>: each of its command lines.
+run_lines() {
+  local at=$1 line words='' first=$1
+  : >"$scratch/all"
+  while IFS= read -r line; do
+    words+=$line
+    if [[ $words == *\\ ]]; then
+      words=${words%\\}
+    else
+      if [[ -n $words ]]; then run_line "$first" "$2" "$words"; fi
+      words=''
+      first=$((at + 1))
+    fi
+    at=$((at + 1))
+  done <"$3"
+  mv "$scratch/all" "$scratch/out"
+}
+
+# build_project <line> <file>: configures and builds it, with an empty program.
+build_project() {
+  local project=$scratch/project-$1
+  mkdir -p "$project"
+  cp "$2" "$project/CMakeLists.txt"
+  printf '#include <g4lidar/scan.hpp>\nint main() {}\n' >"$project/main.cpp"
+  cmake -S "$project" -B "$project/build" >"$scratch/out" 2>&1 || refuse "$1" "CMake does not take this"
+  cmake --build "$project/build" >"$scratch/out" 2>&1 || refuse "$1" "this does not build"
+}
+
+# go_through: all blocks but the programs.
+go_through() {
+  local number language line mark last=none
+  export CMAKE_PREFIX_PATH=${PREFIX:-}
+  while IFS=$'\t' read -r number language line mark <&3; do
+    local file=$blocks/$number.$language
+    if [[ $mark == "not run:"* ]]; then
+      last=none
+      continue
+    fi
+    if [[ $mark == "file "* ]]; then
+      mkdir -p "$(dirname "${mark#file }")"
+      cp "$file" "${mark#file }"
+      continue
+    fi
+    case $language in
+      sh) run_lines "$line" "$mark" "$file" ;;
+      cmake) build_project "$line" "$blocks/block_$number.cmake" ;;
+      text)
+        if [[ $last == sh ]]; then compare "$line" "$file" "$mark"; fi
+        if [[ $last == none ]]; then refuse "$line" "this is the output of nothing"; fi
+        ;;
+    esac
+    last=$language
+  done 3<"$blocks/list"
+}
+
+# run_program: the program of the block `only`; the text that follows is its output.
+run_program() {
+  local program=$1 number language line mark at=0 shown='' how='' lines=1 code=0
+  while IFS=$'\t' read -r number language line mark; do
+    if ((number == only)); then at=$line; fi
+    if ((number == only + 1)) && [[ $language == text && $mark == output* ]]; then
+      shown=$blocks/$number.text
+      how=$mark
+      lines=$(wc -l <"$shown")
+    fi
+  done <"$blocks/list"
+  need_g4
+  "$G4_DUMP" sim --seconds 1 --seed 1 >"$scratch/recorded.bin"
+  interrupted "$lines" "$program" "$g4" <"$scratch/recorded.bin" || code=$?
+  if ((code != 0)); then refuse "$at" "this program ended with $code"; fi
+  if [[ ! -s $scratch/out ]]; then refuse "$at" "this program prints nothing"; fi
+  if [[ -n $shown ]]; then compare "$at" "$shown" "$how"; fi
+}
+
+if [[ -n $only ]]; then run_program "${PROGRAM:?}"; else go_through; fi

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The two programs of the README are examples; the files and commands that the documents name are there,
+# links lead somewhere, and so do the documents that the sources name; a command line in the middle of a
+# sentence is one that is also shown in a block, and so is run.
+# Wants G4_DUMP and G4LIDAR_SOURCE_DIR.
+set -euo pipefail
+cd "$G4LIDAR_SOURCE_DIR"
+here=tests/documents
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+documents=(./*.md docs/*.md docs/design/*.md)
+missing=0
+
+# The README's programs are the sources, but for the SPDX line and the sentence below it.
+bash "$here/extract.sh" README.md "$scratch/README"
+mapfile -t programs < <(awk -F '\t' '$2 == "cpp" { print $1 }' "$scratch/README/list")
+number=0
+for source in live_scan first_points; do
+  if ! diff "$scratch/README/block_${programs[number]}.cpp" <(tail -n +3 "examples/$source.cpp"); then
+    echo "Program $((number + 1)) in README.md differs from examples/$source.cpp" >&2
+    missing=1
+  fi
+  number=$((number + 1))
+done
+
+# Command lines in sentences: a verb, or the beginning of a line that is run.
+for document in README docs/guide docs/errors docs/sim; do
+  mkdir -p "$scratch/$document"
+  bash "$here/extract.sh" "$document.md" "$scratch/$document"
+  while IFS=$'\t' read -r block language _ mark; do
+    if [[ $language == sh && $mark != "not run:"* ]]; then cat "$scratch/$document/$block.sh"; fi
+  done <"$scratch/$document/list" >>"$scratch/lines"
+done
+sed -i -E 's/^.*(g4-dump )/\1/; s/ +/ /g' "$scratch/lines"
+# shellcheck disable=SC2016 # the backquotes are those of Markdown
+while IFS=: read -r document words; do
+  words=${words//\`/}
+  if [[ $words =~ ^g4-dump\ ([a-z]+)$ ]]; then
+    if "$G4_DUMP" "${BASH_REMATCH[1]}" --help >/dev/null 2>&1; then continue; fi
+    echo "$document speaks of $words, which g4-dump does not know" >&2
+    missing=1
+  elif ! awk -v words="$words" 'index($0, words) == 1 { found = 1 } END { exit !found }' "$scratch/lines"; then
+    echo "$document speaks of '$words', which is in no block that is run" >&2
+    missing=1
+  fi
+done < <(grep -oE '`g4-dump [^`]*`' README.md docs/guide.md docs/errors.md docs/sim.md | sort --unique)
+
+# Every path that a document names exists, and every link leads to a file.
+# shellcheck disable=SC2016 # the backquotes are those of Markdown
+while IFS=: read -r document path; do
+  path=${path//\`/}
+  if [[ ! -e $path ]]; then
+    echo "$document names $path, which is not there" >&2
+    missing=1
+  fi
+done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|\.ci)(/[A-Za-z0-9_./-]+)?`' \
+  "${documents[@]}" | sort --unique)
+while IFS=: read -r document link; do
+  link=${link#*](}
+  link=${link%%[#)]*}
+  if [[ -n $link && ! -e ${document%/*}/$link ]]; then
+    echo "$document has a link to $link, which is not there" >&2
+    missing=1
+  fi
+done < <(grep -oE '[^[]\]\([A-Za-z0-9_./#-]+\)' "${documents[@]}" | sort --unique)
+
+# And every document that a header, a source or the tool names.
+while read -r path; do
+  if [[ ! -e $path ]]; then
+    echo "$path is not there, and is named by:" >&2
+    grep -rlF "$path" include src tools >&2
+    missing=1
+  fi
+done < <(grep -rhoE 'docs/[A-Za-z0-9_./-]+\.md' include src tools | sort --unique)
+exit "$missing"

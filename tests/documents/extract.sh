@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Takes the blocks out of a document, and makes whole programs of its C++: extract.sh DOCUMENT DIRECTORY
+# Programs are DIRECTORY/block_N.cpp; they are written anew only where they have changed.
+set -euo pipefail
+document=$1
+directory=$2
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+fresh=$(mktemp -d)
+trap 'rm -rf "$fresh"' EXIT
+touch "$fresh/list"
+awk -v out="$fresh" -f "$here/blocks.awk" "$document"
+
+# wrap <wrapper> <fragment>: the wrapper with the fragment in place of its line @fragment@.
+wrap() {
+  if [[ ! -e $1 ]]; then
+    echo "$document names $(basename "$1"), which is no wrapper" >&2
+    exit 1
+  fi
+  sed -e "/@fragment@/ { r $2" -e 'd; }' "$1"
+}
+
+while IFS=$'\t' read -r number language _ mark; do
+  if [[ $mark == "not run:"* ]]; then continue; fi
+  case $language:$mark in
+    cpp:"in "*) wrap "$here/wrappers/${mark#in }.cpp" "$fresh/$number.cpp" >"$fresh/block_$number.cpp" ;;
+    cpp:*) cp "$fresh/$number.cpp" "$fresh/block_$number.cpp" ;;
+    cmake:"in "*) wrap "$here/wrappers/${mark#in }.cmake" "$fresh/$number.cmake" >"$fresh/block_$number.cmake" ;;
+    cmake:*) cp "$fresh/$number.cmake" "$fresh/block_$number.cmake" ;;
+  esac
+done <"$fresh/list"
+
+mkdir -p "$directory"
+for path in "$fresh"/*; do
+  if ! cmp -s "$path" "$directory/${path##*/}"; then cp "$path" "$directory"; fi
+done
+for path in "$directory"/*; do
+  if [[ -f $path && ! -e $fresh/${path##*/} ]]; then rm "$path"; fi
+done

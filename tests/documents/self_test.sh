@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# A document with a mistake does not pass, each kind of mistake; and one without does.
+# Wants G4_DUMP, G4LIDAR_SOURCE_DIR and CXX.
+set -euo pipefail
+here=$G4LIDAR_SOURCE_DIR/tests/documents
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+export DOCUMENT=scratch.md
+fence='```'
+failed=0
+
+# passes: whether the document on standard input is one that is right; its programs are only compiled.
+passes() {
+  rm -rf "$scratch/blocks"
+  cat >"$scratch/document.md"
+  bash "$here/extract.sh" "$scratch/document.md" "$scratch/blocks" || return 1
+  local program
+  for program in "$scratch"/blocks/block_*.cpp; do
+    if [[ -e $program ]]; then "$CXX" -std=c++20 -fsyntax-only "$program" || return 1; fi
+  done
+  bash "$here/check_document.sh" "$scratch/blocks"
+}
+
+# expect <right|wrong> <what it is>: of the document on standard input.
+expect() {
+  local said verdict=right
+  said=$(passes 2>&1) || verdict=wrong
+  if [[ $verdict != "$1" ]]; then
+    printf '%s should be %s, and is %s:\n%s\n' "$2" "$1" "$verdict" "$said" >&2
+    failed=1
+  fi
+}
+
+# block <language> <line>...: a fenced block.
+block() {
+  printf '%s%s\n' "$fence" "$1"
+  printf '%s\n' "${@:2}"
+  printf '%s\n' "$fence"
+}
+
+expect right "an empty document" <<<"Words."
+block sh 'echo one' 'test -d /tmp/' | expect right "command lines that succeed"
+block sh 'echo one' 'false' 'true' | expect wrong "a command line that fails"
+block sh 'g4-dump sim --no-such-option' | expect wrong "an option that is none"
+block sh 'no-such-program' | expect wrong "a program that is none"
+{ echo '<!-- test: exit 3 -->'; block sh '(exit 3)'; } | expect right "a failure that is foreseen"
+{ echo '<!-- test: exit 3 -->'; block sh 'true'; } | expect wrong "a failure that does not come"
+{ echo '<!-- test: not run: it would halt the machine -->'; block sh 'false'; } | expect right "a line with a reason"
+{ echo '<!-- test: not run: -->'; block sh 'false'; } | expect wrong "a line without a reason"
+{ echo '<!-- test: run -->'; block sh 'true'; } | expect wrong "a mark that is none"
+{ echo '<!-- test: until ^C -->'; echo; block sh 'true'; } | expect wrong "a mark with nothing behind it"
+block bash 'true' | expect wrong "a language that is not known"
+block '' 'true' | expect wrong "no language"
+block text 'one' | expect wrong "an output that nobody compares"
+{ block sh 'echo one'; echo '<!-- test: output -->'; block text 'one'; } | expect right "the output"
+{ block sh 'echo one'; echo '<!-- test: output -->'; block text 'two'; } | expect wrong "another output"
+{ block sh 'echo one'; echo '<!-- test: output -->'; block text 'one' 'two'; } | expect wrong "less output"
+{ block sh 'echo 1.5 m'; echo '<!-- test: output, but for numbers -->'; block text '2.75 m'; } \
+  | expect right "the output, but for numbers"
+{ block sh 'echo 1.5 m'; echo '<!-- test: output, but for numbers -->'; block text '2.75 mm'; } \
+  | expect wrong "another output beside the numbers"
+{ echo '<!-- test: file one.txt -->'; block text 'one'; block sh 'grep -q one one.txt'; } | expect right "a file"
+block sh 'g4-dump sim --link /tmp/g4 &' 'test -e /tmp/g4' | expect right "a device in the background"
+block sh 'test -e /dev/ttyUSB0' | expect right "a device"
+block cpp 'int main() {}' | expect right "a program"
+block cpp 'int main() { return }' | expect wrong "a program that does not compile"
+{ echo '<!-- test: in no_such_wrapper -->'; block cpp 'f();'; } | expect wrong "a wrapper that is none"
+{ echo '<!-- test: in project -->'; block cmake 'find_package(no_such REQUIRED)'; } | expect wrong "a package that is none"
+printf '%s\n' '- A list:' "  ${fence}sh" '  true' "  $fence" | expect wrong "an indented fence"
+printf '%s\n' "${fence}sh" 'true' | expect wrong "a block without an end"
+exit "$failed"
