@@ -5,8 +5,8 @@
 # in order and in one scratch directory, and the outputs that are shown are compared; with N the program of
 # that number is run, and its output compared.
 #
-# Programs get a simulated G4 as argument and recorded bytes on standard input, and are asked to end with
-# SIGINT when they have printed enough. In command lines /dev/ttyUSB0 is a simulated G4, and /tmp the
+# Programs get a simulated G4 as argument and recorded bytes on standard input; those that run until ^C are
+# asked to end with SIGINT when they have printed something. In command lines /dev/ttyUSB0 is a simulated G4, and /tmp the
 # scratch directory. What the marks mean is said in CONTRIBUTING.md.
 #
 # Wants G4_DUMP; for command lines PROGRAMS, directories to be found in PATH, and for projects PREFIX, where
@@ -57,7 +57,8 @@ need_g4() {
   await "$g4" || { echo "g4-dump sim gave no device" >&2; exit 1; }
 }
 
-# interrupted <lines> <command>...: runs it until it has printed so many lines, or ends; its code.
+# interrupted <lines> <command>...: runs it until it has printed so many lines, or ends; its code. With no
+# lines it ends by itself.
 interrupted() {
   local lines=$1 pid i code=0
   shift
@@ -65,7 +66,7 @@ interrupted() {
   pid=$!
   for ((i = 0; i < 1200; ++i)); do
     if ! kill -0 "$pid" 2>/dev/null; then break; fi
-    if (($(wc -l <"$scratch/out") >= lines)); then break; fi
+    if ((lines > 0 && $(wc -l <"$scratch/out") >= lines)); then break; fi
     sleep 0.05
   done
   kill -INT -- "-$pid" 2>/dev/null || true
@@ -93,14 +94,12 @@ run_line() {
   if [[ $mark == "until ^C" ]]; then
     interrupted 1 bash -c "$words" </dev/null || code=$?
     if ((code == 130)); then code=0; fi
-    cat "$scratch/out" >>"$scratch/all"
   else
     if [[ $mark == "exit "* ]]; then wanted=${mark#exit }; fi
     set +e
     eval "$words" >"$scratch/out" 2>"$scratch/err" </dev/null
     code=$?
     set -e
-    cat "$scratch/out" >>"$scratch/all"
     # Who reads only the beginning ends the others.
     if [[ $words == *"|"* ]] && ((code == 141)); then code=0; fi
   fi
@@ -114,10 +113,9 @@ run_line() {
   fi
 }
 
-# run_lines <first line> <mark> <file>: each of its command lines.
+# run_lines <first line> <mark> <file>: each of its command lines. What the last one prints is the output.
 run_lines() {
   local at=$1 line words='' first=$1
-  : >"$scratch/all"
   while IFS= read -r line; do
     words+=$line
     if [[ $words == *\\ ]]; then
@@ -129,7 +127,6 @@ run_lines() {
     fi
     at=$((at + 1))
   done <"$3"
-  mv "$scratch/all" "$scratch/out"
 }
 
 # build_project <line> <file>: configures and builds it, with an empty program.
@@ -171,13 +168,16 @@ go_through() {
 
 # run_program: the program of the block `only`; the text that follows is its output.
 run_program() {
-  local program=$1 number language line mark at=0 shown='' how='' lines=1 code=0
+  local program=$1 number language line mark at=0 shown='' how='' lines=0 code=0
   while IFS=$'\t' read -r number language line mark; do
-    if ((number == only)); then at=$line; fi
+    if ((number == only)); then
+      at=$line
+      if [[ $mark == "until ^C" ]]; then lines=1; fi
+    fi
     if ((number == only + 1)) && [[ $language == text && $mark == output* ]]; then
       shown=$blocks/$number.text
       how=$mark
-      lines=$(wc -l <"$shown")
+      if ((lines > 0)); then lines=$(wc -l <"$shown"); fi
     fi
   done <"$blocks/list"
   need_g4

@@ -24,9 +24,9 @@ wrap() {
 while IFS=$'\t' read -r number language _ mark; do
   if [[ $mark == "not run:"* ]]; then continue; fi
   case $language:$mark in
-    cpp:"in "*) wrap "$here/wrappers/${mark#in }.cpp" "$fresh/$number.cpp" >"$fresh/block_$number.cpp" ;;
+    cpp:"in "*) wrap "$here/wrappers/${mark#in }.cpp.in" "$fresh/$number.cpp" >"$fresh/block_$number.cpp" ;;
     cpp:*) cp "$fresh/$number.cpp" "$fresh/block_$number.cpp" ;;
-    cmake:"in "*) wrap "$here/wrappers/${mark#in }.cmake" "$fresh/$number.cmake" >"$fresh/block_$number.cmake" ;;
+    cmake:"in "*) wrap "$here/wrappers/${mark#in }.cmake.in" "$fresh/$number.cmake" >"$fresh/block_$number.cmake" ;;
     cmake:*) cp "$fresh/$number.cmake" "$fresh/block_$number.cmake" ;;
   esac
 done <"$fresh/list"
