@@ -74,9 +74,9 @@ if(G4LIDAR_INSTALL_UDEV_RULE)
 endif()
 
 # ---- pkg-config --------------------------------------------------------------------------------
+# Made while installing, for only then the prefix is known: cmake --install --prefix may give another one.
 cmake_path(APPEND pc_libdir "\${prefix}" "${CMAKE_INSTALL_LIBDIR}")
 cmake_path(APPEND pc_includedir "\${prefix}" "${CMAKE_INSTALL_INCLUDEDIR}")
-set(pc_files)
 # Who links a static library links what it stands on, too.
 set(pc_device_libs)
 set(pc_private_libs)
@@ -87,13 +87,12 @@ if(has_device)
     set(pc_device_libs " -ludev -pthread")
   endif()
 endif()
+set(CMAKE_INSTALL_PREFIX_LATER "@CMAKE_INSTALL_PREFIX@")
 foreach(name g4lidar-core g4lidar)
   if(name STREQUAL "g4lidar-core" OR G4LIDAR_HOSTED)
-    configure_file(
-      "${PROJECT_SOURCE_DIR}/packaging/${name}.pc.in" "${PROJECT_BINARY_DIR}/packaging/${name}.pc"
-      @ONLY
-    )
-    list(APPEND pc_files "${PROJECT_BINARY_DIR}/packaging/${name}.pc")
+    set(pc_file "${PROJECT_BINARY_DIR}/packaging/${name}.pc")
+    configure_file("${PROJECT_SOURCE_DIR}/packaging/${name}.pc.in" "${pc_file}.in" @ONLY)
+    install(CODE "configure_file([==[${pc_file}.in]==] [==[${pc_file}]==] @ONLY)")
+    install(FILES "${pc_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
   endif()
 endforeach()
-install(FILES ${pc_files} DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
