@@ -21,11 +21,17 @@ packages_bench=(
   libbenchmark-dev python3-minimal strace valgrind
 )
 
+# What it takes to build the Debian packages.
+packages_package=(
+  "${packages_demo[@]}"
+  debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev
+)
+
 # And everything that .ci/run does.
 # shellcheck disable=SC2034
 packages_ci=(
-  "${packages_test[@]}" "${packages_bench[@]}"
-  ccache debootstrap git pkg-config shellcheck valgrind
+  "${packages_test[@]}" "${packages_bench[@]}" "${packages_package[@]}"
+  ccache debootstrap git lintian pkg-config shellcheck valgrind
   g++-11 python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
