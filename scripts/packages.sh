@@ -31,7 +31,7 @@ packages_package=(
 # shellcheck disable=SC2034
 packages_ci=(
   "${packages_test[@]}" "${packages_bench[@]}" "${packages_package[@]}"
-  ccache debootstrap git lintian pkg-config shellcheck valgrind
+  ccache debootstrap doxygen git lintian pkg-config shellcheck valgrind
   g++-11 python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static

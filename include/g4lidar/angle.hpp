@@ -110,13 +110,15 @@ class angle {
     return way > 180.0F ? 360.0F - way : way;
   }
 
-  /// Sum, difference and opposite turn, wrapped into [0, 360); exact but for rounding.
+  /// The sum, wrapped into [0, 360); exact but for rounding, as the two below.
   [[nodiscard]] friend constexpr angle operator+(angle a, angle b) noexcept {
     return angle(wrap_once_deg(a.degrees_ + b.degrees_));
   }
+  /// The difference, wrapped.
   [[nodiscard]] friend constexpr angle operator-(angle a, angle b) noexcept {
     return angle(wrap_once_deg(a.degrees_ - b.degrees_));
   }
+  /// The opposite turn, wrapped.
   [[nodiscard]] constexpr angle operator-() const noexcept {
     return angle(wrap_once_deg(-degrees_));
   }

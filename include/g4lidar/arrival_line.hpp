@@ -74,6 +74,7 @@ class line_under_points {
   }
 
  public:
+  /// How many points there can be.
   static constexpr std::size_t capacity = 64;
 
   /// Adds a point to the left of all that are there; up to `capacity` of them.

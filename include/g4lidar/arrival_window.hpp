@@ -24,6 +24,7 @@ struct sampling_line {
   double bound_ns = 0.0;       ///< How far off it is at most, near the newest arrivals.
   double mean_delay_ns = 0.0;  ///< Of the earliest arrivals of each block of samples.
 
+  /// When `sample` was measured.
   [[nodiscard]] constexpr std::int64_t at(std::int64_t sample) const noexcept {
     return anchor.time_ns +
            static_cast<std::int64_t>(static_cast<double>(sample - anchor.sample) * period_ns);
@@ -37,11 +38,14 @@ class arrival_window {
  public:
   /// What is known of the samples' rate, as the relative error of the nominal period.
   struct slopes {
-    double lowest, highest;
+    double lowest;
+    double highest;
   };
 
+  /// An empty one. `nominal_ns` is the period of the samples, within 5 %.
   explicit constexpr arrival_window(double nominal_ns) noexcept : nominal_ns_(nominal_ns) {}
 
+  /// Forgets all arrivals.
   constexpr void clear() noexcept {
     size_ = 0;
     block_ = static_cast<std::int64_t>(first_block_ns / nominal_ns_);

@@ -124,20 +124,23 @@ enum class constant_frequency : std::uint8_t { off = 0, on = 1 };
 template <class Setting>
 [[nodiscard]] constexpr std::optional<Setting> reply_byte(std::uint8_t value) noexcept;
 
+/// The same of the one setting that has three values.
 template <>
 constexpr std::optional<ranging_frequency> reply_byte(std::uint8_t value) noexcept {
   if (value > 2) return std::nullopt;
   return static_cast<ranging_frequency>(value);
 }
 
+/// The same of those that have two.
 template <class Setting>
 constexpr std::optional<Setting> reply_byte(std::uint8_t value) noexcept {
   if (value > 1) return std::nullopt;
   return static_cast<Setting>(value);
 }
 
-/// The scan frequencies that a G4 can be set to, in 0.01 Hz.
+/// The lowest scan frequency that a G4 can be set to, in 0.01 Hz.
 inline constexpr std::uint16_t min_scan_frequency_chz = 500;
+/// The highest scan frequency that a G4 can be set to, in 0.01 Hz.
 inline constexpr std::uint16_t max_scan_frequency_chz = 1200;
 
 }  // namespace g4lidar

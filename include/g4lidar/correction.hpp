@@ -20,8 +20,9 @@ namespace g4lidar {
 // All forms take the sample as it came (quarters of a millimetre) and give degrees to be added. A
 // sample of 0 is no range and has the correction 0. (protocol: Point packets, second level)
 
-/// The two lengths of the correction, in millimetres.
+/// How far the laser is from the centre, in millimetres. (protocol: Point packets)
 inline constexpr double correction_offset_mm = 21.8;
+/// The range at which there is no correction, in millimetres.
 inline constexpr double correction_zero_mm = 155.3;
 
 /// The correction of a target infinitely far away, in degrees: atan(-21.8 / 155.3).
@@ -58,6 +59,7 @@ inline constexpr double far_correction_deg = -7.9905962679645856;
 /// The formula in double precision. *Pure.* For reference, tests and tables; about 10 ns a sample
 /// on a desktop processor.
 struct exact_correction {
+  /// Of a sample as it came, in degrees.
   [[nodiscard]] constexpr double operator()(std::uint16_t raw) const noexcept {
     if (raw == 0) return 0.0;
     const double range_mm = raw / 4.0;
@@ -74,9 +76,13 @@ struct compact_correction {
   // tangent of the centre. All corrections lie within 48.7 degrees of this centre, so one polynomial
   // does for them all; and x being 87.2 / raw - 21.8 / 155.3, the new fraction is one of two linear
   // functions of the sample, scaled here so that the upper one is zero_raw - raw.
+  /// The middle of all corrections, and the functions of the sample, see above.
   static constexpr float centre_deg = 40.675655774F;
+  /// The sample at which the upper function is 0.
   static constexpr float zero_raw = 87.22004292F;
+  /// The lower function at a sample of 0.
   static constexpr float below_0 = 74.95661986F;
+  /// And its slope.
   static constexpr float below_1 = 0.8795656197F;
 
   /// atan(t) / t in degrees as a polynomial in t * t, for |t| <= 1.14: t times it is within 2e-6
@@ -85,6 +91,7 @@ struct compact_correction {
       57.2957485712F,  -19.0970140142F, 11.4353011874F,   -8.01804181227F, 5.70921625447F,
       -3.59175127002F, 1.71076904796F,  -0.515605582546F, 0.0713759217089F};
 
+  /// Of a sample as it came, in degrees.
   [[nodiscard]] constexpr float operator()(std::uint16_t raw) const noexcept {
     const auto whole = static_cast<std::int32_t>(raw);
     const auto sample = static_cast<float>(whole);
@@ -110,12 +117,14 @@ struct compact_correction {
 /// that *any thread* reads it. Within 4e-6 degrees of the exact form.
 class table_correction {
  public:
+  /// Fills the table.
   constexpr table_correction() noexcept {
     for (std::size_t raw = 0; raw < degrees_.size(); ++raw) {
       degrees_[raw] = static_cast<float>(exact_correction{}(static_cast<std::uint16_t>(raw)));
     }
   }
 
+  /// Of a sample as it came, in degrees.
   [[nodiscard]] constexpr float operator()(std::uint16_t raw) const noexcept {
     return degrees_[raw];
   }

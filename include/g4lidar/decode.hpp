@@ -62,6 +62,7 @@ struct first_level_angles {
   Real first;
   Real step;
 
+  /// Those of `packet`.
   explicit constexpr first_level_angles(packet_view packet) noexcept {
     const int begin = packet.first_angle_64ths();
     const int way = packet.span_64ths();

@@ -35,6 +35,7 @@ enum class talk_state : std::uint8_t {
 /// One act at a time, each with an end in bounded time. *Single thread.* session has the table.
 class device_talk {
  public:
+  /// At rest, with these times.
   explicit constexpr device_talk(const session_times& times) noexcept : times_(times) {}
 
   /// Tells the device to stop and waits for silence.
@@ -48,14 +49,17 @@ class device_talk {
     question_.ask(code, is_foretold);
     send_question(now_ns);
   }
+  /// Clears the line, and asks the same question again.
   constexpr void clear(std::int64_t now_ns) noexcept {
     question_.clear();
     send_question(now_ns);
   }
+  /// Starts the scan: ends with running or not_started.
   constexpr void start(std::int64_t now_ns) noexcept {
     send(command::start);
     enter(act::starting, now_ns + times_.start_ns);
   }
+  /// Restarts the device: ends with restarted or silent.
   constexpr void restart(std::int64_t now_ns) noexcept {
     is_old_ = false;
     boot_until_ns_ = now_ns + times_.boot_ns;
@@ -69,6 +73,7 @@ class device_talk {
     queued_ = 1;
     fetched_ = 0;
   }
+  /// Sends both forms of a stop, without waiting for anything.
   constexpr void send_stop() noexcept {
     queue_ = {command::forced_stop, command::stop};
     queued_ = 2;
@@ -110,6 +115,7 @@ class device_talk {
     return talk_state::going_on;
   }
 
+  /// When look() is due, whatever comes; the highest value where it is not.
   [[nodiscard]] constexpr std::int64_t next_look_ns() const noexcept {
     switch (act_) {
       case act::none:
@@ -125,6 +131,7 @@ class device_talk {
     return deadline_ns_;
   }
 
+  /// The next command to be written to the line, each once; nothing where there is none.
   [[nodiscard]] constexpr std::optional<std::array<std::uint8_t, 2>> to_send() noexcept {
     if (!is_unsent()) return std::nullopt;
     return encode(queue_[fetched_++]);
@@ -132,9 +139,13 @@ class device_talk {
 
   /// Whether a command has not been fetched yet: what comes now is no answer to it.
   [[nodiscard]] constexpr bool is_unsent() const noexcept { return fetched_ != queued_; }
+  /// Whether no act is under way.
   [[nodiscard]] constexpr bool is_at_rest() const noexcept { return act_ == act::none; }
+  /// Whether it waits for silence.
   [[nodiscard]] constexpr bool is_draining() const noexcept { return act_ == act::draining; }
+  /// What is asked, or was last.
   [[nodiscard]] constexpr pending_question& question() noexcept { return question_; }
+  /// As they were given.
   [[nodiscard]] constexpr const session_times& times() const noexcept { return times_; }
 
  private:

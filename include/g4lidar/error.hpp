@@ -66,7 +66,9 @@ class G4LIDAR_API error {
   /// `subject` is what it is about (a path, an option and its value); cut at 95 bytes.
   error(task doing, problem what, std::string_view subject = {}, int system_errno = 0) noexcept;
 
+  /// What was being done.
   [[nodiscard]] g4lidar::task doing() const noexcept { return doing_; }
+  /// What went wrong.
   [[nodiscard]] problem what() const noexcept { return what_; }
   /// The system's own error number, or 0.
   [[nodiscard]] int system_errno() const noexcept { return errno_; }
@@ -95,6 +97,7 @@ class G4LIDAR_API error {
 
 /// The words of the tools and documents: "permission", "no_port". They live for ever.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(problem what) noexcept;
+/// The same: "opening", "reading". They live for ever.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(task doing) noexcept;
 
 /// A value, or the error that there is in its place.

@@ -65,6 +65,7 @@ struct lidar_options {
 
 /// Something that happened by itself.
 struct lidar_event {
+  /// What it can be; docs/errors.md says what to do about each.
   enum class kind : std::uint8_t {
     lost,                 ///< The stream broke off; `reason` says why.
     reconnected,          ///< The same device is there again, set and started as before.
@@ -117,6 +118,7 @@ using lidar_ring = point_ring<16384>;
 /// The motor is stopped by stop(), close() and destruction. Signals are the application's.
 class G4LIDAR_API lidar {
  public:
+  /// In which times are given to it.
   using milliseconds = std::chrono::milliseconds;
 
   /// Opens the device and learns who it is. A device that is found scanning is stopped first. About
@@ -186,7 +188,9 @@ class G4LIDAR_API lidar {
   [[nodiscard]] const device_information& information() const noexcept;
   /// The line it is on now: "/dev/ttyUSB0". Good until the next call of anything but counts().
   [[nodiscard]] std::string_view name() const noexcept;
+  /// Whether it was started and not stopped; while it is lost: no.
   [[nodiscard]] bool is_scanning() const noexcept;
+  /// All counts as they are now.
   [[nodiscard]] lidar_counts counts() const noexcept;
   /// What happened by itself since the last call, the oldest first; nothing where nothing did.
   [[nodiscard]] std::optional<lidar_event> next_event() noexcept;

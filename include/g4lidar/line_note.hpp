@@ -18,6 +18,7 @@ namespace g4lidar {
 /// same places; so the same points come out. A place is told by what had been made of the last reading
 /// by then: `events` were taken from it, and `unparsed` of its bytes were left.
 struct line_note {
+  /// What can happen on a line.
   enum class kind : std::uint8_t {
     opened,  ///< The line was opened, the first time or again: `line`, `baud`.
     closed,  ///< It was given free, or it broke off: `reason`.

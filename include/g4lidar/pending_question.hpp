@@ -70,6 +70,7 @@ class pending_question {
     ask_known();
   }
 
+  /// A response has come while this is pending.
   [[nodiscard]] constexpr question_state take(const response_view& heard) noexcept {
     return is_clearing_ ? take_known(heard) : take_answer(heard);
   }
@@ -96,8 +97,11 @@ class pending_question {
   /// Another request begins: the device is taken for a fast one again.
   constexpr void be_quick() noexcept { is_slow_ = false; }
 
+  /// What is asked.
   [[nodiscard]] constexpr command code() const noexcept { return code_; }
+  /// What is to be sent for it: that, or what clears the line.
   [[nodiscard]] constexpr command code_to_send() const noexcept { return sent_; }
+  /// Whether the line is being cleared.
   [[nodiscard]] constexpr bool is_clearing() const noexcept { return is_clearing_; }
   /// How long to wait, in times of the usual: after a loss the device may be a slow one.
   [[nodiscard]] constexpr int patience() const noexcept {

@@ -28,6 +28,7 @@ namespace g4lidar {
 template <class Word>
 class published_count {
  public:
+  /// Begins at `value`.
   explicit constexpr published_count(std::uint64_t value) noexcept
       : high_first_(high_of(value)), low_(static_cast<Word>(value)), high_last_(high_of(value)) {}
 

@@ -78,9 +78,10 @@ class G4LIDAR_API recording_writer {
   /// As close().
   ~recording_writer();
 
-  /// Bytes as they were read together, or sent, and when: nanoseconds of the line's clock. The wall
+  /// Bytes as they were read together, and when: nanoseconds of the line's clock. The wall
   /// clock is read here, but see set_wall_clock().
   void from_device(bytes data, std::int64_t time_ns) noexcept;
+  /// The same for bytes that were sent.
   void to_device(bytes data, std::int64_t time_ns) noexcept;
   /// Anything else that happened; `sent` is to_device().
   void note(const line_note& what) noexcept;
@@ -101,6 +102,7 @@ class G4LIDAR_API recording_writer {
 
   /// Why something could not be written, once for each time that this began.
   [[nodiscard]] std::optional<error> take_error() noexcept;
+  /// All counts as they are now.
   [[nodiscard]] recording_counts counts() const noexcept;
   /// Of everything so far, in all files.
   [[nodiscard]] recorded_digest digest() const noexcept;

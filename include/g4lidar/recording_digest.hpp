@@ -20,6 +20,7 @@ enum class direction : std::uint8_t { from_device, to_device };
 /// were cut. *Single thread, never allocates, never waits.*
 class payload_digest {
  public:
+  /// Bytes that went that way.
   constexpr void add(direction way, bytes data) noexcept {
     if (data.empty()) return;
     if (is_first_ || way != way_) mix(0x100U + static_cast<unsigned>(way));
@@ -27,6 +28,7 @@ class payload_digest {
     way_ = way;
     for (const std::uint8_t byte : data) mix(byte);
   }
+  /// The digest of all so far.
   [[nodiscard]] constexpr std::uint64_t value() const noexcept { return hash_; }
 
  private:
@@ -41,6 +43,7 @@ class payload_digest {
 /// The last bits of angles and times depend on the processor: see computed_with().
 class point_digest {
  public:
+  /// Points, in order.
   constexpr void add(std::span<const point> points) noexcept {
     for (const point& p : points) {
       mix(std::bit_cast<std::uint32_t>(p.angle_deg));
@@ -52,6 +55,7 @@ class point_digest {
     }
     count_ += points.size();
   }
+  /// The digest of all so far.
   [[nodiscard]] constexpr std::uint64_t value() const noexcept { return hash_; }
   /// How many points.
   [[nodiscard]] constexpr std::uint64_t count() const noexcept { return count_; }

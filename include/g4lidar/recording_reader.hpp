@@ -22,6 +22,7 @@ namespace g4lidar {
 
 /// One thing that was recorded. A view, good until the next call of anything of its reader.
 struct recorded_item {
+  /// What is recorded.
   enum class kind : std::uint8_t {
     from_device,  ///< `data` was read together.
     to_device,    ///< `data` was sent.
@@ -40,6 +41,7 @@ struct recording_damage {
   std::uint64_t chunks_lost =
       0;                    ///< Chunks that were there, and whose contents are not as they were.
   bool is_cut_off = false;  ///< It has no proper end: its program was killed, or the disk full.
+  /// Whether anything is.
   [[nodiscard]] bool any() const noexcept {
     return bytes_skipped > 0 || chunks_lost > 0 || is_cut_off;
   }
@@ -75,13 +77,15 @@ class G4LIDAR_API recording_reader {
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept;
   /// Of the whole recording up to the end of this file; only where it was closed.
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept;
-  /// When the first thing was recorded, and the last one (0 where the file was cut off).
+  /// When the first thing was recorded.
   [[nodiscard]] std::int64_t first_ns() const noexcept;
+  /// When the last thing was recorded; 0 where the file was cut off.
   [[nodiscard]] std::int64_t last_ns() const noexcept;
   /// What is wrong with as much as has been read.
   [[nodiscard]] const recording_damage& damage() const noexcept;
-  /// How far in the file, and how long it is: for a progress bar.
+  /// How far in the file it is: for a progress bar.
   [[nodiscard]] std::uint64_t position() const noexcept;
+  /// How long the file is.
   [[nodiscard]] std::uint64_t size() const noexcept;
 
  private:

@@ -53,17 +53,23 @@ struct request {
 
 namespace requests {
 
+/// Answered with a device_information.
 [[nodiscard]] constexpr request device_info() noexcept { return {ask::device_info}; }
-/// Asks `91`, and `92` where that is not answered.
+/// Answered with a health. Asks `91`, and `92` where that is not answered.
 [[nodiscard]] constexpr request health() noexcept { return {ask::health}; }
+/// Whether the motor rests when idle: a low_power.
 [[nodiscard]] constexpr request get_low_power() noexcept { return {ask::get_low_power}; }
+/// Sets that.
 [[nodiscard]] constexpr request set(low_power wanted) noexcept {
   return {ask::set_low_power, static_cast<std::uint16_t>(wanted)};
 }
+/// Which way it turns: a motor_direction. Old firmware may not answer.
 [[nodiscard]] constexpr request get_direction() noexcept { return {ask::get_direction}; }
+/// Sets that.
 [[nodiscard]] constexpr request set(motor_direction wanted) noexcept {
   return {ask::set_direction, static_cast<std::uint16_t>(wanted)};
 }
+/// The scan frequency that is set, not the one that is measured: a scan_frequency.
 [[nodiscard]] constexpr request get_scan_frequency() noexcept { return {ask::get_scan_frequency}; }
 /// One step. Answered with the frequency that is set afterwards, which at the end of the device's
 /// range is the one from before.
@@ -75,9 +81,11 @@ namespace requests {
 [[nodiscard]] constexpr request set(scan_frequency wanted) noexcept {
   return {ask::set_scan_frequency, wanted.chz};
 }
+/// Sets whether it holds its frequency, which cannot be asked for.
 [[nodiscard]] constexpr request set(constant_frequency wanted) noexcept {
   return {ask::set_constant_frequency, static_cast<std::uint16_t>(wanted)};
 }
+/// Samples a second: a ranging_frequency.
 [[nodiscard]] constexpr request get_ranging() noexcept { return {ask::get_ranging}; }
 /// Steps round until the wanted ranging frequency is set.
 [[nodiscard]] constexpr request set(ranging_frequency wanted) noexcept {

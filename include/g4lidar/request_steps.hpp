@@ -13,6 +13,7 @@ namespace g4lidar {
 
 /// What a request wants next.
 struct request_step {
+  /// What is to be done.
   enum class action : std::uint8_t {
     ask,      ///< Send `code` and wait for its answer.
     doubt,    ///< That answer cannot be: clear the line, then say lost().
@@ -36,8 +37,10 @@ struct request_step {
 class request_steps {
  public:
   constexpr request_steps() noexcept = default;
+  /// Those of `wanted`.
   explicit constexpr request_steps(const request& wanted) noexcept : wanted_(wanted) {}
 
+  /// The first one.
   [[nodiscard]] constexpr request_step first() const noexcept { return ask(question()); }
 
   /// `heard` can_answer() the command last asked.

@@ -43,12 +43,14 @@ class scan_watch {
  public:
   constexpr scan_watch() noexcept = default;
 
-  /// A start has been sent; the scan runs, by its header or a packet; a packet has come.
+  /// A start has been sent.
   constexpr void start_sent(std::int64_t now_ns) noexcept { last_start_ns_ = now_ns; }
+  /// The scan runs, by its header or a first packet.
   constexpr void runs(std::int64_t now_ns) noexcept {
     since_ns_ = last_packet_ns_ = now_ns;
     has_packets_ = false;
   }
+  /// A packet has come.
   constexpr void packet(std::int64_t now_ns) noexcept {
     last_packet_ns_ = std::max(last_packet_ns_, now_ns);
     has_packets_ = true;
@@ -60,15 +62,18 @@ class scan_watch {
   [[nodiscard]] constexpr std::optional<power_down_protection> protection() const noexcept {
     return protection_;
   }
+  /// It has been set, or nothing is known of it any more.
   constexpr void set_protection(std::optional<power_down_protection> now) noexcept {
     protection_ = now;
   }
 
+  /// When look() is due, if no packet comes.
   [[nodiscard]] constexpr std::int64_t next_look_ns(const session_times& times) const noexcept {
     const std::int64_t silent = last_packet_ns_ + patience_ns(times);
     return is_protected() ? std::min(silent, last_start_ns_ + times.feed_ns) : silent;
   }
 
+  /// What is to be done now.
   [[nodiscard]] constexpr scan_need look(std::int64_t now_ns, const session_times& times) noexcept {
     // What a scan ended by, before it was restarted, is forgotten when it has lived long enough.
     if (last_packet_ns_ - since_ns_ >= 2 * times.protected_ns) restarts_ = 0;

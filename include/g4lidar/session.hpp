@@ -49,6 +49,7 @@ namespace g4lidar {
 /// (protocol: Commands; The stream)
 class session {
  public:
+  /// At rest; nothing is known of the device.
   explicit constexpr session(const session_times& times = {}) noexcept : talk_(times) {}
 
   /// Begins a request, or says why not. The first one after the line was opened stops the device,

@@ -61,8 +61,9 @@ class G4LIDAR_API device {
 
   /// Whether the host sees the port.
   [[nodiscard]] bool is_plugged(std::int64_t now_ns) noexcept;
-  /// Pulls the plug, or puts it in again, whatever the faults say of it meanwhile.
+  /// Pulls the plug, whatever the faults say of it meanwhile.
   void unplug(std::int64_t now_ns) noexcept;
+  /// Puts the plug in again.
   void replug(std::int64_t now_ns) noexcept;
   /// When is_plugged() may next change by a fault.
   [[nodiscard]] std::int64_t next_plug_ns() const noexcept;
@@ -72,6 +73,7 @@ class G4LIDAR_API device {
 
   // How it stood when it was last looked at (read(), write(), available(), is_plugged()).
 
+  /// It has been started, and not stopped.
   [[nodiscard]] bool is_scanning() const noexcept;
   /// It has power and has booted.
   [[nodiscard]] bool is_up() const noexcept;
@@ -82,12 +84,15 @@ class G4LIDAR_API device {
   /// It is up and idle, nothing of it is on its way to the host, no command is on its way, and the
   /// motor is off unless low power was switched off.
   [[nodiscard]] bool is_idle_and_silent(std::int64_t now_ns) const noexcept;
+  /// What commands have set; good as long as this.
   [[nodiscard]] const device_settings& settings() const noexcept;
 
   /// The commands that have come since clear_log(), the oldest first; good until the next call of
   /// anything. When it is full, further ones are only counted.
   [[nodiscard]] std::span<const asked> log() const noexcept;
+  /// How many commands did not fit into the log.
   [[nodiscard]] std::uint64_t log_missed() const noexcept;
+  /// Forgets them all.
   void clear_log() noexcept;
 
   /// Takes the oldest samples that have gone down the line and were not taken yet. A packet's are
@@ -96,8 +101,9 @@ class G4LIDAR_API device {
   /// Samples that nobody took before there were too many.
   [[nodiscard]] std::uint64_t truth_missed() const noexcept;
 
-  /// Bytes that reached the host or were lost to its slowness, and those lost.
+  /// Bytes that reached the host or were lost to its slowness.
   [[nodiscard]] std::uint64_t bytes_delivered() const noexcept;
+  /// Those of them that were lost.
   [[nodiscard]] std::uint64_t bytes_overflowed() const noexcept;
 
  private:

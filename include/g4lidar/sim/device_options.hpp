@@ -44,6 +44,7 @@ struct device_options {
   /// How it measures, and the seed of all that is random here. Its scan and ranging frequency are
   /// the device's own defaults; `start_deg` is not used: each start has a random angle.
   scanner_options scanner;
+  /// What it answers to 90.
   device_information info{
       model_g4,
       3,

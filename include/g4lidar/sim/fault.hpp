@@ -63,7 +63,7 @@ struct fault_error {
   std::string message;
 };
 
-/// The fault that `text` describes: KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]], for instance
+/// The fault that `text` describes, `KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]]`, for instance
 /// "unplug@5s+2s", "flip*0.001", "batch=16ms@1s", "burst=30*0.01%@500ms+1s". Times are decimal
 /// numbers with ns, us, ms, s or min behind them (a bare 0 needs none); docs/sim.md has it all.
 /// Independent of the locale. Throws nothing but std::bad_alloc.

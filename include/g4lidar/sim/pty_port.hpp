@@ -33,6 +33,7 @@ class G4LIDAR_API pty_port {
   [[nodiscard]] const std::string& path() const noexcept;
   /// The time of the device.
   [[nodiscard]] std::int64_t now_ns() const noexcept;
+  /// The device; good as long as this.
   [[nodiscard]] device& twin() noexcept;
   /// How many bytes were lost since no program had read those before them: a pseudo-terminal holds
   /// 4 KiB at least, and some 16 KiB as a rule.
@@ -46,6 +47,7 @@ class G4LIDAR_API pty_port {
     int line;
     int visitors;
   };
+  /// Those of now; a replug makes others.
   [[nodiscard]] handles native_handles() const noexcept;
 
  private:
@@ -62,6 +64,7 @@ class G4LIDAR_API pty_port {
 /// One device served by a thread of its own, for tests of programs that want a path.
 class G4LIDAR_API background_pty {
  public:
+  /// As pty_port::open(), and starts the thread. Fails with busy or system.
   [[nodiscard]] static result<background_pty> open(device twin, const std::string& link = {});
   background_pty(background_pty&&) noexcept;
   background_pty& operator=(background_pty&&) noexcept;

@@ -25,6 +25,7 @@ class virtual_clock {
   /// end, too; 0: no time passes but by waiting.
   explicit virtual_clock(std::int64_t tick_ns = 1'000) noexcept : tick_ns_(tick_ns) {}
 
+  /// The time.
   [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
   /// It never goes back.
   void advance_to(std::int64_t at_ns) noexcept { now_ns_ = at_ns > now_ns_ ? at_ns : now_ns_; }
@@ -74,6 +75,7 @@ class G4LIDAR_API virtual_connector final : public connector {
   /// The devices and the clock are the caller's and outlive it.
   virtual_connector(std::vector<device*> twins, virtual_clock& clock)
       : twins_(std::move(twins)), clock_(&clock) {}
+  /// The same for one device.
   virtual_connector(device& twin, virtual_clock& clock)
       : virtual_connector(std::vector<device*>{&twin}, clock) {}
 

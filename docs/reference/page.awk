@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+# Makes a page of the reference out of a document: each heading gets the name that links use, in every
+# document another one, and links to a heading use those.
+#   awk -f page.awk DOCUMENT
+
+function page_of(path) {
+  if (path ~ /design\/README\.md$/ || (path == "README.md" && FILENAME ~ /design\//)) return "design"
+  sub(/^.*\//, "", path)
+  sub(/\.md$/, "", path)
+  return path == "README" ? "mainpage" : tolower(path)
+}
+
+# As in "When it is unplugged" -> "when-it-is-unplugged".
+function name_of(heading) {
+  heading = tolower(heading)
+  gsub(/[^a-z0-9_ -]/, "", heading)
+  gsub(/ /, "-", heading)
+  return heading
+}
+
+# Links [words](file.md#heading) and [words](#heading).
+function link(line,    done, place, file) {
+  while (match(line, /\]\([A-Za-z0-9_.\/]*#[A-Za-z0-9_-]+\)/)) {
+    place = substr(line, RSTART + 2, RLENGTH - 3)
+    file = substr(place, 1, index(place, "#") - 1)
+    sub(/^.*#/, "", place)
+    if (file == "") file = FILENAME
+    done = done substr(line, 1, RSTART + 1) "#" page_of(file) "_" place ")"
+    line = substr(line, RSTART + RLENGTH)
+  }
+  return done line
+}
+
+/^```/ { is_code = !is_code }
+is_code { print; next }
+/^#+ / {
+  id = page_of(FILENAME) (titles++ ? "_" name_of(substr($0, index($0, " ") + 1)) : "")
+  print $0 " {#" id "}"
+  next
+}
+{ print link($0) }
