@@ -6,7 +6,7 @@
 # What it takes to build the library and g4-dump.
 packages_demo=(
   cmake g++ ninja-build pkg-config libudev-dev libexpected-dev
-  libcli11-dev libfmt-dev nlohmann-json3-dev
+  libcli11-dev libfmt-dev libzstd-dev nlohmann-json3-dev
 )
 
 # And the tests.

@@ -14,12 +14,12 @@ namespace g4lidar {
 /// Settings that were not asked for are not known.
 struct recorded_device {
   device_information information{};
-  std::optional<ranging_frequency> ranging;
-  std::optional<scan_frequency> frequency;
-  std::optional<motor_direction> motor;
-  std::optional<constant_frequency> constant;
-  std::optional<low_power> idle;
-  std::optional<power_down_protection> protection;
+  std::optional<ranging_frequency> ranging{};
+  std::optional<scan_frequency> frequency{};
+  std::optional<motor_direction> motor{};
+  std::optional<constant_frequency> constant{};
+  std::optional<low_power> idle{};
+  std::optional<power_down_protection> protection{};
 };
 
 }  // namespace g4lidar

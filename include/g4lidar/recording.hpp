@@ -90,7 +90,7 @@ class G4LIDAR_API recording_writer {
   /// Points as they were delivered, in order: only their digest is kept.
   void points(std::span<const point> delivered) noexcept;
   /// Who it is and how it is set, for the metadata of this file and of those that follow.
-  void device(const recorded_device& known);
+  void device(const recorded_device& known) noexcept;
   /// From here on the wall clock is `ahead_ns` ahead of the line's, for lines with a time of their own:
   /// simulations and recordings.
   void set_wall_clock(std::int64_t ahead_ns) noexcept;

@@ -68,7 +68,8 @@ class point_digest {
   std::uint64_t count_ = 0;
 };
 
-/// The digests of a recording, kept in it when it is closed.
+/// The digests of a recording, kept in it when it is closed: of the payload of each file by itself, and
+/// of the points where there is one file only.
 struct recorded_digest {
   std::uint64_t payload = 0;
   std::uint64_t points = 0;

@@ -75,7 +75,7 @@ class G4LIDAR_API recording_reader {
   /// What is known of the lidar: from the metadata, or what it said first. As far as has been read,
   /// where the file was cut off.
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept;
-  /// Of the whole recording up to the end of this file; only where it was closed.
+  /// Of this file; only where it was closed.
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept;
   /// When the first thing was recorded.
   [[nodiscard]] std::int64_t first_ns() const noexcept;

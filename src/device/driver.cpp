@@ -88,11 +88,15 @@ result<void> lidar::driver::receive(std::int64_t deadline_ns) {
   // Who is woken before each call must get on, too: what is there is taken.
   if (is_woken()) got = line_->read(buffer_, at_once);
   if (is_woken()) return {};  // step() knows
-  if (!got) return tl::unexpected(got.error());
+  if (!got) {
+    play_notes(true);
+    return tl::unexpected(got.error());
+  }
   read_until_ns_ = got->count == 0 ? now_ns() : got->arrival_ns;
   if (got->count == 0) return {};
   input_ = bytes(buffer_).first(got->count);
   arrival_ns_ = last_bytes_ns_ = got->arrival_ns;
+  events_of_reading_ = 0;
   pace_.came(got->count, got->arrival_ns);
   return {};
 }
@@ -161,11 +165,17 @@ result<void> lidar::driver::look_if_due() {
 /// the next answer is taken for its end.
 void lidar::driver::end_a_silent_frame() {
   if (!is_waiting_for_answer() || parser_.held() == 0) return;
-  if (now_ns() - last_bytes_ns_ >= frame_pause_ns) end_of_bytes();
+  if (now_ns() - last_bytes_ns_ >= frame_pause_ns) cut_off();  // the input is empty
 }
 
 bool lidar::driver::is_waiting_for_answer() const noexcept {
-  return session_.is_busy() || !session_.is_scanning();
+  return !is_replay_ && (session_.is_busy() || !session_.is_scanning());
+}
+
+void lidar::driver::cut_off() {
+  note(line_note::kind::cut);
+  input_ = {};
+  end_of_bytes();
 }
 
 void lidar::driver::end_of_bytes() {
@@ -177,12 +187,14 @@ void lidar::driver::end_of_bytes() {
 bool lidar::driver::digest() {
   if (scan_) return true;
   while (!keep_scan()) {
+    play_notes(false);
     const std::size_t before = input_.size();
     const auto found = parser_.next(input_);
     bytes_ += before - input_.size();
     if (!found) {
-      if (before > 0 && stage_ == stage::scanning) stream_.seen(parser_.held(), arrival_ns_);
-      return false;
+      if (before > 0 && delivers_) stream_.seen(parser_.held(), arrival_ns_);
+      play_notes(true);
+      return scan_.has_value();
     }
     take(*found);
   }
@@ -199,7 +211,10 @@ bool lidar::driver::keep_scan() {
 void lidar::driver::take(const event& found) {
   stream_counts_.add(found);
   if (line_ == nullptr || line_->answers()) session_.take(found, arrival_ns_);
-  if (!is_delivering()) return;
+  play_notes(false);
+  const bool is_delivered = is_delivering();
+  ++events_of_reading_;
+  if (!is_delivered) return;
   if (const auto* packet = std::get_if<packet_view>(&found)) {
     drop_scan();  // at the end of the bytes one may still wait, where the points of this go
     stream_.packet(*packet, arrival_ns_, input_.size());
@@ -212,13 +227,19 @@ void lidar::driver::take(const event& found) {
 /// A scan that goes on after a break, for whatever reason, begins anew.
 bool lidar::driver::is_delivering() {
   const bool was_delivering = std::exchange(delivers_, delivers_points());
-  if (delivers_ && !was_delivering) stream_.begin(samples_per_second_);
+  if (delivers_ && !was_delivering) begin_points();
+  if (!delivers_ && was_delivering) note(line_note::kind::held);
   return delivers_;
+}
+
+void lidar::driver::begin_points() {
+  stream_.begin(samples_per_second_);
+  note(line_note::kind::begun);
 }
 
 /// Packets of a device that is being stopped are nobody's.
 bool lidar::driver::delivers_points() const noexcept {
-  if (line_ != nullptr && !line_->answers()) return stage_ == stage::scanning;
+  if (line_ != nullptr && !line_->answers()) return stage_ == stage::scanning && is_played_;
   return stage_ >= stage::preparing && session_.is_scanning();
 }
 
@@ -244,7 +265,7 @@ result<void> lidar::driver::take_notice() {
     case notice::stalled:
       return tl::unexpected(fallen_silent());
   }
-  stream_.begin(samples_per_second_);
+  begin_points();
   return {};
 }
 
@@ -300,8 +321,7 @@ result<void> lidar::driver::stop() {
     if (auto stopped = run_plan(); !stopped) return stopped;
     stops_ = false;
   }
-  input_ = {};
-  end_of_bytes();
+  cut_off();
   scan_.reset();
   stream_.end();
   stage_ = stage::idle;

@@ -97,12 +97,22 @@ class G4LIDAR_HIDDEN lidar::driver {
   bool keep_scan();
   void drop_scan() noexcept;
   void take(const event& found);
+  void cut_off();
   void end_of_bytes();
   void end_a_silent_frame();
   [[nodiscard]] bool is_waiting_for_answer() const noexcept;
   bool is_delivering();
+  void begin_points();
   [[nodiscard]] bool delivers_points() const noexcept;
   [[nodiscard]] result<void> can_read() const noexcept;
+
+  // Recordings.
+  void note(line_note::kind what);
+  void begin_replay();
+  [[nodiscard]] bool is_here(const line_note& what) const noexcept;
+  void play_notes(bool all);
+  void play(const line_note& what);
+  void play_state(const line_note& what);
 
   // The plan.
   void plan(request wanted, bool needed);
@@ -168,6 +178,12 @@ class G4LIDAR_HIDDEN lidar::driver {
   bool delivers_ = false;                  // what comes are points of the scan
   bool has_outcome_ = false;               // one has been taken in this round
   std::uint32_t samples_per_second_ = 9000;
+
+  std::uint32_t events_of_reading_ = 0;  // taken since the last reading
+  bool is_replay_ = false;               // the line is a recording
+  bool is_played_ = true;                // its points were delivered when it was recorded
+  bool is_replay_lost_ = false;          // its line had broken off
+  std::optional<line_note> noted_;       // and not come to yet
 
   std::int64_t last_bytes_ns_ = 0;
   std::int64_t read_until_ns_ = 0;  // what had come by then has been read

@@ -26,10 +26,12 @@ result<void> lidar::driver::connect() {
   planned_ = plan_at_ = 0;
   stage_ = stage::identifying;
   if (line_->answers()) {
+    note(line_note::kind::held);
     plan(requests::device_info(), true);
   } else {
     opened_ = true;
     stage_ = stage::idle;
+    begin_replay();
   }
   return {};
 }
@@ -45,10 +47,9 @@ std::unique_ptr<transport> lidar::driver::exchange_line(std::unique_ptr<transpor
 }
 
 void lidar::driver::release_line() noexcept {
+  cut_off();  // the line is to know
   ready_.follow(-1);
   exchange_line(nullptr).reset();
-  input_ = {};
-  end_of_bytes();
   planned_ = plan_at_ = 0;
   setting_up_again_ = false;
 }
@@ -64,6 +65,7 @@ void lidar::driver::leave_stopped(const error& why) noexcept {
 /// The line has broken, or is of no use. Gives an error if that is the end.
 result<void> lidar::driver::hang_up(const error& broken) {
   const bool was_up = stage_ > stage::identifying;
+  const bool was_live = line_ == nullptr || line_->answers();
   const error why = spoilt(broken);
   if (was_up) leave_stopped(why);
   release_line();
@@ -72,13 +74,14 @@ result<void> lidar::driver::hang_up(const error& broken) {
     backoff_ns_ = 0;
   }
   lost_ = why;
-  if (options_.reconnect && opened_) {
+  if (options_.reconnect && opened_ && was_live) {
     stage_ = stage::lost;
     next_attempt_ns_ = now_ns() + backoff_ns_;
     const auto longest = std::chrono::nanoseconds(options_.longest_backoff).count();
     backoff_ns_ = std::min(std::max(2 * backoff_ns_, first_pause_ns), longest);
     return {};
   }
+  stream_.end();
   stage_ = stage::closed;
   return tl::unexpected(why);
 }

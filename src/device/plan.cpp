@@ -84,7 +84,7 @@ result<void> lidar::driver::go_on_with_plan() {
     if (asking_ || plan_at_ == planned_ || session_.is_busy()) return {};
     const request& next = plan_[plan_at_].wanted;
     if (next.what == ask::start) {
-      stream_.begin(samples_per_second_);
+      begin_points();
       has_streamed_ = has_streamed_ && setting_up_again_;
     }
     if (session_.begin(next, now_ns())) return {};  // busy with what it found by itself
@@ -96,7 +96,7 @@ void lidar::driver::learn_rate(const outcome& done) {
   const auto* ranging = std::get_if<ranging_frequency>(&done.value);
   if (ranging == nullptr || samples_per_second(*ranging) == samples_per_second_) return;
   samples_per_second_ = samples_per_second(*ranging);
-  if (delivers_) stream_.begin(samples_per_second_);
+  if (delivers_) begin_points();
 }
 
 /// What was set by asking is set again like what the options say, and behind a restart at once.

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// What stands behind a recording_reader: the records of the chunks, read as what was recorded.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "chunk_source.hpp"
+#include "g4lidar/recording_reader.hpp"
+#include "messages.hpp"
+
+namespace g4lidar {
+
+/// *Single thread.*
+class recording_reader::file_reader {
+ public:
+  /// `path` is for errors.
+  [[nodiscard]] static result<std::unique_ptr<file_reader>> open(
+      std::shared_ptr<mcap::byte_source> file, std::string_view path,
+      const reading_options& options);
+
+  [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
+  [[nodiscard]] const std::optional<recorded_device>& device() const noexcept { return device_; }
+  [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept { return digest_; }
+  [[nodiscard]] std::int64_t first_ns() const noexcept { return first_ns_; }
+  [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
+  [[nodiscard]] const recording_damage& damage() const noexcept;
+  [[nodiscard]] std::uint64_t position() const noexcept { return chunks_->position(); }
+  [[nodiscard]] std::uint64_t size() const noexcept { return chunks_->size(); }
+  [[nodiscard]] const mcap::line_state& line() const noexcept { return line_; }
+
+ private:
+  file_reader(std::shared_ptr<mcap::byte_source> file, std::string_view path);
+
+  [[nodiscard]] result<void> begin(const reading_options& options);
+  [[nodiscard]] result<void> read_summary();
+  [[nodiscard]] result<void> read_group(std::uint64_t at, std::uint64_t end);
+  [[nodiscard]] result<void> read_front();
+  [[nodiscard]] result<void> seek(std::int64_t from_ns);
+  [[nodiscard]] result<std::optional<std::uint64_t>> chunk_before(std::int64_t from_ns);
+  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes records) noexcept;
+
+  [[nodiscard]] result<std::optional<recorded_item>> advance();
+  [[nodiscard]] result<std::optional<recorded_item>> read();
+  [[nodiscard]] std::optional<recorded_item> item_in(mcap::field_reader record) noexcept;
+  void take_channel(mcap::field_reader record) noexcept;
+  void take_metadata(mcap::field_reader record);
+  void take_digest(mcap::field_reader record);
+  [[nodiscard]] bool skips(std::uint32_t sequence) noexcept;
+
+  std::string path_;
+  std::shared_ptr<mcap::byte_source> file_;
+  std::optional<mcap::chunk_source> chunks_;
+  bytes records_;  // of the block, not read yet
+  std::array<std::optional<std::uint16_t>, mcap::topic_count> channels_;
+  std::optional<recorded_device> device_;
+  std::optional<recorded_digest> digest_;
+  mutable recording_damage damage_;
+  std::uint64_t bytes_skipped_ = 0;  // in chunks
+  std::int64_t first_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  std::int64_t from_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::int64_t to_ns_ = never_ns;
+  std::optional<std::uint32_t> sequence_;  // the last one, of bytes from the device
+  bool is_gap_ = false;
+  bool is_over_ = false;
+  std::optional<recorded_item> waiting_;  // behind a note that was made up
+  mcap::line_state line_;                 // as of the items given
+  bool is_line_told_ = true;              // else what was skipped is told first
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// One MCAP file being written: chunks, and the summary behind them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../device/owned_fd.hpp"
+#include "crc32.hpp"
+#include "g4lidar/error.hpp"
+#include "messages.hpp"
+#include "record_text.hpp"
+
+namespace g4lidar::mcap {
+
+/// The messages of a chunk that is being filled. It is given to a file whole. *Allocates on open.*
+class open_chunk {
+ public:
+  open_chunk();
+
+  [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
+  /// Whether a message of so many bytes still fits.
+  [[nodiscard]] bool has_room_for(std::size_t size) const noexcept;
+
+  /// What comes before the messages.
+  void put_channels();
+  /// Begins a message; its data goes into text(), and then end_message().
+  void begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns);
+  void end_message();
+  [[nodiscard]] record_text& text() noexcept { return text_; }
+  void clear() noexcept;
+
+  [[nodiscard]] bytes records() const noexcept { return text_.all(); }
+  [[nodiscard]] std::uint64_t first_ns() const noexcept { return first_ns_; }
+  [[nodiscard]] std::uint64_t last_ns() const noexcept { return last_ns_; }
+
+  struct place {
+    std::uint64_t wall_ns;
+    std::uint64_t offset;
+  };
+  [[nodiscard]] std::span<const place> places(topic id) const noexcept {
+    return places_[index_of(id)];
+  }
+  [[nodiscard]] static std::size_t index_of(topic id) noexcept {
+    return static_cast<std::size_t>(id) - 1;
+  }
+
+ private:
+  static constexpr std::size_t room = std::size_t{1} << 20U;
+  static constexpr std::size_t most_messages = 16384;
+
+  record_text text_;
+  std::array<std::vector<place>, topic_count> places_;
+  std::size_t begun_ = 0;
+  std::size_t count_ = 0;
+  std::uint64_t first_ns_ = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t last_ns_ = 0;
+};
+
+/// *Single thread.* Everything goes to the system in whole records; what could only be written in part
+/// is taken back.
+class mcap_file {
+ public:
+  /// Creates it, and writes what stands before the chunks.
+  [[nodiscard]] static result<mcap_file> create(const std::string& path, bool overwrite);
+  mcap_file(mcap_file&&) noexcept = default;
+
+  /// `packed` where the records were packed with zstd, else empty.
+  [[nodiscard]] result<void> add(const open_chunk& chunk, bytes packed);
+  [[nodiscard]] result<void> add_metadata(std::string_view name, const word_map& words);
+  /// Writes the summary; nothing can be added then.
+  [[nodiscard]] result<void> close();
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::uint64_t size() const noexcept { return offset_; }
+  /// How large it is when it is closed now.
+  [[nodiscard]] std::uint64_t closed_size() const noexcept;
+  [[nodiscard]] bool has_chunks() const noexcept { return !chunks_.empty(); }
+
+ private:
+  struct chunk_place {
+    std::uint64_t first_ns, last_ns, offset, length, index_length, packed_size, size;
+    bool is_packed;
+    std::array<std::uint64_t, topic_count> index_offsets;  // 0: none
+  };
+  struct metadata_place {
+    std::uint64_t offset, length;
+    std::string name;
+  };
+
+  mcap_file(owned_fd fd, std::string path) noexcept : fd_(std::move(fd)), path_(std::move(path)) {}
+  [[nodiscard]] result<void> write(bytes data);
+  [[nodiscard]] result<void> write_all(bytes data) noexcept;
+  [[nodiscard]] result<void> end_data();
+  [[nodiscard]] result<void> summarise();
+  void put_statistics();
+  void put_chunk_index(const chunk_place& of);
+
+  owned_fd fd_;
+  std::string path_;
+  std::uint64_t offset_ = 0;
+  crc32 crc_;  // of all that was written, and later of the summary
+  record_text text_;
+  std::vector<chunk_place> chunks_;
+  std::vector<metadata_place> metadata_;
+  std::array<std::uint64_t, topic_count> messages_{};
+};
+
+}  // namespace g4lidar::mcap

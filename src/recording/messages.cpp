@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#include "messages.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numbers>
+
+namespace g4lidar {
+namespace {
+
+constexpr std::array<std::string_view, 8> note_names{"opened", "closed", "sent", "begun",
+                                                     "held",   "cut",    "gap",  "state"};
+
+}  // namespace
+
+std::string_view name_of(line_note::kind what) noexcept {
+  return note_names[static_cast<std::size_t>(what)];
+}
+
+namespace mcap {
+namespace {
+
+constexpr std::string_view line_bytes_schema =
+    R"(# Bytes that were read from, or sent to, a lidar together.
+int64 monotonic_ns  # when, by the steady clock of the computer; the wall clock is the message's time
+uint8[] data
+)";
+
+constexpr std::string_view line_note_schema =
+    R"(# What happened on the line to a lidar beside the bytes.
+int64 monotonic_ns
+int64 wall_ahead_ns  # wall clock - monotonic clock
+uint32 baud
+uint32 samples_per_second
+uint32 unparsed  # bytes of the last reading that had not been parsed
+uint32 events    # of the parser since the last reading
+bool delivers    # whether packets make points from here on
+string what      # opened, closed, begun, held, cut, gap, state
+string reason
+string line
+)";
+
+constexpr std::string_view scan_schema =
+    R"(std_msgs/Header header
+float32 angle_min
+float32 angle_max
+float32 angle_increment
+float32 time_increment
+float32 scan_time
+float32 range_min
+float32 range_max
+float32[] ranges
+float32[] intensities
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+)";
+
+constexpr std::array<schema_words, 3> schemas{{
+    {1, "g4lidar_msgs/msg/LineBytes", line_bytes_schema},
+    {2, "g4lidar_msgs/msg/LineNote", line_note_schema},
+    {3, "sensor_msgs/msg/LaserScan", scan_schema},
+}};
+
+constexpr std::array<topic_words, topic_count> topics{{
+    {topic::from_device, "/g4lidar/from_device", 1},
+    {topic::to_device, "/g4lidar/to_device", 1},
+    {topic::notes, "/g4lidar/notes", 2},
+    {topic::scan, "/scan", 3},
+}};
+
+/// Ranges that can be trusted, in metres: beyond is what 16 bits cannot hold.
+constexpr float least_range_m = too_near_mm * 0.001F;
+constexpr float largest_range_m = 16.38375F;
+
+std::optional<problem> problem_named(std::string_view name) noexcept {
+  for (std::size_t i = 0; i < problem_count; ++i) {
+    if (name_of(static_cast<problem>(i)) == name) return static_cast<problem>(i);
+  }
+  return std::nullopt;
+}
+
+template <class Number>
+std::optional<Number> number_in(std::string_view text) noexcept {
+  Number value{};
+  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (wrong != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+template <class Setting>
+void put_setting(word_map& words, const char* name, const std::optional<Setting>& value) {
+  if (value) words.emplace_back(name, std::to_string(static_cast<unsigned>(*value)));
+}
+
+template <class Setting>
+void take_setting(std::optional<Setting>& setting, std::string_view text) noexcept {
+  const auto value = number_in<std::uint8_t>(text);
+  setting = value ? reply_byte<Setting>(*value) : std::nullopt;
+}
+
+void take_serial(device_information& who, std::string_view text) noexcept {
+  const bool is_digits =
+      text.size() == who.serial_digits.size() &&
+      std::ranges::all_of(text, [](char digit) { return digit >= '0' && digit <= '9'; });
+  if (is_digits) std::ranges::copy(text, who.serial_digits.begin());
+}
+
+void take_firmware(device_information& who, std::string_view text) noexcept {
+  const std::size_t dot = std::min(text.find('.'), text.size());
+  who.firmware_major = number_in<std::uint8_t>(text.substr(0, dot)).value_or(0);
+  if (dot < text.size()) {
+    who.firmware_minor = number_in<std::uint8_t>(text.substr(dot + 1)).value_or(0);
+  }
+}
+
+}  // namespace
+
+std::span<const schema_words> all_schemas() noexcept { return schemas; }
+std::span<const topic_words> all_topics() noexcept { return topics; }
+
+void put_line_bytes(record_text& out, bytes data, std::int64_t time_ns) {
+  cdr_text message(out);
+  message.put(time_ns);
+  message.put(data);
+}
+
+void put_note(record_text& out, const line_note& what, std::int64_t wall_ahead_ns) {
+  cdr_text message(out);
+  message.put(what.time_ns);
+  message.put(wall_ahead_ns);
+  message.put(what.baud);
+  message.put(what.samples_per_second);
+  message.put(what.unparsed);
+  message.put(what.events);
+  message.put(std::uint8_t{what.delivers});
+  message.put(name_of(what.what));
+  message.put(name_of(what.reason));
+  message.put(what.line.substr(0, 255));
+}
+
+void put_scan(record_text& out, std::span<const float> ranges, std::int64_t first_wall_ns,
+              std::int64_t duration_ns, std::string_view frame_id) {
+  constexpr float pi = std::numbers::pi_v<float>;
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  const float increment = 2 * pi / static_cast<float>(ranges.size());
+  cdr_text message(out);
+  message.put(static_cast<std::int32_t>(first_wall_ns / second_ns));
+  message.put(static_cast<std::uint32_t>(first_wall_ns % second_ns));
+  message.put(frame_id);
+  message.put(-pi);
+  message.put(-pi + increment * static_cast<float>(ranges.size() - 1));
+  message.put(increment);
+  // A grid is not in the order of time: the device turns the other way than its angles grow.
+  message.put(0.0F);
+  message.put(static_cast<float>(duration_ns) * 1e-9F);
+  message.put(least_range_m);
+  message.put(largest_range_m);
+  message.put(static_cast<std::uint32_t>(ranges.size()));
+  for (const float range : ranges) out.put(std::bit_cast<std::uint32_t>(range));
+  message.put(std::uint32_t{0});
+}
+
+std::optional<line_bytes> line_bytes_from(bytes message) noexcept {
+  if (message.size() < line_bytes_header_size || message[1] != 1) return std::nullopt;
+  const std::uint32_t count = load_u32(message, 12);
+  if (count > message.size() - line_bytes_header_size) return std::nullopt;
+  return line_bytes{static_cast<std::int64_t>(load_u64(message, 4)),
+                    message.subspan(line_bytes_header_size, count)};
+}
+
+std::optional<line_note> note_from(bytes message) noexcept {
+  if (message.size() < 4 || message[1] != 1) return std::nullopt;
+  field_reader fields(message.subspan(4));
+  line_note note{};
+  note.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
+  static_cast<void>(fields.take<std::uint64_t>());  // the wall clock is the message's
+  note.baud = fields.take<std::uint32_t>();
+  note.samples_per_second = fields.take<std::uint32_t>();
+  note.unparsed = fields.take<std::uint32_t>();
+  note.events = fields.take<std::uint32_t>();
+  note.delivers = fields.take<std::uint8_t>() != 0;
+  const std::string_view what = fields.take_cdr_text();
+  note.reason = problem_named(fields.take_cdr_text()).value_or(problem::system);
+  note.line = fields.take_cdr_text();
+  const auto* const named = std::ranges::find(note_names, what);
+  if (!fields.is_good() || named == note_names.end()) return std::nullopt;
+  note.what = static_cast<line_note::kind>(named - note_names.begin());
+  return note.what == line_note::kind::sent ? std::nullopt : std::optional(note);
+}
+
+void put_map(record_text& out, const word_map& words) {
+  const std::size_t map = out.begin<std::uint32_t>();
+  for (const auto& [name, value] : words) {
+    out.put(std::string_view(name));
+    out.put(std::string_view(value));
+  }
+  out.end<std::uint32_t>(map);
+}
+
+word_map words_of(const recorded_device& device) {
+  const device_information& who = device.information;
+  word_map words{
+      {"model", std::to_string(who.model)},
+      {"firmware", std::to_string(who.firmware_major) + "." + std::to_string(who.firmware_minor)},
+      {"hardware", std::to_string(who.hardware)},
+      {"serial_number", std::string(who.serial_number())},
+  };
+  if (device.frequency) words.emplace_back("frequency_chz", std::to_string(device.frequency->chz));
+  put_setting(words, "ranging", device.ranging);
+  put_setting(words, "motor_direction", device.motor);
+  put_setting(words, "constant_frequency", device.constant);
+  put_setting(words, "low_power", device.idle);
+  put_setting(words, "power_down_protection", device.protection);
+  return words;
+}
+
+recorded_device device_of(field_reader& map) {
+  recorded_device device;
+  device_information& who = device.information;
+  who.serial_digits.fill('0');
+  field_reader words(map.take(map.take<std::uint32_t>()));
+  while (!words.is_at_end() && words.is_good()) {
+    const std::string_view name = words.take_text();
+    const std::string_view value = words.take_text();
+    if (name == "model") who.model = number_in<std::uint8_t>(value).value_or(0);
+    if (name == "firmware") take_firmware(who, value);
+    if (name == "hardware") who.hardware = number_in<std::uint8_t>(value).value_or(0);
+    if (name == "serial_number") take_serial(who, value);
+    if (name == "frequency_chz") {
+      if (const auto chz = number_in<std::uint16_t>(value)) device.frequency = scan_frequency{*chz};
+    }
+    if (name == "ranging") take_setting(device.ranging, value);
+    if (name == "motor_direction") take_setting(device.motor, value);
+    if (name == "constant_frequency") take_setting(device.constant, value);
+    if (name == "low_power") take_setting(device.idle, value);
+    if (name == "power_down_protection") take_setting(device.protection, value);
+  }
+  return device;
+}
+
+// ---- line_state --------------------------------------------------------------------------------
+
+void line_state::take(const line_note& what) noexcept {
+  using enum line_note::kind;
+  is_known = true;
+  if (what.what == opened || what.what == state) {
+    baud = what.baud;
+    name_size = static_cast<std::uint8_t>(std::min(what.line.size(), name.size()));
+    std::copy_n(what.line.begin(), name_size, name.begin());
+  }
+  switch (what.what) {
+    case opened:
+      is_open = true;
+      delivers = true;  // where no driver says otherwise
+      break;
+    case closed:
+      is_open = false;
+      delivers = false;
+      break;
+    case state:
+      is_open = what.reason != problem::gone;
+      [[fallthrough]];
+    case begun:
+      samples_per_second = what.samples_per_second;
+      delivers = what.delivers;
+      break;
+    case held:
+      delivers = false;
+      break;
+    case sent:
+    case cut:
+    case gap:
+      break;
+  }
+}
+
+line_note line_state::as_note(std::int64_t time_ns) const noexcept {
+  line_note note{.what = line_note::kind::state, .time_ns = time_ns};
+  note.reason = is_open ? problem::cancelled : problem::gone;
+  note.delivers = delivers;
+  note.baud = baud;
+  note.samples_per_second = samples_per_second;
+  note.line = line();
+  return note;
+}
+
+}  // namespace mcap
+}  // namespace g4lidar
