@@ -115,7 +115,7 @@ using lidar_ring = point_ring<16384>;
 ///       else if (scan.error().is_fatal()) return report(scan.error());
 ///     }
 ///
-/// The motor is stopped by stop(), close() and destruction. Signals are the application's.
+/// The motor is stopped by stop(), close() and destruction, unless release() came first. Signals are the application's.
 class G4LIDAR_API lidar {
  public:
   /// In which times are given to it.
@@ -142,6 +142,9 @@ class G4LIDAR_API lidar {
   result<void> stop();
   /// Stops, and gives the line free. Anything after that fails with gone.
   result<void> close();
+  /// As close(), but the device is left as it is: what scans goes on, and nobody reads it. (Under
+  /// power-down protection it stops by itself, 3 s after it was last fed.)
+  void release() noexcept;
 
   /// The next revolution, good until the next call of anything here but counts(). Errors: timeout
   /// (go on), not_scanning; those that are fatal end the scan, unless reconnecting is on: then they

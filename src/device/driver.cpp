@@ -334,10 +334,14 @@ result<void> lidar::driver::close() {
     stopped = stop();
     if (stopped || stopped.error().what() != problem::cancelled) break;
   }
+  release();
+  return stopped;
+}
+
+void lidar::driver::release() noexcept {
   if (line_ != nullptr) release_line();
   stage_ = stage::closed;
   lost_ = error(task::reading, problem::gone, "this lidar, which was closed");
-  return stopped;
 }
 
 result<answer> lidar::driver::ask(const request& wanted, while_scanning how) {

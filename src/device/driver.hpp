@@ -44,6 +44,7 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<void> start();
   result<void> stop();
   result<void> close();
+  void release() noexcept;
   result<answer> ask(const request& wanted, while_scanning how);
   result<scan> next_scan(std::int64_t timeout_ns);
   result<std::span<const point>> next_points(std::int64_t timeout_ns);

@@ -82,6 +82,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> line, const lidar_options& 
 result<void> lidar::start() { return driver_->start(); }
 result<void> lidar::stop() { return driver_->stop(); }
 result<void> lidar::close() { return driver_->close(); }
+void lidar::release() noexcept { driver_->release(); }
 result<scan> lidar::next_scan(milliseconds timeout) { return driver_->next_scan(in_ns(timeout)); }
 result<std::span<const point>> lidar::next_points(milliseconds timeout) {
   return driver_->next_points(in_ns(timeout));

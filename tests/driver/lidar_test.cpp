@@ -58,6 +58,36 @@ TEST(Lidar, StopsTheMotorWhenItGoes) {
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
+TEST(Lidar, ReleasedItGoesOnScanning) {
+  virtual_bench bench;
+  {
+    auto lidar = open_virtual(bench);
+    ASSERT_TRUE(lidar);
+    ASSERT_TRUE(lidar->start());
+    ASSERT_TRUE(lidar->next_scan(2000ms));
+    lidar->release();
+    EXPECT_FALSE(lidar->is_scanning());
+    EXPECT_EQ(lidar->next_scan(0ms).error().what(), problem::gone);
+    EXPECT_EQ(lidar->start().error().what(), problem::gone);
+    lidar->release();  // nothing is left to be released
+  }
+  bench.now_ns += 5000 * ms;
+  EXPECT_FALSE(bench.device.is_idle_and_silent(bench.now_ns));
+  auto again = open_virtual(bench);
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_EQ(again->next_event()->what, lidar_event::kind::found_scanning);
+  EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
+}
+
+TEST(Lidar, ReleasedAtRestItIsIdle) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  lidar->release();
+  EXPECT_EQ(lidar->ask(requests::health()).error().what(), problem::gone);
+  EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
+}
+
 TEST(Lidar, SetsWhatItIsTold) {
   virtual_bench bench;
   lidar_options options;

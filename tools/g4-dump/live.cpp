@@ -20,14 +20,6 @@ using clock = std::chrono::steady_clock;
 
 constexpr auto pulse_time = 100ms;
 
-void tell_events(g4lidar::lidar& lidar) {
-  while (const auto event = lidar.next_event()) {
-    const bool is_loss = event->what == g4lidar::lidar_event::kind::lost;
-    tell(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what), is_loss ? ", " : "",
-                     is_loss ? name_of(event->reason) : ""));
-  }
-}
-
 class live_loop {
  public:
   live_loop(g4lidar::lidar& lidar, const common_options& options, const live_sink& sink,
@@ -121,6 +113,14 @@ class live_loop {
 };
 
 }  // namespace
+
+void tell_events(g4lidar::lidar& lidar) {
+  while (const auto event = lidar.next_event()) {
+    const bool is_loss = event->what == g4lidar::lidar_event::kind::lost;
+    tell(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what), is_loss ? ", " : "",
+                     is_loss ? name_of(event->reason) : ""));
+  }
+}
 
 void run_live(g4lidar::lidar& lidar, const common_options& options, const live_sink& sink,
               output& out) {

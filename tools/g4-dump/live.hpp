@@ -29,6 +29,9 @@ struct live_sink {
 void run_live(g4lidar::lidar& lidar, const common_options& options, const live_sink& sink,
               output& out);
 
+/// Tells what has happened by itself since it was asked last.
+void tell_events(g4lidar::lidar& lidar);
+
 /// The counts at the end, as tcpdump tells them.
 void tell_counts(const g4lidar::lidar& lidar);
 

@@ -119,6 +119,13 @@ bool may_still_come(const g4lidar::error& why) {
          why.what() == cannot_connect || why.what() == garbage || why.what() == busy;
 }
 
+g4lidar::result<g4lidar::lidar> open_with(const g4lidar::lidar_options& how,
+                                          const line_wrapper& wrap) {
+  auto lines = g4lidar::connector_for(how);
+  if (!lines) return tl::unexpected(lines.error());
+  return g4lidar::lidar::open(wrap ? wrap(*std::move(lines)) : *std::move(lines), how);
+}
+
 }  // namespace
 
 /// A device on a pseudo-terminal, served by a thread of its own, in a directory of its own.
@@ -167,7 +174,8 @@ source_kind kind_of(const std::string& source) {
   return source_kind::bytes;
 }
 
-opened_source::opened_source(const common_options& options, g4lidar::lidar_options how) {
+opened_source::opened_source(const common_options& options, g4lidar::lidar_options how,
+                             const line_wrapper& wrap) {
   how.device = options.source;
   how.baud = options.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
@@ -183,7 +191,7 @@ opened_source::opened_source(const common_options& options, g4lidar::lidar_optio
       break;
   }
   while (true) {
-    auto opened = g4lidar::lidar::open(how);
+    auto opened = open_with(how, wrap);
     if (opened) {
       lidar_.emplace(std::move(*opened));
       tell_more(fmt::format("opened {}\n", lidar_->name()));

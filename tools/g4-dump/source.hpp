@@ -2,11 +2,13 @@
 // What the word SOURCE means, and the lidar behind it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "common_options.hpp"
+#include "g4lidar/connector.hpp"
 #include "g4lidar/lidar.hpp"
 
 namespace g4_dump {
@@ -21,17 +23,24 @@ enum class source_kind : unsigned char {
 /// By its form, and what lies there. A name that is none of a file is a device's.
 [[nodiscard]] source_kind kind_of(const std::string& source);
 
+/// Puts something between the lines and the driver, such as one that records.
+using line_wrapper =
+    std::function<std::unique_ptr<g4lidar::connector>(std::unique_ptr<g4lidar::connector>)>;
+
 /// A lidar, and the simulated device that it is on, if it is on one.
 class opened_source {
  public:
   /// Opens anything but raw bytes. `how` is as it is to be but for device, baud and reconnect. With
   /// loss_rule::wait it tries until there is one or a signal comes (`interrupted`). Throws a failure.
-  explicit opened_source(const common_options& options, g4lidar::lidar_options how = {});
+  explicit opened_source(const common_options& options, g4lidar::lidar_options how = {},
+                         const line_wrapper& wrap = {});
   opened_source(const opened_source&) = delete;
   opened_source& operator=(const opened_source&) = delete;
   ~opened_source();
 
-  [[nodiscard]] g4lidar::lidar& lidar() noexcept { return *lidar_; }
+  [[nodiscard]] g4lidar::lidar& lidar() noexcept {
+    return *lidar_;  // NOLINT(bugprone-unchecked-optional-access): made by the constructor
+  }
 
  private:
   class simulation;

@@ -7,10 +7,17 @@ namespace g4_dump {
 
 std::vector<verb> all_verbs() {
   std::vector<verb> verbs;
+  verbs.push_back(make_info_verb());
+  verbs.push_back(make_health_verb());
+  verbs.push_back(make_stats_verb());
   verbs.push_back(make_dump_verb());
   verbs.push_back(make_scan_verb());
   verbs.push_back(make_decode_verb());
   verbs.push_back(make_sim_verb());
+  verbs.push_back(make_set_verb());
+  verbs.push_back(make_start_verb());
+  verbs.push_back(make_stop_verb());
+  verbs.push_back(make_restart_verb());
   return verbs;
 }
 

@@ -8,10 +8,17 @@
 
 namespace g4_dump {
 
+[[nodiscard]] verb make_info_verb();
+[[nodiscard]] verb make_health_verb();
+[[nodiscard]] verb make_stats_verb();
 [[nodiscard]] verb make_dump_verb();
 [[nodiscard]] verb make_scan_verb();
 [[nodiscard]] verb make_decode_verb();
 [[nodiscard]] verb make_sim_verb();
+[[nodiscard]] verb make_set_verb();
+[[nodiscard]] verb make_start_verb();
+[[nodiscard]] verb make_stop_verb();
+[[nodiscard]] verb make_restart_verb();
 
 /// All of them. What they share with their options lives as long as they do.
 [[nodiscard]] std::vector<verb> all_verbs();

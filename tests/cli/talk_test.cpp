@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: MIT
+// The verbs that ask and tell a device: info, health, set, start, stop, restart.
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+#include "recording.hpp"
+#include "twin.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::run;
+using nlohmann::json;
+using ::testing::ContainsRegex;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Talk : public cli::scratch {
+ protected:
+  [[nodiscard]] std::string port() const { return path("g4"); }
+  /// What a verb with --json says in its only line.
+  [[nodiscard]] json ask(const std::string& verb) const {
+    const outcome done = run({verb, port(), "--json"});
+    EXPECT_EQ(done.code, 0) << done.err;
+    return json::parse(done.out);
+  }
+};
+
+// ---- info and health ---------------------------------------------------------------------------
+
+TEST_F(Talk, Info_TellsWhoItIsAndItsSettings) {
+  const cli::twin twin(port(), {"--serial", "2023000000000017", "--rate", "8000"});
+  const outcome done = run({"info", port()});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.err, "");
+  EXPECT_THAT(lines_of(done.out),
+              ElementsAre("source      " + port(), "model       G4", "serial      2023000000000017",
+                          "firmware    3.2", "hardware    3", "rate        8k", "freq        7.0",
+                          "direction   cw", "constant    unknown", "idle        on",
+                          "protection  unknown"));
+}
+
+TEST_F(Talk, Info_AsJson) {
+  const cli::twin twin(port());
+  EXPECT_EQ(ask("info"), (json{{"source", port()},
+                               {"model", 5},
+                               {"serial", "2021101000070073"},
+                               {"firmware", "3.2"},
+                               {"hardware", 3},
+                               {"rate", 9000},
+                               {"freq", 7.0},
+                               {"direction", "cw"},
+                               {"constant", nullptr},
+                               {"idle", true},
+                               {"protection", nullptr}}));
+}
+
+TEST_F(Talk, AskingVerbs_SetNothing) {
+  cli::twin twin(port());
+  for (const char* const verb : {"info", "health", "stop", "start", "stats"}) {
+    std::vector<std::string> words{verb, port()};
+    if (words[0] == "stats") words.insert(words.end(), {"-n", "1"});
+    EXPECT_EQ(run(words).code, 0) << verb;
+  }
+  EXPECT_EQ(run({"dump", port(), "-n", "1"}).code, 0);
+  EXPECT_EQ(run({"scan", port(), "-n", "1"}).code, 0);
+  // Nothing but stop, start, and what only asks: 90, 91, 92, 05, 08, 0D, D1.
+  const std::string log = twin.log();
+  EXPECT_THAT(log, HasSubstr(" A5 0D"));
+  EXPECT_THAT(log, Not(ContainsRegex(" A5 (01|02|06|07|09|0A|0B|0C|0E|0F|40|80|D0|D9)")));
+}
+
+TEST_F(Talk, Health_SaysHowItIs) {
+  const outcome well = run({"health", "sim:"});
+  EXPECT_EQ(well.code, 0);
+  EXPECT_EQ(well.out, "status      ok\nerror_code  0\n");
+  const outcome warned = run({"health", "sim:?fault=health=warning"});
+  EXPECT_EQ(warned.code, 0);
+  EXPECT_THAT(warned.out, HasSubstr("status      warning\n"));
+  const outcome ill = run({"health", "sim:?fault=health=error", "--json"});
+  EXPECT_EQ(ill.code, 8);
+  EXPECT_EQ(json::parse(ill.out).at("status"), "error");
+}
+
+// ---- set ---------------------------------------------------------------------------------------
+
+TEST_F(Talk, Set_ShowsEachBeforeAndAfter) {
+  const cli::twin twin(port());
+  const outcome done = run({"set", port(), "rate=4k", "freq=9.5", "direction=ccw", "constant=off",
+                            "low-power=off", "protection=on"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(lines_of(done.out),
+              ElementsAre("NAME        BEFORE   AFTER", "rate        9k       4k",
+                          "freq        7.0      9.5", "direction   cw       ccw",
+                          "constant    unknown  off", "idle        on       off",
+                          "protection  unknown  on"));
+  EXPECT_THAT(done.err, HasSubstr("may forget this"));
+  EXPECT_THAT(done.err, HasSubstr("stops 3 s after"));
+  const json after = ask("info");
+  EXPECT_EQ(after.at("rate"), 4000);
+  EXPECT_EQ(after.at("freq"), 9.5);
+  EXPECT_EQ(after.at("direction"), "ccw");
+  EXPECT_EQ(after.at("idle"), false);
+}
+
+TEST_F(Talk, Set_AsJson) {
+  const cli::twin twin(port());
+  const outcome done = run({"set", port(), "--json", "-q", "rate=8000", "protection=off"});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_EQ(done.err, "");
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(json::parse(lines[0]),
+            (json{{"name", "rate"}, {"before", 9000}, {"wanted", 8000}, {"after", 8000}}));
+  EXPECT_EQ(
+      json::parse(lines[1]),
+      (json{{"name", "protection"}, {"before", nullptr}, {"wanted", false}, {"after", false}}));
+}
+
+TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
+  cli::twin twin(port());
+  for (const char* const word :
+       {"rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=", "direction=left", "constant=1",
+        "speed=3", "rate=9k", "/dev/ttyUSB0"}) {
+    const outcome done = run({"set", port(), "rate=8k", word});
+    EXPECT_EQ(done.code, 2) << word;
+    EXPECT_EQ(done.out, "");
+    EXPECT_THAT(done.err, HasSubstr("See: g4-dump set --help"));
+  }
+  EXPECT_EQ(run({"set", port()}).code, 2);
+  EXPECT_EQ(run({"set"}).code, 2);
+  EXPECT_THAT(twin.log(), Not(HasSubstr(" A5 ")));
+}
+
+/// Answers every G4's questions, but what is set stays as it is: 7 Hz, 9 kHz.
+class stubborn_device {
+ public:
+  stubborn_device() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
+    ::grantpt(master_);
+    ::unlockpt(master_);
+    keep_ = ::open(::ptsname(master_), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    termios raw{};
+    ::tcgetattr(keep_, &raw);
+    ::cfmakeraw(&raw);
+    ::tcsetattr(keep_, TCSANOW, &raw);
+    thread_ = std::thread([this] { serve(); });
+  }
+  stubborn_device(const stubborn_device&) = delete;
+  stubborn_device& operator=(const stubborn_device&) = delete;
+  ~stubborn_device() {
+    ends_ = true;
+    thread_.join();
+    ::close(keep_);
+    ::close(master_);
+  }
+  [[nodiscard]] std::string path() const { return ::ptsname(master_); }
+
+ private:
+  void serve() {
+    pollfd waiting{master_, POLLIN, 0};
+    bool has_start = false;
+    while (!ends_) {
+      unsigned char byte = 0;
+      if (::poll(&waiting, 1, 20) <= 0 || ::read(master_, &byte, 1) != 1) continue;
+      if (std::exchange(has_start, !has_start && byte == 0xA5)) answer(byte);
+    }
+  }
+  void answer(unsigned char code) const {
+    switch (code) {
+      case 0x90:
+        return send(
+            {"\xA5\x5A\x14\0\0\0\x04\x05\x02\x03\x03\x02\0\x02\x01\x01\0\x01\0\0\0\0\x07"
+             "\0\0\x07\x03",
+             27});
+      case 0x91:
+        return send({"\xA5\x5A\x03\0\0\0\x06\0\0\0", 10});
+      case 0xD0:
+      case 0xD1:
+        return send({"\xA5\x5A\x01\0\0\0\x04\x02", 8});
+      case 0x09:
+      case 0x0A:
+      case 0x0B:
+      case 0x0C:
+      case 0x0D:
+        return send({"\xA5\x5A\x04\0\0\0\x04\xBC\x02\0\0", 11});
+      default:
+        return;
+    }
+  }
+  void send(const std::string& bytes) const {
+    EXPECT_EQ(::write(master_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+
+  int master_;
+  int keep_ = -1;
+  std::atomic<bool> ends_ = false;
+  std::thread thread_;
+};
+
+TEST_F(Talk, Set_WhatIsRefusedIsShownAsItIsAndEndsIt) {
+  const stubborn_device device;
+  const outcome done = run({"set", device.path(), "rate=9k", "freq=9", "rate=9k"});
+  EXPECT_EQ(done.code, 2) << "given twice";
+  const outcome refused = run({"set", device.path(), "rate=9k", "freq=9", "direction=cw"});
+  EXPECT_EQ(refused.code, 8) << refused.err;
+  EXPECT_THAT(lines_of(refused.out),
+              ElementsAre("NAME        BEFORE   AFTER", "rate        9k       9k",
+                          "freq        7.0      7.0"));
+  EXPECT_THAT(refused.err, HasSubstr("does not take this value"));
+  const outcome json_error = run({"set", device.path(), "freq=9", "--json", "--json-errors"});
+  EXPECT_EQ(json_error.code, 8);
+  EXPECT_EQ(json::parse(json_error.out).at("after"), 7.0);
+  EXPECT_EQ(json::parse(json_error.err).at("problem"), "not_reached");
+  EXPECT_EQ(json::parse(json_error.err).at("exit_code"), 8);
+}
+
+TEST_F(Talk, Info_WhatIsNotAnsweredIsUnknown) {
+  const stubborn_device device;
+  const outcome done = run({"info", device.path()});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("rate        9k\n"));
+  EXPECT_THAT(done.out, HasSubstr("direction   unknown\n"));
+  EXPECT_THAT(done.out, HasSubstr("idle        unknown\n"));
+}
+
+// ---- start, stop, restart ----------------------------------------------------------------------
+
+TEST_F(Talk, Start_LeavesItScanningAndStopStopsIt) {
+  cli::twin twin(port());
+  EXPECT_THAT(run({"start", port()}).err, HasSubstr(": scanning\n"));
+  const outcome stopped = run({"stop", port()});
+  EXPECT_EQ(stopped.code, 0);
+  EXPECT_EQ(stopped.out, "");
+  EXPECT_THAT(stopped.err, HasSubstr(": it was scanning; stopped\n"));
+  EXPECT_THAT(run({"stop", port()}).err, HasSubstr("not heard scanning"));
+}
+
+TEST_F(Talk, WhatIsFoundScanning_IsStoppedAndThatIsTold) {
+  const cli::twin twin(port());
+  for (const char* const verb : {"info", "health", "start", "restart"}) {
+    EXPECT_EQ(run({"start", port()}).code, 0);
+    const outcome done = run({verb, port()});
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(": it was scanning; stopped\n")) << verb;
+  }
+  EXPECT_EQ(run({"start", port()}).code, 0);
+  EXPECT_THAT(run({"set", port(), "rate=8k"}).err, HasSubstr(": it was scanning; stopped\n"));
+}
+
+TEST_F(Talk, Start_TooLittlePower) {
+  const outcome done = run({"start", "sim:?fault=brown_out"});
+  EXPECT_EQ(done.code, 8);
+  EXPECT_THAT(done.err, HasSubstr("too little power"));
+}
+
+TEST_F(Talk, Start_ADeviceThatIsDefectiveIsNotStarted) {
+  const outcome done = run({"start", "sim:?fault=health=error"});
+  EXPECT_EQ(done.code, 8);
+  EXPECT_THAT(done.err, HasSubstr("says that it is defective"));
+}
+
+TEST_F(Talk, Restart_WaitsUntilItAnswersAgain) {
+  const cli::twin twin(port());
+  EXPECT_EQ(run({"set", port(), "rate=4k"}).code, 0);
+  const outcome done = run({"restart", port()});
+  EXPECT_EQ(done.code, 0);
+  EXPECT_THAT(done.err, HasSubstr("restarted; it answers again"));
+  EXPECT_EQ(ask("info").at("rate"), 9000) << "this one forgets";
+}
+
+// ---- what can go wrong with all of them ---------------------------------------------------------
+
+TEST_F(Talk, ExitCodes) {
+  cli::write_file(path("bytes.bin"), cli::zero(0) + cli::turn());
+  for (const std::vector<std::string>& verb : {std::vector<std::string>{"info"},
+                                               {"health"},
+                                               {"set", "rate=9k"},
+                                               {"start"},
+                                               {"stop"},
+                                               {"restart"}}) {
+    const auto code_for = [&verb](const std::string& source) {
+      std::vector<std::string> words = verb;
+      words.insert(words.begin() + 1, source);
+      const outcome done = run(words);
+      EXPECT_THAT(done.err, HasSubstr("g4-dump: ")) << verb[0];
+      return done.code;
+    };
+    EXPECT_EQ(code_for(path("none")), 3) << verb[0];
+    EXPECT_EQ(code_for(path("bytes.bin")), 10) << verb[0];
+    EXPECT_EQ(code_for("-"), 10) << verb[0];
+    EXPECT_EQ(code_for("sim:?fault=rust"), 2) << verb[0];
+  }
+  EXPECT_EQ(run({"info", "sim:?fault=mute"}).code, 6);
+  EXPECT_EQ(run({"info", "sim:?fault=baud"}).code, 6);
+  EXPECT_EQ(run({"stop", "sim:?fault=scanning&fault=deaf"}).code, 8);
+}
+
+TEST_F(Talk, AnotherProgramHasIt) {
+  const cli::twin twin(port());
+  cli::program dump({"dump", port()});
+  dump.read_until("\n");
+  const outcome done = run({"info", port()});
+  EXPECT_EQ(done.code, 5) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("g4-dump ("));
+  dump.send(SIGINT);
+  EXPECT_EQ(dump.wait().code, 130);
+}
+
+// ---- stats -------------------------------------------------------------------------------------
+
+TEST_F(Talk, Stats_CountsWhatComes) {
+  const outcome done = run({"stats", "sim:", "-n", "3", "--json"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  const json counts = json::parse(done.out);
+  EXPECT_EQ(counts.at("scans"), 3);
+  EXPECT_GT(counts.at("points"), 3000);
+  EXPECT_GT(counts.at("bytes"), 6000);
+  EXPECT_EQ(counts.at("suspect"), 0);
+  EXPECT_EQ(counts.at("skipped").at("bad_checksum"), 0);
+  const outcome words = run({"stats", "sim:", "-n", "1"});
+  EXPECT_EQ(words.code, 0);
+  EXPECT_THAT(words.out, HasSubstr("scans                 1\n"));
+  EXPECT_THAT(words.out, ContainsRegex("skipped_noise +[0-9]+\n"));
+}
+
+TEST_F(Talk, Stats_OfAFile) {
+  cli::write_file(path("bytes.bin"), cli::zero(0) + cli::turn() + cli::zero(0) + "noise");
+  const outcome done = run({"stats", path("bytes.bin"), "--json"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  const json counts = json::parse(done.out);
+  EXPECT_EQ(counts.at("packets"), 11);
+  EXPECT_EQ(counts.at("points"), 362);
+  EXPECT_EQ(counts.at("skipped").at("noise"), 5);
+  EXPECT_EQ(run({"stats", "-"}).code, 2);
+}
+
+TEST_F(Talk, Stats_Watch_ALineEachInterval) {
+  const outcome done = run({"stats", "sim:", "--watch", "200ms", "-n", "3", "--json"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 3U);
+  std::uint64_t before = 0;
+  for (const std::string& line : lines) {
+    const json counts = json::parse(line);
+    EXPECT_GT(counts.at("bytes"), before);
+    before = counts.at("bytes");
+  }
+  const outcome table = run({"stats", "sim:", "--watch", "100ms", "-d", "350ms"});
+  ASSERT_GE(lines_of(table.out).size(), 2U);
+  EXPECT_THAT(lines_of(table.out)[0], HasSubstr("SECONDS POINTS/S  SCANS/S"));
+}
+
+TEST_F(Talk, Stats_Watch_EndsWithTheSignal) {
+  cli::program watch({"stats", "sim:", "--watch", "50ms"});
+  watch.read_until("RECONNECTS\n");
+  watch.read_until("0\n");
+  watch.send(SIGINT);
+  EXPECT_EQ(watch.wait().code, 130);
+}
+
+// ---- help --------------------------------------------------------------------------------------
+
+TEST(TalkHelp, FitsAndNamesWhatIsWritten) {
+  for (const char* const verb : {"info", "health", "stats", "set", "start", "stop", "restart"}) {
+    const outcome done = run({verb, "--help"});
+    EXPECT_EQ(done.code, 0);
+    EXPECT_THAT(done.out, HasSubstr(std::string("Examples:\n  g4-dump ") + verb));
+    EXPECT_THAT(done.out, HasSubstr("Exit codes:"));
+    for (const std::string& line : lines_of(done.out)) EXPECT_LE(line.size(), 100U) << line;
+  }
+  const std::string set = run({"set", "--help"}).out;
+  for (const char* const name :
+       {"rate=", "freq=", "direction=", "constant=", "idle=", "protection="}) {
+    EXPECT_THAT(set, HasSubstr(name));
+  }
+  const std::string stats = run({"stats", "--help"}).out;
+  const json keys = json::parse(run({"stats", "sim:", "-n", "1", "--json"}).out);
+  for (const auto& [name, value] : keys.items()) EXPECT_THAT(stats, HasSubstr(name));
+}
+
+}  // namespace

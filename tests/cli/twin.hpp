@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// A simulated G4 on a pseudo-terminal, served by `g4-dump sim`, for tests of the other verbs.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+
+namespace cli {
+
+/// Served at `link` until the end, with more options of `g4-dump sim`.
+class twin {
+ public:
+  explicit twin(const std::string& link, const std::vector<std::string>& options = {})
+      : served_(arguments(link, options)) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!std::filesystem::exists(link)) {
+      if (std::chrono::steady_clock::now() > end) {
+        ADD_FAILURE() << "no simulated device at " << link;
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+
+  /// The commands that it has been sent, a line each, as `sim --log` writes them. It ends.
+  std::string log() {
+    served_.send(SIGTERM);
+    return served_.wait().err;
+  }
+
+ private:
+  static std::vector<std::string> arguments(const std::string& link,
+                                            const std::vector<std::string>& options) {
+    std::vector<std::string> all{"sim", "--link", link, "--log"};
+    all.insert(all.end(), options.begin(), options.end());
+    return all;
+  }
+
+  program served_;
+};
+
+}  // namespace cli
