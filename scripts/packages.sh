@@ -27,6 +27,12 @@ packages_package=(
   debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev
 )
 
+# What a sysroot for cross-building is made of, in the target's architecture: see scripts/sysroot.
+# shellcheck disable=SC2034
+packages_sysroot=(
+  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev
+)
+
 # And everything that .ci/run does.
 # shellcheck disable=SC2034
 packages_ci=(

@@ -1,11 +1,19 @@
 # SPDX-License-Identifier: MIT
-# aarch64 Linux with Debian's cross compiler; programs run under qemu-user.
+# aarch64 Linux with Debian's cross compiler; programs run under qemu-user. With -DCMAKE_SYSROOT=
+# and what scripts/sysroot has made, the device layer and g4-dump are built, too: see docs/cross.md.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
-set(CMAKE_CROSSCOMPILING_EMULATOR "qemu-aarch64-static;-L;/usr/aarch64-linux-gnu")
-set(CMAKE_FIND_ROOT_PATH /usr/aarch64-linux-gnu)
+if(CMAKE_SYSROOT)
+  set(root "${CMAKE_SYSROOT}")
+  set(ENV{PKG_CONFIG_SYSROOT_DIR} "${root}")
+  set(ENV{PKG_CONFIG_LIBDIR} "${root}/usr/lib/aarch64-linux-gnu/pkgconfig:${root}/usr/share/pkgconfig")
+else()
+  set(root /usr/aarch64-linux-gnu)
+endif()
+set(CMAKE_CROSSCOMPILING_EMULATOR "qemu-aarch64-static;-L;${root}")
+set(CMAKE_FIND_ROOT_PATH "${root}")
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)

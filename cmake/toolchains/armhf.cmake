@@ -1,11 +1,19 @@
 # SPDX-License-Identifier: MIT
-# armhf Linux with Debian's cross compiler; programs run under qemu-user.
+# armhf Linux with Debian's cross compiler; programs run under qemu-user. With -DCMAKE_SYSROOT=
+# and what scripts/sysroot has made, the device layer and g4-dump are built, too: see docs/cross.md.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)
 set(CMAKE_C_COMPILER arm-linux-gnueabihf-gcc)
-set(CMAKE_CROSSCOMPILING_EMULATOR "qemu-arm-static;-L;/usr/arm-linux-gnueabihf")
-set(CMAKE_FIND_ROOT_PATH /usr/arm-linux-gnueabihf)
+if(CMAKE_SYSROOT)
+  set(root "${CMAKE_SYSROOT}")
+  set(ENV{PKG_CONFIG_SYSROOT_DIR} "${root}")
+  set(ENV{PKG_CONFIG_LIBDIR} "${root}/usr/lib/arm-linux-gnueabihf/pkgconfig:${root}/usr/share/pkgconfig")
+else()
+  set(root /usr/arm-linux-gnueabihf)
+endif()
+set(CMAKE_CROSSCOMPILING_EMULATOR "qemu-arm-static;-L;${root}")
+set(CMAKE_FIND_ROOT_PATH "${root}")
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)

@@ -79,7 +79,8 @@ class live_loop {
     if (!got) return got.error();
     auto wanted = *got;
     if (options_.count > 0) {
-      wanted = wanted.first(std::min<std::uint64_t>(wanted.size(), options_.count - records_));
+      const std::uint64_t left = options_.count - records_;
+      if (left < wanted.size()) wanted = wanted.first(static_cast<std::size_t>(left));
     }
     records_ += sink_.points(wanted);
     return std::nullopt;

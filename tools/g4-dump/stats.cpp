@@ -46,8 +46,8 @@ std::string stats_as_json(const g4lidar::stream_counts& counts, std::uint64_t by
 
 void text_detector::look_at(std::span<const std::uint8_t> bytes) noexcept {
   constexpr std::uint64_t enough = 4096;
-  const std::span<const std::uint8_t> part =
-      bytes.first(std::min<std::size_t>(bytes.size(), enough - seen_));
+  const auto count = std::min<std::uint64_t>(bytes.size(), enough - seen_);
+  const std::span<const std::uint8_t> part = bytes.first(static_cast<std::size_t>(count));
   seen_ += part.size();
   text_ += static_cast<std::uint64_t>(std::count_if(part.begin(), part.end(), [](std::uint8_t c) {
     return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r');
