@@ -63,7 +63,7 @@ struct recording_counts {
 };
 
 /// Writes recordings. *Single thread.* *Allocates on open* and when a new file is begun. Each chunk is
-/// handed to the system whole, when it is full or its time has come. [The format](recordings.md).
+/// handed to the system whole, when it is full or its time has come. docs/recordings.md has the format.
 ///
 /// Nothing that is recorded fails: where the disk is full, chunks are left out and counted, what was
 /// written stays good, and take_error() tells why, once until it is over.

@@ -25,7 +25,7 @@ for source in live_scan first_points; do
 done
 
 # Command lines in sentences: a verb, or the beginning of a line that is run.
-for document in README docs/guide docs/errors docs/sim; do
+for document in README docs/guide docs/errors docs/sim docs/recordings; do
   mkdir -p "$scratch/$document"
   bash "$here/extract.sh" "$document.md" "$scratch/$document"
   while IFS=$'\t' read -r block language _ mark; do
@@ -44,7 +44,7 @@ while IFS=: read -r document words; do
     echo "$document speaks of '$words', which is in no block that is run" >&2
     missing=1
   fi
-done < <(grep -oE '`g4-dump [^`]*`' README.md docs/guide.md docs/errors.md docs/sim.md | sort --unique)
+done < <(grep -oE '`g4-dump [^`]*`' README.md docs/guide.md docs/errors.md docs/sim.md docs/recordings.md | sort --unique)
 
 # Every path that a document names exists, and every link leads to a file.
 # shellcheck disable=SC2016 # the backquotes are those of Markdown
