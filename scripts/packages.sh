@@ -24,7 +24,7 @@ packages_bench=(
 # What it takes to build the Debian packages.
 packages_package=(
   "${packages_demo[@]}"
-  debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev libzstd-dev
+  debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev
 )
 
 # What a sysroot for cross-building is made of, in the target's architecture: see scripts/sysroot.
