@@ -3,11 +3,16 @@
 # document another one, and links to a heading use those.
 #   awk -f page.awk DOCUMENT
 
-function page_of(path) {
-  if (path ~ /design\/README\.md$/ || (path == "README.md" && FILENAME ~ /design\//)) return "design"
-  sub(/^.*\//, "", path)
-  sub(/\.md$/, "", path)
-  return path == "README" ? "mainpage" : tolower(path)
+# A README is its directory's page, and the first one that of all.
+function page_of(path,    parts, count) {
+  if (path !~ /README\.md$/) {
+    sub(/^.*\//, "", path)
+    sub(/\.md$/, "", path)
+    return tolower(path)
+  }
+  if (path == "README.md") path = document
+  count = split(path, parts, "/")
+  return count == 1 || parts[count - 1] == ".." ? "mainpage" : parts[count - 1]
 }
 
 # As in "When it is unplugged" -> "when-it-is-unplugged".
@@ -24,17 +29,21 @@ function link(line,    done, place, file) {
     place = substr(line, RSTART + 2, RLENGTH - 3)
     file = substr(place, 1, index(place, "#") - 1)
     sub(/^.*#/, "", place)
-    if (file == "") file = FILENAME
+    if (file == "") file = document
     done = done substr(line, 1, RSTART + 1) "#" page_of(file) "_" place ")"
     line = substr(line, RSTART + RLENGTH)
   }
   return done line
 }
 
+FNR == 1 {
+  document = FILENAME
+  if (index(document, ENVIRON["PWD"] "/") == 1) document = substr(document, length(ENVIRON["PWD"]) + 2)
+}
 /^```/ { is_code = !is_code }
 is_code { print; next }
 /^#+ / {
-  id = page_of(FILENAME) (titles++ ? "_" name_of(substr($0, index($0, " ") + 1)) : "")
+  id = page_of(document) (titles++ ? "_" name_of(substr($0, index($0, " ") + 1)) : "")
   print $0 " {#" id "}"
   next
 }
