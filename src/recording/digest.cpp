@@ -5,7 +5,7 @@
 namespace g4lidar {
 
 std::string_view computed_with() noexcept {
-  const bool has_avx2 = best_instruction_set() == instruction_set::avx2;
+  [[maybe_unused]] const bool has_avx2 = best_instruction_set() == instruction_set::avx2;
 #if defined(__x86_64__)
   return has_avx2 ? "x86_64 avx2" : "x86_64";
 #elif defined(__aarch64__)
