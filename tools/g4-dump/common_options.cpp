@@ -68,13 +68,13 @@ std::vector<option_row> filter_rows(const shared_options& options) {
   rows.push_back(
       {.names = "--fov",
        .value = "FROM:TO",
-       .help = "Only directions from there on, growing, in degrees of the frame: -90:90",
+       .help = "Only these directions, degrees of the frame that grow: -90:90",
        .take =
            [options](const std::string& word) { options->fov_deg = range_of(word, -360.0, 360.0); },
        .group = filter});
   rows.push_back({.names = "--ignore",
                   .value = "FROM:TO",
-                  .help = "Leave out directions, such as those of a post: 30:40; again for more",
+                  .help = "Without these directions: 30:40; can be given again",
                   .take =
                       [options](const std::string& word) {
                         options->ignore_deg.push_back(range_of(word, -360.0, 360.0));
@@ -88,7 +88,7 @@ std::vector<option_row> shape_rows(const shared_options& options) {
   std::vector<option_row> rows;
   rows.push_back({.names = "--frame",
                   .value = "vendor|robot",
-                  .help = "vendor: clockwise, 0 at the cable; robot: REP 103, x forward (vendor)",
+                  .help = "vendor: clockwise from the cable; robot: REP 103 (vendor)",
                   .take =
                       [options](const std::string& word) {
                         options->frame = choice_of<g4lidar::frame>(
@@ -109,7 +109,7 @@ std::vector<option_row> shape_rows(const shared_options& options) {
                   .group = shape});
   rows.push_back({.names = "--time",
                   .value = "abs|mono|delta|zero",
-                  .help = "Since 1970, of the monotonic clock, since the last, since the first",
+                  .help = "Since 1970, of the clock, since the last, since the first",
                   .take =
                       [options](const std::string& word) {
                         options->time =

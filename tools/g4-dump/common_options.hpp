@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "g4lidar/point.hpp"
+#include "point_style.hpp"
 #include "values.hpp"
 #include "verb.hpp"
 
@@ -30,8 +31,6 @@ enum class loss_rule : unsigned char {
   reconnect,  ///< It goes on when a device that was there is back.
   wait,       ///< It also waits for one that is not there yet.
 };
-
-enum class length_unit : unsigned char { millimetres, metres };
 
 struct common_options {
   std::string source;        ///< Empty: the only G4.

@@ -149,4 +149,23 @@ char* put_angle(char* at, double degrees) noexcept {
   return at + Decimals;
 }
 
+/// Writes the angle of [0, 360) degrees as one of [-180, 180), rounded to so many decimals. What rounds
+/// to 180 is -180.
+template <unsigned Decimals>
+char* put_signed_angle(char* at, double degrees) noexcept {
+  constexpr std::uint32_t turn = 360 * power_of_ten(Decimals);
+  const auto rounded = static_cast<std::uint32_t>(nearest(degrees * power_of_ten(Decimals)));
+  const std::uint32_t scaled = rounded < turn ? rounded : 0;
+  if (scaled < turn / 2) return put_scaled<Decimals>(at, scaled);
+  *at++ = '-';
+  return put_scaled<Decimals>(at, turn - scaled);
+}
+
+/// Writes any number, with its sign if it is negative.
+inline char* put_signed(char* at, std::int64_t number) noexcept {
+  if (number >= 0) return put_number(at, static_cast<std::uint64_t>(number));
+  *at++ = '-';
+  return put_number(at, std::uint64_t{0} - static_cast<std::uint64_t>(number));
+}
+
 }  // namespace g4_dump

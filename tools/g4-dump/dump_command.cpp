@@ -1,100 +1,202 @@
 // SPDX-License-Identifier: MIT
-// The verbs dump and scan: points, or whole revolutions, of any source.
-#include <memory>
-#include <string>
+#include "dump_command.hpp"
 
-#include "common_options.hpp"
-#include "decode_command.hpp"
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "byte_points.hpp"
+#include "byte_pump.hpp"
 #include "exit_code.hpp"
+#include "g4lidar/recording_reader.hpp"
+#include "grid_writer.hpp"
+#include "input.hpp"
 #include "interrupt.hpp"
 #include "live.hpp"
+#include "manners.hpp"
 #include "output.hpp"
 #include "point_writer.hpp"
+#include "shaped_writer.hpp"
 #include "source.hpp"
-#include "verbs.hpp"
+#include "stats.hpp"
 
 namespace g4_dump {
 namespace {
 
-struct dump_options {
-  shared_options common = std::make_shared<common_options>();
-  point_style style{.format = text_format::text};
+constexpr std::string_view file_prefix = "file:";
+
+std::string path_of(const std::string& source) {
+  return source.starts_with(file_prefix) ? source.substr(file_prefix.size()) : source;
+}
+
+/// How far the wall clock was ahead when `path` was recorded.
+std::int64_t recorded_wall_ahead_ns(const std::string& path) {
+  auto reader = g4lidar::recording_reader::open(path);
+  if (!reader) throw failure(reader.error());
+  const auto first = reader->next();
+  return first && *first ? (*first)->wall_ns - (*first)->time_ns : 0;
+}
+
+shape_plan plan_for(const dump_options& options, source_kind kind) {
+  const common_options& common = *options.common;
+  const bool is_bytes = kind == source_kind::bytes;
+  shape_plan plan;
+  plan.partial_scans = options.partial;
+  plan.counts_duration = is_bytes || kind == source_kind::recording;
+  if (options.bins > 0) plan.purpose = point_shaper::purpose::grid;
+  const time_style wanted =
+      common.time.value_or(is_bytes ? time_style::zero : time_style::absolute);
+  if (is_bytes && (wanted == time_style::absolute || wanted == time_style::monotonic)) {
+    throw bad_value("--time: raw bytes carry no times; zero and delta are counted at --rate");
+  }
+  plan.time = is_bytes && wanted == time_style::zero ? time_style::monotonic : wanted;
+  if (plan.time == time_style::absolute) {
+    plan.follows_wall_clock = kind != source_kind::recording;
+    plan.wall_ahead_ns =
+        plan.follows_wall_clock ? wall_ahead_ns() : recorded_wall_ahead_ns(path_of(common.source));
+  }
+  return plan;
+}
+
+/// One dump or scan, from the options to the counts.
+class dumping {
+ public:
+  explicit dumping(const dump_options& options)
+      : options_(options), common_(*options.common), kind_(kind_of(common_.source)) {
+    if (options_.pcd) take_files();
+    const shape_plan plan = plan_for(options_, kind_);
+    options_.style.frame = common_.frame;
+    options_.style.unit = common_.unit;
+    if (plan.time == time_style::absolute || plan.time == time_style::monotonic) {
+      if (kind_ != source_kind::bytes) options_.style.time_width = 10;
+    }
+    writer_.emplace(make_writer(), common_, plan);
+  }
+
+  int run() { return kind_ == source_kind::bytes ? dump_bytes() : dump_lidar(); }
+
+ private:
+  void take_files() {
+    if (options_.bins > 0) throw bad_value("--grid: a PCD file holds points");
+    files_ = numbered_files::from(common_.output);
+    if (files_) return;
+    if (common_.count > 1) {
+      throw bad_value("-n: a PCD file holds one revolution; name more by -o scan-%04d.pcd");
+    }
+    common_.count = 1;
+    if (common_.output == "-" && options_.data == pcd_data::binary && ::isatty(1) != 0) {
+      throw bad_value("standard output is a terminal; give -o FILE, or --pcd-data ascii");
+    }
+  }
+
+  std::unique_ptr<point_writer> make_writer() const {
+    if (options_.pcd) return make_pcd_writer(common_.frame, options_.data, files_);
+    if (options_.bins > 0) return make_grid_writer(options_.style, options_.bins);
+    return make_point_writer(options_.style);
+  }
+
+  /// Numbered files make themselves. What may be read for ever goes to its file at once.
+  [[nodiscard]] std::string output_name() const { return files_ ? "/dev/null" : common_.output; }
+  static output::appears when_it_appears(bool has_end) {
+    return has_end ? output::appears::whole : output::appears::growing;
+  }
+
+  int dump_bytes();
+  int dump_lidar();
+  void run_lidar(opened_source& source, output& out);
+  void tell_pieces() const;
+  static int end() { return interrupt() != 0 ? 128 + interrupt() : 0; }
+
+  dump_options options_;
+  common_options common_;
+  source_kind kind_;
+  std::optional<numbered_files> files_;
+  std::optional<shaped_writer> writer_;
 };
 
-/// Raw bytes tell no times: they are counted, as decode does.
-int dump_bytes(const dump_options& options) {
-  decode_options as_bytes;
-  as_bytes.input = options.common->source;
-  as_bytes.output = options.common->output;
-  as_bytes.style = options.style;
-  return run(as_bytes);
+int dumping::dump_bytes() {
+  input in(path_of(common_.source),
+           "Give a file of bytes as they came from the lidar's port, or pipe them in.");
+  output out(output_name(), when_it_appears(in.id().has_value() || options_.pcd));
+  refuse_same_file(in.id(), out);
+  byte_points way(*writer_, out, options_.style.rate_hz);
+  text_detector detector;
+  byte_sink sink{.take =
+                     [&](std::span<const std::uint8_t> got) {
+                       detector.look_at(got);
+                       way.take(got);
+                     },
+                 .is_done = [this] { return writer_->is_done(); },
+                 .duration = common_.duration,
+                 .idle = common_.idle,
+                 .with_bar = !our_manners().quiet};
+  pump(in, out, sink);
+  if (!writer_->is_done()) way.finish();  // else what is left was not wanted
+  if (way.counts().packets > 0) out.commit();
+  if (way.bytes() > 0) {
+    tell(stats_in_words(way.counts(), way.bytes()));
+    tell(warning_about(way.counts(), way.bytes()));
+    tell_pieces();
+  }
+  if (way.counts().packets == 0 && !out.is_closed() && interrupt() == 0) {
+    throw failure(exit_code::bad_file,
+                  why_no_packet(way.counts(), way.bytes(), detector.is_text(), in.title()));
+  }
+  return end();
 }
 
-int dump(const dump_options& options) {
-  const common_options& common = *options.common;
-  if (kind_of(common.source) == source_kind::bytes) return dump_bytes(options);
-  output out(common.output);
-  opened_source source(common);
-  const auto writer = make_point_writer(options.style);
-  writer->begin(out);
-  live_sink sink;
-  if (writer->takes_scans()) {
-    sink.scan = [&](const g4lidar::scan& scan) {
-      writer->write_scan(scan, out);
-      return std::uint64_t{1};
-    };
+int dumping::dump_lidar() {
+  const bool has_end = kind_ == source_kind::recording || options_.pcd;
+  output out(output_name(), when_it_appears(has_end));
+  g4lidar::lidar_options how;
+  how.partial_scans = options_.partial;
+  opened_source source(common_, how);
+  try {
+    run_lidar(source, out);
+  } catch (const failure&) {  // what came before it is good
+    out.commit();
+    tell_counts(source.lidar());
+    throw;
   }
-  sink.points = [&](std::span<const g4lidar::point> points) {
-    writer->write_points(points, out);
-    return points.size();
-  };
-  run_live(source.lidar(), common, sink, out);
   out.commit();
   tell_counts(source.lidar());
-  return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code::ok);
+  return end();
 }
 
-verb make(const std::string& name, bool scans) {
-  const auto options = std::make_shared<dump_options>();
-  options->style.scans = scans;
-  verb made;
-  made.name = name;
-  made.arguments.push_back(source_argument(options->common));
-  made.options.push_back(output_row(options->common));
-  made.options.push_back({.names = "-f,--format",
-                          .value = "csv|jsonl|text",
-                          .help = "How to write (text)",
-                          .take =
-                              [options](const std::string& word) {
-                                options->style.format =
-                                    choice_of<text_format>(word, {{"csv", text_format::csv},
-                                                                  {"jsonl", text_format::jsonl},
-                                                                  {"text", text_format::text}});
-                              },
-                          .complete = completion::choices});
-  append(made.options, ending_rows(options->common));
-  append(made.options, filter_rows(options->common));
-  append(made.options, shape_rows(options->common));
-  append(made.options, device_rows(options->common));
-  made.run = [options] { return dump(*options); };
-  return made;
+void dumping::run_lidar(opened_source& source, output& out) {
+  live_sink sink;
+  if (writer_->takes_scans()) {
+    sink.scan = [&](const g4lidar::scan& scan) {
+      shown_scan shown{.scan = scan};
+      if (!scan.points.empty()) shown.time_ns = scan.points.front().time_ns;
+      shown.measured_hz = static_cast<double>(scan.measured_frequency_hz(options_.style.rate_hz));
+      writer_->write_scan(shown, out);
+      return std::uint64_t{1};
+    };
+  } else {
+    sink.points = [&](std::span<const g4lidar::point> points) {
+      writer_->write_points(points, out);
+      return points.size();
+    };
+  }
+  sink.is_done = [this] { return writer_->is_done(); };
+  common_options ending = common_;
+  if (kind_ == source_kind::recording) ending.duration = std::chrono::nanoseconds(0);
+  run_live(source.lidar(), ending, sink, out);
+}
+
+void dumping::tell_pieces() const {
+  if (writer_->pieces_left_out() == 0) return;
+  tell(fmt::format("{} pieces of revolutions left out; --partial writes them, too\n",
+                   writer_->pieces_left_out()));
 }
 
 }  // namespace
 
-verb make_dump_verb() {
-  verb made = make("dump", false);
-  made.summary = "Points (the verb that may be left out)";
-  made.examples = {"g4-dump", "g4-dump -n 1000 -f csv -o points.csv",
-                   "g4-dump dump sim: -d 2s -f jsonl"};
-  return made;
-}
-
-verb make_scan_verb() {
-  verb made = make("scan", true);
-  made.summary = "Whole revolutions";
-  made.examples = {"g4-dump scan -n 5", "g4-dump scan sim:?seed=7 -d 3s -f csv"};
-  return made;
-}
+int run(const dump_options& options) { return dumping(options).run(); }
 
 }  // namespace g4_dump

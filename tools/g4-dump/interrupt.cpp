@@ -50,10 +50,12 @@ int interrupt() noexcept { return caught; }
 
 int interrupt_handle() noexcept { return bell[0]; }
 
-wake wait_for_input(int input, int output) noexcept {
+wake wait_for_input(int input, int output, int timeout_ms) noexcept {
   while (interrupt() == 0) {
     std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {bell[0], POLLIN, 0}, {output, 0, 0}}};
-    if (::poll(waiting.data(), waiting.size(), -1) < 0) {
+    const int woken = ::poll(waiting.data(), waiting.size(), timeout_ms);
+    if (woken == 0) return wake::timeout;
+    if (woken < 0) {
       if (errno == EINTR) continue;
       return wake::input;  // let read() say what is wrong
     }

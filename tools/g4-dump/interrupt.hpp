@@ -19,10 +19,11 @@ void prepare_process();
 struct interrupted {};
 
 /// What wait_for_input() saw.
-enum class wake { input, interrupt, output_closed };
+enum class wake { input, interrupt, output_closed, timeout };
 
-/// Waits until `input` can be read, a signal comes, or the reader of `output` has gone.
-[[nodiscard]] wake wait_for_input(int input, int output) noexcept;
+/// Waits until `input` can be read, a signal comes, the reader of `output` has gone, or so many
+/// milliseconds have passed; -1: for ever.
+[[nodiscard]] wake wait_for_input(int input, int output, int timeout_ms = -1) noexcept;
 
 /// Whether reading `input` would have to wait.
 [[nodiscard]] bool would_wait(int input) noexcept;

@@ -3,6 +3,8 @@
 // written when it is over.
 #include <fmt/format.h>
 
+#include <string>
+
 #include "digits.hpp"
 #include "point_writer.hpp"
 #include "scan_summary.hpp"
@@ -12,35 +14,56 @@ namespace {
 
 char* put_bool(char* at, bool yes) noexcept { return put_text(at, yes ? "true" : "false"); }
 
+char* put_direction(char* at, const g4lidar::point& p, const point_style& style) noexcept {
+  const auto degrees = static_cast<double>(p.angle_deg);
+  return style.frame == g4lidar::frame::robot ? put_signed_angle<6>(at, degrees)
+                                              : put_angle<6>(at, degrees);
+}
+
+char* put_range(char* at, const g4lidar::point& p, const point_style& style) noexcept {
+  const auto range_mm = static_cast<double>(p.range_mm);
+  return style.unit == length_unit::metres ? put_scaled<5>(at, nearest(range_mm * 100.0))
+                                           : put_fixed<2>(at, range_mm);
+}
+
 /// An object for each point.
 class jsonl_points : public point_writer {
  public:
-  explicit jsonl_points(const point_style& style) : style_(style) {}
+  explicit jsonl_points(const point_style& style)
+      : style_(style), range_name_(fmt::format(",\"range_{}\":", style.unit_name())) {}
 
-  [[nodiscard]] bool takes_scans() const noexcept override { return true; }
+  [[nodiscard]] bool takes_scans() const noexcept override { return !style_.as_they_come; }
 
-  void write_scan(const g4lidar::scan& scan, output& out) override {
-    for (const g4lidar::point& p : scan.points) {
+  void write_points(std::span<const g4lidar::point> points, output& out) override {
+    for (const g4lidar::point& p : points) {
       if (style_.leaves_out(p)) continue;
-      out.wrote(put_object(out.room(max_object), p, scan.is_partial()));
+      out.wrote(put_text(put_point(out.room(max_object), p), "}\n"));
+    }
+  }
+
+  void write_scan(const shown_scan& shown, output& out) override {
+    for (const g4lidar::point& p : shown.scan.points) {
+      if (style_.leaves_out(p)) continue;
+      char* at = put_text(put_point(out.room(max_object), p), ",\"partial\":");
+      at = put_bool(at, shown.scan.is_partial());
+      out.wrote(put_text(at, "}\n"));
     }
   }
 
  private:
   static constexpr std::size_t max_object = 256;
 
-  static char* put_object(char* at, const g4lidar::point& p, bool partial) noexcept {
+  char* put_point(char* at, const g4lidar::point& p) const noexcept {
     at = put_number(put_text(at, "{\"scan\":"), p.revolution);
-    at = put_angle<6>(put_text(at, ",\"angle_deg\":"), static_cast<double>(p.angle_deg));
-    at = put_fixed<2>(put_text(at, ",\"range_mm\":"), static_cast<double>(p.range_mm));
-    at = put_number(put_text(at, ",\"time_ns\":"), static_cast<std::uint64_t>(p.time_ns));
+    at = put_direction(put_text(at, ",\"angle_deg\":"), p, style_);
+    at = put_range(put_text(at, range_name_), p, style_);
+    at = put_signed(put_text(at, ",\"time_ns\":"), p.time_ns);
     at = put_bool(put_text(at, ",\"no_return\":"), p.is_no_return());
-    at = put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
-    at = put_bool(put_text(at, ",\"partial\":"), partial);
-    return put_text(at, "}\n");
+    return put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
   }
 
   point_style style_;
+  std::string range_name_;
 };
 
 /// An object for each revolution, its points in columns.
@@ -50,23 +73,22 @@ class jsonl_scans : public point_writer {
 
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
 
-  void write_scan(const g4lidar::scan& scan, output& out) override {
-    const scan_summary summary = summary_of(scan, style_);
+  void write_scan(const shown_scan& shown, output& out) override {
+    const g4lidar::scan& scan = shown.scan;
+    const scan_summary summary = summary_of(shown, style_);
     out.write(fmt::format(
         R"({{"scan":{},"partial":{},"why":[{}],"points":{},"returns":{},"suspect_samples":{},)"
         R"("turned_deg":{:.2f},"reported_hz":{},"measured_hz":{})",
         scan.revolution, scan.is_partial(), names_of(scan.marks, "\"", ",", "\""), summary.points,
         summary.returns, scan.suspect_samples, scan.turned_deg, known(summary.reported_hz, 1),
-        known(summary.measured_hz, 3)));
-    write_column(scan, "angle_deg", out, [](char* at, const g4lidar::point& p) {
-      return put_angle<6>(at, static_cast<double>(p.angle_deg));
+        known(shown.measured_hz, 3)));
+    write_column(scan, "angle_deg", out, [this](char* at, const g4lidar::point& p) {
+      return put_direction(at, p, style_);
     });
-    write_column(scan, "range_mm", out, [](char* at, const g4lidar::point& p) {
-      return put_fixed<2>(at, static_cast<double>(p.range_mm));
-    });
-    write_column(scan, "time_ns", out, [](char* at, const g4lidar::point& p) {
-      return put_number(at, static_cast<std::uint64_t>(p.time_ns));
-    });
+    write_column(scan, fmt::format("range_{}", style_.unit_name()), out,
+                 [this](char* at, const g4lidar::point& p) { return put_range(at, p, style_); });
+    write_column(scan, "time_ns", out,
+                 [](char* at, const g4lidar::point& p) { return put_signed(at, p.time_ns); });
     out.write("}\n");
   }
 

@@ -19,6 +19,7 @@ using namespace std::chrono_literals;
 using clock = std::chrono::steady_clock;
 
 constexpr auto pulse_time = 100ms;
+constexpr auto flush_time = 50ms;
 
 class live_loop {
  public:
@@ -34,7 +35,7 @@ class live_loop {
       if (got) {
         last_ = clock::now();
       } else {
-        out_.flush();
+        flush_if_due();
         wait();
       }
       if (sink_.pulse) sink_.pulse();
@@ -44,10 +45,24 @@ class live_loop {
  private:
   [[nodiscard]] bool is_over() const {
     const auto now = clock::now();
-    return interrupt() != 0 || out_.is_closed() ||
-           (options_.count > 0 && records_ >= options_.count) ||
+    return interrupt() != 0 || out_.is_closed() || has_enough() ||
            (options_.duration.count() > 0 && now - begin_ >= options_.duration) ||
            (options_.idle.count() > 0 && now - last_ >= options_.idle);
+  }
+
+  [[nodiscard]] bool has_enough() const {
+    if (sink_.is_done) return sink_.is_done();
+    return options_.count > 0 && records_ >= options_.count;
+  }
+
+  void flush_if_due() {
+    if (!out_.has_unwritten()) {
+      flushed_ = clock::now();
+      return;
+    }
+    if (!is_terminal_ && clock::now() - flushed_ < flush_time) return;
+    out_.flush();
+    flushed_ = clock::now();
   }
 
   /// Takes what is there, without waiting where poll() can do that; false if nothing was.
@@ -78,7 +93,7 @@ class live_loop {
     const auto got = lidar_.next_points(longest);
     if (!got) return got.error();
     auto wanted = *got;
-    if (options_.count > 0) {
+    if (options_.count > 0 && !sink_.is_done) {
       const std::uint64_t left = options_.count - records_;
       if (left < wanted.size()) wanted = wanted.first(static_cast<std::size_t>(left));
     }
@@ -86,7 +101,7 @@ class live_loop {
     return std::nullopt;
   }
 
-  void wait() const {
+  void wait() {
     if (lidar_.native_handle() < 0) return;  // it has waited itself
     const auto now = clock::now();
     auto until = now + pulse_time;
@@ -96,11 +111,13 @@ class live_loop {
     }
     if (options_.duration.count() > 0) until = std::min(until, begin_ + options_.duration);
     if (options_.idle.count() > 0) until = std::min(until, last_ + options_.idle);
+    if (out_.has_unwritten()) until = std::min(until, flushed_ + flush_time);
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - now);
     std::array<pollfd, 3> waiting{{{lidar_.native_handle(), POLLIN, 0},
                                    {interrupt_handle(), POLLIN, 0},
                                    {out_.descriptor(), 0, 0}}};
     ::poll(waiting.data(), waiting.size(), static_cast<int>(std::max(left, 0ms).count()));
+    if ((waiting[2].revents & (POLLERR | POLLHUP)) != 0) out_.close_early();
   }
 
   g4lidar::lidar& lidar_;
@@ -109,6 +126,8 @@ class live_loop {
   output& out_;
   clock::time_point begin_ = clock::now();
   clock::time_point last_ = begin_;
+  clock::time_point flushed_ = begin_;
+  bool is_terminal_ = out_.is_terminal();
   std::uint64_t records_ = 0;
   bool ended_ = false;
 };

@@ -17,15 +17,19 @@ class output;
 /// What a command does with what comes. Each gives how many records that made.
 struct live_sink {
   /// Where it is set, scans are read; else points.
-  std::function<std::uint64_t(const g4lidar::scan&)> scan;
-  std::function<std::uint64_t(std::span<const g4lidar::point>)> points;
+  std::function<std::uint64_t(const g4lidar::scan&)> scan{};
+  std::function<std::uint64_t(std::span<const g4lidar::point>)> points{};
   /// Called at least every 100 ms, where it is set.
-  std::function<void()> pulse;
+  std::function<void()> pulse{};
+  /// Whether there has been enough, where it is set; then it, and not -n, counts records, and gets all
+  /// points of a reading.
+  std::function<bool()> is_done{};
 };
 
 /// Starts the lidar, reads it until one of the options' ends, a signal, the end of a recording, or
-/// nobody reads `out` any more; stops it. What happens by itself is told. Flushes `out` before each
-/// wait, where what reads it is a terminal or a pipe. Throws a failure where the lidar is lost.
+/// nobody reads `out` any more; stops it. What happens by itself is told. A terminal is shown
+/// everything before each wait; a pipe or a file gets it after 50 ms at most. Throws a failure where
+/// the lidar is lost.
 void run_live(g4lidar::lidar& lidar, const common_options& options, const live_sink& sink,
               output& out);
 

@@ -47,7 +47,7 @@ std::filesystem::path behind_links(const std::string& name) {
 
 }  // namespace
 
-output::output(std::string name)
+output::output(std::string name, appears when)
     : name_(std::move(name)),
       title_(name_ == "-" ? "standard output" : in_quotes(name_)),
       buffer_(new char[capacity]) {
@@ -63,9 +63,13 @@ output::output(std::string name)
   }
   if (exists && !S_ISREG(status.st_mode)) {
     open_directly();
-  } else {
-    if (exists) id_ = id_of(status);
+    return;
+  }
+  if (exists) id_ = id_of(status);
+  if (when == appears::whole) {
     open_beside(exists ? &status : nullptr);
+  } else {
+    prepare_growing(exists);
   }
 }
 
@@ -80,6 +84,23 @@ void output::open_directly() {
     if (fd_ >= 0) return;
     if (errno != EINTR) give_up("open", errno);
     if (interrupt() != 0) throw interrupted();
+  }
+}
+
+void output::prepare_growing(bool exists) {
+  const std::filesystem::path place = std::filesystem::path(name_).parent_path();
+  const std::string directory = place.empty() ? "." : place.string();
+  if (::access(exists ? name_.c_str() : directory.c_str(), W_OK) != 0) {
+    give_up(exists ? "replace" : "create", errno);
+  }
+  fd_ = -1;
+}
+
+void output::open_growing() {
+  while (true) {
+    fd_ = ::open(name_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
+    if (fd_ >= 0) return;
+    if (errno != EINTR) give_up("create", errno);
   }
 }
 
@@ -111,6 +132,7 @@ void output::write(std::string_view text) {
 void output::flush() { write_out(buffer_.get(), std::exchange(used_, 0)); }
 
 void output::write_out(const char* data, std::size_t size) {
+  if (fd_ < 0 && size > 0) open_growing();
   while (size > 0 && !closed_) {
     const ssize_t count = ::write(fd_, data, size);
     if (count >= 0) {

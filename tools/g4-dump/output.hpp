@@ -18,8 +18,14 @@ namespace g4_dump {
 /// name stays untouched. Everything else is written to directly.
 class output {
  public:
+  /// When a file on disk stands in its place.
+  enum class appears : unsigned char {
+    whole,    ///< When it is finished.
+    growing,  ///< With the first bytes that go to it, so that a crash leaves what there was.
+  };
+
   /// The file of that name, `-` for standard output.
-  explicit output(std::string name);
+  explicit output(std::string name, appears when = appears::whole);
   output(const output&) = delete;
   output& operator=(const output&) = delete;
   ~output();
@@ -45,6 +51,9 @@ class output {
 
   /// Nobody reads any more: what is written is thrown away. That is a normal end.
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
+  /// Somebody else has seen that.
+  void close_early() noexcept { closed_ = true; }
+  [[nodiscard]] bool has_unwritten() const noexcept { return used_ > 0; }
 
   [[nodiscard]] bool is_terminal() const noexcept;
   /// The file on disk that is written or replaced, if there is one already.
@@ -57,6 +66,8 @@ class output {
   static constexpr std::size_t capacity = 4 * max_room;
 
   void open_beside(const struct stat* older);
+  void prepare_growing(bool exists);
+  void open_growing();
   void open_directly();
   void write_out(const char* data, std::size_t size);
   [[noreturn]] void give_up(const char* doing, int error) const;
@@ -64,7 +75,7 @@ class output {
   std::string name_;
   std::string title_;
   std::string temporary_;  // until it is renamed
-  int fd_ = 1;
+  int fd_ = 1;             // -1: a growing file that has not begun
   std::optional<file_id> id_;
   bool closed_ = false;
   std::size_t used_ = 0;

@@ -10,21 +10,15 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan.hpp"
 #include "output.hpp"
+#include "point_style.hpp"
 
 namespace g4_dump {
 
-enum class text_format : std::uint8_t { csv, jsonl, text };
-
-/// What of the points is written, and how.
-struct point_style {
-  text_format format = text_format::csv;
-  bool scans = false;       ///< A record for each revolution, not for each point.
-  bool valid_only = false;  ///< Without the points from which nothing came back.
-  std::uint32_t rate_hz = 9000;
-
-  [[nodiscard]] bool leaves_out(const g4lidar::point& p) const noexcept {
-    return valid_only && p.is_no_return();
-  }
+/// A revolution as it is to be written, and what is known of it whichever of its points are left.
+struct shown_scan {
+  g4lidar::scan scan;        ///< With the points that are written.
+  std::int64_t time_ns = 0;  ///< Of its first point, whether that is written or not.
+  double measured_hz = 0.0;  ///< Of the rotation; 0 where it cannot be told.
 };
 
 /// Writes records to an output. It takes packets or revolutions, one of the two.
@@ -35,13 +29,16 @@ class point_writer {
   point_writer& operator=(const point_writer&) = delete;
   virtual ~point_writer() = default;
 
+  /// The most points that write_points() is given at once.
+  static constexpr std::size_t max_points = 512;
+
   [[nodiscard]] virtual bool takes_scans() const noexcept = 0;
   /// What stands before the first record. Called once, when the first packet has come.
   virtual void begin(output&) {}
-  /// The points of one packet.
+  /// The points of one packet, or of several.
   virtual void write_points(std::span<const g4lidar::point>, output&) {}
-  /// A revolution, or a piece of one. Its points' times are as the style's rate makes them.
-  virtual void write_scan(const g4lidar::scan&, output&) {}
+  /// A revolution, or a piece of one.
+  virtual void write_scan(const shown_scan&, output&) {}
 };
 
 [[nodiscard]] std::unique_ptr<point_writer> make_csv_writer(const point_style& style);

@@ -7,19 +7,24 @@
 
 namespace g4_dump {
 
-scan_summary summary_of(const g4lidar::scan& scan, const point_style& style) {
+scan_summary summary_of(const shown_scan& shown, const point_style& style) {
   scan_summary result;
-  for (const g4lidar::point& p : scan.points) {
+  for (const g4lidar::point& p : shown.scan.points) {
     if (style.leaves_out(p)) continue;
     ++result.points;
     if (!p.is_no_return()) ++result.returns;
   }
+  result.reported_hz = shown.scan.reported_frequency_dhz / 10.0;
+  return result;
+}
+
+shown_scan counted_scan(const g4lidar::scan& scan, std::uint32_t rate_hz) {
+  shown_scan result{.scan = scan};
   if (!scan.points.empty()) result.time_ns = scan.points.front().time_ns;
-  result.reported_hz = scan.reported_frequency_dhz / 10.0;
-  // The times were made from the rate and tell nothing of their own; after a loss they are early.
+  // After a loss, times that are counted are early.
   g4lidar::scan untimed = scan;
   untimed.duration_ns = 0;
-  result.measured_hz = static_cast<double>(untimed.measured_frequency_hz(style.rate_hz));
+  result.measured_hz = static_cast<double>(untimed.measured_frequency_hz(rate_hz));
   return result;
 }
 

@@ -16,12 +16,13 @@ namespace g4_dump {
 struct scan_summary {
   std::size_t points = 0;    ///< That are written.
   std::size_t returns = 0;   ///< Of those, the ones from which something came back.
-  std::int64_t time_ns = 0;  ///< Of the first point, whether it is written or not.
   double reported_hz = 0.0;  ///< 0 where the device did not report it.
-  double measured_hz = 0.0;  ///< 0 where it cannot be told.
 };
 
-[[nodiscard]] scan_summary summary_of(const g4lidar::scan& scan, const point_style& style);
+[[nodiscard]] scan_summary summary_of(const shown_scan& shown, const point_style& style);
+
+/// A revolution whose times were counted at the style's rate, so that they tell nothing of their own.
+[[nodiscard]] shown_scan counted_scan(const g4lidar::scan& scan, std::uint32_t rate_hz);
 
 /// The names of the marks that are set, `before` and `after` each and `between` them.
 [[nodiscard]] std::string names_of(g4lidar::scan_marks marks, std::string_view before,

@@ -28,7 +28,11 @@ class text_points : public point_writer {
 
   [[nodiscard]] bool takes_scans() const noexcept override { return false; }
 
-  void begin(output& out) override { out.write("  scan  angle_deg   range_mm        time_s\n"); }
+  void begin(output& out) override {
+    out.write(fmt::format("  scan  angle_deg  {:>9}  {:>{}}\n",
+                          fmt::format("range_{}", style_.unit_name()), "time_s",
+                          style_.time_width + 7));
+  }
 
   void write_points(std::span<const g4lidar::point> points, output& out) override {
     for (const g4lidar::point& p : points) {
@@ -41,18 +45,39 @@ class text_points : public point_writer {
  private:
   static constexpr std::size_t max_line = 256;
 
-  static char* put_line(char* at, const g4lidar::point& p) {
+  char* put_line(char* at, const g4lidar::point& p) const {
     cell angle;
     cell range;
-    const auto degrees =
-        angle.until(put_angle<2>(angle.text.data(), static_cast<double>(p.angle_deg)));
-    const auto millimetres =
-        p.is_no_return()
-            ? std::string_view("-")
-            : range.until(put_fixed<2>(range.text.data(), static_cast<double>(p.range_mm)));
-    return fmt::format_to(at, "{:6}  {:>9}  {:>9}  {:5}.{:06}{}\n", p.revolution, degrees,
-                          millimetres, p.time_ns / 1'000'000'000, p.time_ns % 1'000'000'000 / 1'000,
-                          p.is_too_near() ? "  too near" : "");
+    cell time;
+    const auto degrees = angle.until(put_direction(angle.text.data(), p));
+    const auto length =
+        p.is_no_return() ? std::string_view("-") : range.until(put_range(range.text.data(), p));
+    const auto seconds = time.until(put_seconds(time.text.data(), p.time_ns));
+    return fmt::format_to(at, "{:6}  {:>9}  {:>9}  {:>{}}{}\n", p.revolution, degrees, length,
+                          seconds, style_.time_width + 7, p.is_too_near() ? "  too near" : "");
+  }
+
+  char* put_direction(char* at, const g4lidar::point& p) const noexcept {
+    const auto degrees = static_cast<double>(p.angle_deg);
+    return style_.frame == g4lidar::frame::robot ? put_signed_angle<2>(at, degrees)
+                                                 : put_angle<2>(at, degrees);
+  }
+  char* put_range(char* at, const g4lidar::point& p) const noexcept {
+    const auto range_mm = static_cast<double>(p.range_mm);
+    return style_.unit == length_unit::metres ? put_scaled<5>(at, nearest(range_mm * 100.0))
+                                              : put_fixed<2>(at, range_mm);
+  }
+  /// With six decimals, cut off and not rounded.
+  static char* put_seconds(char* at, std::int64_t time_ns) noexcept {
+    const bool is_negative = time_ns < 0;
+    const auto number = static_cast<std::uint64_t>(time_ns);
+    const std::uint64_t magnitude = is_negative ? std::uint64_t{0} - number : number;
+    if (is_negative) *at++ = '-';
+    at = put_number(at, magnitude / 1'000'000'000U);
+    *at++ = '.';
+    const auto decimals = static_cast<std::uint32_t>(magnitude % 1'000'000'000U / 1'000U);
+    put_word(at, eight_digits(decimals) >> 16U);
+    return at + 6;
   }
 
   point_style style_;
@@ -69,13 +94,14 @@ class text_scans : public point_writer {
     out.write("  scan  points  returns  turned_deg  reported_hz  measured_hz  partial\n");
   }
 
-  void write_scan(const g4lidar::scan& scan, output& out) override {
-    const scan_summary summary = summary_of(scan, style_);
+  void write_scan(const shown_scan& shown, output& out) override {
+    const g4lidar::scan& scan = shown.scan;
+    const scan_summary summary = summary_of(shown, style_);
     const std::string why =
         scan.is_partial() ? "partial: " + names_of(scan.marks, "", ", ", "") : "whole";
     out.write(fmt::format("{:6}  {:6}  {:7}  {:10.2f}  {:>11}  {:>11}  {}\n", scan.revolution,
                           summary.points, summary.returns, scan.turned_deg,
-                          known(summary.reported_hz, 1), known(summary.measured_hz, 2), why));
+                          known(summary.reported_hz, 1), known(shown.measured_hz, 2), why));
   }
 
  private:

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// g4-dump dump and scan on a simulated lidar: how they end, what they leave, and what a loss does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <ctime>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::program;
+using cli::run;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class Live : public cli::scratch {
+ protected:
+  template <class Condition>
+  static bool comes(const Condition& condition) {
+    for (int i = 0; i < 2'000 && !condition(); ++i) std::this_thread::sleep_for(10ms);
+    return condition();
+  }
+  bool appears(const std::string& name) {
+    return comes([&] { return fs::exists(name); });
+  }
+  /// How much of it is there.
+  static std::uintmax_t size_of(const std::string& name) {
+    std::error_code none;
+    const std::uintmax_t size = fs::file_size(name, none);
+    return none ? 0 : size;
+  }
+};
+
+TEST_F(Live, SoManyPoints) {
+  const outcome done = run({"dump", "sim:?seed=3", "-n", "2500", "-f", "csv", "--fov", "10:350"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(lines_of(done.out).size(), 2501U);
+  EXPECT_THAT(done.out, StartsWith("scan,angle_deg,range_mm,time_ns\n"));
+  EXPECT_THAT(done.err, HasSubstr("samples lost"));
+}
+
+TEST_F(Live, TimesAreOfTheWallClockWhereNothingIsSaid) {
+  const std::time_t before = std::time(nullptr);
+  const outcome done = run({"sim:", "-n", "100", "-f", "csv", "-q"});
+  EXPECT_EQ(done.err, "");
+  const std::vector<std::string> lines = lines_of(done.out);
+  ASSERT_EQ(lines.size(), 101U);
+  const auto time_of = [](const std::string& line) {
+    return std::stoll(line.substr(line.rfind(',') + 1));
+  };
+  EXPECT_GE(time_of(lines[1]), (before - 1) * 1'000'000'000LL);
+  EXPECT_LE(time_of(lines[100]), (std::time(nullptr) + 1) * 1'000'000'000LL);
+  const std::vector<std::string> from_zero =
+      lines_of(run({"sim:", "-n", "3", "-f", "csv", "-q", "--time", "zero"}).out);
+  EXPECT_EQ(time_of(from_zero.at(1)), 0);
+  EXPECT_LT(time_of(from_zero.at(3)), 1'000'000'000);
+}
+
+TEST_F(Live, ScansInEachFormat) {
+  EXPECT_EQ(lines_of(run({"scan", "sim:", "-n", "2", "-f", "csv", "-q"}).out).size(), 3U);
+  EXPECT_EQ(
+      lines_of(run({"scan", "sim:", "-n", "1", "--grid", "4", "-f", "jsonl", "-q"}).out).size(),
+      1U);
+  EXPECT_EQ(run({"scan", "sim:", "-f", "pcd", "-n", "2", "-o", path("%d.pcd"), "-q"}).code, 0);
+  EXPECT_EQ(listing(), "0.pcd\n1.pcd\n");
+}
+
+TEST_F(Live, SoLong) { EXPECT_EQ(run({"dump", "sim:", "-d", "300ms", "-q"}).code, 0); }
+
+TEST_F(Live, InterruptedItTellsTheCounts) {
+  program started({"dump", "sim:", "-f", "csv"});
+  started.read_until("\n0,");
+  started.send(SIGINT);
+  const outcome done = started.wait();
+  EXPECT_EQ(done.code, 130);
+  EXPECT_THAT(done.err, HasSubstr(" points in "));
+  EXPECT_THAT(done.err, HasSubstr(" samples lost, "));
+  EXPECT_THAT(done.err, HasSubstr(" missed, "));
+  EXPECT_EQ(done.out.back(), '\n');
+}
+
+TEST_F(Live, AFileGrowsAndOutlivesAKill) {
+  const std::string out = path("out.csv");
+  cli::write_file(out, "older\n");
+  program started({"dump", "sim:", "-f", "csv", "-o", out, "-q"});
+  ASSERT_TRUE(comes([&] { return size_of(out) > 1000; }));
+  EXPECT_EQ(listing(), "out.csv\n");
+  started.send(SIGKILL);
+  started.wait();
+  EXPECT_THAT(cli::read_file(out), StartsWith("scan,angle_deg,range_mm,time_ns\n"));
+}
+
+TEST_F(Live, WithoutAPointAnOlderFileStays) {
+  const std::string out = path("out.csv");
+  cli::write_file(out, "older\n");
+  EXPECT_EQ(run({"dump", path("none"), "-o", out}).code, 3);
+  EXPECT_EQ(run({"dump", "sim:?fault=mute@0", "-o", out}).code, 6);
+  EXPECT_EQ(cli::read_file(out), "older\n");
+  EXPECT_EQ(listing(), "out.csv\n");
+}
+
+TEST_F(Live, ALossEndsItWhereNothingElseIsSaid) {
+  program twin({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
+  ASSERT_TRUE(appears(path("lidar")));
+  const outcome done = run({"dump", path("lidar"), "-f", "csv", "-o", path("out.csv")});
+  EXPECT_EQ(done.code, 9) << done.err;
+  EXPECT_THAT(lines_of(done.err).back(), StartsWith("g4-dump: "));
+  EXPECT_THAT(done.err, HasSubstr(" points in "));
+  const std::string kept = cli::read_file(path("out.csv"));
+  EXPECT_GT(lines_of(kept).size(), 100U);
+  EXPECT_EQ(kept.back(), '\n');
+}
+
+TEST_F(Live, WithReconnectItGoesOn) {
+  program twin({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
+  ASSERT_TRUE(appears(path("lidar")));
+  const std::string out = path("out.csv");
+  program started({"dump", path("lidar"), "-f", "csv", "--on-loss", "reconnect", "-o", out});
+  ASSERT_TRUE(comes([&] { return !fs::exists(path("lidar")); })) << "it was not unplugged";
+  const std::uintmax_t before = size_of(out);
+  EXPECT_GT(before, 0U);
+  ASSERT_TRUE(comes([&] { return size_of(out) > before + 200'000; })) << "it does not go on";
+  started.send(SIGINT);
+  const outcome done = started.wait();
+  EXPECT_EQ(done.code, 130) << done.err;
+  EXPECT_THAT(done.err, HasSubstr(": lost, "));
+  EXPECT_THAT(done.err, HasSubstr(": reconnected\n"));
+  EXPECT_THAT(done.err, HasSubstr(" 1 reconnects\n"));
+}
+
+TEST_F(Live, WithWaitItWaitsForADeviceThatIsNotThereYet) {
+  program started({"dump", path("lidar"), "-n", "50", "-f", "csv", "--on-loss", "wait"});
+  std::this_thread::sleep_for(300ms);
+  program twin({"sim", "--link", path("lidar")});
+  const outcome done = started.wait();
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(lines_of(done.out).size(), 51U);
+  program never({"dump", path("none"), "--on-loss", "wait"});
+  std::this_thread::sleep_for(100ms);
+  never.send(SIGTERM);
+  EXPECT_EQ(never.wait().code, 128 + SIGTERM);
+}
+
+TEST_F(Live, AReaderThatHasGoneIsNoticedWhenNothingIsWritten) {
+  program started({"dump", "sim:", "--range", "99:100"});
+  started.read_until("time_s\n");
+  started.close_output();
+  EXPECT_EQ(started.wait().code, 0);
+}
+
+}  // namespace
