@@ -160,6 +160,11 @@ class opened_source::simulation {
   std::optional<sim::background_pty> port_;
 };
 
+simulated_port serve_simulated(const std::string& source) {
+  auto served = std::make_shared<opened_source::simulation>(wish_of(source));
+  return {served->path(), served};
+}
+
 source_kind kind_of(const std::string& source) {
   const std::string_view name = source;
   if (name == "-") return source_kind::bytes;

@@ -27,6 +27,14 @@ enum class source_kind : unsigned char {
 using line_wrapper =
     std::function<std::unique_ptr<g4lidar::connector>(std::unique_ptr<g4lidar::connector>)>;
 
+/// The device of `sim:...` on a pseudo-terminal, as long as somebody keeps it.
+struct simulated_port {
+  std::string path;
+  std::shared_ptr<const void> kept;
+};
+/// Throws a failure, or bad_value.
+[[nodiscard]] simulated_port serve_simulated(const std::string& source);
+
 /// A lidar, and the simulated device that it is on, if it is on one.
 class opened_source {
  public:
@@ -43,6 +51,7 @@ class opened_source {
   }
 
  private:
+  friend simulated_port serve_simulated(const std::string& source);
   class simulation;
   std::unique_ptr<simulation> simulation_;  // outlives the lidar
   std::optional<g4lidar::lidar> lidar_;
