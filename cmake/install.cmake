@@ -73,6 +73,17 @@ if(G4LIDAR_INSTALL_UDEV_RULE)
   )
 endif()
 
+# systemd, too, reads units below both.
+if(G4LIDAR_INSTALL_SYSTEMD_UNIT)
+  set(g4_dump "${CMAKE_INSTALL_FULL_BINDIR}/g4-dump")
+  set(unit "g4lidar-record@.service")
+  configure_file(
+    "${PROJECT_SOURCE_DIR}/packaging/systemd/${unit}.in"
+    "${PROJECT_BINARY_DIR}/packaging/systemd/${unit}" @ONLY
+  )
+  install(FILES "${PROJECT_BINARY_DIR}/packaging/systemd/${unit}" DESTINATION lib/systemd/system)
+endif()
+
 # ---- pkg-config --------------------------------------------------------------------------------
 # Made while installing, for only then the prefix is known: cmake --install --prefix may give another one.
 cmake_path(APPEND pc_libdir "\${prefix}" "${CMAKE_INSTALL_LIBDIR}")
