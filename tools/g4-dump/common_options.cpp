@@ -123,6 +123,17 @@ std::vector<option_row> shape_rows(const shared_options& options) {
   return rows;
 }
 
+option_row baud_row(const shared_options& options) {
+  return {.names = "--baud",
+          .value = "RATE",
+          .help = "Bits a second (230400)",
+          .take =
+              [options](const std::string& word) {
+                options->baud = number_of(word, std::uint32_t{1}, std::uint32_t{10'000'000});
+              },
+          .group = device};
+}
+
 std::vector<option_row> device_rows(const shared_options& options) {
   std::vector<option_row> rows;
   rows.push_back({.names = "--on-loss",
@@ -137,15 +148,7 @@ std::vector<option_row> device_rows(const shared_options& options) {
                       },
                   .complete = completion::choices,
                   .group = device});
-  rows.push_back({.names = "--baud",
-                  .value = "RATE",
-                  .help = "Bits a second (230400)",
-                  .take =
-                      [options](const std::string& word) {
-                        options->baud =
-                            number_of(word, std::uint32_t{1}, std::uint32_t{10'000'000});
-                      },
-                  .group = device});
+  rows.push_back(baud_row(options));
   return rows;
 }
 

@@ -59,6 +59,7 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] std::vector<option_row> filter_rows(const shared_options& options);
 /// --frame, --unit, --time.
 [[nodiscard]] std::vector<option_row> shape_rows(const shared_options& options);
+[[nodiscard]] option_row baud_row(const shared_options& options);
 /// --baud and --on-loss.
 [[nodiscard]] std::vector<option_row> device_rows(const shared_options& options);
 

@@ -7,6 +7,8 @@ namespace g4_dump {
 
 std::vector<verb> all_verbs() {
   std::vector<verb> verbs;
+  verbs.push_back(make_list_verb());
+  verbs.push_back(make_watch_verb());
   verbs.push_back(make_info_verb());
   verbs.push_back(make_health_verb());
   verbs.push_back(make_stats_verb());

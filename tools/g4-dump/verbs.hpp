@@ -8,6 +8,8 @@
 
 namespace g4_dump {
 
+[[nodiscard]] verb make_list_verb();
+[[nodiscard]] verb make_watch_verb();
 [[nodiscard]] verb make_info_verb();
 [[nodiscard]] verb make_health_verb();
 [[nodiscard]] verb make_stats_verb();
