@@ -96,10 +96,16 @@ run_line() {
     if ((code == 130)); then code=0; fi
   else
     if [[ $mark == "exit "* ]]; then wanted=${mark#exit }; fi
-    set +e
-    eval "$words" >"$scratch/out" 2>"$scratch/err" </dev/null
-    code=$?
-    set -e
+    # On a busy machine a doctor may see what is wrong with the machine.
+    local tries=1
+    if [[ $mark == "best of three" ]]; then tries=3; fi
+    for ((; tries > 0; --tries)); do
+      set +e
+      eval "$words" >"$scratch/out" 2>"$scratch/err" </dev/null
+      code=$?
+      set -e
+      if ((code == wanted)); then break; fi
+    done
     # Who reads only the beginning ends the others.
     if [[ $words == *"|"* ]] && ((code == 141)); then code=0; fi
   fi
