@@ -89,6 +89,7 @@ class G4LIDAR_API recording_reader {
   [[nodiscard]] std::uint64_t size() const noexcept;
 
  private:
+  friend struct recording_access;  // opens what is no file
   class G4LIDAR_HIDDEN file_reader;
   explicit recording_reader(std::unique_ptr<file_reader> made) noexcept;
   std::unique_ptr<file_reader> made_;

@@ -19,7 +19,7 @@ struct replay_options {
   double rate = 0;
   /// Whether it begins again at its end; the times go on.
   bool loop = false;
-  reading_options range;
+  reading_options range{};  ///< Of the recording, in each round.
 };
 
 /// Opens recordings as lines, for lidar::open(). What comes of it does not answer, gives each reading

@@ -58,7 +58,8 @@ void lidar::driver::play_notes(bool all) {
     if (!noted_) noted_ = line_->noted();
     if (!noted_) return;
     if (!all && !is_here(*noted_)) return;
-    const line_note what = *std::exchange(noted_, std::nullopt);
+    const line_note what = *noted_;
+    noted_.reset();
     play(what);
   }
 }

@@ -197,7 +197,7 @@ void chunk_source::seek(std::uint64_t offset) noexcept {
   is_at_end_ = false;
 }
 
-result<std::optional<record_block>> chunk_source::next() {
+result<record_block> chunk_source::next() {
   if (!is_open_) {
     const std::uint64_t sought = at_;
     if (auto looked = look_at_end(); !looked) return tl::unexpected(looked.error());
@@ -210,60 +210,61 @@ result<std::optional<record_block>> chunk_source::next() {
   }
   while (!is_at_end_) {
     auto found = step();
-    if (!found || *found) return found;
+    if (!found || !found->records.empty()) return found;
   }
-  return std::nullopt;
+  return record_block{};
 }
 
 /// One record: its block, where it is one to be read, else nothing.
-result<std::optional<record_block>> chunk_source::step() {
+result<record_block> chunk_source::step() {
   if (at_ >= limit_) {
     end_here();
-    return std::nullopt;
+    return record_block{};
   }
   const auto begin = window(at_, record_header_size + longest_chunk_header);
   if (!begin) return tl::unexpected(begin.error());
   const auto header = believe(*begin, at_);
   if (!header) {
     if (auto found = resynchronise(trusted_); !found) return tl::unexpected(found.error());
-    return std::nullopt;
+    return record_block{};
   }
   if (header->kind == opcode::chunk) return chunk_at(at_, header->length);
   is_guess_ = false;
   if (header->kind == opcode::data_end) {
     end_here();
-    return std::nullopt;
+    return record_block{};
   }
   const std::uint64_t at = at_;
   const std::uint64_t size = record_header_size + header->length;
   at_ += size;
   const bool is_read = header->kind == opcode::message || header->kind == opcode::channel ||
                        header->kind == opcode::metadata;
-  if (!is_read || size > largest_record) return std::nullopt;
+  if (!is_read || size > largest_record) return record_block{};
   const auto record = content(at, static_cast<std::size_t>(size));
   if (!record) return tl::unexpected(record.error());
-  if (record->size() < size) return std::nullopt;  // it has become shorter meanwhile
+  if (record->size() < size) return record_block{};  // it has become shorter meanwhile
   return record_block{*record, at};
 }
 
-result<std::optional<record_block>> chunk_source::chunk_at(std::uint64_t at, std::uint64_t length) {
+result<record_block> chunk_source::chunk_at(std::uint64_t at, std::uint64_t length) {
   const auto begin = window(at + record_header_size, longest_chunk_header);
   if (!begin) return tl::unexpected(begin.error());
   const auto chunk = chunk_from(*begin, length);
-  if (!chunk) return std::nullopt;  // believe() has seen it
+  if (!chunk) return record_block{};  // believe() has seen it
   if (chunk->how == chunk_header::packed::zstd && !has_zstd()) {
     return failure(task::reading, problem::bad_option,
                    "a recording packed with zstd: built without");
   }
-  const auto records = records_of(at + record_header_size + chunk->header_size, *chunk);
-  if (!records) return tl::unexpected(records.error());
-  if (!*records) {
+  const auto read = records_of(at + record_header_size + chunk->header_size, *chunk);
+  if (!read) return tl::unexpected(read.error());
+  const std::optional<bytes> records = *read;
+  if (!records) {
     if (auto lost = lose_chunk(at, length); !lost) return tl::unexpected(lost.error());
-    return std::nullopt;
+    return record_block{};
   }
   is_guess_ = false;
   at_ = trusted_ = at + record_header_size + length;
-  return record_block{**records, at};
+  return record_block{*records, at};
 }
 
 /// The unpacked records, if they are what they were.
@@ -340,16 +341,16 @@ void chunk_source::end_here() noexcept {
   if (!has_end_) damage_.is_cut_off = true;
 }
 
-result<std::optional<bytes>> chunk_source::record_at(std::uint64_t offset, opcode kind) {
+result<bytes> chunk_source::record_at(std::uint64_t offset, opcode kind) {
   const auto begin = window(offset, record_header_size);
   if (!begin) return tl::unexpected(begin.error());
-  if (begin->size() < record_header_size) return std::nullopt;
+  if (begin->size() < record_header_size) return bytes{};
   const std::uint64_t length = load_u64(*begin, 1);
   const bool is_it = (*begin)[0] == static_cast<std::uint8_t>(kind);
-  if (!is_it || length > largest_record) return std::nullopt;
+  if (!is_it || length > largest_record) return bytes{};
   const auto found = content(offset + record_header_size, static_cast<std::size_t>(length));
   if (!found) return tl::unexpected(found.error());
-  if (found->size() < length) return std::nullopt;
+  if (found->size() < length) return bytes{};
   return *found;
 }
 

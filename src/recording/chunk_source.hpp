@@ -39,8 +39,8 @@ class byte_source {
 
 /// A piece of the file that holds records: the contents of a chunk, or one record that stands outside.
 struct record_block {
-  bytes records;
-  std::uint64_t offset;  ///< In the file.
+  bytes records{};           ///< Empty: there is none.
+  std::uint64_t offset = 0;  ///< In the file.
 };
 
 /// Walks over a file. Its memory: one chunk packed and one unpacked. What is not whole is skipped to the
@@ -49,13 +49,13 @@ class chunk_source {
  public:
   explicit chunk_source(std::shared_ptr<byte_source> file);
 
-  /// The next records; nothing at the end. Good until the next call.
-  [[nodiscard]] result<std::optional<record_block>> next();
+  /// The next records; empty at the end. Good until the next call.
+  [[nodiscard]] result<record_block> next();
   /// Goes on with the first chunk at or behind `offset`, wherever that is in the file, which may be in
   /// the middle of anything. Nothing of what lies between counts as damage.
   void seek(std::uint64_t offset) noexcept;
-  /// The record at `offset`, if it is one of this kind and not too large: its content.
-  [[nodiscard]] result<std::optional<bytes>> record_at(std::uint64_t offset, opcode kind);
+  /// The record at `offset`, if it is one of this kind and not too large: its content, else nothing.
+  [[nodiscard]] result<bytes> record_at(std::uint64_t offset, opcode kind);
 
   [[nodiscard]] const recording_damage& damage() const noexcept { return damage_; }
   [[nodiscard]] std::uint64_t position() const noexcept { return at_; }
@@ -84,9 +84,8 @@ class chunk_source {
   [[nodiscard]] std::optional<record_header> believe(bytes begin, std::uint64_t at) const noexcept;
   [[nodiscard]] static std::optional<chunk_header> chunk_from(bytes content,
                                                               std::uint64_t length) noexcept;
-  [[nodiscard]] result<std::optional<record_block>> step();
-  [[nodiscard]] result<std::optional<record_block>> chunk_at(std::uint64_t at,
-                                                             std::uint64_t length);
+  [[nodiscard]] result<record_block> step();
+  [[nodiscard]] result<record_block> chunk_at(std::uint64_t at, std::uint64_t length);
   [[nodiscard]] result<std::optional<bytes>> records_of(std::uint64_t at,
                                                         const chunk_header& chunk);
   [[nodiscard]] result<void> lose_chunk(std::uint64_t at, std::uint64_t length);

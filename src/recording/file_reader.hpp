@@ -53,7 +53,7 @@ class recording_reader::file_reader {
 
   std::string path_;
   std::shared_ptr<mcap::byte_source> file_;
-  std::optional<mcap::chunk_source> chunks_;
+  std::unique_ptr<mcap::chunk_source> chunks_;
   bytes records_;  // of the block, not read yet
   std::array<std::optional<std::uint16_t>, mcap::topic_count> channels_;
   std::optional<recorded_device> device_;
@@ -70,6 +70,13 @@ class recording_reader::file_reader {
   std::optional<recorded_item> waiting_;  // behind a note that was made up
   mcap::line_state line_;                 // as of the items given
   bool is_line_told_ = true;              // else what was skipped is told first
+};
+
+/// Opens a recording that lies anywhere.
+struct recording_access {
+  [[nodiscard]] static result<recording_reader> open(std::shared_ptr<mcap::byte_source> file,
+                                                     std::string_view path,
+                                                     const reading_options& options);
 };
 
 }  // namespace g4lidar

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -53,7 +54,7 @@ class recording_writer::file_writer {
 
   recording_options options_;
   std::string first_path_;
-  std::optional<mcap::mcap_file> file_;  // always there
+  std::unique_ptr<mcap::mcap_file> file_;
   mcap::open_chunk chunk_;
   std::optional<mcap::packer> packer_;
   std::vector<std::uint8_t> packed_;
@@ -65,10 +66,12 @@ class recording_writer::file_writer {
   std::array<std::uint32_t, mcap::topic_count> sequences_{};
   std::int64_t ahead_ns_ = 0;  // of the wall clock
   bool is_ahead_given_ = false;
-  std::int64_t chunk_ns_ = 0;      // when the chunk was begun
-  std::int64_t file_ns_ = 0;       // when the first chunk of the file was
-  std::int64_t last_ns_ = 0;       // of all
-  std::uint64_t chunk_bytes_ = 0;  // from and to the device
+  std::int64_t chunk_ns_ = 0;       // when the chunk was begun
+  std::int64_t file_ns_ = 0;        // when the first chunk of the file was
+  std::int64_t chunk_last_ns_ = 0;  // the latest time in it
+  std::int64_t file_last_ns_ = 0;   // and in the chunks before it
+  std::int64_t last_ns_ = 0;        // of all
+  std::uint64_t chunk_bytes_ = 0;   // from and to the device
 
   recording_counts counts_;
   std::uint64_t closed_bytes_ = 0;  // of the files before this one

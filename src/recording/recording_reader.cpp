@@ -24,6 +24,12 @@ constexpr int most_records = 1000;
 /// Where to begin is looked for no finer than this: the rest is read.
 constexpr std::uint64_t near_enough = std::uint64_t{64} << 10U;
 
+/// Two of them can be added.
+bool is_a_time(std::int64_t time_ns) noexcept {
+  constexpr std::int64_t age = std::int64_t{1} << 62U;  // 146 years
+  return time_ns > -age && time_ns < age;
+}
+
 template <class Number>
 Number number_in(std::string_view text, int base = 10) noexcept {
   Number value = 0;
@@ -47,7 +53,7 @@ bool is_recording(std::string_view path) noexcept {
 
 recording_reader::file_reader::file_reader(std::shared_ptr<mcap::byte_source> file,
                                            std::string_view path)
-    : path_(path), file_(std::move(file)), chunks_(file_) {}
+    : path_(path), file_(std::move(file)), chunks_(std::make_unique<chunk_source>(file_)) {}
 
 result<std::unique_ptr<recording_reader::file_reader>> recording_reader::file_reader::open(
     std::shared_ptr<mcap::byte_source> file, std::string_view path,
@@ -66,25 +72,26 @@ result<std::unique_ptr<recording_reader::file_reader>> recording_reader::file_re
 result<void> recording_reader::file_reader::begin(const reading_options& options) {
   if (auto read = read_summary(); !read) return read;
   if (auto read = read_front(); !read) return read;
-  auto first = read();
-  if (!first) return tl::unexpected(first.error());
+  const auto found = read();
+  if (!found) return tl::unexpected(found.error());
+  const std::optional<recorded_item> first = *found;
   const bool is_ours =
       std::ranges::any_of(channels_, [](const auto& id) { return id.has_value(); });
-  if (!is_ours || (!*first && damage().any())) {
+  if (!is_ours || (!first && damage().any())) {
     return failure(task::opening, problem::bad_file, path_);
   }
-  if (!*first) {
+  if (!first) {
     is_over_ = true;
     return {};
   }
-  first_ns_ = (*first)->time_ns;
+  first_ns_ = first->time_ns;
   const auto behind_first = [&](std::int64_t time_ns) {
     return time_ns > never_ns - std::max<std::int64_t>(first_ns_, 0) ? never_ns
                                                                      : first_ns_ + time_ns;
   };
   to_ns_ = behind_first(std::max<std::int64_t>(options.to_ns, 0));
   if (options.from_ns <= 0) {
-    waiting_ = *first;
+    waiting_ = first;
     return {};
   }
   return seek(behind_first(options.from_ns));
@@ -100,15 +107,15 @@ result<void> recording_reader::file_reader::read_summary() {
   const std::uint64_t footer = size() - mcap::magic.size() - mcap::footer_size;
   const auto content = chunks_->record_at(footer, opcode::footer);
   if (!content) return tl::unexpected(content.error());
-  if (!*content || (*content)->size() < 16) return {};
-  std::uint64_t at = load_u64(**content, 8);
+  if (content->size() < 16) return {};
+  std::uint64_t at = load_u64(*content, 8);
   if (at < *start || at > footer) return read_group(*start, footer);
   for (int i = 0; i < most_records && at < footer; ++i) {
     const auto offset = chunks_->record_at(at, opcode::summary_offset);
     if (!offset) return tl::unexpected(offset.error());
-    if (!*offset) return {};
-    field_reader fields(**offset);
-    at += record_header_size + (*offset)->size();
+    if (offset->empty()) return {};
+    field_reader fields(*offset);
+    at += record_header_size + offset->size();
     const auto kind = static_cast<opcode>(fields.take<std::uint8_t>());
     const auto begin = fields.take<std::uint64_t>();
     const auto length = fields.take<std::uint64_t>();
@@ -123,19 +130,19 @@ result<void> recording_reader::file_reader::read_group(std::uint64_t at, std::ui
   for (int i = 0; i < most_records && at < end; ++i) {
     const auto channel = chunks_->record_at(at, opcode::channel);
     if (!channel) return tl::unexpected(channel.error());
-    if (*channel) {
-      take_channel(field_reader(**channel));
-      at += record_header_size + (*channel)->size();
+    if (!channel->empty()) {
+      take_channel(field_reader(*channel));
+      at += record_header_size + channel->size();
       continue;
     }
     const auto index = chunks_->record_at(at, opcode::metadata_index);
     if (!index) return tl::unexpected(index.error());
-    if (!*index) return {};
-    at += record_header_size + (*index)->size();
-    const std::uint64_t offset = field_reader(**index).take<std::uint64_t>();
+    if (index->empty()) return {};
+    at += record_header_size + index->size();
+    const std::uint64_t offset = field_reader(*index).take<std::uint64_t>();
     const auto metadata = chunks_->record_at(offset, opcode::metadata);
     if (!metadata) return tl::unexpected(metadata.error());
-    if (*metadata) take_metadata(field_reader(**metadata));
+    if (!metadata->empty()) take_metadata(field_reader(*metadata));
   }
   return {};
 }
@@ -147,8 +154,8 @@ result<void> recording_reader::file_reader::read_front() {
   for (int i = 0; i < blocks_at_front && !device_; ++i) {
     const auto block = front.next();
     if (!block) return tl::unexpected(block.error());
-    if (!*block) break;
-    field_reader records((*block)->records);
+    if (block->records.empty()) break;
+    field_reader records(block->records);
     const auto kind = static_cast<opcode>(records.take<std::uint8_t>());
     field_reader record(records.take(records.take<std::uint64_t>()));
     if (kind == opcode::metadata) take_metadata(record);
@@ -197,13 +204,14 @@ result<void> recording_reader::file_reader::seek(std::int64_t from_ns) {
   from_ns_ = from_ns;
   is_line_told_ = false;
   line_ = {};
-  const auto offset = chunk_before(from_ns);
-  if (!offset) return tl::unexpected(offset.error());
-  chunks_.emplace(file_);
+  const auto found = chunk_before(from_ns);
+  if (!found) return tl::unexpected(found.error());
+  const std::optional<std::uint64_t> offset = *found;
+  chunks_ = std::make_unique<chunk_source>(file_);
   records_ = {};
   sequence_.reset();
   is_gap_ = false;
-  if (*offset) chunks_->seek(**offset);
+  if (offset) chunks_->seek(*offset);
   return {};
 }
 
@@ -222,9 +230,9 @@ result<std::optional<std::uint64_t>> recording_reader::file_reader::chunk_before
     while (!time_ns) {
       const auto block = probe.next();
       if (!block) return tl::unexpected(block.error());
-      if (!*block) break;
-      at = (*block)->offset;
-      time_ns = first_time_in((*block)->records);
+      if (block->records.empty()) break;
+      at = block->offset;
+      time_ns = first_time_in(block->records);
     }
     if (time_ns && *time_ns <= from_ns && at < high) {
       best = at;
@@ -251,28 +259,31 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes r
 /// What was not asked for is passed over; how the line stands then is told first.
 result<std::optional<recorded_item>> recording_reader::file_reader::advance() {
   while (true) {
-    auto found =
-        waiting_ ? result<std::optional<recorded_item>>(std::exchange(waiting_, {})) : read();
-    if (!found || !*found) return found;
-    recorded_item& item = **found;
-    if (item.time_ns >= to_ns_) {
+    std::optional<recorded_item> item = std::exchange(waiting_, std::nullopt);
+    if (!item) {
+      const auto found = read();
+      if (!found) return found;
+      item = *found;
+    }
+    if (!item) return item;
+    if (item->time_ns >= to_ns_) {
       is_over_ = true;
       return std::nullopt;
     }
-    const bool is_note = item.what == recorded_item::kind::note;
-    if (item.time_ns < from_ns_) {
-      if (is_note) line_.take(item.note);
+    const bool is_note = item->what == recorded_item::kind::note;
+    if (item->time_ns < from_ns_) {
+      if (is_note) line_.take(item->note);
       continue;
     }
     if (!std::exchange(is_line_told_, true) && line_.is_known) {
       if (!waiting_) waiting_ = item;  // else this one is a gap, which nobody joining here minds
-      item.what = recorded_item::kind::note;
-      item.data = {};
-      item.note = line_.as_note(item.time_ns);
+      item->what = recorded_item::kind::note;
+      item->data = {};
+      item->note = line_.as_note(item->time_ns);
     } else if (is_note) {
-      line_.take(item.note);
+      line_.take(item->note);
     }
-    return found;
+    return item;
   }
 }
 
@@ -313,8 +324,8 @@ result<std::optional<recorded_item>> recording_reader::file_reader::read() {
     }
     const auto block = chunks_->next();
     if (!block) return tl::unexpected(block.error());
-    if (!*block) return std::nullopt;
-    records_ = (*block)->records;
+    if (block->records.empty()) return std::nullopt;
+    records_ = block->records;
   }
 }
 
@@ -323,12 +334,12 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   const auto sequence = record.take<std::uint32_t>();
   const auto wall_ns = static_cast<std::int64_t>(record.take<std::uint64_t>());
   static_cast<void>(record.take<std::uint64_t>());
-  if (!record.is_good()) return std::nullopt;
+  if (!record.is_good() || !is_a_time(wall_ns)) return std::nullopt;
   const auto is = [&](topic which) { return channels_[static_cast<std::size_t>(which) - 1] == id; };
   const bool is_from_device = is(topic::from_device);
   if (is_from_device || is(topic::to_device)) {
     const auto found = mcap::line_bytes_from(record.rest());
-    if (!found) return std::nullopt;
+    if (!found || !is_a_time(found->time_ns)) return std::nullopt;
     if (is_from_device && skips(sequence)) is_gap_ = true;
     const auto what =
         is_from_device ? recorded_item::kind::from_device : recorded_item::kind::to_device;
@@ -336,7 +347,7 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   }
   if (!is(topic::notes)) return std::nullopt;
   const auto note = mcap::note_from(record.rest());
-  if (!note) return std::nullopt;
+  if (!note || !is_a_time(note->time_ns)) return std::nullopt;
   return recorded_item{recorded_item::kind::note, note->time_ns, wall_ns, {}, *note};
 }
 
@@ -364,7 +375,13 @@ result<recording_reader> recording_reader::open(std::string_view path,
                                                 const reading_options& options) {
   auto file = mcap::open_file_source(path);
   if (!file) return tl::unexpected(file.error());
-  auto made = file_reader::open(std::move(*file), path, options);
+  return recording_access::open(std::move(*file), path, options);
+}
+
+result<recording_reader> recording_access::open(std::shared_ptr<mcap::byte_source> file,
+                                                std::string_view path,
+                                                const reading_options& options) {
+  auto made = recording_reader::file_reader::open(std::move(file), path, options);
   if (!made) return tl::unexpected(made.error());
   return recording_reader(std::move(*made));
 }

@@ -83,7 +83,7 @@ recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_vi
                                            const recording_options& options)
     : options_(options),
       first_path_(path),
-      file_(std::move(first)),
+      file_(std::make_unique<mcap::mcap_file>(std::move(first))),
       ranges_(options.scan_bins),
       ahead_ns_(wall_ahead_now()) {
   if (options.packed == packing::zstd) {
@@ -130,6 +130,7 @@ void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::siz
     }
     if (chunk_.is_empty()) begin_chunk(time_ns);
     std::uint32_t& sequence = sequences_[mcap::open_chunk::index_of(id)];
+    chunk_last_ns_ = std::max(chunk_last_ns_, time_ns);
     chunk_.begin_message(id, sequence++, time_ns + ahead_ns_);
     put(chunk_.text());
     chunk_.end_message();
@@ -202,7 +203,7 @@ void recording_writer::file_writer::set_wall_clock(std::int64_t ahead_ns) noexce
 void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
   if (!is_ahead_given_) ahead_ns_ = wall_ahead_now();
   if (!file_->has_chunks()) file_ns_ = time_ns;
-  chunk_ns_ = time_ns;
+  chunk_ns_ = chunk_last_ns_ = time_ns;
   chunk_bytes_ = 0;
   chunk_.put_channels();
   if (!line_.is_known) return;
@@ -230,7 +231,7 @@ result<void> recording_writer::file_writer::end_chunk() {
     const std::uint64_t after = file_->closed_size() + 2 * chunk_.records().size();
     const bool is_full = options_.rotate_bytes != 0 && after > options_.rotate_bytes;
     const std::int64_t rotate_ns = ns_of(options_.rotate_time);
-    const bool is_old = rotate_ns != 0 && last_ns_ - file_ns_ >= rotate_ns;
+    const bool is_old = rotate_ns != 0 && chunk_last_ns_ - file_ns_ >= rotate_ns;
     if (file_->has_chunks() && (is_full || is_old)) rotated = rotate();
   }
   result<void> added = packed ? file_->add(chunk_, *packed) : tl::unexpected(packed.error());
@@ -241,6 +242,7 @@ result<void> recording_writer::file_writer::end_chunk() {
   chunk_.clear();
   ++counts_.chunks;
   file_payload_ = chunk_payload_;
+  file_last_ns_ = chunk_last_ns_;
   if (rotated) is_in_trouble_ = false;
   return rotated;
 }
@@ -259,7 +261,7 @@ result<void> recording_writer::file_writer::rotate() {
   auto ended = end_file();
   ++counts_.files;
   closed_bytes_ += file_->size();
-  file_.emplace(std::move(*next));
+  file_ = std::make_unique<mcap::mcap_file>(std::move(*next));
   file_ns_ = chunk_ns_;
   chunk_payload_ = payload_of(chunk_.records());
   if (ended && device_)
@@ -281,7 +283,7 @@ std::string recording_writer::file_writer::next_path() const {
 result<void> recording_writer::file_writer::end_file() {
   mcap::word_map words{{"payload", hexadecimal(file_payload_.value())},
                        {"first_ns", std::to_string(file_ns_)},
-                       {"last_ns", std::to_string(last_ns_)}};
+                       {"last_ns", std::to_string(file_last_ns_)}};
   if (counts_.files == 1 && points_.count() > 0) {  // they go on from file to file
     words.emplace_back("points", hexadecimal(points_.value()));
     words.emplace_back("point_count", std::to_string(points_.count()));

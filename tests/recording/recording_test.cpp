@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: MIT
+// What is written is read again, whole, cut off and damaged.
+#include "g4lidar/recording.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "made_recording.hpp"
+#include "recorded_life.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+std::vector<std::uint32_t> numbers(std::uint32_t first, std::uint32_t count) {
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), first);
+  return all;
+}
+
+class Packed : public testing::TestWithParam<packing> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == packing::zstd && !has_zstd()) GTEST_SKIP() << "built without zstd";
+  }
+};
+
+TEST_P(Packed, GivesBackWhatWasRecorded) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), {.packed = GetParam()});
+  record_readings(writer, 0, 1000);
+  ASSERT_TRUE(writer.close());
+  EXPECT_EQ(writer.counts().chunks, 20U);  // ten seconds
+  EXPECT_EQ(writer.counts().readings, 1000U);
+  auto reader = recording_reader::open(path.text());
+  ASSERT_TRUE(reader) << reader.error().message();
+  EXPECT_EQ(reader->first_ns(), time_of(0));
+  EXPECT_EQ(reader->last_ns(), time_of(999));
+  ASSERT_TRUE(reader->digest());
+  EXPECT_EQ(reader->digest()->payload, writer.digest().payload);
+  const contents found = contents_of(*reader);
+  EXPECT_EQ(found.readings, numbers(0, 1000));
+  EXPECT_EQ(found.commands, 10U);
+  EXPECT_EQ(found.gaps, 0U);
+  EXPECT_FALSE(found.damage.any());
+}
+
+TEST_P(Packed, CutOffAnywhere_GivesTheChunksThatAreWhole) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), {.packed = GetParam()});
+  record_readings(writer, 0, 200);
+  ASSERT_TRUE(writer.close());
+  const auto whole = bytes_of(path.text());
+  std::size_t most = 0;
+  std::mt19937 dice(1);
+  std::vector<std::size_t> sizes{whole.size() - 1, whole.size() - 30};
+  for (int i = 0; i < 300; ++i) sizes.push_back(dice() % whole.size());
+  std::ranges::sort(sizes);
+  for (const std::size_t size : sizes) {
+    const contents found = contents_of_bytes(bytes(whole).first(size));
+    if (!found.is_open) continue;
+    EXPECT_TRUE(found.damage.is_cut_off);
+    EXPECT_EQ(found.readings, numbers(0, static_cast<std::uint32_t>(found.readings.size())));
+    EXPECT_EQ(found.readings.size() % 50, 0U);  // of half a second each
+    EXPECT_GE(found.readings.size(), most);     // the more there is, the more comes
+    most = found.readings.size();
+  }
+  EXPECT_EQ(most, 200U);
+}
+
+TEST_P(Packed, DamagedInOnePlace_LosesOneChunk) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), {.packed = GetParam()});
+  record_readings(writer, 0, 400);
+  ASSERT_TRUE(writer.close());
+  const auto whole = bytes_of(path.text());
+  std::mt19937 dice(2);
+  for (int i = 0; i < 300; ++i) {
+    auto file = whole;
+    const std::size_t at = 8 + dice() % (file.size() - 8);
+    SCOPED_TRACE(at);
+    file[at] = static_cast<std::uint8_t>(file[at] ^ (1U << (dice() % 8)));
+    const contents found = contents_of_bytes(file);
+    ASSERT_TRUE(found.is_open);
+    EXPECT_GE(found.readings.size(), 350U);
+    EXPECT_TRUE(std::ranges::is_sorted(found.readings));
+    const bool is_inside =
+        found.readings.size() == 350 && found.readings.front() == 0 && found.readings.back() == 399;
+    EXPECT_EQ(found.gaps, is_inside ? 1U : 0U);
+    if (found.readings.size() < 400) {
+      EXPECT_TRUE(found.damage.any());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(With, Packed, testing::Values(packing::none, packing::zstd),
+                         [](const auto& of) {
+                           return of.param == packing::none ? "None" : "Zstd";
+                         });
+
+TEST(Recording, BytesAreLostInTheMiddle_TheRestIsFoundAgain) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_readings(writer, 0, 1000);
+  ASSERT_TRUE(writer.close());
+  const auto whole = bytes_of(path.text());
+  for (const std::size_t count : {1U, 100U, 5000U}) {
+    auto file = whole;
+    const auto at = file.begin() + static_cast<std::ptrdiff_t>(file.size() / 2);
+    file.erase(at, at + static_cast<std::ptrdiff_t>(count));
+    const contents found = contents_of_bytes(file);
+    EXPECT_GE(found.readings.size(), 850U);
+    EXPECT_EQ(found.readings.front(), 0U);
+    EXPECT_EQ(found.readings.back(), 999U);
+    EXPECT_EQ(found.gaps, 1U);
+    EXPECT_GT(found.damage.bytes_skipped, 0U);
+  }
+}
+
+TEST(Recording, BeginsAndEndsWhereItIsAskedTo) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_readings(writer, 0, 6000);
+  ASSERT_TRUE(writer.close());
+  auto cut_off = bytes_of(path.text());
+  cut_off.resize(cut_off.size() - 100);
+  for (const std::uint32_t from : {1U, 49U, 50U, 51U, 2999U, 5999U}) {
+    reading_options range;
+    range.from_ns = from * 10 * ms;
+    EXPECT_EQ(contents_of_file(path.text(), range).readings, numbers(from, 6000 - from));
+    range.to_ns = range.from_ns + 5 * 10 * ms;
+    EXPECT_EQ(contents_of_file(path.text(), range).readings,
+              numbers(from, std::min(5U, 6000 - from)));
+    const auto source = std::make_shared<memory_source>(cut_off);
+    auto reader = recording_access::open(source, "memory", range);
+    ASSERT_TRUE(reader) << reader.error().message();
+    EXPECT_EQ(contents_of(*reader).readings, numbers(from, std::min(5U, 6000 - from)));
+  }
+  EXPECT_TRUE(contents_of_file(path.text(), {.from_ns = 3600 * second}).readings.empty());
+}
+
+TEST(Recording, BeginsInTheMiddleWithTheLineAsItStandsThere) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  line_note note{.what = line_note::kind::opened, .baud = 230'400, .time_ns = time_of(0)};
+  note.line = "/dev/ttyUSB7";
+  writer.note(note);
+  note = {.what = line_note::kind::begun, .samples_per_second = 8000, .time_ns = time_of(1)};
+  writer.note(note);
+  record_readings(writer, 2, 1000);
+  ASSERT_TRUE(writer.close());
+  auto reader = recording_reader::open(path.text(), {.from_ns = 5 * second});
+  ASSERT_TRUE(reader);
+  const auto first = reader->next();
+  ASSERT_TRUE(first && *first);
+  ASSERT_EQ((*first)->what, recorded_item::kind::note);
+  EXPECT_EQ((*first)->note.what, line_note::kind::state);
+  EXPECT_EQ((*first)->note.samples_per_second, 8000U);
+  EXPECT_EQ((*first)->note.baud, 230'400U);
+  EXPECT_EQ((*first)->note.line, "/dev/ttyUSB7");
+  EXPECT_TRUE((*first)->note.delivers);
+}
+
+TEST(Recording, KnowsItsDevice) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  recorded_device known;
+  known.information = {
+      5, 3, 2, 3, {'2', '0', '2', '1', '1', '0', '1', '0', '0', '0', '0', '7', '0', '0', '7', '3'}};
+  known.ranging = ranging_frequency::khz_8;
+  known.frequency = scan_frequency{1000};
+  known.protection = power_down_protection::on;
+  record_readings(writer, 0, 10);
+  writer.device(known);
+  record_readings(writer, 10, 100);
+  ASSERT_TRUE(writer.close());
+  const auto whole = bytes_of(path.text());
+  for (const std::size_t size : {whole.size(), whole.size() - 50}) {
+    const auto source = std::make_shared<memory_source>(bytes(whole).first(size));
+    auto reader = recording_access::open(source, "memory", {});
+    ASSERT_TRUE(reader) << reader.error().message();
+    ASSERT_TRUE(reader->device());
+    EXPECT_EQ(reader->device()->information, known.information);
+    EXPECT_EQ(reader->device()->ranging, known.ranging);
+    EXPECT_EQ(reader->device()->frequency, known.frequency);
+    EXPECT_EQ(reader->device()->protection, known.protection);
+    EXPECT_FALSE(reader->device()->idle);
+    EXPECT_EQ(contents_of(*reader).readings, numbers(0, 110));
+  }
+}
+
+TEST(Recording, GoesOnInAnotherFileWhenOneIsFull) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), {.rotate_bytes = std::uint64_t{1} << 20U});
+  constexpr std::uint32_t count = 20'000;
+  record_readings(writer, 0, count);
+  writer.device({});
+  ASSERT_TRUE(writer.close());
+  const std::uint64_t files = writer.counts().files;
+  ASSERT_GE(files, 2U);
+  std::vector<std::uint32_t> all;
+  std::uint64_t size = 0;
+  for (std::uint64_t i = 0; i < files; ++i) {
+    const std::string name = i == 0 ? path.text() : path.next(static_cast<int>(i));
+    SCOPED_TRACE(name);
+    const contents found = contents_of_file(name);
+    EXPECT_FALSE(found.damage.any());
+    all.insert(all.end(), found.readings.begin(), found.readings.end());
+    const auto file = bytes_of(name);
+    EXPECT_LE(file.size(), std::size_t{1} << 20U);
+    size += file.size();
+  }
+  EXPECT_EQ(all, numbers(0, count));
+  EXPECT_EQ(writer.counts().file_bytes, size);
+}
+
+TEST(Recording, GoesOnInAnotherFileWhenItsTimeHasCome) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), {.rotate_time = 2s});
+  writer.device({});
+  record_readings(writer, 0, 1000);
+  ASSERT_TRUE(writer.close());
+  EXPECT_EQ(writer.counts().files, 5U);
+  for (int i = 1; i < 5; ++i) {
+    auto reader = recording_reader::open(path.next(i));
+    ASSERT_TRUE(reader) << reader.error().message();
+    EXPECT_TRUE(reader->device());
+    payload_digest sum;
+    while (const auto item = *reader->next()) {
+      if (item->what == recorded_item::kind::from_device) {
+        sum.add(direction::from_device, item->data);
+      } else if (item->what == recorded_item::kind::to_device) {
+        sum.add(direction::to_device, item->data);
+      }
+    }
+    ASSERT_TRUE(reader->digest());
+    EXPECT_EQ(reader->digest()->payload, sum.value());
+  }
+}
+
+/// For as long as this lives, no file grows beyond so many bytes.
+class full_disk {
+ public:
+  explicit full_disk(rlim_t size) {
+    before_ = std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &limit_);
+    const rlimit small{size, limit_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &small);
+  }
+  full_disk(const full_disk&) = delete;
+  full_disk& operator=(const full_disk&) = delete;
+  ~full_disk() {
+    ::setrlimit(RLIMIT_FSIZE, &limit_);
+    std::signal(SIGXFSZ, before_);
+  }
+
+ private:
+  rlimit limit_{};
+  void (*before_)(int) = nullptr;
+};
+
+TEST(Recording, ADiskIsFullForAWhile_IsToldOnceAndCostsThatOnly) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_readings(writer, 0, 400);
+  {
+    const full_disk disk(writer.counts().file_bytes + 5000);
+    record_readings(writer, 400, 400);
+    const auto told = writer.take_error();
+    ASSERT_TRUE(told);
+    EXPECT_EQ(told->what(), problem::system);
+    EXPECT_EQ(told->system_errno(), EFBIG);
+    EXPECT_FALSE(writer.take_error());
+  }
+  record_readings(writer, 800, 200);
+  EXPECT_FALSE(writer.take_error());
+  ASSERT_TRUE(writer.close());
+  const recording_counts counts = writer.counts();
+  EXPECT_GE(counts.chunks_lost, 7U);
+  EXPECT_GT(counts.bytes_lost, 0U);
+  const contents found = contents_of_file(path.text());
+  EXPECT_FALSE(found.damage.any());
+  EXPECT_EQ(found.gaps, 1U);
+  EXPECT_EQ(found.readings.front(), 0U);
+  EXPECT_EQ(found.readings.back(), 999U);
+  EXPECT_GE(found.readings.size(), 550U);
+}
+
+TEST(Recording, AKilledProgramLosesWhatIsNotYetAChunk) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_readings(writer, 0, 224);
+  // Nothing is closed: as after kill -9.
+  const contents found = contents_of_bytes(bytes_of(path.text()));
+  EXPECT_EQ(found.readings, numbers(0, 200));
+  EXPECT_TRUE(found.damage.is_cut_off);
+  EXPECT_EQ(found.damage.bytes_skipped, 0U);
+  ASSERT_TRUE(writer.flush());
+  EXPECT_EQ(contents_of_bytes(bytes_of(path.text())).readings, numbers(0, 224));
+}
+
+TEST(Recording, DoesNotReplaceAFileUnlessItMay) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+  }
+  const auto refused = recording_writer::create(path.text());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().system_errno(), EEXIST);
+  EXPECT_TRUE(recording_writer::create(path.text(), {.overwrite = true}));
+}
+
+TEST(Recording, RefusesWhatItCannotDo) {
+  const temporary_path path;
+  const auto refused = [&](const recording_options& how) {
+    const auto made = recording_writer::create(path.text(), how);
+    return !made && made.error().what() == problem::bad_option;
+  };
+  EXPECT_TRUE(refused({.rotate_bytes = 1}));
+  EXPECT_TRUE(refused({.rotate_time = -1s}));
+  EXPECT_TRUE(refused({.chunk_time = 1ms}));
+  EXPECT_TRUE(refused({.chunk_time = 11s}));
+  EXPECT_TRUE(refused({.scan_bins = 0}));
+  EXPECT_TRUE(refused({.scan_bins = 65'537}));
+  EXPECT_TRUE(refused({.frame_id = std::string(256, 'x')}));
+  EXPECT_EQ(refused({.packed = packing::zstd}), !has_zstd());
+}
+
+TEST(Recording, NoRecordingIsRefused) {
+  const auto what_is_wrong = [](std::string_view text) {
+    const bytes data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    const auto reader = recording_access::open(std::make_shared<memory_source>(data), "it", {});
+    return reader ? std::optional<problem>() : std::optional(reader.error().what());
+  };
+  using namespace std::string_view_literals;
+  EXPECT_EQ(what_is_wrong(""), problem::bad_file);
+  EXPECT_EQ(what_is_wrong("\x89MCAP"), problem::bad_file);
+  EXPECT_EQ(what_is_wrong("\x89MCAP0\r\n"), problem::bad_file);
+  EXPECT_EQ(what_is_wrong("\x89MCAP0\r\n and something else that is long enough to be read"sv),
+            problem::bad_file);
+  const auto missing = recording_reader::open("/dev/no-recording");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().system_errno(), ENOENT);
+  const auto directory = recording_reader::open("/dev");
+  ASSERT_FALSE(directory);
+  EXPECT_EQ(directory.error().what(), problem::bad_option);
+  EXPECT_FALSE(is_recording("/dev/no-recording"));
+}
+
+TEST(Recording, AnEmptyOneIsNoMistake) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+  }
+  EXPECT_TRUE(is_recording(path.text()));
+  EXPECT_TRUE(contents_of_file(path.text()).readings.empty());
+}
+
+TEST(Recording, ReadingsOfAnySizeAreKept) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  std::vector<std::uint8_t> large(3'000'000);
+  std::iota(large.begin(), large.end(), std::uint8_t{0});
+  writer.from_device(large, begin_ns);
+  ASSERT_TRUE(writer.close());
+  auto reader = recording_reader::open(path.text());
+  ASSERT_TRUE(reader);
+  std::vector<std::uint8_t> got;
+  while (const auto item = *reader->next()) {
+    EXPECT_EQ(item->time_ns, begin_ns);
+    got.insert(got.end(), item->data.begin(), item->data.end());
+  }
+  EXPECT_EQ(got, large);
+}
+
+}  // namespace
+}  // namespace g4lidar::test

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: MIT
+// A recording as a line: its pace, its rounds, its end, and what a driver makes of what is missing in it.
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <array>
+#include <thread>
+
+#include "g4lidar/replay.hpp"
+#include "made_recording.hpp"
+#include "recorded_life.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Records a healthy device for so long.
+void record_device(recording_writer& into, std::int64_t until_ns, bool with_metadata = true) {
+  virtual_bench bench;
+  auto line = recorded(std::make_unique<virtual_connector>(bench), into);
+  auto device = lidar::open(std::move(*line));
+  ASSERT_TRUE(device) << device.error().message();
+  recorded_device known;
+  known.information = device->information();
+  if (with_metadata) into.device(known);
+  ASSERT_TRUE(device->start());
+  while (bench.now_ns < until_ns) {
+    const auto scan = device->next_scan(500ms);
+    if (scan) into.scan(*scan);
+  }
+}
+
+std::unique_ptr<transport> line_of(const std::string& path, const replay_options& how = {}) {
+  auto found = replay::open(path, how);
+  if (!found) {
+    ADD_FAILURE() << found.error().message();
+    return nullptr;
+  }
+  // Its line goes on without it.
+  auto line = (*found)->connect();
+  EXPECT_TRUE(line);
+  return std::move(*line);
+}
+
+bool is_readable(int handle) {
+  pollfd waits{handle, POLLIN, 0};
+  return ::poll(&waits, 1, 0) == 1;
+}
+
+TEST(ReplayLine, OpensByItsPathLikeADevice) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_device(writer, 4 * second);
+  }
+  for (const std::string& name : {path.text(), "file:" + path.text()}) {
+    auto device = lidar::open(name);
+    ASSERT_TRUE(device) << device.error().message();
+    EXPECT_EQ(device->information().serial_number(), "2021101000070073");
+    EXPECT_EQ(device->name(), path.text());
+    EXPECT_GE(device->native_handle(), 0);
+    const auto asked = device->ask(requests::health());
+    ASSERT_FALSE(asked);
+    EXPECT_EQ(asked.error().what(), problem::read_only);
+    ASSERT_TRUE(device->start());
+    const auto scan = device->next_scan(3000ms);
+    ASSERT_TRUE(scan) << scan.error().message();
+    EXPECT_GT(scan->points.size(), 1000U);
+  }
+}
+
+TEST(ReplayLine, LearnsWhoItIsFromTheBytes) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_device(writer, 2 * second, false);
+  }
+  auto device = lidar::open(path.text());
+  ASSERT_TRUE(device) << device.error().message();
+  EXPECT_EQ(device->information().serial_number(), "2021101000070073");
+}
+
+TEST(ReplayLine, ItsEndIsTheEndAlsoWithReconnecting) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_device(writer, 3 * second);
+  }
+  lidar_options options;
+  options.device = path.text();
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  result<scan> found = device->next_scan(500ms);
+  int scans = 0;
+  while (found || !found.error().is_fatal()) {
+    if (found) ++scans;
+    found = device->next_scan(500ms);
+  }
+  EXPECT_EQ(found.error().what(), problem::end_of_input);
+  EXPECT_GE(scans, 8);
+}
+
+TEST(ReplayLine, BytesAloneAreParsedFromEndToEnd) {
+  const temporary_path full;
+  const temporary_path bare;
+  {
+    auto writer = made_writer(full.text());
+    record_device(writer, 4 * second);
+    ASSERT_TRUE(writer.close());
+    auto reader = recording_reader::open(full.text());
+    auto other = made_writer(bare.text());
+    while (const auto item = *reader->next()) {
+      if (item->what == recorded_item::kind::from_device) {
+        other.from_device(item->data, item->time_ns);
+      }
+    }
+  }
+  const outcome_of_life one = replayed(std::move(*replay::open(full.text())));
+  const outcome_of_life other = replayed(std::move(*replay::open(bare.text())));
+  // What came while it was being stopped is in it, too.
+  EXPECT_GE(other.points.size(), one.points.size());
+  EXPECT_LE(other.points.size(), one.points.size() + 2000);
+  EXPECT_GE(other.counts.scans, one.counts.scans);
+}
+
+TEST(ReplayLine, TellsLossesAndReconnects) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  const auto faults = faults_of({"unplug@3s+1s"});
+  virtual_bench bench({}, faults);
+  lidar_options options;
+  options.reconnect = true;
+  auto line = recorded(std::make_unique<virtual_connector>(bench), writer);
+  {
+    auto device = lidar::open(std::move(*line), options);
+    ASSERT_TRUE(device) << device.error().message();
+    ASSERT_TRUE(device->start());
+    while (bench.now_ns < 8 * second) static_cast<void>(device->next_scan(100ms));
+  }
+  ASSERT_TRUE(writer.close());
+  const outcome_of_life life = replayed(std::move(*replay::open(path.text())));
+  const std::vector wanted{lidar_event::kind::lost, lidar_event::kind::reconnected,
+                           lidar_event::kind::lost};  // the last one is its end
+  EXPECT_EQ(life.events, wanted);
+  EXPECT_EQ(life.counts.reconnects, 1U);
+}
+
+TEST(ReplayLine, OverAGapItGoesOn) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_device(writer, 6 * second);
+  }
+  const outcome_of_life whole = replayed(std::move(*replay::open(path.text())));
+  auto file = bytes_of(path.text());
+  file[file.size() / 2] ^= 0x10;
+  {
+    std::ofstream out(path.text(), std::ios::binary | std::ios::trunc);
+    out.write(reinterpret_cast<const char*>(file.data()),
+              static_cast<std::streamsize>(file.size()));
+  }
+  const outcome_of_life damaged = replayed(std::move(*replay::open(path.text())));
+  EXPECT_LT(damaged.points.size(), whole.points.size());
+  EXPECT_GE(damaged.points.size() + 5000, whole.points.size());
+  EXPECT_NEAR(static_cast<double>(damaged.points.back().time_ns),
+              static_cast<double>(whole.points.back().time_ns), 1e6);
+}
+
+TEST(ReplayLine, BeginsAgainLaterThanItEnded) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_readings(writer, 0, 100);
+  }
+  const auto line = line_of(path.text(), {.loop = true});
+  std::array<std::uint8_t, 200> out{};
+  std::int64_t last_ns = 0;
+  for (std::uint32_t i = 0; i < 350; ++i) {
+    const auto got = line->read(out, never_ns);
+    ASSERT_TRUE(got) << got.error().message();
+    EXPECT_TRUE(std::ranges::equal(bytes(out).first(got->count), reading(i % 100)));
+    EXPECT_GT(got->arrival_ns, last_ns);
+    EXPECT_EQ(line->now_ns(), got->arrival_ns);
+    last_ns = got->arrival_ns;
+  }
+}
+
+TEST(ReplayLine, AsFastAsAsked_IsAlwaysReadable) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_readings(writer, 0, 2);
+  }
+  const auto line = line_of(path.text());
+  std::array<std::uint8_t, 200> out{};
+  EXPECT_TRUE(is_readable(line->native_handle()));
+  EXPECT_TRUE(line->read(out, 0));
+  EXPECT_TRUE(is_readable(line->native_handle()));
+  EXPECT_TRUE(line->read(out, 0));
+  const auto end = line->read(out, 0);
+  ASSERT_FALSE(end);
+  EXPECT_EQ(end.error().what(), problem::end_of_input);
+}
+
+TEST(ReplayLine, SlowAsItWas_BytesComeWhenTheyAreDue) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_readings(writer, 1, 2);
+  }
+  const auto line =
+      line_of(path.text(), {.rate = 1e-5});  // the second one is due in a quarter of an hour
+  std::array<std::uint8_t, 200> out{};
+  const auto first = line->read(out, never_ns);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->arrival_ns, time_of(1));
+  EXPECT_FALSE(line->noted());
+  EXPECT_FALSE(is_readable(line->native_handle()));
+  const auto none = line->read(out, line->now_ns() + 10);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->count, 0U);
+  std::thread waker([&] { line->wake(); });
+  const auto woken = line->read(out, never_ns);
+  waker.join();
+  ASSERT_FALSE(woken);
+  EXPECT_EQ(woken.error().what(), problem::cancelled);
+}
+
+TEST(ReplayLine, AtItsOwnRate_TakesItsTime) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_readings(writer, 0, 101);
+  }
+  const auto line = line_of(path.text(), {.rate = 10});
+  std::array<std::uint8_t, 200> out{};
+  const auto begin = std::chrono::steady_clock::now();
+  int count = 0;
+  while (const auto got = line->read(out, never_ns)) count += got->count > 0 ? 1 : 0;
+  EXPECT_EQ(count, 101);
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, 95ms);
+}
+
+TEST(ReplayLine, RefusesWhatItCannotDo) {
+  const temporary_path path;
+  {
+    auto writer = made_writer(path.text());
+    record_readings(writer, 0, 2);
+  }
+  const auto refused = [&](const replay_options& how) {
+    const auto made = replay::open(path.text(), how);
+    return !made && made.error().what() == problem::bad_option;
+  };
+  EXPECT_TRUE(refused({.rate = -1}));
+  EXPECT_TRUE(refused({.rate = 1001}));
+  EXPECT_TRUE(refused({.rate = std::numeric_limits<double>::quiet_NaN()}));
+  EXPECT_TRUE(refused({.range = {.from_ns = 5, .to_ns = 5}}));
+  EXPECT_FALSE(refused({}));
+}
+
+}  // namespace
+}  // namespace g4lidar::test
