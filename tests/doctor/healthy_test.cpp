@@ -175,6 +175,44 @@ TEST(Settings, MoreSamplesThanTheLineCarries) {
   EXPECT_EQ(done.diagnoses(), "packets_lost") << done;
 }
 
+// The rates that a port can be opened at are tried where nothing makes sense at the first.
+TEST(Settings, AnotherBaudRateIsFound) {
+  sim::virtual_clock clock;
+  const auto garbled = faults_of({"baud", "scanning"});
+  sim::device at_230400(sim::built_in_world(), {}, garbled);
+  sim::device at_128000(sim::built_in_world(), {});
+  g4_dump::exam_options how;
+  std::vector<std::uint32_t> tried;
+  how.at_rate = [&](std::uint32_t rate) -> std::unique_ptr<transport> {
+    tried.push_back(rate);
+    if (rate != 128'000) return nullptr;
+    return std::make_unique<sim::virtual_port>(at_128000, clock);
+  };
+  g4_dump::examination exam(std::make_unique<sim::virtual_port>(at_230400, clock), how, {});
+  exam.run();
+  examined done;
+  done.stages = exam.stages();
+  EXPECT_EQ(done.diagnoses(), "wrong_baud_rate") << done;
+  EXPECT_EQ(done.code(), 6);
+  EXPECT_EQ(tried.back(), 128'000U);
+  const auto& facts = done.at(stage::baud_rate).facts;
+  EXPECT_TRUE(std::any_of(facts.begin(), facts.end(), [](const g4_dump::fact& each) {
+    return each.name == "rate_that_works" && each.value == decltype(each.value)(128'000);
+  })) << done;
+}
+
+TEST(Settings, AnInterruptStopsTheMotor) {
+  sim::device twin(sim::built_in_world(), {});
+  sim::virtual_clock clock;
+  g4_dump::exam_options how;
+  how.is_interrupted = [&] { return clock.now_ns() > 4'000'000'000; };
+  g4_dump::examination exam(std::make_unique<sim::virtual_port>(twin, clock), how, {});
+  exam.run();
+  EXPECT_LT(clock.now_ns(), 5'000'000'000);
+  static_cast<void>(twin.is_plugged(clock.now_ns()));
+  EXPECT_FALSE(twin.motor_turns());
+}
+
 TEST(Words, AreCompleteAndTheirNamesDiffer) {
   std::vector<std::string_view> names;
   for (std::size_t i = 0; i < g4_dump::diagnosis_count; ++i) {

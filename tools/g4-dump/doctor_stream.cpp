@@ -237,8 +237,9 @@ std::vector<diagnosis> diagnoses_of(const stream_watch& watched) {
       {damage.cut, diagnosis::packets_truncated},
       {damage.lengthened, diagnosis::bytes_inserted},
       {damage.vanished, diagnosis::packets_lost}};
-  std::stable_sort(kinds.begin(), kinds.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) {
+    return a.first != b.first ? a.first > b.first : a.second < b.second;
+  });
   const std::uint64_t told = damage.all() - damage.unclear;
   std::vector<diagnosis> found;
   for (const auto& [count, what] : kinds) {
