@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -69,8 +70,9 @@ void examination::skip_from(stage where, const std::string& why) {
 }
 
 bool examination::note_loss(stage_report& report) {
-  if (!ear_.error()) return false;
-  switch (ear_.error()->what()) {
+  const std::optional<g4lidar::error>& why = ear_.error();
+  if (!why) return false;
+  switch (why->what()) {
     case problem::gone:
     case problem::end_of_input:
       report.find(diagnosis::unplugged);
@@ -82,7 +84,7 @@ bool examination::note_loss(stage_report& report) {
       report.find(diagnosis::system);
       break;
   }
-  report.remark = ear_.error()->message();
+  report.remark = why->message();
   return true;
 }
 
