@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -485,6 +486,51 @@ TEST(Help, NamesEveryColumnOfDumpAndScan) {
   expect_named("scan", {"--partial"});
   expect_named("scan", {"--partial", "--grid", "1"});
   expect_named("scan", {"--partial", "--grid", "1", "--unit", "m"});
+}
+
+class LongDump : public cli::scratch {
+ protected:
+  /// Sanitizers take their time to begin.
+  static std::chrono::milliseconds best_that_is_asked_for() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    return std::chrono::milliseconds(1000);
+#else
+    return std::chrono::milliseconds(10);
+#endif
+  }
+  static outcome dump(const std::string& name, const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"dump", name, "-q"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    cli::program started(arguments, {{}, cli::stream::of_file("/dev/null"), {}});
+    return started.wait();
+  }
+};
+
+TEST_F(LongDump, TakesNoMoreMemoryThanAShortOne) {
+  cli::write_repeated(path("short.bin"), cli::zero(0) + cli::turn(), 500'000);
+  cli::write_repeated(path("long.bin"), cli::zero(0) + cli::turn(), 50'000'000);
+  const std::vector<std::string> options{"-f",     "csv",     "--frame", "robot",  "--fov",
+                                         "-90:90", "--range", "0.1:16",  "--time", "delta"};
+  const outcome few = dump(path("short.bin"), options);
+  const outcome many = dump(path("long.bin"), options);
+  EXPECT_EQ(many.code, 0);
+  EXPECT_LT(many.max_rss_kib, few.max_rss_kib + 2048);
+}
+
+// The time from its start to the first line is no more than 10 ms, where the machine is not busy with
+// others: the best of many.
+TEST_F(LongDump, BeginsAtOnce) {
+  cli::write_repeated(path("long.bin"), cli::zero(0) + cli::turn(), 20'000'000);
+  auto best = std::chrono::nanoseconds::max();
+  for (int i = 0; i < 40 && best > std::chrono::milliseconds(10); ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    cli::program started({"dump", path("long.bin"), "-f", "csv", "-q"});
+    started.read_until("\n");
+    best = std::min<std::chrono::nanoseconds>(best, std::chrono::steady_clock::now() - begin);
+    started.close_output();
+    EXPECT_EQ(started.wait().code, 0);
+  }
+  EXPECT_LE(best, best_that_is_asked_for());
 }
 
 TEST(Dump, WhatMakesNoSenseIsRefused) {

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -14,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "command_words.hpp"
 #include "exit_code.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "interrupt.hpp"
@@ -23,45 +23,10 @@ namespace g4_dump {
 namespace {
 
 namespace sim = g4lidar::sim;
-using g4lidar::command;
-
-constexpr std::array<std::pair<command, std::string_view>, 24> words{{
-    {command::forced_stop, "forced stop"},
-    {command::low_power_on, "low power on"},
-    {command::low_power_off, "low power off"},
-    {command::low_power_query, "low power?"},
-    {command::motor_clockwise, "clockwise"},
-    {command::motor_counter_clockwise, "counter-clockwise"},
-    {command::motor_direction_query, "direction?"},
-    {command::frequency_up_0_1_hz, "0.1 Hz up"},
-    {command::frequency_down_0_1_hz, "0.1 Hz down"},
-    {command::frequency_up_1_hz, "1 Hz up"},
-    {command::frequency_down_1_hz, "1 Hz down"},
-    {command::frequency_query, "scan frequency?"},
-    {command::constant_frequency_on, "constant frequency on"},
-    {command::constant_frequency_off, "constant frequency off"},
-    {command::restart_old, "restart"},
-    {command::start, "start"},
-    {command::stop, "stop"},
-    {command::restart, "restart"},
-    {command::device_info, "device information?"},
-    {command::health, "health?"},
-    {command::health_vendor, "health?"},
-    {command::ranging_next, "next ranging frequency"},
-    {command::ranging_query, "ranging frequency?"},
-    {command::protection_toggle, "protection on or off"},
-}};
-
-std::string_view word_for(std::uint8_t code) {
-  const auto* const found = std::find_if(words.begin(), words.end(), [code](const auto& entry) {
-    return entry.first == static_cast<command>(code);
-  });
-  return found == words.end() ? "no command" : found->second;
-}
 
 void say_asked(const sim::asked& what, const std::string& serial) {
   say(fmt::format("{:.3f} {} A5 {:02X} {}{}{}\n", static_cast<double>(what.time_ns) / 1e9, serial,
-                  what.code, word_for(what.code), what.scanning ? ", while scanning" : "",
+                  what.code, word_for_command(what.code), what.scanning ? ", while scanning" : "",
                   what.obeyed ? "" : ", not obeyed"));
 }
 

@@ -15,6 +15,7 @@ std::vector<verb> all_verbs() {
   verbs.push_back(make_doctor_verb());
   verbs.push_back(make_dump_verb());
   verbs.push_back(make_scan_verb());
+  verbs.push_back(make_packets_verb());
   verbs.push_back(make_decode_verb());
   verbs.push_back(make_sim_verb());
   verbs.push_back(make_set_verb());

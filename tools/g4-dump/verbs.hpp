@@ -16,6 +16,7 @@ namespace g4_dump {
 [[nodiscard]] verb make_dump_verb();
 [[nodiscard]] verb make_scan_verb();
 [[nodiscard]] verb make_doctor_verb();
+[[nodiscard]] verb make_packets_verb();
 [[nodiscard]] verb make_decode_verb();
 [[nodiscard]] verb make_sim_verb();
 [[nodiscard]] verb make_set_verb();

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// g4-dump packets: what goes over the line, in words; each byte in one line.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "recording.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::run;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string with_everything() {
+  return "noise" + cli::scan_started() + cli::zero(0, 1120, 70) +
+         cli::packet(1, 10, {4000, 0, 300}) + cli::packet(20, 19, {4000, 4000}) +
+         cli::damaged(cli::packet(30, 40, {4000, 4000}), 11) + cli::zero(359) +
+         cli::packet(1, 2, {8000, 8000}).substr(0, 12);
+}
+
+TEST(Packets, OfRawBytes) {
+  const outcome done = run({"packets", "-"}, with_everything());
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(
+      done.out,
+      "       0 ! skipped 5 bytes: noise  6E 6F 69 73 65\n"
+      "       5 < scan started\n"
+      "      12 < packet   0.00 to   0.00 deg,  1 sample, checksum ok, zero packet, 7.0 Hz\n"
+      "      24 < packet   1.00 to  10.00 deg,  3 samples, checksum ok\n"
+      "      40 ! packet  20.00 to  19.00 deg,  2 samples, checksum ok, suspect: its angles go "
+      "back  AA 55 00 02 01 0A 81 09 2A 54 A0 0F A0 0F\n"
+      "      54 ! skipped 14 bytes: bad checksum  AA 55 00 02 01 0F 01 14 AA 4C A0 0E A0 0F\n"
+      "      68 < packet 359.00 to 359.00 deg,  1 sample, checksum ok, zero packet\n"
+      "      80 ! skipped 12 bytes: truncated  AA 55 00 02 81 00 01 01 2A 56 40 1F\n");
+  EXPECT_THAT(done.err, StartsWith("92 bytes: 4 packets (1 suspect) with 5 points, 1 response\n"));
+}
+
+TEST(Packets, ErrorsAlone) {
+  const std::vector<std::string> lines =
+      lines_of(run({"packets", "-", "--errors"}, with_everything()).out);
+  ASSERT_EQ(lines.size(), 4U);
+  for (const std::string& line : lines) EXPECT_THAT(line, HasSubstr(" ! "));
+  EXPECT_EQ(run({"packets", "-", "--errors"}, cli::zero(0) + cli::turn()).out, "");
+}
+
+// However the bytes are cut, the lines that --hex adds hold all of them, in order.
+TEST(Packets, HexHoldsEveryByte) {
+  std::string bytes = run({"sim", "--seconds", "1", "--seed", "2"}).out;
+  for (std::size_t i = 500; i < bytes.size(); i += 997)
+    bytes[i] = static_cast<char>(bytes[i] ^ 0x10);
+  std::string hex;
+  for (const std::string& line : lines_of(run({"packets", "-", "--hex", "-q"}, bytes).out)) {
+    if (!line.starts_with("    ") || line.find_first_of("<!") != std::string::npos) continue;
+    std::istringstream fields(line);
+    for (std::string byte; fields >> byte;) hex += static_cast<char>(std::stoi(byte, nullptr, 16));
+  }
+  EXPECT_EQ(hex, bytes);
+}
+
+TEST(Packets, BothWaysOfALidar) {
+  const outcome done = run({"packets", "sim:?seed=4", "-d", "400ms", "--time", "zero"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  const std::vector<std::string> lines = lines_of(done.out);
+  EXPECT_THAT(lines.at(0), StartsWith("0.000000 - opened "));
+  std::size_t at = 0;
+  for (const char* const what :
+       {"> stop  A5 65", "> device information?  A5 90",
+        "< device information: model 5 (G4), firmware 3.2, hardware 3, serial 2021101000070073",
+        "< health: ok, code 0", "> start  A5 60", "< scan started", "< packet ", "> stop  A5 65",
+        "- closed"}) {
+    while (at < lines.size() && lines[at].find(what) == std::string::npos) ++at;
+    ASSERT_LT(at++, lines.size()) << what << " is not there, or not in its place";
+  }
+  for (const std::string& line : lines) {
+    EXPECT_TRUE(std::regex_search(line, std::regex(R"(^\d+\.\d{6} [-<>!] )"))) << line;
+  }
+}
+
+TEST(Packets, WhatWasSaidBeforeAFailureIsThere) {
+  const outcome done = run({"packets", "sim:?fault=mute@0"});
+  EXPECT_EQ(done.code, 6);
+  EXPECT_THAT(done.out, HasSubstr("> device information?  A5 90\n"));
+  EXPECT_THAT(done.err, StartsWith("g4-dump: "));
+}
+
+TEST(Packets, SoManyLines) {
+  EXPECT_EQ(lines_of(run({"packets", "-", "-n", "3", "-q"}, with_everything()).out).size(), 3U);
+  EXPECT_EQ(lines_of(run({"packets", "sim:", "-n", "20", "-q"}).out).size(), 20U);
+  EXPECT_EQ(run({"packets", "-", "--time", "abs"}, with_everything()).code, 2);
+}
+
+}  // namespace
