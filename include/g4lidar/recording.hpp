@@ -62,8 +62,9 @@ struct recording_counts {
   std::uint64_t chunks_lost = 0;
 };
 
-/// Writes recordings. *Single thread.* *Allocates on open* and when a new file is begun. Each chunk is
-/// handed to the system whole, when it is full or its time has come. docs/recordings.md has the format.
+/// Writes recordings. *Single thread.* *Allocates on open*, when a new file is begun, and now and then
+/// for the list of its chunks. Each chunk is handed to the system whole, when it is full or its time has
+/// come; where a line falls silent, flush() does that. docs/recordings.md has the format.
 ///
 /// Nothing that is recorded fails: where the disk is full, chunks are left out and counted, what was
 /// written stays good, and take_error() tells why, once until it is over.
