@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,8 +38,10 @@ std::string path_of(const std::string& source) {
 std::int64_t recorded_wall_ahead_ns(const std::string& path) {
   auto reader = g4lidar::recording_reader::open(path);
   if (!reader) throw failure(reader.error());
-  const auto first = reader->next();
-  return first && *first ? (*first)->wall_ns - (*first)->time_ns : 0;
+  const auto next = reader->next();
+  if (!next) return 0;
+  const std::optional<g4lidar::recorded_item>& first = *next;
+  return first ? first->wall_ns - first->time_ns : 0;
 }
 
 shape_plan plan_for(const dump_options& options, source_kind kind) {
@@ -74,7 +77,7 @@ class dumping {
     if (plan.time == time_style::absolute || plan.time == time_style::monotonic) {
       if (kind_ != source_kind::bytes) options_.style.time_width = 10;
     }
-    writer_.emplace(make_writer(), common_, plan);
+    writer_ = std::make_unique<shaped_writer>(make_writer(), common_, plan);
   }
 
   int run() { return kind_ == source_kind::bytes ? dump_bytes() : dump_lidar(); }
@@ -115,7 +118,7 @@ class dumping {
   common_options common_;
   source_kind kind_;
   std::optional<numbered_files> files_;
-  std::optional<shaped_writer> writer_;
+  std::unique_ptr<shaped_writer> writer_;
 };
 
 int dumping::dump_bytes() {

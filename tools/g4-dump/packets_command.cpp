@@ -94,8 +94,9 @@ int list_recording(const packets_options& options) {
   while (interrupt() == 0 && !out.is_closed() && !(log && log->is_done())) {
     const auto next = reader->next();
     if (!next) throw failure(next.error());
-    if (!*next) break;
-    const g4lidar::recorded_item& item = **next;
+    const std::optional<g4lidar::recorded_item>& found = *next;
+    if (!found) break;
+    const g4lidar::recorded_item& item = *found;
     if (!log) {
       log.emplace(style, time_shift(wanted, item.wall_ns - item.time_ns), out);
       if (common.duration.count() > 0) end_ns = item.time_ns + common.duration.count();
