@@ -34,6 +34,10 @@ class G4LIDAR_API replay {
   /// Fails with bad_option, or as recording_reader::open() does.
   [[nodiscard]] static result<std::unique_ptr<connector>> open(std::string_view path,
                                                                const replay_options& options = {});
+
+  /// What the recording that `line` plays is read with, to ask it how far it is and what is wrong with
+  /// the file; null where `line` is something else. Good as long as `line`, or the lidar that has it.
+  [[nodiscard]] static const recording_reader* reader_of(const connector& line) noexcept;
 };
 
 }  // namespace g4lidar

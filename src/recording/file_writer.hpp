@@ -46,7 +46,7 @@ class recording_writer::file_writer {
   [[nodiscard]] result<void> end_chunk();
   [[nodiscard]] result<bytes> pack();
   [[nodiscard]] result<void> rotate();
-  [[nodiscard]] result<void> end_file();
+  [[nodiscard]] result<void> end_file(bool is_only_one);
   [[nodiscard]] bool is_due(std::int64_t time_ns) const noexcept;
   [[nodiscard]] std::string next_path() const;
   void lose_chunk() noexcept;

@@ -258,7 +258,7 @@ void recording_writer::file_writer::lose_chunk() noexcept {
 result<void> recording_writer::file_writer::rotate() {
   auto next = mcap::mcap_file::create(next_path(), options_.overwrite);
   if (!next) return tl::unexpected(next.error());
-  auto ended = end_file();
+  auto ended = end_file(false);
   ++counts_.files;
   closed_bytes_ += file_->size();
   file_ = std::make_unique<mcap::mcap_file>(std::move(*next));
@@ -280,11 +280,11 @@ std::string recording_writer::file_writer::next_path() const {
   return std::string(stem) + number.data() + (has_extension ? std::string(extension) : "");
 }
 
-result<void> recording_writer::file_writer::end_file() {
+result<void> recording_writer::file_writer::end_file(bool is_only_one) {
   mcap::word_map words{{"payload", hexadecimal(file_payload_.value())},
                        {"first_ns", std::to_string(file_ns_)},
                        {"last_ns", std::to_string(file_last_ns_)}};
-  if (counts_.files == 1 && points_.count() > 0) {  // they go on from file to file
+  if (is_only_one && points_.count() > 0) {  // they go on from file to file
     words.emplace_back("points", hexadecimal(points_.value()));
     words.emplace_back("point_count", std::to_string(points_.count()));
     words.emplace_back("computed_with", computed_with());
@@ -301,7 +301,7 @@ result<void> recording_writer::file_writer::flush() noexcept {
 result<void> recording_writer::file_writer::close() noexcept {
   auto done = guarded([&]() -> result<void> {
     auto ended = end_chunk();
-    auto closed = end_file();
+    auto closed = end_file(counts_.files == 1);
     return ended ? closed : ended;
   });
   is_closed_ = true;

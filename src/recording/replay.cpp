@@ -94,6 +94,7 @@ class player {
   }
 
   [[nodiscard]] bool is_open() const noexcept { return waits_.is_open(); }
+  [[nodiscard]] const recording_reader& reader() const noexcept { return reader_; }
   [[nodiscard]] replay_clock& clock() noexcept { return clock_; }
   [[nodiscard]] const replay_clock& clock() const noexcept { return clock_; }
   [[nodiscard]] const recorded_device& device() const noexcept { return device_; }
@@ -297,6 +298,7 @@ class replay_connector final : public connector {
     return of_->wait(deadline_ns).has_value();
   }
   void wake() noexcept override { of_->wake(); }
+  [[nodiscard]] const recording_reader& reader() const noexcept { return of_->reader(); }
 
  private:
   std::shared_ptr<player> of_;
@@ -304,6 +306,11 @@ class replay_connector final : public connector {
 };
 
 }  // namespace
+
+const recording_reader* replay::reader_of(const connector& line) noexcept {
+  const auto* const played = dynamic_cast<const replay_connector*>(&line);
+  return played == nullptr ? nullptr : &played->reader();
+}
 
 result<std::unique_ptr<connector>> replay::open(std::string_view path,
                                                 const replay_options& options) {
