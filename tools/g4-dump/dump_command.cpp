@@ -13,13 +13,13 @@
 #include "byte_points.hpp"
 #include "byte_pump.hpp"
 #include "exit_code.hpp"
-#include "g4lidar/recording_reader.hpp"
 #include "grid_writer.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "live.hpp"
 #include "manners.hpp"
 #include "output.hpp"
+#include "played_points.hpp"
 #include "point_writer.hpp"
 #include "shaped_writer.hpp"
 #include "source.hpp"
@@ -27,22 +27,6 @@
 
 namespace g4_dump {
 namespace {
-
-constexpr std::string_view file_prefix = "file:";
-
-std::string path_of(const std::string& source) {
-  return source.starts_with(file_prefix) ? source.substr(file_prefix.size()) : source;
-}
-
-/// How far the wall clock was ahead when `path` was recorded.
-std::int64_t recorded_wall_ahead_ns(const std::string& path) {
-  auto reader = g4lidar::recording_reader::open(path);
-  if (!reader) throw failure(reader.error());
-  const auto next = reader->next();
-  if (!next) return 0;
-  const std::optional<g4lidar::recorded_item>& first = *next;
-  return first ? first->wall_ns - first->time_ns : 0;
-}
 
 shape_plan plan_for(const dump_options& options, source_kind kind) {
   const common_options& common = *options.common;
@@ -155,8 +139,8 @@ int dumping::dump_bytes() {
 int dumping::dump_lidar() {
   const bool has_end = kind_ == source_kind::recording || options_.pcd;
   output out(output_name(), when_it_appears(has_end));
-  g4lidar::lidar_options how;
-  how.partial_scans = options_.partial;
+  opening how = options_.source;
+  how.how.partial_scans = options_.partial;
   opened_source source(common_, how);
   try {
     run_lidar(source, out);

@@ -8,6 +8,7 @@
 #include "common_options.hpp"
 #include "pcd_writer.hpp"
 #include "point_style.hpp"
+#include "source.hpp"
 
 namespace g4_dump {
 
@@ -18,6 +19,7 @@ struct dump_options {
   std::size_t bins = 0;  ///< 0: points and no grid.
   bool pcd = false;
   pcd_data data = pcd_data::binary;
+  opening source{};  ///< How it is opened.
 };
 
 /// Returns the exit code; throws a failure or a bad_value.

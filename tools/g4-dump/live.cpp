@@ -150,8 +150,9 @@ void run_live(g4lidar::lidar& lidar, const common_options& options, const live_s
   tell_events(lidar);
 }
 
-void tell_counts(const g4lidar::lidar& lidar) {
-  const g4lidar::lidar_counts counts = lidar.counts();
+void tell_counts(const g4lidar::lidar& lidar) { tell_counts(lidar.counts()); }
+
+void tell_counts(const g4lidar::lidar_counts& counts) {
   tell(fmt::format(
       "{} bytes: {} packets ({} suspect) with {} points in {} scans and {} pieces\n"
       "{} bytes skipped, {} samples lost, {} points and {} scans missed, {} reconnects\n",

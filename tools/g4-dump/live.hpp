@@ -38,5 +38,6 @@ void tell_events(g4lidar::lidar& lidar);
 
 /// The counts at the end, as tcpdump tells them.
 void tell_counts(const g4lidar::lidar& lidar);
+void tell_counts(const g4lidar::lidar_counts& counts);
 
 }  // namespace g4_dump

@@ -18,6 +18,7 @@
 #include <variant>
 #include <vector>
 
+#include "byte_line.hpp"
 #include "exit_code.hpp"
 #include "file_id.hpp"
 #include "g4lidar/sim/pty_port.hpp"
@@ -119,11 +120,17 @@ bool may_still_come(const g4lidar::error& why) {
          why.what() == cannot_connect || why.what() == garbage || why.what() == busy;
 }
 
-g4lidar::result<g4lidar::lidar> open_with(const g4lidar::lidar_options& how,
-                                          const line_wrapper& wrap) {
-  auto lines = g4lidar::connector_for(how);
-  if (!lines) return tl::unexpected(lines.error());
-  return g4lidar::lidar::open(wrap ? wrap(*std::move(lines)) : *std::move(lines), how);
+using any_line = g4lidar::result<std::unique_ptr<g4lidar::connector>>;
+
+any_line line_for(source_kind kind, const g4lidar::lidar_options& how, const opening& wish) {
+  switch (kind) {
+    case source_kind::recording:
+      return g4lidar::replay::open(path_of(how.device), wish.played);
+    case source_kind::bytes:
+      return open_byte_line(path_of(how.device), wish.bytes_rate_hz);
+    default:
+      return g4lidar::connector_for(how);
+  }
 }
 
 }  // namespace
@@ -179,24 +186,36 @@ source_kind kind_of(const std::string& source) {
   return source_kind::bytes;
 }
 
+std::string path_of(const std::string& source) {
+  return source.starts_with(file_prefix) ? source.substr(file_prefix.size()) : source;
+}
+
 opened_source::opened_source(const common_options& options, g4lidar::lidar_options how,
                              const line_wrapper& wrap) {
+  opening wish;
+  wish.how = std::move(how);
+  if (wrap) wish.tap = [&wrap](auto line) -> any_line { return wrap(std::move(line)); };
+  open(options, wish);
+}
+
+opened_source::opened_source(const common_options& options, const opening& wish) {
+  open(options, wish);
+}
+
+void opened_source::open(const common_options& options, const opening& wish) {
+  g4lidar::lidar_options how = wish.how;
   how.device = options.source;
   how.baud = options.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
-  switch (kind_of(options.source)) {
-    case source_kind::simulated:
-      simulation_ = std::make_unique<simulation>(wish_of(options.source));
-      how.device = simulation_->path();
-      break;
-    case source_kind::recording:
-      if (!how.device.starts_with(file_prefix)) how.device.insert(0, file_prefix);
-      break;
-    default:
-      break;
+  const source_kind kind = kind_of(options.source);
+  if (kind == source_kind::simulated) {
+    simulation_ = std::make_unique<simulation>(wish_of(options.source));
+    how.device = simulation_->path();
   }
   while (true) {
-    auto opened = open_with(how, wrap);
+    auto line = line_for(kind, how, wish);
+    if (line && wish.tap) line = wish.tap(std::move(*line));
+    auto opened = line ? g4lidar::lidar::open(std::move(*line), how) : tl::unexpected(line.error());
     if (opened) {
       lidar_.emplace(std::move(*opened));
       tell_more(fmt::format("opened {}\n", lidar_->name()));

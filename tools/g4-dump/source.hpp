@@ -2,6 +2,7 @@
 // What the word SOURCE means, and the lidar behind it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "common_options.hpp"
 #include "g4lidar/connector.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/replay.hpp"
 
 namespace g4_dump {
 
@@ -22,6 +24,8 @@ enum class source_kind : unsigned char {
 
 /// By its form, and what lies there. A name that is none of a file is a device's.
 [[nodiscard]] source_kind kind_of(const std::string& source);
+/// The path of a source that is a file, without "file:".
+[[nodiscard]] std::string path_of(const std::string& source);
 
 /// Puts something between the lines and the driver, such as one that records.
 using line_wrapper =
@@ -35,6 +39,18 @@ struct simulated_port {
 /// Throws a failure, or bad_value.
 [[nodiscard]] simulated_port serve_simulated(const std::string& source);
 
+/// The same where that can fail.
+using line_tap = std::function<g4lidar::result<std::unique_ptr<g4lidar::connector>>(
+    std::unique_ptr<g4lidar::connector>)>;
+
+/// How a source is opened.
+struct opening {
+  g4lidar::lidar_options how{};        ///< But for device, baud and reconnect.
+  line_tap tap{};                      ///< Called at each attempt, where it is set.
+  g4lidar::replay_options played{};    ///< Of a recording.
+  std::uint32_t bytes_rate_hz = 9000;  ///< Samples a second of raw bytes in a file.
+};
+
 /// A lidar, and the simulated device that it is on, if it is on one.
 class opened_source {
  public:
@@ -42,6 +58,8 @@ class opened_source {
   /// loss_rule::wait it tries until there is one or a signal comes (`interrupted`). Throws a failure.
   explicit opened_source(const common_options& options, g4lidar::lidar_options how = {},
                          const line_wrapper& wrap = {});
+  /// The same, and raw bytes too, see byte_line.hpp.
+  opened_source(const common_options& options, const opening& wish);
   opened_source(const opened_source&) = delete;
   opened_source& operator=(const opened_source&) = delete;
   ~opened_source();
@@ -53,6 +71,8 @@ class opened_source {
  private:
   friend simulated_port serve_simulated(const std::string& source);
   class simulation;
+  void open(const common_options& options, const opening& wish);
+
   std::unique_ptr<simulation> simulation_;  // outlives the lidar
   std::optional<g4lidar::lidar> lidar_;
 };

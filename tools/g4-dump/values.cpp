@@ -41,6 +41,43 @@ std::chrono::nanoseconds duration_of(const std::string& text) {
       "'{}' is no time such as 10s, 500ms or 2min, above 0 and at most 10 years", text));
 }
 
+std::chrono::nanoseconds moment_of(const std::string& text) {
+  double number = -1.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, number);
+  if (error == std::errc() && number == 0.0) {
+    const std::string one = "1" + std::string(at, end);
+    static_cast<void>(duration_of(one));  // 0 of what?
+    return std::chrono::nanoseconds(0);
+  }
+  return duration_of(text);
+}
+
+std::uint64_t byte_count_of(const std::string& text) {
+  constexpr std::string_view steps = "kmgt";
+  constexpr double most = 1e18;
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, number);
+  std::string unit(at, end);
+  for (char& letter : unit)
+    letter = letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter + 32) : letter;
+  double bytes = error == std::errc() && number >= 0.0 ? number : -1.0;
+  if (!unit.empty()) {
+    const std::size_t step = steps.find(unit.front());
+    const std::string_view rest = std::string_view(unit).substr(1);
+    const bool is_known =
+        step != std::string_view::npos && (rest.empty() || rest == "ib" || rest == "b");
+    const double factor = rest == "b" ? 1000.0 : 1024.0;
+    for (std::size_t i = 0; is_known && i <= step; ++i) bytes *= factor;
+    if (!is_known && unit != "b") bytes = -1.0;
+  }
+  if (bytes < 1.0 || bytes > most) {
+    throw bad_value(fmt::format("'{}' is no size such as 500M or 1G", text));
+  }
+  return static_cast<std::uint64_t>(bytes);
+}
+
 number_range range_of(const std::string& text, double least, double most) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {

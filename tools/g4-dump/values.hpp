@@ -44,6 +44,12 @@ template <class Value>
 /// "10s", "500ms", "1.5min", "2h", "250us": above 0, at most ten years. A number alone: seconds.
 [[nodiscard]] std::chrono::nanoseconds duration_of(const std::string& text);
 
+/// A place in a recording: as a duration, or 0.
+[[nodiscard]] std::chrono::nanoseconds moment_of(const std::string& text);
+
+/// "1G", "500M", "64k": in steps of 1024; "1GB": of 1000. A number alone: bytes.
+[[nodiscard]] std::uint64_t byte_count_of(const std::string& text);
+
 /// Two numbers with a colon between, either may be missing: "0.28:16", "-90:90", ":4".
 struct number_range {
   double from;

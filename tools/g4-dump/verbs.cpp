@@ -22,6 +22,9 @@ std::vector<verb> all_verbs() {
   verbs.push_back(make_start_verb());
   verbs.push_back(make_stop_verb());
   verbs.push_back(make_restart_verb());
+  verbs.push_back(make_record_verb());
+  verbs.push_back(make_replay_verb());
+  verbs.push_back(make_convert_verb());
   return verbs;
 }
 

@@ -23,6 +23,9 @@ namespace g4_dump {
 [[nodiscard]] verb make_start_verb();
 [[nodiscard]] verb make_stop_verb();
 [[nodiscard]] verb make_restart_verb();
+[[nodiscard]] verb make_record_verb();
+[[nodiscard]] verb make_replay_verb();
+[[nodiscard]] verb make_convert_verb();
 
 /// All of them. What they share with their options lives as long as they do.
 [[nodiscard]] std::vector<verb> all_verbs();

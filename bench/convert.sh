@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# How many points a second g4-dump converts to csv on one core: from raw bytes and from a recording, with
+# scans in it and without. Fails below the promised 20 million.
+#   bench/convert.sh [MINUTES]: of a simulated lidar, 10 by default.
+# Processor time, the best of five runs: what else the machine does is no miss.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source scripts/packages.sh
+source scripts/build.sh
+minutes=${1:-10}
+promised=20
+need_packages "${packages_demo[@]}"
+configure_preset release
+build build/release g4-dump
+g4_dump=build/release/g4-dump
+scratch=$(mktemp -d -t g4lidar-convert-bench.XXXXXX)
+trap 'rm -rf "$scratch"' EXIT
+missed=0
+
+# seconds <command>...: of the processor, the best of five.
+seconds() {
+  local best=1000000 took TIMEFORMAT='%U %S'
+  for _ in 1 2 3 4 5; do
+    took=$({ time "$@" >/dev/null 2>&1; } 2>&1 | awk '{ print $1 + $2 }')
+    best=$(awk -v a="$took" -v b="$best" 'BEGIN { print a < b ? a : b }')
+  done
+  echo "$best"
+}
+
+# row <what> <file>
+row() {
+  local rate
+  rate=$(awk -v points="$points" -v took="$(seconds "$g4_dump" convert -q "$2" "$scratch/out.csv")" \
+    'BEGIN { printf "%.1f", points / took / 1e6 }')
+  printf '| %-40s | %8s million points a second |\n' "$1" "$rate"
+  if awk -v rate="$rate" -v least="$promised" 'BEGIN { exit !(rate < least) }'; then
+    echo "Missed: $1 to csv at $rate, promised $promised" >&2
+    missed=1
+  fi
+}
+
+"$g4_dump" sim --seconds $((60 * minutes)) -o "$scratch/long.bin"
+"$g4_dump" convert -q "$scratch/long.bin" "$scratch/long.mcap"
+"$g4_dump" record -q --no-scans "$scratch/long.bin" "$scratch/bare.mcap"
+points=$("$g4_dump" convert -q "$scratch/long.bin" - --to-format csv | tail -n +2 | wc -l)
+row "raw bytes" "$scratch/long.bin"
+row "a recording with scans" "$scratch/long.mcap"
+row "a recording without scans" "$scratch/bare.mcap"
+exit "$missed"

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+// g4-dump convert: round trips, parts, what is damaged, what makes no sense, and its memory.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "recorded.hpp"
+#include "recording.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::program;
+using cli::run;
+using cli::stream;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+namespace fs = std::filesystem;
+
+class Convert : public cli::scratch {
+ protected:
+  // Raw bytes of so many seconds of a simulated lidar.
+  std::string raw(const std::string& seconds) {
+    const std::string name = path("raw.bin");
+    EXPECT_EQ(run({"sim", "--seconds", seconds, "-o", name}).code, 0);
+    return name;
+  }
+  void convert(const std::string& from, const std::string& to,
+               const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"convert", path(from), path(to)};
+    words.insert(words.end(), more.begin(), more.end());
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 0) << from << " to " << to << ": " << done.err;
+    EXPECT_EQ(done.out, "");
+  }
+  void expect_refused(std::vector<std::string> words, int code, const std::string& why) {
+    words.insert(words.begin(), "convert");
+    const std::string before = listing();
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, code) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(why));
+    EXPECT_EQ(listing(), before) << "something was left";
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    return cli::read_file(path(name));
+  }
+  [[nodiscard]] std::vector<std::string> rows(const std::string& name) const {
+    return cli::lines_of(text(name));
+  }
+};
+
+TEST_F(Convert, RawBytesAreTheSameBehindARecording) {
+  const std::string bytes = cli::read_file(raw("3"));
+  convert("raw.bin", "walk.mcap");
+  convert("walk.mcap", "again.bin");
+  EXPECT_EQ(text("again.bin"), bytes);
+  convert("walk.mcap", "second.mcap", {"--compress"});
+  EXPECT_LT(fs::file_size(path("second.mcap")), fs::file_size(path("walk.mcap")));
+  convert("second.mcap", "again.bin");
+  EXPECT_EQ(text("again.bin"), bytes);
+  EXPECT_EQ(run({"replay", "--verify", path("second.mcap")}).code, 0);
+}
+
+TEST_F(Convert, ARecordingGivesThePointsOfTheDriver) {
+  ASSERT_EQ(cli::record_scans(path("walk.mcap"), 4).code, 0);
+  convert("walk.mcap", "walk.csv");
+  const outcome played =
+      run({"replay", path("walk.mcap"), "--rate", "max", "-f", "csv", "--time", "mono"});
+  EXPECT_EQ(text("walk.csv"), played.out);
+  EXPECT_GT(rows("walk.csv").size(), 4000U);
+}
+
+TEST_F(Convert, RawBytesGiveThePointsOfDecode) {
+  const std::string name = raw("2");
+  convert("raw.bin", "walk.csv");
+  EXPECT_EQ(text("walk.csv"), run({"decode", name}).out);
+  convert("raw.bin", "walk.jsonl");
+  EXPECT_EQ(text("walk.jsonl"), run({"decode", name, "--format", "jsonl"}).out);
+}
+
+// Times of a recording made of raw bytes are those of a driver, which knows them well after 5 s.
+TEST_F(Convert, ByWayOfARecordingThePointsAreTheSameButForTheirTimes) {
+  raw("8");
+  convert("raw.bin", "walk.mcap");
+  convert("raw.bin", "straight.csv");
+  convert("walk.mcap", "round.csv");
+  const auto straight = rows("straight.csv");
+  const auto round = rows("round.csv");
+  ASSERT_EQ(straight.size(), round.size());
+  const long long shift = cli::number_in(round[60'000], 3) - cli::number_in(straight[60'000], 3);
+  for (std::size_t i = 1; i < straight.size(); ++i) {
+    ASSERT_EQ(cli::number_in(straight[i], 0), cli::number_in(round[i], 0));
+    const auto field = [](const std::string& row, std::size_t column) {
+      std::size_t at = 0;
+      for (std::size_t k = 0; k < column; ++k) at = row.find(',', at) + 1;
+      return std::stod(row.substr(at));
+    };
+    ASSERT_NEAR(field(straight[i], 1), field(round[i], 1), 4.1e-5) << straight[i];
+    ASSERT_EQ(field(straight[i], 2), field(round[i], 2));
+    const long long off = cli::number_in(round[i], 3) - cli::number_in(straight[i], 3) - shift;
+    if (i > 45'000) {
+      ASSERT_LT(std::llabs(off), 1'000'000) << straight[i];
+    }
+  }
+}
+
+TEST_F(Convert, TextComesBackAsItWas) {
+  raw("2");
+  convert("raw.bin", "a.csv");
+  convert("a.csv", "b.csv");
+  EXPECT_EQ(text("b.csv"), text("a.csv"));
+  convert("raw.bin", "a.jsonl");
+  convert("a.jsonl", "b.jsonl");
+  EXPECT_EQ(text("b.jsonl"), text("a.jsonl"));
+  convert("a.jsonl", "c.csv");
+  EXPECT_EQ(text("c.csv"), text("a.csv"));
+  convert("a.csv", "m.csv", {"--unit", "m", "--frame", "robot"});
+  EXPECT_THAT(text("m.csv"), StartsWith("scan,angle_deg,range_m,time_ns\n"));
+  convert("m.csv", "back.csv", {"--from-frame", "robot"});
+  const auto first = rows("a.csv");
+  const auto back = rows("back.csv");
+  ASSERT_EQ(first.size(), back.size());
+}
+
+TEST_F(Convert, ColumnsAreFoundByTheirNames) {
+  cli::write_file(path("own.csv"),
+                  "range_m,intensity,angle_deg\r\n1.5,7,10\r\nno,7,11\r\n2,7,12\r\n");
+  const outcome done = run({"convert", path("own.csv"), path("out.csv")});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(text("out.csv"),
+            "scan,angle_deg,range_mm,time_ns\n0,10.000000,1500.00,0\n0,12.000000,2000.00,0\n");
+  EXPECT_THAT(done.err, HasSubstr("2 points, 1 lines without one"));
+}
+
+TEST_F(Convert, ToPointClouds) {
+  raw("2");
+  convert("raw.bin", "walk.csv");
+  fs::create_directory(path("clouds"));
+  convert("walk.csv", "clouds");
+  convert("raw.bin", "scan-%04d.pcd", {"--ascii"});
+  EXPECT_TRUE(fs::exists(path("clouds/scan-000000.pcd"))) << listing();
+  EXPECT_THAT(text("scan-0000.pcd"), HasSubstr("\nDATA ascii\n"));
+  const outcome one = run({"convert", path("raw.bin"), path("one.pcd")});
+  EXPECT_EQ(one.code, 0);
+  EXPECT_THAT(one.err, HasSubstr("the first whole revolution; OUT with %04d"));
+  EXPECT_THAT(text("one.pcd"), HasSubstr("\nDATA binary\n"));
+}
+
+TEST_F(Convert, APart) {
+  raw("6");
+  convert("raw.bin", "part.csv", {"--from", "2s", "--to", "3s"});
+  EXPECT_EQ(rows("part.csv").size(), 9001U);
+  EXPECT_EQ(cli::number_in(rows("part.csv")[1], 3), 2'000'000'000);
+  convert("raw.bin", "walk.csv");
+  convert("walk.csv", "again.csv", {"--from", "2s", "--to", "3s"});
+  EXPECT_EQ(text("again.csv"), text("part.csv"));
+  convert("raw.bin", "walk.mcap");
+  convert("walk.mcap", "part.csv", {"--from", "2s", "--to", "3s"});
+  EXPECT_NEAR(static_cast<double>(rows("part.csv").size()), 9001.0, 200.0);
+  convert("walk.mcap", "part.mcap", {"--from", "2s", "--to", "3s"});
+  convert("part.mcap", "part.bin");
+  convert("walk.mcap", "straight.bin", {"--from", "2s", "--to", "3s"});
+  EXPECT_EQ(text("straight.bin"), text("part.bin"));
+  EXPECT_NE(text("raw.bin").find(text("part.bin")), std::string::npos);
+  convert("raw.bin", "cut.bin", {"--from", "2s", "--to", "3s"});
+  EXPECT_NE(text("raw.bin").find(text("cut.bin")), std::string::npos);
+  EXPECT_NEAR(static_cast<double>(text("cut.bin").size()), 20'380.0, 500.0);
+}
+
+TEST_F(Convert, OfWhatIsDamagedTheWholeIsUsedAndTheRestCounted) {
+  raw("20");
+  convert("raw.bin", "walk.mcap");
+  const std::string good = text("walk.mcap");
+  convert("walk.mcap", "good.csv");
+  cli::write_file(path("cut.mcap"), good.substr(0, good.size() * 3 / 5));
+  const outcome cut = run({"convert", path("cut.mcap"), path("cut.csv")});
+  EXPECT_EQ(cut.code, 0) << cut.err;
+  EXPECT_THAT(cut.err, HasSubstr("was cut off"));
+  EXPECT_GT(rows("cut.csv").size(), rows("good.csv").size() / 2);
+  EXPECT_EQ(text("good.csv").compare(0, text("cut.csv").size(), text("cut.csv")), 0);
+  cli::write_file(path("bad.mcap"),
+                  cli::damaged(good, cli::place_of_payload(good, text("raw.bin"))));
+  const outcome bad = run({"convert", path("bad.mcap"), path("bad.csv")});
+  EXPECT_EQ(bad.code, 0) << bad.err;
+  EXPECT_THAT(bad.err, HasSubstr("1 chunks are damaged"));
+  EXPECT_GT(rows("bad.csv").size(), rows("good.csv").size() * 8 / 10);
+  EXPECT_LT(rows("bad.csv").size(), rows("good.csv").size());
+}
+
+TEST_F(Convert, WhatCannotBeIsRefused) {
+  raw("1");
+  convert("raw.bin", "a.csv");
+  expect_refused({path("a.csv"), path("b.mcap")}, 2, "holds points, and no bytes of a lidar");
+  expect_refused({path("a.csv"), path("b.bin")}, 2, "holds points, and no bytes of a lidar");
+  expect_refused({path("raw.bin"), path("b.mcap"), "--range", "1:2"}, 2, "are for points");
+  expect_refused({path("raw.bin"), path("b.bin"), "--scans"}, 2, "are for points");
+  expect_refused({path("raw.bin"), path("b.txt")}, 2, "ends in none of .mcap");
+  expect_refused({path("raw.bin"), "-"}, 2, "ends in none of .mcap");
+  expect_refused({path("raw.bin"), "-", "--to-format", "mcap"}, 2, "not to standard output");
+  expect_refused({path("x.pcd"), path("b.csv")}, 10, "there is no file");
+  expect_refused({path("raw.bin"), path("b.csv"), "--from-format", "pcd"}, 2, "not read");
+  expect_refused({"sim:", path("b.csv")}, 2, "is no file");
+  expect_refused({path("none"), path("b.csv")}, 10, "there is no file");
+  expect_refused({path("a.csv"), path("a.csv")}, 2, "is what is read, too");
+  expect_refused({path("raw.bin"), path("none/b.csv")}, 10, "Make its directory first");
+  expect_refused({path("raw.bin"), path("none/b.mcap")}, 10, "Make its directory first");
+}
+
+TEST_F(Convert, FilesThatHoldNothingOfUse) {
+  cli::write_file(path("empty.bin"), "");
+  cli::write_file(path("text.bin"), "dear\n");
+  cli::write_file(path("text.csv"), "dear\nfriend\n");
+  cli::write_file(path("names.csv"), "scan,angle_deg,range_mm,time_ns\n");
+  cli::write_file(path("text.jsonl"), "{}\n");
+  cli::write_file(path("text.mcap"), "dear\n");
+  expect_refused({path("empty.bin"), path("out.csv")}, 10, "is empty");
+  expect_refused({path("text.bin"), path("out.csv")}, 10, "this is text");
+  expect_refused({path("text.csv"), path("out.jsonl")}, 10, "no columns");
+  expect_refused({path("names.csv"), path("out.jsonl")}, 10, "holds no points");
+  expect_refused({path("text.jsonl"), path("out.csv")}, 10, "holds no points");
+  expect_refused({path("text.mcap"), path("out.csv")}, 10, "text.mcap");
+  expect_refused({path("text.mcap"), path("out.bin")}, 10, "text.mcap");
+  expect_refused({path("text.mcap"), path("out.mcap")}, 10, "text.mcap");
+  expect_refused({path("text.bin"), path("out.mcap")}, 10, "this is text");
+  expect_refused({path("text.bin"), path("out.csv"), "--from-format", "mcap"}, 10, "text.bin");
+}
+
+TEST_F(Convert, ALongFileTakesNoMoreMemoryThanAShortOne) {
+  const std::string block = cli::zero(0) + cli::turn();
+  cli::write_repeated(path("short.bin"), block, 2'000'000);
+  cli::write_repeated(path("long.bin"), block, 20'000'000);
+  for (const std::string length : {"short", "long"}) {
+    convert(length + ".bin", length + ".mcap", {"--compress"});
+    convert(length + ".bin", length + ".csv");
+  }
+  for (const std::string form : {".bin", ".mcap", ".csv"}) {
+    for (const std::string to : {"csv", "jsonl"}) {
+      const auto kib = [&](const std::string& length) {
+        program started({"convert", path(length + form), "-", "--to-format", to},
+                        {{}, stream::of_file("/dev/null"), {}});
+        const outcome done = started.wait();
+        EXPECT_EQ(done.code, 0) << done.err;
+        return done.max_rss_kib;
+      };
+      EXPECT_LT(kib("long"), kib("short") + 2048) << form << " to " << to;
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+// g4-dump record and replay, as a person runs them: on a simulated lidar in real time.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+#include "recorded.hpp"
+#include "recording.hpp"
+
+namespace {
+
+using cli::line_with;
+using cli::outcome;
+using cli::program;
+using cli::record_scans;
+using cli::run;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+using steady = std::chrono::steady_clock;
+
+class Record : public cli::scratch {
+ protected:
+  void expect_verified(const std::string& name) {
+    const outcome done = run({"replay", "--verify", path(name)});
+    EXPECT_EQ(done.code, 0) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(" bytes both ways as recorded"));
+    EXPECT_EQ(done.out, "");
+  }
+  void expect_refused(const std::vector<std::string>& words, int code, const std::string& why) {
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, code) << done.err;
+    EXPECT_THAT(done.err, HasSubstr(why));
+  }
+  static std::vector<std::string> points_of(const std::string& file,
+                                            const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"replay", file, "-f", "csv", "--time", "mono", "--rate", "max"};
+    words.insert(words.end(), more.begin(), more.end());
+    return cli::lines_of(run(words).out);
+  }
+};
+
+TEST_F(Record, WhatIsRecordedIsPlayedToTheSamePoints) {
+  const std::string file = path("walk.mcap");
+  const outcome made = record_scans(file, 4);
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(made.out, "");
+  EXPECT_THAT(made.err, HasSubstr(" 4 scans"));
+  EXPECT_THAT(line_with(made.err, "digest"), HasSubstr("digest of all bytes "));
+  expect_verified("walk.mcap");
+  EXPECT_THAT(run({"replay", "--verify", file}).err, HasSubstr(" points as recorded"));
+  const auto played = points_of(file);
+  EXPECT_GT(played.size(), 4000U);
+  EXPECT_EQ(played, points_of(file)) << "and again";
+  EXPECT_EQ(played, cli::lines_of(run({"dump", file, "-f", "csv", "--time", "mono"}).out));
+}
+
+TEST_F(Record, ARecordingOfARecordingHasTheSameDigests) {
+  const std::string first = path("first.mcap");
+  const std::string second = path("second.mcap");
+  const outcome made = record_scans(first, 3);
+  ASSERT_EQ(made.code, 0) << made.err;
+  const outcome again = run({"record", first, second, "--no-scans"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_NE(line_with(made.err, "digest"), "");
+  EXPECT_EQ(line_with(made.err, "digest"), line_with(again.err, "digest"));
+  expect_verified("second.mcap");
+  EXPECT_EQ(points_of(first), points_of(second));
+  for (const std::string name : {"first", "second"}) {
+    ASSERT_EQ(run({"convert", path(name + ".mcap"), path(name + ".bin")}).code, 0);
+  }
+  EXPECT_EQ(cli::read_file(path("first.bin")), cli::read_file(path("second.bin")));
+}
+
+TEST_F(Record, ScansAreInItUnlessTheyAreUnwanted) {
+  ASSERT_EQ(record_scans(path("with.mcap"), 1, {"--frame-id", "roof"}).code, 0);
+  EXPECT_THAT(record_scans(path("without.mcap"), 1, {"--no-scans"}).err,
+              HasSubstr(" to it, 0 scans"));
+  EXPECT_THAT(cli::read_file(path("with.mcap")), HasSubstr("sensor_msgs/msg/LaserScan"));
+  EXPECT_THAT(cli::read_file(path("with.mcap")), HasSubstr("roof"));
+  EXPECT_TRUE(fs::exists(path("without.mcap")));
+}
+
+TEST_F(Record, RawBytesInAFileAreCounted) {
+  cli::write_repeated(path("raw.bin"), cli::zero(0) + cli::turn(), 100'000);
+  const outcome made = run({"record", path("raw.bin"), path("raw.mcap"), "--rate", "1000"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  expect_verified("raw.mcap");
+  const auto rows = points_of(path("raw.mcap"));
+  ASSERT_GT(rows.size(), 1000U);
+  const double took_s =
+      static_cast<double>(cli::number_in(rows.back(), 3) - cli::number_in(rows[1], 3)) / 1e9;
+  EXPECT_NEAR(took_s, static_cast<double>(rows.size()) / 1000.0, 1.0);
+  ASSERT_EQ(run({"convert", path("raw.mcap"), path("again.bin")}).code, 0);
+  EXPECT_EQ(cli::read_file(path("again.bin")), cli::read_file(path("raw.bin")));
+}
+
+TEST_F(Record, APipeCanBeRecorded) {
+  std::string bytes;
+  for (int i = 0; i < 20; ++i) bytes += cli::zero(0) + cli::turn();
+  const outcome made = run({"record", "-", path("pipe.mcap")}, bytes);
+  ASSERT_EQ(made.code, 0) << made.err;
+  expect_verified("pipe.mcap");
+  ASSERT_EQ(run({"convert", path("pipe.mcap"), path("pipe.bin")}).code, 0);
+  EXPECT_EQ(cli::read_file(path("pipe.bin")), bytes);
+}
+
+TEST_F(Record, ASignalEndsTheFileProperly) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    program started({"record", "sim:", "--force", path("walk.mcap")});
+    for (int i = 0; i < 2000 && !fs::exists(path("walk.mcap")); ++i) {
+      std::this_thread::sleep_for(10ms);
+    }
+    std::this_thread::sleep_for(2s);
+    started.send(signal);
+    const outcome done = started.wait();
+    EXPECT_EQ(done.code, 128 + signal);
+    EXPECT_THAT(done.err, HasSubstr("digest of all bytes"));
+    expect_verified("walk.mcap");
+  }
+}
+
+// The last point's time in a file whose program was killed, before that moment, in seconds.
+TEST_F(Record, KilledItHasLostASecondAtMost) {
+  double lost_s = 1e9;
+  for (int attempt = 0; attempt < 3 && lost_s > 1.0; ++attempt) {
+    program started({"record", "sim:", "--force", path("walk.mcap")});
+    std::this_thread::sleep_for(4s);
+    const std::chrono::nanoseconds killed = steady::now().time_since_epoch();
+    started.send(SIGKILL);
+    EXPECT_EQ(started.wait().signal, SIGKILL);
+    const auto rows = points_of(path("walk.mcap"));
+    if (rows.size() < 2) continue;
+    lost_s = static_cast<double>(killed.count() - cli::number_in(rows.back(), 3)) / 1e9;
+  }
+  EXPECT_LE(lost_s, 1.0);
+  expect_refused({"replay", "--verify", path("walk.mcap")}, 10, "was cut off");
+}
+
+TEST_F(Record, FilesAreRotated) {
+  const outcome made = run({"record", "sim:", path("day.mcap"), "--rotate-time", "1s", "-d", "4s"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const std::vector<std::string> names = cli::lines_of(listing());
+  ASSERT_GE(names.size(), 3U);
+  EXPECT_EQ(names[0], "day-0001.mcap");
+  EXPECT_EQ(names.back(), "day.mcap");
+  for (const std::string& name : names) expect_verified(name);
+  EXPECT_GT(points_of(path("day-0001.mcap")).size(), 1000U) << "it can be played by itself";
+  std::string bytes;
+  for (const std::string& name : names) {
+    if (name == "day.mcap") continue;
+    ASSERT_EQ(run({"convert", path(name), path("part.bin")}).code, 0);
+    bytes += cli::read_file(path("part.bin"));
+  }
+  EXPECT_GT(bytes.size(), 20'000U);
+}
+
+TEST_F(Record, AFileThatIsThereIsLeftAlone) {
+  cli::write_file(path("walk.mcap"), "dear");
+  expect_refused({"record", "sim:", path("walk.mcap")}, 10, "it is there already");
+  EXPECT_EQ(cli::read_file(path("walk.mcap")), "dear");
+  EXPECT_EQ(record_scans(path("walk.mcap"), 1, {"--force"}).code, 0);
+  expect_verified("walk.mcap");
+}
+
+TEST_F(Record, WithoutASourceThereIsNoFile) {
+  EXPECT_EQ(run({"record", path("none"), path("walk.mcap")}).code, 3);
+  EXPECT_NE(run({"record", "tcp:localhost:1", path("walk.mcap")}).code, 0);
+  EXPECT_EQ(listing(), "");
+}
+
+TEST_F(Record, WhatMakesNoSenseIsRefused) {
+  expect_refused({"record", "sim:"}, 2, "say where to record to");
+  expect_refused({"record", "sim:", "-o", "-"}, 2, "not to standard output");
+  expect_refused({"record", "sim:", path("a.mcap"), "-o", path("b.mcap")}, 2,
+                 "one argument too many");
+  expect_refused({"record", "sim:", path("a.mcap"), "--rotate-size", "1x"}, 2, "is no size");
+  expect_refused({"record", "sim:", path("a.mcap"), "--rotate-size", "10k"}, 2, "less than 1M");
+  expect_refused({"record", "sim:", path("a.mcap"), "--rotate-time", "10ms"}, 2, "less than 1s");
+  expect_refused({"record", "sim:", path("no/a.mcap")}, 10, "Make its directory first");
+  EXPECT_EQ(listing(), "");
+}
+
+TEST_F(Record, ADiskThatIsFullEndsItAndLeavesWhatWasWritten) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit{200'000, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  const outcome done = run({"record", "sim:", path("walk.mcap"), "-d", "20s"});
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(done.code, 10) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("File too large. Make room"));
+  EXPECT_GT(points_of(path("walk.mcap")).size(), 1000U);
+}
+
+class Replay : public Record {};
+
+TEST_F(Replay, TakesAsLongAsItTook) {
+  ASSERT_EQ(record_scans(path("walk.mcap"), 7).code, 0);
+  const auto seconds = [&](const std::string& rate) {
+    const auto begin = steady::now();
+    EXPECT_EQ(run({"replay", path("walk.mcap"), "--rate", rate, "--scans"}).code, 0);
+    return std::chrono::duration<double>(steady::now() - begin).count();
+  };
+  EXPECT_GE(seconds("1"), 0.9);
+  EXPECT_GE(seconds("0.5"), 1.8);
+}
+
+TEST_F(Replay, GoesOnForEverWithLoop) {
+  ASSERT_EQ(record_scans(path("walk.mcap"), 2).code, 0);
+  const outcome done = run(
+      {"replay", path("walk.mcap"), "--rate", "max", "--loop", "--scans", "-f", "csv", "-n", "20"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(cli::lines_of(done.out).size(), 21U);
+}
+
+TEST_F(Replay, APartOfIt) {
+  ASSERT_EQ(record_scans(path("walk.mcap"), 8).code, 0);
+  const auto all = points_of(path("walk.mcap"));
+  const auto part = points_of(path("walk.mcap"), {"--from", "600ms", "--to", "1200ms"});
+  ASSERT_GT(part.size(), 100U);
+  EXPECT_LT(part.size(), all.size() * 3 / 4);
+  EXPECT_GE(cli::number_in(part[1], 3), cli::number_in(all[1], 3));
+  EXPECT_LE(cli::number_in(part.back(), 3) - cli::number_in(part[1], 3), 700'000'000);
+}
+
+TEST_F(Replay, WhatWasChangedIsFound) {
+  ASSERT_EQ(record_scans(path("walk.mcap"), 3).code, 0);
+  const std::string good = cli::read_file(path("walk.mcap"));
+  ASSERT_EQ(run({"convert", path("walk.mcap"), path("walk.bin")}).code, 0);
+  const std::size_t place = cli::place_of_payload(good, cli::read_file(path("walk.bin")));
+  cli::write_file(path("bad.mcap"), cli::damaged(good, place));
+  expect_refused({"replay", "--verify", path("bad.mcap")}, 10, "is not whole");
+  cli::write_file(path("cut.mcap"), good.substr(0, good.size() * 2 / 3));
+  expect_refused({"replay", "--verify", path("cut.mcap")}, 10, "was cut off");
+  EXPECT_GT(points_of(path("cut.mcap")).size(), 500U) << "what is whole is played";
+}
+
+TEST_F(Replay, WhatIsNoRecordingIsRefused) {
+  cli::write_file(path("empty"), "");
+  cli::write_file(path("text.mcap"), "dear\n");
+  const std::string magic = "\x89MCAP0\r\n";
+  cli::write_file(path("magic.mcap"), magic);
+  // A file of somebody else: a header, no lidar, and the end of the data.
+  const std::string header = std::string("\x01\x08\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0", 17);
+  const std::string end = std::string("\x0F\x04\0\0\0\0\0\0\0\0\0\0\0", 13);
+  const std::string footer = std::string("\x02\x14", 2) + std::string(27, '\0');
+  cli::write_file(path("foreign.mcap"), magic + header + end + footer + magic);
+  for (const std::string name : {"empty", "text.mcap", "magic.mcap", "foreign.mcap", "none"}) {
+    const outcome done = run({"replay", path(name)});
+    EXPECT_EQ(done.code, 10) << name << ": " << done.err;
+    EXPECT_THAT(done.err, StartsWith("g4-dump: ")) << name;
+    EXPECT_EQ(run({"replay", "--verify", path(name)}).code, 10) << name;
+  }
+  expect_refused({"replay", path("text.mcap"), "--verify", "--loop"}, 2, "--loop");
+  expect_refused({"replay", path("text.mcap"), "--rate", "fast"}, 2, "fast");
+}
+
+}  // namespace
