@@ -40,7 +40,7 @@ option_row json_row(std::shared_ptr<bool> flag) {
   return {.names = "--json",
           .value = "",
           .help = "JSON, an object a line",
-          .take = [flag = std::move(flag)](const std::string&) { *flag = true; }};
+          .take = [set = std::move(flag)](const std::string&) { *set = true; }};
 }
 
 void write_line(output& out, const nlohmann::ordered_json& value) {
