@@ -294,8 +294,9 @@ void copy_recording(const convert_options& options, output& out) {
   while (interrupt() == 0 && !out.is_closed()) {
     const auto got = reader->next();
     if (!got) throw failure(got.error());
-    if (!got->has_value()) break;
-    const g4lidar::recorded_item& item = **got;
+    const std::optional<g4lidar::recorded_item>& next = *got;
+    if (!next) break;
+    const g4lidar::recorded_item& item = *next;
     if (item.what != g4lidar::recorded_item::kind::from_device) continue;
     write_bytes(item.data, out);
     count += item.data.size();

@@ -137,6 +137,7 @@ class live_loop {
 void tell_events(g4lidar::lidar& lidar) {
   while (const auto event = lidar.next_event()) {
     const bool is_loss = event->what == g4lidar::lidar_event::kind::lost;
+    if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // a file is over
     tell(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what), is_loss ? ", " : "",
                      is_loss ? name_of(event->reason) : ""));
   }

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -118,8 +119,9 @@ class recorder {
       if (!writer_) create();
       return g4lidar::recorded(std::move(line), *writer_);
     };
-    source_.emplace(job_.common, how);
-    points_.emplace(source_->lidar().points().make_reader());
+    source_ = std::make_unique<opened_source>(job_.common, how);
+    points_ =
+        std::make_unique<g4lidar::lidar_ring::reader>(source_->lidar().points().make_reader());
     has_run_ = true;
     describe();
   }
@@ -127,7 +129,7 @@ class recorder {
   void create() {
     auto made = g4lidar::recording_writer::create(job_.path, job_.made);
     if (!made) throw file_failure(made.error(), title_of(job_));
-    writer_.emplace(std::move(*made));
+    writer_ = std::make_unique<g4lidar::recording_writer>(std::move(*made));
   }
 
   /// What there is to know of the device without changing anything.
@@ -138,7 +140,10 @@ class recorder {
     const source_kind kind = kind_of(job_.common.source);
     if (kind == source_kind::recording) {
       const auto reader = g4lidar::recording_reader::open(path_of(job_.common.source));
-      if (reader && reader->device()) known = *reader->device();
+      if (reader) {
+        const std::optional<g4lidar::recorded_device>& device = reader->device();
+        if (device) known = *device;
+      }
     } else if (kind != source_kind::bytes) {
       known.ranging = asked<g4lidar::ranging_frequency>(g4lidar::requests::get_ranging());
       known.frequency = asked<g4lidar::scan_frequency>(g4lidar::requests::get_scan_frequency());
@@ -220,9 +225,10 @@ class recorder {
   const recording_job& job_;
   counts_line line_;
   service_watch service_;
-  std::optional<g4lidar::recording_writer> writer_;  // outlives the source, which is recorded by it
-  std::optional<opened_source> source_;
-  std::optional<g4lidar::lidar_ring::reader> points_;
+  std::unique_ptr<g4lidar::recording_writer>
+      writer_;  // outlives the source, which is recorded by it
+  std::unique_ptr<opened_source> source_;
+  std::unique_ptr<g4lidar::lidar_ring::reader> points_;
   std::array<g4lidar::point, 512> memory_{};
   std::optional<g4lidar::error> file_error_;
   recorded_result result_;

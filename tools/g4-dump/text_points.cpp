@@ -16,8 +16,9 @@ namespace {
 /// The whole of `text` as a number.
 template <class Value>
 bool read_number(std::string_view text, Value& value) {
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(text.data(), end, value);
+  const char* const begin = text.data();
+  const char* const end = begin + text.size();
+  const auto [at, error] = std::from_chars(begin, end, value);
   return error == std::errc() && at == end;
 }
 

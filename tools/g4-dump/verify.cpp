@@ -47,8 +47,9 @@ bytes_found read_bytes(const std::string& path) {
   while (interrupt() == 0) {
     const auto got = reader->next();
     if (!got) throw failure(got.error());
-    if (!got->has_value()) break;
-    const g4lidar::recorded_item& item = **got;
+    const std::optional<g4lidar::recorded_item>& next = *got;
+    if (!next) break;
+    const g4lidar::recorded_item& item = *next;
     if (item.what == g4lidar::recorded_item::kind::note) continue;
     const bool is_sent = item.what == g4lidar::recorded_item::kind::to_device;
     digest.add(is_sent ? g4lidar::direction::to_device : g4lidar::direction::from_device,
