@@ -45,6 +45,9 @@ struct recording_options {
   /// nothing to lose, but see flush().
   std::chrono::milliseconds chunk_time{500};
 
+  /// Where the LaserScan messages are, a whole name as ROS has them: `/front/scan`. At most 255 bytes,
+  /// and not one of the recording's own.
+  std::string topic = "/scan";
   std::string frame_id = "laser";  ///< Of the LaserScan messages.
   std::uint32_t scan_bins = 720;   ///< Ranges in each of them, 1 to 65536.
 };

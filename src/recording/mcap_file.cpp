@@ -35,12 +35,12 @@ void put_schemas(record_text& out) {
   }
 }
 
-void put_channels(record_text& out) {
+void put_channels(record_text& out, std::string_view scan_topic) {
   for (const topic_words& channel : all_topics()) {
     const std::size_t record = out.begin(opcode::channel);
     out.put(static_cast<std::uint16_t>(channel.id));
     out.put(channel.schema);
-    out.put(channel.name);
+    out.put(channel.id == topic::scan ? scan_topic : channel.name);
     out.put("cdr");
     put_map(out, {{"offered_qos_profiles", ""}});
     out.end(record);
@@ -60,7 +60,9 @@ bool open_chunk::has_room_for(std::size_t size) const noexcept {
   return count_ + 2 < most_messages && text_.size() + size <= room;
 }
 
-void open_chunk::put_channels() { mcap::put_channels(text_); }
+void open_chunk::put_channels(std::string_view scan_topic) {
+  mcap::put_channels(text_, scan_topic);
+}
 
 void open_chunk::begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns) {
   const auto time_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(wall_ns, 0));
@@ -87,12 +89,13 @@ void open_chunk::clear() noexcept {
 
 // ---- mcap_file ---------------------------------------------------------------------------------
 
-result<mcap_file> mcap_file::create(const std::string& path, bool overwrite) {
+result<mcap_file> mcap_file::create(const std::string& path, std::string scan_topic,
+                                    bool overwrite) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | (overwrite ? O_TRUNC : O_EXCL);
   owned_fd fd(real_system_calls(),
               uninterrupted([&] { return ::open(path.c_str(), flags, 0666); }));
   if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
-  mcap_file made(std::move(fd), path);
+  mcap_file made(std::move(fd), path, std::move(scan_topic));
   record_text& text = made.text_;
   text.reserve(text_room);
   text.put(bytes(magic));
@@ -101,7 +104,7 @@ result<mcap_file> mcap_file::create(const std::string& path, bool overwrite) {
   text.put(std::string_view(library_name()));
   text.end(header);
   put_schemas(text);
-  put_channels(text);
+  put_channels(text, made.scan_topic_);
   if (auto written = made.write(text.all()); !written) return tl::unexpected(written.error());
   return made;
 }
@@ -279,7 +282,7 @@ result<void> mcap_file::summarise() {
   begin(opcode::schema);
   put_schemas(text_);
   begin(opcode::channel);
-  put_channels(text_);
+  put_channels(text_, scan_topic_);
   begin(opcode::statistics);
   put_statistics();
   begin(opcode::chunk_index);

@@ -28,8 +28,8 @@ class open_chunk {
   /// Whether a message of so many bytes still fits.
   [[nodiscard]] bool has_room_for(std::size_t size) const noexcept;
 
-  /// What comes before the messages.
-  void put_channels();
+  /// What comes before the messages. Scans are on `scan_topic`.
+  void put_channels(std::string_view scan_topic);
   /// Begins a message; its data goes into text(), and then end_message().
   void begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns);
   void end_message();
@@ -67,8 +67,9 @@ class open_chunk {
 /// is taken back.
 class mcap_file {
  public:
-  /// Creates it, and writes what stands before the chunks.
-  [[nodiscard]] static result<mcap_file> create(const std::string& path, bool overwrite);
+  /// Creates it, and writes what stands before the chunks. Scans are on `scan_topic`.
+  [[nodiscard]] static result<mcap_file> create(const std::string& path, std::string scan_topic,
+                                                bool overwrite);
   mcap_file(mcap_file&&) noexcept = default;
 
   /// `packed` where the records were packed with zstd, else empty.
@@ -94,7 +95,8 @@ class mcap_file {
     std::string name;
   };
 
-  mcap_file(owned_fd fd, std::string path) noexcept : fd_(std::move(fd)), path_(std::move(path)) {}
+  mcap_file(owned_fd fd, std::string path, std::string scan_topic) noexcept
+      : fd_(std::move(fd)), path_(std::move(path)), scan_topic_(std::move(scan_topic)) {}
   [[nodiscard]] result<void> write(bytes data);
   [[nodiscard]] result<void> write_all(bytes data) noexcept;
   [[nodiscard]] result<void> end_data();
@@ -104,6 +106,7 @@ class mcap_file {
 
   owned_fd fd_;
   std::string path_;
+  std::string scan_topic_;
   std::uint64_t offset_ = 0;
   crc32 crc_;  // of all that was written, and later of the summary
   record_text text_;

@@ -17,7 +17,7 @@ constexpr std::size_t largest_piece = std::size_t{64} << 10U;
 /// Beside the data, in a message of any kind.
 constexpr std::size_t message_room = 1024;
 constexpr std::size_t largest_grid = 65536;
-constexpr std::size_t longest_frame_id = 255;
+constexpr std::size_t longest_name = 255;
 constexpr std::uint64_t least_rotate_bytes = std::uint64_t{1} << 20U;
 
 std::int64_t ns_of(std::chrono::nanoseconds time) noexcept { return time.count(); }
@@ -30,6 +30,31 @@ std::int64_t wall_ahead_now() noexcept {
   const std::int64_t wall = ns_of(system_clock::now().time_since_epoch());
   const std::int64_t after = ns_of(steady_clock::now().time_since_epoch());
   return wall - (before + (after - before) / 2);
+}
+
+/// A whole name as ROS has them: parts of letters, digits and single underscores, none of which begins
+/// with a digit.
+bool is_topic(std::string_view name) noexcept {
+  const auto is_digit = [](char of) { return of >= '0' && of <= '9'; };
+  const auto is_letter = [](char of) {
+    return (of >= 'a' && of <= 'z') || (of >= 'A' && of <= 'Z');
+  };
+  if (name.empty() || name.size() > longest_name || name.front() != '/') return false;
+  char before = 0;
+  for (const char each : name) {
+    if (!is_digit(each) && !is_letter(each) && each != '_' && each != '/') return false;
+    if (before == '/' && (each == '/' || is_digit(each))) return false;
+    if (before == '_' && each == '_') return false;
+    before = each;
+  }
+  return before != '/';
+}
+
+/// Which a reader takes for something else.
+bool is_our_own(std::string_view name) noexcept {
+  return std::ranges::any_of(mcap::all_topics(), [&](const mcap::topic_words& known) {
+    return known.id != mcap::topic::scan && known.name == name;
+  });
 }
 
 std::optional<error> problem_with(const recording_options& options) noexcept {
@@ -48,7 +73,9 @@ std::optional<error> problem_with(const recording_options& options) noexcept {
   }
   if (options.scan_bins == 0 || options.scan_bins > largest_grid)
     return bad("scan_bins: 1 to 65536");
-  if (options.frame_id.size() > longest_frame_id) return bad("frame_id: at most 255 bytes");
+  if (!is_topic(options.topic)) return bad("topic: a whole name as ROS has them, like /front/scan");
+  if (is_our_own(options.topic)) return bad("topic: one of the recording's own");
+  if (options.frame_id.size() > longest_name) return bad("frame_id: at most 255 bytes");
   return std::nullopt;
 }
 
@@ -205,7 +232,7 @@ void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
   if (!file_->has_chunks()) file_ns_ = time_ns;
   chunk_ns_ = chunk_last_ns_ = time_ns;
   chunk_bytes_ = 0;
-  chunk_.put_channels();
+  chunk_.put_channels(options_.topic);
   if (!line_.is_known) return;
   chunk_.begin_message(topic::notes, sequences_[mcap::open_chunk::index_of(topic::notes)]++,
                        time_ns + ahead_ns_);
@@ -256,7 +283,7 @@ void recording_writer::file_writer::lose_chunk() noexcept {
 
 /// The new file is made first: where that fails, the old one goes on.
 result<void> recording_writer::file_writer::rotate() {
-  auto next = mcap::mcap_file::create(next_path(), options_.overwrite);
+  auto next = mcap::mcap_file::create(next_path(), options_.topic, options_.overwrite);
   if (!next) return tl::unexpected(next.error());
   auto ended = end_file(false);
   ++counts_.files;
@@ -335,7 +362,7 @@ recording_writer::~recording_writer() {
 result<recording_writer> recording_writer::create(std::string_view path,
                                                   const recording_options& options) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
-  auto first = mcap::mcap_file::create(std::string(path), options.overwrite);
+  auto first = mcap::mcap_file::create(std::string(path), options.topic, options.overwrite);
   if (!first) return tl::unexpected(first.error());
   return recording_writer(std::make_unique<file_writer>(std::move(*first), path, options));
 }

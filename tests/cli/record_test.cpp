@@ -83,11 +83,13 @@ TEST_F(Record, ARecordingOfARecordingHasTheSameDigests) {
 }
 
 TEST_F(Record, ScansAreInItUnlessTheyAreUnwanted) {
-  ASSERT_EQ(record_scans(path("with.mcap"), 1, {"--frame-id", "roof"}).code, 0);
+  const std::vector<std::string> names{"--frame-id", "roof", "--topic", "/up/there"};
+  ASSERT_EQ(record_scans(path("with.mcap"), 1, names).code, 0);
   EXPECT_THAT(record_scans(path("without.mcap"), 1, {"--no-scans"}).err,
               HasSubstr(" to it, 0 scans"));
   EXPECT_THAT(cli::read_file(path("with.mcap")), HasSubstr("sensor_msgs/msg/LaserScan"));
   EXPECT_THAT(cli::read_file(path("with.mcap")), HasSubstr("roof"));
+  EXPECT_THAT(cli::read_file(path("with.mcap")), HasSubstr("/up/there"));
   EXPECT_TRUE(fs::exists(path("without.mcap")));
 }
 
@@ -187,6 +189,7 @@ TEST_F(Record, WhatMakesNoSenseIsRefused) {
   expect_refused({"record", "sim:", path("a.mcap"), "--rotate-size", "1x"}, 2, "is no size");
   expect_refused({"record", "sim:", path("a.mcap"), "--rotate-size", "10k"}, 2, "less than 1M");
   expect_refused({"record", "sim:", path("a.mcap"), "--rotate-time", "10ms"}, 2, "less than 1s");
+  expect_refused({"record", "sim:", path("a.mcap"), "--topic", "scan"}, 2, "topic");
   expect_refused({"record", "sim:", path("no/a.mcap")}, 10, "Make its directory first");
   EXPECT_EQ(listing(), "");
 }

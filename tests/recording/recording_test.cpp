@@ -329,7 +329,33 @@ TEST(Recording, RefusesWhatItCannotDo) {
   EXPECT_TRUE(refused({.scan_bins = 0}));
   EXPECT_TRUE(refused({.scan_bins = 65'537}));
   EXPECT_TRUE(refused({.frame_id = std::string(256, 'x')}));
+  for (const std::string topic :
+       {"", "scan", "/", "/scan/", "/a//b", "/1st", "/a/1st", "/a__b", "/a b", "/a-b", "~/scan",
+        "/{node}", "/sc\xC3\xA4n", "/g4lidar/notes", "/g4lidar/to_device"}) {
+    EXPECT_TRUE(refused({.topic = topic})) << topic;
+  }
+  EXPECT_TRUE(refused({.topic = "/" + std::string(255, 'x')}));
   EXPECT_EQ(refused({.packed = packing::zstd}), !has_zstd());
+}
+
+TEST(Recording, ItsScansAreOnTheTopicThatIsAskedFor) {
+  for (const std::string& topic :
+       {std::string("/scan"), std::string("/front_2/_hidden/a9"), "/" + std::string(254, 'x')}) {
+    const temporary_path path;
+    {
+      recording_writer writer = made_writer(path.text(), {.topic = topic});
+      record_readings(writer, 0, 100);
+      ASSERT_TRUE(writer.close());
+    }
+    const auto file = bytes_of(path.text());
+    const std::string text(file.begin(), file.end());
+    std::string wanted{static_cast<char>(topic.size()), 0, 0, 0};  // as MCAP has texts
+    wanted += topic;
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(wanted, at)) != std::string::npos; ++at) ++found;
+    EXPECT_EQ(found, 2U + 2U) << "at the front, in each of two chunks, and in the summary";
+    EXPECT_EQ(contents_of_bytes(file).readings, numbers(0, 100));
+  }
 }
 
 TEST(Recording, NoRecordingIsRefused) {

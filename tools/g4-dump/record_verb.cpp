@@ -125,6 +125,11 @@ std::vector<option_row> scan_rows(const shared& options) {
                   .help = "Only the bytes, no LaserScan messages",
                   .take = [options](const std::string&) { options->job.scans = false; },
                   .group = group});
+  rows.push_back({.names = "--topic",
+                  .value = "NAME",
+                  .help = "Of the LaserScan messages (/scan)",
+                  .take = [options](const std::string& word) { options->job.made.topic = word; },
+                  .group = group});
   rows.push_back({.names = "--frame-id",
                   .value = "NAME",
                   .help = "Of the LaserScan messages (laser)",
