@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
+#include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "source.hpp"
 
 namespace g4_dump {
 namespace {
@@ -55,6 +58,13 @@ bool wait_for_more(const input& in, output& out, const patience& left) {
   return false;
 }
 
+[[noreturn]] void refuse_recording(const std::string& title) {
+  throw failure(exit_code::bad_file,
+                title +
+                    " is a recording, not raw bytes. Give the file's name to g4-dump dump, scan "
+                    "or packets; a recording is not read from a pipe.");
+}
+
 }  // namespace
 
 void pump(input& in, output& out, const byte_sink& sink) {
@@ -70,6 +80,7 @@ void pump(input& in, output& out, const byte_sink& sink) {
     const std::span<const std::uint8_t> got(buffer.data(), in.read(std::span(buffer).first(most)));
     if (got.empty()) return;
     left.came();
+    if (bytes == 0 && begins_as_recording(got)) refuse_recording(in.title());
     sink.take(got);
     if (bytes == 0) out.flush();
     bytes += got.size();

@@ -6,9 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -163,14 +165,31 @@ int explain(const std::string& problem, const std::string& verb) {
   return static_cast<int>(exit_code::usage);
 }
 
-/// Whether the first word is none of a verb's place: an option or a source for the verb that needs
-/// not be named. `--help` and `--version` are the program's own.
-bool leaves_out_verb(int argc, const char* const* argv) {
-  if (argc < 2) return true;
-  const std::string_view first = argv[1];
+/// How many words from `at` on are the program's own options, which may stand before the verb; 0:
+/// none.
+std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
+  const std::string& word = words[at];
+  if (word == "--color") return 2;
+  if (word == "--quiet" || word == "--verbose" || word == "--json-errors") return 1;
+  if (word.starts_with("--color=")) return 1;
+  const bool is_short = word.size() > 1 && word.front() == '-';
+  return is_short && word.find_first_not_of("qv", 1) == std::string::npos ? 1 : 0;
+}
+
+/// Whether an option or a source stands where a verb could: for the verb that needs not be named.
+/// `--help` and `--version` are the program's own. A file need not look like one.
+bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
+  std::size_t at = 0;
+  while (at < words.size() && own_words(words, at) > 0) at += own_words(words, at);
+  if (at >= words.size()) return true;
+  const std::string& first = words[at];
   if (first == "-h" || first == "--help" || first == "--version") return false;
   if (first.empty() || first.front() == '-') return true;
-  return first.find_first_of("/:.") != std::string_view::npos;
+  const auto is_it = [&first](const verb& each) { return each.name == first; };
+  if (std::any_of(verbs.begin(), verbs.end(), is_it)) return false;
+  std::error_code unimportant;
+  return first.find_first_of("/:.") != std::string::npos ||
+         std::filesystem::is_regular_file(first, unimportant);
 }
 
 std::string app_footer() {
@@ -207,7 +226,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   std::vector<std::pair<const CLI::App*, const verb*>> made;
   for (const verb& each : verbs) made.emplace_back(add(app, each), &each);
   std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given
-  if (leaves_out_verb(argc, argv)) words.insert(words.begin(), std::string(default_verb));
+  if (leaves_out_verb(words, verbs)) words.insert(words.begin(), std::string(default_verb));
   std::vector<std::string> backwards(words.rbegin(), words.rend());  // as CLI11 takes them
   const auto done = [](int code) { return [code] { return code; }; };
   try {

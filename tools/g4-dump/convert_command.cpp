@@ -222,7 +222,7 @@ void from_recording(const convert_options& options, shaped_writer& writer, outpu
   refuse_same_file(id_of_name(path), out);
   const played_result played =
       play_points(path, options.range, writer, out, [&] { return writer.is_done(); });
-  tell_counts(played.counts);
+  tell_counts(played.counts, writer.takes_scans() ? reading::scans : reading::points);
   tell(words_about(played.damage));
   if (played.counts.stream.points == 0 && interrupt() == 0 && !out.is_closed()) {
     throw failure(exit_code::bad_file, in_quotes(path) + " holds no points" +
@@ -372,7 +372,8 @@ int to_recording(const convert_options& options) {
       refuse_without_packets(options, result);
     std::filesystem::rename(job.path, path, wrong);
     if (!wrong) {
-      tell_counts(result.lidar);
+      tell_counts(result.lidar, reading::points);
+      tell(words_about(result.damage));
       tell_recorded(result, path);
     }
   } catch (...) {

@@ -95,6 +95,7 @@ class dumping {
   int dump_bytes();
   int dump_lidar();
   void run_lidar(opened_source& source, output& out);
+  void tell_lidar(opened_source& source) const;
   void tell_pieces() const;
   static int end() { return interrupt() != 0 ? 128 + interrupt() : 0; }
 
@@ -140,17 +141,17 @@ int dumping::dump_lidar() {
   const bool has_end = kind_ == source_kind::recording || options_.pcd;
   output out(output_name(), when_it_appears(has_end));
   opening how = options_.source;
-  how.how.partial_scans = options_.partial;
+  how.how.partial_scans = writer_->takes_scans();  // the writer leaves them out, and counts them
   opened_source source(common_, how);
   try {
     run_lidar(source, out);
   } catch (const failure&) {  // what came before it is good
     out.commit();
-    tell_counts(source.lidar());
+    tell_lidar(source);
     throw;
   }
   out.commit();
-  tell_counts(source.lidar());
+  tell_lidar(source);
   return end();
 }
 
@@ -176,10 +177,17 @@ void dumping::run_lidar(opened_source& source, output& out) {
   run_live(source.lidar(), ending, sink, out);
 }
 
+void dumping::tell_lidar(opened_source& source) const {
+  tell_counts(source.lidar(), writer_->takes_scans() ? reading::scans : reading::points);
+  tell(words_about(source.damage()));
+  tell_pieces();
+}
+
 void dumping::tell_pieces() const {
-  if (writer_->pieces_left_out() == 0) return;
-  tell(fmt::format("{} pieces of revolutions left out; --partial writes them, too\n",
-                   writer_->pieces_left_out()));
+  const std::uint64_t count = writer_->pieces_left_out();
+  if (count == 0) return;
+  tell(fmt::format("{} piece{} of revolutions left out; --partial writes {}, too\n", count,
+                   count == 1 ? "" : "s", count == 1 ? "it" : "them"));
 }
 
 }  // namespace

@@ -151,15 +151,18 @@ void run_live(g4lidar::lidar& lidar, const common_options& options, const live_s
   tell_events(lidar);
 }
 
-void tell_counts(const g4lidar::lidar& lidar) { tell_counts(lidar.counts()); }
+void tell_counts(const g4lidar::lidar& lidar, reading what) { tell_counts(lidar.counts(), what); }
 
-void tell_counts(const g4lidar::lidar_counts& counts) {
-  tell(fmt::format(
-      "{} bytes: {} packets ({} suspect) with {} points in {} scans and {} pieces\n"
-      "{} bytes skipped, {} samples lost, {} points and {} scans missed, {} reconnects\n",
-      counts.bytes, counts.stream.packets, counts.stream.suspect, counts.stream.points,
-      counts.scans, counts.partial_scans, counts.stream.skipped_bytes(), counts.samples_lost,
-      counts.points_missed, counts.scans_missed, counts.reconnects));
+void tell_counts(const g4lidar::lidar_counts& counts, reading what) {
+  // Nobody wanted what was not read: scans beside points are not missed, nor points beside scans.
+  const bool are_points = what == reading::points;
+  tell(
+      fmt::format("{} bytes: {} packets ({} suspect) with {} points in {} scans and {} pieces\n"
+                  "{} bytes skipped, {} samples lost, {} {} missed, {} reconnects\n",
+                  counts.bytes, counts.stream.packets, counts.stream.suspect, counts.stream.points,
+                  counts.scans, counts.partial_scans, counts.stream.skipped_bytes(),
+                  counts.samples_lost, are_points ? counts.points_missed : counts.scans_missed,
+                  are_points ? "points" : "scans", counts.reconnects));
 }
 
 }  // namespace g4_dump

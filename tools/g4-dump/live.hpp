@@ -36,8 +36,11 @@ void run_live(g4lidar::lidar& lidar, const common_options& options, const live_s
 /// Tells what has happened by itself since it was asked last.
 void tell_events(g4lidar::lidar& lidar);
 
+/// What a command has read: of that it may have missed some.
+enum class reading : unsigned char { points, scans };
+
 /// The counts at the end, as tcpdump tells them.
-void tell_counts(const g4lidar::lidar& lidar);
-void tell_counts(const g4lidar::lidar_counts& counts);
+void tell_counts(const g4lidar::lidar& lidar, reading what);
+void tell_counts(const g4lidar::lidar_counts& counts, reading what);
 
 }  // namespace g4_dump

@@ -17,6 +17,7 @@
 #include "live.hpp"
 #include "manners.hpp"
 #include "output.hpp"
+#include "played_points.hpp"
 #include "protocol_log.hpp"
 #include "shaped_writer.hpp"
 #include "source.hpp"
@@ -113,6 +114,7 @@ int list_recording(const packets_options& options) {
   if (log && !log->is_done()) log->finish();
   out.commit();
   if (log) tell_log_counts(*log);
+  tell(words_about(reader->damage()));
   return end();
 }
 

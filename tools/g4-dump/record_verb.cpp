@@ -10,6 +10,7 @@
 #include "interrupt.hpp"
 #include "live.hpp"
 #include "manners.hpp"
+#include "played_points.hpp"
 #include "recorder.hpp"
 #include "values.hpp"
 #include "verbs.hpp"
@@ -62,7 +63,8 @@ int run(record_options& options) {
   options.job.common = *options.common;
   options.job.path = options.out;
   const recorded_result result = record(options.job);
-  tell_counts(result.lidar);
+  tell_counts(result.lidar, reading::points);
+  tell(words_about(result.damage));
   tell_recorded(result, options.out);
   return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code::ok);
 }

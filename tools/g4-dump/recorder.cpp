@@ -205,6 +205,7 @@ class recorder {
     service_.stopping();
     if (!writer_) return;
     if (source_) {
+      result_.damage = source_->damage();
       static_cast<void>(source_->lidar().close());
       if (points_) take_points();
       result_.lidar = source_->lidar().counts();

@@ -27,6 +27,7 @@ struct recorded_result {
   g4lidar::lidar_counts lidar;
   g4lidar::recording_counts file;
   g4lidar::recorded_digest digest;
+  g4lidar::recording_damage damage;  ///< Of the source, where that is a recording.
 };
 
 /// Records until one of the options' ends, a signal, or the end of the source. Whatever happens, the

@@ -35,15 +35,15 @@ constexpr std::string_view sim_prefix = "sim:";
 constexpr std::string_view file_prefix = "file:";
 
 /// The first bytes of every MCAP file.
-constexpr std::array<unsigned char, 8> mcap_magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+constexpr std::array<std::uint8_t, 8> mcap_magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 
-bool begins_as_recording(const std::string& path) {
+bool file_begins_as_recording(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
   if (fd < 0) return false;
-  std::array<unsigned char, mcap_magic.size()> begin{};
+  std::array<std::uint8_t, mcap_magic.size()> begin{};
   const ssize_t count = ::read(fd, begin.data(), begin.size());
   ::close(fd);
-  return count == static_cast<ssize_t>(begin.size()) && begin == mcap_magic;
+  return count > 0 && g4_dump::begins_as_recording({begin.data(), static_cast<std::size_t>(count)});
 }
 
 /// "a=b&c=d" in pieces, %41 read as A.
@@ -133,6 +133,22 @@ any_line line_for(source_kind kind, const g4lidar::lidar_options& how, const ope
   }
 }
 
+/// A word that leads nowhere and is no port's is a file's, most likely; then it is told of as one.
+void refuse_unknown_name(const std::string& source, const g4lidar::error& why) {
+  const std::string_view name = source;
+  if (why.what() != g4lidar::problem::no_port || name.empty() || name.starts_with("/dev/") ||
+      name.starts_with("serial:") || name.starts_with("usb:")) {
+    return;
+  }
+  constexpr std::array<std::string_view, 3> files{".mcap", ".bin", ".raw"};
+  const bool is_file =
+      std::any_of(files.begin(), files.end(), [name](auto end) { return name.ends_with(end); });
+  throw failure(is_file ? exit_code::bad_file : exit_code::no_device,
+                fmt::format("there is no {} {}. Check the name; g4-dump list shows the ports that "
+                            "there are.",
+                            is_file ? "file" : "port and no file", in_quotes(source)));
+}
+
 }  // namespace
 
 /// A device on a pseudo-terminal, served by a thread of its own, in a directory of its own.
@@ -172,6 +188,11 @@ simulated_port serve_simulated(const std::string& source) {
   return {served->path(), served};
 }
 
+bool begins_as_recording(std::span<const std::uint8_t> bytes) noexcept {
+  return bytes.size() >= mcap_magic.size() &&
+         std::equal(mcap_magic.begin(), mcap_magic.end(), bytes.begin());
+}
+
 source_kind kind_of(const std::string& source) {
   const std::string_view name = source;
   if (name == "-") return source_kind::bytes;
@@ -182,7 +203,7 @@ source_kind kind_of(const std::string& source) {
   if (path.empty() || ::stat(path.c_str(), &status) != 0 || S_ISCHR(status.st_mode)) {
     return name.starts_with(file_prefix) ? source_kind::bytes : source_kind::device;
   }
-  if (S_ISREG(status.st_mode) && begins_as_recording(path)) return source_kind::recording;
+  if (S_ISREG(status.st_mode) && file_begins_as_recording(path)) return source_kind::recording;
   return source_kind::bytes;
 }
 
@@ -214,6 +235,7 @@ void opened_source::open(const common_options& options, const opening& wish) {
   }
   while (true) {
     auto line = line_for(kind, how, wish);
+    if (line) played_ = g4lidar::replay::reader_of(**line);
     if (line && wish.tap) line = wish.tap(std::move(*line));
     auto opened = line ? g4lidar::lidar::open(std::move(*line), how) : tl::unexpected(line.error());
     if (opened) {
@@ -222,6 +244,7 @@ void opened_source::open(const common_options& options, const opening& wish) {
       return;
     }
     if (options.on_loss != loss_rule::wait || !may_still_come(opened.error())) {
+      refuse_unknown_name(options.source, opened.error());
       throw failure(opened.error());
     }
     tell_more(opened.error().message() + "\n");

@@ -6,11 +6,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "common_options.hpp"
 #include "g4lidar/connector.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/recording_reader.hpp"
 #include "g4lidar/replay.hpp"
 
 namespace g4_dump {
@@ -24,6 +26,8 @@ enum class source_kind : unsigned char {
 
 /// By its form, and what lies there. A name that is none of a file is a device's.
 [[nodiscard]] source_kind kind_of(const std::string& source);
+/// Whether these are the first bytes of a recording.
+[[nodiscard]] bool begins_as_recording(std::span<const std::uint8_t> bytes) noexcept;
 /// The path of a source that is a file, without "file:".
 [[nodiscard]] std::string path_of(const std::string& source);
 
@@ -68,12 +72,18 @@ class opened_source {
     return *lidar_;  // NOLINT(bugprone-unchecked-optional-access): made by the constructor
   }
 
+  /// What is wrong with the recording that is played, as far as it was read; nothing of all else.
+  [[nodiscard]] g4lidar::recording_damage damage() const {
+    return played_ == nullptr ? g4lidar::recording_damage{} : played_->damage();
+  }
+
  private:
   friend simulated_port serve_simulated(const std::string& source);
   class simulation;
   void open(const common_options& options, const opening& wish);
 
-  std::unique_ptr<simulation> simulation_;  // outlives the lidar
+  std::unique_ptr<simulation> simulation_;             // outlives the lidar
+  const g4lidar::recording_reader* played_ = nullptr;  // the lidar's
   std::optional<g4lidar::lidar> lidar_;
 };
 

@@ -8,13 +8,16 @@
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "live.hpp"
+#include "manners.hpp"
 #include "output.hpp"
+#include "played_points.hpp"
 #include "source.hpp"
 #include "talk.hpp"
 #include "verbs.hpp"
@@ -96,10 +99,15 @@ std::string as_words(const report_line& line) {
   return text;
 }
 
+bool is_file(const std::string& source) {
+  const source_kind kind = kind_of(source);
+  return kind == source_kind::recording || kind == source_kind::bytes;
+}
+
 class stats_keeper {
  public:
   stats_keeper(const g4lidar::lidar& lidar, const stats_options& options, output& out)
-      : lidar_(lidar), options_(options), out_(out) {
+      : lidar_(lidar), options_(options), out_(out), is_file_(is_file(options.common->source)) {
     if (is_watch() && !*options_.json) out_.write(columns);
   }
 
@@ -116,6 +124,13 @@ class stats_keeper {
     return 1;
   }
 
+  /// A file's seconds are those in which it was recorded, not those in which it is read.
+  void came(const g4lidar::scan& scan) {
+    if (!is_file_ || scan.points.empty()) return;
+    if (!first_ns_) first_ns_ = scan.points.front().time_ns;
+    file_time_ = std::chrono::nanoseconds(scan.points.back().time_ns - *first_ns_);
+  }
+
   /// All at the end.
   void write_end() { write_one(clock::now()); }
 
@@ -125,11 +140,12 @@ class stats_keeper {
     const auto seconds = [](clock::duration time) {
       return std::chrono::duration<double>(time).count();
     };
-    const double passed = std::max(seconds(now - last_), 1e-9);
+    const clock::duration since = is_file_ ? file_time_ : clock::duration(now - begin_);
+    const double passed = seconds(since - last_since_);
     const auto a_second = [passed](std::uint64_t after, std::uint64_t before) {
-      return static_cast<double>(after - before) / passed;
+      return passed > 0.0 ? static_cast<double>(after - before) / passed : 0.0;
     };
-    const report_line line{seconds(now - begin_), counts,
+    const report_line line{seconds(since), counts,
                            a_second(counts.stream.points, before_.stream.points),
                            a_second(counts.scans, before_.scans)};
     if (*options_.json) {
@@ -138,6 +154,7 @@ class stats_keeper {
       out_.write(is_watch() ? as_row(line) : as_words(line));
     }
     last_ = now;
+    last_since_ = since;
     before_ = counts;
   }
 
@@ -146,6 +163,10 @@ class stats_keeper {
   output& out_;
   clock::time_point begin_ = clock::now();
   clock::time_point last_ = begin_;
+  bool is_file_;
+  std::optional<std::int64_t> first_ns_;
+  clock::duration file_time_{0};
+  clock::duration last_since_{0};
   g4lidar::lidar_counts before_;
   std::uint64_t lines_ = 0;
 };
@@ -159,33 +180,39 @@ common_options readable(const stats_options& options) {
     if (!how.source.starts_with("file:")) how.source.insert(0, "file:");
   }
   const bool ends = how.duration.count() > 0 || how.count > 0;
-  if (options.interval.count() == 0 && !ends) how.duration = usual_duration;
+  if (options.interval.count() == 0 && !ends && !is_file(how.source)) how.duration = usual_duration;
   return how;
 }
 
 int stats(const stats_options& options) {
   const common_options how = readable(options);
   output out(how.output);
-  opened_source source(how);
+  opening wish;
+  wish.how.partial_scans = true;  // for their times
+  opened_source source(how, wish);
   stats_keeper keeper(source.lidar(), options, out);
   live_sink sink;
   std::uint64_t lines = 0;
-  sink.scan = [&](const g4lidar::scan&) {
+  sink.scan = [&](const g4lidar::scan& scan) {
+    keeper.came(scan);
+    if (scan.is_partial() && !keeper.is_watch()) return std::uint64_t{0};
     return keeper.is_watch() ? std::exchange(lines, 0) : std::uint64_t{1};
   };
   sink.pulse = [&] { lines += keeper.write_due(); };
   run_live(source.lidar(), how, sink, out);
   if (!keeper.is_watch()) keeper.write_end();
   out.commit();
+  tell(words_about(source.damage()));
   return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code::ok);
 }
 
 constexpr const char* details =
-    R"(The lidar is started, read and stopped; what is counted is told once at the end, or with --watch a
-line each TIME until ^C (then -n counts lines, else revolutions). Counts are since the beginning;
-points_per_second and scans_per_second are of the time since the line before.
+    R"(The lidar is started, read and stopped; what is counted is told once at the end (after 5 s, or
+that of a file), or with --watch a line each TIME until ^C (then -n counts lines, else revolutions).
+Counts are since the beginning; points_per_second and scans_per_second are of the time since the
+line before.
 
-  seconds             since the start
+  seconds             since the start; of a file those in which it was recorded
   bytes, packets      that came; responses are answers to commands
   points, scans       decoded, and whole revolutions; partial_scans are pieces of some
   suspect             packets whose angles contradict each other: no points come of them
