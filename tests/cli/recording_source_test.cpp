@@ -127,6 +127,21 @@ TEST(NoSource, ANameThatLeadsNowhere) {
   EXPECT_THAT(run({"dump", "/dev/ttyNONE"}).err, HasSubstr("no serial port with a lidar"));
 }
 
+// A program that reads the object is told of it as of every other missing port.
+TEST(NoSource, IsAProblemWithAName) {
+  EXPECT_THAT(run({"dump", "nowhere/at-all", "--json-errors"}).err,
+              HasSubstr("\"problem\":\"no_port\""));
+}
+
+TEST(LostSource, WhatWasCountedIsTold) {
+  const outcome packets = run({"packets", "sim:?fault=unplug@500ms"});
+  EXPECT_EQ(packets.code, 9);
+  EXPECT_THAT(packets.err, HasSubstr(" bytes skipped: "));
+  const outcome stats = run({"stats", "sim:?fault=unplug@500ms", "--json"});
+  EXPECT_EQ(stats.code, 9);
+  EXPECT_THAT(stats.out, HasSubstr("\"reconnects\":0"));
+}
+
 // A scan all of whose revolutions are damaged writes none; that is told.
 TEST(DamagedScans, AreCountedWhereTheyAreLeftOut) {
   const outcome done = run({"scan", "sim:?fault=flip*0.2%&seed=3", "-d", "1500ms"});

@@ -135,8 +135,8 @@ TEST_F(Talk, Set_AsJson) {
 TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
   cli::twin twin(port());
   for (const char* const word :
-       {"rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=", "direction=left", "constant=1",
-        "speed=3", "rate=9k", "/dev/ttyUSB0"}) {
+       {"rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=7.55", "freq=", "direction=left",
+        "constant=1", "speed=3", "rate=9k", "/dev/ttyUSB0"}) {
     const outcome done = run({"set", port(), "rate=8k", word});
     EXPECT_EQ(done.code, 2) << word;
     EXPECT_EQ(done.out, "");

@@ -224,6 +224,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   app.get_formatter()->column_width(36);
   for (const option_row& row : manners_rows()) add(app, row);
   std::vector<std::pair<const CLI::App*, const verb*>> made;
+  made.reserve(verbs.size());
   for (const verb& each : verbs) made.emplace_back(add(app, each), &each);
   std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given
   if (leaves_out_verb(words, verbs)) words.insert(words.begin(), std::string(default_verb));

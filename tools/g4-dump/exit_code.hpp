@@ -30,8 +30,9 @@ enum class exit_code : int {
 /// Why a command gives up: whole sentences that say what is wrong and what to do.
 class failure : public std::runtime_error {
  public:
-  failure(exit_code code, const std::string& sentences)
-      : std::runtime_error(sentences), code_(code) {}
+  /// `problem`: as the library calls it, where it is one of its own.
+  failure(exit_code code, const std::string& sentences, std::string_view problem = {})
+      : std::runtime_error(sentences), code_(code), problem_(problem) {}
   /// As the library says it.
   explicit failure(const g4lidar::error& why, bool was_running = false)
       : std::runtime_error(why.message()),

@@ -161,6 +161,7 @@ int list_lidar(const packets_options& options) {
     write_heard(heard, log);
     log.finish();
     out.commit();
+    if (log.bytes_from_device() > 0) tell_log_counts(log);
     throw;
   }
   write_heard(heard, log);

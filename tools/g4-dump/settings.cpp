@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "exit_code.hpp"
+#include "file_id.hpp"
 #include "manners.hpp"
 #include "values.hpp"
 
@@ -36,7 +37,11 @@ wish made(setting which, Value value) {
 
 wish frequency_wish(const std::string& word) {
   const double hz = number_of(word, min_scan_frequency_chz / 100.0, max_scan_frequency_chz / 100.0);
-  return made(setting::freq, scan_frequency{static_cast<std::uint16_t>(std::lround(hz * 100.0))});
+  const auto tenths = static_cast<std::uint16_t>(std::lround(hz * 10.0));
+  if (std::abs(hz * 10.0 - tenths) > 1e-6) {
+    throw bad_value(in_quotes(word) + " is no whole number of tenths, such as 7.5");
+  }
+  return made(setting::freq, scan_frequency{static_cast<std::uint16_t>(tenths * 10)});
 }
 
 wish wish_of(setting which, const std::string& value) {

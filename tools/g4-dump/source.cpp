@@ -146,7 +146,8 @@ void refuse_unknown_name(const std::string& source, const g4lidar::error& why) {
   throw failure(is_file ? exit_code::bad_file : exit_code::no_device,
                 fmt::format("there is no {} {}. Check the name; g4-dump list shows the ports that "
                             "there are.",
-                            is_file ? "file" : "port and no file", in_quotes(source)));
+                            is_file ? "file" : "port and no file", in_quotes(source)),
+                name_of(why.what()));
 }
 
 }  // namespace

@@ -199,9 +199,17 @@ int stats(const stats_options& options) {
     return keeper.is_watch() ? std::exchange(lines, 0) : std::uint64_t{1};
   };
   sink.pulse = [&] { lines += keeper.write_due(); };
-  run_live(source.lidar(), how, sink, out);
-  if (!keeper.is_watch()) keeper.write_end();
-  out.commit();
+  const auto end = [&] {
+    if (!keeper.is_watch()) keeper.write_end();
+    out.commit();
+  };
+  try {
+    run_live(source.lidar(), how, sink, out);
+  } catch (const failure&) {  // what was counted until then is good
+    end();
+    throw;
+  }
+  end();
   tell(words_about(source.damage()));
   return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code::ok);
 }
