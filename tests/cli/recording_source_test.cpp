@@ -149,4 +149,29 @@ TEST(DamagedScans, AreCountedWhereTheyAreLeftOut) {
   EXPECT_THAT(done.err, HasSubstr(" of revolutions left out; --partial writes "));
 }
 
+TEST_F(RecordingSource, NothingWhole_IsABadFileAndNothingIsWritten) {
+  std::string bytes = cli::read_file(whole_);
+  const std::string name = path("noise.mcap");
+  cli::write_file(name, bytes.substr(0, 8) + std::string(bytes.size(), '\x55'));
+  const std::string before = listing();
+  for (const char* const verb : {"dump", "scan"}) {
+    const outcome done = run({verb, name, "-o", path("out.txt")});
+    EXPECT_EQ(done.code, 10) << done.err;
+    EXPECT_EQ(listing(), before) << verb;
+  }
+}
+
+TEST_F(RecordingSource, InAPipe_IsNotRecordedAsNoise) {
+  const outcome done = run({"record", "-", "-o", path("again.mcap")}, cli::read_file(whole_));
+  EXPECT_EQ(done.code, 10) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("a recording in a pipe"));
+}
+
+TEST(AnotherModel, HasAnExitCodeOfItsOwn) {
+  const outcome done = run({"info", "sim:?model=4", "--json-errors"});
+  EXPECT_EQ(done.code, 7);
+  EXPECT_THAT(done.err, HasSubstr("\"problem\":\"other_device\""));
+  EXPECT_THAT(run({"dump", "sim:?model=256"}).err, HasSubstr("'256'"));
+}
+
 }  // namespace

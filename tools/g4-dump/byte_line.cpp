@@ -20,6 +20,7 @@
 #include "g4lidar/packet.hpp"
 #include "g4lidar/stream_parser.hpp"
 #include "g4lidar/transport.hpp"
+#include "source.hpp"
 
 namespace g4_dump {
 namespace {
@@ -87,6 +88,10 @@ class piped_line final : public byte_line {
     if (!wait(POLLIN, deadline_ns)) return received{};
     const auto got = take(out);
     if (!got) return tl::unexpected(got.error());
+    // A recording comes in files; in a pipe it would be taken for noise.
+    if (!std::exchange(has_begun_, true) && begins_as_recording(out.first(*got))) {
+      return failure(task::reading, problem::bad_file, "a recording in a pipe");
+    }
     return received{*got, steady_now_ns()};
   }
   [[nodiscard]] g4lidar::result<void> pause(std::int64_t deadline_ns) noexcept override {
@@ -103,6 +108,8 @@ class piped_line final : public byte_line {
     pollfd waiting{events != 0 ? fd() : -1, events, 0};
     return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000))) != 0;
   }
+
+  bool has_begun_ = false;
 };
 
 /// A file: its times are counted in samples.

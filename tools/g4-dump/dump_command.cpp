@@ -150,8 +150,14 @@ int dumping::dump_lidar() {
     tell_lidar(source);
     throw;
   }
-  out.commit();
+  const bool has_packets = source.lidar().counts().stream.packets > 0;
+  if (has_packets || kind_ != source_kind::recording) out.commit();
   tell_lidar(source);
+  if (!has_packets && kind_ == source_kind::recording && interrupt() == 0) {
+    throw failure(exit_code::bad_file,
+                  "there is no whole packet in " + in_quotes(common_.source) +
+                      ". g4-dump packets shows what else there may be; or give another file.");
+  }
   return end();
 }
 

@@ -140,7 +140,7 @@ verb make_scan_verb() {
   made.name = "scan";
   made.summary = "Whole revolutions";
   made.details = std::string(scan_columns) + "\n" + shaping + "\n" + ending;
-  made.examples = {"g4-dump scan -n 5", "g4-dump scan sim:?seed=7 -d 3s -f csv",
+  made.examples = {"g4-dump scan -n 5", "g4-dump scan 'sim:?seed=7' -d 3s -f csv",
                    "g4-dump scan --grid 720 --frame robot --unit m -f jsonl",
                    "g4-dump scan -n 10 -f pcd -o scan-%04d.pcd"};
   return made;

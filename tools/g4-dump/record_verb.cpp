@@ -171,7 +171,7 @@ verb make_record_verb() {
   made.details = details;
   made.examples = {"g4-dump record walk.mcap", "g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
                    "g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",
-                   "g4-dump record sim:?seed=7 -n 20 room.mcap"};
+                   "g4-dump record 'sim:?seed=7' -n 20 room.mcap"};
   made.run = [options] { return run(*options); };
   return made;
 }

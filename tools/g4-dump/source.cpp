@@ -88,6 +88,8 @@ void take_wish(sim_wish& wish, const std::string& name, const std::string& value
       throw bad_value(fmt::format("sim: serial '{}' has not 16 digits", value));
     }
     std::copy(value.begin(), value.end(), wish.device.info.serial_digits.begin());
+  } else if (name == "model") {
+    wish.device.info.model = number_of(value, std::uint8_t{0}, std::uint8_t{255});
   } else if (name == "fault") {
     const auto read = sim::parse_fault(value);
     if (const auto* wrong = std::get_if<sim::fault_error>(&read)) {
@@ -95,7 +97,7 @@ void take_wish(sim_wish& wish, const std::string& name, const std::string& value
     }
     wish.faults.push_back(std::get<sim::fault>(read));
   } else {
-    throw bad_value(fmt::format("sim: '{}' is none of fault, seed, serial, world", name));
+    throw bad_value(fmt::format("sim: '{}' is none of fault, model, seed, serial, world", name));
   }
 }
 
