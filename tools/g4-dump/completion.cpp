@@ -45,6 +45,7 @@ std::vector<option_row> all_options(const verb& of) {
 
 std::vector<std::string> names_of_verbs(const std::vector<verb>& verbs) {
   std::vector<std::string> names;
+  names.reserve(verbs.size());
   for (const verb& each : verbs) names.push_back(each.name);
   return names;
 }
