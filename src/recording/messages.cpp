@@ -175,6 +175,9 @@ std::optional<line_bytes> line_bytes_from(bytes message) noexcept {
                     message.subspan(line_bytes_header_size, count)};
 }
 
+/// A G4 does 9000; what is far beyond was never written by us, and no clock could follow it.
+constexpr std::uint32_t most_samples_per_second = 1'000'000;
+
 std::optional<line_note> note_from(bytes message) noexcept {
   if (message.size() < 4 || message[1] != 1) return std::nullopt;
   field_reader fields(message.subspan(4));
@@ -192,6 +195,8 @@ std::optional<line_note> note_from(bytes message) noexcept {
   const auto* const named = std::ranges::find(note_names, what);
   if (!fields.is_good() || named == note_names.end()) return std::nullopt;
   note.what = static_cast<line_note::kind>(named - note_names.begin());
+  if (note.samples_per_second > most_samples_per_second) return std::nullopt;
+  if (note.what == line_note::kind::begun && note.samples_per_second == 0) return std::nullopt;
   return note.what == line_note::kind::sent ? std::nullopt : std::optional(note);
 }
 

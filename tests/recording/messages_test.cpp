@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Messages of a recording, each by itself: what is written is read, and what cannot be is refused.
+#include "recording/messages.hpp"
+
+#include <gtest/gtest.h>
+
+namespace g4lidar::test {
+namespace {
+
+bytes message_of(const line_note& note, mcap::record_text& memory) {
+  mcap::put_note(memory, note, 0);
+  return memory.all();
+}
+
+TEST(Messages, ANoteIsReadAsItWasWritten) {
+  mcap::record_text memory;
+  const auto read = mcap::note_from(message_of({.what = line_note::kind::begun,
+                                                .delivers = true,
+                                                .baud = 230400,
+                                                .samples_per_second = 8000,
+                                                .unparsed = 7,
+                                                .events = 3,
+                                                .time_ns = 123'456'789},
+                                               memory));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->what, line_note::kind::begun);
+  EXPECT_EQ(read->samples_per_second, 8000U);
+  EXPECT_EQ(read->unparsed, 7U);
+  EXPECT_EQ(read->events, 3U);
+  EXPECT_EQ(read->time_ns, 123'456'789);
+}
+
+TEST(Messages, ARateThatNoClockCouldFollowIsRefused) {
+  for (const std::uint32_t rate : {0U, 1'000'001U, UINT32_MAX}) {
+    mcap::record_text memory;
+    const line_note note{.what = line_note::kind::begun, .samples_per_second = rate};
+    EXPECT_FALSE(mcap::note_from(message_of(note, memory))) << rate;
+  }
+  mcap::record_text memory;  // who has not begun has no rate
+  EXPECT_TRUE(mcap::note_from(message_of({.what = line_note::kind::held}, memory)));
+}
+
+TEST(Messages, ANoteThatEndsEarlyIsRefused) {
+  mcap::record_text memory;
+  const bytes whole = message_of({.what = line_note::kind::opened, .line = "/dev/ttyUSB0"}, memory);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_FALSE(mcap::note_from(whole.first(size))) << size;
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar::test
