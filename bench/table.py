@@ -11,14 +11,14 @@ import sys
 SIZES = {"1280": "one scan", "20480": "in cache", "2048000": "in memory"}
 SLACK = 0.5
 
-# name in the table, benchmark, what it is held against, the least ratio promised and where it holds
+# name in the table, benchmark, reference, the least promised ratio and its column
 RATIOS = [
     ("points, `bulk_decoder`", "points_in_bulk", "copy_points", 0.5, ["20480", "2048000"]),
     ("x and y, `bulk_decoder`", "places_in_bulk", "copy_places", 0.25, ["20480", "2048000"]),
     ("points, core with the table", "points_table", "points_libm", 5.0, ["20480"]),
     ("points, core with the compact form", "points_compact", "points_libm", None, []),
 ]
-FLOORS = [  # bytes a second of the wire
+LIMITS = [  # bytes per second
     ("framing and checksum", "frame_whole", "20480", 5e9),
     ("the same, a byte at a time", "frame_by_byte", "20480", 100e6),
 ]
@@ -58,7 +58,7 @@ def main():
         promised = "" if least is None else f"{least:g} " + " and ".join(SIZES[s] for s in where)
         print(f"| {name} | {against_words[other]} | " + " | ".join(cells) + f" | {promised} |")
     print()
-    for name, mine, size, least in FLOORS:
+    for name, mine, size, least in LIMITS:
         value = found[f"{mine}/{size}"]
         print(f"{name}: {value / 1e9:.2f} GB/s (promised {least / 1e9:g})")
         held(name, value, least)

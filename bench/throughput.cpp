@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How fast bytes become frames, points and places, beside memcpy moving the same results.
+// How fast bytes become frames, points and coordinates, compared with memcpy of the same results.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "g4lidar/bulk_decoder.hpp"
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/stream_parser.hpp"
 
 namespace {
 
@@ -34,7 +34,7 @@ struct recording {
   std::size_t points = 0;
 };
 
-/// The bytes of a simulated G4 with at least `points` points; a minute of them, over and over.
+/// The bytes of a simulated G4 with at least `points` points; a minute of them, repeated.
 recording make_recording(std::size_t points) {
   static const std::vector<std::vector<std::uint8_t>> packets = [] {
     sim::scanner scanner(sim::built_in_world(), {.noise_mm = 5.0, .dropout_ratio = 0.05});
@@ -57,7 +57,7 @@ void count_bytes(benchmark::State& state, std::size_t each) {
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(each));
 }
 
-/// The correction as the manual has it, with libm's arctangent.
+/// The correction by the formula of the manual, with libm's arctangent.
 struct libm_correction {
   double operator()(std::uint16_t raw) const noexcept {
     if (raw == 0) return 0.0;

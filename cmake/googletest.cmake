@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# GTest::gtest, GTest::gmock, GTest::gtest_main: the system's, or, for another processor, built from
-# the sources that the package googletest puts into /usr/src.
+# GTest::gtest, GTest::gmock, GTest::gtest_main: those of the system, or, for another processor,
+# built from the sources of the package googletest in /usr/src.
 
 include(GoogleTest)
 

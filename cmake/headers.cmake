@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# g4lidar_headers(<target> <header>...): the public headers of a target, named below
-# include/g4lidar. Each is compiled alone in builds that set CMAKE_VERIFY_INTERFACE_HEADER_SETS
-# (CMake 3.24 and later).
+# g4lidar_headers(<target> <header>...): the public headers of a target, relative to
+# include/g4lidar. Builds with CMAKE_VERIFY_INTERFACE_HEADER_SETS compile each of them alone (CMake
+# 3.24 and later).
 
 function(g4lidar_headers target)
   get_target_property(type ${target} TYPE)
@@ -11,8 +11,8 @@ function(g4lidar_headers target)
     set(scope PUBLIC)
   endif()
 
-  # Said even where a file set says it too: what CMake 3.23 and later install is also used by 3.22,
-  # which knows no file sets.
+  # Set in addition to the file set: an installation made with CMake 3.23 and later is also used by
+  # CMake 3.22, which does not know file sets.
   target_include_directories(
     ${target} ${scope} "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
     "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>"

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 # cmake --install: headers, libraries, the CMake package g4lidar with its components, and the
-# pkg-config files g4lidar-core.pc and g4lidar.pc.
+# pkg-config files g4lidar-core.pc, g4lidar.pc, g4lidar-sim.pc and g4lidar-eigen.pc.
 
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/g4lidar")
 
-# Each component has an export file of its own, so that asking for one never needs another's
-# dependencies.
+# Each component has its own export file, so that it does not need the dependencies of another one.
 function(install_component component target)
   if(CMAKE_VERSION VERSION_LESS 3.23)
     set(headers)
@@ -49,7 +48,7 @@ endif()
 
 write_basic_package_version_file(
   "${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake"
-  COMPATIBILITY SameMinorVersion # until 1.0 a minor version may break
+  COMPATIBILITY SameMinorVersion # until 1.0 a minor version may break the interface
 )
 if(G4LIDAR_HOSTED AND G4LIDAR_DEVICE)
   set(has_device TRUE)
@@ -65,7 +64,7 @@ install(FILES "${PROJECT_BINARY_DIR}/cmake/g4lidar-config.cmake"
         DESTINATION "${package_dir}"
 )
 
-# udev reads them below /usr and /usr/local.
+# udev reads rules below /usr and /usr/local.
 if(G4LIDAR_INSTALL_UDEV_RULE)
   install(FILES "${PROJECT_SOURCE_DIR}/packaging/udev/72-g4lidar.rules"
                 "${PROJECT_SOURCE_DIR}/packaging/udev/91-g4lidar-no-brltty.rules"
@@ -73,7 +72,7 @@ if(G4LIDAR_INSTALL_UDEV_RULE)
   )
 endif()
 
-# systemd, too, reads units below both.
+# systemd also reads units below both.
 if(G4LIDAR_INSTALL_SYSTEMD_UNIT)
   set(g4_dump "${CMAKE_INSTALL_FULL_BINDIR}/g4-dump")
   set(unit "g4lidar-record@.service")
@@ -85,10 +84,11 @@ if(G4LIDAR_INSTALL_SYSTEMD_UNIT)
 endif()
 
 # ---- pkg-config --------------------------------------------------------------------------------
-# Made while installing, for only then the prefix is known: cmake --install --prefix may give another one.
+# Written during the installation, because the prefix is known only then: cmake --install --prefix
+# may set another one.
 cmake_path(APPEND pc_libdir "\${prefix}" "${CMAKE_INSTALL_LIBDIR}")
 cmake_path(APPEND pc_includedir "\${prefix}" "${CMAKE_INSTALL_INCLUDEDIR}")
-# Who links a static library links what it stands on, too.
+# A program that links a static library also links its dependencies.
 set(pc_device_libs)
 set(pc_private_libs)
 if(has_device)
@@ -103,11 +103,16 @@ if(has_device)
   endif()
 endif()
 set(CMAKE_INSTALL_PREFIX_LATER "@CMAKE_INSTALL_PREFIX@")
-foreach(name g4lidar-core g4lidar)
-  if(name STREQUAL "g4lidar-core" OR G4LIDAR_HOSTED)
-    set(pc_file "${PROJECT_BINARY_DIR}/packaging/${name}.pc")
-    configure_file("${PROJECT_SOURCE_DIR}/packaging/${name}.pc.in" "${pc_file}.in" @ONLY)
-    install(CODE "configure_file([==[${pc_file}.in]==] [==[${pc_file}]==] @ONLY)")
-    install(FILES "${pc_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
-  endif()
+set(pc_names g4lidar-core)
+if(TARGET g4lidar_eigen)
+  list(APPEND pc_names g4lidar-eigen)
+endif()
+if(G4LIDAR_HOSTED)
+  list(APPEND pc_names g4lidar g4lidar-sim)
+endif()
+foreach(name IN LISTS pc_names)
+  set(pc_file "${PROJECT_BINARY_DIR}/packaging/${name}.pc")
+  configure_file("${PROJECT_SOURCE_DIR}/packaging/${name}.pc.in" "${pc_file}.in" @ONLY)
+  install(CODE "configure_file([==[${pc_file}.in]==] [==[${pc_file}]==] @ONLY)")
+  install(FILES "${pc_file}" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 endforeach()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Reads the project's version out of the one place that has it, include/g4lidar/version.hpp.
+# Reads the version of the project from include/g4lidar/version.hpp, the only place that defines it.
 #   G4LIDAR_VERSION: MAJOR.MINOR.PATCH
 
 set(version_header "${CMAKE_CURRENT_LIST_DIR}/../include/g4lidar/version.hpp")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# The warnings of our own builds. Included by the top level only when it is nobody's subdirectory,
-# and after the dependencies, so that it reaches neither a consumer's code nor somebody else's.
+# The warnings for this project. The top level includes it only if the project is not a
+# subdirectory, and after the dependencies, so that it affects neither consumers nor dependencies.
 
 add_compile_options(
   -Wall
@@ -24,7 +24,7 @@ add_compile_options(
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wduplicated-cond -Wduplicated-branches -Wlogical-op)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "^arm")
-    add_compile_options(-Wno-psabi) # notes on how g++ 7 passed arguments
+    add_compile_options(-Wno-psabi) # remarks about argument passing of g++ 7
   endif()
 elseif(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   add_compile_options(-Wextra-semi -Wunreachable-code -Wshadow-all -Wno-shadow-field-in-constructor)
@@ -33,7 +33,7 @@ endif()
 if(G4LIDAR_WERROR)
   add_compile_options(-Werror)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # g++ 12 sees faults of this kind inside optimised std::vector and std::string where none are.
+    # g++ 12 wrongly reports such errors in optimised std::vector and std::string.
     add_compile_options(
       -Wno-error=array-bounds -Wno-error=stringop-overflow -Wno-error=stringop-overread
       -Wno-error=restrict -Wno-error=maybe-uninitialized

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A G4 in an event loop beside other things, here signals and a clock, and back after an unplug.
+// A G4 in an event loop together with other events, here signals and a timer, with reconnecting.
 //   example_event_loop [DEVICE]     until Ctrl-C
 #include <poll.h>
 #include <sys/signalfd.h>
@@ -9,7 +9,6 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <g4lidar/lidar.hpp>
 
@@ -22,8 +21,8 @@ int report(const g4lidar::error& why) {
   return 1;
 }
 
-/// A descriptor that is readable when the program is to end. The signals are blocked first, before
-/// any thread is made; nothing else is ever interrupted by them.
+/// A descriptor that is readable when the program should end. The signals are blocked first, before
+/// any thread is created, so that they interrupt no other call.
 int signals_as_descriptor() {
   sigset_t ending;
   sigemptyset(&ending);
@@ -33,15 +32,15 @@ int signals_as_descriptor() {
   return signalfd(-1, &ending, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-int milliseconds_until(std::int64_t deadline_ns) {
-  if (deadline_ns == g4lidar::never_ns) return -1;
-  const std::int64_t now_ns = std::chrono::steady_clock::now().time_since_epoch() / 1ns;
-  constexpr std::int64_t longest_ms = 60'000;
-  const std::int64_t left_ms = (deadline_ns - now_ns + 999'999) / 1'000'000;  // not too early
-  return static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, longest_ms));
+/// For poll(); rounded up, so that it does not return too early.
+int milliseconds_until(std::chrono::steady_clock::time_point deadline) {
+  const auto left = deadline - std::chrono::steady_clock::now();
+  return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(
+                              std::clamp<std::chrono::nanoseconds>(left, 0ns, 1min))
+                              .count());
 }
 
-/// Everything that has come by now. False: the end.
+/// Takes every scan and event that has arrived. False: the end.
 bool take_scans(g4lidar::lidar& lidar) {
   while (true) {
     const auto scan = lidar.next_scan(0ms);
@@ -75,7 +74,7 @@ int main(int count, char** words) {
   int code = 0;
   while (true) {
     std::array<pollfd, 2> waiting{{{signals, POLLIN, 0}, {lidar->native_handle(), POLLIN, 0}}};
-    poll(waiting.data(), waiting.size(), milliseconds_until(lidar->next_deadline_ns()));
+    poll(waiting.data(), waiting.size(), milliseconds_until(lidar->next_deadline()));
     if (waiting[0].revents != 0) break;
     if (!take_scans(*lidar)) {
       code = 1;
@@ -83,5 +82,5 @@ int main(int count, char** words) {
     }
   }
   close(signals);
-  return code;  // and the motor stops
+  return code;  // the destructor stops the motor
 }

@@ -11,8 +11,10 @@ int main() {
   while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), stdin)) {
     g4lidar::bytes input(buffer.data(), n);
     for (const g4lidar::point& p : decoder.decode(input, points)) {
+      if (p.is_no_return() || p.is_too_near()) continue;  // not reliable
       std::printf("%.3f degrees %.2f mm\n", static_cast<double>(p.angle_deg),
                   static_cast<double>(p.range_mm));
     }
   }
+  return std::ferror(stdin) != 0 ? 1 : 0;
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A test of one's own, without a lidar: does my program notice that a G4 was unplugged and came
-// back? The simulated one lives in virtual time, so that 10 seconds of it take a few milliseconds.
+// A test of a program without a lidar: does it detect that a G4 was unplugged and plugged in again?
+// The simulated one runs in virtual time, so that 10 seconds take a few milliseconds.
 #include <array>
 #include <cstdio>
+#include <g4lidar/core/command.hpp>
+#include <g4lidar/core/stream_parser.hpp>
 #include <g4lidar/sim/virtual_port.hpp>
-#include <g4lidar/stream_parser.hpp>
 
 namespace {
 
-// Reads until `deadline_ns` or until the port is gone; the number of packets.
+// Reads until `deadline_ns` or until the port is gone; returns the number of packets.
 std::size_t packets_until(g4lidar::transport& port, std::int64_t deadline_ns) {
   g4lidar::stream_parser parser;
   std::array<std::uint8_t, 4096> buffer;
@@ -31,7 +32,7 @@ std::size_t packets_until(g4lidar::transport& port, std::int64_t deadline_ns) {
 int main() {
   constexpr std::int64_t second = 1'000'000'000;
   constexpr std::array<std::uint8_t, 2> start = g4lidar::encode(g4lidar::command::start);
-  // Unplugged after 5 s, plugged in again 2 s later; one byte in 10,000 has a bit turned over.
+  // Unplugged after 5 s, plugged in again 2 s later; one bit is inverted in one of 10,000 bytes.
   const std::array faults{
       g4lidar::sim::make_fault(g4lidar::sim::fault_kind::unplug, 5 * second, 2 * second),
       std::get<g4lidar::sim::fault>(g4lidar::sim::parse_fault("flip*0.01%"))};
@@ -46,7 +47,7 @@ int main() {
       if (!finder.pause(clock.now_ns() + second / 2)) return 1;
       continue;
     }
-    // A device that has just been plugged in is still booting: ask until it has heard.
+    // A device that has just been plugged in is still booting: send until it answers.
     while (!twin.is_scanning() && (*port)->write(start, 10 * second)) {
       if (!(*port)->pause(clock.now_ns() + second / 10)) break;
     }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Packets of any content, decoded with all forms of the correction and held against the formulas in
-// double precision; and the points counted.
+// Packets of any content, decoded with all forms of the correction and compared with the formulas
+// in double precision; and the counts of points.
 //
-// The input is a row of packets: CT, the number of samples (0 to 79, less 1), the two angles and the
-// samples, two bytes each; what is missing at the end is 0.
+// The input is a sequence of packets: CT, the number of samples (0 to 79, minus 1), the two angles
+// and the samples, two bytes each; missing bytes at the end are 0.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -15,9 +15,9 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "support/packet_bytes.hpp"
 #include "support/reference_points.hpp"
 
@@ -31,7 +31,7 @@ void expect(bool holds, const char* otherwise) {
   std::abort();
 }
 
-/// Takes bytes off the front of the input; zeroes when it has run out.
+/// Takes bytes from the front of the input; zeros at its end.
 class source {
  public:
   source(const std::uint8_t* data, std::size_t size) : rest_(data, size) {}

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The parser against the reference on any bytes, cut as the bytes themselves say.
+// The parser and the reference on any bytes; the bytes also define the pieces.
 //
-// The input: one byte of flags (bit 0: make the checksum of each header that is possible agree, one
-// that a fuzzer hardly ever hits by itself), one byte that says how many sizes of pieces follow
-// (0 to 15), these sizes, and then the stream.
+// The input: one byte of flags (bit 0: correct the checksum of each possible header, which a fuzzer
+// hardly ever does by itself), one byte with the number of the following piece sizes (0 to 15),
+// these sizes, and then the stream.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "support/reference_parser.hpp"
 #include "support/stream_log.hpp"
 
@@ -32,8 +32,8 @@ void seal_packets(buffer& stream) {
   }
 }
 
-/// Reads `stream` in pieces of these sizes, the last one again and again; aborts where the parser
-/// breaks a promise.
+/// Parses `stream` in pieces of these sizes, the last one repeated; aborts if the parser breaks a
+/// promise.
 void read_in_pieces(g4lidar::stream_parser& parser, const buffer& stream,
                     const std::vector<std::size_t>& sizes, const reference::reading& wanted) {
   g4lidar::test::stream_log log(stream);
@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (sizes.empty() || sizes.back() == 0) sizes.push_back(17);
 
   const reference::reading wanted = reference::read(stream);
-  g4lidar::stream_parser parser;  // one for all: after finish() it is as new
+  g4lidar::stream_parser parser;  // one for all: finish() resets it
   read_in_pieces(parser, stream, {stream.size() + 1}, wanted);
   read_in_pieces(parser, stream, sizes, wanted);
   read_in_pieces(parser, stream, {1}, wanted);

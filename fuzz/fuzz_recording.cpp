@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The reader of recordings on any bytes, and on recordings that were damaged.
+// The reader of recordings on any bytes, and on damaged recordings.
 //
-// The input: one byte that says what follows. 0: a file, as it is. Else: a recording is made, and what
-// follows are changes to it, five bytes each: where (four bytes, by the size of the file) and what (xor).
-// A change of 0 cuts the file off there.
+// The input: one byte for its kind. 0: a file, unchanged. Otherwise a recording is made, and the
+// rest is a list of changes to it, five bytes each: the place (four bytes, modulo the size of the
+// file) and the change (xor). A change of 0 truncates the file there.
 //
-// What must hold: the reader ends, holds no more memory than one chunk needs, and gives from a damaged
-// recording only what was recorded, in order.
+// Requirements: the reader ends, needs no more memory than one chunk, and returns from a damaged
+// recording only recorded items, in order.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "g4lidar/recording_reader.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "recording/crc32.hpp"
 #include "recording/file_reader.hpp"
 #include "recording/mcap_file.hpp"
@@ -33,8 +33,8 @@ class memory_file final : public g4lidar::mcap::byte_source {
  public:
   explicit memory_file(bytes data) : data_(data.begin(), data.end()) {}
   [[nodiscard]] std::uint64_t size() const noexcept override { return data_.size(); }
-  [[nodiscard]] g4lidar::result<std::size_t> read(std::uint64_t at,
-                                                  std::span<std::uint8_t> out) noexcept override {
+  [[nodiscard]] g4lidar::result<std::size_t> read_some(
+      std::uint64_t at, std::span<std::uint8_t> out) noexcept override {
     std::size_t count = 0;
     while (count < out.size() && at + count < data_.size()) {
       out[count] = data_[static_cast<std::size_t>(at) + count];
@@ -53,7 +53,7 @@ std::vector<std::uint8_t> reading(std::int64_t number) {
   return std::vector<std::uint8_t>(reading_size, static_cast<std::uint8_t>(number));
 }
 
-/// As a writer makes it, of four chunks, each with a sum.
+/// A file of a writer, with four chunks, each with a checksum.
 std::vector<std::uint8_t> made_recording() {
   using namespace g4lidar::mcap;
   record_text file;
@@ -81,7 +81,7 @@ std::vector<std::uint8_t> made_recording() {
   return {file.all().begin(), file.all().end()};
 }
 
-/// Reads all of it. What it gives is checked where `is_ours`.
+/// Reads all of it. Checks the items if `is_ours`.
 void read(bytes file, const g4lidar::reading_options& how, bool is_ours) {
   auto reader = g4lidar::recording_access::open(std::make_shared<memory_file>(file), "memory", how);
   if (!reader) return;
@@ -120,7 +120,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       file[place] = static_cast<std::uint8_t>(file[place] ^ input[at + 4]);
     }
   }
-  // With more of them a chunk can be made that tells no sum.
+  // With more changes a chunk without a checksum is possible.
   const bool is_ours = input.size() < 4 * 5;
   read(file, {}, is_ours);
   read(file, {.from_ns = 5}, is_ours);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The main of the fuzz targets where libFuzzer is not at hand: runs each file given and each file in
-// each directory given; and after a directory, inputs made from its files by a seeded generator, as
-// many as G4LIDAR_TEST_SCALE times 2000. What fails aborts, with the name of the input before it.
+// The main() of the fuzz targets without libFuzzer: runs each given file and each file in each
+// given directory; and after a directory, G4LIDAR_TEST_SCALE times 2000 inputs derived from its
+// files by a seeded generator. A failure aborts, after the name of the input was printed.
 #include <algorithm>
 #include <csignal>
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using buffer = std::vector<std::uint8_t>;
 
-std::string current;  // the input that is running, in words
+std::string current;  // the running input, for messages
 buffer current_bytes;
 
 extern "C" void say_what_failed(int) {
@@ -35,7 +35,7 @@ extern "C" void say_what_failed(int) {
 void run(std::string name, const buffer& input) {
   current = std::move(name);
   current_bytes = input;
-  // Memory of exactly this size, so that a sanitizer sees a read behind its end.
+  // Memory of exactly this size, so that a sanitizer detects a read behind its end.
   const buffer exact(input.begin(), input.end());
   LLVMFuzzerTestOneInput(exact.data(), exact.size());
 }
@@ -49,7 +49,13 @@ buffer read_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// A new input from old ones: cut, joined, repeated, and with some bytes changed.
+/// G4LIDAR_TEST_SEED, which the nightly sets to a new number each day.
+unsigned given_seed() {
+  const char* const given = std::getenv("G4LIDAR_TEST_SEED");
+  return given == nullptr ? 0U : static_cast<unsigned>(std::atoll(given));
+}
+
+/// A new input from old ones: truncated, joined, repeated, and with some changed bytes.
 class generator {
  public:
   explicit generator(const std::vector<buffer>& seeds) : seeds_(seeds) {}
@@ -95,7 +101,7 @@ class generator {
   }
 
   const std::vector<buffer>& seeds_;
-  std::mt19937 random_{20210101};
+  std::mt19937 random_{20210101U + given_seed()};
 };
 
 }  // namespace

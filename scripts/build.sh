@@ -1,30 +1,54 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# How the scripts configure and build: quietly when all is well, with everything when it is not.
+# How the scripts configure and build: quietly on success, with all output on failure.
 # Sourced by the scripts; needs bash.
 
-# run_quietly <what> <command>...: prints one line, and the command's output only if it fails.
-run_quietly() {
-  local what=$1 output
-  shift
-  printf '%s ... ' "$what"
-  local begin=$SECONDS
-  if output=$("$@" 2>&1); then
-    printf '%d s\n' "$((SECONDS - begin))"
-  else
-    local code=$?
-    printf 'failed\n%s\n' "$output" >&2
-    return "$code"
-  fi
+# show_progress <name> <log>: on a terminal, shows once a second the progress of the build that
+# writes this log.
+show_progress() {
+  local begin=$SECONDS step
+  while kill -0 $$ 2>/dev/null; do
+    step=$(grep -oE '^\[ *[0-9]+(/[0-9]+|%)\]' "$2" | tail -n 1 || true)
+    printf '\r\033[K%s ... %s %d s' "$1" "$step" "$((SECONDS - begin))"
+    sleep 1
+  done
 }
 
-# ccache asks the compiler itself what a source included, which saves its first run over each; it
-# takes precompiled headers; and two build directories may share what is compiled the same.
+# run_quietly <name> <command>...: prints one line, and the output of the command only if it fails.
+run_quietly() {
+  local what=$1 log code=0 begin=$SECONDS progress=
+  shift
+  log=$(mktemp)
+  if [[ -t 1 ]]; then
+    show_progress "$what" "$log" &
+    progress=$!
+  else
+    printf '%s ... ' "$what"
+  fi
+  "$@" >"$log" 2>&1 || code=$?
+  if [[ $progress ]]; then
+    kill "$progress"
+    wait "$progress" 2>/dev/null || true
+    printf '\r\033[K%s ... ' "$what"
+  fi
+  if ((code == 0)); then
+    printf '%d s\n' "$((SECONDS - begin))"
+  else
+    echo failed
+    cat "$log" >&2
+  fi
+  rm -f "$log"
+  return "$code"
+}
+
+# ccache asks the compiler for the includes of a source, which saves a preprocessor run; it accepts
+# precompiled headers; and two build directories may share equal objects.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
 export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
 export CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
 
-# configure <build directory> <cmake argument>...
+# configure <build directory> <cmake argument>...: with Ninja, or with make if Ninja is not
+# installed. A build directory keeps its generator.
 configure() {
   local directory=$1
   shift
@@ -32,7 +56,11 @@ configure() {
   if command -v ccache >/dev/null; then
     launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi
-  run_quietly "Configuring $directory" cmake -S . -B "$directory" -G Ninja "${launcher[@]}" "$@"
+  local generator=()
+  if [[ ! -e $directory/CMakeCache.txt && -z ${CMAKE_GENERATOR:-} ]]; then
+    generator=(-G "$(if command -v ninja >/dev/null; then echo Ninja; else echo "Unix Makefiles"; fi)")
+  fi
+  run_quietly "Configuring $directory" cmake -S . -B "$directory" "${generator[@]}" "${launcher[@]}" "$@"
 }
 
 # configure_preset <preset> <cmake argument>...: into build/<preset>.
@@ -48,14 +76,31 @@ build() {
   shift
   local targets=()
   if (($# > 0)); then targets=(--target "$@"); fi
-  run_quietly "Building $directory" cmake --build "$directory" "${targets[@]}" -- --quiet
+  run_quietly "Building $directory" cmake --build "$directory" --parallel "$(nproc)" "${targets[@]}"
 }
 
-# run_tests <preset> <ctest argument>...: as many at once as there are processors. The time that one
-# may take is the preset's; where the random ones are longer (G4LIDAR_TEST_SCALE), so is it.
+# run_tests <preset> <ctest argument>...: as many in parallel as there are processors. The time
+# limit of a test is that of the preset, multiplied for longer random tests (G4LIDAR_TEST_SCALE).
+# ctest counts a skipped test as passed: the last line does not, and each skipped test has a line
+# "SKIPPED: name".
 run_tests() {
-  local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=()
+  local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=() code=0
+  local results=$PWD/build/$preset/tests.xml
   shift
   if ((scale > 1)); then longer=(--timeout $((600 * scale))); fi
-  ctest --preset "$preset" --parallel "$(nproc)" "${longer[@]}" "$@"
+  # The seed of rapidcheck: fixed by default.
+  export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
+  rm -f "$results"
+  ctest --preset "$preset" --parallel "$(nproc)" --output-junit "$results" "${longer[@]}" "$@" || code=$?
+  if [[ -e $results ]]; then
+    awk '/<testcase / {
+        match($0, /name="[^"]*"/)
+        name = substr($0, RSTART + 6, RLENGTH - 7)
+        if (/status="run"/) ++passed
+        else if (/status="fail"/) ++failed
+        else { ++skipped; print "SKIPPED: " name }
+      }
+      END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }' "$results"
+  fi
+  return "$code"
 }

@@ -1,39 +1,41 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# The Debian packages that the scripts need, in one place, and how they are installed.
+# The Debian packages that the scripts need, in one place, and their installation.
 # Sourced by the scripts; needs bash.
 
-# What it takes to build the library and g4-dump.
+# To build the library and g4-dump. make is sufficient if it is installed and Ninja is not.
 packages_demo=(
-  cmake g++ ninja-build pkg-config libudev-dev libexpected-dev
+  "$(if command -v make >/dev/null && ! command -v ninja >/dev/null; then echo make; else echo ninja-build; fi)"
+  cmake g++ pkg-config libudev-dev libexpected-dev
   libcli11-dev libfmt-dev libzstd-dev nlohmann-json3-dev
 )
 
-# And the tests.
+# To build the tests.
 packages_test=(
   "${packages_demo[@]}"
-  binutils libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev libumockdev-dev umockdev
+  binutils libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev libumockdev-dev ninja-build umockdev
 )
 
-# What it takes to build and run the benchmarks.
+# To build and run the benchmarks.
 packages_bench=(
   "${packages_demo[@]}"
-  libbenchmark-dev python3-minimal strace valgrind
+  libbenchmark-dev ninja-build python3-minimal strace valgrind
 )
 
-# What it takes to build the Debian packages.
+# To build the Debian packages.
 packages_package=(
   "${packages_demo[@]}"
-  debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev
+  debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev ninja-build
 )
 
-# What a sysroot for cross-building is made of, in the target's architecture: see scripts/sysroot.
+# The contents of a sysroot for cross-building, in the architecture of the target: see
+# scripts/sysroot.
 # shellcheck disable=SC2034
 packages_sysroot=(
   libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev
 )
 
-# And everything that .ci/run does.
+# Everything that .ci/run needs.
 # shellcheck disable=SC2034
 packages_ci=(
   "${packages_test[@]}" "${packages_bench[@]}" "${packages_package[@]}"
@@ -46,8 +48,8 @@ packages_ci=(
   gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-system-arm
 )
 
-# need_packages <package>...: installs those that are missing; asks nothing and says what it does.
-# Takes a few hundredths of a second when all are there.
+# need_packages <package>...: installs the missing ones without questions and prints what it
+# installs. Takes a few hundredths of a second if all are installed.
 need_packages() {
   local missing=()
   mapfile -t missing < <(missing_packages "$@")
@@ -66,15 +68,15 @@ need_packages() {
     as_root=(sudo)
   fi
   if ! command -v apt-get >/dev/null; then
-    echo "This needs Debian's apt-get to install: ${missing[*]}" >&2
-    echo "Elsewhere install their equivalents, and build with CMake as the README shows." >&2
+    echo "Missing packages: ${missing[*]}; this script installs them with apt-get of Debian only." >&2
+    echo "On other systems install the equivalent packages, and build with CMake as described in README.md." >&2
     return 1
   fi
 
   echo "Installing ${#missing[@]} packages: ${missing[*]}"
   local install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
     apt-get install --yes --no-install-recommends -qq -o Dpkg::Use-Pty=0 -o Acquire::Retries=3)
-  # With lists that are there and fresh enough the update is saved; stale ones fail at once.
+  # Existing package lists are used first, which saves the update; outdated ones fail immediately.
   if "${install[@]}" --print-uris "${missing[@]}" >/dev/null 2>&1 \
     && "${install[@]}" "${missing[@]}" >/dev/null 2>&1; then
     return 0
@@ -83,7 +85,7 @@ need_packages() {
   "${install[@]}" "${missing[@]}" >/dev/null
 }
 
-# missing_packages <package>...: those of them that are not installed, one a line.
+# missing_packages <package>...: those that are not installed, one per line.
 missing_packages() {
   dpkg-query --show --showformat='${Package} ${db:Status-Status}\n' "$@" 2>/dev/null \
     | awk -v wanted="$*" '

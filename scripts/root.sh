@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# A minimal Debian 12 below a directory, to see what happens in a system that has nothing of ours.
-# Sourced by scripts that run as root; needs bash, and scripts/packages.sh sourced before.
+# A minimal Debian 12 below a directory, to test in a system without any file of this project. It is
+# created once, as the archive build/debian-12.tar, and unpacked for each use; after a week it is
+# created again. Sourced by scripts that run as root; needs bash, and scripts/packages.sh sourced
+# before.
 
 debian_release=bookworm
 debian_root=
 
-# make_root: makes one below $debian_root, with this machine's sources of packages, name service and
-# pseudo-terminals of its own; it is removed when the script ends.
+# make_root: creates one below $debian_root, with the package sources and the name service of this
+# machine and its own pseudo-terminals; it is removed when the script ends.
 make_root() {
   need_packages debootstrap git
-  # The mirrors are whichever this machine's apt has for Debian 12 itself.
+  # The mirrors are those of this machine's apt for Debian 12.
   local sources mirror begin=$SECONDS setting
   # shellcheck disable=SC2016  # the dollars are apt's
   sources=$(apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) main' 'Created-By: Packages' \
@@ -23,14 +25,24 @@ make_root() {
 
   debian_root=$(mktemp -d -t g4lidar-clean-root.XXXXXX)
   trap remove_root EXIT
-  echo "Making a minimal Debian 12 ..."
-  if ! debootstrap --variant=minbase "$debian_release" "$debian_root" "$mirror" >"$debian_root.log" 2>&1; then
-    tail -n 20 "$debian_root.log" >&2
-    return 1
+  local archive=$PWD/build/debian-12.tar
+  mkdir -p build
+  if [[ -z $(find "$archive" -mtime -7 2>/dev/null) ]]; then
+    echo "Making a minimal Debian 12 ..."
+    if ! debootstrap --variant=minbase "$debian_release" "$debian_root" "$mirror" >"$debian_root.log" 2>&1; then
+      tail -n 20 "$debian_root.log" >&2
+      return 1
+    fi
+    # Without the directories that debootstrap has mounted.
+    tar --create --file "$archive.new" --directory "$debian_root" --one-file-system --exclude='./proc/*' \
+      --exclude='./sys/*' .
+    mv "$archive.new" "$archive"
+  else
+    tar --extract --file "$archive" --directory "$debian_root" --same-permissions
   fi
-  echo "Made after $((SECONDS - begin)) s"
+  echo "Made a minimal Debian 12 in $((SECONDS - begin)) s"
 
-  # Its apt and its name service reach what this machine's do.
+  # Its apt and its name service reach the same servers as this machine.
   echo "$sources" >"$debian_root/etc/apt/sources.list"
   apt-config dump Acquire >"$debian_root/etc/apt/apt.conf.d/90acquire"
   for setting in /etc/resolv.conf /etc/hosts; do
@@ -55,5 +67,6 @@ in_root() {
   env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb LANG=C.UTF-8 \
     ${http_proxy:+"http_proxy=$http_proxy"} ${https_proxy:+"https_proxy=$https_proxy"} \
     ${G4LIDAR_TEST_SCALE:+"G4LIDAR_TEST_SCALE=$G4LIDAR_TEST_SCALE"} \
+    ${G4LIDAR_TEST_SEED:+"G4LIDAR_TEST_SEED=$G4LIDAR_TEST_SEED"} \
     chroot "$debian_root" "$@"
 }

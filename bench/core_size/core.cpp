@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The parser, decode and the ring as a microcontroller's firmware uses them, for their size.
+// The parser, decode and the ring as in the firmware of a microcontroller, to measure their size.
 #include <cstddef>
 #include <cstdint>
 #include <variant>
 
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/point_ring.hpp"
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/point_ring.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 namespace {
 
@@ -19,7 +19,7 @@ g4lidar::point_ring<points_in_ring> ring;
 
 }  // namespace
 
-/// From the UART's interrupt: some bytes into the ring.
+/// From the interrupt of the UART: some bytes into the ring.
 extern "C" void take_bytes(const std::uint8_t* data, std::size_t count) {
   std::array<g4lidar::point, g4lidar::max_samples> points;
   g4lidar::bytes input(data, count);
@@ -38,7 +38,7 @@ extern "C" std::size_t take_points(g4lidar::point* out, std::size_t room) {
   return reader.read({out, room}).points;
 }
 
-// Read by bench/core_size.sh out of the object's symbols: bytes of state.
+// bench/core_size.sh reads the symbols of the object: bytes of state.
 extern "C" {
 extern const std::uint8_t size_of_parser[sizeof(parser)];
 extern const std::uint8_t size_of_carry[g4lidar::max_packet_size];

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What the driver costs: on a pty in real time, on a flooded pty, and per sample in memory.
-//   device_bench delay SECONDS    from a zero packet's writing to the scan in hand, and the first scan
+// The cost of the driver: on a pty in real time, on a pty without a rate limit, and per sample in
+// memory.
+//   device_bench delay SECONDS    from the end of a zero packet to the delivered scan, and the first scan
 //   device_bench stream SECONDS [BATCH_MS]  CPU time, context switches, memory, calls of operator new
 //                                 and delete while streaming
-//   device_bench flood MEGABYTES  bytes a second against a reader that only counts, so many each time
-//   device_bench memory SCANS [BURST]  so many scans from memory, in bursts of so many bytes, for
+//   device_bench flood MEGABYTES  bytes per second, and those of a reader that only counts
+//   device_bench memory SCANS [BURST]  scans from memory, in bursts of so many bytes, for
 //                                 counting instructions
 #include <fcntl.h>
 #include <poll.h>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +23,10 @@
 #include <thread>
 
 #include "feeder.hpp"
+#include "g4lidar/core/command.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 #include "support/allocation_count.hpp"
 
 namespace {
@@ -70,7 +75,7 @@ int delay(int seconds) {
     }
   }
   feeder.join();
-  // The revolution r ends with the zero packet number r: number 0 is the end of the partial one.
+  // Revolution r ends with zero packet r: packet 0 is the end of the partial one.
   std::vector<double> delays;
   for (const auto& [revolution, when] : taken) {
     if (revolution < written.size()) delays.push_back(ms_of(when - written[revolution]));
@@ -100,7 +105,7 @@ int stream(int seconds, int batch_ms) {
       while (steady_ns() < time) static_cast<void>(device.next_scan(500ms));
     };
     until(end - (seconds + 1) * second);
-    // What is counted lies between these two marks; a tracer sees them.
+    // A tracer sees these two flags and counts between them.
     static_cast<void>(::write(STDERR_FILENO, "begin\n", 6));
     rusage before{};
     rusage after{};
@@ -129,7 +134,7 @@ int stream(int seconds, int batch_ms) {
   return 0;
 }
 
-/// Bytes a second of a reader that polls, reads, and counts.
+/// Bytes per second of a reader that polls, reads, and counts.
 double counting_rate(std::size_t bytes_wanted) {
   const bench::pty line;
   const bench::recording revolutions = bench::record(20);
@@ -158,7 +163,7 @@ double counting_rate(std::size_t bytes_wanted) {
   return rate;
 }
 
-/// Bytes a second of the driver, and the scans that it lost.
+/// Bytes per second of the driver, and its lost scans.
 double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
   const bench::pty line;
   const bench::recording revolutions = bench::record(20);
@@ -186,26 +191,29 @@ double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
   return rate;
 }
 
-/// The best of each of them: whatever else the machine does makes both slower, and neither faster.
+/// The median of 9 ratios, each of two measurements one after the other: other load of the machine makes both
+/// slower.
 int flood(int megabytes) {
-  constexpr int fewest = 5;
-  constexpr int most = 25;
+  constexpr std::size_t runs = 9;
   const std::size_t wanted = static_cast<std::size_t>(megabytes) * 1'000'000;
   std::int64_t lost = 0;
-  double counting = 0.0;
-  double driver = 0.0;
-  for (int round = 0; round < fewest || (round < most && driver < 0.7 * counting); ++round) {
-    counting = std::max(counting, counting_rate(wanted));
-    driver = std::max(driver, driver_rate(wanted, lost));
-    if (lost != 0) break;
+  std::array<double, runs> ratios{};
+  std::array<double, runs> counting{};
+  for (std::size_t i = 0; i < runs; ++i) {
+    std::int64_t lost_now = 0;
+    counting[i] = counting_rate(wanted);
+    ratios[i] = driver_rate(wanted, lost_now) / counting[i];
+    lost += lost_now;
   }
-  std::printf("flood_ratio %.2f\ncounting_mb_per_s %.1f\nscans_lost %lld\n", driver / counting,
-              counting / 1e6, static_cast<long long>(lost));
+  std::sort(ratios.begin(), ratios.end());
+  std::sort(counting.begin(), counting.end());
+  std::printf("flood_ratio %.2f\ncounting_mb_per_s %.1f\nscans_lost %lld\n", ratios[runs / 2],
+              counting[runs / 2] / 1e6, static_cast<long long>(lost));
   return 0;
 }
 
-/// A line that gives a recording in bursts, as they come at the line rate, and answers the commands of
-/// a start.
+/// A transport that returns a recording in bursts, at the rate of a real connection, and answers
+/// the commands of a start.
 class memory_line final : public transport {
  public:
   memory_line(const bench::recording& from, std::size_t scans, std::size_t burst, std::int64_t& now)
@@ -232,7 +240,7 @@ class memory_line final : public transport {
     return received{count, now_};
   }
   result<void> write(bytes data, std::int64_t /*deadline_ns*/) noexcept override {
-    if (scanning_) return {};  // the recording is all that there is from now on
+    if (scanning_) return {};  // from now on it returns the recording only
     twin_.write(data, now_);
     scanning_ = data.size() == 2 && data[1] == static_cast<std::uint8_t>(command::start);
     last_ns_ = now_;
@@ -252,7 +260,7 @@ class memory_line final : public transport {
   std::size_t left_;
   std::size_t burst_;
   std::size_t place_ = 0;
-  std::int64_t last_ns_ = 0;  // when the last burst came
+  std::int64_t last_ns_ = 0;  // the time of the last burst
   std::int64_t& now_;
   bool scanning_ = false;
   sim::device twin_{sim::built_in_world()};

@@ -42,12 +42,12 @@ void write_all(int handle, bytes data) {
   }
 }
 
-/// The device for both: bytes both ways for one moment.
+/// The device for both: moves bytes in both directions, once.
 class player {
  public:
   explicit player(int master) : master_(master), begin_ns_(steady_ns()) {}
 
-  /// What there is to be sent now.
+  /// The bytes to send now.
   bytes exchange() {
     const std::int64_t now = steady_ns() - begin_ns_;
     const ssize_t asked = ::read(master_, buffer_.data(), buffer_.size());

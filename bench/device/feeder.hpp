@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The other end of a pty: a simulated G4 at the rate of the line, then a flood of packets.
+// The other end of a pty: a simulated G4 at the rate of a real connection, then packets without a
+// rate limit.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "g4lidar/stream_parser.hpp"
 
 namespace g4lidar::bench {
 
@@ -25,19 +26,19 @@ class pty {
 
  private:
   int master_ = -1;
-  int slave_ = -1;  // held, so that the line does not hang up between two users
+  int slave_ = -1;  // kept open, so that the pty does not hang up between two users
   std::string path_;
 };
 
-/// Plays a G4 on the master until `end_ns`. Notes in `zero_packets_ns` when each zero packet was
-/// about to be written whole.
+/// Runs a G4 on the master until `end_ns`. Stores in `zero_packets_ns` when each complete zero
+/// packet was about to be written.
 void feed_in_real_time(int master, std::int64_t end_ns, std::vector<std::int64_t>& zero_packets_ns);
 
-/// Plays a G4 until it has been started; then writes `stream` again and again, as fast as the pty
-/// takes it, `bytes_wanted` in all.
+/// Runs a G4 until it has been started; then writes `stream` repeatedly, as fast as the pty accepts
+/// it, `bytes_wanted` in total.
 void flood(int master, const std::vector<std::uint8_t>& stream, std::size_t bytes_wanted);
 
-/// Packets of whole revolutions, `revolutions` of them, and how many samples are in them.
+/// Packets of `revolutions` whole revolutions, and the number of their samples.
 struct recording {
   std::vector<std::uint8_t> data;
   std::size_t samples = 0;

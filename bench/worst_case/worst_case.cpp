@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Feeds the parser with input made to be dear, for bench/worst_case.sh to count instructions; and
-// searches for dearer input.
+// Feeds the parser with expensive input, for bench/worst_case.sh to count instructions; and
+// searches for more expensive input.
 //
 //   worst_case list                         the names of the inputs
 //   worst_case run NAME PIECE BYTES         parses BYTES bytes of that input in pieces of PIECE
 //   worst_case hex NAME                     one period of it
-//   worst_case search SECONDS SEED PIECE    searches; prints the dearest in hexadecimal and ns/byte
-//   worst_case run HEX PIECE BYTES          the same as above, of the period HEX
+//   worst_case search SECONDS SEED PIECE    searches; prints the most expensive ones in hex and ns/byte
+//   worst_case run HEX PIECE BYTES          like above, with the period HEX
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -22,7 +22,7 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 namespace {
 
@@ -47,7 +47,7 @@ void seal(buffer& packet) {
   packet[9] = static_cast<std::uint8_t>(sum >> 8);
 }
 
-/// A good packet of `samples` samples.
+/// A valid packet of `samples` samples.
 buffer good(std::size_t samples) {
   buffer out(10 + 2 * samples, 0x11);
   const std::array<std::uint8_t, 8> header{0xAA, 0x55, 0,    static_cast<std::uint8_t>(samples),
@@ -152,12 +152,12 @@ std::string to_hex(const buffer& data) {
   return out;
 }
 
-/// Changes, inserts, removes and joins bytes that mean something to the parser.
+/// Changes, inserts, removes and joins bytes that have a meaning for the parser.
 class mutator {
  public:
   explicit mutator(unsigned seed) : random_(seed) {}
 
-  /// Something made of one of `known`, or rarely of a single byte.
+  /// An input derived from one of `known`, or rarely from a single byte.
   buffer make(const std::vector<buffer>& known) {
     buffer made = below(20) == 0 ? buffer{telling_byte()} : one_of(known);
     for (std::size_t changes = 1 + below(4); changes > 0; --changes) change(made, known);
@@ -204,7 +204,7 @@ class mutator {
   std::mt19937 random_;
 };
 
-/// The dearest periods that were found, the dearest one first.
+/// The most expensive periods found, the most expensive one first.
 class pool {
  public:
   explicit pool(std::size_t piece) : piece_(piece) {
@@ -224,7 +224,7 @@ class pool {
     costs_.pop_back();
   }
 
-  /// Measures all of them once more, and carefully.
+  /// Measures all of them again, more exactly.
   void measure_again() {
     const std::vector<buffer> all = std::exchange(periods_, {});
     costs_.clear();
@@ -247,10 +247,10 @@ class pool {
 
   std::size_t piece_;
   std::vector<buffer> periods_;
-  std::vector<double> costs_;  // ns a byte, of each of them
+  std::vector<double> costs_;  // ns per byte, of each of them
 };
 
-/// Climbs from all inputs that we thought of to dearer ones.
+/// Searches from all known inputs to more expensive ones.
 void search(double seconds, unsigned seed, std::size_t piece) {
   mutator changes(seed);
   pool dearest(piece);

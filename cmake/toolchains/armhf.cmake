@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# armhf Linux with Debian's cross compiler; programs run under qemu-user. With -DCMAKE_SYSROOT=
-# and what scripts/sysroot has made, the device layer and g4-dump are built, too: see docs/cross.md.
+# armhf Linux with the cross compiler of Debian; programs run with qemu-user. With -DCMAKE_SYSROOT=
+# and a sysroot of scripts/sysroot, the driver and g4-dump are also built: see docs/cross.md.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_CXX_COMPILER arm-linux-gnueabihf-g++)

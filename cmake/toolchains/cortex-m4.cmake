@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-# A Cortex-M4 with its floating-point unit, without an operating system. Programs bring their own
-# start-up code and linker script and run in QEMU's board mps2-an386: see tests/embedded.
+# A Cortex-M4 with its floating-point unit, without an operating system. Programs have their own
+# start-up code and linker script and run on QEMU's board mps2-an386: see tests/embedded.
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
 set(CMAKE_C_COMPILER arm-none-eabi-gcc)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# s390x Linux with Debian's cross compiler; programs run under qemu-user.
+# s390x Linux with the cross compiler of Debian; programs run with qemu-user.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR s390x)
 set(CMAKE_CXX_COMPILER s390x-linux-gnu-g++)

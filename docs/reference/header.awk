@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Makes of a header what Doxygen is to see of it.
-# Hidden is what needs no words of its own: moves, destructors and comparisons that do what they always do, and
-# what is deleted. Members of a struct whose names say all are shown without words. All that has words is left
-# as it is.
+# Prepares a header for Doxygen.
+# Hides declarations that need no description: moves, destructors and comparisons with the usual
+# behaviour, and deleted functions. Members of a struct with self-explanatory names are shown
+# without a description. Declarations with a description are not changed.
 #   awk -f header.awk HEADER
 
 function is_usual(line) {
@@ -18,6 +18,19 @@ function is_member(line, rest) {
   rest = substr(line, length(members) + 1)
   return rest ~ /^[a-zA-Z][^()]* [a-z0-9_]+( = [^;]*|\{[^;]*\})?;$/ &&
          rest !~ /^(using|friend|return|static|class|struct|enum|typedef) /
+}
+
+# Specialisations of templates of other libraries, completely.
+/^template <>$/ { is_held = 1; next }
+is_held {
+  is_held = 0
+  is_foreign = $0 ~ /(struct|bool) (std|fmt)::/
+  print (is_foreign ? "/** @cond */" : "") "template <>"
+}
+is_foreign {
+  is_foreign = $0 !~ /^[^ ].*;$/
+  print $0 (is_foreign ? "" : "/** @endcond */")
+  next
 }
 
 /^ *\/\/\// { is_told = 1; print; next }

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-# Makes a page of the reference out of a document: each heading gets the name that links use, in every
-# document another one, and links to a heading use those.
+# Makes a page of the reference from a document: each heading gets the name that links use, a
+# different one in every document, and links to a heading use these names.
 #   awk -f page.awk DOCUMENT
 
-# A README is its directory's page, and the first one that of all.
+# A README is the page of its directory, and the first one is the main page.
 function page_of(path,    parts, count) {
   if (path !~ /README\.md$/) {
     sub(/^.*\//, "", path)

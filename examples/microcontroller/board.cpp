@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The board MPS2 with a Cortex-M4F (image AN386), as QEMU has it: its start-up, two of its serial lines,
-// and the processor's timer. The lidar is on the first line, the console on the second.
+// The board MPS2 with a Cortex-M4F (image AN386), as emulated by QEMU: its start-up, two of its
+// serial ports, and the processor's timer. The lidar is connected to the first port, the console to
+// the second.
 #include "board.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 int main();
 
-// ---- the linker script's marks -----------------------------------------------------------------
+// ---- the linker script's flags -----------------------------------------------------------------
 extern "C" {
 extern std::uint32_t data_begin[], data_end[], bss_begin[], bss_end[];
 extern const std::uint32_t data_image[];
@@ -30,7 +31,7 @@ volatile std::uint32_t& device_register(std::uintptr_t address) {
   return *reinterpret_cast<volatile std::uint32_t*>(address);
 }
 
-/// A serial line of the CMSDK: one byte of room in each direction.
+/// A serial port of the CMSDK: a buffer of one byte in each direction.
 struct serial_line {
   std::uintptr_t base;
 
@@ -65,7 +66,8 @@ volatile std::uint32_t overruns = 0;
 void on_tick() { ticks = ticks + 1; }
 
 void on_lidar_received() {
-  lidar.interrupts() = serial_line::receive;  // answered; then the byte, so that none is missed
+  lidar.interrupts() =
+      serial_line::receive;  // acknowledge first; then read the byte, so that none is missed
   if ((lidar.state() & serial_line::receiver_overrun) != 0) {
     lidar.state() = serial_line::receiver_overrun;
     overruns = overruns + 1;
@@ -117,7 +119,8 @@ extern "C" void reset() {
 namespace board {
 
 void begin() {
-  // The divisor is rounded up: 229,358 baud, half a percent slow, which is within a byte's reach.
+  // The divisor is rounded up: 229,358 baud, half a percent below the rate, which is within the
+  // tolerance of a byte.
   lidar.divisor() = (clock_hz + lidar_baud - 1) / lidar_baud;
   console.divisor() = clock_hz / 115'200;
   console.control() = serial_line::transmit;
@@ -132,7 +135,7 @@ std::int64_t now_ns() {
   static std::uint32_t last = 0;
   static std::int64_t now_ms = 0;
   const std::uint32_t now = ticks;
-  now_ms += now - last;  // the ticks go round after 49 days, this does not
+  now_ms += now - last;  // the ticks wrap after 49 days, this does not
   last = now;
   return now_ms * 1'000'000;
 }
@@ -150,7 +153,7 @@ void sleep() { asm volatile("wfi" ::: "memory"); }
 std::uint32_t receiver_overruns() { return overruns; }
 
 void end(int code) {
-  // Semihosting, SYS_EXIT_EXTENDED: the emulator ends with this code. A real board stays here.
+  // Semihosting, SYS_EXIT_EXTENDED: the emulator ends with this code. A real board stops here.
   const std::array<std::uint32_t, 2> status{0x20026, static_cast<std::uint32_t>(code)};
   register std::uint32_t operation asm("r0") = 0x20;
   register const void* argument asm("r1") = status.data();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the program asks of a board: to carry it over to another one, write another board.cpp.
+// The functions that the program needs from a board: for another board, write another board.cpp.
 #pragma once
 
 #include <cstddef>
@@ -9,28 +9,28 @@
 
 namespace board {
 
-/// Sets up both serial lines and the timer. From now on on_lidar_byte() is called.
+/// Initialises both serial ports and the timer. From then on it calls on_lidar_byte().
 void begin();
 
-/// Milliseconds since begin(), in nanoseconds. The main loop only, once in 49 days at least.
+/// Milliseconds since begin(), in nanoseconds. For the main loop only, at least once in 49 days.
 [[nodiscard]] std::int64_t now_ns();
 
-/// Sends to the lidar; waits until the last byte has gone into the transmitter.
+/// Sends to the lidar; waits until the last byte is in the transmitter.
 void send(std::span<const std::uint8_t> bytes);
 
-/// Writes to the console, likewise.
+/// Writes to the console, in the same way.
 void say(std::string_view text);
 
-/// Sleeps until the next interrupt, a millisecond at most.
+/// Sleeps until the next interrupt, at most a millisecond.
 void sleep();
 
-/// How often the lidar's receiver had to drop a byte, since the interrupt came too late.
+/// How many bytes the receiver dropped because the interrupt was too late.
 [[nodiscard]] std::uint32_t receiver_overruns();
 
-/// The end, where there is one: in an emulator.
+/// Ends the program, if that is possible: in an emulator.
 [[noreturn]] void end(int code);
 
 }  // namespace board
 
-/// The program's part: called from the interrupt with each byte from the lidar.
+/// Implemented by the program: the interrupt calls it with each byte from the lidar.
 void on_lidar_byte(std::uint8_t byte);

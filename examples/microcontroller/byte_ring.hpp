@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes from a receive interrupt to the main loop, without a lock and without switching interrupts off.
+// Bytes from a receive interrupt to the main loop, without a lock and without disabling interrupts.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,17 @@
 #include <cstdint>
 #include <span>
 
-/// A first-in, first-out ring of `Size` bytes, a power of two. One producer: the interrupt. One consumer:
-/// the main loop. A byte for which there is no room is dropped and counted. A G4 sends up to 23 bytes a
-/// millisecond: `Size` over 23 is for how many milliseconds the main loop may do something else.
+/// A first-in, first-out ring of `Size` bytes, a power of two. One producer: the interrupt. One
+/// consumer: the main loop. A byte without room is dropped and counted. A G4 sends up to 23 bytes
+/// per millisecond, so `Size` / 23 is the time in milliseconds that the main loop may need for
+/// other work.
 template <std::size_t Size>
 class byte_ring {
   static_assert(std::has_single_bit(Size));
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free);
 
  public:
-  /// The producer only.
+  /// For the producer only.
   void push(std::uint8_t byte) noexcept {
     const std::uint32_t end = end_.load(std::memory_order_relaxed);
     if (end - begin_.load(std::memory_order_acquire) == Size) {
@@ -30,7 +31,8 @@ class byte_ring {
     end_.store(end + 1, std::memory_order_release);
   }
 
-  /// The consumer only: moves what is there, as much as fits, to the front of `out`; gives that front.
+  /// For the consumer only: moves the available bytes, as many as fit, to the front of `out`;
+  /// returns them.
   [[nodiscard]] std::span<const std::uint8_t> take(std::span<std::uint8_t> out) noexcept {
     const std::uint32_t begin = begin_.load(std::memory_order_relaxed);
     const std::size_t there = end_.load(std::memory_order_acquire) - begin;
@@ -40,14 +42,14 @@ class byte_ring {
     return out.first(count);
   }
 
-  /// How many bytes found no room, over all.
+  /// The number of dropped bytes.
   [[nodiscard]] std::uint32_t overruns() const noexcept {
     return overruns_.load(std::memory_order_relaxed);
   }
 
  private:
   std::array<std::uint8_t, Size> bytes_{};
-  // Both count on and on; what is between them is in the ring.
+  // Both only increase; the bytes between them are in the ring.
   std::atomic<std::uint32_t> begin_{0};
   std::atomic<std::uint32_t> end_{0};
   std::atomic<std::uint32_t> overruns_{0};

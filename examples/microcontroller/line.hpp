@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A line of text put together without printf, which would bring a heap and 20 KiB of code with it.
+// A line of text, composed without printf, which would need a heap and 20 KiB of code.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <string_view>
 
-/// A number that is not negative, to be written with two digits behind the point.
+/// A non-negative number, written with two digits behind the point.
 struct fixed {
   float value;
 };
 
-/// Up to 160 letters; what goes beyond is left out.
+/// Up to 160 characters; longer text is cut off.
 class line {
  public:
   line& operator<<(std::string_view text) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A G4 on a microcontroller: an interrupt puts the bytes into a ring, the main loop starts the lidar,
-// makes points and revolutions of the bytes, and says for each where the nearest obstacle is.
-#include <g4lidar/correction.hpp>
-#include <g4lidar/decode.hpp>
-#include <g4lidar/scan.hpp>
-#include <g4lidar/session.hpp>
-#include <g4lidar/stream_counts.hpp>
-#include <g4lidar/stream_parser.hpp>
+// A G4 on a microcontroller: an interrupt writes the bytes to a ring, the main loop starts the
+// lidar, decodes points and revolutions, and prints the nearest obstacle of each.
+#include <g4lidar/core/correction.hpp>
+#include <g4lidar/core/decode.hpp>
+#include <g4lidar/core/scan_assembler.hpp>
+#include <g4lidar/core/session.hpp>
+#include <g4lidar/core/stream_counter.hpp>
+#include <g4lidar/core/stream_parser.hpp>
 
 #include "board.hpp"
 #include "byte_ring.hpp"
@@ -15,17 +15,17 @@
 namespace {
 
 constexpr int revolutions_to_measure = 20;
-constexpr std::int64_t frame_pause_ns = 20'000'000;  // no device goes on with a frame after that
+constexpr std::int64_t frame_pause_ns = 20'000'000;  // no device continues a frame after this
 
 byte_ring<1024> received;  // 44 ms of a G4
 
-// The memory of the program, all of it. 9,000 samples a second at 5 Hz make 1,800 in a revolution.
+// All memory of the program. 9,000 samples per second at 5 Hz make 1,800 per revolution.
 std::array<g4lidar::point, 1800> scan_room;
 std::array<g4lidar::point, g4lidar::max_samples> packet_room;
 
 class obstacle_watch {
  public:
-  /// Starts the lidar, measures, stops it again. Whether all went well.
+  /// Starts the lidar, measures, stops it again. Returns whether all of it succeeded.
   bool run() {
     return finish(g4lidar::requests::start(), "start") && measure() &&
            finish(g4lidar::requests::stop(), "stop");
@@ -41,10 +41,9 @@ class obstacle_watch {
   }
 
  private:
-  /// Asks the lidar and waits for what becomes of it.
+  /// Sends a request to the lidar and waits for its outcome.
   bool finish(const g4lidar::request& wanted, std::string_view name) {
-    if (session_.begin(wanted, board::now_ns()))
-      return false;  // refused: it has been asked already
+    if (session_.begin(wanted, board::now_ns())) return false;  // refused: a request is in progress
     while (true) {
       if (const auto outcome = session_.finished()) {
         if (outcome->how == g4lidar::verdict::answered) return true;
@@ -68,7 +67,7 @@ class obstacle_watch {
     return true;
   }
 
-  /// One round of the main loop: what has come, what is due, what is to be sent.
+  /// One round of the main loop: process received bytes, call what is due, send commands.
   void step() {
     std::array<std::uint8_t, 64> piece;
     const std::int64_t now_ns = board::now_ns();
@@ -123,7 +122,7 @@ class obstacle_watch {
   g4lidar::session session_;
   g4lidar::revolution_counter revolutions_;
   g4lidar::scan_assembler scans_{scan_room};
-  g4lidar::stream_counts counts_;
+  g4lidar::stream_counter counts_;
   std::int64_t heard_ns_ = 0;
   int whole_revolutions_ = 0;
 };

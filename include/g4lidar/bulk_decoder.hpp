@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes to points in bulk: recordings and pipes read as fast as the processor can, in one object.
+// Decodes many bytes to points at the full speed of the processor: for recordings and pipes.
 #pragma once
 
 #include <cstddef>
@@ -7,66 +7,65 @@
 #include <optional>
 #include <span>
 
-#include "g4lidar/bytes.hpp"
 #include "g4lidar/cartesian.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/export.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/api.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/stream_counts.hpp"
-#include "g4lidar/stream_parser.hpp"
 
 namespace g4lidar {
 
-/// What a bulk_decoder computes with.
+/// The instructions that a bulk_decoder uses.
 enum class instruction_set : std::uint8_t {
-  portable,  ///< What the compiler makes of plain C++.
+  portable,  ///< Plain C++, as the compiler translates it.
   avx2,      ///< AVX2 and FMA, on x86-64.
 };
 
-/// The best of them that this processor has. *Pure*, for the answer never changes while a program
-/// runs; not `constexpr`, for the compiler does not know where that will be.
+/// The best instruction set of this processor. *Pure*: the result is constant while a program runs.
+/// Not `constexpr`, because the compiler does not know the processor.
 [[nodiscard]] G4LIDAR_API instruction_set best_instruction_set() noexcept;
 
-/// The name of an instruction set, for people; it lives for ever. *Pure*; not `constexpr`, for it is
-/// compiled with the rest.
+/// The name of an instruction set, for people. Valid forever. *Pure*.
 [[nodiscard]] G4LIDAR_API const char* name_of(instruction_set set) noexcept;
 
-/// The whole way from bytes to points: a stream_parser, the count of revolutions and the arithmetic,
-/// which is chosen by the processor at run time. *Single thread, never allocates.* Times are left 0,
-/// not known.
+/// Bytes to points: a stream_parser, the count of revolutions, and the arithmetic, which is
+/// selected for the processor at run time. *Single thread, never allocates.* Times are 0, not
+/// known.
 ///
-/// The points are those of decode() with any correction form: the angles within 4e-5 degrees of the
-/// exact one whatever the instruction set, everything else identical.
+/// The points are those of decode() with any correction form: angles are within 4e-5 degrees of the
+/// exact ones with every instruction set, everything else is identical.
 class G4LIDAR_API bulk_decoder {
  public:
-  /// Computes with `wanted` if this processor has it, else with `portable`.
+  /// Uses `wanted` if this processor has it, else `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;
 
-  /// Takes bytes from the front of `input` and writes their points to the front of `out`; gives what
-  /// was written. Stops when all of `input` is taken, or before a packet whose points do not fit:
-  /// `input` is empty in the first case only. With room for max_samples points each call takes
-  /// something. Behind what was written, `out` may have been written to.
+  /// Takes bytes from the front of `input`, writes their points to the front of `out` and returns
+  /// what was written. Stops when all of `input` is taken (then `input` is empty), or before a
+  /// packet whose points do not fit. With room for max_samples points each call takes at least one
+  /// byte. Memory of `out` behind the returned points may be overwritten.
   [[nodiscard]] std::span<point> decode(bytes& input, std::span<point> out) noexcept;
 
-  /// The same with the points' places in frame `to`, within 1e-6 of the range of the exact ones;
-  /// both coordinates are NaN where nothing came back. One stream may be decoded by turns to points
-  /// and to places.
+  /// The same, but writes the positions of the points in frame `to`, within 1e-6 of the range of
+  /// the exact ones; both coordinates are NaN for a point without return. Calls for points and for
+  /// positions may alternate in one stream.
   [[nodiscard]] std::span<xy_point> decode_xy(bytes& input, frame to,
                                               std::span<xy_point> out) noexcept;
 
-  /// When no more bytes follow: the points of the good packets in what is held, as
-  /// stream_parser::finish() finds them. With room for max_samples points one call does it; with
-  /// less, call until held() is 0. The next byte begins a new stream, but revolutions and counts go
-  /// on.
+  /// Call this when no more bytes follow: returns the points of the valid packets among the held
+  /// bytes, as stream_parser::finish() finds them. With room for max_samples points one call is
+  /// enough; with less, call it until held() is 0. The next byte begins a new stream; revolutions
+  /// and counts continue.
   [[nodiscard]] std::span<point> finish(std::span<point> out) noexcept;
-  /// The same to places in frame `to`, as decode_xy() gives them.
+  /// The same for positions in frame `to`.
   [[nodiscard]] std::span<xy_point> finish_xy(frame to, std::span<xy_point> out) noexcept;
 
-  /// Everything that was found so far. Bytes given = bytes of frames + bytes skipped + held().
+  /// Counts of everything found so far. Bytes given = bytes of frames + bytes skipped + held().
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
-  /// Bytes of an unfinished frame.
+  /// Bytes of an unfinished packet or response.
   [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
-  /// What is computed with.
+  /// The instruction set in use.
   [[nodiscard]] instruction_set in_use() const noexcept { return set_; }
 
  private:
@@ -78,7 +77,7 @@ class G4LIDAR_API bulk_decoder {
 
   stream_parser parser_;
   revolution_counter revolutions_;
-  stream_counts counts_;
+  stream_counter counts_;
   instruction_set set_;
 };
 

@@ -7,13 +7,13 @@
 #include <limits>
 #include <span>
 
-#include "g4lidar/angle.hpp"
+#include "g4lidar/core/angle.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
 
-/// A point in Cartesian coordinates, 16 bytes. Where nothing came back, both coordinates are NaN, so
-/// that the points of a scan keep their places.
+/// A point in Cartesian coordinates, 16 bytes. Both coordinates are NaN for a point without return,
+/// so that the points of a scan keep their indices.
 struct xy_point {
   float x_m;
   float y_m;
@@ -30,14 +30,14 @@ static_assert(sizeof(xy_point) == 16);
   }
   const sine_cosine native = sine_cosine_deg(p.angle_deg);
   const float range_m = p.range_mm * 0.001F;
-  // The robot's bearing is 180 degrees minus the native angle: its sine is the same, its cosine the
-  // negative.
+  // The robot's bearing is 180 degrees minus the native angle: the sine is the same, the cosine is
+  // negated.
   const float x_m = range_m * native.cosine;
   return {to == frame::robot ? -x_m : x_m, range_m * native.sine, p.time_ns};
 }
 
-/// Writes all of `points` in frame `to` to the front of `out`, which is at least as long; gives what
-/// was written. *Pure.*
+/// Writes all of `points` in frame `to` to the front of `out`, which is at least as long, and
+/// returns what was written. *Pure.*
 constexpr std::span<xy_point> to_xy(std::span<const point> points, frame to,
                                     std::span<xy_point> out) noexcept {
   for (std::size_t i = 0; i < points.size(); ++i) out[i] = to_xy(points[i], to);

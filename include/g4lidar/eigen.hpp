@@ -16,19 +16,19 @@
 
 namespace g4lidar {
 
-/// Columns of two floats that lie in an array of `Element`s.
+/// Columns of two floats, in an array of `Element`s.
 template <class Element>
 using column_map = Eigen::Map<
     std::conditional_t<std::is_const_v<Element>, const Eigen::Matrix2Xf, Eigen::Matrix2Xf>,
     Eigen::Unaligned, Eigen::OuterStride<sizeof(Element) / sizeof(float)>>;
 
-/// An argument that owns its elements and dies at the end of the call.
+/// An argument that owns its elements and is destroyed at the end of the call.
 template <class T>
 concept dying_range = std::ranges::contiguous_range<T> && !std::is_lvalue_reference_v<T> &&
                       !std::ranges::borrowed_range<std::remove_cvref_t<T>>;
 
-/// The points as a 2 x N matrix, a column for each: angle in degrees, range in millimetres. A map: it
-/// lives as long as the points and sees their changes.
+/// The points as a 2 x N matrix, one column each: angle in degrees, range in millimetres. A map: it
+/// is valid as long as the points and shows their changes.
 [[nodiscard]] inline column_map<const point> polar_map(std::span<const point> points) noexcept {
   static_assert(std::is_standard_layout_v<point> && offsetof(point, angle_deg) == 0 &&
                 offsetof(point, range_mm) == sizeof(float));
@@ -43,8 +43,8 @@ template <class T>
 concept xy_range = std::ranges::contiguous_range<T> && !dying_range<T> &&
                    std::same_as<std::ranges::range_value_t<T>, xy_point>;
 
-/// Cartesian points as a 2 x N matrix, a column for each: x and y in metres. A map: it lives as long
-/// as the points, sees their changes, and of points that may be changed it can be written to.
+/// Cartesian points as a 2 x N matrix, one column each: x and y in metres. A map: it is valid as
+/// long as the points and shows their changes; a map of mutable points is writable.
 template <xy_range Points>
 [[nodiscard]] auto xy_map(Points&& points) noexcept {
   using element = std::remove_reference_t<std::ranges::range_reference_t<Points>>;
@@ -56,7 +56,7 @@ template <xy_range Points>
                              static_cast<Eigen::Index>(columns.size()));
 }
 
-/// Writes x and y in metres in frame `to` into the columns of `out`, which has one for each point.
+/// Writes x and y in metres in frame `to` to the columns of `out`, which has one for each point.
 /// Points without return become NaN. *Never allocates.*
 inline void to_xy(std::span<const point> points, frame to,
                   Eigen::Ref<Eigen::Matrix2Xf> out) noexcept {
@@ -67,8 +67,8 @@ inline void to_xy(std::span<const point> points, frame to,
   }
 }
 
-/// Moves all points by `motion`: from the lidar's place on the robot, or from the robot's in the
-/// world. *Never allocates.* NaN stays NaN.
+/// Transforms all points by `motion`: from the lidar's frame to the robot's, or from the robot's
+/// frame to the world's. *Never allocates.* NaN stays NaN.
 inline void transform(const Eigen::Isometry2f& motion, std::span<xy_point> points) noexcept {
   auto columns = xy_map(points);
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors of the outside world: what was being done, what went wrong, and what to try.
+// Errors: what was being done, what went wrong, and what to try.
 #pragma once
 
 #include <array>
@@ -7,10 +7,11 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <tl/expected.hpp>
 
-#include "g4lidar/export.hpp"
+#include "g4lidar/detail/api.hpp"
 
 namespace g4lidar {
 
@@ -19,96 +20,128 @@ enum class task : std::uint8_t {
   finding,      ///< Looking for a port or a device.
   opening,      ///< Opening a port, a connection or a file.
   configuring,  ///< Setting options, of the port or of the device.
-  asking,       ///< Waiting for the answer to a command.
+  asking,       ///< Waiting for the reply to a command.
   starting,     ///< Starting the scan.
   reading,      ///< Reading the stream.
   writing,      ///< Sending a command.
   stopping,     ///< Stopping the scan.
 };
 
-/// Everything that can go wrong. A closed set: `docs/errors.md` has a paragraph for each.
+/// Every problem. A closed set: `docs/errors.md` has a paragraph for each.
 enum class problem : std::uint8_t {
-  bad_option,      ///< A value that an option cannot have; a caller's text, most often.
-  no_port,         ///< No port, or none that a G4 can be behind.
-  several_ports,   ///< More than one G4, and no word which is meant.
-  permission,      ///< The user may not open it.
+  bad_option,      ///< A value that is invalid for an option.
+  no_port,         ///< No serial port, or none to which a G4 may be attached.
+  several_ports,   ///< More than one G4, and the caller did not name one.
+  permission,      ///< This user may not open it.
   busy,            ///< Another program has it open, exclusively.
   not_serial,      ///< The path is no serial port.
   bad_baud_rate,   ///< The port cannot do the baud rate.
-  cannot_connect,  ///< The other end of a network connection does not answer.
-  silence,         ///< Not a single byte came.
-  garbage,         ///< Bytes came, and no frame: the wrong baud rate or another device.
-  other_device,    ///< It answers, and is no G4.
-  does_not_stop,   ///< It scans and cannot be stopped: commands do not reach it.
-  unhealthy,       ///< It says that it is defective.
-  timeout,         ///< Nothing came in time; it is worth trying again.
-  wrong_answer,    ///< Answers came, none of them possible for the question.
-  not_reached,     ///< A setting went another way than asked: the device refuses it.
+  cannot_connect,  ///< The remote end of a network connection does not answer.
+  silence,         ///< Not a single byte arrived.
+  garbage,         ///< Bytes arrived, none of them valid: the wrong baud rate or another device.
+  other_device,    ///< A device answers that is not a G4.
+  does_not_stop,   ///< The device scans and does not react to a stop command.
+  unhealthy,       ///< The device reports an error of its own.
+  timeout,         ///< Nothing arrived in time; a retry may help.
+  wrong_answer,    ///< Replies arrived, none of them valid for the command.
+  not_reached,     ///< The device did not reach the wanted setting.
+  bad_setting,     ///< Refused: no G4 can be set to this value. Nothing was sent.
   scanning,        ///< Refused: the command would disturb the running scan.
-  not_scanning,    ///< Points were asked for, and no scan has been started.
-  gone,            ///< Unplugged: the port has vanished.
+  not_scanning,    ///< Points were requested, but no scan has been started.
+  reconnecting,    ///< The lidar was lost, and the driver is looking for it.
+  gone,            ///< Unplugged: the port does not exist any more.
   stalled,         ///< The stream has stopped although the port is there.
-  brown_out,       ///< The bytes stopped when the motor started: too little power.
+  brown_out,       ///< The bytes stopped when the motor started: insufficient power.
   interference,    ///< Another program reads from or writes to the port.
-  read_only,       ///< A file was to be asked or set, as if it were a device.
-  bad_file,        ///< A file that holds nothing of use: no recording, or nothing in it is whole.
+  read_only,       ///< A file was queried or configured like a device.
+  bad_file,        ///< A file without usable content: not a recording, or no intact part.
   end_of_input,    ///< A file or connection has ended.
-  cancelled,       ///< Woken, from another thread or a signal handler.
-  system,          ///< The system refused for a reason of its own; see `system_errno`.
+  cancelled,       ///< Woken from another thread or a signal handler.
+  system,          ///< The system refused for another reason; see `system_errno`.
 };
 
-/// How many problems there are.
+/// The number of problems.
 inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::system) + 1;
 
 /// One error. Trivially copyable, never allocates.
 class G4LIDAR_API error {
  public:
-  /// `subject` is what it is about (a path, an option and its value); cut at 95 bytes.
-  error(task doing, problem what, std::string_view subject = {}, int system_errno = 0) noexcept;
+  /// `subject` is what the error is about (a path, an option and its value); cut at 95 bytes.
+  error(task doing, problem code, std::string_view subject = {}, int system_errno = 0) noexcept;
 
   /// What was being done.
   [[nodiscard]] g4lidar::task doing() const noexcept { return doing_; }
   /// What went wrong.
-  [[nodiscard]] problem what() const noexcept { return what_; }
-  /// The system's own error number, or 0.
+  [[nodiscard]] problem code() const noexcept { return code_; }
+  /// The error number of the system, or 0.
   [[nodiscard]] int system_errno() const noexcept { return errno_; }
-  /// Good as long as this error.
+  /// Valid as long as this error.
   [[nodiscard]] std::string_view subject() const& noexcept { return {subject_.data(), size_}; }
   std::string_view subject() const&& = delete;
 
-  /// Whether going on with the same object is of no use, so that a loop should end. Not fatal are
-  /// timeout, wrong_answer, not_reached, scanning, read_only and cancelled: the object works as before.
+  /// Whether further calls on the same object cannot succeed, so that a loop should end. Not fatal:
+  /// timeout, wrong_answer, not_reached, scanning, reconnecting, read_only and cancelled; the
+  /// object works as before.
   [[nodiscard]] bool is_fatal() const noexcept;
 
-  /// What to try, a sentence; it lives for ever.
+  /// What to try, a sentence. Valid forever.
   [[nodiscard]] std::string_view advice() const noexcept;
 
-  /// All of it: "opening /dev/ttyUSB0 of group dialout: this user may not open it (EACCES, Permission
-  /// denied). Install the udev rule, or join ...". Allocates.
+  /// The complete text: "opening /dev/ttyUSB0 of group dialout: this user may not open it (EACCES,
+  /// Permission denied). Install the udev rule, or join ...". Allocates.
   [[nodiscard]] std::string message() const;
+
+  /// Whether the problem is this one: `if (scan.error() == problem::timeout)`.
+  [[nodiscard]] friend bool operator==(const error& a, problem b) noexcept { return a.code_ == b; }
 
  private:
   std::array<char, 95> subject_{};
   std::uint8_t size_ = 0;
   int errno_ = 0;
   g4lidar::task doing_;
-  problem what_;
+  problem code_;
 };
 
-/// The words of the tools and documents: "permission", "no_port". They live for ever.
-[[nodiscard]] G4LIDAR_API std::string_view name_of(problem what) noexcept;
-/// The same: "opening", "reading". They live for ever.
+/// The name in tools and documents: "permission", "no_port". Valid forever.
+[[nodiscard]] G4LIDAR_API std::string_view name_of(problem code) noexcept;
+/// A description: "this user may not open it". Valid forever.
+[[nodiscard]] G4LIDAR_API std::string_view description_of(problem code) noexcept;
+/// The name in tools and documents: "opening", "reading". Valid forever.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(task doing) noexcept;
 
-/// A value, or the error that there is in its place.
+/// A value, or an error instead of it.
 template <class T>
 using result = tl::expected<T, error>;
 
-/// For `return failure(task::opening, problem::busy, path);` in a function that gives a result.
-[[nodiscard]] inline tl::unexpected<error> failure(task doing, problem what,
+/// A result whose value is a view into the object that returned it. In a variable it is used like
+/// any result. A temporary gives only a copy of the view: `for (auto& p : *lidar->next_scan(2s))`
+/// is correct, and `lidar->next_scan(2s)->points`, a use after the end of the view, does not
+/// compile.
+template <class View>
+class view_result : public result<View> {
+ public:
+  using result<View>::result;
+  /// From any result.
+  view_result(result<View> given) noexcept : result<View>(std::move(given)) {}
+
+  /// The view; of a temporary a copy of it.
+  [[nodiscard]] const View& operator*() const& noexcept { return result<View>::operator*(); }
+  /// The same.
+  [[nodiscard]] View operator*() && noexcept { return result<View>::operator*(); }
+  /// The same.
+  [[nodiscard]] const View* operator->() const& noexcept { return result<View>::operator->(); }
+  const View* operator->() && = delete;
+  /// The same, checked: throws tl::bad_expected_access where there is an error.
+  [[nodiscard]] const View& value() const& { return result<View>::value(); }
+  /// The same.
+  [[nodiscard]] View value() && { return result<View>::value(); }
+};
+
+/// For `return failure(task::opening, problem::busy, path);` in a function that returns a result.
+[[nodiscard]] inline tl::unexpected<error> failure(task doing, problem code,
                                                    std::string_view subject = {},
                                                    int system_errno = 0) noexcept {
-  return tl::unexpected<error>(error(doing, what, subject, system_errno));
+  return tl::unexpected<error>(error(doing, code, subject, system_errno));
 }
 
 }  // namespace g4lidar

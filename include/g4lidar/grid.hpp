@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A scan on a fixed grid of directions: the same number of ranges every time, as SLAM wants it.
+// A scan on a fixed grid of directions: always the same number of ranges, as SLAM requires.
 #pragma once
 
 #include <cassert>
@@ -8,35 +8,35 @@
 #include <limits>
 #include <span>
 
-#include "g4lidar/angle.hpp"
+#include "g4lidar/core/angle.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
 
-/// Which point a bin takes its range from when several fall into it.
+/// Which point determines the range of a bin when several fall into it.
 enum class grid_pick : std::uint8_t {
-  nearest,  ///< The one whose direction is nearest to the middle of the bin.
-  minimum,  ///< The one with the smallest range.
+  nearest,  ///< The point whose direction is nearest to the middle of the bin.
+  minimum,  ///< The point with the smallest range.
 };
 
-/// How to fill a grid. The defaults are those of a ROS LaserScan from -pi on.
+/// How to fill a grid. The defaults are those of a ROS LaserScan that begins at -pi.
 struct grid_options {
-  /// In the robot's frame bin 0 is centred at -180 degrees, in the vendor's at 0; the next bins follow
-  /// in the direction in which the frame's angles grow.
+  /// In the robot's frame bin 0 is centred at -180 degrees, in the vendor's at 0; the next bins
+  /// follow in the direction in which the angles of the frame grow.
   frame to = frame::robot;
   grid_pick pick = grid_pick::nearest;
-  /// Whether points marked too near give their range. By default a bin with none but them is NaN:
-  /// something was there, so +infinity would clear a way through it; and how far, or whether it was
-  /// more than dust on the window, is not to be trusted, so a range would put an obstacle onto the
-  /// robot. NaN makes a map neither. A trusted return in the same bin goes before.
+  /// Whether points flagged too_near give their range. By default a bin with only such points is
+  /// NaN: something was there, so +infinity would mark the way as free; but the distance is not
+  /// reliable (it may be dust on the window), so a range would put an obstacle onto the robot. NaN
+  /// does neither. A reliable return in the same bin takes precedence.
   bool keep_too_near = false;
 };
 
-/// The bin of a grid of `bins` bins in which a direction lies, clockwise degrees in [0, 360) as in a
-/// point, and how far from its middle. *Pure.*
+/// The bin that contains a direction (clockwise degrees in [0, 360), as in a point) in a grid of
+/// `bins` bins, and the distance from the middle of the bin. *Pure.*
 struct grid_place {
   std::size_t bin;
-  float off_middle_deg;  ///< At most half a bin, but for rounding.
+  float off_middle_deg;  ///< At most half a bin, plus rounding.
 };
 [[nodiscard]] constexpr grid_place place_in_grid(float direction, frame to,
                                                  std::size_t bins) noexcept {
@@ -48,17 +48,17 @@ struct grid_place {
   return {bin % bins, off < 0.0F ? -off : off};
 }
 
-/// Fills every bin of `ranges_m`, of which there is at least one: the range in metres; +infinity where
-/// the sensor looked and nothing came back, which never hides a return; NaN where nothing is known,
-/// because it did not look, or because all that came back is too near to be trusted. *Never
-/// allocates.* Takes a scan of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
+/// Fills every bin of `ranges_m`, which is not empty: the range in metres; +infinity if the sensor
+/// measured there and nothing came back (never instead of a return); NaN if nothing is known,
+/// because the sensor did not measure there or every return is too near to be reliable. *Never
+/// allocates.* Accepts a scan of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {}) noexcept {
   assert(!ranges_m.empty() && points.size() <= (std::size_t{1} << 24));
-  // First each bin holds the index of its best point, which is exact in a float; then the range.
+  // First each bin holds the index of its best point, which a float holds exactly; then the range.
   constexpr float nothing = -1.0F;
   for (float& slot : ranges_m) slot = nothing;
-  enum : std::uint8_t { no_return, unusable, usable };  // the higher one takes the bin
+  enum : std::uint8_t { no_return, unusable, usable };  // the higher value takes the bin
   const auto worth = [&](const point& p) {
     if (p.is_no_return()) return no_return;
     return p.is_too_near() && !options.keep_too_near ? unusable : usable;
@@ -66,11 +66,11 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   const auto better = [&](const point& p, float off, const point& than) {
     if (worth(p) != worth(than)) return worth(p) > worth(than);
     if (options.pick == grid_pick::minimum) return p.range_mm < than.range_mm;
-    return off < place_in_grid(direction_deg(than), options.to, ranges_m.size()).off_middle_deg;
+    return off < place_in_grid(than.angle_deg, options.to, ranges_m.size()).off_middle_deg;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const point& p = points[i];
-    const grid_place place = place_in_grid(direction_deg(p), options.to, ranges_m.size());
+    const grid_place place = place_in_grid(p.angle_deg, options.to, ranges_m.size());
     float& slot = ranges_m[place.bin];
     if (slot < 0.0F || better(p, place.off_middle_deg, points[static_cast<std::size_t>(slot)])) {
       slot = static_cast<float>(i);

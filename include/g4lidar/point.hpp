@@ -3,40 +3,45 @@
 #pragma once
 
 #include <array>
+#if __STDC_HOSTED__
+#include <chrono>
+#endif
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <type_traits>
 
-#include "g4lidar/angle.hpp"
-#include "g4lidar/correction.hpp"
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/correction.hpp"
 
 namespace g4lidar {
 
-/// What is to be known of a point beside its numbers; a set of bits.
-enum class point_marks : std::uint8_t {
+/// Properties of a point; a set of bits.
+enum class point_flags : std::uint8_t {
   none = 0,
-  no_return = 1,         ///< Nothing came back: `range_mm` is 0 and no range.
-  too_near = 2,          ///< Below 100 mm, where range and correction are not to be trusted.
+  no_return = 1,         ///< Nothing came back: `range_mm` is 0 and not a range.
+  too_near = 2,          ///< Below 100 mm, where range and correction are not reliable.
   revolution_start = 4,  ///< The sample of a zero packet, the first one of its revolution.
 };
 
-/// All marks of both. *Pure.*
-[[nodiscard]] constexpr point_marks operator|(point_marks a, point_marks b) noexcept {
-  return static_cast<point_marks>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+/// All flags of both. *Pure.*
+[[nodiscard]] constexpr point_flags operator|(point_flags a, point_flags b) noexcept {
+  return static_cast<point_flags>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
-/// The marks that both have. *Pure.*
-[[nodiscard]] constexpr point_marks operator&(point_marks a, point_marks b) noexcept {
-  return static_cast<point_marks>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
+/// The flags that both contain. *Pure.*
+[[nodiscard]] constexpr point_flags operator&(point_flags a, point_flags b) noexcept {
+  return static_cast<point_flags>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
 }
 
-/// Ranges below this are marked too near, in millimetres. (protocol: Point packets)
+/// Ranges below this are flagged too_near, in millimetres. (protocol: Point packets)
 inline constexpr float too_near_mm = 100.0F;
 
 /// One measured point in the device's own frame. Trivially copyable, 24 bytes, no padding.
 struct point {
-  /// The corrected direction in [0, 360), never 360: clockwise seen from above, 0 at the cable exit.
-  /// Of a point without return: the first-level angle, as the manual has it; the direction in which
-  /// nothing was seen is g4lidar::direction_deg().
+  /// The direction in which the sensor looked, in [0, 360), never 360: clockwise seen from above, 0
+  /// at the cable exit. For a point without return: the direction of an infinitely distant target,
+  /// 7.9906 degrees less than the first-level angle. (protocol: Point packets, a sample of 0)
   float angle_deg = 0.0F;
   /// The distance in millimetres, 0 for no return.
   float range_mm = 0.0F;
@@ -44,22 +49,29 @@ struct point {
   std::int64_t time_ns = 0;
   /// Which revolution since the start of the stream, the first one being 0.
   std::uint32_t revolution = 0;
-  point_marks marks = point_marks::none;
-  /// Zeroes, so that the structure has no padding and equal points have equal bytes.
+  point_flags flags = point_flags::none;
+  /// Zeros: the structure has no padding, so equal points have equal bytes.
   std::array<std::uint8_t, 3> reserved{};
 
-  /// Whether nothing came back: then `range_mm` is no range.
+  /// Whether nothing came back; then `range_mm` is not a range.
   [[nodiscard]] constexpr bool is_no_return() const noexcept {
-    return (marks & point_marks::no_return) != point_marks::none;
+    return (flags & point_flags::no_return) != point_flags::none;
   }
-  /// Whether something came back from below 100 mm: there it is, but not to be trusted.
+  /// Whether the return came from below 100 mm: an object is there, but its range is not reliable.
   [[nodiscard]] constexpr bool is_too_near() const noexcept {
-    return (marks & point_marks::too_near) != point_marks::none;
+    return (flags & point_flags::too_near) != point_flags::none;
   }
-  /// Whether this is the sample of a zero packet, with which a revolution begins.
+  /// Whether this is the sample of a zero packet, which begins a revolution.
   [[nodiscard]] constexpr bool is_revolution_start() const noexcept {
-    return (marks & point_marks::revolution_start) != point_marks::none;
+    return (flags & point_flags::revolution_start) != point_flags::none;
   }
+
+#if __STDC_HOSTED__
+  /// `time_ns` as a time of the monotonic clock; the epoch if it is not known.
+  [[nodiscard]] constexpr std::chrono::steady_clock::time_point time() const noexcept {
+    return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns));
+  }
+#endif
 
   friend constexpr bool operator==(const point&, const point&) noexcept = default;
 };
@@ -67,12 +79,12 @@ struct point {
 static_assert(sizeof(point) == 24);
 static_assert(std::is_trivially_copyable_v<point>);
 
-/// The direction in which the sensor looked, clockwise degrees in [0, 360): `angle_deg`, but for a
-/// point without return that of a target infinitely far away, 7.9906 degrees less. *Pure.*
-/// (protocol: Point packets, a sample of 0)
-[[nodiscard]] constexpr float direction_deg(const point& p) noexcept {
-  constexpr auto far = static_cast<float>(far_correction_deg);
-  return p.is_no_return() ? wrap_once_deg(p.angle_deg + far) : p.angle_deg;
+/// The first-level angle of a point, clockwise degrees in [0, 360): the angle of the head, without
+/// the correction by the range. *Pure.* Within 1e-4 degrees for ranges as decode() gives them;
+/// g4lidar::first_level_angles has the exact angles of a packet. (protocol: Point packets)
+[[nodiscard]] constexpr float raw_angle_deg(const point& p) noexcept {
+  const auto raw = static_cast<std::uint16_t>(p.range_mm * 4.0F);
+  return wrap_once_deg(p.angle_deg - compact_correction{}(raw));
 }
 
 /// The frames of reference. (protocol: Frames of reference)
@@ -99,9 +111,17 @@ struct polar {
 
 /// A point's direction and range in frame `to`. *Pure.*
 [[nodiscard]] constexpr polar to_polar(const point& p, frame to) noexcept {
-  const float turned = bearing_deg(direction_deg(p), to);
+  const float turned = bearing_deg(p.angle_deg, to);
   const float centred = turned >= 180.0F ? turned - 360.0F : turned;
   return {centred * (std::numbers::pi_v<float> / 180.0F), p.range_mm * 0.001F};
+}
+
+/// Writes all of `points` in frame `to` to the front of `out`, which is at least as long, and
+/// returns what was written. *Pure.*
+constexpr std::span<polar> to_polar(std::span<const point> points, frame to,
+                                    std::span<polar> out) noexcept {
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = to_polar(points[i], to);
+  return out.first(points.size());
 }
 
 }  // namespace g4lidar

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The version of the library; the build system and the packages read it from here.
+// The version of the library; the build system and the packages read it from this file.
 #pragma once
+
+#include "g4lidar/detail/cpp20.hpp"
 
 #define G4LIDAR_VERSION_MAJOR 0
 #define G4LIDAR_VERSION_MINOR 1
@@ -8,16 +10,16 @@
 
 namespace g4lidar {
 
-/// A version, as Semantic Versioning counts: a minor version adds, a major one breaks. Before 1.0 a
-/// minor one may break too.
+/// A version by Semantic Versioning: a minor version adds, a major version breaks. Before 1.0 a
+/// minor version may break, too.
 struct version {
   int major_number;
   int minor_number;
   int patch_number;
 };
 
-/// The version of these headers, for a program that wants to tell or to compare it; for the
-/// preprocessor the macros above say the same.
+/// The version of these headers, for programs that print or compare it; the macros above are the
+/// same for the preprocessor.
 inline constexpr version header_version{G4LIDAR_VERSION_MAJOR, G4LIDAR_VERSION_MINOR,
                                         G4LIDAR_VERSION_PATCH};
 

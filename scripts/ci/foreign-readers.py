@@ -86,11 +86,11 @@ def by_mcap(path, wanted):
         metadata = {each.name: each.metadata for each in reader.iter_metadata()}
         assert metadata["g4lidar.device"]["serial_number"] == "2021101000070073"
         assert metadata["g4lidar.digest"]["payload"] == wanted["payload"][0]
-        # In the order of the file, which is that of the line.
+        # In the order of the file, which is that of the transport.
         messages = list(reader.iter_messages(topics=RAW, log_time_order=False))
         pieces = [(channel.topic, line_bytes(message.data)) for _, channel, message in messages]
         assert digest(pieces) == wanted["payload"][0]
-        # And by the indexes.
+        # Also by the indexes.
         middle = (statistics.message_start_time + statistics.message_end_time) // 2
         late = list(reader.iter_messages(topics=wanted["topic"], starting_at=middle))
         assert 0 < len(late) < len(wanted["scans"])
@@ -116,7 +116,7 @@ def by_rosbags(path, wanted):
     for scan, (stamp, ranges) in zip(scans, wanted["scans"]):
         assert scan.header.frame_id == "lidar_frame"
         late_ns = scan.header.stamp.sec * 10**9 + scan.header.stamp.nanosec - stamp
-        # The wall clock of who reads is that of each message, not of each chunk.
+        # Each message has the wall clock of its own time, not that of its chunk.
         assert abs(late_ns) <= (5_000_000 if wanted["about"] else 0)
         assert len(scan.ranges) == len(ranges)
         assert (close if wanted["about"] else same)(scan.ranges, ranges)

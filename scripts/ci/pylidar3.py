@@ -35,7 +35,7 @@ def use(room, path):
         ranges += [r for r in next(scans).values() if r > 0]
     lidar.StopScanning()
     lidar.Disconnect()
-    # PyLidar3 averages and rounds what falls into a degree; at a packet's end it is off by some.
+    # PyLidar3 averages and rounds the samples of a degree; at the end of a packet it is less exact.
     need(len(ranges) > 6 * 300, f"only {len(ranges)} directions with a range")
     need(min(ranges) > nearest - 60, f"{room}: {min(ranges)} mm is too near")
     need(max(ranges) < farthest + 60, f"{room}: {max(ranges)} mm is too far")
@@ -46,7 +46,7 @@ def use(room, path):
 def guarded(room, path):
     try:
         use(room, path)
-    except Exception as fault:  # a thread must not die in silence
+    except Exception as fault:  # an exception in a thread must be reported
         faults.append(f"{room}: {fault!r}")
 
 

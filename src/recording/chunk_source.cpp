@@ -16,12 +16,12 @@ namespace g4lidar::mcap {
 namespace {
 
 constexpr std::size_t window_room = std::size_t{256} << 10U;
-/// A chunk's fields before its records, with the longest name of a packing.
+/// A chunk's fields before its records, with the longest name of a compression.
 constexpr std::size_t longest_packing = 16;
 constexpr std::size_t chunk_fields = 8 + 8 + 8 + 4 + 4 + 8;
 constexpr std::size_t longest_chunk_header = chunk_fields + longest_packing;
 constexpr std::size_t data_end_length = 4;
-/// Guesses that turn out wrong may cost as many times the size of the file.
+/// Wrong guesses may cost this many times the size of the file.
 constexpr std::uint64_t patience = 8;
 
 class file_source final : public byte_source {
@@ -30,8 +30,10 @@ class file_source final : public byte_source {
       : fd_(std::move(fd)), size_(size), path_(std::move(path)) {}
 
   [[nodiscard]] std::uint64_t size() const noexcept override { return size_; }
-  [[nodiscard]] result<std::size_t> read(std::uint64_t at,
-                                         std::span<std::uint8_t> out) noexcept override {
+
+ private:
+  [[nodiscard]] result<std::size_t> read_some(std::uint64_t at,
+                                              std::span<std::uint8_t> out) noexcept override {
     std::size_t done = 0;
     while (done < out.size()) {
       const auto from = static_cast<off_t>(at + done);
@@ -44,7 +46,6 @@ class file_source final : public byte_source {
     return done;
   }
 
- private:
   owned_fd fd_;
   std::uint64_t size_;
   std::string path_;
@@ -66,40 +67,41 @@ result<std::shared_ptr<byte_source>> open_file_source(std::string_view path) {
                                        std::move(name));
 }
 
+bool has_magic(byte_source& file) noexcept {
+  std::array<std::uint8_t, magic.size()> begin{};
+  return file.read(0, begin) == begin.size() && begin == magic;
+}
+
 chunk_source::chunk_source(std::shared_ptr<byte_source> file)
     : file_(std::move(file)), size_(file_->size()), limit_(size_), window_(window_room) {}
 
 // ---- bytes --------------------------------------------------------------------------------------
 
-/// Bytes from `at` on, `size` of them (at most the window's) or all there are.
-result<bytes> chunk_source::window(std::uint64_t at, std::size_t size) {
+/// `size` bytes from `at` on (at most the size of the window), or all available ones.
+bytes chunk_source::window(std::uint64_t at, std::size_t size) {
   const bool begins_in = at >= window_at_ && at <= window_at_ + window_size_;
   const std::uint64_t held = begins_in ? window_at_ + window_size_ - at : 0;
   const std::uint64_t there = at < size_ ? size_ - at : 0;
   if (held < std::min<std::uint64_t>(size, there)) {
-    window_size_ = 0;
-    const auto count = file_->read(at, window_);
-    if (!count) return tl::unexpected(count.error());
     window_at_ = at;
-    window_size_ = *count;
+    window_size_ = file_->read(at, window_);
   }
-  const std::size_t skipped = at < size_ ? static_cast<std::size_t>(at - window_at_) : window_size_;
-  const bytes all = bytes(window_).first(window_size_).subspan(skipped);
+  const std::uint64_t skipped = std::min<std::uint64_t>(at - window_at_, window_size_);
+  const bytes all = bytes(window_).first(window_size_).subspan(static_cast<std::size_t>(skipped));
   return all.first(std::min(size, all.size()));
 }
 
-/// The same for any size that is there.
-result<bytes> chunk_source::content(std::uint64_t at, std::size_t size) {
+/// The same for any size.
+bytes chunk_source::content(std::uint64_t at, std::size_t size) {
   if (size <= window_room) return window(at, size);
   if (stored_.size() < size) stored_.resize(size);
-  const auto count = file_->read(at, std::span(stored_).first(size));
-  if (!count) return tl::unexpected(count.error());
-  return bytes(stored_).first(*count);
+  return bytes(stored_).first(file_->read(at, std::span(stored_).first(size)));
 }
 
-// ---- what is believed ---------------------------------------------------------------------------
+// ---- plausibility checks -----------------------------------------------------------------------
 
-/// Whether a record can begin so, at `at`. Chunks, which are worth a search, have much to be held to.
+/// Whether a record can begin like this, at `at`. Chunks, which are searched for, have several
+/// fields to check.
 std::optional<chunk_source::record_header> chunk_source::believe(bytes begin,
                                                                  std::uint64_t at) const noexcept {
   if (begin.size() < record_header_size) return std::nullopt;
@@ -126,7 +128,7 @@ std::optional<chunk_source::record_header> chunk_source::believe(bytes begin,
     case opcode::metadata:
       break;
     default:
-      if (begin[0] < 0x80) return std::nullopt;  // else it is somebody's own
+      if (begin[0] < 0x80) return std::nullopt;  // otherwise it is an extension of another program
   }
   return header;
 }
@@ -155,39 +157,33 @@ std::optional<chunk_source::chunk_header> chunk_source::chunk_from(bytes content
   return chunk;
 }
 
-// ---- the walk -----------------------------------------------------------------------------------
+// ---- the sequence of records -------------------------------------------------------------------
 
-/// A proper end: the end of the data, perhaps a summary, the footer, the magic.
-result<void> chunk_source::look_at_end() {
+/// A proper end: the end of the data, optionally a summary, the footer, the magic.
+void chunk_source::look_at_end() {
   is_open_ = true;
   at_ = trusted_ = begin_of_records;
   constexpr std::size_t tail = footer_size + magic.size();
   constexpr std::size_t data_end_size = record_header_size + data_end_length;
-  if (size_ < begin_of_records + data_end_size + tail) return {};
+  if (size_ < begin_of_records + data_end_size + tail) return;
   const auto last = window(size_ - tail, tail);
-  if (!last) return tl::unexpected(last.error());
-  if (last->size() < tail || !std::ranges::equal(last->last(magic.size()), magic)) return {};
-  if ((*last)[0] != static_cast<std::uint8_t>(opcode::footer) || load_u64(*last, 1) != 20)
-    return {};
-  const std::uint64_t summary = load_u64(*last, record_header_size);
+  if (last.size() < tail || !std::ranges::equal(last.last(magic.size()), magic)) return;
+  if (last[0] != static_cast<std::uint8_t>(opcode::footer) || load_u64(last, 1) != 20) return;
+  const std::uint64_t summary = load_u64(last, record_header_size);
   const std::uint64_t end = summary == 0 ? size_ - tail : summary;
-  if (end > size_ - tail || end < begin_of_records + data_end_size) return {};
+  if (end > size_ - tail || end < begin_of_records + data_end_size) return;
   const auto before = window(end - data_end_size, data_end_size);
-  if (!before) return tl::unexpected(before.error());
-  const bool is_data_end = before->size() == data_end_size &&
-                           (*before)[0] == static_cast<std::uint8_t>(opcode::data_end) &&
-                           load_u64(*before, 1) == data_end_length;
-  if (!is_data_end) return {};
+  const bool is_data_end = before.size() == data_end_size &&
+                           before[0] == static_cast<std::uint8_t>(opcode::data_end) &&
+                           load_u64(before, 1) == data_end_length;
+  if (!is_data_end) return;
   has_end_ = true;
   summary_start_ = summary;
   limit_ = end;
-  return {};
 }
 
-result<std::uint64_t> chunk_source::summary_start() {
-  if (!is_open_) {
-    if (auto looked = look_at_end(); !looked) return tl::unexpected(looked.error());
-  }
+std::uint64_t chunk_source::summary_start() {
+  if (!is_open_) look_at_end();
   return summary_start_;
 }
 
@@ -197,142 +193,136 @@ void chunk_source::seek(std::uint64_t offset) noexcept {
   is_at_end_ = false;
 }
 
-result<record_block> chunk_source::next() {
+record_block chunk_source::next() {
   if (!is_open_) {
     const std::uint64_t sought = at_;
-    if (auto looked = look_at_end(); !looked) return tl::unexpected(looked.error());
+    look_at_end();
     if (is_sought_) at_ = sought;
   }
+  recording_damage kept = damage_;
   if (std::exchange(is_sought_, false)) {
-    const recording_damage kept = damage_;
-    if (auto found = resynchronise(at_); !found) return tl::unexpected(found.error());
+    resynchronise(at_);
     damage_ = kept;
   }
-  while (!is_at_end_) {
-    auto found = step();
-    if (!found || !found->records.empty()) return found;
+  while (!is_at_end_ && !file_->trouble()) {
+    kept = damage_;
+    const record_block found = step();
+    if (file_->trouble()) damage_ = kept;  // unreadable data is not damage
+    if (!found.records.empty()) return found;
   }
-  return record_block{};
+  return {};
 }
 
-/// One record: its block, where it is one to be read, else nothing.
-result<record_block> chunk_source::step() {
+/// One record: its block, if it is to be read, else nothing.
+record_block chunk_source::step() {
   if (at_ >= limit_) {
     end_here();
-    return record_block{};
+    return {};
   }
   const auto begin = window(at_, record_header_size + longest_chunk_header);
-  if (!begin) return tl::unexpected(begin.error());
-  const auto header = believe(*begin, at_);
+  const auto header = believe(begin, at_);
   if (!header) {
-    if (auto found = resynchronise(trusted_); !found) return tl::unexpected(found.error());
-    return record_block{};
+    resynchronise(trusted_);
+    return {};
   }
   if (header->kind == opcode::chunk) return chunk_at(at_, header->length);
   is_guess_ = false;
   if (header->kind == opcode::data_end) {
     end_here();
-    return record_block{};
+    return {};
   }
   const std::uint64_t at = at_;
   const std::uint64_t size = record_header_size + header->length;
   at_ += size;
   const bool is_read = header->kind == opcode::message || header->kind == opcode::channel ||
                        header->kind == opcode::metadata;
-  if (!is_read || size > largest_record) return record_block{};
+  if (!is_read || size > largest_record) return {};
   const auto record = content(at, static_cast<std::size_t>(size));
-  if (!record) return tl::unexpected(record.error());
-  if (record->size() < size) return record_block{};  // it has become shorter meanwhile
-  return record_block{*record, at};
+  if (record.size() < size) return {};  // the file has become shorter meanwhile
+  return {record, at};
 }
 
-result<record_block> chunk_source::chunk_at(std::uint64_t at, std::uint64_t length) {
+record_block chunk_source::chunk_at(std::uint64_t at, std::uint64_t length) {
   const auto begin = window(at + record_header_size, longest_chunk_header);
-  if (!begin) return tl::unexpected(begin.error());
-  const auto chunk = chunk_from(*begin, length);
-  if (!chunk) return record_block{};  // believe() has seen it
+  const auto chunk = chunk_from(begin, length);
+  if (!chunk) return {};  // believe() has checked it
   if (chunk->how == chunk_header::packed::zstd && !has_zstd()) {
-    return failure(task::reading, problem::bad_option,
-                   "a recording packed with zstd: built without");
+    file_->fail(
+        error(task::reading, problem::bad_option, "a recording packed with zstd: built without"));
+    return {};
   }
-  const auto read = records_of(at + record_header_size + chunk->header_size, *chunk);
-  if (!read) return tl::unexpected(read.error());
-  const std::optional<bytes> records = *read;
+  const auto records = records_of(at + record_header_size + chunk->header_size, *chunk);
   if (!records) {
-    if (auto lost = lose_chunk(at, length); !lost) return tl::unexpected(lost.error());
-    return record_block{};
+    lose_chunk(at, length);
+    return {};
   }
   is_guess_ = false;
   at_ = trusted_ = at + record_header_size + length;
-  return record_block{*records, at};
+  return {*records, at};
 }
 
-/// The unpacked records, if they are what they were.
-result<std::optional<bytes>> chunk_source::records_of(std::uint64_t at, const chunk_header& chunk) {
+/// The uncompressed records, if their checksum matches.
+std::optional<bytes> chunk_source::records_of(std::uint64_t at, const chunk_header& chunk) {
   if (chunk.how == chunk_header::packed::other) return std::nullopt;
   const auto stored = content(at, static_cast<std::size_t>(chunk.stored));
-  if (!stored) return tl::unexpected(stored.error());
-  if (stored->size() < chunk.stored) return std::nullopt;
-  bytes records = *stored;
+  if (stored.size() < chunk.stored) return std::nullopt;
+  bytes records = stored;
   if (chunk.how == chunk_header::packed::zstd) {
     const auto size = static_cast<std::size_t>(chunk.size);
-    if (!unpacker_.unpack(*stored, size, unpacked_)) return std::nullopt;
+    if (!unpacker_.unpack(stored, size, unpacked_)) return std::nullopt;
     records = bytes(unpacked_).first(size);
   }
   if (chunk.crc != 0 && crc32_of(records) != chunk.crc) return std::nullopt;
   return records;
 }
 
-/// A chunk is not whole. Where another record follows it, it was one; else its length is wrong, too, or
-/// it only looked like one.
-result<void> chunk_source::lose_chunk(std::uint64_t at, std::uint64_t length) {
+/// A chunk is damaged. If another record follows it, it was a chunk; otherwise its length is also
+/// wrong, or it was not a chunk.
+void chunk_source::lose_chunk(std::uint64_t at, std::uint64_t length) {
   const std::uint64_t size = record_header_size + length;
   const auto behind = window(at + size, record_header_size + longest_chunk_header);
-  if (!behind) return tl::unexpected(behind.error());
-  const bool ends_well = at + size == limit_ || believe(*behind, at + size).has_value();
+  const bool ends_well = at + size == limit_ || believe(behind, at + size).has_value();
   const bool was_guess = std::exchange(is_guess_, false);
   wasted_ += size;
   if (ends_well || !was_guess) ++damage_.chunks_lost;
   if (ends_well || wasted_ / patience > size_) {
     damage_.bytes_skipped += size;
     at_ = trusted_ = at + size;
-    return {};
+    return;
   }
   damage_.bytes_skipped += 1;
   return resynchronise(at + 1);
 }
 
-/// Looks for something like a chunk, from `from` on.
-result<void> chunk_source::resynchronise(std::uint64_t from) {
+/// Searches for a chunk, from `from` on.
+void chunk_source::resynchronise(std::uint64_t from) {
   std::uint64_t at = from;
   while (at + record_header_size < limit_) {
     const auto part = window(at, window_room);
-    if (!part) return tl::unexpected(part.error());
-    if (part->size() < record_header_size) break;
+    if (part.size() < record_header_size) break;
     std::size_t i = 0;
     constexpr std::size_t wanted = record_header_size + longest_chunk_header;
-    const bool is_last = at + part->size() >= limit_;
-    const std::size_t end = is_last || part->size() < wanted ? part->size() : part->size() - wanted;
+    const bool is_last = at + part.size() >= limit_;
+    const std::size_t end = is_last || part.size() < wanted ? part.size() : part.size() - wanted;
     for (; i < end; ++i) {
       const void* const found =
-          std::memchr(part->data() + i, static_cast<int>(opcode::chunk), end - i);
+          std::memchr(part.data() + i, static_cast<int>(opcode::chunk), end - i);
       if (found == nullptr) {
         i = end;
         break;
       }
-      i = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - part->data());
-      if (believe(part->subspan(i), at + i)) {
+      i = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - part.data());
+      if (believe(part.subspan(i), at + i)) {
         damage_.bytes_skipped += at + i - from;
         at_ = trusted_ = at + i;
         is_guess_ = true;
-        return {};
+        return;
       }
     }
     at += std::max<std::size_t>(i, 1);
   }
   damage_.bytes_skipped += limit_ - std::min(from, limit_);
   at_ = limit_;
-  return {};
 }
 
 void chunk_source::end_here() noexcept {
@@ -341,17 +331,14 @@ void chunk_source::end_here() noexcept {
   if (!has_end_) damage_.is_cut_off = true;
 }
 
-result<bytes> chunk_source::record_at(std::uint64_t offset, opcode kind) {
-  const auto begin = window(offset, record_header_size);
-  if (!begin) return tl::unexpected(begin.error());
-  if (begin->size() < record_header_size) return bytes{};
-  const std::uint64_t length = load_u64(*begin, 1);
-  const bool is_it = (*begin)[0] == static_cast<std::uint8_t>(kind);
-  if (!is_it || length > largest_record) return bytes{};
-  const auto found = content(offset + record_header_size, static_cast<std::size_t>(length));
-  if (!found) return tl::unexpected(found.error());
-  if (found->size() < length) return bytes{};
-  return *found;
+bytes chunk_source::record_at(std::uint64_t offset, opcode kind) {
+  const bytes begin = window(offset, record_header_size);
+  if (begin.size() < record_header_size) return {};
+  const std::uint64_t length = load_u64(begin, 1);
+  const bool is_it = begin[0] == static_cast<std::uint8_t>(kind);
+  if (!is_it || length > largest_record) return {};
+  const bytes found = content(offset + record_header_size, static_cast<std::size_t>(length));
+  return found.size() < length ? bytes{} : found;
 }
 
 }  // namespace g4lidar::mcap

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// CRC-32 as MCAP, zlib and Ethernet have it.
+// CRC-32 of MCAP, zlib and Ethernet.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include "g4lidar/bytes.hpp"
+#include "g4lidar/core/bytes.hpp"
 
 namespace g4lidar::mcap {
 
@@ -14,7 +14,7 @@ namespace crc_detail {
 
 inline constexpr std::size_t stride = 16;
 
-/// Table k gives what a byte does to the sum when k more bytes follow: sixteen bytes at a time.
+/// Table k has the effect of a byte on the sum when k more bytes follow: sixteen bytes at a time.
 consteval std::array<std::array<std::uint32_t, 256>, stride> make_tables() {
   std::array<std::array<std::uint32_t, 256>, stride> tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
@@ -32,7 +32,7 @@ consteval std::array<std::array<std::uint32_t, 256>, stride> make_tables() {
 }
 inline constexpr auto tables = make_tables();
 
-/// What eight bytes do to the sum when `after` more follow.
+/// The effect of eight bytes on the sum when `after` more follow.
 template <std::size_t after>
 [[nodiscard]] constexpr std::uint32_t of_eight(std::uint64_t data) noexcept {
   const auto of = [data](std::size_t byte) {
@@ -43,7 +43,7 @@ template <std::size_t after>
 
 }  // namespace crc_detail
 
-/// A sum that grows. *Never allocates.*
+/// An incremental checksum. *Never allocates.*
 class crc32 {
  public:
   constexpr void add(bytes data) noexcept {

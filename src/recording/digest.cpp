@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "g4lidar/recording/digest.hpp"
 #include "g4lidar/bulk_decoder.hpp"
-#include "g4lidar/recording_digest.hpp"
 
 namespace g4lidar {
 

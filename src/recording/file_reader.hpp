@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands behind a recording_reader: the records of the chunks, read as what was recorded.
+// The implementation of recording_reader: reads recorded items from the records of the chunks.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "chunk_source.hpp"
-#include "g4lidar/recording_reader.hpp"
+#include "g4lidar/recording/reader.hpp"
 #include "messages.hpp"
 
 namespace g4lidar {
@@ -36,19 +36,18 @@ class recording_reader::file_reader {
   file_reader(std::shared_ptr<mcap::byte_source> file, std::string_view path);
 
   [[nodiscard]] result<void> begin(const reading_options& options);
-  [[nodiscard]] result<void> read_summary();
-  [[nodiscard]] result<void> read_group(std::uint64_t at, std::uint64_t end);
-  [[nodiscard]] result<void> read_front();
-  [[nodiscard]] result<void> seek(std::int64_t from_ns);
-  [[nodiscard]] result<std::optional<std::uint64_t>> chunk_before(std::int64_t from_ns);
+  void read_summary();
+  void read_group(std::uint64_t at, std::uint64_t end);
+  void read_front();
+  void seek(std::int64_t from_ns);
+  [[nodiscard]] std::optional<std::uint64_t> chunk_before(std::int64_t from_ns);
   [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes records) noexcept;
 
-  [[nodiscard]] result<std::optional<recorded_item>> advance();
-  [[nodiscard]] result<std::optional<recorded_item>> read();
+  [[nodiscard]] std::optional<recorded_item> advance();
+  [[nodiscard]] std::optional<recorded_item> read();
   [[nodiscard]] std::optional<recorded_item> item_in(mcap::field_reader record) noexcept;
   void take_channel(mcap::field_reader record) noexcept;
   void take_metadata(mcap::field_reader record);
-  void take_digest(mcap::field_reader record);
   [[nodiscard]] bool skips(std::uint32_t sequence) noexcept;
 
   std::string path_;
@@ -67,12 +66,12 @@ class recording_reader::file_reader {
   std::optional<std::uint32_t> sequence_;  // the last one, of bytes from the device
   bool is_gap_ = false;
   bool is_over_ = false;
-  std::optional<recorded_item> waiting_;  // behind a note that was made up
-  mcap::line_state line_;                 // as of the items given
-  bool is_line_told_ = true;              // else what was skipped is told first
+  std::optional<recorded_item> waiting_;  // the item behind a generated event
+  mcap::line_state line_;                 // the state after the returned items
+  bool is_line_told_ = true;              // otherwise the skipped state is returned first
 };
 
-/// Opens a recording that lies anywhere.
+/// Opens a recording in any kind of byte source.
 struct recording_access {
   [[nodiscard]] static result<recording_reader> open(std::shared_ptr<mcap::byte_source> file,
                                                      std::string_view path,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands behind a recording_writer: the chunk being filled, and the file that it goes to.
+// The implementation of recording_writer: the chunk being filled, and its file.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/recording.hpp"
+#include "g4lidar/recording/writer.hpp"
 #include "mcap_file.hpp"
 #include "messages.hpp"
 #include "packer.hpp"
@@ -23,7 +23,7 @@ class recording_writer::file_writer {
   file_writer(mcap::mcap_file first, std::string_view path, const recording_options& options);
 
   void line_bytes(direction way, bytes data, std::int64_t time_ns) noexcept;
-  void note(const line_note& what) noexcept;
+  void note(const recorded_event& what) noexcept;
   void scan(const g4lidar::scan& revolution) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
@@ -37,7 +37,7 @@ class recording_writer::file_writer {
   [[nodiscard]] std::string_view path() const noexcept { return file_->path(); }
 
  private:
-  /// Whatever there is no memory for is a chunk that is lost.
+  /// If there is no memory, the chunk is lost.
   template <class Work>
   result<void> guarded(Work work) noexcept;
   template <class Put>

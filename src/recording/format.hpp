@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// MCAP, as far as recordings need it: the kinds of records, and what a reader believes.
+// MCAP, as far as recordings need it: the kinds of records, and the limits of a reader.
 // (mcap.dev/spec)
 #pragma once
 
@@ -30,15 +30,15 @@ enum class opcode : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// Before the content of each record: its kind and its length.
+/// The fields before the content of each record: its kind and its length.
 inline constexpr std::size_t record_header_size = 1 + 8;
-/// Before the data of a message: channel, sequence, two times.
+/// The fields before the data of a message: channel, sequence, two times.
 inline constexpr std::size_t message_header_size = 2 + 4 + 8 + 8;
 inline constexpr std::size_t footer_size = record_header_size + 8 + 8 + 4;
 
-/// A chunk is at most so large, packed and unpacked; a file that claims more is not believed.
+/// The maximum size of a chunk, compressed and uncompressed; larger ones are treated as damage.
 inline constexpr std::uint64_t largest_chunk = std::uint64_t{64} << 20U;
-/// And any other record that is read, and not skipped.
+/// The maximum size of any other record that is read, and not skipped.
 inline constexpr std::uint64_t largest_record = std::uint64_t{1} << 20U;
 
 }  // namespace g4lidar::mcap

@@ -13,9 +13,9 @@
 namespace g4lidar::mcap {
 namespace {
 
-/// Pieces of the summary.
+/// Parts of the summary.
 constexpr std::size_t summary_piece = std::size_t{64} << 10U;
-/// For a chunk and its indexes, so that writing one does not allocate.
+/// Reserved for a chunk and its indexes, so that writing one does not allocate.
 constexpr std::size_t text_room = std::size_t{1536} << 10U;
 
 std::string library_name() {
@@ -122,7 +122,7 @@ result<void> mcap_file::write_all(bytes data) noexcept {
   return {};
 }
 
-/// Whole, or not at all.
+/// Completely, or not at all.
 result<void> mcap_file::write(bytes data) {
   auto done = write_all(data);
   if (!done) {
@@ -257,7 +257,8 @@ void mcap_file::put_chunk_index(const chunk_place& of) {
   text_.end(record);
 }
 
-/// The groups of the summary, where each begins, and the footer, whose sum is over all of that.
+/// The groups of the summary, with their offsets, and the footer, whose checksum covers all of
+/// them.
 result<void> mcap_file::summarise() {
   struct group {
     opcode kind;

@@ -11,15 +11,16 @@
 #include <string_view>
 #include <vector>
 
-#include "../device/owned_fd.hpp"
 #include "crc32.hpp"
 #include "g4lidar/error.hpp"
 #include "messages.hpp"
 #include "record_text.hpp"
+#include "transport/owned_fd.hpp"
 
 namespace g4lidar::mcap {
 
-/// The messages of a chunk that is being filled. It is given to a file whole. *Allocates on open.*
+/// The messages of a chunk that is being filled. It is written to a file as a whole. *Allocates on
+/// open.*
 class open_chunk {
  public:
   open_chunk();
@@ -28,9 +29,9 @@ class open_chunk {
   /// Whether a message of so many bytes still fits.
   [[nodiscard]] bool has_room_for(std::size_t size) const noexcept;
 
-  /// What comes before the messages. Scans are on `scan_topic`.
+  /// The records before the messages. Scans are on `scan_topic`.
   void put_channels(std::string_view scan_topic);
-  /// Begins a message; its data goes into text(), and then end_message().
+  /// Begins a message; write its data to text(), and then call end_message().
   void begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns);
   void end_message();
   [[nodiscard]] record_text& text() noexcept { return text_; }
@@ -63,24 +64,23 @@ class open_chunk {
   std::uint64_t last_ns_ = 0;
 };
 
-/// *Single thread.* Everything goes to the system in whole records; what could only be written in part
-/// is taken back.
+/// *Single thread.* Only complete records are passed to the system; a partial write is reverted.
 class mcap_file {
  public:
-  /// Creates it, and writes what stands before the chunks. Scans are on `scan_topic`.
+  /// Creates it, and writes the records before the chunks. Scans are on `scan_topic`.
   [[nodiscard]] static result<mcap_file> create(const std::string& path, std::string scan_topic,
                                                 bool overwrite);
   mcap_file(mcap_file&&) noexcept = default;
 
-  /// `packed` where the records were packed with zstd, else empty.
+  /// `packed`: the records compressed with zstd, or empty.
   [[nodiscard]] result<void> add(const open_chunk& chunk, bytes packed);
   [[nodiscard]] result<void> add_metadata(std::string_view name, const word_map& words);
-  /// Writes the summary; nothing can be added then.
+  /// Writes the summary; nothing can be added afterwards.
   [[nodiscard]] result<void> close();
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return offset_; }
-  /// How large it is when it is closed now.
+  /// Its size if it is closed now.
   [[nodiscard]] std::uint64_t closed_size() const noexcept;
   [[nodiscard]] bool has_chunks() const noexcept { return !chunks_.empty(); }
 
@@ -108,7 +108,7 @@ class mcap_file {
   std::string path_;
   std::string scan_topic_;
   std::uint64_t offset_ = 0;
-  crc32 crc_;  // of all that was written, and later of the summary
+  crc32 crc_;  // of everything written, and later of the summary
   record_text text_;
   std::vector<chunk_place> chunks_;
   std::vector<metadata_place> metadata_;

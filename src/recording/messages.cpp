@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
-#include <numbers>
+
+#include "export/cdr.hpp"
+#include "g4lidar/export/ros_messages.hpp"
+
+#include "g4lidar/core/response.hpp"
 
 namespace g4lidar {
 namespace {
@@ -14,7 +17,7 @@ constexpr std::array<std::string_view, 8> note_names{"opened", "closed", "sent",
 
 }  // namespace
 
-std::string_view name_of(line_note::kind what) noexcept {
+std::string_view name_of(recorded_event::kind what) noexcept {
   return note_names[static_cast<std::size_t>(what)];
 }
 
@@ -41,43 +44,12 @@ string reason
 string line
 )";
 
-constexpr std::string_view scan_schema =
-    R"(std_msgs/Header header
-float32 angle_min
-float32 angle_max
-float32 angle_increment
-float32 time_increment
-float32 scan_time
-float32 range_min
-float32 range_max
-float32[] ranges
-float32[] intensities
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-)";
-
-constexpr std::array<schema_words, 3> schemas{{
-    {1, "g4lidar_msgs/msg/LineBytes", line_bytes_schema},
-    {2, "g4lidar_msgs/msg/LineNote", line_note_schema},
-    {3, "sensor_msgs/msg/LaserScan", scan_schema},
-}};
-
 constexpr std::array<topic_words, topic_count> topics{{
     {topic::from_device, "/g4lidar/from_device", 1},
     {topic::to_device, "/g4lidar/to_device", 1},
     {topic::notes, "/g4lidar/notes", 2},
     {topic::scan, "/scan", 3},
 }};
-
-/// Ranges that can be trusted, in metres: beyond is what 16 bits cannot hold.
-constexpr float least_range_m = too_near_mm * 0.001F;
-constexpr float largest_range_m = 16.38375F;
 
 std::optional<problem> problem_named(std::string_view name) noexcept {
   for (std::size_t i = 0; i < problem_count; ++i) {
@@ -87,11 +59,20 @@ std::optional<problem> problem_named(std::string_view name) noexcept {
 }
 
 template <class Number>
-std::optional<Number> number_in(std::string_view text) noexcept {
+std::optional<Number> number_in(std::string_view text, int base = 10) noexcept {
   Number value{};
-  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), value, base);
   if (wrong != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+template <class Take>
+void for_each_word(field_reader& map, Take take) {
+  field_reader words(map.take(map.take<std::uint32_t>()));
+  while (!words.is_at_end() && words.is_good()) {
+    const std::string_view name = words.take_text();
+    take(name, words.take_text());
+  }
 }
 
 template <class Setting>
@@ -122,17 +103,24 @@ void take_firmware(device_information& who, std::string_view text) noexcept {
 
 }  // namespace
 
-std::span<const schema_words> all_schemas() noexcept { return schemas; }
+std::span<const schema_words> all_schemas() noexcept {
+  static const std::array<schema_words, 3> schemas{{
+      {1, "g4lidar_msgs/msg/LineBytes", line_bytes_schema},
+      {2, "g4lidar_msgs/msg/LineNote", line_note_schema},
+      {3, laser_scan_schema().name, laser_scan_schema().text},
+  }};
+  return schemas;
+}
 std::span<const topic_words> all_topics() noexcept { return topics; }
 
 void put_line_bytes(record_text& out, bytes data, std::int64_t time_ns) {
-  cdr_text message(out);
+  cdr_writer message(out.memory());
   message.put(time_ns);
   message.put(data);
 }
 
-void put_note(record_text& out, const line_note& what, std::int64_t wall_ahead_ns) {
-  cdr_text message(out);
+void put_note(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns) {
+  cdr_writer message(out.memory());
   message.put(what.time_ns);
   message.put(wall_ahead_ns);
   message.put(what.baud);
@@ -145,28 +133,6 @@ void put_note(record_text& out, const line_note& what, std::int64_t wall_ahead_n
   message.put(what.line.substr(0, 255));
 }
 
-void put_scan(record_text& out, std::span<const float> ranges, std::int64_t first_wall_ns,
-              std::int64_t duration_ns, std::string_view frame_id) {
-  constexpr float pi = std::numbers::pi_v<float>;
-  constexpr std::int64_t second_ns = 1'000'000'000;
-  const float increment = 2 * pi / static_cast<float>(ranges.size());
-  cdr_text message(out);
-  message.put(static_cast<std::int32_t>(first_wall_ns / second_ns));
-  message.put(static_cast<std::uint32_t>(first_wall_ns % second_ns));
-  message.put(frame_id);
-  message.put(-pi);
-  message.put(-pi + increment * static_cast<float>(ranges.size() - 1));
-  message.put(increment);
-  // A grid is not in the order of time: the device turns the other way than its angles grow.
-  message.put(0.0F);
-  message.put(static_cast<float>(duration_ns) * 1e-9F);
-  message.put(least_range_m);
-  message.put(largest_range_m);
-  message.put(static_cast<std::uint32_t>(ranges.size()));
-  for (const float range : ranges) out.put(std::bit_cast<std::uint32_t>(range));
-  message.put(std::uint32_t{0});
-}
-
 std::optional<line_bytes> line_bytes_from(bytes message) noexcept {
   if (message.size() < line_bytes_header_size || message[1] != 1) return std::nullopt;
   const std::uint32_t count = load_u32(message, 12);
@@ -175,15 +141,16 @@ std::optional<line_bytes> line_bytes_from(bytes message) noexcept {
                     message.subspan(line_bytes_header_size, count)};
 }
 
-/// A G4 does 9000; what is far beyond was never written by us, and no clock could follow it.
+/// A G4 has 9000; much larger values are never written by this library, and no clock could use
+/// them.
 constexpr std::uint32_t most_samples_per_second = 1'000'000;
 
-std::optional<line_note> note_from(bytes message) noexcept {
+std::optional<recorded_event> note_from(bytes message) noexcept {
   if (message.size() < 4 || message[1] != 1) return std::nullopt;
   field_reader fields(message.subspan(4));
-  line_note note{};
+  recorded_event note{};
   note.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
-  static_cast<void>(fields.take<std::uint64_t>());  // the wall clock is the message's
+  static_cast<void>(fields.take<std::uint64_t>());  // the wall clock is that of the message
   note.baud = fields.take<std::uint32_t>();
   note.samples_per_second = fields.take<std::uint32_t>();
   note.unparsed = fields.take<std::uint32_t>();
@@ -194,10 +161,10 @@ std::optional<line_note> note_from(bytes message) noexcept {
   note.line = fields.take_cdr_text();
   const auto* const named = std::ranges::find(note_names, what);
   if (!fields.is_good() || named == note_names.end()) return std::nullopt;
-  note.what = static_cast<line_note::kind>(named - note_names.begin());
+  note.what = static_cast<recorded_event::kind>(named - note_names.begin());
   if (note.samples_per_second > most_samples_per_second) return std::nullopt;
-  if (note.what == line_note::kind::begun && note.samples_per_second == 0) return std::nullopt;
-  return note.what == line_note::kind::sent ? std::nullopt : std::optional(note);
+  if (note.what == recorded_event::kind::begun && note.samples_per_second == 0) return std::nullopt;
+  return note.what == recorded_event::kind::sent ? std::nullopt : std::optional(note);
 }
 
 void put_map(record_text& out, const word_map& words) {
@@ -230,10 +197,7 @@ recorded_device device_of(field_reader& map) {
   recorded_device device;
   device_information& who = device.information;
   who.serial_digits.fill('0');
-  field_reader words(map.take(map.take<std::uint32_t>()));
-  while (!words.is_at_end() && words.is_good()) {
-    const std::string_view name = words.take_text();
-    const std::string_view value = words.take_text();
+  for_each_word(map, [&](std::string_view name, std::string_view value) {
     if (name == "model") who.model = number_in<std::uint8_t>(value).value_or(0);
     if (name == "firmware") take_firmware(who, value);
     if (name == "hardware") who.hardware = number_in<std::uint8_t>(value).value_or(0);
@@ -246,14 +210,27 @@ recorded_device device_of(field_reader& map) {
     if (name == "constant_frequency") take_setting(device.constant, value);
     if (name == "low_power") take_setting(device.idle, value);
     if (name == "power_down_protection") take_setting(device.protection, value);
-  }
+  });
   return device;
+}
+
+recorded_digest digest_of(field_reader& map, std::int64_t& last_ns) {
+  recorded_digest found{.is_same_version = false};
+  for_each_word(map, [&](std::string_view name, std::string_view value) {
+    if (name == "payload") found.payload = number_in<std::uint64_t>(value, 16).value_or(0);
+    if (name == "points") found.points = number_in<std::uint64_t>(value, 16).value_or(0);
+    if (name == "point_count") found.point_count = number_in<std::uint64_t>(value).value_or(0);
+    if (name == "computed_with") found.is_comparable = value == computed_with();
+    if (name == "points_version") found.is_same_version = value == points_version;
+    if (name == "last_ns") last_ns = number_in<std::int64_t>(value).value_or(0);
+  });
+  return found;
 }
 
 // ---- line_state --------------------------------------------------------------------------------
 
-void line_state::take(const line_note& what) noexcept {
-  using enum line_note::kind;
+void line_state::take(const recorded_event& what) noexcept {
+  using enum recorded_event::kind;
   is_known = true;
   if (what.what == opened || what.what == state) {
     baud = what.baud;
@@ -263,7 +240,7 @@ void line_state::take(const line_note& what) noexcept {
   switch (what.what) {
     case opened:
       is_open = true;
-      delivers = true;  // where no driver says otherwise
+      delivers = true;  // if no driver has recorded otherwise
       break;
     case closed:
       is_open = false;
@@ -286,8 +263,8 @@ void line_state::take(const line_note& what) noexcept {
   }
 }
 
-line_note line_state::as_note(std::int64_t time_ns) const noexcept {
-  line_note note{.what = line_note::kind::state, .time_ns = time_ns};
+recorded_event line_state::as_note(std::int64_t time_ns) const noexcept {
+  recorded_event note{.what = recorded_event::kind::state, .time_ns = time_ns};
   note.reason = is_open ? problem::cancelled : problem::gone;
   note.delivers = delivers;
   note.baud = baud;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands in the messages of a recording, and their schemas. (docs/recordings.md)
+// The contents of the messages of a recording, and their schemas. (docs/recordings.md)
 #pragma once
 
 #include <array>
@@ -11,15 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/bytes.hpp"
-#include "g4lidar/line_note.hpp"
-#include "g4lidar/recorded_device.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/detail/recorded_device.hpp"
+#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/recording/digest.hpp"
 #include "g4lidar/scan.hpp"
 #include "record_text.hpp"
 
 namespace g4lidar::mcap {
 
-/// The channels of a recording; their numbers in a file are these.
+/// The channels of a recording, with their numbers in a file.
 enum class topic : std::uint16_t { from_device = 1, to_device = 2, notes = 3, scan = 4 };
 inline constexpr std::size_t topic_count = 4;
 
@@ -36,37 +37,40 @@ struct topic_words {
 [[nodiscard]] std::span<const schema_words> all_schemas() noexcept;
 [[nodiscard]] std::span<const topic_words> all_topics() noexcept;
 
-/// So much stands before the bytes of a line in a message.
+/// The number of bytes before the recorded bytes in a message.
 inline constexpr std::size_t line_bytes_header_size = 4 + 8 + 4;
 
 void put_line_bytes(record_text& out, bytes data, std::int64_t time_ns);
-void put_note(record_text& out, const line_note& what, std::int64_t wall_ahead_ns);
-/// `ranges` as fill_grid() fills them in the robot's frame.
-void put_scan(record_text& out, std::span<const float> ranges, std::int64_t first_wall_ns,
-              std::int64_t duration_ns, std::string_view frame_id);
+void put_note(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns);
 
-/// A message of bytes: when they came, and the bytes, which are a view of `message`.
+/// A message of bytes: their time, and the bytes, a view of `message`.
 struct line_bytes {
   std::int64_t time_ns;
   bytes data;
 };
 [[nodiscard]] std::optional<line_bytes> line_bytes_from(bytes message) noexcept;
-/// A view of `message`; nothing where it is none, or of a kind that is not known.
-[[nodiscard]] std::optional<line_note> note_from(bytes message) noexcept;
+/// A view of `message`; nothing if it is invalid, or of an unknown kind.
+[[nodiscard]] std::optional<recorded_event> note_from(bytes message) noexcept;
 
-/// A map of words to words, as metadata have it.
+/// A map of strings to strings, as in metadata.
 using word_map = std::vector<std::pair<std::string, std::string>>;
 void put_map(record_text& out, const word_map& words);
 
 inline constexpr std::string_view device_metadata = "g4lidar.device";
 inline constexpr std::string_view digest_metadata = "g4lidar.digest";
+/// The version of the computation of points from bytes. It increases with each change that gives
+/// other points: digests of points of different versions cannot be compared. A recording without
+/// one has version 1.
+inline constexpr std::string_view points_version = "2";
 [[nodiscard]] word_map words_of(const recorded_device& device);
-/// What is not there, or makes no sense, is not known.
+/// Missing or invalid fields are not known.
 [[nodiscard]] recorded_device device_of(field_reader& map);
+/// The digests of a file, and the time of its last item.
+[[nodiscard]] recorded_digest digest_of(field_reader& map, std::int64_t& last_ns);
 
-/// How a line stands, as its notes tell.
+/// The state of a transport, from its recorded events.
 struct line_state {
-  bool is_known = false;  ///< Anything has been told.
+  bool is_known = false;  ///< Whether there was an event.
   bool is_open = false;
   bool delivers = true;
   std::uint32_t baud = 0;
@@ -74,8 +78,8 @@ struct line_state {
   std::array<char, 64> name{};
   std::uint8_t name_size = 0;
 
-  void take(const line_note& what) noexcept;
-  [[nodiscard]] line_note as_note(std::int64_t time_ns) const noexcept;
+  void take(const recorded_event& what) noexcept;
+  [[nodiscard]] recorded_event as_note(std::int64_t time_ns) const noexcept;
   [[nodiscard]] std::string_view line() const noexcept { return {name.data(), name_size}; }
 };
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "g4lidar/recording.hpp"
+#include "g4lidar/recording/writer.hpp"
 
 #ifdef G4LIDAR_ZSTD
 #include <zstd.h>
@@ -18,9 +18,9 @@ bool has_zstd() noexcept { return true; }
 namespace mcap {
 namespace {
 
-/// The raw bytes of a lidar are mostly noise: higher levels cost time and bring next to nothing.
+/// The raw bytes of a lidar are mostly noise: higher levels cost time and save almost nothing.
 constexpr int level = 1;
-/// A window beyond this is asked for by nobody who packs chunks of 64 MiB.
+/// A larger window is not needed for chunks of 64 MiB.
 constexpr int largest_window_log = 26;
 constexpr std::size_t first_piece = std::size_t{256} << 10U;
 
@@ -28,31 +28,25 @@ constexpr std::size_t first_piece = std::size_t{256} << 10U;
 
 std::size_t packed_bound(std::size_t size) noexcept { return ZSTD_compressBound(size); }
 
-struct packer::state {
-  ZSTD_CCtx* context = ZSTD_createCCtx();
-};
-
-packer::packer() : state_(std::make_unique<state>()) {}
-packer::~packer() { ZSTD_freeCCtx(state_->context); }
+packer::packer()
+    : context_(ZSTD_createCCtx(), [](void* of) { ZSTD_freeCCtx(static_cast<ZSTD_CCtx*>(of)); }) {}
 
 std::size_t packer::pack(bytes data, std::span<std::uint8_t> out) noexcept {
-  if (state_->context == nullptr) return 0;
+  auto* const context = static_cast<ZSTD_CCtx*>(context_.get());
+  if (context == nullptr) return 0;
   const std::size_t size =
-      ZSTD_compressCCtx(state_->context, out.data(), out.size(), data.data(), data.size(), level);
+      ZSTD_compressCCtx(context, out.data(), out.size(), data.data(), data.size(), level);
   return ZSTD_isError(size) != 0 ? 0 : size;
 }
 
-struct unpacker::state {
-  ZSTD_DCtx* context = ZSTD_createDCtx();
-};
-
-unpacker::unpacker() : state_(std::make_unique<state>()) {}
-unpacker::~unpacker() { ZSTD_freeDCtx(state_->context); }
+unpacker::unpacker()
+    : context_(ZSTD_createDCtx(), [](void* of) { ZSTD_freeDCtx(static_cast<ZSTD_DCtx*>(of)); }) {}
 
 bool unpacker::unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>& out) {
-  if (state_->context == nullptr) return false;
-  ZSTD_DCtx_reset(state_->context, ZSTD_reset_session_and_parameters);
-  ZSTD_DCtx_setParameter(state_->context, ZSTD_d_windowLogMax, largest_window_log);
+  auto* const context = static_cast<ZSTD_DCtx*>(context_.get());
+  if (context == nullptr) return false;
+  ZSTD_DCtx_reset(context, ZSTD_reset_session_and_parameters);
+  ZSTD_DCtx_setParameter(context, ZSTD_d_windowLogMax, largest_window_log);
   ZSTD_inBuffer from{packed.data(), packed.size(), 0};
   if (out.size() < std::min(size, first_piece)) out.resize(std::min(size, first_piece));
   std::size_t done = 0;
@@ -60,7 +54,7 @@ bool unpacker::unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>&
   while (left > 0 || from.pos < from.size) {  // there may be several frames
     ZSTD_outBuffer to{out.data(), std::min(size, out.size()), done};
     const std::size_t taken = from.pos;
-    left = ZSTD_decompressStream(state_->context, &to, &from);
+    left = ZSTD_decompressStream(context, &to, &from);
     if (ZSTD_isError(left) != 0) return false;
     const bool is_stuck = to.pos == done && from.pos == taken;
     done = to.pos;
@@ -81,15 +75,10 @@ bool has_zstd() noexcept { return false; }
 
 namespace mcap {
 
-struct packer::state {};
-struct unpacker::state {};
-
 std::size_t packed_bound(std::size_t size) noexcept { return size; }
-packer::packer() = default;
-packer::~packer() = default;
+packer::packer() : context_(nullptr, [](void*) {}) {}
 std::size_t packer::pack(bytes, std::span<std::uint8_t>) noexcept { return 0; }
-unpacker::unpacker() = default;
-unpacker::~unpacker() = default;
+unpacker::unpacker() : context_(nullptr, [](void*) {}) {}
 bool unpacker::unpack(bytes, std::size_t, std::vector<std::uint8_t>&) { return false; }
 
 }  // namespace mcap

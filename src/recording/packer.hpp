@@ -1,51 +1,43 @@
 // SPDX-License-Identifier: MIT
-// Packs and unpacks chunks, where zstd is there.
+// Compresses and uncompresses chunks, if zstd is available.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "g4lidar/bytes.hpp"
+#include "g4lidar/core/bytes.hpp"
 
 namespace g4lidar::mcap {
 
-/// How large packed bytes can be. *Pure.*
+/// The maximum size of compressed bytes. *Pure.*
 [[nodiscard]] std::size_t packed_bound(std::size_t size) noexcept;
+
+/// The state of zstd; null without zstd.
+using zstd_context = std::unique_ptr<void, void (*)(void*)>;
 
 /// *Allocates on open.*
 class packer {
  public:
   packer();
-  ~packer();
-  packer(const packer&) = delete;
-  packer& operator=(const packer&) = delete;
-
-  /// Packs to `out`, which has room for packed_bound(); how much was written, 0 where it failed.
+  /// Compresses to `out`, which has room for packed_bound(); returns the size, 0 on failure.
   [[nodiscard]] std::size_t pack(bytes data, std::span<std::uint8_t> out) noexcept;
 
  private:
-  struct state;
-  std::unique_ptr<state> state_;
+  zstd_context context_;
 };
 
-/// Grows with what comes out of it, and not with what is claimed.
+/// Grows with the actual output, and not with the claimed size.
 class unpacker {
  public:
   unpacker();
-  ~unpacker();
-  unpacker(const unpacker&) = delete;
-  unpacker& operator=(const unpacker&) = delete;
-
-  /// Unpacks into `out`. False where that is not exactly `size` bytes, or where there is no zstd.
+  /// Uncompresses to `out`. False if the result is not exactly `size` bytes, or without zstd.
   [[nodiscard]] bool unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>& out);
 
  private:
-  struct state;
-  std::unique_ptr<state> state_;
+  zstd_context context_;
 };
 
 }  // namespace g4lidar::mcap

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Records of an MCAP file, and messages in CDR, written one field after the other.
+// Records of an MCAP file, one field after the other.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -12,11 +11,11 @@
 #include <vector>
 
 #include "format.hpp"
-#include "g4lidar/bytes.hpp"
+#include "g4lidar/core/bytes.hpp"
 
 namespace g4lidar::mcap {
 
-/// Bytes that grow. Allocates beyond what was reserved.
+/// A growing buffer. Allocates beyond the reserved size.
 class record_text {
  public:
   template <class Number>
@@ -33,8 +32,8 @@ class record_text {
   }
   void put(const char* text) { put(std::string_view(text)); }
 
-  /// Begins a record, or an array of bytes with its length in a `Length` before it; give the result to
-  /// end().
+  /// Begins a record, or an array of bytes with its length as `Length` before it; pass the result
+  /// to end().
   [[nodiscard]] std::size_t begin(opcode kind) {
     put(static_cast<std::uint8_t>(kind));
     return begin<std::uint64_t>();
@@ -48,7 +47,7 @@ class record_text {
   void end(std::size_t begun) {
     set(begun - sizeof(Length), static_cast<Length>(text_.size() - begun));
   }
-  /// Writes over what stands at `at`.
+  /// Overwrites the bytes at `at`.
   template <class Number>
   void set(std::size_t at, Number value) {
     for (std::size_t i = 0; i < sizeof(Number); ++i) {
@@ -58,52 +57,17 @@ class record_text {
 
   void clear() noexcept { text_.clear(); }
   void reserve(std::size_t size) { text_.reserve(size); }
-  void resize(std::size_t size) { text_.resize(size); }
   [[nodiscard]] std::size_t size() const noexcept { return text_.size(); }
   [[nodiscard]] bytes all() const noexcept { return text_; }
-  [[nodiscard]] std::uint8_t* data() noexcept { return text_.data(); }
+  /// The buffer, for cdr_writer.
+  [[nodiscard]] std::vector<std::uint8_t>& memory() noexcept { return text_; }
 
  private:
   std::vector<std::uint8_t> text_;
 };
 
-/// A message in CDR, little-endian: each number stands at a multiple of its size.
-class cdr_text {
- public:
-  /// Goes on behind what is in `text`.
-  explicit cdr_text(record_text& text) : text_(text) {
-    text_.put(std::uint32_t{0x00000100});  // the bytes 0, 1, 0, 0
-    origin_ = text_.size();
-  }
-  template <class Number>
-  void put(Number value) {
-    if constexpr (std::is_floating_point_v<Number>) {
-      put(std::bit_cast<std::uint32_t>(value));
-    } else {
-      align(sizeof(Number));
-      text_.put(static_cast<std::make_unsigned_t<Number>>(value));
-    }
-  }
-  void put(bytes data) {
-    put(static_cast<std::uint32_t>(data.size()));
-    text_.put(data);
-  }
-  void put(std::string_view text) {
-    put(static_cast<std::uint32_t>(text.size() + 1));
-    text_.put(bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
-    text_.put(std::uint8_t{0});
-  }
-
- private:
-  void align(std::size_t size) {
-    while ((text_.size() - origin_) % size != 0) text_.put(std::uint8_t{0});
-  }
-
-  record_text& text_;
-  std::size_t origin_;
-};
-
-/// The same read. What is not there is 0 and makes is_good() false.
+/// Fields of a record or a message, read one after the other. Missing fields are 0 and make
+/// is_good() false.
 class field_reader {
  public:
   explicit field_reader(bytes text) noexcept : text_(text) {}
@@ -128,19 +92,19 @@ class field_reader {
     at_ += taken.size();
     return taken;
   }
-  /// As MCAP has text: its length in front.
+  /// A string of MCAP: its length comes first.
   [[nodiscard]] std::string_view take_text() noexcept {
     const bytes raw = take(take<std::uint32_t>());
     return {reinterpret_cast<const char*>(raw.data()), raw.size()};
   }
-  /// As CDR has it: aligned, with a zero at its end.
+  /// A string of CDR: aligned, with a terminating zero.
   [[nodiscard]] std::string_view take_cdr_text() noexcept {
     align(4);
     std::string_view text = take_text();
     if (!text.empty()) text.remove_suffix(1);
     return text;
   }
-  /// To the next multiple of `size` from the beginning.
+  /// Advances to the next multiple of `size` from the beginning.
   void align(std::size_t size) noexcept {
     const std::size_t over = at_ % size;
     if (over != 0) static_cast<void>(take(size - over));

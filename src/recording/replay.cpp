@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A recording as a line: each reading as it was read, and what happened between the readings.
-#include "g4lidar/replay.hpp"
+// A recording as a transport: the bytes of each read, and the events between the reads.
+#include "g4lidar/recording/replay.hpp"
 
 #include <sys/eventfd.h>
 #include <sys/timerfd.h>
@@ -14,50 +14,26 @@
 #include <string>
 #include <utility>
 
-#include "../device/fd_port.hpp"
-#include "g4lidar/recorded_device.hpp"
-#include "g4lidar/stream_parser.hpp"
+#include "core/saturating.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/recorded_device.hpp"
+#include "g4lidar/detail/recorded_event.hpp"
+#include "replay_clock.hpp"
+#include "transport/fd_port.hpp"
 
 namespace g4lidar {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
+/// At this rate a nanosecond of the recording takes a millisecond.
+constexpr double least_rate = 1e-6;
 constexpr double largest_rate = 1000;
-/// Between the end and the beginning of a recording that is played again.
+/// Between the end and the next beginning of a repeated recording.
 constexpr std::int64_t loop_pause_ns = 10'000'000;
 
-/// The clock of the line that was recorded. At rate 0 it is moved on by what is read.
-class replay_clock {
- public:
-  replay_clock(double rate, std::int64_t begin_ns) noexcept
-      : rate_(rate), begin_ns_(begin_ns), now_ns_(begin_ns), begun_ns_(steady_now_ns()) {}
-
-  [[nodiscard]] bool is_free() const noexcept { return rate_ == 0; }
-  [[nodiscard]] std::int64_t now_ns() const noexcept {
-    if (is_free()) return now_ns_;
-    const auto since = static_cast<double>(steady_now_ns() - begun_ns_) * rate_;
-    return std::max(now_ns_, begin_ns_ + static_cast<std::int64_t>(since));
-  }
-  /// When it will be `at_ns` here, by the steady clock.
-  [[nodiscard]] std::int64_t steady_ns(std::int64_t at_ns) const noexcept {
-    const double left = static_cast<double>(at_ns - begin_ns_) / rate_;
-    constexpr double never = 9e18;
-    const double due = static_cast<double>(begun_ns_) + std::max(left, 0.0);
-    return due > never ? never_ns : begun_ns_ + static_cast<std::int64_t>(std::max(left, 0.0));
-  }
-  /// It never goes back.
-  void advance_to(std::int64_t at_ns) noexcept { now_ns_ = std::max(now_ns_, at_ns); }
-
- private:
-  double rate_;
-  std::int64_t begin_ns_;
-  std::int64_t now_ns_;
-  std::int64_t begun_ns_;
-};
-
-/// What a lidar says of itself first, where nobody has kept it.
+/// The first device information in the bytes, if the recording has no metadata.
 std::optional<recorded_device> device_in(std::string_view path) {
-  constexpr std::uint64_t far_enough = std::uint64_t{1} << 20U;
+  constexpr std::uint64_t far_enough = std::uint64_t{64} << 10U;
   auto reader = recording_reader::open(path);
   if (!reader) return std::nullopt;
   stream_parser parser;
@@ -79,49 +55,100 @@ std::optional<recorded_device> device_in(std::string_view path) {
   return found;
 }
 
-/// What the connector and its line have in common.
-class player {
+/// The common part of the connector and its transport: the recording, its clock, and its events.
+class player final : public recorded_event_source {
  public:
   player(recording_reader opened, std::string_view name, const replay_options& how)
       : reader_(std::move(opened)),
         path_(name),
         options_(how),
-        clock_(how.rate, reader_.first_ns() + std::max<std::int64_t>(how.range.from_ns, 0)),
-        waits_(real_system_calls()) {
+        clock_(how.rate, begin_ns()),
+        waits_(real_system_calls()),
+        due_(real_system_calls(), make_handle()),
+        why_over_(task::reading, problem::end_of_input, name) {
     auto device = reader_.device();
     if (!device) device = device_in(name);
     if (device) device_ = *device;
   }
 
-  [[nodiscard]] bool is_open() const noexcept { return waits_.is_open(); }
+  [[nodiscard]] bool is_open() const noexcept { return waits_.is_open() && due_.get() >= 0; }
   [[nodiscard]] const recording_reader& reader() const noexcept { return reader_; }
   [[nodiscard]] replay_clock& clock() noexcept { return clock_; }
-  [[nodiscard]] const replay_clock& clock() const noexcept { return clock_; }
-  [[nodiscard]] const recorded_device& device() const noexcept { return device_; }
   [[nodiscard]] std::string_view path() const noexcept { return path_; }
+  [[nodiscard]] int native_handle() const noexcept { return due_.get(); }
+  [[nodiscard]] std::uint32_t baud() const noexcept { return baud_; }
   void wake() noexcept { waits_.wake(); }
   [[nodiscard]] bool take_wake() noexcept { return waits_.take(); }
 
-  /// What comes next, with its time moved to where this round stands; nothing at the end. Good until
-  /// pop().
-  [[nodiscard]] result<recorded_item*> next() noexcept {
-    if (!item_ && !is_over_) {
-      auto read = reader_.next();
-      if (read && !*read && options_.loop && has_read_) read = begin_again();
-      if (!read) return tl::unexpected(read.error());
-      item_ = *read;
-      is_over_ = !item_;
-      if (item_) item_->time_ns += moved_ns_;
-      if (item_) item_->wall_ns += moved_ns_;
-    }
-    if (!item_) return nullptr;
-    last_ns_ = item_->time_ns;
-    has_read_ = has_read_ || item_->what == recorded_item::kind::from_device;
-    return &*item_;
-  }
-  void pop() noexcept { item_.reset(); }
+  // ---- recorded_event_source ----
 
-  /// Until then by the clock of the recording, or until a wake-up.
+  [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
+    if (std::exchange(is_shown_, false)) pop();
+    const recorded_item* const next = peek();
+    if (next == nullptr) return std::nullopt;  // read() returns the reason
+    const recorded_item& item = *next;
+    if (item.what == recorded_item::kind::from_device) {
+      set_handle_for_next();
+      return std::nullopt;
+    }
+    follow_wall_clock(item);
+    is_shown_ = true;
+    recorded_event what = item.note;
+    what.time_ns = item.time_ns;
+    if (item.what == recorded_item::kind::to_device) {
+      what.what = recorded_event::kind::sent;
+      what.data = item.data;
+    }
+    if (what.what == recorded_event::kind::opened || what.what == recorded_event::kind::state) {
+      baud_ = what.baud;
+    }
+    return what;
+  }
+  [[nodiscard]] const recorded_device& device() const noexcept override { return device_; }
+  [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override {
+    return clock_.after_ns(timeout_ns);
+  }
+  [[nodiscard]] std::int64_t wait_for_next_ns() noexcept override {
+    if (clock_.is_free() || !item_) return 0;
+    return std::max<std::int64_t>(clock_.steady_ns(item_->time_ns) - steady_now_ns(), 0);
+  }
+
+  // ---- for the transport ----
+
+  /// The next item; null at the end, and after a failure. Valid until pop(). Reads without bytes
+  /// are skipped.
+  [[nodiscard]] recorded_item* peek() noexcept {
+    while (recorded_item* const next = find_item()) {
+      const bool is_nothing = next->data.empty() && next->what == recorded_item::kind::from_device;
+      if (!is_nothing) return next;
+      pop();
+    }
+    return nullptr;
+  }
+  /// Why there is no next item.
+  [[nodiscard]] const error& why_over() const noexcept { return why_over_; }
+  void pop() noexcept { item_.reset(); }
+  /// When the handle becomes readable.
+  void set_handle(std::int64_t at_ns) noexcept {
+    if (std::exchange(set_for_ns_, at_ns) == at_ns) return;
+    const std::int64_t due_ns = std::max<std::int64_t>(clock_.steady_ns(at_ns), 1);
+    itimerspec due{};
+    due.it_value = {static_cast<std::time_t>(due_ns / second_ns),
+                    static_cast<long>(due_ns % second_ns)};
+    timerfd_settime(due_.get(), TFD_TIMER_ABSTIME, &due, nullptr);
+  }
+  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept {
+    return wall_ahead_ns_;
+  }
+  void set_handle_for_next() noexcept {
+    if (clock_.is_free()) return;
+    if (const recorded_item* const next = peek()) set_handle(next->time_ns);
+  }
+  void follow_wall_clock(const recorded_item& item) noexcept {
+    wall_ahead_ns_ = saturating_sub(item.wall_ns, item.time_ns);
+  }
+
+  /// Waits until then by the clock of the recording, or until a wake-up.
   [[nodiscard]] result<void> wait(std::int64_t until_ns) noexcept {
     if (clock_.is_free()) {
       if (waits_.take()) return failure(task::reading, problem::cancelled, path_);
@@ -141,7 +168,32 @@ class player {
   }
 
  private:
-  /// From the front, later than the end; what comes first is told not to belong to what came last.
+  [[nodiscard]] std::int64_t begin_ns() const noexcept {
+    return saturating_add(reader_.first_ns(), std::max<std::int64_t>(options_.range.from_ns, 0));
+  }
+  /// The next item, with its time in the current round.
+  [[nodiscard]] recorded_item* find_item() noexcept {
+    if (!item_ && !is_over_) {
+      auto read = reader_.next();
+      if (read && !*read && options_.loop && has_read_) read = begin_again();
+      if (!read) why_over_ = read.error();
+      if (read) item_ = *read;
+      is_over_ = !item_;
+      if (item_) item_->time_ns = saturating_add(item_->time_ns, moved_ns_);
+      if (item_) item_->wall_ns = saturating_add(item_->wall_ns, moved_ns_);
+    }
+    if (!item_) return nullptr;
+    last_ns_ = item_->time_ns;
+    has_read_ = has_read_ || item_->what == recorded_item::kind::from_device;
+    return &*item_;
+  }
+  /// Always readable, or when the time has come.
+  [[nodiscard]] int make_handle() const noexcept {
+    return clock_.is_free() ? eventfd(1, EFD_CLOEXEC | EFD_NONBLOCK)
+                            : timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
+  }
+  /// Starts again from the front, later than the end; an event separates the first item from the
+  /// last one.
   [[nodiscard]] result<std::optional<recorded_item>> begin_again() noexcept {
     try {
       auto again = recording_reader::open(path_, options_.range);
@@ -151,11 +203,10 @@ class player {
       return failure(task::reading, problem::system, path_, ENOMEM);
     }
     has_read_ = false;
-    const std::int64_t begin_ns =
-        reader_.first_ns() + std::max<std::int64_t>(options_.range.from_ns, 0);
-    moved_ns_ = last_ns_ + loop_pause_ns - begin_ns;
-    recorded_item seam{recorded_item::kind::note, begin_ns, begin_ns, {}, {}};
-    seam.note.what = line_note::kind::gap;
+    const std::int64_t begin = begin_ns();
+    moved_ns_ = saturating_sub(saturating_add(last_ns_, loop_pause_ns), begin);
+    recorded_item seam{recorded_item::kind::note, begin, begin, {}, {}};
+    seam.note.what = recorded_event::kind::gap;
     return seam;
   }
 
@@ -164,46 +215,49 @@ class player {
   replay_options options_;
   replay_clock clock_;
   waker waits_;
+  owned_fd due_;
   recorded_device device_{};
+  std::uint32_t baud_ = 0;
+  std::optional<std::int64_t> wall_ahead_ns_;
+  std::optional<std::int64_t> set_for_ns_;  // the handle
+  bool is_shown_ = false;                   // next_event() has returned the next item
   std::optional<recorded_item> item_;
-  std::int64_t moved_ns_ = 0;  // by the rounds before
+  std::int64_t moved_ns_ = 0;  // by the previous rounds
   std::int64_t last_ns_ = 0;
-  bool has_read_ = false;  // anything from a device in this round
+  bool has_read_ = false;  // bytes were read from a device in this round
   bool is_over_ = false;
+  error why_over_;
 };
 
 class replay_line final : public transport {
  public:
-  explicit replay_line(std::shared_ptr<player> of) noexcept
-      : of_(std::move(of)), due_(real_system_calls(), make_handle(of_->clock().is_free())) {}
+  explicit replay_line(std::shared_ptr<player> of) noexcept : of_(std::move(of)) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
     assert(!out.empty());
     if (of_->take_wake()) return failure(task::reading, problem::cancelled, name());
-    while (noted()) {
-      // For who does not ask.
-    }
-    const auto next = peek();
-    if (!next) return tl::unexpected(next.error());
-    if (*next == nullptr) return failure(task::reading, problem::end_of_input, name());
-    recorded_item& item = **next;
+    while (of_->next_event()) continue;  // for callers that do not take events
+    recorded_item* const next = of_->peek();
+    if (next == nullptr) return tl::unexpected(of_->why_over());
+    recorded_item& item = *next;
     if (!of_->clock().is_free() && of_->clock().now_ns() < item.time_ns) {
-      set_handle(item.time_ns);
+      of_->set_handle(item.time_ns);
       auto waited = of_->wait(std::min(item.time_ns, deadline_ns));
       if (!waited) return tl::unexpected(waited.error());
       if (of_->clock().now_ns() < item.time_ns) return received{};
     }
     of_->clock().advance_to(item.time_ns);
-    wall_ahead_ns_ = item.wall_ns - item.time_ns;
+    of_->follow_wall_clock(item);
     const received got{std::min(out.size(), item.data.size()), item.time_ns};
     std::ranges::copy(item.data.first(got.count), out.begin());
     item.data = item.data.subspan(got.count);
     if (item.data.empty()) of_->pop();
+    of_->set_handle_for_next();
     return got;
   }
 
-  /// Nothing hears it.
+  /// No device receives it.
   [[nodiscard]] result<void> write(bytes, std::int64_t) noexcept override {
     if (of_->take_wake()) return failure(task::writing, problem::cancelled, name());
     return {};
@@ -212,69 +266,14 @@ class replay_line final : public transport {
     return of_->wait(deadline_ns);
   }
 
-  [[nodiscard]] std::optional<line_note> noted() noexcept override {
-    if (std::exchange(is_shown_, false)) of_->pop();
-    const auto next = peek();
-    if (!next || *next == nullptr) return std::nullopt;  // read() tells
-    const recorded_item& item = **next;
-    if (item.what == recorded_item::kind::from_device) {
-      if (!of_->clock().is_free()) set_handle(item.time_ns);
-      return std::nullopt;
-    }
-    wall_ahead_ns_ = item.wall_ns - item.time_ns;
-    is_shown_ = true;
-    line_note what = item.note;
-    what.time_ns = item.time_ns;
-    if (item.what == recorded_item::kind::to_device) {
-      what.what = line_note::kind::sent;
-      what.data = item.data;
-    }
-    if (what.what == line_note::kind::opened || what.what == line_note::kind::state) {
-      baud_ = what.baud;
-    }
-    return what;
-  }
-
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return of_->clock().now_ns(); }
   void wake() noexcept override { of_->wake(); }
-  [[nodiscard]] int native_handle() const noexcept override { return due_.get(); }
+  [[nodiscard]] int native_handle() const noexcept override { return of_->native_handle(); }
   [[nodiscard]] std::string_view name() const noexcept override { return of_->path(); }
-  [[nodiscard]] bool answers() const noexcept override { return false; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return baud_; }
-  [[nodiscard]] const recorded_device* recorded() const noexcept override { return &of_->device(); }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return wall_ahead_ns_;
-  }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return of_->baud(); }
 
  private:
-  /// Readable always, or by the time.
-  [[nodiscard]] static int make_handle(bool is_free) noexcept {
-    return is_free ? eventfd(1, EFD_CLOEXEC | EFD_NONBLOCK)
-                   : timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC | TFD_NONBLOCK);
-  }
-  void set_handle(std::int64_t at_ns) const noexcept {
-    const std::int64_t due_ns = std::max<std::int64_t>(of_->clock().steady_ns(at_ns), 1);
-    itimerspec due{};
-    due.it_value = {static_cast<std::time_t>(due_ns / second_ns),
-                    static_cast<long>(due_ns % second_ns)};
-    timerfd_settime(due_.get(), TFD_TIMER_ABSTIME, &due, nullptr);
-  }
-  /// Readings of nothing are nothing.
-  [[nodiscard]] result<recorded_item*> peek() noexcept {
-    while (true) {
-      auto next = of_->next();
-      const bool is_nothing = next && *next != nullptr && (*next)->data.empty() &&
-                              (*next)->what == recorded_item::kind::from_device;
-      if (!is_nothing) return next;
-      of_->pop();
-    }
-  }
-
   std::shared_ptr<player> of_;
-  owned_fd due_;
-  std::uint32_t baud_ = 0;
-  bool is_shown_ = false;  // the next thing has been given by noted()
-  std::optional<std::int64_t> wall_ahead_ns_;
 };
 
 class replay_connector final : public connector {
@@ -287,17 +286,18 @@ class replay_connector final : public connector {
     }
     auto* const made = new (std::nothrow) replay_line(of_);
     if (made == nullptr) return failure(task::opening, problem::system, of_->path(), ENOMEM);
-    std::unique_ptr<transport> line(made);
-    if (made->native_handle() < 0) {
-      return failure(task::opening, problem::system, of_->path(), errno);
-    }
-    return line;
+    return std::unique_ptr<transport>(made);
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return of_->clock().now_ns(); }
   [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override {
     return of_->wait(deadline_ns).has_value();
   }
   void wake() noexcept override { of_->wake(); }
+  [[nodiscard]] bool answers() const noexcept override { return false; }
+  [[nodiscard]] recorded_event_source* recorded_events() noexcept override { return of_.get(); }
+  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
+    return of_->wall_ahead_ns();
+  }
   [[nodiscard]] const recording_reader& reader() const noexcept { return of_->reader(); }
 
  private:
@@ -317,7 +317,8 @@ result<std::unique_ptr<connector>> replay::open(std::string_view path,
   const auto bad = [](std::string_view what) {
     return failure(task::configuring, problem::bad_option, what);
   };
-  if (!(options.rate >= 0 && options.rate <= largest_rate)) return bad("rate: 0 to 1000");
+  const bool is_rate = options.rate == 0 || options.rate >= least_rate;
+  if (!is_rate || options.rate > largest_rate) return bad("rate: 0, or 0.000001 to 1000");
   if (options.range.from_ns >= options.range.to_ns) return bad("range: from before to");
   auto reader = recording_reader::open(path, options.range);
   if (!reader) return tl::unexpected(reader.error());

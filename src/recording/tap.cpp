@@ -1,38 +1,41 @@
 // SPDX-License-Identifier: MIT
-// Lines and connectors that are recorded.
+// Transports and connectors with recording.
 #include <cerrno>
 #include <new>
 #include <utility>
 
 #include "file_writer.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 
 namespace g4lidar {
 namespace {
 
-/// A line, and where what goes over it is kept.
+/// A transport, and the writer of its recording.
 template <class Writer>
-class recorded_transport final : public transport {
+class recorded_transport final : public forwarding_transport {
  public:
-  recorded_transport(std::unique_ptr<transport> line, Writer& into) noexcept
-      : line_(std::move(line)), into_(&into) {
+  recorded_transport(std::unique_ptr<transport> line, connector& from, Writer& into) noexcept
+      : forwarding_transport(std::move(line)), from_(&from), into_(&into) {
     follow_wall_clock();
-    if (const recorded_device* const known = line_->recorded()) {
-      into_->device(*known);
+    if (const auto* const played = from.recorded_events()) {
+      into.device(played->device());
       return;
     }
-    line_note opened{.what = line_note::kind::opened, .time_ns = line_->now_ns()};
-    opened.baud = line_->baud();
-    opened.line = line_->name();
-    into_->note(opened);
+    recorded_event opened{.what = recorded_event::kind::opened, .time_ns = now_ns()};
+    opened.baud = baud();
+    opened.line = name();
+    into.note(opened);
   }
+  recorded_transport(const recorded_transport&) = delete;
+  recorded_transport& operator=(const recorded_transport&) = delete;
   ~recorded_transport() override {
-    if (line_->recorded() != nullptr) return;  // it tells by itself
-    into_->note({.what = line_note::kind::closed, .reason = reason_, .time_ns = line_->now_ns()});
+    if (from_->recorded_events() != nullptr) return;  // a recording reports its own events
+    into_->note({.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
   }
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
-    auto got = line_->read(out, deadline_ns);
+    auto got = inner().read(out, deadline_ns);
     if (!got) {
       remember(got.error());
     } else if (got->count > 0) {
@@ -42,81 +45,83 @@ class recorded_transport final : public transport {
     return got;
   }
   [[nodiscard]] result<void> write(bytes data, std::int64_t deadline_ns) noexcept override {
-    const std::int64_t begun_ns = line_->now_ns();
-    auto sent = line_->write(data, deadline_ns);
+    const std::int64_t begun_ns = now_ns();
+    auto sent = inner().write(data, deadline_ns);
     if (!sent) {
       remember(sent.error());
-    } else if (line_->answers()) {
+    } else if (from_->answers()) {
       into_->line_bytes(direction::to_device, data, begun_ns);
     }
     return sent;
   }
   [[nodiscard]] result<void> pause(std::int64_t deadline_ns) noexcept override {
-    auto paused = line_->pause(deadline_ns);
+    auto paused = inner().pause(deadline_ns);
     if (!paused) remember(paused.error());
     return paused;
-  }
-  void note(const line_note& what) noexcept override {
-    line_->note(what);
-    into_->note(what);
-  }
-  [[nodiscard]] std::optional<line_note> noted() noexcept override {
-    const auto what = line_->noted();
-    if (what) {
-      follow_wall_clock();
-      into_->note(*what);
-    }
-    return what;
-  }
-
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return line_->now_ns(); }
-  void wake() noexcept override { line_->wake(); }
-  [[nodiscard]] int native_handle() const noexcept override { return line_->native_handle(); }
-  [[nodiscard]] std::string_view name() const noexcept override { return line_->name(); }
-  [[nodiscard]] bool answers() const noexcept override { return line_->answers(); }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return line_->baud(); }
-  [[nodiscard]] const recorded_device* recorded() const noexcept override {
-    return line_->recorded();
-  }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return line_->wall_ahead_ns();
   }
 
  private:
   void remember(const error& why) noexcept {
-    if (why.what() != problem::cancelled && why.what() != problem::timeout) reason_ = why.what();
+    if (why != problem::cancelled && why != problem::timeout) reason_ = why.code();
   }
   void follow_wall_clock() noexcept {
-    if (const auto ahead_ns = line_->wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
+    if (const auto ahead_ns = from_->wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
   }
 
-  std::unique_ptr<transport> line_;
+  connector* from_;
   Writer* into_;
-  problem reason_ = problem::cancelled;  // it was given free
+  problem reason_ = problem::cancelled;  // it was closed
 };
 
+/// Records the bytes of its transports, the events of the driver, and the events of a recording.
 template <class Writer>
-class recorded_connector final : public connector {
+class recorded_connector final : public forwarding_connector,
+                                 public recorded_event_sink,
+                                 public recorded_event_source {
  public:
   recorded_connector(std::unique_ptr<connector> lines, Writer& into) noexcept
-      : lines_(std::move(lines)), into_(&into) {}
+      : forwarding_connector(std::move(lines)), into_(&into) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    auto line = lines_->connect();
+    auto line = inner().connect();
     if (!line) return line;
-    auto* const made = new (std::nothrow) recorded_transport<Writer>(std::move(*line), *into_);
+    auto* const made =
+        new (std::nothrow) recorded_transport<Writer>(std::move(*line), inner(), *into_);
     if (made == nullptr) return failure(task::opening, problem::system, {}, ENOMEM);
     return std::unique_ptr<transport>(made);
   }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return lines_->now_ns(); }
-  [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override {
-    return lines_->pause(deadline_ns);
+  [[nodiscard]] recorded_event_sink* recorder() noexcept override { return this; }
+  [[nodiscard]] recorded_event_source* recorded_events() noexcept override {
+    played_ = inner().recorded_events();
+    return played_ == nullptr ? nullptr : this;
   }
-  void wake() noexcept override { lines_->wake(); }
+
+  void note(const recorded_event& what) noexcept override {
+    if (recorded_event_sink* const other = inner().recorder()) other->note(what);
+    into_->note(what);
+  }
+
+  [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
+    const auto what = played_->next_event();
+    if (what) {
+      if (const auto ahead_ns = wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
+      into_->note(*what);
+    }
+    return what;
+  }
+  [[nodiscard]] const recorded_device& device() const noexcept override {
+    return played_->device();
+  }
+  [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override {
+    return played_->deadline_after_ns(timeout_ns);
+  }
+  [[nodiscard]] std::int64_t wait_for_next_ns() noexcept override {
+    return played_->wait_for_next_ns();
+  }
 
  private:
-  std::unique_ptr<connector> lines_;
   Writer* into_;
+  recorded_event_source* played_ = nullptr;
 };
 
 }  // namespace
@@ -124,6 +129,7 @@ class recorded_connector final : public connector {
 result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> line,
                                             recording_writer& into) {
   using writer = recording_writer::file_writer;
+  if (!into.made_) return line;  // a moved-from writer records nothing
   return std::make_unique<recorded_connector<writer>>(std::move(line), *into.made_);
 }
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Sine and cosine by Taylor's series on 45 degrees, arctangent by a table of nine and a series.
+// Sine and cosine by a Taylor series up to 45 degrees, arctangent by a table of nine values and a
+// series.
 #include "exact.hpp"
 
-#include "g4lidar/sim/arithmetic.hpp"
+#include "g4lidar/detail/sim/arithmetic.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
-#include "g4lidar/angle.hpp"
+#include "g4lidar/core/angle.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -38,7 +39,7 @@ constexpr double polynomial(const std::array<double, N>& c, double x) noexcept {
   return sum;
 }
 
-// The series without their first terms, in x^2. The first term left out is below 1e-19 of the sum.
+// The series without their first terms, in x^2. The first omitted term is below 1e-19 of the sum.
 constexpr std::array<double, 8> sine_series{
     -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,          1.0 / 362880.0,
     -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0, 1.0 / 355687428096000.0};
@@ -51,7 +52,7 @@ constexpr std::array<double, 6> atan_series{-1.0 / 3.0, 1.0 / 5.0,   -1.0 / 7.0,
 }  // namespace
 
 sin_cos sin_cos_deg(double degrees) noexcept {
-  // The nearest multiple of 90 is taken off exactly; the rest is at most 45.
+  // The nearest multiple of 90 is subtracted exactly; the rest is at most 45.
   const double turned = degrees * (1.0 / 90.0);
   const auto quarter = static_cast<std::int64_t>(turned < 0.0 ? turned - 0.5 : turned + 0.5);
   const double x = (degrees - static_cast<double>(quarter) * 90.0) * radians_per_degree;

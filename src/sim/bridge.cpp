@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A batch begins with its first byte; how long it stays open is drawn then.
+// A batch begins with its first byte; its duration is drawn at that time.
 #include "exact.hpp"
 
 #include "bridge.hpp"
@@ -16,7 +16,7 @@ bridge::bridge(const device_options& options) noexcept
       random_(stream_for(options.scanner.seed, purpose::batches)) {}
 
 std::int64_t bridge::wait_ns(fault_line& faults) noexcept {
-  // Drawn in any case, so that a fault shifts no number of a healthy time.
+  // Always drawn, so that a fault does not change later random numbers.
   const std::uint64_t drawn = random_.next() >> 32;
   if (const fault* batch = faults.find(fault_kind::batch)) {
     const auto most = static_cast<std::uint64_t>(batch->amount);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The USB bridge and the host's buffer behind it: bytes wait for a while and then come together.
+// The USB bridge and the buffer of the host: bytes wait for a while and then arrive together.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 #include <span>
 
 #include "fault_line.hpp"
+#include "g4lidar/detail/sim/random.hpp"
 #include "g4lidar/sim/device_options.hpp"
-#include "g4lidar/sim/random.hpp"
 #include "ring.hpp"
 
 namespace g4lidar::sim {
@@ -17,16 +17,16 @@ class bridge {
  public:
   explicit bridge(const device_options& options) noexcept;
 
-  /// A byte from the line; false where it is lost, since too many wait.
+  /// Adds a byte from the connection; false if it is lost because the buffer is full.
   bool take(std::uint8_t byte, fault_line& faults, std::int64_t now_ns) noexcept;
-  /// When those that wait reach the host.
+  /// When the waiting bytes reach the host.
   [[nodiscard]] std::int64_t next_ns() const noexcept { return next_ns_; }
-  /// It is time; during a stall they go on waiting.
+  /// The time has come; during a stall the bytes continue to wait.
   void flush(const fault_line& faults) noexcept;
   /// Unplugged.
   void reset() noexcept;
 
-  /// The host takes what has reached it.
+  /// The host takes the bytes that have reached it.
   std::size_t read(std::span<std::uint8_t> out) noexcept;
   [[nodiscard]] std::size_t available() const noexcept { return host_.size(); }
   [[nodiscard]] std::int64_t batch_min_ns() const noexcept { return min_ns_; }

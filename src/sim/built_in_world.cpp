@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The flat that the simulated lidar stands in if nobody gives it another world.
+// The flat that the simulated lidar uses as default world.
 #include "exact.hpp"
 
 #include "g4lidar/sim/world.hpp"
@@ -36,7 +36,7 @@ world built_in_world() {
               {8.3, 0.5, 8.0, 0.5},
               {8.0, 0.5, 8.0, 0.2},
 
-              // A sofa, standing obliquely; a cupboard at the north wall.
+              // A sofa at an angle; a cupboard at the north wall.
               {0.6, -1.9, 2.3, -1.5},
               {2.3, -1.5, 2.14, -0.82},
               {2.14, -0.82, 0.44, -1.22},
@@ -65,13 +65,13 @@ world built_in_world() {
               {-0.27, -0.92, -0.33, -0.92},
               {-0.33, -0.92, -0.33, -0.98},
 
-              // A box just far enough to be measured.
+              // A box at just above the minimum range.
               {0.1, 0.33, 0.3, 0.33},
               {0.3, 0.33, 0.3, 0.43},
               {0.3, 0.43, 0.1, 0.43},
               {0.1, 0.43, 0.1, 0.33},
 
-              // A post of the robot that carries the lidar, too near to be measured.
+              // A post of the robot that carries the lidar: too near to be measured.
               {-0.16, -0.08, -0.12, -0.08},
               {-0.12, -0.08, -0.12, -0.04},
               {-0.12, -0.04, -0.16, -0.04},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The device from outside: first the time, then what was asked.
+// The public functions of the device: each advances the time first, and then acts.
 #include "exact.hpp"
 
 #include "g4lidar/sim/device.hpp"

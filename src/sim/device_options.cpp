@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What options a device can have.
+// The valid options of a device.
 #include "exact.hpp"
 
 #include "g4lidar/sim/device_options.hpp"
@@ -31,11 +31,16 @@ std::string_view problem_with(const device_options& options) noexcept {
     return "bytes must wait in the bridge for 0 to 1 s, the least first";
   }
   if (!is_duration(options.reaction_ns) || !is_duration(options.standstill_ns) ||
-      !is_duration(options.boot_ns)) {
-    return "the reaction, the standstill and the boot must take 0 to 60 s";
+      !is_duration(options.boot_ns) || !is_duration(options.first_answer_ns) ||
+      !is_duration(options.header_ns) || !is_duration(options.silence_ns)) {
+    return "reaction, standstill, boot, first answer, scan header and silence must take 0 to 60 s";
   }
   if (options.acceleration_mhz_per_s < 100 || options.acceleration_mhz_per_s > 100'000'000) {
     return "the motor must gain 0.1 to 100000 Hz a second";
+  }
+  if (options.highest_frequency_chz < options.scanner.scan_frequency_chz ||
+      options.highest_frequency_chz > max_scan_frequency_chz) {
+    return "the highest scan frequency must be from the device's own to 12 Hz";
   }
   if (options.motor_drift_ppm > 100'000 || options.free_motor_drift_ppm > 100'000) {
     return "the motor must drift by at most a tenth";

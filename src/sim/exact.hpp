@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Included first by every source of g4lidar::sim: refuses a compiler set up to round otherwise than
-// IEEE 754 doubles do, one operation at a time. Same seed, same bytes, rests on it.
+// Included first by every source of g4lidar::sim: refuses a compiler that is configured to round
+// differently from IEEE 754 doubles, one operation at a time. Otherwise the same seed would not
+// give the same bytes.
 #pragma once
 
 #include <cfloat>
@@ -20,8 +21,8 @@ static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1,
 #pragma clang fp contract(off)
 #endif
 
-// A compiler does not say whether it fuses a * b + c. src/CMakeLists.txt gives this definition
-// together with -ffp-contract=off, and the golden digests in the tests notice if that fails.
+// A compiler does not report whether it fuses a * b + c. src/CMakeLists.txt sets this definition
+// together with -ffp-contract=off, and the golden digests in the tests detect a failure.
 #if !defined(G4LIDAR_SIM_UNFUSED)
 #error "compile g4lidar::sim with -ffp-contract=off -DG4LIDAR_SIM_UNFUSED"
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kinds of fault in one table, and the words that describe one.
+// The kinds of fault in one table, and the parser of their text form.
 #include "exact.hpp"
 
 #include "g4lidar/sim/fault.hpp"
@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <optional>
 #include <utility>
+
+#include "read_time.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -47,6 +49,7 @@ constexpr std::array<kind_traits, 19> kinds{{
     {fault_kind::health, "health", false, 1.0, amount_is::health, 2},
     {fault_kind::jolt, "jolt", true, 0.01, amount_is::nothing, 0},
 }};
+static_assert(kinds.back().kind == last_fault_kind);
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < kinds.size(); ++i) {
@@ -62,12 +65,12 @@ const kind_traits& traits_of(fault_kind kind) noexcept {
 
 struct number {
   std::int64_t millionths;
-  std::string_view unit;  // what stands behind it
+  std::string_view unit;  // the text after the number
 };
 
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-// A plain decimal number of at most nine digits before the point and six behind it.
+// A decimal number with at most nine digits before the point and six behind it.
 std::optional<number> read_number(std::string_view text) noexcept {
   std::size_t at = 0;
   std::int64_t value = 0;
@@ -86,23 +89,6 @@ std::optional<number> read_number(std::string_view text) noexcept {
   }
   for (; behind < 6; ++behind) value *= 10;
   return number{value, text.substr(at)};
-}
-
-std::optional<std::int64_t> read_time_ns(std::string_view text) noexcept {
-  const std::optional<number> read = read_number(text);
-  if (!read) return std::nullopt;
-  constexpr std::array<std::pair<std::string_view, std::int64_t>, 5> units{
-      {{"ns", 1}, {"us", 1'000}, {"ms", ms}, {"s", 1'000 * ms}, {"min", 60'000 * ms}}};
-  for (const auto& [name, ns] : units) {
-    if (read->unit != name) continue;
-    // Whole units and millionths of one apart: neither product gets too big.
-    const std::int64_t whole = read->millionths / 1'000'000;
-    if (whole > longest_ns / ns) return std::nullopt;
-    const std::int64_t time_ns = whole * ns + read->millionths % 1'000'000 * ns / 1'000'000;
-    return time_ns <= longest_ns ? std::optional(time_ns) : std::nullopt;
-  }
-  if (read->unit.empty() && read->millionths == 0) return 0;
-  return std::nullopt;
 }
 
 std::optional<double> read_rate(std::string_view text) noexcept {
@@ -129,7 +115,7 @@ fault_error wrong(std::string_view what, std::string_view is) {
   return {message};
 }
 
-// "a@b" gives "a" and leaves "b"; nothing where there is no '@'.
+// "a@b" returns "a" and leaves "b"; nothing if there is no '@'.
 std::string_view cut_before(std::string_view& rest, char mark, bool& found) noexcept {
   const std::size_t at = rest.find(mark);
   found = at != std::string_view::npos;
@@ -187,6 +173,23 @@ std::variant<fault, fault_error> read_what(std::string_view what) {
 }
 
 }  // namespace
+
+std::optional<std::int64_t> read_time_ns(std::string_view text) noexcept {
+  const std::optional<number> read = read_number(text);
+  if (!read) return std::nullopt;
+  constexpr std::array<std::pair<std::string_view, std::int64_t>, 5> units{
+      {{"ns", 1}, {"us", 1'000}, {"ms", ms}, {"s", 1'000 * ms}, {"min", 60'000 * ms}}};
+  for (const auto& [name, ns] : units) {
+    if (read->unit != name) continue;
+    // Whole units and millionths of a unit separately: neither product overflows.
+    const std::int64_t whole = read->millionths / 1'000'000;
+    if (whole > longest_ns / ns) return std::nullopt;
+    const std::int64_t time_ns = whole * ns + read->millionths % 1'000'000 * ns / 1'000'000;
+    return time_ns <= longest_ns ? std::optional(time_ns) : std::nullopt;
+  }
+  if (read->unit.empty() && read->millionths == 0) return 0;
+  return std::nullopt;
+}
 
 fault make_fault(fault_kind kind, std::int64_t begin_ns, std::int64_t duration_ns) noexcept {
   const kind_traits& traits = traits_of(kind);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each fault draws from a stream of its own, and only while it is at work: adding one changes
-// nothing that another one does.
+// Each fault draws from a stream of its own, and only while it is active: an additional fault does
+// not change the effects of another one.
 #include "exact.hpp"
 
 #include "fault_line.hpp"
@@ -17,16 +17,8 @@ std::uint8_t random_byte(random_stream& random) noexcept {
 }
 
 constexpr bool looks_at_bytes(fault_kind kind) noexcept {
-  switch (kind) {
-    case fault_kind::flip:
-    case fault_kind::drop:
-    case fault_kind::insert:
-    case fault_kind::burst:
-    case fault_kind::baud:
-      return true;
-    default:
-      return false;
-  }
+  using enum fault_kind;
+  return kind == flip || kind == drop || kind == insert || kind == burst || kind == baud;
 }
 
 }  // namespace
@@ -115,7 +107,7 @@ void fault_line::damage(entry& by, passed_byte& passing) noexcept {
       last = random_byte(by.random);
       passing.damaged = true;
       return;
-    default:  // baud: the host sees edges where it expects none
+    default:  // baud: the host samples at the wrong times
       last = random_byte(by.random);
       if (passing.count > 0 && by.random.uniform() < 0.4) --passing.count;
       passing.damaged = true;

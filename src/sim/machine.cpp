@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The order of events, the power, and the plug.
+// The order of events, the power, and the USB plug.
 #include "exact.hpp"
 
 #include "machine.hpp"
@@ -107,12 +107,12 @@ void device::machine::handle(happening what) noexcept {
   }
 }
 
-// What can be heard next is a batch; where none is open, one cannot end before the next byte.
+// The next event for the host is a batch; if none is open, it cannot end before the next byte.
 std::int64_t device::machine::next_ns(std::int64_t now_ns) const noexcept {
   if (to_host.available() > 0) return now_ns;
   std::int64_t next = next_event().at_ns;
   if (to_host.next_ns() != forever_ns && next == wire_.next_ns()) {
-    // More bytes for a batch that is open end nothing; anything else may.
+    // More bytes for an open batch end no wait; anything else may.
     next = to_host.next_ns();
     for (const std::int64_t at : {faults_.next_edge_ns(), booted_ns_, death_ns_}) {
       next = std::min(next, at);
@@ -129,9 +129,9 @@ bool device::machine::is_silent() const noexcept {
 void device::machine::write(bytes from_host) noexcept {
   if (!plugged) return;
   host_free_ns_ = std::max(host_free_ns_, now_ns_);
-  for (const std::uint8_t byte : from_host) {
-    host_free_ns_ += 10'000'000'000 / options_.baud;
-    from_host_.push({host_free_ns_, byte});
+  for (const std::uint8_t byte : from_host) {  // what does not fit is lost, and takes no time
+    const std::int64_t through_ns = host_free_ns_ + 10'000'000'000 / options_.baud;
+    if (from_host_.push({through_ns, byte})) host_free_ns_ = through_ns;
   }
 }
 
@@ -178,6 +178,7 @@ void device::machine::power_on(bool keep_settings) noexcept {
     settings = first_settings(options_);
     use_settings();
   }
+  has_answered_ = false;
   state_ = state::booting;
   booted_ns_ = now_ns_ + options_.boot_ns;
 }
@@ -190,7 +191,7 @@ void device::machine::booted() noexcept {
   keep_motor();
 }
 
-// The motor has pulled the voltage down.
+// The motor has lowered the supply voltage too far.
 void device::machine::death() noexcept {
   death_ns_ = forever_ns;
   if (faults_.find(fault_kind::brown_out) != nullptr) {

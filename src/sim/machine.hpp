@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What happens inside a simulated G4, event by event. One event after the other, whatever the calls
-// from outside: that makes the device independent of how often it is looked at.
+// The events in a simulated G4, one after the other, independent of the calls from outside. So the
+// behaviour does not depend on how often it is called.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ class G4LIDAR_HIDDEN device::machine {
   void write(bytes from_host) noexcept;
   [[nodiscard]] std::int64_t next_ns(std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool is_silent() const noexcept;
-  /// Nothing more has happened by then than advance() has seen.
+  /// Whether advance() has processed everything up to this time.
   [[nodiscard]] bool is_settled(std::int64_t now_ns) const noexcept {
     return next_event().at_ns > now_ns;
   }
@@ -39,7 +39,7 @@ class G4LIDAR_HIDDEN device::machine {
   }
   [[nodiscard]] std::int64_t next_edge_ns() const noexcept { return faults_.next_edge_ns(); }
 
-  // What the device shows of itself.
+  // The state for the host.
   bridge to_host;
   truth_log truths;
   std::vector<asked> log;
@@ -54,7 +54,7 @@ class G4LIDAR_HIDDEN device::machine {
 
  private:
   enum class state : std::uint8_t { off, booting, idle, scanning };
-  // What happens at the same time happens in this order.
+  // Events at the same time happen in this order.
   enum class happening : std::uint8_t {
     fault_edge,
     host_byte,
@@ -106,9 +106,10 @@ class G4LIDAR_HIDDEN device::machine {
   void restart() noexcept;
 
   // Answers.
-  void answer(answer_bytes what) noexcept;
+  void answer(answer_bytes what, std::int64_t later_ns = 0) noexcept;
   [[nodiscard]] answer_bytes another_than(const answer_bytes& right) noexcept;
   void send_later(const answer_bytes& what, std::int64_t due_ns) noexcept;
+  void forget_header() noexcept;
   void send(const answer_bytes& what) noexcept;
   void say(bytes content) noexcept;
   void answers_due() noexcept;
@@ -135,15 +136,17 @@ class G4LIDAR_HIDDEN device::machine {
   bool browned_out_ = false;
   bool stopped_by_protection_ = false;
   bool start_byte_seen_ = false;
-  std::int64_t host_free_ns_ = 0;  // the line from the host is, from then on
+  std::int64_t host_free_ns_ = 0;  // the end of the last byte from the host
   ring<host_byte, 1'024> from_host_;
   ring<pending_command, 64> commands_;
   std::array<late_answer, 16> answers_{};
-  std::int64_t answer_ns_ = forever_ns;  // the first of them
-  frame measuring_;                      // the packet that is being measured
-  frame speaking_;                       // scratch
+  std::int64_t answer_ns_ = forever_ns;  // the time of the first of them
+  transmission measuring_;               // the packet that is being measured
+  transmission speaking_;                // temporary
   std::uint64_t packets_ = 0;
   std::int64_t packet_ns_ = forever_ns;  // when it is complete
+  std::int64_t silent_until_ns_ = 0;     // no packet is sent before this time
+  bool has_answered_ = true;             // since it booted
   std::int64_t fed_ns_ = 0;
   std::int64_t booted_ns_ = forever_ns;
   std::int64_t death_ns_ = forever_ns;

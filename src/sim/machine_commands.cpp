@@ -5,6 +5,7 @@
 #include "machine.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace g4lidar::sim {
 
@@ -101,8 +102,9 @@ bool device::machine::obey_start() noexcept {
   if (!stopped_by_protection_ || options_.header_after_protection) {
     answer_bytes header = answer_with(response_kind::scan_started, {});
     if (options_.stray_after_start) header.data[header.size++] = 0x00;
-    answer(header);
+    answer(header, options_.header_ns);
   }
+  silent_until_ns_ = now_ns_ + options_.header_ns + options_.silence_ns;
   begin_scan();
   return true;
 }
@@ -116,21 +118,23 @@ health device::machine::condition() const noexcept {
 
 void device::machine::restart() noexcept { power_on(options_.settings_outlive_restart); }
 
-void device::machine::answer(answer_bytes what) noexcept {
+void device::machine::answer(answer_bytes what, std::int64_t later_ns) noexcept {
+  if (!std::exchange(has_answered_, true)) later_ns += options_.first_answer_ns;
   if (faults_.strike(fault_kind::mute) != nullptr) return;
   if (faults_.strike(fault_kind::wrong) != nullptr) what = another_than(what);
   const bool twice = faults_.strike(fault_kind::twice) != nullptr;
   const fault* const late = faults_.strike(fault_kind::late);
+  if (late != nullptr) later_ns += late->amount;
   for (int times = twice ? 2 : 1; times > 0; --times) {
-    if (late != nullptr) {
-      send_later(what, now_ns_ + late->amount);
+    if (later_ns > 0) {
+      send_later(what, now_ns_ + later_ns);
     } else {
       send(what);
     }
   }
 }
 
-// An answer that is possible, and right for a question of another kind.
+// A possible answer to a query of another kind.
 answer_bytes device::machine::another_than(const answer_bytes& right) noexcept {
   const std::array others{
       answer_with(response_kind::byte,
@@ -148,6 +152,17 @@ void device::machine::send_later(const answer_bytes& what, std::int64_t due_ns) 
     place = {due_ns, what};
     answer_ns_ = std::min(answer_ns_, due_ns);
     return;
+  }
+}
+
+/// A stopped device sends no header; a header that a fault has delayed is still sent.
+void device::machine::forget_header() noexcept {
+  if (options_.header_ns == 0) return;
+  const answer_bytes header = answer_with(response_kind::scan_started, {});
+  for (late_answer& place : answers_) {
+    const bool is_header =
+        std::equal(header.data.begin(), header.data.begin() + header.size, place.what.data.begin());
+    if (is_header) place.due_ns = forever_ns;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the head to the line.
+// From the rotating head to the connection.
 #include "exact.hpp"
 
 #include "machine.hpp"
@@ -21,6 +21,7 @@ void device::machine::end_scan() noexcept {
   if (!is_scanning()) return;
   state_ = state::idle;
   packet_ns_ = forever_ns;
+  forget_header();
   wire_.cut(options_.stop_truncates);
   keep_motor();
 }
@@ -37,7 +38,7 @@ void device::machine::keep_motor() noexcept {
   if (weak != nullptr) death_ns_ = now_ns_ + weak->amount;
 }
 
-// The next packet, as it will be when its last sample is measured.
+// The next packet, as it will be when its last sample has been measured.
 void device::machine::measure() noexcept {
   scanner_.set_speed_mhz(head.speed_mhz(scanner_.next_sample_ns()));
   const bool jolts = faults_.strike(fault_kind::jolt) != nullptr &&
@@ -54,6 +55,7 @@ void device::machine::measure() noexcept {
 }
 
 void device::machine::packet_measured() noexcept {
+  if (now_ns_ < silent_until_ns_) return measure();
   measuring_.packet = packets_++;
   if (faults_.strike(fault_kind::truncate) != nullptr) {
     const auto most = static_cast<std::uint64_t>(measuring_.size - measuring_.begin - 1);
@@ -73,7 +75,7 @@ void device::machine::byte_sent() noexcept {
   }
   const bool parted = passing.inserted && wire_.inside_packet();
   if (wire_.in_packet() && (passing.damaged || lost || parted)) wire_.damage();
-  if (const frame* const done = wire_.ending(); done != nullptr && done->count > 0) {
+  if (const transmission* const done = wire_.ending(); done != nullptr && done->count > 0) {
     truths.add(*done, !done->damaged, now_ns_);
   }
   wire_.advance();

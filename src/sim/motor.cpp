@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Speed as a function of time, in integers: a ramp to the target, and a slow wave on it.
+// The speed as a function of time, in integers: a ramp to the target, and a slow wave on it.
 #include "exact.hpp"
 
 #include "motor.hpp"
@@ -53,7 +53,7 @@ void motor::hold(constant_frequency constancy) noexcept {
 std::int64_t motor::undisturbed_mhz(std::int64_t now_ns) const noexcept {
   const std::int64_t target = target_mhz_;
   const std::int64_t rest_ns = from_mhz_ == 0 && target != 0 ? standstill_ns_ : 0;
-  // After 100 s it is there, whatever the acceleration: it keeps the product small.
+  // After 100 s it has reached its speed with any acceleration: this keeps the product small.
   const std::int64_t moving_ns =
       std::clamp<std::int64_t>(now_ns - since_ns_ - rest_ns, 0, 100 * second_ns);
   const std::int64_t gained = moving_ns / 1000 * acceleration_mhz_per_s_ / 1'000'000;

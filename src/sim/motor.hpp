@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The motor of a simulated G4: it takes its time to get up to speed, and never keeps it quite.
+// The motor of a simulated G4: it needs time to reach its speed, and varies around it.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ class motor {
  public:
   explicit motor(const device_options& options) noexcept;
 
-  /// From now on it is driven towards this speed; 0: not driven, it runs down.
+  /// From now on it accelerates towards this speed; 0: not powered, it runs down.
   void drive(std::uint32_t target_mhz, std::int64_t now_ns) noexcept;
-  /// As drive(), but it is there at once.
+  /// Like drive(), but it has the speed immediately.
   void jump(std::uint32_t target_mhz, std::int64_t now_ns) noexcept;
-  /// How far it wanders from its speed.
+  /// The deviation from its speed.
   void hold(constant_frequency constancy) noexcept;
 
   [[nodiscard]] std::uint32_t speed_mhz(std::int64_t now_ns) const noexcept;
@@ -28,7 +28,7 @@ class motor {
   std::int64_t acceleration_mhz_per_s_;
   std::int64_t standstill_ns_;
   std::int64_t period_ns_;
-  std::int64_t offset_ns_;  // of its wandering, random
+  std::int64_t offset_ns_;  // of its deviation, random
   std::int64_t held_ppm_;
   std::int64_t free_ppm_;
   std::int64_t drift_ppm_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads a world from text, line by line, or says what is wrong with it.
+// Parses a world from text, line by line, or reports the error.
 #include "exact.hpp"
 
 #include "g4lidar/sim/world.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
 constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-// Takes the next word off the front of `line`; empty at its end.
+// Takes the next word from the front of `line`; empty at its end.
 std::string_view next_word(std::string_view& line) noexcept {
   while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
   std::size_t end = 0;
@@ -28,7 +28,7 @@ std::string_view next_word(std::string_view& line) noexcept {
   return word;
 }
 
-// A word as it may be shown to a person, whatever bytes it is made of.
+// A word for an error message, safe to print.
 std::string quoted(std::string_view word) {
   constexpr std::size_t enough = 24;
   std::string out = "'";
@@ -37,8 +37,8 @@ std::string quoted(std::string_view word) {
   return out;
 }
 
-// [+-]digits[.digits], at most 15 digits that count and 15 behind the point: a whole number and a
-// power of ten are then both exact, and one division rounds as a correct reading does, in any
+// [+-]digits[.digits], at most 15 significant digits and 15 behind the point: an integer and a
+// power of ten are then both exact, and one division rounds like a correct conversion, in any
 // locale.
 std::optional<double> number(std::string_view word) noexcept {
   const bool negative = !word.empty() && word.front() == '-';
@@ -63,7 +63,7 @@ std::optional<double> number(std::string_view word) noexcept {
   return negative ? -value : value;
 }
 
-// Reads as many numbers as `out` holds from the rest of a line; says what is wrong, if anything.
+// Parses as many numbers as `out` holds from the rest of a line; returns the error, if any.
 std::optional<std::string> numbers(std::string_view rest, std::span<double> out,
                                    std::string_view form) {
   std::size_t count = 0;
@@ -96,10 +96,10 @@ double distance_m(const wall& w, const pose& from) noexcept {
   return std::sqrt(x * x + y * y);
 }
 
-// Gathers a world from lines.
+// Collects a world from lines.
 class world_reader {
  public:
-  // What is wrong with the line, if anything.
+  // The error of the line, if any.
   std::optional<std::string> take(std::string_view line, std::size_t line_number) {
     line = line.substr(0, line.find('#'));
     const std::string_view word = next_word(line);

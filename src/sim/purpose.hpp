@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the random streams of a simulated G4 are for. The numbers are part of the golden digests.
+// The purposes of the random streams of a simulated G4. The numbers are part of the golden digests.
 #pragma once
 
 #include <cstdint>
 
-#include "g4lidar/sim/random.hpp"
+#include "g4lidar/detail/sim/random.hpp"
 
 namespace g4lidar::sim {
 
@@ -16,8 +16,8 @@ enum class purpose : std::uint64_t {
   phases = 5,  // of the head at each start
   strays = 6,
   batches = 7,
-  garbage = 8,  // of a wrong baud rate, to the device
-  faults = 100  // and the index of the fault
+  garbage = 8,  // bytes at a wrong baud rate, to the device
+  faults = 100  // plus the index of the fault
 };
 
 [[nodiscard]] constexpr random_stream stream_for(std::uint64_t seed, purpose what,

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Where a bent beam meets straight walls. With q(d) = tan(correction(d)) = k/d - c, the beam at the
-// first-level angle theta is at range d in
+// Where a curved beam hits straight walls. With q(d) = tan(correction(d)) = k/d - c, the point of
+// the beam at the first-level angle theta and range d is
 //     P(d) = (d e + (k - c d) n) / g(d),   g(d) = sqrt(1 + q(d)^2),
 // e pointing towards theta and n 90 degrees further. It is on the line N.P = h of a wall where
 //     f(d) = d N.e + (k - c d) N.n - h g(d) = 0.
-// Without g that is a straight line: the laser beam beside the centre. g bends one way up to the
-// range at which its curvature changes its sign and the other way from there on, and f with it,
-// which leaves at most two roots in either part and a sure way to all of them, without a
-// trigonometric function.
+// Without g that is a straight line: the laser beam beside the centre. g is convex up to the range
+// at which its curvature changes its sign, and concave from there on, and f likewise. So there are
+// at most two roots in either part, and a reliable way to find all of them without a trigonometric
+// function.
 #include "exact.hpp"
 
-#include "g4lidar/sim/ray_caster.hpp"
+#include "g4lidar/detail/sim/ray_caster.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-#include "g4lidar/angle.hpp"
-#include "g4lidar/sim/arithmetic.hpp"
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/detail/sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -27,7 +27,7 @@ constexpr double k = 21.8;           // mm, the laser's offset
 constexpr double c = 21.8 / 155.3;   // its slope: it crosses the centre line at 155.3 mm
 constexpr double least_range = 1.0;  // mm
 constexpr double inflection = 232.7808551523369427;  // mm; 0 = 3k - 2cd + 2(k - cd) q^2
-constexpr double slack = 1e-6;  // mm; walls are lengthened by it, so that corners are closed
+constexpr double slack = 1e-6;  // mm; walls are extended by it, so that corners are closed
 
 constexpr std::size_t sectors = 720;
 
@@ -57,7 +57,8 @@ struct end {
   gap::value v;
 };
 
-// The root between two ends of different sign: Newton's steps, or halves where those lead away.
+// The root between two ends of different sign: Newton steps, or bisection where these leave the
+// interval.
 double root_between(const gap& f, end low, end high) noexcept {
   const bool rising = low.v.f < 0.0;
   double a = low.d;
@@ -85,20 +86,21 @@ struct roots {
   std::size_t count = 0;
 };
 
-// All roots between two ends, where f bends to one side only.
+// All roots between two ends, where f is convex or concave.
 roots roots_between(const gap& f, end low, end high) noexcept {
   if ((low.v.f < 0.0) != (high.v.f < 0.0)) return {{root_between(f, low, high)}, 1};
-  // Both ends on the same side. Two roots can hide only where f dips from there towards zero: look
-  // for a point on the other side. The tangents at the ends bound f; where they meet is tried next.
+  // Both ends have the same sign. Two roots are possible only if f approaches zero between them:
+  // search for a point with the other sign. The tangents at the ends bound f; their intersection is
+  // tried next.
   const double side = low.v.f < 0.0 ? -1.0 : 1.0;
   end a = low;
   end b = high;
   for (int i = 0; i < 60; ++i) {
     if (a.v.slope * side >= 0.0 || b.v.slope * side <= 0.0) return {};
     const double reach = (b.v.f - a.v.f - b.v.slope * (b.d - a.d)) / (a.v.slope - b.v.slope);
-    if ((a.v.f + a.v.slope * reach) * side > 0.0) return {};  // f stays on this side of zero
+    if ((a.v.f + a.v.slope * reach) * side > 0.0) return {};  // f does not reach zero
     const double d = a.d + reach;
-    if (!(d > a.d && d < b.d)) return {};  // a touch, within rounding
+    if (!(d > a.d && d < b.d)) return {};  // a tangent point, within rounding
     const end m{d, f.at(d)};
     if ((m.v.f < 0.0) != (side < 0.0)) {
       return {{root_between(f, low, m), root_between(f, m, high)}, 2};
@@ -158,12 +160,12 @@ ray_caster::ray_caster(const world& scene) {
   for (const wall& w : scene.walls) {
     walls_.push_back(as_seen(w, scene.lidar, static_cast<std::uint32_t>(walls_.size())));
   }
-  // The index makes the order of all walls one and the same under every standard library.
+  // The index makes the order of all walls the same with every standard library.
   std::sort(walls_.begin(), walls_.end(), [](const seen_wall& a, const seen_wall& b) {
     return a.nearest < b.nearest || (a.nearest == b.nearest && a.index < b.index);
   });
 
-  // A wall between the bearings b1 and b2, its points between the ranges d1 and d2, is met from
+  // A wall between the bearings b1 and b2, with points between the ranges d1 and d2, is hit from
   // first-level angles between b1 - correction(d1) and b2 - correction(d2) only.
   std::vector<std::vector<std::uint32_t>> seen_from(sectors);
   for (std::uint32_t i = 0; i < walls_.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A queue of at most N in place: what a device holds back is bounded.
+// A queue of at most N elements in place: the buffers of a device are bounded.
 #pragma once
 
 #include <array>
@@ -17,16 +17,16 @@ class ring {
 
   [[nodiscard]] T& front() noexcept { return items_[first_]; }
   [[nodiscard]] const T& front() const noexcept { return items_[first_]; }
-  /// Only the oldest ones stay, at most this many.
+  /// Keeps only the oldest ones, at most this many.
   void keep(std::size_t count) noexcept { size_ = count < size_ ? count : size_; }
-  /// Not of an empty one.
+  /// The queue must not be empty.
   void pop() noexcept {
     first_ = (first_ + 1) % N;
     --size_;
   }
-  /// A place behind the last one, with whatever lay there; not in a full one.
+  /// A new last element, with undefined content; the queue must not be full.
   T& push() noexcept { return items_[(first_ + size_++) % N]; }
-  /// Whether there was room.
+  /// Returns whether there was room.
   bool push(const T& item) noexcept {
     if (full()) return false;
     push() = item;

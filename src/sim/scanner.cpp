@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The turning head: the angle is a 64-bit phase that wraps by itself, so that no error adds up and
-// the index passes exactly where the phase overflows.
+// The rotating head: the angle is a 64-bit phase that wraps by itself, so that no error accumulates
+// and the index passes exactly where the phase overflows.
 #include "exact.hpp"
 
 #include "g4lidar/sim/scanner.hpp"
@@ -9,8 +9,8 @@
 #include <cassert>
 #include <cstddef>
 
-#include "g4lidar/angle.hpp"
-#include "g4lidar/response.hpp"
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/response.hpp"
 #include "purpose.hpp"
 
 namespace g4lidar::sim {
@@ -32,7 +32,7 @@ std::uint64_t first_phase(const scanner_options& options) noexcept {
   return static_cast<std::uint64_t>(turn * 0x1p53) << 11;
 }
 
-// The same place seen in a mirror along the lidar's own axis of angle 0.
+// The same place, mirrored at the lidar's own axis of angle 0.
 world mirrored(world scene) {
   for (wall& w : scene.walls) {
     w.y1_m = 2.0 * scene.lidar.y_m - w.y1_m;
@@ -159,7 +159,7 @@ sent_packet scanner::next() noexcept {
     truths_[count++] = measure();
     turn_on();
   } while (count < at_most && !at_index_);
-  return {frame_of(count, zero), {truths_.data(), count}, truths_[count - 1].time_ns};
+  return {packet_of(count, zero), {truths_.data(), count}, truths_[count - 1].time_ns};
 }
 
 sample_truth scanner::measure() noexcept {
@@ -179,8 +179,8 @@ sample_truth scanner::measure() noexcept {
   return truth;
 }
 
-// Each sample draws as many random numbers whatever it meets and however the options are set, so
-// that a change in one place moves nothing anywhere else.
+// Each sample draws the same number of random numbers for every target and every option, so that a
+// change in one place changes nothing elsewhere.
 std::uint16_t scanner::raw_sample(double range_mm) noexcept {
   const double error = noise_.gaussian();
   const bool dropped = dropouts_.uniform() < options_.dropout_ratio;
@@ -202,23 +202,23 @@ void scanner::turn_on() noexcept {
   }
 }
 
-bytes scanner::frame_of(std::size_t samples, bool zero) noexcept {
-  const std::span<std::uint8_t> out(frame_);
+bytes scanner::packet_of(std::size_t samples, bool zero) noexcept {
+  const std::span<std::uint8_t> out(packet_);
   const unsigned frequency_dhz = std::min((speed_mhz_ + 50U) / 100U, 127U);
   const unsigned reported = options_.reports_frequency ? frequency_dhz : 0U;
   const unsigned ordinary = options_.ordinary_ct & 0xFEU;
-  frame_[0] = packet_start[0];
-  frame_[1] = packet_start[1];
-  frame_[2] = static_cast<std::uint8_t>(zero ? reported << 1 | 1U : ordinary);
-  frame_[3] = static_cast<std::uint8_t>(samples);
+  packet_[0] = packet_start[0];
+  packet_[1] = packet_start[1];
+  packet_[2] = static_cast<std::uint8_t>(zero ? reported << 1 | 1U : ordinary);
+  packet_[3] = static_cast<std::uint8_t>(samples);
   store_u16(out, 4, wire_angle(truths_[0].first_level_deg));
   store_u16(out, 6, wire_angle(truths_[samples - 1].first_level_deg));
   for (std::size_t i = 0; i < samples; ++i) {
     store_u16(out, packet_size(i), truths_[i].raw);
   }
-  const bytes frame = bytes(frame_).first(packet_size(samples));
-  store_u16(out, 8, packet_checksum(frame));
-  return frame;
+  const bytes packet = bytes(packet_).first(packet_size(samples));
+  store_u16(out, 8, packet_checksum(packet));
+  return packet;
 }
 
 }  // namespace g4lidar::sim

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The protocol's commands from the device's side, written from its page and not from the core.
+// The commands of the protocol on the device's side, written from the protocol page and not from
+// the core.
 #include "exact.hpp"
 
 #include "settings.hpp"
@@ -19,19 +20,20 @@ answer_bytes answer_with_frequency(std::uint16_t chz) noexcept {
                                                  static_cast<std::uint8_t>(chz >> 8), 0, 0});
 }
 
-// Sets it, and answers with it.
+// Sets the value, and answers with it.
 template <class Setting>
 answer_bytes set(Setting& stored, Setting wanted) noexcept {
   stored = wanted;
   return answer_with_byte(static_cast<std::uint8_t>(wanted));
 }
 
-answer_bytes step(std::uint16_t& frequency_chz, int by_chz, at_limit limit) noexcept {
+answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
+                  const device_options& options) noexcept {
   constexpr int least = min_scan_frequency_chz;
-  constexpr int most = max_scan_frequency_chz;
+  const int most = options.highest_frequency_chz;
   const int wanted = frequency_chz + by_chz;
   const bool possible = wanted >= least && wanted <= most;
-  if (possible || limit == at_limit::clamp) {
+  if (possible || options.frequency_at_limit == at_limit::clamp) {
     frequency_chz = static_cast<std::uint16_t>(std::clamp(wanted, least, most));
   }
   return answer_with_frequency(frequency_chz);
@@ -82,7 +84,6 @@ device_settings first_settings(const device_options& options) noexcept {
 
 std::optional<answer_bytes> apply(command code, device_settings& now,
                                   const device_options& options) noexcept {
-  const at_limit limit = options.frequency_at_limit;
   switch (code) {
     case command::low_power_on:
       return set(now.idle_power, low_power::on);
@@ -98,13 +99,13 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
       if (!options.answers_direction) return std::nullopt;
       return set(now.direction, now.direction);
     case command::frequency_up_0_1_hz:
-      return step(now.scan_frequency_chz, 10, limit);
+      return step(now.scan_frequency_chz, 10, options);
     case command::frequency_down_0_1_hz:
-      return step(now.scan_frequency_chz, -10, limit);
+      return step(now.scan_frequency_chz, -10, options);
     case command::frequency_up_1_hz:
-      return step(now.scan_frequency_chz, 100, limit);
+      return step(now.scan_frequency_chz, 100, options);
     case command::frequency_down_1_hz:
-      return step(now.scan_frequency_chz, -100, limit);
+      return step(now.scan_frequency_chz, -100, options);
     case command::frequency_query:
       return answer_with_frequency(now.scan_frequency_chz);
     case command::constant_frequency_on:

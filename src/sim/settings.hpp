@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What commands do to the memory of a simulated G4, and the bytes of its answers.
+// The effect of commands on the memory of a simulated G4, and the bytes of its answers.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
-#include "g4lidar/bytes.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/response.hpp"
 #include "g4lidar/sim/device_options.hpp"
 
 namespace g4lidar::sim {
@@ -23,11 +25,11 @@ struct answer_bytes {
 [[nodiscard]] answer_bytes answer_with(const device_information& info) noexcept;
 [[nodiscard]] answer_bytes answer_with(const health& condition) noexcept;
 
-/// The settings of a device that has just got its power.
+/// The settings of a device after power-on.
 [[nodiscard]] device_settings first_settings(const device_options& options) noexcept;
 
-/// Carries out a command that reads or changes a setting: its answer. Nothing for other commands,
-/// and where the options say that it goes unanswered.
+/// Executes a command that reads or changes a setting, and returns its answer. Nothing for other
+/// commands, and if the options state that it is not answered.
 [[nodiscard]] std::optional<answer_bytes> apply(command code, device_settings& settings,
                                                 const device_options& options) noexcept;
 

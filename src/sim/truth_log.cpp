@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A ring that forgets the oldest.
+// A ring that drops the oldest entries.
 #include "exact.hpp"
 
 #include "truth_log.hpp"
 
 namespace g4lidar::sim {
 
-void truth_log::add(const frame& sent, bool whole, std::int64_t now_ns) noexcept {
+void truth_log::add(const transmission& sent, bool whole, std::int64_t now_ns) noexcept {
   const std::size_t capacity = samples_.size();
   for (std::uint8_t i = 0; i < sent.count; ++i) {
     if (size_ == capacity) {

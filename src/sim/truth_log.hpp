@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The samples that have gone down the line, for whoever wants to hold something against them.
+// The samples that were sent, for comparisons.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ class truth_log {
  public:
   explicit truth_log(std::size_t capacity) : samples_(capacity) {}
 
-  void add(const frame& sent, bool whole, std::int64_t now_ns) noexcept;
+  void add(const transmission& sent, bool whole, std::int64_t now_ns) noexcept;
   std::size_t take(std::span<sent_sample> out) noexcept;
   [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
 

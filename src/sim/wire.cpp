@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The time of each byte is counted from the begin of its stretch, so that no rounding adds up.
+// The time of each byte is counted from the begin of its sequence, so that rounding errors do not
+// accumulate.
 #include "exact.hpp"
 
 #include "wire.hpp"
@@ -8,7 +9,7 @@
 
 namespace g4lidar::sim {
 
-void frame::assign(bytes content) noexcept {
+void transmission::assign(bytes content) noexcept {
   const std::size_t fits = std::min(content.size(), data.size());
   std::copy_n(content.begin(), fits, data.begin());
   size = static_cast<std::uint8_t>(fits);
@@ -18,7 +19,7 @@ void frame::assign(bytes content) noexcept {
   damaged = false;
 }
 
-void frame::assign(const sent_packet& sent, std::optional<std::uint8_t> stray) noexcept {
+void transmission::assign(const sent_packet& sent, std::optional<std::uint8_t> stray) noexcept {
   begin = stray ? 1 : 0;
   if (stray) data[0] = *stray;
   std::copy(sent.data.begin(), sent.data.end(), data.begin() + begin);
@@ -29,9 +30,9 @@ void frame::assign(const sent_packet& sent, std::optional<std::uint8_t> stray) n
   std::copy(sent.samples.begin(), sent.samples.end(), truths.begin());
 }
 
-void wire::say(const frame& what, std::int64_t now_ns) noexcept {
-  if (frames_.full()) return;
-  frame& to = frames_.push();
+void wire::say(const transmission& what, std::int64_t now_ns) noexcept {
+  if (queue_.full()) return;
+  transmission& to = queue_.push();
   to.data = what.data;
   to.size = what.size;
   to.begin = what.begin;
@@ -55,36 +56,36 @@ void wire::begin(std::int64_t now_ns) noexcept {
 }
 
 void wire::take_byte() noexcept {
-  busy_ = !urgent_.empty() || !frames_.empty();
+  busy_ = !urgent_.empty() || !queue_.empty();
   next_ns_ = forever_ns;
   if (!busy_) return;
-  from_frame_ = urgent_.empty();
-  if (from_frame_) {
-    byte_ = frames_.front().data[at_++];
+  from_queue_ = urgent_.empty();
+  if (from_queue_) {
+    byte_ = queue_.front().data[at_++];
   } else {
     byte_ = urgent_.front().data[urgent_at_++];
-    if (!frames_.empty() && at_ > frames_.front().begin) damage();
+    if (!queue_.empty() && at_ > queue_.front().begin) damage();
   }
   ++sent_;
   next_ns_ = begin_ns_ + (sent_ * 10'000'000'000 + baud_ - 1) / baud_;
 }
 
 bool wire::in_packet() const noexcept {
-  return from_frame_ && frames_.front().count > 0 && at_ > frames_.front().begin;
+  return from_queue_ && queue_.front().count > 0 && at_ > queue_.front().begin;
 }
 
 bool wire::inside_packet() const noexcept {
-  return in_packet() && at_ > frames_.front().begin + std::size_t{1};
+  return in_packet() && at_ > queue_.front().begin + std::size_t{1};
 }
 
-const frame* wire::ending() const noexcept {
-  return from_frame_ && at_ == frames_.front().size ? &frames_.front() : nullptr;
+const transmission* wire::ending() const noexcept {
+  return from_queue_ && at_ == queue_.front().size ? &queue_.front() : nullptr;
 }
 
 void wire::advance() noexcept {
-  if (from_frame_) {
-    if (at_ == frames_.front().size) {
-      frames_.pop();
+  if (from_queue_) {
+    if (at_ == queue_.front().size) {
+      queue_.pop();
       at_ = 0;
     }
   } else if (urgent_at_ == urgent_.front().size) {
@@ -95,22 +96,22 @@ void wire::advance() noexcept {
 }
 
 void wire::cut_front() noexcept {
-  if (frames_.empty() || at_ == 0 || at_ == frames_.front().size) return;
-  frame& front = frames_.front();
+  if (queue_.empty() || at_ == 0 || at_ == queue_.front().size) return;
+  transmission& front = queue_.front();
   front.damaged = front.damaged || front.count > 0;
   front.size = static_cast<std::uint8_t>(at_);
-  if (busy_ && from_frame_) return;  // its last byte is on the line
-  frames_.pop();
+  if (busy_ && from_queue_) return;  // its last byte is being sent
+  queue_.pop();
   at_ = 0;
 }
 
 void wire::cut(bool at_once) noexcept {
-  frames_.keep(at_ > 0 ? 1 : 0);
+  queue_.keep(at_ > 0 ? 1 : 0);
   if (at_once) cut_front();
 }
 
 void wire::reset() noexcept {
-  frames_.clear();
+  queue_.clear();
   urgent_.clear();
   at_ = 0;
   urgent_at_ = 0;

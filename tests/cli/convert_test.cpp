@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -67,47 +66,16 @@ TEST_F(Convert, RawBytesAreTheSameBehindARecording) {
   EXPECT_EQ(run({"replay", "--verify", path("second.mcap")}).code, 0);
 }
 
-TEST_F(Convert, ARecordingGivesThePointsOfTheDriver) {
-  ASSERT_EQ(cli::record_scans(path("walk.mcap"), 4).code, 0);
-  convert("walk.mcap", "walk.csv");
-  const outcome played =
-      run({"replay", path("walk.mcap"), "--rate", "max", "-f", "csv", "--time", "mono"});
-  EXPECT_EQ(text("walk.csv"), played.out);
-  EXPECT_GT(rows("walk.csv").size(), 4000U);
-}
-
-TEST_F(Convert, RawBytesGiveThePointsOfDecode) {
-  const std::string name = raw("2");
-  convert("raw.bin", "walk.csv");
-  EXPECT_EQ(text("walk.csv"), run({"decode", name}).out);
-  convert("raw.bin", "walk.jsonl");
-  EXPECT_EQ(text("walk.jsonl"), run({"decode", name, "--format", "jsonl"}).out);
-}
-
-// Times of a recording made of raw bytes are those of a driver, which knows them well after 5 s.
-TEST_F(Convert, ByWayOfARecordingThePointsAreTheSameButForTheirTimes) {
-  raw("8");
-  convert("raw.bin", "walk.mcap");
-  convert("raw.bin", "straight.csv");
-  convert("walk.mcap", "round.csv");
-  const auto straight = rows("straight.csv");
-  const auto round = rows("round.csv");
-  ASSERT_EQ(straight.size(), round.size());
-  const long long shift = cli::number_in(round[60'000], 3) - cli::number_in(straight[60'000], 3);
-  for (std::size_t i = 1; i < straight.size(); ++i) {
-    ASSERT_EQ(cli::number_in(straight[i], 0), cli::number_in(round[i], 0));
-    const auto field = [](const std::string& row, std::size_t column) {
-      std::size_t at = 0;
-      for (std::size_t k = 0; k < column; ++k) at = row.find(',', at) + 1;
-      return std::stod(row.substr(at));
-    };
-    ASSERT_NEAR(field(straight[i], 1), field(round[i], 1), 4.1e-5) << straight[i];
-    ASSERT_EQ(field(straight[i], 2), field(round[i], 2));
-    const long long off = cli::number_in(round[i], 3) - cli::number_in(straight[i], 3) - shift;
-    if (i > 45'000) {
-      ASSERT_LT(std::llabs(off), 1'000'000) << straight[i];
-    }
-  }
+TEST_F(Convert, ARecordingReplacesWhatALinkPointsToAndKeepsItsPermissions) {
+  raw("1");
+  cli::write_file(path("real.mcap"), "older");
+  fs::permissions(path("real.mcap"), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("real.mcap", path("link.mcap"));
+  convert("raw.bin", "link.mcap");
+  EXPECT_TRUE(fs::is_symlink(path("link.mcap"))) << listing();
+  EXPECT_EQ(fs::status(path("real.mcap")).permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(run({"replay", "--verify", path("real.mcap")}).code, 0);
 }
 
 TEST_F(Convert, TextComesBackAsItWas) {
@@ -135,7 +103,7 @@ TEST_F(Convert, ColumnsAreFoundByTheirNames) {
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(text("out.csv"),
             "scan,angle_deg,range_mm,time_ns\n0,10.000000,1500.00,0\n0,12.000000,2000.00,0\n");
-  EXPECT_THAT(done.err, HasSubstr("2 points, 1 lines without one"));
+  EXPECT_THAT(done.err, HasSubstr("2 points, 1 line without one"));
 }
 
 TEST_F(Convert, ToPointClouds) {
@@ -188,7 +156,7 @@ TEST_F(Convert, OfWhatIsDamagedTheWholeIsUsedAndTheRestCounted) {
                   cli::damaged(good, cli::place_of_payload(good, text("raw.bin"))));
   const outcome bad = run({"convert", path("bad.mcap"), path("bad.csv")});
   EXPECT_EQ(bad.code, 0) << bad.err;
-  EXPECT_THAT(bad.err, HasSubstr("1 chunks are damaged"));
+  EXPECT_THAT(bad.err, HasSubstr("1 chunk damaged"));
   EXPECT_GT(rows("bad.csv").size(), rows("good.csv").size() * 8 / 10);
   EXPECT_LT(rows("bad.csv").size(), rows("good.csv").size());
 }
@@ -196,16 +164,16 @@ TEST_F(Convert, OfWhatIsDamagedTheWholeIsUsedAndTheRestCounted) {
 TEST_F(Convert, WhatCannotBeIsRefused) {
   raw("1");
   convert("raw.bin", "a.csv");
-  expect_refused({path("a.csv"), path("b.mcap")}, 2, "holds points, and no bytes of a lidar");
-  expect_refused({path("a.csv"), path("b.bin")}, 2, "holds points, and no bytes of a lidar");
+  expect_refused({path("a.csv"), path("b.mcap")}, 2, "holds points, not bytes of a lidar");
+  expect_refused({path("a.csv"), path("b.bin")}, 2, "holds points, not bytes of a lidar");
   expect_refused({path("raw.bin"), path("b.mcap"), "--range", "1:2"}, 2, "are for points");
   expect_refused({path("raw.bin"), path("b.bin"), "--scans"}, 2, "are for points");
-  expect_refused({path("raw.bin"), path("b.txt")}, 2, "ends in none of .mcap");
-  expect_refused({path("raw.bin"), "-"}, 2, "ends in none of .mcap");
+  expect_refused({path("raw.bin"), path("b.txt")}, 2, "does not end in .mcap");
+  expect_refused({path("raw.bin"), "-"}, 2, "does not end in .mcap");
   expect_refused({path("raw.bin"), "-", "--to-format", "mcap"}, 2, "not to standard output");
   expect_refused({path("x.pcd"), path("b.csv")}, 10, "there is no file");
-  expect_refused({path("raw.bin"), path("b.csv"), "--from-format", "pcd"}, 2, "not read");
-  expect_refused({"sim:", path("b.csv")}, 2, "is no file");
+  expect_refused({path("raw.bin"), path("b.csv"), "--from-format", "pcd"}, 2, "is not one of");
+  expect_refused({"sim:", path("b.csv")}, 2, "is not a file");
   expect_refused({path("none"), path("b.csv")}, 10, "there is no file");
   expect_refused({path("a.csv"), path("a.csv")}, 2, "is what is read, too");
   expect_refused({path("raw.bin"), path("none/b.csv")}, 10, "Make its directory first");
@@ -233,8 +201,8 @@ TEST_F(Convert, FilesThatHoldNothingOfUse) {
 
 TEST_F(Convert, ALongFileTakesNoMoreMemoryThanAShortOne) {
   const std::string block = cli::zero(0) + cli::turn();
-  cli::write_repeated(path("short.bin"), block, 2'000'000);
-  cli::write_repeated(path("long.bin"), block, 20'000'000);
+  cli::write_repeated(path("short.bin"), block, 1'000'000);
+  cli::write_repeated(path("long.bin"), block, 6'000'000);
   for (const std::string length : {"short", "long"}) {
     convert(length + ".bin", length + ".mcap", {"--compress"});
     convert(length + ".bin", length + ".csv");

@@ -5,7 +5,6 @@
 
 #include <unistd.h>
 
-#include <unistd.h>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "program.hpp"
+#include "recorded.hpp"
 
 namespace {
 
@@ -55,7 +55,8 @@ class Doctor : public cli::scratch {
   std::optional<program> served_;
 };
 
-// How evenly bytes come there depends on the computer, so the last stage is not looked at.
+// How evenly bytes arrive there depends on the computer: usb_latency may warn, and stream may say that
+// the computer was busy. Everything else is healthy.
 TEST_F(Doctor, GoesThroughAllStages) {
   const outcome done = examine("sim:");
   const std::vector<json> stages = stages_of(done);
@@ -63,9 +64,52 @@ TEST_F(Doctor, GoesThroughAllStages) {
   const std::vector<std::string> names{"port",   "permission", "holder", "baud_rate",
                                        "answer", "identity",   "health", "motor",
                                        "stream", "rate",       "loss",   "usb_latency"};
-  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(stages[i].at("stage"), names[i]);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(stages[i].at("stage"), names[i]);
+    if (names[i] == "usb_latency") continue;
+    const bool is_busy = names[i] == "stream" && stages[i].at("verdict") == "warn" &&
+                         stages[i].at("diagnoses").size() == 1 &&
+                         stages[i].at("diagnoses")[0].at("name") == "host_busy";
+    EXPECT_TRUE(stages[i].at("verdict") == "ok" || is_busy) << stages[i];
+  }
+  EXPECT_EQ(done.code, 0);
   EXPECT_EQ(stages[5].at("evidence").at("serial_number"), "2021101000070073");
   EXPECT_EQ(stages[6].at("evidence").at("status"), "ok");
+  EXPECT_EQ(stages[9].at("evidence").at("set_hz"), 7.0);
+}
+
+// A recording is examined without a device: what needs one is skipped.
+TEST_F(Doctor, ExaminesARecording) {
+  const std::string file = path("walk.mcap");
+  ASSERT_EQ(cli::record_scans(file, 6).code, 0);
+  const outcome done = examine(file);
+  EXPECT_EQ(done.code, 0) << done.out << done.err;
+  const std::vector<json> stages = stages_of(done);
+  ASSERT_EQ(stages.size(), 12U) << done.out;
+  const std::vector<std::string> verdicts{"ok",      "skipped", "skipped", "ok",
+                                          "skipped", "ok",      "ok",      "ok"};
+  for (std::size_t i = 0; i < verdicts.size(); ++i) {
+    EXPECT_EQ(stages[i].at("verdict"), verdicts[i]) << stages[i];
+  }
+  EXPECT_EQ(stages[5].at("evidence").at("serial_number"), "2021101000070073");
+  EXPECT_EQ(stages[10].at("verdict"), "ok") << stages[10];
+  EXPECT_EQ(stages[10].at("evidence").at("samples_lost"), 0);
+  EXPECT_THAT(stages[1].at("remark"), HasSubstr("needs a device"));
+}
+
+TEST_F(Doctor, ExaminesRawBytes) {
+  using namespace std::string_literals;
+  cli::write_file(path("one.bin"), "\xAA\x55\x01\x01\x53\xAE\x53\xAE\xAB\x54\x00\x00"s);
+  const outcome one = examine(path("one.bin"));
+  EXPECT_EQ(one.code, 0) << one.out << one.err;
+  EXPECT_EQ(stages_of(one).at(3).at("evidence").at("packets"), 1);
+  cli::write_file(path("a_file"), "no bytes of a lidar");
+  const outcome other = examine(path("a_file"));
+  EXPECT_EQ(other.code, 6);
+  EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("wrong_baud_rate")) << other.out;
+  const outcome none = examine("file:" + path("nothing"));
+  EXPECT_EQ(none.code, 10);
+  EXPECT_THAT(diagnoses_of(stages_of(none)), Contains("bad_file")) << none.out;
 }
 
 TEST_F(Doctor, SaysWhatIsWrongAndWhatToTry) {
@@ -88,22 +132,21 @@ TEST_F(Doctor, TellsAnUnplug) {
   EXPECT_THAT(diagnoses_of(stages_of(done)), Contains("unplugged")) << done.out;
 }
 
-TEST_F(Doctor, TellsAPortThatIsNone) {
+TEST_F(Doctor, ReportsAPortThatIsNone) {
   const outcome missing = examine(path("nothing"));
   EXPECT_EQ(missing.code, 3);
   EXPECT_THAT(diagnoses_of(stages_of(missing)), Contains("no_port")) << missing.out;
-  cli::write_file(path("a_file"), "no port");
-  const outcome file = examine(path("a_file"));
-  EXPECT_EQ(file.code, 3);
-  EXPECT_THAT(diagnoses_of(stages_of(file)), Contains("not_serial")) << file.out;
+  const outcome other = examine("/dev/null");
+  EXPECT_EQ(other.code, 3);
+  EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("not_serial")) << other.out;
   EXPECT_EQ(run({"doctor", "-"}).code, 2);
 }
 
-TEST_F(Doctor, TellsAPortThatMayNotBeOpened) {
+TEST_F(Doctor, ReportsAPortThatMayNotBeOpened) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may open everything";
-  cli::write_file(path("locked"), "");
-  std::filesystem::permissions(path("locked"), std::filesystem::perms::none);
-  const outcome done = examine(path("locked"));
+  // A character device that only root may open is on every Linux.
+  const outcome done = examine("/dev/mem");
+  if (done.code == 3) GTEST_SKIP() << "there is no /dev/mem here";
   EXPECT_EQ(done.code, 4) << done.out;
 }
 

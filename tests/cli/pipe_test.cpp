@@ -154,7 +154,7 @@ TEST_F(Pipe, ALongFileTakesNoMoreMemoryThanAShortOne) {
   const std::string short_one = path("short.bin");
   const std::string long_one = path("long.bin");
   cli::write_repeated(short_one, block, 500'000);
-  cli::write_repeated(long_one, block, 50'000'000);
+  cli::write_repeated(long_one, block, 10'000'000);
   for (const char* const format : {"csv", "jsonl"}) {
     const auto decode = [&](const std::string& name) {
       program started({"decode", name, "--format", format}, {{}, stream::of_file("/dev/null"), {}});

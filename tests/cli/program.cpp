@@ -68,11 +68,11 @@ program::program(const std::vector<std::string>& arguments, const streams& leadi
   in_ = lead(actions, leading.in, 0, theirs);
   out_ = lead(actions, leading.out, 1, theirs);
   err_ = lead(actions, leading.err, 2, theirs);
-  posix_spawnattr_t attributes;  // SIGPIPE as a shell leaves it
+  posix_spawnattr_t attributes;  // the signals as a shell in the foreground leaves them
   posix_spawnattr_init(&attributes);
   sigset_t defaults;
   sigemptyset(&defaults);
-  sigaddset(&defaults, SIGPIPE);
+  for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) sigaddset(&defaults, signal);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
   const int error = posix_spawn(&pid_, name.c_str(), &actions, &attributes, argv.data(), environ);

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/bytes.hpp"
+#include "g4lidar/core/bytes.hpp"
 #include "support/packet_maker.hpp"
 
 namespace cli {

@@ -9,12 +9,14 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "program.hpp"
+#include "twin.hpp"
 
 namespace {
 
@@ -107,18 +109,41 @@ TEST_F(Serve, FaultsAreAtWork) {
   EXPECT_EQ(twin.wait().code, 128 + SIGTERM);
 }
 
+TEST_F(Serve, OptionsOfTheDeviceAreAtWork) {
+  const cli::twin twin(path("old"), {"--device", "answers_direction=false"});
+  EXPECT_THAT(run({"info", path("old")}).out, HasSubstr("direction   unknown"));
+  EXPECT_THAT(run({"info", "sim:?answers_direction=false&reaction_ns=2ms"}).out,
+              HasSubstr("direction   unknown"));
+  EXPECT_THAT(run({"info", "sim:?serial=1111222233334444&batch_min_ns=2ms&batch_max_ns=3ms"}).out,
+              HasSubstr("serial      1111222233334444\n"));
+  EXPECT_THAT(run({"info", "sim:"}).out, HasSubstr("direction   cw"));
+  const auto expect_refused = [](const std::string& option, const std::string& why) {
+    for (const auto& arguments :
+         {std::vector<std::string>{"sim", "--device", option}, {"info", "sim:?" + option}}) {
+      const outcome done = run(arguments);
+      EXPECT_EQ(done.code, 2) << option;
+      EXPECT_THAT(done.err, HasSubstr(why));
+    }
+  };
+  expect_refused("colour=red", "'colour' is not one of baud, ");
+  expect_refused("header_ns=2parsecs", "'2parsecs' is not a time");
+  expect_refused("header_ns=2min", "must take 0 to 60 s");
+  expect_refused("boot_text=1", "'1' is not one of true, false");
+  EXPECT_THAT(run({"sim", "--device", "boot_ns=1s"}).err, HasSubstr("need --link"));
+}
+
 TEST_F(Serve, WhatMakesNoSenseIsRefused) {
   const std::string link = path("lidar");
   refused({"sim", "--link", link, "--link", path("x/../lidar")}, "is given twice");
   refused({"sim", "--link", link, "--serial", "123"}, "a serial number has 16 decimal digits");
   refused({"sim", "--link", link, "--serial", "123456789012345x"}, "16 decimal digits");
   refused({"sim", "--link", link, "--serial", "1111222233334444", "--serial", "1111222233334445"},
-          "there are more --serial than --link");
+          "there are more --serial than devices");
   refused({"sim", "--link", link, "--link", path("two"), "--serial", "1111222233334444", "--serial",
            "1111222233334444"},
           "is given twice");
   refused({"sim", "--link", link, "--fault", "unplugged"}, "'unplugged' is no fault; there are");
-  refused({"sim", "--link", link, "--fault", "unplug@5"}, "--fault unplug@5: '5' is no time");
+  refused({"sim", "--link", link, "--fault", "unplug@5"}, "--fault: unplug@5: '5' is no time");
   refused({"sim", "--link", link, "-o", path("file")}, "--link");
   refused({"sim", "--link", link, "--truth", path("file")}, "--link");
   refused({"sim", "--link", link, "--seconds", "3"}, "--link");
@@ -129,11 +154,68 @@ TEST_F(Serve, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(listing(), "");
 }
 
+TEST_F(Serve, TheLinkOfALivingDeviceIsNotTaken) {
+  cli::program first({"sim", "--link", path("lidar"), "--fault", "unplug@300ms+200ms"});
+  ASSERT_TRUE(appears(path("lidar")));
+  // The same place by another name, too.
+  for (const std::string& link : {path("lidar"), path("x/../lidar")}) {
+    const outcome second = run({"sim", "--link", link, "--serial", "1234567890123456"});
+    EXPECT_EQ(second.code, 5) << second.err;
+    EXPECT_THAT(second.err, HasSubstr("leads to a device that another program simulates"));
+  }
+  EXPECT_TRUE(vanishes(path("lidar")));
+  EXPECT_EQ(run({"sim", "--link", path("lidar")}).code, 5) << "unplugged, but still served";
+  EXPECT_TRUE(appears(path("lidar"))) << "plugged in again";
+  first.send(SIGKILL);
+  EXPECT_EQ(first.wait().signal, SIGKILL);
+  cli::program next({"sim", "--link", path("lidar"), "--serial", "1234567890123456"});
+  ASSERT_TRUE(appears(path("lidar"))) << "a link that leads nowhere is replaced";
+  EXPECT_EQ(serial_at(path("lidar")), "1234567890123456");
+}
+
+TEST_F(Serve, ANetworkBridge) {
+  cli::program bridge({"sim", "--tcp", "0"}, {{}, {}, cli::stream::of_file(path("err"))});
+  std::string said;
+  for (int i = 0; i < 2'000 && !said.ends_with('\n'); ++i) {
+    if (fs::exists(path("err"))) said = cli::read_file(path("err"));
+    std::this_thread::sleep_for(5ms);
+  }
+  ASSERT_THAT(said, StartsWith("G4 2021101000070073 at tcp:127.0.0.1:"));
+  const std::string source = said.substr(said.find("tcp:"), said.size() - said.find("tcp:") - 1);
+  const outcome info = run({"info", source});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("serial      2021101000070073\n"));
+  // The next client gets it as new.
+  const outcome points = run({"dump", source, "-n", "500", "-f", "csv"});
+  EXPECT_EQ(points.code, 0) << points.err;
+  EXPECT_EQ(cli::lines_of(points.out).size(), 501U);
+  refused({"sim", "--tcp", "70000"}, "'70000' is not PORT or ADDRESS:PORT");
+}
+
+TEST_F(Serve, ARegisteredDeviceIsDiscovered) {
+  refused({"sim", "--register"}, "G4LIDAR_SIM_DIR");
+  EXPECT_EQ(run({"list"}).out.find("sim"), std::string::npos) << "off unless asked for";
+  ::setenv("G4LIDAR_SIM_DIR", path("ports").c_str(), 1);
+  cli::program twin({"sim", "--register", "--serial", "1234567890123456"});
+  EXPECT_TRUE(appears(path("ports/g4-1234567890123456")));
+  const outcome list = run({"list", "--probe", "--json"});
+  EXPECT_EQ(list.code, 0) << list.err;
+  EXPECT_THAT(list.out, HasSubstr("\"serial\":\"1234567890123456\""));
+  const outcome info = run({"info", "serial:1234567890123456"});
+  EXPECT_EQ(info.code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("serial      1234567890123456\n"));
+  EXPECT_NE(run({"info", "serial:1234567890123457"}).code, 0);
+  twin.send(SIGTERM);
+  EXPECT_EQ(twin.wait().code, 128 + SIGTERM);
+  EXPECT_FALSE(fs::exists(path("ports/g4-1234567890123456")));
+  ::unsetenv("G4LIDAR_SIM_DIR");
+}
+
 TEST_F(Serve, WhatStandsInTheWayIsLeftAlone) {
   cli::write_file(path("letter"), "dear");
   const outcome done = run({"sim", "--link", path("letter")});
   EXPECT_EQ(done.code, 10);
-  EXPECT_THAT(done.err, HasSubstr("is there already, and no link to a pseudo-terminal"));
+  EXPECT_THAT(done.err, HasSubstr("exists and is not a link to a pseudo-terminal"));
   EXPECT_EQ(cli::read_file(path("letter")), "dear");
   EXPECT_EQ(run({"sim", "--link", path("none/lidar")}).code, 10);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a service tells its manager, heard by a test that plays systemd with a datagram socket.
-#include "service_watch.hpp"
+#include "io/service_watch.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,7 +19,6 @@ namespace {
 
 using cli::manager;
 using g4_dump::service_watch;
-constexpr std::int64_t never_ns = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t second_ns = 1'000'000'000;
 
 using words = std::vector<std::string>;
@@ -56,7 +54,6 @@ TEST_F(ServiceWatch, TheWatchdogHearsAtHalfOfItsTime) {
   ::setenv("WATCHDOG_USEC", "10000000", 1);
   ::setenv("WATCHDOG_PID", std::to_string(::getpid()).c_str(), 1);
   service_watch watch;
-  EXPECT_EQ(watch.longest_wait_ns(), 5 * second_ns);
   std::size_t heard = 0;
   for (std::int64_t now_ns = 100 * second_ns; now_ns <= 120 * second_ns;
        now_ns += second_ns / 100) {
@@ -85,8 +82,7 @@ TEST_F(ServiceWatch, NobodyWatchesWhereNothingOrAnotherIsWatched) {
     service_watch watch;
     watch.alive(second_ns);
     watch.alive();
-    const bool is_silent = systemd.heard().empty();
-    return is_silent && watch.longest_wait_ns() == never_ns;
+    return systemd.heard().empty();
   };
   EXPECT_TRUE(silent());
   for (const char* const nonsense : {"", "0", "-5", "10s", "99999999999999999999"}) {

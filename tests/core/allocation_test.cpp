@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The core never allocates: every part of it runs here under a counting allocator. Each part of the
-// core has its own test; a new one gets another.
+// core has its own test.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/angle.hpp"
-#include "g4lidar/command.hpp"
-#include "g4lidar/packet.hpp"
-#include "g4lidar/response.hpp"
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "support/allocation_count.hpp"
 #include "support/packet_bytes.hpp"
 
@@ -28,7 +28,7 @@ using test::packet_bytes;
 using test::some_samples;
 using test::wire_angle;
 
-/// Packets, replies, noise, false starts and a damaged packet.
+/// Packets, responses, noise, false starts and a damaged packet.
 buffer mixed_stream() {
   buffer stream{'b', 'o', 'o', 't'};
   append(stream, {0xA5, 0x5A, 0x05, 0, 0, 0x40, 0x81, 0x00});
@@ -43,11 +43,11 @@ buffer mixed_stream() {
   return stream;
 }
 
-TEST(Allocation, IsCounted) {
+TEST(Allocation, CountsAllocations) {
   std::size_t size = 0;
   const std::size_t counted_calls = allocations_in([&size] {
     const std::string longer_than_any_small_string(200, 'x');
-    static const char* volatile seen;  // or a compiler may do without the allocation
+    static const char* volatile seen;  // otherwise a compiler may remove the allocation
     seen = longer_than_any_small_string.data();
     size = std::char_traits<char>::length(seen);
   });

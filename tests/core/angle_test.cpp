@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Angles wrap on both sides and far away, are never 360, and have exact enough sines.
-#include "g4lidar/angle.hpp"
+// Angles wrap on both sides and for many turns, are never 360, and have exact enough sines.
+#include "g4lidar/core/angle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -65,12 +65,12 @@ void expect_wrapped_on_both_sides() {
   for (int i = -36000; i < 72000; ++i) expect_wrapped(static_cast<Real>(i) / Real(100));
 }
 
-TEST(Angle, WrapsOnceOnBothSidesAndIsNever360) {
+TEST(Angle, WrapsOnBothSidesAndIsNever360) {
   expect_wrapped_on_both_sides<float>();
   expect_wrapped_on_both_sides<double>();
 }
 
-TEST(Angle, WrapsFromFarAwayExactly) {
+TEST(Angle, WrapsManyTurnsExactly) {
   for (const float degrees :
        {720.0F, -720.0F, 1e6F, -1e6F, 1.3e8F, 3e9F, -3e9F, 1e10F, -1e12F, 9.9e14F, -9.9e14F}) {
     double wanted = std::fmod(static_cast<double>(degrees), 360.0);
@@ -83,7 +83,7 @@ TEST(Angle, WrapsFromFarAwayExactly) {
   EXPECT_NEAR(wrap_deg(-1234567.625), 360.0 - 127.625, 1e-9);
 }
 
-TEST(Angle, HasOneZero) {
+TEST(Angle, MinusZeroEqualsZero) {
   EXPECT_EQ((-angle{}).degrees(), 0.0F);
   EXPECT_FALSE(std::signbit((-angle{}).degrees()));
   EXPECT_FALSE(std::signbit(angle::from_degrees(-0.0F).degrees()));
@@ -91,7 +91,7 @@ TEST(Angle, HasOneZero) {
   EXPECT_FALSE(std::signbit(wrap_once_deg(-0.0F)));
 }
 
-TEST(Angle, SumsAndDifferencesStayOnTheCircle) {
+TEST(Angle, SumsAndDifferencesWrap) {
   for (int a = 0; a < 360; a += 7) {
     for (int b = 0; b < 360; b += 11) {
       const angle x = angle::from_degrees(static_cast<float>(a));
@@ -110,7 +110,7 @@ TEST(Angle, SumsAndDifferencesStayOnTheCircle) {
   EXPECT_LT((angle{} - angle::from_degrees(1e-30F)).degrees(), 360.0F);
 }
 
-TEST(Angle, KnowsRadians) {
+TEST(Angle, ConvertsRadians) {
   EXPECT_FLOAT_EQ(angle::from_degrees(90.0F).radians(), std::numbers::pi_v<float> / 2);
   EXPECT_FLOAT_EQ(angle::from_degrees(270.0F).radians(), -std::numbers::pi_v<float> / 2);
   EXPECT_EQ(angle::from_degrees(180.0F).radians(), -std::numbers::pi_v<float>);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The line under points, against a sum over a grid of lines, and its arithmetic against libm.
-#include "g4lidar/arrival_line.hpp"
+// The line below points, compared with a sum over a grid of lines, and its arithmetic with libm.
+#include "g4lidar/detail/arrival_line.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,8 +38,8 @@ struct xy {
   double x, y;
 };
 
-/// The same estimate by its definition: each line of a grid weighs e^(sum of its height / delay), or
-/// nothing if it is above a point.
+/// The same estimate by its definition: each line of a grid has the weight e^(sum of its height /
+/// delay), or 0 if it is above a point.
 line_estimate by_grid(const std::vector<xy>& points, double lowest, double highest, double delay) {
   const auto n = static_cast<double>(points.size());
   double mean_x = 0.0;
@@ -78,7 +78,7 @@ line_estimate by_grid(const std::vector<xy>& points, double lowest, double highe
 }
 
 TEST(ArrivalLine, AgreesWithASumOverAllLines) {
-  for (int seed = 1; seed <= test::scaled(8); ++seed) {
+  for (const int seed : test::seeds(8)) {
     SCOPED_TRACE(seed);
     arrivals::model dice(arrivals::options{.seed = static_cast<std::uint64_t>(seed)});
     const auto count = static_cast<std::size_t>(1 + dice.bits() % 40);
@@ -110,7 +110,7 @@ TEST(ArrivalLine, MeasuresTheMeanDelay) {
   EXPECT_NEAR(sum / 200.0, 2.0, 0.1);
 }
 
-TEST(ArrivalLine, KeepsToTheSlopesItIsGiven) {
+TEST(ArrivalLine, RespectsTheLimitsOfTheSlope) {
   line_under_points line;
   for (int i = 0; i < 64; ++i) line.add_left(-i, 5.0 + 3.0 * i);  // a slope of -3
   const line_estimate found = line.estimate(-0.1, 0.1, 1.0);

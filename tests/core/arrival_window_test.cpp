@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The window of earliest arrivals: what it keeps, and which part of it the line is laid under.
-#include "g4lidar/arrival_window.hpp"
+// The window of earliest arrivals: what it keeps, and which part of it is used for the line.
+#include "g4lidar/detail/arrival_window.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,8 +35,8 @@ TEST(ArrivalWindow, KeepsTheEarliestOfABlock) {
   EXPECT_NEAR(error_at(line_under(200'000, 1e6, late), 200'000), 0.0, 100e3);
 }
 
-TEST(ArrivalWindow, KeepsTheEarlierOfTwoBlocksThatBecomeOne) {
-  // Every second block of 20 ms is early; the 65th has just made 32 of the 64 before it.
+TEST(ArrivalWindow, MergedBlocks_KeepTheEarlierArrival) {
+  // Every second block of 20 ms is early; the 65th block has merged the 64 before it to 32.
   for (const int odd : {0, 1}) {
     const auto late = [odd](std::int64_t k) { return k / 200 % 2 == odd ? 0.0 : 8e6; };
     const sampling_line line = line_under(12'900, 1e6, late);
@@ -56,7 +56,7 @@ TEST(ArrivalWindow, ForgetsAfterTwentySeconds) {
   EXPECT_EQ(window.span_ns(), 0.0);
 }
 
-TEST(ArrivalWindow, UsesTheWholeWindowWhereDelaysAreLarge) {
+TEST(ArrivalWindow, LargeDelays_UseTheWholeWindow) {
   arrivals::model dice(arrivals::options{.seed = 3});
   const auto late = [&](std::int64_t) { return dice.exponential(20e6); };
   const sampling_line line = line_under(160'000, 20e6, late);
@@ -64,8 +64,8 @@ TEST(ArrivalWindow, UsesTheWholeWindowWhereDelaysAreLarge) {
   EXPECT_LT(line.bound_ns, 2e6);
 }
 
-TEST(ArrivalWindow, UsesAShortPartWhereTheRateDrifts) {
-  // 50 ppm a second; a line under 16 s of it would be off by 1.6 ms at its end.
+TEST(ArrivalWindow, Drift_UsesAShortPart) {
+  // 50 ppm per second; a line below 16 s of it would be wrong by 1.6 ms at its end.
   const auto late = [](std::int64_t k) {
     const double s = static_cast<double>(k) * 1e-4;
     return 25e-6 * s * s * 1e9;
@@ -74,8 +74,8 @@ TEST(ArrivalWindow, UsesAShortPartWhereTheRateDrifts) {
   EXPECT_NEAR(error_at(line, 160'000), late(160'000), 300e3);
 }
 
-TEST(ArrivalWindow, DoesNotBelieveAShortPartThatIsMuchLater) {
-  // Nothing drifts so fast: the last 5 s are late because something held them all back.
+TEST(ArrivalWindow, IgnoresAShortPartThatIsMuchLater) {
+  // No drift is so fast: the last 5 s are late because something delayed all arrivals.
   const auto late = [](std::int64_t k) { return k > 110'000 ? 9e6 : 0.0; };
   EXPECT_LT(error_at(line_under(160'000, 10e3, late), 160'000), 1e6);
 }

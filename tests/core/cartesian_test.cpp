@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The two frames of reference: by hand, and against libm all around the circle.
+// The two frames of reference: values computed by hand, and libm for the whole circle.
 #include "g4lidar/cartesian.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
 
-#include "g4lidar/angle.hpp"
-#include "g4lidar/correction.hpp"
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/correction.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
@@ -24,7 +26,7 @@ constexpr point at(float angle_deg, float range_mm) {
   p.angle_deg = angle_deg;
   p.range_mm = range_mm;
   p.time_ns = 77;
-  if (range_mm == 0.0F) p.marks = point_marks::no_return;
+  if (range_mm == 0.0F) p.flags = point_flags::no_return;
   return p;
 }
 
@@ -34,8 +36,8 @@ constexpr bool lies_at(const xy_point& p, double x, double y) {
   return off_x < 1e-6 && off_x > -1e-6 && off_y < 1e-6 && off_y > -1e-6;
 }
 
-// The robot looks away from the cable exit. Seen from above, the native angle goes clockwise from the
-// cable exit behind it: over its left side, its front, and its right side.
+// The robot looks away from the cable exit. Seen from above, the native angle grows clockwise from
+// the cable exit at the back: over its left side, its front, and its right side.
 static_assert(lies_at(to_xy(at(180, 2000), frame::robot), 2, 0), "in front");
 static_assert(lies_at(to_xy(at(90, 2000), frame::robot), 0, 2), "to the left");
 static_assert(lies_at(to_xy(at(270, 2000), frame::robot), 0, -2), "to the right");
@@ -75,11 +77,24 @@ TEST(Frames, PolarBearingsByHand) {
   EXPECT_FLOAT_EQ(to_polar(at(10, 1500), frame::robot).range_m, 1.5F);
 }
 
-TEST(Frames, NoReturnLooksWhereAFarTargetWouldBe) {
-  const point none = at(100, 0);
-  EXPECT_FLOAT_EQ(direction_deg(none), 100.0F - 7.9905963F);
-  EXPECT_FLOAT_EQ(direction_deg(at(3, 0)), 360.0F + 3.0F - 7.9905963F);
-  EXPECT_FLOAT_EQ(direction_deg(at(100, 500)), 100.0F);
+TEST(Frames, PolarOfManyPointsIsThatOfEach) {
+  const std::array<point, 3> points{at(10, 1500), at(350, 0), at(180, 16000)};
+  std::array<polar, 4> out{};
+  const std::span<polar> got = to_polar(points, frame::robot, out);
+  ASSERT_EQ(got.size(), 3U);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(got[i].bearing_rad, to_polar(points[i], frame::robot).bearing_rad);
+    EXPECT_EQ(got[i].range_m, to_polar(points[i], frame::robot).range_m);
+  }
+}
+
+TEST(Frames, Time_IsOfTheMonotonicClock) {
+  EXPECT_EQ(at(0, 0).time().time_since_epoch(), std::chrono::nanoseconds(77));
+  EXPECT_EQ(point().time(), std::chrono::steady_clock::time_point());
+}
+
+TEST(Frames, NoReturn_HasTheDirectionOfAFarTarget) {
+  const point none = at(100.0F - 7.9905963F, 0);
   const polar seen = to_polar(none, frame::vendor);
   EXPECT_EQ(seen.range_m, 0.0F);
   EXPECT_NEAR(seen.bearing_rad, (100.0 - 7.9905963) * std::numbers::pi / 180.0, 1e-6);
@@ -91,7 +106,7 @@ TEST(Frames, NoReturnLooksWhereAFarTargetWouldBe) {
   }
 }
 
-/// Angles all around the circle, and the neighbours of those at which something changes.
+/// Angles of the whole circle, and the neighbours of angles at which the computation changes.
 std::vector<float> angles() {
   std::vector<float> all;
   for (int step = 0; step < 360 * 128; ++step) all.push_back(static_cast<float>(step) / 128.0F);
@@ -112,15 +127,13 @@ std::vector<float> angles() {
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-TEST(Frames, BearingsStayInTheirHalfOpenTurn) {
+TEST(Frames, Bearings_AreInTheHalfOpenRange) {
   constexpr float pi = std::numbers::pi_v<float>;
   for (const float angle_deg : angles()) {
     for (const float range_mm : {0.0F, 1000.0F}) {
       for (const frame to : {frame::robot, frame::vendor}) {
         const point p = at(angle_deg, range_mm);
-        const float direction = direction_deg(p);
-        ASSERT_GE(direction, 0.0F);
-        ASSERT_LT(direction, 360.0F);
+        const float direction = p.angle_deg;
         const float turned = bearing_deg(direction, to);
         ASSERT_GE(turned, 0.0F);
         ASSERT_LT(turned, 360.0F) << direction;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// All commands of the protocol's table: their bytes, their replies, what may be done with them.
-#include "g4lidar/command.hpp"
+// All commands of the protocol's table: their bytes, their responses, and their properties.
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/response.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ struct row {
   bool allowed_while_scanning;
 };
 
-/// The protocol page's table, in its order.
+/// The table of the protocol page, in its order.
 constexpr std::array<row, 24> table{{
     {0x60, command::start, reply::scan_started, -1, false, true},
     {0x65, command::stop, reply::none, -1, false, true},
@@ -72,7 +73,7 @@ TEST(Command, AgreesWithTheProtocolsTable) {
   for (const row& r : table) EXPECT_TRUE(agrees(r)) << std::hex << int{r.code};
 }
 
-TEST(Command, IsNothingElse) {
+TEST(Command, OtherBytes_AreNoCommand) {
   std::set<unsigned> known;
   for (const row& r : table) known.insert(r.code);
   EXPECT_EQ(known.size(), 24U);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The second-level correction: the manual's figures, and the worst error of each form over all
-// samples that there are, against the formula as the manual writes it.
-#include "g4lidar/correction.hpp"
+// The second-level correction: the values of the manual, and the largest error of each form over
+// all samples, compared with the formula of the manual.
+#include "g4lidar/core/correction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr bool near(double a, double b, double bound) { return a - b < bound && b - a < bound; }
 
-// The manual's figures, to the digits that it prints, in each form.
+// The values of the manual, with its digits, in each form.
 struct figure {
   double range_mm;
   double correction_deg;
@@ -40,13 +40,13 @@ constexpr bool gives_the_figures(const Form& form, double rounding) {
 static_assert(gives_the_figures(exact_correction{}, 0.0));
 static_assert(gives_the_figures(compact_correction{}, 2e-5));
 
-// 155.3 mm lies between two samples: the correction changes its sign there.
+// 155.3 mm is between two samples: the correction changes its sign there.
 static_assert(exact_correction{}(621) > 0.0 && exact_correction{}(622) < 0.0);
 static_assert(compact_correction{}(621) > 0.0F && compact_correction{}(622) < 0.0F);
 
-// A sample of 0 is no range and is not corrected.
-static_assert(exact_correction{}(0) == 0.0);
-static_assert(compact_correction{}(0) == 0.0F);
+// A sample of 0 is not a range: corrected like an infinitely distant target.
+static_assert(near(exact_correction{}(0), -7.9905963, 1e-6));
+static_assert(near(static_cast<double>(compact_correction{}(0)), -7.9905963, 1e-5));
 
 static_assert(near(arctangent_deg(1.0), 45.0, 1e-13));
 static_assert(near(arctangent_deg(-1.0), -45.0, 1e-13));
@@ -78,21 +78,21 @@ TEST(Correction, ExactFormIsTheFormulaInDoublePrecision) {
 
 TEST(Correction, TableIsWithinItsBoundForEverySample) {
   EXPECT_LT(worst_error(table()), 4e-6);
-  EXPECT_EQ(table()(0), 0.0F);
+  EXPECT_FLOAT_EQ(table()(0), -7.9905963F);
 }
 
 TEST(Correction, CompactFormIsWithinItsBoundForEverySample) {
   EXPECT_LT(worst_error(compact_correction{}), 2e-5);
 }
 
-TEST(Correction, FarTargetsTendToTheStatedLimit) {
+TEST(Correction, FarTargets_ApproachTheStatedLimit) {
   EXPECT_NEAR(far_correction_deg, -7.9906, 0.00005);
   EXPECT_GT(exact_correction{}(65535), far_correction_deg);
   EXPECT_NEAR(std::atan(-21.8 / 155.3) * 180.0 / std::numbers::pi, far_correction_deg, 1e-14);
 }
 
 TEST(Correction, ArctangentIsWithinItsBoundFarAndNear) {
-  // Where long double is no wider than double the reference itself is off by as much.
+  // If long double is no wider than double, the reference itself has this error.
   constexpr bool wide = std::numeric_limits<long double>::digits > 60;
   constexpr double bound = wide ? 3e-14 : 6e-14;
   double worst = 0.0;
@@ -107,7 +107,7 @@ TEST(Correction, ArctangentIsWithinItsBoundFarAndNear) {
     look_at(x);
     look_at(-x);
   }
-  // Both sides of every place where the way of reckoning changes.
+  // Both sides of every value at which the computation changes.
   for (int sixteenth = 1; sixteenth <= 16; ++sixteenth) {
     const double edge = sixteenth / 16.0;
     for (const double x : {std::nextafter(edge, 0.0), edge, std::nextafter(edge, 2.0)}) {

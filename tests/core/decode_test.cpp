@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From a packet to points: the manual's packet, both sides of the wrap, round-off, marks, revolutions.
-#include "g4lidar/decode.hpp"
+// From a packet to points: the packet of the manual, both sides of the wrap, rounding, flags,
+// revolutions.
+#include "g4lidar/core/decode.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +33,7 @@ constexpr bool near(float a, double b, double bound) {
   return off < bound && -off < bound;
 }
 
-// The manual's packet of 40 samples, from 1000 mm to 8000 mm; those between have no return.
+// The packet of the manual with 40 samples, from 1000 mm to 8000 mm; those between have no return.
 constexpr made::packet manual_packet() {
   made::packet made(0, 0x6FE5 >> 1, 0x79BD >> 1, 0x28);
   return made.set(0, 4 * 1000).set(39, 4 * 8000);
@@ -51,9 +52,9 @@ constexpr bool decodes_the_manuals_packet(const Form& form) {
          near(first.angle_deg, 217.019064, 3e-5) && near(last.angle_deg, 235.631325, 3e-5) &&
          near(first.angle_deg, 217.0178, 0.0014) && near(last.angle_deg, 235.6326, 0.0014) &&
          first.range_mm == 1000.0F && last.range_mm == 8000.0F && last.revolution == 7 &&
-         last.time_ns == 0 && first.marks == point_marks::none &&
-         got.points[1].marks == point_marks::no_return && got.points[1].range_mm == 0.0F &&
-         near(got.points[1].angle_deg, 223.78125 + 19.6875 / 39, 2e-5);
+         last.time_ns == 0 && first.flags == point_flags::none &&
+         got.points[1].flags == point_flags::no_return && got.points[1].range_mm == 0.0F &&
+         near(got.points[1].angle_deg, 223.78125 + 19.6875 / 39 - 7.9905963, 3e-5);
 }
 static_assert(decodes_the_manuals_packet(exact_correction{}));
 static_assert(decodes_the_manuals_packet(compact_correction{}));
@@ -70,7 +71,7 @@ TEST(Decode, GivesTheManualsRange) {
   EXPECT_EQ(decode(packet.view(), table(), 0, out).points[0].range_mm, 7161.25F);
 }
 
-/// Decodes and holds every point against the reference, within `bound` degrees.
+/// Decodes and compares every point with the reference, within `bound` degrees.
 template <class Form>
 void expect_like_reference(const made::packet& packet, const Form& form, double bound) {
   storage out;
@@ -83,6 +84,10 @@ void expect_like_reference(const made::packet& packet, const Form& form, double 
     ASSERT_LT(p.angle_deg, 360.0F);
     ASSERT_LE(reference::apart_deg(static_cast<double>(p.angle_deg), expected[i].angle_deg), bound)
         << "raw " << expected[i].raw << " at " << expected[i].first_level_deg;
+    ASSERT_LE(
+        reference::apart_deg(static_cast<double>(raw_angle_deg(p)), expected[i].first_level_deg),
+        bound + 1e-4);
+    ASSERT_LT(raw_angle_deg(p), 360.0F);
     ASSERT_EQ(static_cast<double>(p.range_mm), expected[i].range_mm);
     ASSERT_EQ(p.is_no_return(), expected[i].raw == 0);
     ASSERT_EQ(p.is_too_near(), expected[i].raw != 0 && expected[i].range_mm < 100.0);
@@ -98,7 +103,7 @@ void expect_all_forms_like_reference(const made::packet& packet) {
   expect_like_reference(packet, compact_correction{}, 1e-4);
 }
 
-// Samples that bend the angle by every amount, from +89 to -8 degrees.
+// Samples with every size of correction, from +89 to -8 degrees.
 std::vector<std::uint16_t> telling_samples(std::size_t count) {
   std::vector<std::uint16_t> raw(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -127,12 +132,12 @@ TEST(Decode, WrapsOnBothSidesOfZero) {
     expect_all_forms_like_reference(below);
     if (HasFatalFailure()) return;
   }
-  // A wrap inside the packet, as a real one right after a zero packet.
+  // A wrap within the packet, like a real one directly after a zero packet.
   expect_all_forms_like_reference(made::packet(0, 23000, 40, telling_samples(80)));
   expect_all_forms_like_reference(made::packet(0, 270 * 64 + 1, 90 * 64 - 1, telling_samples(80)));
 }
 
-TEST(Decode, GoesTheWholeWayOfAPacketThatSpansTheCircle) {
+TEST(Decode, PacketAcrossTheCircle_IsDecodedCompletely) {
   expect_all_forms_like_reference(made::packet(0, 0, 23039, telling_samples(80)));
 }
 
@@ -142,12 +147,12 @@ TEST(Decode, OneSampleHasTheFirstAngle) {
       expect_all_forms_like_reference(made::zero(angle, static_cast<std::uint16_t>(raw)));
     }
   }
-  // FSA and LSA differ although there is one sample: nothing is divided by 0.
+  // FSA and LSA differ although there is one sample: no division by 0.
   made::packet packet(0, 6400, 6464, 1);
   expect_all_forms_like_reference(packet.set(0, 4000));
 }
 
-TEST(Decode, GivesAllSamplesOneFirstLevelAngleWhileTheMotorStandsStill) {
+TEST(Decode, StoppedMotor_GivesOneFirstLevelAngle) {
   for (const std::size_t count : {4U, 40U, 80U}) {
     const std::vector<std::uint16_t> raw(count, 8000);
     const made::packet packet(0, 6400, 6400, raw);
@@ -160,10 +165,10 @@ TEST(Decode, GivesAllSamplesOneFirstLevelAngleWhileTheMotorStandsStill) {
   }
 }
 
-TEST(Decode, EveryNumberOfSamplesIsWrittenAndNoMore) {
+TEST(Decode, WritesExactlyTheSamplesOfThePacket) {
   for (std::size_t count = 1; count <= max_samples; ++count) {
     storage out;
-    const point untouched{-1.0F, -1.0F, -1, 99, point_marks::too_near, {}};
+    const point untouched{-1.0F, -1.0F, -1, 99, point_flags::too_near, {}};
     out.fill(untouched);
     const made::packet packet(0, 100, 1360, telling_samples(count));
     const decoded got = decode(packet.view(), table(), 3, out);
@@ -175,7 +180,7 @@ TEST(Decode, EveryNumberOfSamplesIsWrittenAndNoMore) {
   }
 }
 
-/// A sample of which the corrected angle lies a hair below 0: sample `i` of `count` in a packet from
+/// A sample whose corrected angle is slightly below 0: sample `i` of `count` in a packet from
 /// `first` to one step further.
 struct hair {
   std::uint16_t raw;
@@ -184,7 +189,7 @@ struct hair {
   std::size_t count;
 };
 
-/// Samples whose sum of first-level angle and correction lies in (-`width`, 0) degrees.
+/// Samples for which first-level angle plus correction is in (-`width`, 0) degrees.
 std::vector<hair> hairs_below_zero(double width, std::size_t at_most) {
   std::vector<hair> found;
   for (unsigned raw = 622; raw <= 65535 && found.size() < at_most; ++raw) {
@@ -202,7 +207,7 @@ std::vector<hair> hairs_below_zero(double width, std::size_t at_most) {
   return found;
 }
 
-TEST(Decode, RoundOffNearZeroIsNever360) {
+TEST(Decode, RoundingNearZero_IsNever360) {
   // In single precision all of (-1.5e-5, 0) plus 360 is 360.
   for (const double width : {1e-6, 1.5e-5}) {
     const std::vector<hair> hairs = hairs_below_zero(width, 300);
@@ -210,18 +215,18 @@ TEST(Decode, RoundOffNearZeroIsNever360) {
     for (const hair& h : hairs) {
       made::packet packet(0, h.first, h.first + 1, h.count);
       packet.set(h.i, h.raw);
-      expect_all_forms_like_reference(packet);  // asks for [0, 360)
+      expect_all_forms_like_reference(packet);  // requires [0, 360)
       if (HasFatalFailure()) return;
     }
   }
 }
 
-TEST(Decode, SuspectPacketGivesNoPoints) {
+TEST(Decode, SuspectPacket_GivesNoPoints) {
   for (const unsigned ct : {0U, 1U}) {
     const made::packet packet(ct | 70U << 1, 6400, 6390, telling_samples(40));
     ASSERT_TRUE(packet.view().is_suspect());
     storage out;
-    const point untouched{-1.0F, -1.0F, -1, 99, point_marks::too_near, {}};
+    const point untouched{-1.0F, -1.0F, -1, 99, point_flags::too_near, {}};
     out.fill(untouched);
     const decoded got = decode(packet.view(), table(), 5, out);
     EXPECT_TRUE(got.points.empty());
@@ -235,7 +240,7 @@ TEST(Decode, SuspectPacketGivesNoPoints) {
   }
 }
 
-TEST(Decode, SuspectIsBackwardsUnlessThroughZero) {
+TEST(Decode, Suspect_IsBackwardsUnlessThroughZero) {
   const auto suspect = [](int first, int last) {
     const made::packet packet(0, first, last, 2);
     storage out;
@@ -250,16 +255,16 @@ TEST(Decode, SuspectIsBackwardsUnlessThroughZero) {
   EXPECT_FALSE(suspect(23039, 0));
 }
 
-TEST(Decode, MarksByRange) {
-  static_assert(mark_of(0) == point_marks::no_return);
-  static_assert(mark_of(1) == point_marks::too_near);
-  static_assert(mark_of(399) == point_marks::too_near);
-  static_assert(mark_of(400) == point_marks::none);
-  static_assert(mark_of(65535) == point_marks::none);
+TEST(Decode, FlagsByRange) {
+  static_assert(flag_of(0) == point_flags::no_return);
+  static_assert(flag_of(1) == point_flags::too_near);
+  static_assert(flag_of(399) == point_flags::too_near);
+  static_assert(flag_of(400) == point_flags::none);
+  static_assert(flag_of(65535) == point_flags::none);
   for (unsigned raw = 1; raw <= 65535; ++raw) {
     const bool near = raw / 4.0 < 100.0;
-    ASSERT_EQ(mark_of(static_cast<std::uint16_t>(raw)),
-              near ? point_marks::too_near : point_marks::none);
+    ASSERT_EQ(flag_of(static_cast<std::uint16_t>(raw)),
+              near ? point_flags::too_near : point_flags::none);
   }
 }
 
@@ -269,7 +274,7 @@ TEST(Decode, FirstSampleOfAZeroPacketStartsTheRevolution) {
   const decoded got = decode(zero.view(), table(), 0, out);
   EXPECT_TRUE(got.starts_revolution);
   EXPECT_TRUE(got.points[0].is_revolution_start());
-  EXPECT_TRUE(got.points[0].is_no_return());  // the one mark does not hide the other
+  EXPECT_TRUE(got.points[0].is_no_return());  // one flag does not hide the other
   EXPECT_FALSE(got.points[1].is_revolution_start());
   EXPECT_FALSE(got.points[2].is_revolution_start());
   const made::packet other(0x86, 100, 200, telling_samples(3));
@@ -286,7 +291,7 @@ TEST(Decode, FrequencyIsReportedByZeroPacketsOnly) {
   EXPECT_EQ(decode(debug.view(), table(), 0, out).reported_frequency_dhz, 0);
 }
 
-TEST(RevolutionCounter, StartsAtZeroAndGrowsWithEachLaterZeroPacket) {
+TEST(RevolutionCounter, StartsAtZeroAndCountsLaterZeroPackets) {
   const made::packet other(0x86, 0, 64, 2);
   const made::packet zero = made::zero(0);
   revolution_counter late;  // the stream begins in the middle of a revolution
@@ -310,7 +315,7 @@ TEST(RevolutionCounter, CountsSuspectPackets) {
   EXPECT_EQ(revolutions.count(suspect_zero.view()), 1U);
 }
 
-// What a program may rely on when it keeps points or hands them on.
+// Properties that programs may rely on when they store or pass points.
 static_assert(sizeof(point) == 24 && alignof(point) == alignof(std::int64_t));
 static_assert(std::is_trivially_copyable_v<point>);
 static_assert(sizeof(float) * 2 + 8 + 4 + 1 + 3 == sizeof(point), "no padding");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fixed grid: where a point goes, which one a bin takes, and what stands where there is none.
+// The fixed grid: the bin of a point, the choice between points, and the value of an empty bin.
 #include "g4lidar/grid.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "g4lidar/decode.hpp"
+#include "g4lidar/core/decode.hpp"
 #include "support/packet_maker.hpp"
 
 namespace g4lidar {
@@ -26,9 +26,9 @@ constexpr point at(float angle_deg, float range_mm) {
   p.angle_deg = angle_deg;
   p.range_mm = range_mm;
   if (range_mm == 0.0F) {
-    p.marks = point_marks::no_return;
+    p.flags = point_flags::no_return;
   } else if (range_mm < too_near_mm) {
-    p.marks = point_marks::too_near;
+    p.flags = point_flags::too_near;
   }
   return p;
 }
@@ -43,7 +43,7 @@ std::vector<float> grid_of(const std::vector<point>& points, std::size_t bins,
 constexpr grid_options vendor_nearest{frame::vendor, grid_pick::nearest, false};
 constexpr grid_options vendor_minimum{frame::vendor, grid_pick::minimum, false};
 
-TEST(Grid, EveryBinIsFilledWhateverTheScan) {
+TEST(Grid, EveryScan_FillsEveryBin) {
   for (const std::size_t bins : {1U, 7U, 360U, 1440U, 4000U}) {
     for (const float range_m : grid_of({}, bins)) EXPECT_TRUE(std::isnan(range_m));
     const std::vector<float> one = grid_of({at(33, 1500)}, bins);
@@ -54,7 +54,7 @@ TEST(Grid, EveryBinIsFilledWhateverTheScan) {
   }
 }
 
-TEST(Grid, RobotBinsBeginBehindAndGoCounterClockwise) {
+TEST(Grid, RobotBins_BeginBehindAndGoCounterClockwise) {
   const auto bin_of = [](float direction) {
     return place_in_grid(direction, frame::robot, 360).bin;
   };
@@ -66,7 +66,7 @@ TEST(Grid, RobotBinsBeginBehindAndGoCounterClockwise) {
   EXPECT_EQ(bin_of(359), 1U);
 }
 
-TEST(Grid, VendorBinsBeginAtTheCableAndGoClockwise) {
+TEST(Grid, VendorBins_BeginAtTheCableAndGoClockwise) {
   const auto bin_of = [](float direction) {
     return place_in_grid(direction, frame::vendor, 360).bin;
   };
@@ -76,7 +76,7 @@ TEST(Grid, VendorBinsBeginAtTheCableAndGoClockwise) {
   EXPECT_EQ(bin_of(359), 359U);
 }
 
-TEST(Grid, ABinReachesHalfItsWidthToBothSides) {
+TEST(Grid, Bin_ExtendsHalfItsWidthToBothSides) {
   const auto bin_of = [](float direction) {
     return place_in_grid(direction, frame::vendor, 360).bin;
   };
@@ -91,7 +91,7 @@ TEST(Grid, ABinReachesHalfItsWidthToBothSides) {
   EXPECT_NEAR(place_in_grid(359.75F, frame::vendor, 360).off_middle_deg, 0.25F, 1e-4F);
 }
 
-TEST(Grid, NearestTakesThePointInTheMiddleAndMinimumTheClosest) {
+TEST(Grid, Nearest_TakesTheMiddlePoint_Minimum_TheClosest) {
   const std::vector<point> points{at(9.6F, 900), at(10.1F, 3000), at(10.4F, 500), at(10.2F, 700)};
   EXPECT_FLOAT_EQ(grid_of(points, 360, vendor_nearest)[10], 3.0F);
   EXPECT_FLOAT_EQ(grid_of(points, 360, vendor_minimum)[10], 0.5F);
@@ -101,8 +101,8 @@ TEST(Grid, NearestTakesThePointInTheMiddleAndMinimumTheClosest) {
 }
 
 TEST(Grid, NoReturnNeverHidesAReturn) {
-  // The point without return lies in the very middle of bin 10.
-  const point none = at(17.9905963F, 0);
+  // The point without return is exactly in the middle of bin 10.
+  const point none = at(10, 0);
   const point wall = at(10.4F, 2000);
   for (const grid_options& options : {vendor_nearest, vendor_minimum}) {
     EXPECT_EQ(grid_of({none, wall}, 360, options)[10], 2.0F);
@@ -112,26 +112,25 @@ TEST(Grid, NoReturnNeverHidesAReturn) {
   }
 }
 
-TEST(Grid, NoReturnLiesWhereAFarTargetWould) {
-  // The manual leaves the angle as it is; the direction is 7.9906 degrees less.
+TEST(Grid, NoReturn_HasTheDirectionOfAFarTarget) {
   const made::packet packet = made::zero(20 * 64, 0);
   std::array<point, max_samples> out;
   const decoded got = decode(packet.view(), exact_correction{}, 0, out);
-  ASSERT_EQ(got.points[0].angle_deg, 20.0F);
+  ASSERT_FLOAT_EQ(got.points[0].angle_deg, 20.0F - 7.9905963F);
   std::vector<float> ranges_m(3600);
   fill_grid(got.points, ranges_m, vendor_nearest);
   for (std::size_t bin = 0; bin < ranges_m.size(); ++bin) {
     EXPECT_EQ(std::isinf(ranges_m[bin]), bin == 120U) << bin;  // 12.0094 degrees
     EXPECT_EQ(std::isnan(ranges_m[bin]), bin != 120U) << bin;
   }
-  // Across zero too.
-  EXPECT_EQ(grid_of({at(3, 0)}, 360, vendor_nearest)[355], infinity);
+  // Also across zero.
+  EXPECT_EQ(grid_of({at(355.01F, 0)}, 360, vendor_nearest)[355], infinity);
 }
 
-TEST(Grid, TooNearIsNoObstacleButNoFreeWayEither) {
+TEST(Grid, TooNear_IsNeitherObstacleNorFree) {
   const point near = at(10, 60);
   const point far = at(10.4F, 4000);
-  const point none = at(17.99F, 0);
+  const point none = at(10, 0);
   for (const grid_pick pick : {grid_pick::nearest, grid_pick::minimum}) {
     const grid_options without{frame::vendor, pick, false};
     EXPECT_TRUE(std::isnan(grid_of({near}, 360, without)[10]));
@@ -145,14 +144,14 @@ TEST(Grid, TooNearIsNoObstacleButNoFreeWayEither) {
   }
 }
 
-TEST(Grid, OneBinTakesAll) {
+TEST(Grid, OneBin_ContainsAllPoints) {
   const std::vector<point> points{at(10, 900), at(200, 300), at(355, 4000)};
   EXPECT_FLOAT_EQ(grid_of(points, 1, vendor_nearest)[0], 4.0F);  // 5 degrees from the middle
   EXPECT_FLOAT_EQ(grid_of(points, 1, vendor_minimum)[0], 0.3F);
 }
 
-/// What a bin may hold, reckoned in double precision: all that are as good as the best but for
-/// rounding.
+/// The possible values of a bin, computed in double precision: all that are as good as the best,
+/// except for rounding.
 std::vector<float> allowed(const std::vector<point>& points, std::size_t bins, std::size_t bin,
                            const grid_options& options) {
   struct candidate {
@@ -162,7 +161,7 @@ std::vector<float> allowed(const std::vector<point>& points, std::size_t bins, s
   std::vector<candidate> inside;
   for (const point& p : points) {
     const bool none = p.range_mm == 0.0F;
-    double native = static_cast<double>(p.angle_deg) - (none ? 7.9905962679645856 : 0.0);
+    double native = static_cast<double>(p.angle_deg);
     if (options.to == frame::robot) native = -native;  // from -180 on: 180 - native + 180
     const double width = 360.0 / static_cast<double>(bins);
     const double off = std::fabs(std::remainder(native - static_cast<double>(bin) * width, 360.0));
@@ -191,7 +190,7 @@ std::vector<float> allowed(const std::vector<point>& points, std::size_t bins, s
   return result;
 }
 
-/// Points anywhere but within rounding of the edge between two bins.
+/// Points anywhere except within rounding of the edge between two bins.
 std::vector<point> scattered(std::mt19937& source, std::size_t count, std::size_t bins) {
   const auto up_to = [&](unsigned n) { return static_cast<unsigned>(source() % n); };
   std::vector<point> points;
@@ -203,7 +202,7 @@ std::vector<point> scattered(std::mt19937& source, std::size_t count, std::size_
                                        : 0.25F * static_cast<float>(400 + up_to(65136));
     const point p = at(angle_deg, range_mm);
     const double width = 360.0 / static_cast<double>(bins);
-    const double native = static_cast<double>(angle_deg) - (kind == 0 ? 7.9905962679645856 : 0.0);
+    const double native = static_cast<double>(angle_deg);
     const double from_middle = std::fabs(std::remainder(native, width));
     if (std::fabs(from_middle - width / 2) > 2e-4) points.push_back(p);
   }
@@ -214,7 +213,7 @@ TEST(Grid, AgreesWithTheReferenceInBothFrames) {
   std::mt19937 source(7);
   for (const std::size_t bins : {1U, 7U, 360U, 1440U, 4000U}) {
     for (const std::size_t count : {10U, 300U, 1500U}) {
-      if (bins * count > 2'000'000) continue;  // under an emulator this would take long
+      if (bins * count > 2'000'000) continue;  // too slow under an emulator
       const std::vector<point> points = scattered(source, count, bins);
       for (const frame to : {frame::robot, frame::vendor}) {
         for (const grid_pick pick : {grid_pick::nearest, grid_pick::minimum}) {
@@ -234,7 +233,7 @@ TEST(Grid, AgreesWithTheReferenceInBothFrames) {
   }
 }
 
-TEST(Grid, IsAConstantExpressionToo) {
+TEST(Grid, WorksInConstantExpressions) {
   static_assert([] {
     const std::array<point, 2> points{at(180, 1000), at(90, 0)};
     std::array<float, 4> ranges_m{};

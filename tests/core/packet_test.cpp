@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The packet on the wire: the protocol's examples, every limit, every single-bit error.
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/packet.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ using test::wire_angle;
 
 constexpr std::array<std::uint8_t, 12> zero_packet{0xAA, 0x55, 0x01, 0x01, 0x53, 0xAE,
                                                    0x53, 0xAE, 0xAB, 0x54, 0x00, 0x00};
-/// The manual's packet (LSN 28, FSA 6FE5, LSA 79BD), cut down to its header, its example of a
+/// The packet of the manual (LSN 28, FSA 6FE5, LSA 79BD), reduced to its header, its example of a
 /// sample (E5 6F) and a second one.
 constexpr std::array<std::uint8_t, 14> two_samples{0xAA, 0x55, 0x00, 0x02, 0xE5, 0x6F, 0xBD,
                                                    0x79, 0xB7, 0x21, 0xE5, 0x6F, 0xA0, 0x0F};
@@ -113,7 +113,7 @@ TEST(Packet, TheManualsFortySamples) {
   }
 }
 
-TEST(Packet, EverySampleCanHaveEveryValue) {
+TEST(Packet, AllSampleValues_ArePossible) {
   std::vector<std::uint16_t> samples = some_samples(80);
   for (std::size_t i = 0; i < 80; ++i) {
     for (unsigned value = 0; value < 65536; value += 257) {
@@ -126,7 +126,7 @@ TEST(Packet, EverySampleCanHaveEveryValue) {
   }
 }
 
-TEST(Packet, UpperBitsOfCtOfANormalPacketMeanNothingButCount) {
+TEST(Packet, UpperBitsOfCt_AreIgnoredButChecksummed) {
   const buffer data = packet_bytes(0x86, wire_angle(9600), wire_angle(10224), some_samples(40));
   const auto packet = packet_view::from(data);
   ASSERT_TRUE(packet);
@@ -158,14 +158,14 @@ TEST(Packet, SampleCountsFrom1To80ArePossible) {
   }
 }
 
-TEST(Packet, AnglesNeedTheirCheckBitAndStayBelow360) {
+TEST(Packet, Angles_NeedTheCheckBitAndAreBelow360) {
   for (unsigned raw = 0; raw < 65536; ++raw) {
     const bool possible = raw % 2 == 1 && raw / 2 < 23040;
     const buffer as_first = packet_bytes(0, raw, 0x0101, {4000});
     const buffer as_last = packet_bytes(0, 0x0101, raw, {4000});
     const frame_check first = check_packet(as_first);
     const frame_check last = check_packet(as_last);
-    const std::size_t seen_at = raw % 2 == 1 ? 1 : 0;  // the byte that speaks against it
+    const std::size_t seen_at = raw % 2 == 1 ? 1 : 0;  // the first impossible byte
     ASSERT_EQ(first, possible ? valid(12) : bad_header(5 + seen_at)) << raw;
     ASSERT_EQ(last, possible ? valid(12) : bad_header(7 + seen_at)) << raw;
     if (!possible) continue;
@@ -174,7 +174,7 @@ TEST(Packet, AnglesNeedTheirCheckBitAndStayBelow360) {
   }
 }
 
-TEST(Packet, IsSuspectIfTheAngleGoesBackWithoutAWrap) {
+TEST(Packet, AngleBackwardsWithoutAWrap_IsSuspect) {
   struct example {
     unsigned first, last;
     bool suspect;
@@ -209,14 +209,14 @@ TEST(Packet, IsSuspectIfTheAngleGoesBackWithoutAWrap) {
   }
 }
 
-TEST(Packet, OneSampleMayHaveTwoAngles) {
+TEST(Packet, OneSample_MayHaveTwoAngles) {
   const auto data = packet_bytes(0, wire_angle(640), wire_angle(960), {4000});
   const auto packet = packet_view::from(data);
   ASSERT_TRUE(packet);
   EXPECT_EQ(packet->span_64ths(), 320);
 }
 
-TEST(Packet, EveryBeginningIsIncompleteAndSaysHowManyBytesToWaitFor) {
+TEST(Packet, EveryPrefix_IsIncompleteWithTheMissingSize) {
   for (const std::size_t n : {1U, 2U, 3U, 40U, 79U, 80U}) {
     const buffer data = packet_bytes(1, wire_angle(22000), wire_angle(100), some_samples(n));
     for (std::size_t have = 0; have < data.size(); ++have) {
@@ -228,7 +228,7 @@ TEST(Packet, EveryBeginningIsIncompleteAndSaysHowManyBytesToWaitFor) {
   }
 }
 
-TEST(Packet, MoreBytesBehindItChangeNothing) {
+TEST(Packet, FollowingBytes_ChangeNothing) {
   buffer data = packet_bytes(0, wire_angle(640), wire_angle(960), some_samples(7));
   const std::size_t size = data.size();
   for (int i = 0; i < 20; ++i) {
@@ -238,8 +238,8 @@ TEST(Packet, MoreBytesBehindItChangeNothing) {
   }
 }
 
-TEST(Packet, IsRefusedAtTheFirstByteThatSpeaksAgainstIt) {
-  // One byte that is not possible at a time, in a header whose other bytes are.
+TEST(Packet, Refused_AtTheFirstImpossibleByte) {
+  // One impossible byte at a time, in a header whose other bytes are possible.
   const buffer good = packet_bytes(0, wire_angle(640), wire_angle(960), some_samples(3));
   const std::array<std::uint8_t, 8> bad{0xAB, 0x56, 0, 81, 0x80, 0xB4, 0x82, 0xFF};
   for (std::size_t at = 0; at < bad.size(); ++at) {
@@ -253,8 +253,8 @@ TEST(Packet, IsRefusedAtTheFirstByteThatSpeaksAgainstIt) {
   }
 }
 
-/// All lengths n that the packet at the front of `data` could be given by its LSN byte so that the
-/// checksum agrees, found by trying; `data` holds the packet and what follows it.
+/// All lengths n for which the checksum of the packet at the front of `data` matches if its LSN
+/// byte is n, found by trying; `data` holds the packet and the bytes behind it.
 std::vector<std::size_t> counts_with_agreeing_checksum(buffer data) {
   std::vector<std::size_t> counts;
   for (std::size_t n = 1; n <= 80 && 10 + 2 * n <= data.size(); ++n) {
@@ -265,8 +265,8 @@ std::vector<std::size_t> counts_with_agreeing_checksum(buffer data) {
   return counts;
 }
 
-/// Flips each bit of the packet at the front of `stream` and looks at what stands at the front then.
-/// Returns how many flips of LSN gave a valid packet; each of them was named by the reference.
+/// Flips each bit of the packet at the front of `stream` and checks the front then. Returns how
+/// many flips of LSN gave a valid packet; the reference has named each of them.
 std::size_t survivors_of_single_bit_errors(const buffer& stream) {
   const std::size_t size = 10 + 2 * std::size_t{stream[3]};
   const std::vector<std::size_t> agreeing = counts_with_agreeing_checksum(stream);
@@ -292,19 +292,19 @@ std::size_t survivors_of_single_bit_errors(const buffer& stream) {
   return survivors;
 }
 
-TEST(Packet, EverySingleBitErrorIsRefused) {
+TEST(Packet, EverySingleBitError_IsRefused) {
   for (const std::size_t n : {1U, 2U, 3U, 8U, 16U, 39U, 40U, 64U, 79U, 80U}) {
     buffer stream = packet_bytes(0x86, wire_angle(12345), wire_angle(13456), some_samples(n));
-    for (int i = 0; i < 8; ++i) {  // what follows it, for an LSN that has grown
+    for (int i = 0; i < 8; ++i) {  // bytes behind it, for a larger LSN
       append(stream, packet_bytes(0, wire_angle(14000), wire_angle(15000), some_samples(20, 777)));
     }
     EXPECT_EQ(survivors_of_single_bit_errors(stream), 0U) << n;
   }
 }
 
-TEST(Packet, ASingleBitErrorOfTheSampleCountSurvivesIfTheChecksumAgrees) {
-  // LSN 8 becomes 9, 10, 12, 24, 40, 72 or 0; the checksum then takes part of what follows. For each
-  // of them what follows is made so that it agrees.
+TEST(Packet, SampleCountError_PassesIfTheChecksumMatches) {
+  // LSN 8 becomes 9, 10, 12, 24, 40, 72 or 0; the checksum then includes some of the following
+  // bytes. For each of them the following bytes are chosen so that it matches.
   for (const std::size_t n : {9U, 10U, 12U, 24U, 40U, 72U}) {
     buffer stream = packet_bytes(0, wire_angle(12345), wire_angle(13456), some_samples(8));
     stream.resize(stream.size() + 2 * 72);
@@ -315,7 +315,7 @@ TEST(Packet, ASingleBitErrorOfTheSampleCountSurvivesIfTheChecksumAgrees) {
     stream[27] = static_cast<std::uint8_t>(stream[27] ^ rest >> 8);
     EXPECT_EQ(survivors_of_single_bit_errors(stream), 1U) << n;
   }
-  // And shorter: LSN 9 becomes 8 if the ninth sample makes up for it.
+  // And smaller: LSN 9 becomes 8 if the ninth sample compensates for it.
   buffer shorter = packet_bytes(0, wire_angle(12345), wire_angle(13456), some_samples(9));
   shorter[26] = 0x00;
   shorter[27] = 0x09 ^ 0x08;
@@ -323,7 +323,7 @@ TEST(Packet, ASingleBitErrorOfTheSampleCountSurvivesIfTheChecksumAgrees) {
   EXPECT_EQ(survivors_of_single_bit_errors(shorter), 1U);
 }
 
-TEST(Packet, TheChecksumIsTheReferencesForEveryLength) {
+TEST(Packet, Checksum_AgreesWithTheReferenceForEveryLength) {
   std::uint32_t state = 1;
   for (std::size_t n = 1; n <= 80; ++n) {
     buffer data(10 + 2 * n);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The ring, one thread at a time: what is read, what is missed, and the wrap of its counters. The
-// same tests for words of 64 and of 32 bits.
-#include "g4lidar/point_ring.hpp"
+// The ring in one thread: what is read, what is missed, and the wrap of its counters. The same
+// tests for words of 64 and of 32 bits.
+#include "g4lidar/core/point_ring.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace g4lidar {
 namespace {
 
-/// A point that tells its number.
+/// A point that contains its number.
 point numbered(std::uint64_t number) {
   point p;
   p.range_mm = static_cast<float>(number % 4096);
@@ -31,7 +31,7 @@ std::vector<point> numbered(std::uint64_t first, std::size_t count) {
   return points;
 }
 
-/// Reads all there is, `piece` points at a time; the numbers read, and how many were missed.
+/// Reads all points, `piece` points at a time; the numbers read, and how many were missed.
 template <class Reader>
 std::vector<point> read_all(Reader& reader, std::uint64_t& missed, std::size_t piece = 7) {
   std::vector<point> all;
@@ -58,7 +58,7 @@ using words =
                        testing::Types<std::uint64_t, std::uint32_t>, testing::Types<std::uint32_t>>;
 TYPED_TEST_SUITE(PointRing, words, word_names);
 
-TYPED_TEST(PointRing, GivesWhatWasPutInInOrder) {
+TYPED_TEST(PointRing, ReturnsPushedPointsInOrder) {
   point_ring<64, TypeParam> ring;
   auto reader = ring.make_reader();
   ring.push(numbered(0, 40));
@@ -85,7 +85,7 @@ TYPED_TEST(PointRing, EmptyReadsAndPushesChangeNothing) {
   EXPECT_EQ(reader.ahead(), 1U);
 }
 
-TYPED_TEST(PointRing, ReadsNoFurtherThanItsRoom) {
+TYPED_TEST(PointRing, ReadsNoMoreThanFits) {
   point_ring<16, TypeParam> ring;
   auto reader = ring.make_reader();
   ring.push(numbered(0, 10));
@@ -99,7 +99,7 @@ TYPED_TEST(PointRing, ReadsNoFurtherThanItsRoom) {
   EXPECT_EQ(out[7], untouched);
 }
 
-TYPED_TEST(PointRing, AFullRingIsReadWhole) {
+TYPED_TEST(PointRing, FullRing_IsReadCompletely) {
   point_ring<64, TypeParam> ring;
   auto reader = ring.make_reader();
   ring.push(numbered(0, 64));
@@ -108,7 +108,7 @@ TYPED_TEST(PointRing, AFullRingIsReadWhole) {
   EXPECT_EQ(missed, 0U);
 }
 
-TYPED_TEST(PointRing, TheOldestGoAndAreCounted) {
+TYPED_TEST(PointRing, OldestAreOverwrittenAndCounted) {
   point_ring<64, TypeParam> ring;
   auto reader = ring.make_reader();
   ring.push(numbered(0, 65));
@@ -119,7 +119,7 @@ TYPED_TEST(PointRing, TheOldestGoAndAreCounted) {
   EXPECT_EQ(out, numbered(1, 64));
 }
 
-TYPED_TEST(PointRing, OnePushMayBeLargerThanTheRing) {
+TYPED_TEST(PointRing, PushLargerThanTheRing) {
   point_ring<8, TypeParam> ring;
   auto reader = ring.make_reader();
   ring.push(numbered(0, 1000));
@@ -129,7 +129,7 @@ TYPED_TEST(PointRing, OnePushMayBeLargerThanTheRing) {
   EXPECT_EQ(ring.written(), 1000U);
 }
 
-TYPED_TEST(PointRing, TheSmallestRingWorks) {
+TYPED_TEST(PointRing, SmallestRing) {
   point_ring<2, TypeParam> ring;
   auto reader = ring.make_reader();
   std::uint64_t missed = 0;
@@ -143,7 +143,7 @@ TYPED_TEST(PointRing, TheSmallestRingWorks) {
   EXPECT_EQ(missed, 3U);
 }
 
-TYPED_TEST(PointRing, AReaderBeginsWithTheNextPoint) {
+TYPED_TEST(PointRing, Reader_BeginsWithTheNextPoint) {
   point_ring<8, TypeParam> ring;
   ring.push(numbered(0, 5));
   auto reader = ring.make_reader();
@@ -154,7 +154,7 @@ TYPED_TEST(PointRing, AReaderBeginsWithTheNextPoint) {
   EXPECT_EQ(missed, 0U);
 }
 
-TYPED_TEST(PointRing, EachReaderHasItsOwnPlace) {
+TYPED_TEST(PointRing, EachReader_HasItsOwnPosition) {
   point_ring<16, TypeParam> ring;
   auto quick = ring.make_reader();
   auto slow = ring.make_reader();
@@ -169,7 +169,7 @@ TYPED_TEST(PointRing, EachReaderHasItsOwnPlace) {
   EXPECT_EQ(slow_missed, 144U);
 }
 
-TYPED_TEST(PointRing, ACopyOfAReaderGoesOnFromTheSamePlace) {
+TYPED_TEST(PointRing, CopyOfAReader_ContinuesFromTheSamePosition) {
   point_ring<16, TypeParam> ring;
   auto reader = ring.make_reader();
   ring.push(numbered(0, 4));
@@ -182,8 +182,8 @@ TYPED_TEST(PointRing, ACopyOfAReaderGoesOnFromTheSamePlace) {
   EXPECT_EQ(missed, 0U);
 }
 
-TYPED_TEST(PointRing, CountersWrapWithoutALossOrAMiscount) {
-  // Before the low word carries, before the whole count wraps, and at other words' edges.
+TYPED_TEST(PointRing, CountersWrapWithoutError) {
+  // Before a carry of the low word, before a wrap of the whole count, and at other edges.
   for (const std::uint64_t edge :
        {std::uint64_t{1} << 16, std::uint64_t{1} << 31, std::uint64_t{1} << 32,
         std::uint64_t{5} << 32, std::uint64_t{1} << 63, std::uint64_t{0}}) {
@@ -219,10 +219,10 @@ TEST(PublishedCount, HoldsEveryValue) {
   }
 }
 
-TEST(PublishedCount, IsReadInTheMiddleOfACarryWithoutWaiting) {
+TEST(PublishedCount, ReadDuringACarry_DoesNotWait) {
   using narrow = published_count<std::uint32_t>;
-  // The words as they stand after each of the three stores of 0x7'FFFFFFF0 -> 0x8'00000010: last
-  // copy, low word, first copy.
+  // The words after each of the three stores of 0x7'FFFFFFF0 -> 0x8'00000010: last copy, low word,
+  // first copy.
   static_assert(narrow::join(7, 0xFFFFFFF0, 7) == 0x7FFFFFFF0);
   static_assert(narrow::join(7, 0xFFFFFFF0, 8) == 0x7FFFFFFF0);
   static_assert(narrow::join(7, 0x00000010, 8) == 0x800000010);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From packets on: points, the ring, revolutions, the grid and x and y come about without a heap.
+// Points, the ring, revolutions, the grid and coordinates need no heap.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -8,13 +8,13 @@
 #include <variant>
 
 #include "g4lidar/cartesian.hpp"
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/point_ring.hpp"
+#include "g4lidar/core/scan_assembler.hpp"
+#include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/point_ring.hpp"
-#include "g4lidar/scan.hpp"
-#include "g4lidar/stream_counts.hpp"
-#include "g4lidar/stream_parser.hpp"
 #include "support/allocation_count.hpp"
 #include "support/packet_bytes.hpp"
 
@@ -53,7 +53,7 @@ TEST(Allocation, NoneFromPacketsToScans) {
   static table_correction table;
   std::size_t scans = 0;
   std::uint64_t read = 0;
-  stream_counts counts;
+  stream_counter counts;
 
   const std::size_t allocations = allocations_in([&] {
     stream_parser parser;
@@ -65,7 +65,7 @@ TEST(Allocation, NoneFromPacketsToScans) {
     std::array<point, max_samples> points;
     const auto use = [&](const scan& whole) {
       ++scans;
-      static_cast<void>(whole.measured_frequency_hz(9000));
+      static_cast<void>(whole.measured_frequency_hz());
       static_cast<void>(to_xy(whole.points, frame::robot, coordinates));
       fill_grid(whole.points, ranges_m, {frame::robot, grid_pick::minimum, true});
       fill_grid(whole.points, ranges_m);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Replies on the wire: every header of the protocol, every limit of their contents, what they mean.
-#include "g4lidar/response.hpp"
+// Responses on the wire: every header of the protocol, every limit of their contents, their
+// meaning.
+#include "g4lidar/core/response.hpp"
 
 #include <gtest/gtest.h>
 
@@ -112,7 +113,7 @@ TEST(Response, TheManualsHeaders) {
     EXPECT_EQ(e.reply[2], e.length) << e.what;
     EXPECT_EQ(reply->data().data(), e.reply.data()) << "seen where it lies";
     EXPECT_EQ(reply->content().size(), e.reply.size() - 7) << e.what;
-    // Each question is answered by one kind of reply only.
+    // Each query is answered by one kind of response only.
     EXPECT_EQ(reply->as_device_info().has_value(), e.kind == response_kind::device_info) << e.what;
     EXPECT_EQ(reply->as_health().has_value(), e.kind == response_kind::health) << e.what;
     EXPECT_EQ(reply->as_byte().has_value(), e.kind == response_kind::byte) << e.what;
@@ -133,7 +134,7 @@ TEST(Response, TheDeviceInformationOfTheProtocol) {
   EXPECT_EQ(*said, info);
 }
 
-TEST(Response, EveryBeginningIsIncomplete) {
+TEST(Response, EveryPrefix_IsIncomplete) {
   for (const bytes whole :
        {bytes(scan_header), bytes(device_info), bytes(healthy), bytes(one_byte), bytes(seven_hz)}) {
     for (std::size_t have = 0; have < whole.size(); ++have) {
@@ -147,15 +148,15 @@ TEST(Response, EveryBeginningIsIncomplete) {
   }
 }
 
-TEST(Response, EachByteOfAHeaderCounts) {
-  // Every value of every byte of every header: valid are the five, and nothing else.
+TEST(Response, EachByteOfAHeader_IsChecked) {
+  // Every value of every byte of every header: only the five are valid.
   const bytes replies[] = {scan_header, device_info, healthy, one_byte, seven_hz};
   for (const bytes whole : replies) {
     for (std::size_t at = 0; at < 7; ++at) {
       for (unsigned value = 0; value < 256; ++value) {
         buffer data(whole.begin(), whole.end());
         data[at] = static_cast<std::uint8_t>(value);
-        // The content of another reply may follow by chance: judge by the header alone.
+        // The content of another response may follow by chance: check the header alone.
         const bytes header = bytes(data).first(7);
         bool exists = false;
         for (const bytes other : replies) {
@@ -172,7 +173,7 @@ TEST(Response, EachByteOfAHeaderCounts) {
   }
 }
 
-TEST(Response, AHeaderIsRefusedAtTheFirstByteThatNoReplyHas) {
+TEST(Response, Header_IsRefusedAtTheFirstImpossibleByte) {
   EXPECT_EQ(check_response(buffer{0xA4}), bad_header(1));
   EXPECT_EQ(check_response(buffer{0xA5, 0xA5}), bad_header(2));
   EXPECT_EQ(check_response(buffer{0xA5, 0x5A, 0x02}), bad_header(3));
@@ -194,7 +195,7 @@ TEST(Response, AHeaderIsRefusedAtTheFirstByteThatNoReplyHas) {
   EXPECT_EQ(check_response(response_bytes(0x05, 0x40, 0x04, {})), bad_header(7));
 }
 
-TEST(Response, OneByteHolds0To2) {
+TEST(Response, ByteContent_Is0To2) {
   for (unsigned value = 0; value < 256; ++value) {
     const auto data = response_bytes(1, 0, 4, {static_cast<std::uint8_t>(value)});
     EXPECT_EQ(check_response(data), value <= 2 ? valid(8) : bad_header(8)) << value;
@@ -204,7 +205,7 @@ TEST(Response, OneByteHolds0To2) {
   }
 }
 
-TEST(Response, AFrequencyIsAtMost2000) {
+TEST(Response, Frequency_IsAtMost2000) {
   for (unsigned value = 0; value < 65536; ++value) {
     const auto low = static_cast<std::uint8_t>(value % 256);
     const auto high = static_cast<std::uint8_t>(value / 256);
@@ -218,7 +219,7 @@ TEST(Response, AFrequencyIsAtMost2000) {
   EXPECT_EQ(check_response(response_bytes(4, 0, 4, {0, 0, 0, 1})), bad_header(11));
 }
 
-TEST(Response, AHealthStatusIs0To2AndItsErrorCodeAnything) {
+TEST(Response, HealthStatus_Is0To2_AnyErrorCode) {
   for (unsigned status = 0; status < 256; ++status) {
     const auto data = response_bytes(3, 0, 6, {static_cast<std::uint8_t>(status), 0xCD, 0xAB});
     EXPECT_EQ(check_response(data), status <= 2 ? valid(10) : bad_header(8)) << status;
@@ -229,7 +230,7 @@ TEST(Response, AHealthStatusIs0To2AndItsErrorCodeAnything) {
   }
 }
 
-TEST(Response, ASerialNumberIsDigitsAndTheRestOfTheInformationAnything) {
+TEST(Response, SerialNumber_IsDigits_OtherInformationIsAnything) {
   for (std::size_t at = 0; at < 20; ++at) {
     for (unsigned value = 0; value < 256; ++value) {
       buffer data(device_info.begin(), device_info.end());
@@ -240,7 +241,7 @@ TEST(Response, ASerialNumberIsDigitsAndTheRestOfTheInformationAnything) {
   }
 }
 
-TEST(Response, AnImpossibleContentIsRefusedAsSoonAsItIsThere) {
+TEST(Response, ImpossibleContent_IsRefusedAtItsFirstByte) {
   buffer data(device_info.begin(), device_info.end());
   data[20] = 10;
   for (std::size_t have = 0; have <= data.size(); ++have) {

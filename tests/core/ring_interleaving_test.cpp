@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ring interrupted at every single word: an atomic that lets a test step in between any two loads
-// or stores, as an interrupt or another processor would, and that insists on the memory orders.
+// The ring interrupted at every single word: an atomic that lets a test interrupt between any two
+// loads or stores, like an interrupt or another processor, and that requires the memory orders.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,11 +12,11 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 
 namespace probe {
 
-/// A 32-bit word of which the atomic tells what is done to it.
+/// A 32-bit word whose atomic reports its operations.
 struct word {
   std::uint32_t value = 0;
   constexpr word() = default;
@@ -24,10 +24,10 @@ struct word {
   constexpr operator std::uint32_t() const { return value; }
 };
 
-/// Counts the loads and stores, and steps in after those that are asked for.
+/// Counts the loads and stores, and interrupts after the requested ones.
 struct stage {
   std::size_t operations = 0;
-  bool inside = false;          ///< An interruption is under way and is not interrupted itself.
+  bool inside = false;          ///< An interruption is running and is not interrupted itself.
   std::size_t wrong_order = 0;  ///< Loads that do not acquire, stores that do not release.
   std::vector<std::size_t> when;
   void (*interruption)(void*) = nullptr;
@@ -73,7 +73,7 @@ namespace {
 
 using point_words = std::array<std::uint32_t, sizeof(point) / 4>;
 
-/// Every word follows from the number, so that a mixture of two points is no point.
+/// Every word follows from the number, so that a mixture of two points is invalid.
 point numbered(std::uint64_t number) {
   point_words words;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -82,7 +82,7 @@ point numbered(std::uint64_t number) {
   return std::bit_cast<point>(words);
 }
 
-/// A ring with a writer and a reader, each of which holds the other one to account.
+/// A ring with a writer and a reader, each of which checks the other one.
 template <std::size_t Capacity>
 class pair_of {
  public:
@@ -95,7 +95,7 @@ class pair_of {
     next_ += count;
     ring_.push(points);
   }
-  /// Reads once. The number of points read.
+  /// Reads once. Returns the number of points read.
   std::size_t read() {
     std::array<point, 2 * Capacity> out;
     const ring_read got = reader_.read(out);
@@ -104,10 +104,10 @@ class pair_of {
       if (std::bit_cast<point_words>(p) != std::bit_cast<point_words>(numbered(place_))) ++wrong_;
       ++place_;
     }
-    if (next_ - place_ > std::uint64_t{1} << 32) ++wrong_;  // further than what was ever written
+    if (next_ - place_ > std::uint64_t{1} << 32) ++wrong_;  // more than was ever written
     return got.points;
   }
-  /// Whether all that was written has been read rightly or counted, once it has been read to its end.
+  /// Whether every written point has been read correctly or counted, once everything has been read.
   [[nodiscard]] bool adds_up() {
     while (read() > 0) {
     }
@@ -122,8 +122,8 @@ class pair_of {
   std::size_t wrong_ = 0;
 };
 
-/// Runs `work`, and `interruption` after each of its operations named in `when`. How many operations
-/// there were.
+/// Runs `work`, and `interruption` after each of its operations named in `when`. Returns the number
+/// of operations.
 template <class Work, class Interruption>
 std::size_t interrupt(std::vector<std::size_t> when, Work&& work, Interruption&& interruption) {
   using target = std::remove_reference_t<Interruption>;
@@ -138,13 +138,13 @@ std::size_t interrupt(std::vector<std::size_t> when, Work&& work, Interruption&&
   return operations;
 }
 
-/// Where the count starts, so that `before` points later nothing special, the carry of the low word,
-/// or the wrap of the whole happens.
+/// The first number, so that `before` points later nothing special, the carry of the low word, or
+/// the wrap of the count happens.
 std::vector<std::uint64_t> starts(std::uint64_t before) {
   return {1000, (std::uint64_t{1} << 32) - before, 0 - before};
 }
 
-TEST(RingInterleaving, AReaderMayStepInAnywhereInAPush) {
+TEST(RingInterleaving, ReaderInterruptsAPushAnywhere) {
   for (const std::uint64_t first : starts(30)) {
     for (const std::size_t size : {1U, 3U, 8U, 20U}) {
       std::size_t operations = 1;
@@ -159,7 +159,7 @@ TEST(RingInterleaving, AReaderMayStepInAnywhereInAPush) {
   }
 }
 
-TEST(RingInterleaving, AReaderThatStepsInAgainAndAgainStaysRight) {
+TEST(RingInterleaving, ReaderInterruptsRepeatedly) {
   for (const std::uint64_t first : starts(30)) {
     for (std::size_t every = 1; every < 30; ++every) {
       std::vector<std::size_t> when;
@@ -176,7 +176,7 @@ TEST(RingInterleaving, AReaderThatStepsInAgainAndAgainStaysRight) {
   }
 }
 
-TEST(RingInterleaving, AWriterMayStepInAnywhereInARead) {
+TEST(RingInterleaving, WriterInterruptsAReadAnywhere) {
   for (const std::uint64_t first : starts(12)) {
     for (const std::size_t size : {1U, 2U, 7U, 8U, 9U, 40U}) {
       for (const std::size_t ahead : {0U, 1U, 5U, 8U, 11U}) {
@@ -192,7 +192,7 @@ TEST(RingInterleaving, AWriterMayStepInAnywhereInARead) {
   }
 }
 
-TEST(RingInterleaving, AWriterMayStepInTwiceInARead) {
+TEST(RingInterleaving, WriterInterruptsAReadTwice) {
   for (const std::uint64_t first : starts(9)) {
     std::size_t operations = 1;
     for (std::size_t one = 0; one < operations; ++one) {
@@ -206,7 +206,7 @@ TEST(RingInterleaving, AWriterMayStepInTwiceInARead) {
   }
 }
 
-TEST(RingInterleaving, AReaderCloseBehindALargePushLosesFew) {
+TEST(RingInterleaving, ReaderCloseBehindALargePush_LosesFew) {
   // Points are claimed 64 at a time, so most of a large ring can be read in the middle of a push.
   std::size_t operations = 1;
   for (std::size_t at = 0; at < operations; at += 13) {

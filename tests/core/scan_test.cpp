@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Revolutions: where they are cut, what they are marked with, and that no point is lost to them.
-#include "g4lidar/scan.hpp"
+// Revolutions: where they are cut, their flags, and that no point is lost.
+#include "g4lidar/core/scan_assembler.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <ostream>
+#include <span>
 #include <vector>
 
 #include "support/packet_maker.hpp"
@@ -17,8 +19,8 @@
 namespace g4lidar {
 
 // For GoogleTest's messages.
-inline void PrintTo(scan_marks marks, std::ostream* out) {
-  *out << "marks " << static_cast<unsigned>(marks);
+inline void PrintTo(scan_flags flags, std::ostream* out) {
+  *out << "flags " << static_cast<unsigned>(flags);
 }
 
 namespace {
@@ -26,13 +28,15 @@ namespace {
 using test::kept_scan;
 using test::scan_cutter;
 
-constexpr scan_marks whole = scan_marks::none;
-constexpr scan_marks start_missing = scan_marks::start_missing;
-constexpr scan_marks end_missing = scan_marks::end_missing;
-constexpr scan_marks data_lost = scan_marks::data_lost;
-constexpr scan_marks turn_short = scan_marks::turn_short;
+constexpr scan_flags whole = scan_flags::none;
+constexpr scan_flags start_missing = scan_flags::start_missing;
+constexpr scan_flags end_missing = scan_flags::end_missing;
+constexpr scan_flags data_lost = scan_flags::data_lost;
+constexpr scan_flags turn_short = scan_flags::turn_short;
+constexpr scan_flags start_by_angle = scan_flags::start_by_angle;
+constexpr scan_flags end_by_angle = scan_flags::end_by_angle;
 
-/// Feeds samples from `from_deg` on, 2 to a degree and 20 to a packet, up to but not including
+/// Feeds samples from `from_deg` on, 2 per degree and 20 per packet, up to but not including
 /// `to_deg`, both multiples of 10; they may be beyond 360.
 void turn(scan_cutter& cutter, int from_deg, int to_deg) {
   for (int deg = from_deg; deg < to_deg; deg += 10) {
@@ -50,11 +54,11 @@ void suspect(scan_cutter& cutter, int deg, unsigned ct = 0, std::size_t samples 
   cutter.feed(packet.view());
 }
 
-/// The marks of all scans so far.
-std::vector<scan_marks> marks_of(const scan_cutter& cutter) {
-  std::vector<scan_marks> marks;
-  for (const kept_scan& kept : cutter.scans()) marks.push_back(kept.view.marks);
-  return marks;
+/// The flags of all scans so far.
+std::vector<scan_flags> marks_of(const scan_cutter& cutter) {
+  std::vector<scan_flags> flags;
+  for (const kept_scan& kept : cutter.scans()) flags.push_back(kept.view.flags);
+  return flags;
 }
 std::vector<std::size_t> sizes_of(const scan_cutter& cutter) {
   std::vector<std::size_t> sizes;
@@ -62,10 +66,10 @@ std::vector<std::size_t> sizes_of(const scan_cutter& cutter) {
   return sizes;
 }
 
-using all_marks = std::vector<scan_marks>;
+using all_marks = std::vector<scan_flags>;
 using all_sizes = std::vector<std::size_t>;
 
-TEST(Scan, FirstIsPartialAndTheNextAreWhole) {
+TEST(Scan, FirstScan_IsPartial_NextAreWhole) {
   scan_cutter cutter(1000);
   turn(cutter, 260, 360);
   for (int i = 0; i < 3; ++i) {
@@ -75,7 +79,7 @@ TEST(Scan, FirstIsPartialAndTheNextAreWhole) {
   EXPECT_EQ(marks_of(cutter), (all_marks{start_missing, whole, whole}));
   EXPECT_EQ(sizes_of(cutter), (all_sizes{200, 721, 721}));
   cutter.finish();
-  EXPECT_EQ(cutter.scans().back().view.marks, end_missing);
+  EXPECT_EQ(cutter.scans().back().view.flags, end_missing);
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
   EXPECT_TRUE(cutter.scans()[1].view.is_whole());
   EXPECT_FALSE(cutter.scans()[1].view.is_partial());
@@ -101,38 +105,41 @@ TEST(Scan, BeginsWithThePointOfItsZeroPacket) {
   EXPECT_EQ(marks_of(cutter), (all_marks{whole, whole, end_missing}));
 }
 
-TEST(Scan, ALostZeroPacketGivesTwoMarkedPieces) {
+TEST(Scan, LostZeroPacket_CutsByTheAngle) {
   scan_cutter cutter(2000);
   zero(cutter);
-  turn(cutter, 0, 720);  // the zero packet at 360 is not there
+  turn(cutter, 0, 720);  // the zero packet at 360 is missing
   zero(cutter);
   turn(cutter, 0, 360);
   zero(cutter);
-  EXPECT_EQ(marks_of(cutter), (all_marks{end_missing, start_missing, whole}));
-  // 0 to 361 degrees are the first one's, both ends included.
-  EXPECT_EQ(sizes_of(cutter), (all_sizes{1 + 723, 1440 - 723, 721}));
+  EXPECT_EQ(marks_of(cutter), (all_marks{end_by_angle, start_by_angle, whole}));
+  EXPECT_EQ(sizes_of(cutter), (all_sizes{1 + 720, 720, 721}));
+  for (const kept_scan& kept : cutter.scans()) EXPECT_FALSE(kept.view.is_piece());
+  EXPECT_FALSE(cutter.scans()[0].view.is_whole());
   EXPECT_EQ(cutter.scans()[0].view.revolution, 0U);
   EXPECT_EQ(cutter.scans()[1].view.revolution, 0U);
   EXPECT_EQ(cutter.scans()[2].view.revolution, 1U);
-  EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 361.5F);  // to the next one's first point
-  EXPECT_FLOAT_EQ(cutter.scans()[1].view.turned_deg, 358.5F);
+  EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 360.0F);
+  EXPECT_FLOAT_EQ(cutter.scans()[1].view.turned_deg, 360.0F);
   cutter.finish();
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
 }
 
-TEST(Scan, ManyLostZeroPacketsGiveManyPieces) {
+TEST(Scan, NoZeroPacket_CountsTurnsFromTheFirstPoint) {
   scan_cutter cutter(5000);
   turn(cutter, 100, 100 + 10 * 360);
   cutter.finish();
-  EXPECT_EQ(cutter.scans().size(), 10U);
-  for (const kept_scan& kept : cutter.scans()) {
-    EXPECT_EQ(kept.view.marks, start_missing | end_missing);
-    EXPECT_LE(kept.points.size(), 723U);
+  ASSERT_EQ(cutter.scans().size(), 10U);
+  EXPECT_EQ(sizes_of(cutter), all_sizes(10, 720));
+  EXPECT_EQ(cutter.scans()[0].view.flags, start_missing | end_by_angle);
+  for (std::size_t i = 1; i < 9; ++i) {
+    EXPECT_EQ(cutter.scans()[i].view.flags, start_by_angle | end_by_angle);
   }
+  EXPECT_EQ(cutter.scans()[9].view.flags, start_by_angle | end_missing);
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
 }
 
-TEST(Scan, AZeroPacketHalfADegreeLateIsNotLost) {
+TEST(Scan, ZeroPacketHalfADegreeLate_IsNotLost) {
   scan_cutter cutter(1000);
   const made::packet early = made::zero(22285);  // real ones: 348.2 degrees and then 348.7
   const made::packet late = made::zero(22317);
@@ -145,7 +152,7 @@ TEST(Scan, AZeroPacketHalfADegreeLateIsNotLost) {
   EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 360.5F);
 }
 
-TEST(Scan, AFullStorageCutsAndLosesNothing) {
+TEST(Scan, FullStorage_CutsAndLosesNothing) {
   scan_cutter cutter(300);
   for (int i = 0; i < 2; ++i) {
     zero(cutter);
@@ -159,7 +166,7 @@ TEST(Scan, AFullStorageCutsAndLosesNothing) {
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
 }
 
-TEST(Scan, AStorageOfExactlyOneRevolutionIsEnough) {
+TEST(Scan, StorageOfOneRevolution_IsSufficient) {
   scan_cutter cutter(721);
   for (int i = 0; i < 3; ++i) {
     zero(cutter);
@@ -168,7 +175,7 @@ TEST(Scan, AStorageOfExactlyOneRevolutionIsEnough) {
   EXPECT_EQ(marks_of(cutter), (all_marks{whole, whole}));
 }
 
-TEST(Scan, AStorageOfOnePointStillLosesNothing) {
+TEST(Scan, StorageOfOnePoint_LosesNothing) {
   scan_cutter cutter(1);
   zero(cutter);
   turn(cutter, 0, 20);
@@ -178,7 +185,7 @@ TEST(Scan, AStorageOfOnePointStillLosesNothing) {
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
 }
 
-TEST(Scan, ASuspectPacketMarksItsScan) {
+TEST(Scan, SuspectPacket_FlagsItsScan) {
   scan_cutter cutter(1000);
   zero(cutter);
   turn(cutter, 0, 100);
@@ -195,7 +202,7 @@ TEST(Scan, ASuspectPacketMarksItsScan) {
   EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 360.0F);
 }
 
-TEST(Scan, ASuspectZeroPacketStartsARevolution) {
+TEST(Scan, SuspectZeroPacket_StartsARevolution) {
   scan_cutter cutter(1000);
   zero(cutter);
   turn(cutter, 0, 360);
@@ -209,7 +216,7 @@ TEST(Scan, ASuspectZeroPacketStartsARevolution) {
   EXPECT_EQ(cutter.scans()[1].points.size(), 700U);
 }
 
-TEST(Scan, NothingButSuspectPacketsIsAScanWithoutPoints) {
+TEST(Scan, OnlySuspectPackets_GiveAScanWithoutPoints) {
   scan_cutter cutter(1000);
   suspect(cutter, 100);
   suspect(cutter, 1, 1);
@@ -222,9 +229,9 @@ TEST(Scan, NothingButSuspectPacketsIsAScanWithoutPoints) {
   EXPECT_EQ(cutter.scans()[1].view.revolution, 1U);
 }
 
-TEST(Scan, LossMarksTheScanInWhichItFalls) {
+TEST(Scan, Loss_FlagsItsScan) {
   scan_cutter cutter(1000);
-  cutter.lost();  // before anything: no scan's loss
+  cutter.lost();  // before the first point: no scan's loss
   zero(cutter);
   turn(cutter, 0, 360);
   zero(cutter);
@@ -233,15 +240,15 @@ TEST(Scan, LossMarksTheScanInWhichItFalls) {
   turn(cutter, 220, 360);
   zero(cutter);
   turn(cutter, 0, 360);
-  cutter.lost();  // up to the zero packet it is the ending scan's
+  cutter.lost();  // up to the zero packet: a loss of the ending scan
   zero(cutter);
-  cutter.lost();  // and from it on the beginning one's
+  cutter.lost();  // from the zero packet on: a loss of the beginning scan
   turn(cutter, 10, 360);
   zero(cutter);
   EXPECT_EQ(marks_of(cutter), (all_marks{whole, data_lost, data_lost, data_lost}));
 }
 
-TEST(Scan, SkippedBytesAreALossIfAPacketMayHaveBeenAmongThem) {
+TEST(Scan, SkippedBytes_AreALossIfLongEnoughForAPacket) {
   const auto marks_after = [](const std::vector<skipped>& gone) {
     scan_cutter cutter(1000);
     zero(cutter);
@@ -249,7 +256,7 @@ TEST(Scan, SkippedBytesAreALossIfAPacketMayHaveBeenAmongThem) {
     for (const skipped& each : gone) cutter.add(each);
     turn(cutter, 180, 360);
     zero(cutter);
-    return cutter.scans().at(0).view.marks;
+    return cutter.scans().at(0).view.flags;
   };
   EXPECT_EQ(marks_after({{1, skip_reason::bad_header}}), data_lost);
   EXPECT_EQ(marks_after({{1, skip_reason::bad_checksum}}), data_lost);
@@ -260,7 +267,7 @@ TEST(Scan, SkippedBytesAreALossIfAPacketMayHaveBeenAmongThem) {
   EXPECT_EQ(marks_after({{10, skip_reason::noise}}), whole);
 }
 
-TEST(Scan, StrayBytesDoNotAddUpBeyondAPacket) {
+TEST(Scan, StrayBytes_AreNotSummedAcrossPackets) {
   scan_cutter cutter(1000);
   zero(cutter);
   for (int deg = 0; deg < 360; deg += 10) {
@@ -271,19 +278,19 @@ TEST(Scan, StrayBytesDoNotAddUpBeyondAPacket) {
   EXPECT_EQ(marks_of(cutter), (all_marks{whole}));
 }
 
-TEST(Scan, LossOverAZeroPacketIsCutByTheAngle) {
+TEST(Scan, LossAcrossAZeroPacket_CutsByTheAngle) {
   scan_cutter cutter(2000);
   zero(cutter);
   turn(cutter, 0, 300);
   cutter.lost();
   turn(cutter, 400, 720);
   zero(cutter);
-  EXPECT_EQ(marks_of(cutter), (all_marks{end_missing | data_lost, start_missing}));
+  EXPECT_EQ(marks_of(cutter), (all_marks{end_by_angle | data_lost, start_by_angle | data_lost}));
   EXPECT_EQ(sizes_of(cutter), (all_sizes{601, 640}));
   EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 400.0F);
 }
 
-TEST(Scan, GapsOfAnySizeUnderSevenEighthsOfATurnAreFollowed) {
+TEST(Scan, GapsBelowSevenEighthsOfATurn_AreFollowed) {
   for (const int gap : {20, 90, 180, 270, 310}) {
     scan_cutter cutter(1000);
     zero(cutter);
@@ -291,12 +298,12 @@ TEST(Scan, GapsOfAnySizeUnderSevenEighthsOfATurnAreFollowed) {
     turn(cutter, 20 + gap, 360);
     zero(cutter);
     ASSERT_EQ(cutter.scans().size(), 1U);
-    EXPECT_EQ(cutter.scans()[0].view.marks, whole) << gap;
+    EXPECT_EQ(cutter.scans()[0].view.flags, whole) << gap;
     EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 360.0F) << gap;
   }
 }
 
-TEST(Scan, SmallStepsBackAreNotATurn) {
+TEST(Scan, SmallStepsBack_AreNotATurn) {
   scan_cutter cutter(2000);
   zero(cutter);
   turn(cutter, 0, 180);
@@ -307,30 +314,30 @@ TEST(Scan, SmallStepsBackAreNotATurn) {
   EXPECT_FLOAT_EQ(cutter.scans()[0].view.turned_deg, 360.0F);
 }
 
-TEST(Scan, APacketThatSpansNearlyTheWholeCircleIsFollowed) {
+TEST(Scan, PacketAcrossNearlyAFullTurn_IsFollowed) {
   scan_cutter cutter(2000);
   zero(cutter);
-  const made::packet wide(0, 0, 350 * 64, 80);  // LSA >= FSA is taken as it stands
+  const made::packet wide(0, 0, 350 * 64, 80);  // LSA >= FSA is used unchanged
   cutter.feed(wide.view());
   turn(cutter, 360, 370);
   zero(cutter, 10);
   ASSERT_EQ(cutter.scans().size(), 2U);
-  EXPECT_EQ(marks_of(cutter), (all_marks{end_missing, start_missing}));
-  EXPECT_EQ(sizes_of(cutter), (all_sizes{81 + 3, 17}));
+  EXPECT_EQ(marks_of(cutter), (all_marks{end_by_angle, start_by_angle | turn_short}));
+  EXPECT_EQ(sizes_of(cutter), (all_sizes{81, 20}));
 }
 
-TEST(Scan, ACutMayFallInsideAWidePacket) {
+TEST(Scan, CutInsideAWidePacket) {
   scan_cutter cutter(2000);
   zero(cutter, 300);
   turn(cutter, 300, 600);
-  const made::packet wide(0, 240 * 64, 319 * 64, 80);  // a sample each degree; the turn ends at 301
+  const made::packet wide(0, 240 * 64, 319 * 64, 80);  // a sample per degree; the turn ends at 301
   cutter.feed(wide.view());
   cutter.finish();
-  EXPECT_EQ(sizes_of(cutter), (all_sizes{1 + 600 + 62, 18}));
+  EXPECT_EQ(sizes_of(cutter), (all_sizes{1 + 600 + 60, 20}));
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
 }
 
-TEST(Scan, AMotorStandingStillFillsTheStorageAndGoesOn) {
+TEST(Scan, StoppedMotor_FillsTheStorageAndContinues) {
   scan_cutter cutter(500);
   zero(cutter);
   const made::packet still(0, 100 * 64, 100 * 64, 40);
@@ -343,23 +350,23 @@ TEST(Scan, AMotorStandingStillFillsTheStorageAndGoesOn) {
   EXPECT_EQ(cutter.came_out(), cutter.put_in());
 }
 
-TEST(Scan, ATurnThatEndsEarlyIsMarked) {
+TEST(Scan, TurnThatEndsEarly_IsFlagged) {
   scan_cutter cutter(1000);
   zero(cutter);
-  zero(cutter);  // the motor stands still on its mark
+  zero(cutter);  // the motor does not turn, at its index
   turn(cutter, 0, 350);
   zero(cutter, 349);
   turn(cutter, 350, 710);
   zero(cutter, 350);
   EXPECT_EQ(marks_of(cutter), (all_marks{turn_short, turn_short, whole}));
-  // Without a first zero packet nobody knows how much of a turn there was.
+  // Without a first zero packet the size of the turn is not known.
   scan_cutter late(1000);
   turn(late, 350, 360);
   zero(late);
   EXPECT_EQ(marks_of(late), (all_marks{start_missing}));
 }
 
-TEST(Scan, TenDegreesEarlyIsTheLimitOfAWholeTurn) {
+TEST(Scan, TenDegreesEarly_IsTheLimitOfAWholeTurn) {
   scan_cutter cutter(1000);
   zero(cutter, 0);
   turn(cutter, 0, 350);
@@ -370,13 +377,13 @@ TEST(Scan, TenDegreesEarlyIsTheLimitOfAWholeTurn) {
   EXPECT_EQ(marks_of(cutter), (all_marks{whole, turn_short}));
 }
 
-TEST(Scan, FinishLeavesTheAssemblerAsNew) {
+TEST(Scan, Finish_ResetsTheAssembler) {
   scan_cutter cutter(1000);
   cutter.finish();
   cutter.lost();
   cutter.finish();
   EXPECT_TRUE(cutter.scans().empty());
-  turn(cutter, 0, 100);  // the loss was of the stream that has ended
+  turn(cutter, 0, 100);  // the loss was in the stream that has ended
   cutter.finish();
   EXPECT_EQ(marks_of(cutter), (all_marks{start_missing | end_missing}));
   cutter.finish();
@@ -384,11 +391,11 @@ TEST(Scan, FinishLeavesTheAssemblerAsNew) {
   zero(cutter);
   turn(cutter, 0, 360);
   zero(cutter);
-  EXPECT_EQ(cutter.scans().back().view.marks, whole);
+  EXPECT_EQ(cutter.scans().back().view.flags, whole);
   EXPECT_EQ(cutter.scans().back().points.size(), 721U);
 }
 
-TEST(Scan, LossRightAfterAScanWasGivenIsTheNextOnes) {
+TEST(Scan, LossAfterAScanWasReturned_FlagsTheNextScan) {
   std::array<point, 100> storage;
   scan_assembler assembler(storage);
   std::array<point, max_samples> out;
@@ -401,7 +408,7 @@ TEST(Scan, LossRightAfterAScanWasGivenIsTheNextOnes) {
   EXPECT_FALSE(assembler.next(now));
   const auto last = assembler.finish();
   ASSERT_TRUE(last);
-  EXPECT_EQ(last->marks, start_missing | end_missing | data_lost);
+  EXPECT_EQ(last->flags, start_missing | end_missing | data_lost);
   EXPECT_EQ(last->points.size(), 20U);
 }
 
@@ -439,12 +446,12 @@ TEST(Scan, MeasuresTheFrequencyByTheTimesOfItsPoints) {
   cutter.finish();
   ASSERT_EQ(cutter.scans().size(), 3U);
   EXPECT_EQ(cutter.scans()[0].view.duration_ns, 721 * step);
-  EXPECT_NEAR(cutter.scans()[0].view.measured_frequency_hz(9000), 8.0F, 1e-4F);
-  EXPECT_EQ(cutter.scans()[2].view.duration_ns, 0);  // nothing came after it
-  EXPECT_EQ(cutter.scans()[2].view.measured_frequency_hz(9000), 0.0F);
+  EXPECT_NEAR(cutter.scans()[0].view.measured_frequency_hz(), 8.0F, 1e-4F);
+  EXPECT_EQ(cutter.scans()[2].view.duration_ns, 0);  // no packet came after it
+  EXPECT_EQ(cutter.scans()[2].view.measured_frequency_hz(), 0.0F);
 }
 
-TEST(Scan, MeasuresAPieceByItsTimesToo) {
+TEST(Scan, MeasuresThePieceByItsTimes) {
   constexpr std::int64_t step = 100'000;
   scan_cutter cutter(360);  // half a turn
   for (int deg = 0; deg < 720; deg += 10) {
@@ -455,13 +462,13 @@ TEST(Scan, MeasuresAPieceByItsTimesToo) {
   for (const kept_scan& kept : cutter.scans()) {
     EXPECT_FLOAT_EQ(kept.view.turned_deg, 180.0F);
     EXPECT_EQ(kept.view.duration_ns, 360 * step);
-    EXPECT_NEAR(kept.view.measured_frequency_hz(0), 1e9F / 72e6F, 1e-3F);
+    EXPECT_NEAR(kept.view.measured_frequency_hz(), 1e9F / 72e6F, 1e-3F);
   }
 }
 
-TEST(Scan, MeasuresTheFrequencyByItsSamplesWhereNoTimesAreKnown) {
+TEST(Scan, MeasuresTheFrequencyBySamplesWithoutTimes) {
   scan_cutter cutter(1000);
-  turn(cutter, 270, 360);  // partial at its start only: what is there is all there
+  turn(cutter, 270, 360);  // partial at its start only: the existing part is complete
   zero(cutter);
   turn(cutter, 0, 360);
   zero(cutter);
@@ -471,12 +478,139 @@ TEST(Scan, MeasuresTheFrequencyByItsSamplesWhereNoTimesAreKnown) {
   zero(cutter);
   ASSERT_EQ(cutter.scans().size(), 3U);
   EXPECT_EQ(cutter.scans()[1].view.duration_ns, 0);
-  EXPECT_NEAR(cutter.scans()[0].view.measured_frequency_hz(9000), 12.5F, 1e-4F);
-  EXPECT_NEAR(cutter.scans()[1].view.measured_frequency_hz(9000), 9000.0F / 721.0F, 1e-4F);
-  EXPECT_EQ(cutter.scans()[2].view.measured_frequency_hz(9000), 0.0F);
+  EXPECT_NEAR(cutter.scans()[0].view.measured_frequency_hz(), 12.5F, 1e-4F);
+  EXPECT_NEAR(cutter.scans()[1].view.measured_frequency_hz(), 9000.0F / 721.0F, 1e-4F);
+  EXPECT_EQ(cutter.scans()[2].view.measured_frequency_hz(), 0.0F);
 }
 
-TEST(Scan, IsAConstantExpressionToo) {
+TEST(Scan, LateZeroPacket_PointsBeyondTheTurnStay) {
+  scan_cutter cutter(2000);
+  zero(cutter);
+  turn(cutter, 0, 360);
+  const made::packet beyond(0, 10, 60, 20);  // up to 360.9 degrees
+  cutter.feed(beyond.view());
+  const made::packet late = made::zero(62);
+  cutter.feed(late.view());
+  EXPECT_EQ(marks_of(cutter), (all_marks{whole}));
+  EXPECT_EQ(sizes_of(cutter), (all_sizes{741}));
+}
+
+TEST(Scan, StepBackAcrossZero_IsNotATurn) {
+  scan_cutter cutter(2000);
+  zero(cutter);
+  turn(cutter, 0, 360);
+  const made::packet beyond(0, 10, 60, 20);
+  cutter.feed(beyond.view());
+  cutter.lost();
+  turn(cutter, 350, 370);  // back to 350 degrees, and on without a zero packet
+  zero(cutter, 10);
+  // Cut where the angle passed for the last time, after the packet at 350 degrees.
+  EXPECT_EQ(marks_of(cutter), (all_marks{end_by_angle | data_lost, start_by_angle | turn_short}));
+  EXPECT_EQ(sizes_of(cutter), (all_sizes{721 + 20 + 20, 20}));
+}
+
+TEST(Scan, LossAfterTheCut_FlagsOnlyTheNextScan) {
+  scan_cutter cutter(2000);
+  zero(cutter);
+  turn(cutter, 0, 360);
+  const made::packet beyond(0, 10, 50, 20);
+  cutter.feed(beyond.view());
+  cutter.lost();
+  turn(cutter, 370, 720);
+  zero(cutter);
+  EXPECT_EQ(marks_of(cutter), (all_marks{end_by_angle, start_by_angle | data_lost}));
+  EXPECT_EQ(sizes_of(cutter), (all_sizes{721, 20 + 700}));
+  EXPECT_EQ(cutter.scans()[1].view.revolution, 0U);
+}
+
+TEST(Scan, Times_ShowAGapOfWholeTurns) {
+  constexpr std::int64_t step = 100'000'000 / 720;  // 10 Hz
+  for (const int gap_turns : {1, 2, 50}) {
+    scan_cutter cutter(2000);
+    const auto timed = [&](int from_deg, int to_deg) {
+      for (int deg = from_deg; deg < to_deg; deg += 10) {
+        const int first = deg % 360 * 64;
+        const made::packet packet(0, first, (first + 19 * 32) % 23040, 20);
+        cutter.feed(packet.view(), 1'000'000'000 + deg * 2 * step, step);
+      }
+    };
+    const auto timed_zero = [&](int deg) {
+      const made::packet packet = made::zero(0);
+      cutter.feed(packet.view(), 1'000'000'000 + deg * 2 * step - step / 2, 0);
+    };
+    timed_zero(0);
+    timed(0, 360);
+    timed_zero(360);
+    timed(360, 500);
+    cutter.lost();
+    timed(500 + gap_turns * 360, 720 + gap_turns * 360);
+    timed_zero(720 + gap_turns * 360);
+    EXPECT_EQ(marks_of(cutter),
+              (all_marks{whole, end_by_angle | data_lost, start_by_angle | data_lost}))
+        << gap_turns;
+    EXPECT_EQ(sizes_of(cutter), (all_sizes{721, 281, 440})) << gap_turns;
+  }
+}
+
+TEST(Scan, PointsDecodedIntoItsStorage_AreNotCopied) {
+  std::array<point, 1000> storage;
+  scan_assembler assembler(storage);
+  std::size_t given = 0;
+  std::size_t in_place = 0;
+  const auto feed = [&](const made::packet& packet, std::uint32_t revolution) {
+    const std::span<point> room = assembler.room();
+    ASSERT_GE(room.size(), max_samples);
+    const point* const place = room.data();
+    decoded now =
+        decode(packet.view(), compact_correction{}, revolution, room.first<max_samples>());
+    while (const auto found = assembler.next(now)) {
+      given += found->size();
+      for (const point& p : *found) EXPECT_EQ(p.revolution, found->revolution);
+    }
+    const std::span<point> after = assembler.room();
+    if (after.data() == place + packet.view().sample_count()) ++in_place;
+  };
+  for (std::uint32_t revolution = 0; revolution < 3; ++revolution) {
+    feed(made::zero(0), revolution);
+    for (int deg = 0; deg < 360; deg += 10) {
+      feed(made::packet(0, deg * 64, deg * 64 + 19 * 32, 20), revolution);
+    }
+  }
+  const auto last = assembler.finish();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(given + last->size(), 3U * 721U);
+  EXPECT_EQ(in_place, 3U * 37U - 2U);  // all except the zero packets that end a scan
+}
+
+TEST(Scan, IsARangeOfPointsWithTimes) {
+  constexpr std::int64_t step = 1'000'000'000 / 8000;
+  scan_cutter cutter(1000);
+  cutter.set_sample_rate(4000);
+  for (int turns = 0; turns < 2; ++turns) {
+    const made::packet start = made::zero(0);
+    cutter.feed(start.view(), 7'000'000'000 + turns * 721 * step, step);
+    for (int deg = 0; deg < 360; deg += 10) {
+      const made::packet packet(0, deg * 64, deg * 64 + 19 * 32, 20);
+      cutter.feed(packet.view(), 7'000'000'000 + (turns * 721 + 1 + deg * 2) * step, step);
+    }
+  }
+  cutter.finish();
+  const scan& found = cutter.scans().front().view;
+  EXPECT_EQ(std::distance(found.begin(), found.end()), 721);
+  EXPECT_EQ(found.size(), 721U);
+  EXPECT_FALSE(found.empty());
+  EXPECT_EQ(&found[720], &found.points.back());
+  EXPECT_EQ(found.time_ns(), 7'000'000'000);
+  EXPECT_EQ(found.end_ns(), 7'000'000'000 + 721 * step);
+  EXPECT_EQ(cutter.scans().back().view.end_ns(), 7'000'000'000 + (721 + 720) * step);
+  EXPECT_NEAR(found.sample_rate_hz(), 8000.0F, 0.01F);
+  EXPECT_EQ(found.nominal_sample_rate_hz, 4000U);
+  EXPECT_EQ(scan().sample_rate_hz(), 9000.0F);
+  EXPECT_TRUE(scan().empty());
+  EXPECT_EQ(scan().time_ns() + scan().end_ns(), 0);
+}
+
+TEST(Scan, WorksInConstantExpressions) {
   static_assert([] {
     std::array<point, 50> storage{};
     std::array<point, max_samples> out{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// When samples were measured, from the bytes of the simulated G4 on, against its truth: the clock used
-// as its header says, behind a line of 230400 baud and a bridge that holds bytes back.
+// When samples were measured, from the bytes of the simulated G4, compared with its true times: the
+// clock used as its header describes, with a connection of 230400 baud and a bridge that holds
+// bytes back.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,13 +16,13 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/sensor_clock.hpp"
-#include "g4lidar/sim/random.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/sensor_clock.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/sim/random.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "g4lidar/stream_parser.hpp"
 #include "support/test_scale.hpp"
 
 namespace g4lidar {
@@ -29,7 +30,7 @@ namespace {
 
 constexpr std::int64_t start_ns = 7'000'000'000'000;  // of the device, in the program's time
 
-/// A byte and when it has left the line, after start_ns.
+/// A byte and the time when it was transmitted, after start_ns.
 struct timed_byte {
   std::uint8_t value;
   double time_ns;
@@ -60,17 +61,17 @@ struct errors {
   }
 };
 
-/// The device, its line, and the program that reads it.
-class life {
+/// The device, its connection, and the program that reads it.
+class twin_run {
  public:
-  life(std::uint64_t seed, double ratio)
+  twin_run(std::uint64_t seed, double ratio)
       : dice_(seed, 1),
         device_(sim::built_in_world(),
                 {.seed = seed, .sample_rate_ratio = ratio, .sample_rate_drift_ppm = 200.0}) {}
 
   errors run(double seconds) {
     while (now_ns_ < seconds * 1e9) {
-      // A bridge that has handed over waits for a byte, then for up to 16 ms, and hands over again.
+      // A bridge that has delivered waits for a byte, then for up to 16 ms, and delivers again.
       while (line_.empty()) send_packet();
       now_ns_ = std::max(now_ns_, line_.front().time_ns) + 16e6 * dice_.uniform();
       while (sent_ns_ < now_ns_) send_packet();
@@ -82,7 +83,7 @@ class life {
   [[nodiscard]] std::int64_t counted() const { return counted_; }
 
  private:
-  /// Every fiftieth packet is damaged or does not come at all. The motor's speed goes 3 % up and down.
+  /// Every fiftieth packet is damaged or lost. The speed of the motor varies by 3 % up and down.
   void send_packet() {
     const double phase = 2.0 * std::numbers::pi * sent_ns_ / 17e9;
     device_.set_speed_mhz(static_cast<std::uint32_t>(7000.0 * (1.0 + 0.03 * std::sin(phase))));
@@ -149,10 +150,10 @@ class life {
 
 TEST(SensorClockTwin, KeepsItsPromiseAgainstTheTruth) {
   constexpr std::array<double, 3> ratios{0.97, 1.03, 1.0};
-  for (int seed = 1; seed <= test::scaled(6); ++seed) {
+  for (const int seed : test::seeds(6)) {
     const double ratio = ratios[static_cast<std::size_t>(seed % 3)];
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", rate times " << ratio);
-    life one(static_cast<std::uint64_t>(seed), ratio);
+    twin_run one(static_cast<std::uint64_t>(seed), ratio);
     errors found = one.run(30.0);
     ASSERT_GT(found.points, 200'000.0);
     const double rms_us = std::sqrt(found.square_sum / found.points) / 1e3;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A simulated lidar allocates when it is made and never again.
+// A simulated lidar allocates on construction only.
 #include <gtest/gtest.h>
 
 #include <cstddef>

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "g4lidar/sim/arithmetic.hpp"
+#include "g4lidar/detail/sim/arithmetic.hpp"
 #include "g4lidar/sim/scanner.hpp"
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The counts over a stream: each event where it belongs, and every byte in one of them.
-#include "g4lidar/stream_counts.hpp"
+// The counts over a stream: each event in its count, and every byte in exactly one.
+#include "g4lidar/core/stream_counter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ void append(std::vector<std::uint8_t>& stream, bytes more) {
   stream.insert(stream.end(), more.begin(), more.end());
 }
 
-TEST(StreamCounts, AddUpAtEveryMoment) {
+TEST(StreamCounts, AreConsistentAtEveryMoment) {
   std::vector<std::uint8_t> stream{'b', 'o', 'o', 't'};
   append(stream, std::vector<std::uint8_t>{0xA5, 0x5A, 0x05, 0, 0, 0x40, 0x81});
   const made::packet good(0, 100, 1360, 40);
@@ -34,7 +34,7 @@ TEST(StreamCounts, AddUpAtEveryMoment) {
   append(stream, good.data().first(33));
 
   stream_parser parser;
-  stream_counts counts;
+  stream_counter counts;
   for (std::size_t i = 0; i < stream.size(); ++i) {
     parser.feed(bytes(stream).subspan(i, 1), [&](const event& found) { counts.add(found); });
     ASSERT_EQ(counts.frame_bytes + counts.skipped_bytes() + parser.held(), i + 1);
@@ -54,13 +54,13 @@ TEST(StreamCounts, AddUpAtEveryMoment) {
   EXPECT_NE(counts, stream_counts{});
 }
 
-TEST(StreamCounts, EveryReasonHasItsNameAndItsPlace) {
+TEST(StreamCounts, EveryReason_HasANameAndACount) {
   constexpr std::string_view names[] = {"noise", "bad_header", "bad_checksum", "truncated"};
   static_assert(std::size(names) == skip_reasons);
   for (std::size_t i = 0; i < skip_reasons; ++i) {
     const auto reason = static_cast<skip_reason>(i);
     EXPECT_EQ(name_of(reason), names[i]);
-    stream_counts counts;
+    stream_counter counts;
     counts.add(skipped{17 + i, reason});
     EXPECT_EQ(counts.skipped(reason), 17 + i);
     EXPECT_EQ(counts.skipped_bytes(), 17 + i);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The streaming parser's promises one by one; transcripts and properties test them all together.
-#include "g4lidar/stream_parser.hpp"
+// The promises of the streaming parser one by one; transcripts and properties test all of them
+// together.
+#include "g4lidar/core/stream_parser.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,7 @@ std::vector<event> all_events(stream_parser& parser, bytes input) {
   return events;
 }
 
-/// One good packet after another, with a reply and noise among them.
+/// Several valid packets, with a response and noise among them.
 buffer busy_stream() {
   buffer stream;
   for (unsigned i = 0; i < 40; ++i) {
@@ -85,7 +86,7 @@ buffer busy_stream() {
   return stream;
 }
 
-TEST(StreamParser, ViewsAWholeFrameWhereItLies) {
+TEST(StreamParser, CompleteFrame_IsViewedInPlace) {
   const buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(20));
   stream_parser parser;
   bytes input(stream);
@@ -97,7 +98,7 @@ TEST(StreamParser, ViewsAWholeFrameWhereItLies) {
   EXPECT_EQ(parser.held(), 0U);
 }
 
-TEST(StreamParser, ViewsFramesInPlaceAgainBehindACarriedOne) {
+TEST(StreamParser, FrameBehindACarriedOne_IsViewedInPlace) {
   buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(20));
   const std::size_t size = stream.size();
   append(stream, stream);
@@ -114,7 +115,7 @@ TEST(StreamParser, ViewsFramesInPlaceAgainBehindACarriedOne) {
   EXPECT_EQ(std::get<packet_view>(*in_place).data().data(), stream.data() + size);
 }
 
-TEST(StreamParser, AnEventStaysReadableUntilTheNextCall) {
+TEST(StreamParser, EventIsValidUntilTheNextCall) {
   const buffer stream = busy_stream();
   for (std::size_t piece = 1; piece < 200; ++piece) {
     stream_parser parser;
@@ -169,7 +170,7 @@ TEST(StreamParser, EmptyInputChangesNothing) {
   }
 }
 
-TEST(StreamParser, ADamagedPacketHidesNoneBehindIt) {
+TEST(StreamParser, DamagedPacket_HidesNoFollowingPacket) {
   // A header that claims 80 samples, and three packets within its claim.
   buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(80));
   stream.resize(8);
@@ -191,7 +192,7 @@ TEST(StreamParser, ADamagedPacketHidesNoneBehindIt) {
   EXPECT_EQ(lost, 8U);
 }
 
-TEST(StreamParser, IsAsNewAfterFinish) {
+TEST(StreamParser, Finish_ResetsTheParser) {
   const buffer stream = busy_stream();
   const reference::reading wanted = reference::read(stream);
   stream_parser parser;
@@ -207,7 +208,7 @@ TEST(StreamParser, IsAsNewAfterFinish) {
   }
 }
 
-TEST(StreamParser, GoesOnAfterAFinishThatWasNotTakenToItsEnd) {
+TEST(StreamParser, IncompleteFinish_Continues) {
   buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(80));
   stream.resize(30);
   stream_parser parser;
@@ -227,7 +228,7 @@ TEST(StreamParser, GoesOnAfterAFinishThatWasNotTakenToItsEnd) {
   EXPECT_EQ(told + parser.held(), 30 + zero_packet.size());
 }
 
-TEST(StreamParser, ACopyGoesOnByItself) {
+TEST(StreamParser, Copy_IsIndependent) {
   const buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(20));
   stream_parser parser;
   bytes input = bytes(stream).first(20);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Every transcript of tests/transcripts, replayed however the input is cut.
+// Every transcript of tests/transcripts, replayed with every division of the input.
 //
-// With G4LIDAR_TRANSCRIPTS_REWRITE set the logs are written anew from what the parser says; then
-// read the difference line by line before you believe it.
+// With G4LIDAR_TRANSCRIPTS_REWRITE set the logs are replaced by the output of the parser; then
+// check the difference line by line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,7 +119,7 @@ class Transcript : public testing::TestWithParam<std::string> {
 TEST_P(Transcript, InOnePiece) {
   if (std::getenv("G4LIDAR_TRANSCRIPTS_REWRITE") != nullptr) {
     write_anew(GetParam());
-    GTEST_SKIP() << "written anew";
+    GTEST_SKIP() << "the logs were replaced";
   }
   replays([](std::size_t) { return transcript::max_input; });
 }
@@ -133,7 +133,7 @@ TEST_P(Transcript, InPiecesOfEverySize) {
 
 TEST_P(Transcript, InThreePiecesOfEverySize) {
   const std::size_t longest = longest_of(inputs_);
-  if (longest > 64) return;  // the short ones only: the number of cuts grows with the square
+  if (longest > 64) return;  // the short ones only: the number of divisions grows with the square
   for (std::size_t first = 1; first < longest; ++first) {
     for (std::size_t second = first + 1; second < longest; ++second) {
       const auto cut = [=](std::size_t from) {
@@ -158,7 +158,7 @@ TEST_P(Transcript, AgreesWithTheReference) {
 INSTANTIATE_TEST_SUITE_P(All, Transcript, testing::ValuesIn(transcript_names()),
                          [](const auto& name) { return name.param; });
 
-TEST(Transcripts, AreThere) { EXPECT_GE(transcript_names().size(), 40U); }
+TEST(Transcripts, ArePresent) { EXPECT_GE(transcript_names().size(), 40U); }
 
 constexpr std::string_view small_transcript =
     "# A comment\n"
@@ -175,7 +175,7 @@ constexpr bool replays_in_whole(std::string_view text) {
 
 static_assert(replays_in_whole(small_transcript), "the parser works at compile time");
 
-TEST(TranscriptReplay, SeesWhatDiffers) {
+TEST(TranscriptReplay, DetectsDifferences) {
   EXPECT_TRUE(replays_in_whole(small_transcript));
   const std::string text(small_transcript);
   EXPECT_FALSE(replays_in_whole(text + "> skipped 1 noise\n")) << "an event that does not come";

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Takes the fenced blocks out of a Markdown document: block N of language L becomes the file N.L in the
-# directory `out`, and a line in `out`/list: N, L, the number of its first line, and its mark, parted by
-# tabs. The mark is the comment <!-- test: MARK --> right before the block. What is not understood is an
-# error: no block slips through.
+# Extracts the fenced blocks of a Markdown document: block N of language L becomes the file N.L in
+# the directory `out`, and a line in `out`/list: N, L, the number of its first line, and its mark,
+# separated by tabs. The mark is the comment <!-- test: MARK --> directly before the block. Unknown
+# marks are errors: no block is ignored.
 #   awk -v out=DIRECTORY -f blocks.awk DOCUMENT
 
 function fail(text) {
@@ -16,7 +16,7 @@ function is_known(language, mark) {
   if (mark ~ /^file [A-Za-z0-9_.\/-]+$/) return language != "sh"
   if (language == "cpp" && mark == "until ^C") return 1
   if (language == "cpp" || language == "cmake") return mark ~ /^(|in [a-z_]+)$/
-  if (language == "sh") return mark ~ /^(|until \^C|the only G4|best of three|exit [0-9]+)$/
+  if (language == "sh") return mark ~ /^(|until \^C|the only G4|two of three|exit [0-9]+)$/
   if (language == "text") return mark ~ /^output(, but for numbers)?$/
   return 0
 }

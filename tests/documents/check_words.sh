@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The two programs of the README are examples; the files and commands that the documents name are there,
-# links lead somewhere, and so do the documents that the sources name; a command line in the middle of a
-# sentence is one that is also shown in a block, and so is run.
-# Wants G4_DUMP and G4LIDAR_SOURCE_DIR.
+# The two programs of the README are equal to the examples; the files and commands that the
+# documents name exist; links and the documents that the sources name exist; a command line within a
+# sentence is also in a block, and so is executed.
+# Needs G4_DUMP and G4LIDAR_SOURCE_DIR.
 set -euo pipefail
 cd "$G4LIDAR_SOURCE_DIR"
 here=tests/documents
@@ -16,7 +16,7 @@ missing=0
 bash "$here/extract.sh" README.md "$scratch/README"
 mapfile -t programs < <(awk -F '\t' '$2 == "cpp" { print $1 }' "$scratch/README/list")
 number=0
-for source in live_scan first_points; do
+for source in first_scan first_points; do
   if ! diff "$scratch/README/block_${programs[number]}.cpp" <(tail -n +3 "examples/$source.cpp"); then
     echo "Program $((number + 1)) in README.md differs from examples/$source.cpp" >&2
     missing=1
@@ -24,7 +24,7 @@ for source in live_scan first_points; do
   number=$((number + 1))
 done
 
-# Command lines in sentences: a verb, or the beginning of a line that is run.
+# Command lines in sentences: a verb, or the beginning of an executed line.
 for document in README docs/guide docs/errors docs/sim docs/recordings; do
   mkdir -p "$scratch/$document"
   bash "$here/extract.sh" "$document.md" "$scratch/$document"
@@ -65,7 +65,7 @@ while IFS=: read -r document link; do
   fi
 done < <(grep -oE '[^[]\]\([A-Za-z0-9_./#-]+\)' "${documents[@]}" | sort --unique)
 
-# And every document that a header, a source or the tool names.
+# Also every document that a header, a source or the tool names.
 while read -r path; do
   if [[ ! -e $path ]]; then
     echo "$path is not there, and is named by:" >&2

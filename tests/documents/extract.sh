@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Takes the blocks out of a document, and makes whole programs of its C++: extract.sh DOCUMENT DIRECTORY
-# Programs are DIRECTORY/block_N.cpp; they are written anew only where they have changed.
+# Extracts the blocks of a document, and makes complete programs of its C++: extract.sh DOCUMENT
+# DIRECTORY
+# Programs are DIRECTORY/block_N.cpp; unchanged ones are not written again.
 set -euo pipefail
 document=$1
 directory=$2
@@ -12,7 +13,7 @@ trap 'rm -rf "$fresh"' EXIT
 touch "$fresh/list"
 awk -v out="$fresh" -f "$here/blocks.awk" "$document"
 
-# wrap <wrapper> <fragment>: the wrapper with the fragment in place of its line @fragment@.
+# wrap <wrapper> <fragment>: the wrapper with the fragment instead of its line @fragment@.
 wrap() {
   if [[ ! -e $1 ]]; then
     echo "$document names $(basename "$1"), which is no wrapper" >&2

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A document with a mistake does not pass, each kind of mistake; and one without does.
-# Wants G4_DUMP, G4LIDAR_SOURCE_DIR and CXX.
+# A document with a mistake is refused, for each kind of mistake; a document without is accepted.
+# Needs G4_DUMP, G4LIDAR_SOURCE_DIR and CXX.
 set -euo pipefail
 here=$G4LIDAR_SOURCE_DIR/tests/documents
 scratch=$(mktemp -d)
@@ -10,7 +10,7 @@ export DOCUMENT=scratch.md
 fence='```'
 failed=0
 
-# passes: whether the document on standard input is one that is right; its programs are only compiled.
+# passes: whether the document on standard input is accepted; its programs are only compiled.
 passes() {
   rm -rf "$scratch/blocks"
   cat >"$scratch/document.md"
@@ -22,7 +22,8 @@ passes() {
   bash "$here/check_document.sh" "$scratch/blocks"
 }
 
-# expect <right|wrong> <what it is>: of the document on standard input.
+# expect <right
+# wrong> <name>: checks the document on standard input.
 expect() {
   local said verdict=right
   said=$(passes 2>&1) || verdict=wrong
@@ -44,14 +45,16 @@ block sh 'echo one' 'test -d /tmp/' | expect right "command lines that succeed"
 block sh 'echo one' 'false' 'true' | expect wrong "a command line that fails"
 block sh 'g4-dump sim --no-such-option' | expect wrong "an option that is none"
 block sh 'no-such-program' | expect wrong "a program that is none"
-{ echo '<!-- test: exit 3 -->'; block sh '(exit 3)'; } | expect right "a failure that is foreseen"
-{ echo '<!-- test: exit 3 -->'; block sh 'true'; } | expect wrong "a failure that does not come"
+{ echo '<!-- test: exit 3 -->'; block sh '(exit 3)'; } | expect right "an expected failure"
+{ echo '<!-- test: exit 3 -->'; block sh 'true'; } | expect wrong "a missing failure"
 { echo '<!-- test: not run: it would halt the machine -->'; block sh 'false'; } | expect right "a line with a reason"
 { echo '<!-- test: not run: -->'; block sh 'false'; } | expect wrong "a line without a reason"
-{ echo '<!-- test: run -->'; block sh 'true'; } | expect wrong "a mark that is none"
-{ echo '<!-- test: until ^C -->'; echo; block sh 'true'; } | expect wrong "a mark with nothing behind it"
-{ echo '<!-- test: best of three -->'; block sh 'test -e once || { touch once; false; }'; } | expect right "a failure that does not come again"
-{ echo '<!-- test: best of three -->'; block sh 'false'; } | expect wrong "a failure that comes again and again"
+{ echo '<!-- test: run -->'; block sh 'true'; } | expect wrong "an unknown mark"
+{ echo '<!-- test: until ^C -->'; echo; block sh 'true'; } | expect wrong "a mark without a block"
+{ echo '<!-- test: two of three -->'; block sh 'test -e once || { touch once; false; }'; } | expect right "one failure in three"
+{ echo '<!-- test: two of three -->'; block sh 'test -e twice || { if test -e once; then touch twice; fi; touch once; false; }'; } \
+  | expect wrong "two failures in three"
+{ echo '<!-- test: two of three -->'; block sh 'false'; } | expect wrong "a permanent failure"
 block bash 'true' | expect wrong "a language that is not known"
 block '' 'true' | expect wrong "no language"
 block text 'one' | expect wrong "an output that nobody compares"
@@ -67,8 +70,18 @@ block sh 'g4-dump sim --link /tmp/g4 &' 'test -e /tmp/g4' | expect right "a devi
 block sh 'test -e /dev/ttyUSB0' | expect right "a device"
 block cpp 'int main() {}' | expect right "a program"
 block cpp 'int main() { return }' | expect wrong "a program that does not compile"
-{ echo '<!-- test: in no_such_wrapper -->'; block cpp 'f();'; } | expect wrong "a wrapper that is none"
-{ echo '<!-- test: in project -->'; block cmake 'find_package(no_such REQUIRED)'; } | expect wrong "a package that is none"
+for pair in '1.5 0' '0 2' '1 0.00'; do
+  { block sh "echo lost: ${pair#* } points"; echo '<!-- test: output, but for numbers -->'; block text "lost: ${pair% *} points"; } \
+    | expect wrong "a zero where there is none: $pair"
+done
+for line in '{"lost":%s,"of":7}' 'lost=%s' '[%s]' 'It has lost %s.'; do
+  # shellcheck disable=SC2059 # the line is the format
+  { block sh "echo '$(printf "$line" 3)'"; echo '<!-- test: output, but for numbers -->'; block text "$(printf "$line" 0)"; } \
+    | expect wrong "a zero where there is none: $line"
+done
+{ block sh 'echo 0 lost of 12'; echo '<!-- test: output, but for numbers -->'; block text '0.0 lost of 15'; } | expect right "zero in both"
+{ echo '<!-- test: in no_such_wrapper -->'; block cpp 'f();'; } | expect wrong "an unknown wrapper"
+{ echo '<!-- test: in project -->'; block cmake 'find_package(no_such REQUIRED)'; } | expect wrong "an unknown package"
 printf '%s\n' '- A list:' "  ${fence}sh" '  true' "  $fence" | expect wrong "an indented fence"
 printf '%s\n' "${fence}sh" 'true' | expect wrong "a block without an end"
 exit "$failed"

@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/allocation_count.hpp"
 #include "support/virtual_line.hpp"
 
 namespace g4lidar {
@@ -19,7 +20,7 @@ using test::virtual_bench;
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// Waits for something that happens in the other thread; false if it does not within 20 s.
+/// Waits for an event in the other thread; false if it does not occur within 20 s.
 template <class Condition>
 bool comes_true(Condition&& condition) {
   const auto end = std::chrono::steady_clock::now() + 20s;
@@ -30,7 +31,7 @@ bool comes_true(Condition&& condition) {
   return true;
 }
 
-TEST(BackgroundReader, FeedsTheRing) {
+TEST(BackgroundReader, WritesToTheRing) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
@@ -48,10 +49,95 @@ TEST(BackgroundReader, FeedsTheRing) {
   reader->stop();
   EXPECT_FALSE(reader->failed());
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
-  reader->stop();  // again: nothing
+  reader->stop();  // the second call does nothing
 }
 
-TEST(BackgroundReader, IsDestroyedAtAnyMoment) {
+TEST(BackgroundReader, ProvidesScansAndCountsMissedOnes) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  auto reader = background_reader::start(std::move(*lidar));
+  ASSERT_TRUE(reader);
+  std::uint64_t taken = 0;
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+  const auto take = [&](const scan& one) {
+    if (taken == 0) first = one.revolution;
+    EXPECT_TRUE(taken == 0 || one.revolution > last);
+    last = one.revolution;
+    EXPECT_TRUE(one.is_whole());
+    EXPECT_TRUE(one.points.front().is_revolution_start());
+    for (const point& p : one.points) EXPECT_EQ(p.revolution, one.revolution);
+    ++taken;
+  };
+  const auto one = reader->next_scan(20s);
+  ASSERT_TRUE(one) << one.error().message();
+  take(*one);
+  const std::uint64_t missed_before = reader->counts().scans_missed;
+  EXPECT_TRUE(comes_true([&] { return reader->counts().scans_missed > missed_before + 3; }));
+  for (int i = 0; i < 20; ++i) {
+    const auto next = reader->next_scan(20s);
+    ASSERT_TRUE(next);
+    take(*next);
+  }
+  EXPECT_TRUE(reader->next_scan(lidar::milliseconds::max()));  // not counted in `taken`
+  reader->stop();
+  const auto rest = reader->next_scan(0s);
+  if (rest) take(*rest);
+  while (const auto more = reader->next_scan(lidar::milliseconds::max())) take(*more);
+  EXPECT_EQ(reader->next_scan(lidar::milliseconds::min()).error(), problem::not_scanning);
+  // Each revolution since the first one taken was taken or missed.
+  EXPECT_GE(reader->counts().scans_missed + taken + 1, last - first + 1);
+  EXPECT_EQ(reader->counts().scans_missed + taken + 1, reader->counts().scans);
+}
+
+TEST(BackgroundReader, ProvidesPiecesWithTheirFlags) {
+  virtual_bench bench;
+  lidar_options options;
+  options.partial_scans = true;
+  auto lidar = open_virtual(bench, options);
+  ASSERT_TRUE(lidar);
+  auto reader = background_reader::start(std::move(*lidar));
+  ASSERT_TRUE(reader);
+  ASSERT_TRUE(comes_true([&] { return reader->counts().scans >= 1; }));
+  reader->stop();
+  EXPECT_GE(reader->counts().partial_scans, 1U);
+  bool has_piece = reader->counts().scans_missed > 0;  // the first ones may have been dropped
+  while (const auto one = reader->next_scan(0s)) has_piece = has_piece || one->is_partial();
+  EXPECT_TRUE(has_piece);
+}
+
+TEST(BackgroundReader, AllocatesNothingWhileItStreams) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  auto reader = background_reader::start(std::move(*lidar));
+  ASSERT_TRUE(reader);
+  ASSERT_TRUE(reader->next_scan(20s));
+  const std::size_t calls = test::allocations_in([&] {
+    for (int i = 0; i < 50; ++i) static_cast<void>(reader->next_scan(20s));
+  });
+  EXPECT_EQ(calls, 0U);
+}
+
+TEST(BackgroundReader, MovedFrom_BehavesAsStopped) {
+  virtual_bench bench;
+  auto lidar = open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  auto reader = background_reader::start(std::move(*lidar));
+  ASSERT_TRUE(reader);
+  const background_reader taken = std::move(*reader);
+  reader->stop();
+  EXPECT_EQ(reader->next_scan(20s).error(), problem::gone);
+  EXPECT_EQ(reader->points().written(), 0U);
+  ASSERT_TRUE(reader->failed());
+  EXPECT_EQ(*reader->failed(), problem::gone);
+  EXPECT_EQ(reader->counts().bytes, 0U);
+  EXPECT_FALSE(reader->next_event());
+  EXPECT_FALSE(taken.failed());
+}
+
+TEST(BackgroundReader, DestroyedAtAnyMoment_Ends) {
   for (int i = 0; i < 20; ++i) {
     virtual_bench bench;
     {
@@ -67,7 +153,7 @@ TEST(BackgroundReader, IsDestroyedAtAnyMoment) {
   }
 }
 
-TEST(BackgroundReader, TellsWhyItEnded) {
+TEST(BackgroundReader, Failed_HasTheError) {
   const sim::fault faults[] = {sim::make_fault(sim::fault_kind::unplug, 4000 * ms)};
   virtual_bench bench({}, faults);
   auto lidar = open_virtual(bench);
@@ -75,13 +161,16 @@ TEST(BackgroundReader, TellsWhyItEnded) {
   auto reader = background_reader::start(std::move(*lidar));
   ASSERT_TRUE(reader);
   ASSERT_TRUE(comes_true([&] { return reader->failed().has_value(); }));
-  EXPECT_EQ(reader->failed()->what(), problem::gone);
+  EXPECT_EQ(reader->failed()->code(), problem::gone);
+  while (reader->next_scan(20s)) {  // earlier scans
+  }
+  EXPECT_EQ(reader->next_scan(20s).error(), problem::gone);
   const auto event = reader->next_event();
   ASSERT_TRUE(event);
   EXPECT_EQ(event->what, lidar_event::kind::lost);
 }
 
-TEST(BackgroundReader, StopsWhileTheDeviceIsAway) {
+TEST(BackgroundReader, StopsDuringAReconnect) {
   const sim::fault faults[] = {sim::make_fault(sim::fault_kind::unplug, 4000 * ms)};
   virtual_bench bench({}, faults);
   lidar_options options;
@@ -95,7 +184,7 @@ TEST(BackgroundReader, StopsWhileTheDeviceIsAway) {
   EXPECT_FALSE(reader->failed());
 }
 
-TEST(BackgroundReader, SaysWhyItCannotStart) {
+TEST(BackgroundReader, StartFails_HasTheError) {
   sim::device_options sick;
   sick.condition = {health_status::error, 7};
   virtual_bench bench(sick);
@@ -103,7 +192,7 @@ TEST(BackgroundReader, SaysWhyItCannotStart) {
   ASSERT_TRUE(lidar);
   const auto reader = background_reader::start(std::move(*lidar));
   ASSERT_FALSE(reader);
-  EXPECT_EQ(reader.error().what(), problem::unhealthy);
+  EXPECT_EQ(reader.error().code(), problem::unhealthy);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The driver on the simulated device, in virtual time.
+// The driver with the simulated device, in virtual time.
 #include "g4lidar/lidar.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Lidar, GivesWholeScans) {
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
-TEST(Lidar, StopsTheMotorWhenItGoes) {
+TEST(Lidar, Destructor_StopsTheMotor) {
   virtual_bench bench;
   {
     auto lidar = open_virtual(bench);
@@ -58,7 +58,7 @@ TEST(Lidar, StopsTheMotorWhenItGoes) {
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
-TEST(Lidar, ReleasedItGoesOnScanning) {
+TEST(Lidar, ReleasedDuringAScan_ContinuesScanning) {
   virtual_bench bench;
   {
     auto lidar = open_virtual(bench);
@@ -67,9 +67,9 @@ TEST(Lidar, ReleasedItGoesOnScanning) {
     ASSERT_TRUE(lidar->next_scan(2000ms));
     lidar->release();
     EXPECT_FALSE(lidar->is_scanning());
-    EXPECT_EQ(lidar->next_scan(0ms).error().what(), problem::gone);
-    EXPECT_EQ(lidar->start().error().what(), problem::gone);
-    lidar->release();  // nothing is left to be released
+    EXPECT_EQ(lidar->next_scan(0ms).error().code(), problem::gone);
+    EXPECT_EQ(lidar->start().error().code(), problem::gone);
+    lidar->release();  // nothing is left to release
   }
   bench.now_ns += 5000 * ms;
   EXPECT_FALSE(bench.device.is_idle_and_silent(bench.now_ns));
@@ -79,16 +79,16 @@ TEST(Lidar, ReleasedItGoesOnScanning) {
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
-TEST(Lidar, ReleasedAtRestItIsIdle) {
+TEST(Lidar, ReleasedWhenIdle_StaysIdle) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   lidar->release();
-  EXPECT_EQ(lidar->ask(requests::health()).error().what(), problem::gone);
+  EXPECT_EQ(lidar->ask(requests::health()).error().code(), problem::gone);
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
-TEST(Lidar, SetsWhatItIsTold) {
+TEST(Lidar, AppliesTheSettingsOfTheOptions) {
   virtual_bench bench;
   lidar_options options;
   options.ranging = ranging_frequency::khz_4;
@@ -104,7 +104,8 @@ TEST(Lidar, SetsWhatItIsTold) {
   EXPECT_EQ(settings.scan_frequency_chz, 1000);
   EXPECT_EQ(settings.direction, motor_direction::counter_clockwise);
   EXPECT_EQ(settings.protection, power_down_protection::on);
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;  // 10 s: it is fed
+  for (int i = 0; i < 100; ++i)
+    ASSERT_TRUE(lidar->next_scan(2000ms)) << i;  // 10 s: it gets keep-alives
 }
 
 TEST(Lidar, RefusesToDisturbAScan) {
@@ -115,16 +116,15 @@ TEST(Lidar, RefusesToDisturbAScan) {
   ASSERT_TRUE(lidar->next_scan(2000ms));
   const auto refused = lidar->ask(requests::device_info());
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().what(), problem::scanning);
+  EXPECT_EQ(refused.error().code(), problem::scanning);
   EXPECT_FALSE(refused.error().is_fatal());
-  const auto health =
-      lidar->ask_for<g4lidar::health>(requests::health(), while_scanning::stop_and_resume);
+  const auto health = lidar->ask(requests::health(), while_scanning::stop_and_resume);
   ASSERT_TRUE(health) << health.error().message();
   EXPECT_EQ(health->status, health_status::ok);
   EXPECT_TRUE(lidar->next_scan(2000ms));
 }
 
-TEST(Lidar, AnUnplugIsFatalWithoutReconnecting) {
+TEST(Lidar, UnplugWithoutReconnecting_IsFatal) {
   const sim::fault faults[] = {sim::make_fault(sim::fault_kind::unplug, 4000 * ms, 2000 * ms)};
   virtual_bench bench({}, faults);
   auto lidar = open_virtual(bench);
@@ -134,12 +134,12 @@ TEST(Lidar, AnUnplugIsFatalWithoutReconnecting) {
   do {
     scan = lidar->next_scan(500ms);
   } while (scan || !scan.error().is_fatal());
-  EXPECT_EQ(scan.error().what(), problem::gone);
+  EXPECT_EQ(scan.error().code(), problem::gone);
   EXPECT_LT(bench.now_ns, 4100 * ms);
   EXPECT_EQ(lidar->next_event()->what, lidar_event::kind::lost);
 }
 
-TEST(Lidar, ComesBackAfterAnUnplug) {
+TEST(Lidar, ReconnectsAfterAnUnplug) {
   const sim::fault faults[] = {sim::make_fault(sim::fault_kind::unplug, 4000 * ms, 2000 * ms)};
   virtual_bench bench({}, faults);
   lidar_options options;
@@ -169,7 +169,7 @@ TEST(Lidar, NeedsToBeStarted) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
-  EXPECT_EQ(lidar->next_scan(100ms).error().what(), problem::not_scanning);
+  EXPECT_EQ(lidar->next_scan(100ms).error().code(), problem::not_scanning);
 }
 
 }  // namespace

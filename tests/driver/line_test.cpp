@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What a driver takes from its line and from its options; and lines without memory.
+// Properties that a driver takes from its transport and not from its options; and transports
+// without memory.
 #include <gtest/gtest.h>
 
 #include <cerrno>
 #include <optional>
 
-#include "device/rival.hpp"
-#include "device/system_connector.hpp"
+#include "discovery/system_connector.hpp"
+#include "driver/port_conflict.hpp"
 #include "support/allocation_count.hpp"
 #include "support/virtual_line.hpp"
 
@@ -17,8 +18,8 @@ using namespace std::chrono_literals;
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// How long ago the last sample of the first packet was measured, when it came over a line that says
-/// it has `baud`.
+/// How long ago the last sample of the first packet was measured, when it arrived over a transport
+/// with `baud`.
 std::int64_t age_of_first_packet_ns(std::uint32_t baud) {
   test::virtual_bench bench;
   bench.baud = baud;
@@ -28,13 +29,13 @@ std::int64_t age_of_first_packet_ns(std::uint32_t baud) {
   return points ? bench.now_ns - points->back().time_ns : -1;
 }
 
-TEST(Line, TheTimeOfAByteIsThatOfTheLineAndNotOfAnOption) {
+TEST(Line, ByteTime_IsThatOfTheTransport) {
   const std::int64_t none = age_of_first_packet_ns(0);
   ASSERT_GE(none, 0);
   EXPECT_GT(age_of_first_packet_ns(23'040), none + 5 * ms);  // 12 bytes at least
 }
 
-TEST(Line, WithoutMemoryThereIsNoLineAndTheProgramGoesOn) {
+TEST(Line, NoMemoryAtReconnect_ProgramContinues) {
   for (const char* device : {"file:/dev/a-name-that-needs-memory", "tcp:a-name-that-needs-memory:1",
                              "/dev/a-name-that-needs-memory"}) {
     const auto connector = system_connector::make(device, 230'400);
@@ -44,12 +45,12 @@ TEST(Line, WithoutMemoryThereIsNoLineAndTheProgramGoesOn) {
       if (const auto line = (*connector)->connect(); !line) refused = line.error();
     });
     ASSERT_TRUE(refused) << device;
-    EXPECT_EQ(refused->what(), problem::system) << device;
+    EXPECT_EQ(refused->code(), problem::system) << device;
     EXPECT_EQ(refused->system_errno(), ENOMEM) << device;
   }
 }
 
-/// A port with a name that needs memory, from which nothing comes.
+/// A port with a name that needs memory, and without bytes.
 class silent_line final : public transport {
  public:
   result<received> read(std::span<std::uint8_t>, std::int64_t) noexcept override { return {}; }
@@ -62,12 +63,12 @@ class silent_line final : public transport {
   }
 };
 
-TEST(Line, WithoutMemoryNobodyElseIsLookedForAndTheErrorIsTold) {
+TEST(Line, NoMemoryForTheHolder_ErrorIsReported) {
   const error why(task::asking, problem::timeout, "what was asked");
   std::optional<error> told;
-  test::without_memory([&] { told = with_rivals(why, silent_line()); });
+  test::without_memory([&] { told = with_port_conflict(why, silent_line()); });
   ASSERT_TRUE(told);
-  EXPECT_EQ(told->what(), problem::timeout);
+  EXPECT_EQ(told->code(), problem::timeout);
   EXPECT_EQ(told->subject(), "what was asked");
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Packets that never came, of which not a byte is left: an overflow that ends where it began. Only
-// the angles tell of them.
+// Packets that were lost without a trace, by an overflow that ends where it began. Only the angles
+// show them.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -34,7 +34,7 @@ class LostPackets : public testing::Test {
   std::ofstream file_;
 };
 
-TEST_F(LostPackets, LeaveNoScanWhole) {
+TEST_F(LostPackets, NoScanWithALostPacketIsWhole) {
   file_.open(path_, std::ios::binary);
   sim::scanner scanner(sim::built_in_world(), {});
   write(sim::scan_start_reply());

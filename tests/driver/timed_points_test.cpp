@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Points that are written together with their times, on whichever instructions there are.
+// Points that are written together with their times, with every available instruction set.
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "bulk_kernels.hpp"
+#include "core/bulk_kernels.hpp"
 #include "support/packet_maker.hpp"
 
 namespace g4lidar {
@@ -16,7 +16,7 @@ constexpr std::array<packet_times, 4> all_times{
      {0, 0.75, 0, 0},
      {(std::int64_t{1} << 62) + 1, 999'999'999.9, 0, 0}}};
 
-/// A packet with `nearest` among its samples: a small one takes another way.
+/// A packet with `nearest` among its samples: near samples use another code path.
 made::packet packet_of(std::size_t samples, std::uint16_t nearest) {
   made::packet packet(0, 100 * 64, 110 * 64, samples);
   for (std::size_t i = 0; i < samples; ++i)
@@ -25,7 +25,7 @@ made::packet packet_of(std::size_t samples, std::uint16_t nearest) {
   return packet;
 }
 
-TEST(TimedPoints, AreThePointsWithTheTimesOfThePacket) {
+TEST(TimedPoints, PointsHaveTheTimesOfThePacket) {
   for (const instruction_set set : {instruction_set::portable, best_instruction_set()}) {
     const bulk::kernels& kernels = bulk::kernels_of(set);
     for (std::size_t samples = 1; samples <= max_samples; ++samples) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Who is woken has still got on: what a call had begun goes on in the calls that follow, also where
-// each of them is woken, and whichever they are.
+// A woken call makes progress: the next calls continue what it had begun, also if each of them is
+// woken, and for every kind of call.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -17,7 +17,8 @@ using test::virtual_bench;
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// Calls `work`, woken each time, every millisecond until it gives true: how many calls that took.
+/// Calls `work`, woken each time, every millisecond until it returns true; returns the number of
+/// calls.
 template <class Work>
 int calls_until(virtual_bench& bench, lidar& device, Work&& work) {
   for (int calls = 1; calls <= 5000; ++calls) {
@@ -29,14 +30,14 @@ int calls_until(virtual_bench& bench, lidar& device, Work&& work) {
   return 5000;
 }
 
-TEST(Waking, EachCallWokenStillReadsOn) {
+TEST(Waking, EveryCallWoken_StillReads) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   calls_until(bench, *device, [&] { return device->start().has_value(); });
   EXPECT_EQ(device->counts().command_retries, 0U);
   for (int i = 0; i < 5; ++i) {
-    // A revolution takes 143 ms, the first one and the motor's start a second more.
+    // A revolution takes 143 ms, the first one and the start of the motor a second more.
     const int calls =
         calls_until(bench, *device, [&] { return device->next_scan(1000ms).has_value(); });
     EXPECT_LT(calls, 1500) << i;
@@ -47,7 +48,7 @@ TEST(Waking, EachCallWokenStillReadsOn) {
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
-TEST(Waking, EachCallWokenStillGetsItsAnswer) {
+TEST(Waking, EveryCallWoken_StillGetsItsAnswer) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
@@ -60,75 +61,76 @@ TEST(Waking, EachCallWokenStillGetsItsAnswer) {
       calls_until(bench, *device,
                   [&] { return device->ask(requests::step(step), how).has_value(); });
     }
-    // The wake behind which the answer came is for the next call; it is not asked twice.
-    EXPECT_EQ(device->ask(requests::health(), how).error().what(), problem::cancelled);
+    // The wake after which the answer arrived is for the next call; the query is not repeated.
+    EXPECT_EQ(device->ask(requests::health(), how).error().code(), problem::cancelled);
     EXPECT_TRUE(device->ask(requests::health(), how));
     EXPECT_EQ(bench.device.settings().scan_frequency_chz, scanning ? 740 : 720);
   }
   EXPECT_EQ(device->counts().command_retries, 0U);
 }
 
-// What another call has come to know meanwhile may be out of date.
-TEST(Waking, AnAskThatWasWokenIsAskedAnewBehindOtherCalls) {
+// The result that another call has received meanwhile may be obsolete.
+TEST(Waking, WokenAsk_IsRepeatedAfterOtherCalls) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   device->wake();
-  EXPECT_EQ(device->ask(requests::get_scan_frequency()).error().what(), problem::cancelled);
+  EXPECT_EQ(device->ask(requests::get_scan_frequency()).error().code(), problem::cancelled);
   ASSERT_TRUE(device->ask(requests::set(scan_frequency{1000})));
-  const auto frequency = device->ask_for<scan_frequency>(requests::get_scan_frequency());
+  const auto frequency = device->ask(requests::get_scan_frequency());
   ASSERT_TRUE(frequency);
   EXPECT_EQ(frequency->chz, 1000);
 }
 
-// Whenever the wake comes, be it with the last answer that the start has waited for.
-TEST(Waking, AStartThatWasWokenGoesOnInNextScan) {
+// For every time of the wake, also together with the last answer that the start waits for.
+TEST(Waking, WokenStart_ContinuesInNextScan) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   calls_until(bench, *device, [&] {
-    EXPECT_EQ(device->start().error().what(), problem::cancelled);
+    EXPECT_EQ(device->start().error().code(), problem::cancelled);
     return device->is_scanning();
   });
   EXPECT_TRUE(device->next_scan(5000ms));
 }
 
-TEST(Waking, AStartThatWasWokenGoesOnInEveryCall) {
+TEST(Waking, WokenStart_ContinuesInEveryCall) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   device->wake();
-  EXPECT_EQ(device->start().error().what(), problem::cancelled);
+  EXPECT_EQ(device->start().error().code(), problem::cancelled);
   EXPECT_FALSE(device->is_scanning());
   EXPECT_TRUE(device->next_scan(5000ms));
   EXPECT_TRUE(device->is_scanning());
   EXPECT_TRUE(device->start());
 }
 
-TEST(Waking, WhatAStartThatWasWokenHasComeToIsTold) {
+TEST(Waking, WokenStart_ReportsItsResult) {
   sim::device_options options;
   options.condition = {health_status::error, 0x0102};
   virtual_bench bench(options);
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   device->wake();
-  EXPECT_EQ(device->start().error().what(), problem::cancelled);
-  EXPECT_EQ(device->next_scan(5000ms).error().what(), problem::unhealthy);
-  EXPECT_EQ(device->next_scan(10ms).error().what(), problem::not_scanning);
+  EXPECT_EQ(device->start().error().code(), problem::cancelled);
+  EXPECT_EQ(device->next_scan(5000ms).error().code(), problem::unhealthy);
+  EXPECT_EQ(device->next_scan(10ms).error().code(), problem::not_scanning);
   EXPECT_FALSE(device->is_scanning());
-  EXPECT_EQ(device->start().error().what(), problem::unhealthy);
+  EXPECT_EQ(device->start().error().code(), problem::unhealthy);
 }
 
-TEST(Waking, AStartThatWasWokenIsMadeUpForBehindAnUnplug) {
+TEST(Waking, WokenStart_IsRepeatedAfterAnUnplug) {
   lidar_options options;
   options.reconnect = true;
   virtual_bench bench;
   auto device = open_virtual(bench, options);
   ASSERT_TRUE(device);
   device->wake();
-  EXPECT_EQ(device->start().error().what(), problem::cancelled);
+  EXPECT_EQ(device->start().error().code(), problem::cancelled);
   bench.device.unplug(bench.now_ns);
-  EXPECT_EQ(device->next_scan(200ms).error().what(), problem::timeout);
+  EXPECT_EQ(device->next_scan(200ms).error().code(), problem::reconnecting);
+  EXPECT_EQ(device->next_scan(200ms).error().code(), problem::timeout);
   bench.device.replug(bench.now_ns);
   const std::int64_t end_ns = bench.now_ns + 10'000 * ms;
   while (device->counts().reconnects == 0 && bench.now_ns < end_ns) {
@@ -138,16 +140,16 @@ TEST(Waking, AStartThatWasWokenIsMadeUpForBehindAnUnplug) {
   EXPECT_TRUE(device->next_scan(5000ms));
 }
 
-TEST(Waking, AStopThatWasWokenIsNoScan) {
+TEST(Waking, WokenStop_IsNotScanning) {
   virtual_bench bench;
   auto device = open_virtual(bench);
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
   ASSERT_TRUE(device->next_scan(5000ms));
   device->wake();
-  EXPECT_EQ(device->stop().error().what(), problem::cancelled);
+  EXPECT_EQ(device->stop().error().code(), problem::cancelled);
   EXPECT_FALSE(device->is_scanning());
-  EXPECT_EQ(device->next_scan(10ms).error().what(), problem::not_scanning);
+  EXPECT_EQ(device->next_scan(10ms).error().code(), problem::not_scanning);
   EXPECT_TRUE(device->stop());
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The little that a self-test needs where there is no test framework: checks, counted and told.
+// The functions that a self-test needs without a test framework: checks, counted and reported.
 #pragma once
 
 #include <array>
@@ -10,22 +10,22 @@
 #include <span>
 #include <string_view>
 
-#include "g4lidar/bytes.hpp"
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/packet.hpp"
 #include "g4lidar/point.hpp"
 
 namespace self_test {
 
-/// How the checks so far went.
+/// The results of the checks so far.
 struct tally {
   std::size_t passed = 0;
   std::size_t failed = 0;
 };
 inline tally result;
 
-// ---- what the board gives: host.cpp or cortex_m.cpp --------------------------------------------
+// ---- the functions of the board: host.cpp or cortex_m.cpp --------------------------------------
 void put(std::string_view text);
-/// What only this board can show.
+/// Tests that only this board can run.
 void test_board();
 
 // ---- the suites --------------------------------------------------------------------------------
@@ -39,17 +39,17 @@ void test_session();
 // ---- checks ------------------------------------------------------------------------------------
 void put_number(std::size_t number);
 
-/// Counts a check and, if it failed, says where it stands. Gives `ok`.
+/// Counts a check and, if it failed, prints its place. Returns `ok`.
 bool check(bool ok, std::source_location at = std::source_location::current());
 
-/// Whether `actual` lies within `tolerance` of `expected`; not if it is no number.
+/// Whether `actual` is within `tolerance` of `expected`; false for not-a-number.
 template <std::floating_point Real>
 [[nodiscard]] constexpr bool near(Real actual, double expected, double tolerance) {
   const double off = static_cast<double>(actual) - expected;
   return off <= tolerance && -off <= tolerance;
 }
 
-/// `value`, of which the compiler knows nothing any more: what follows is worked out on the board.
+/// `value`, unknown to the compiler: the following is computed on the board.
 template <class T>
 [[nodiscard]] T unknown(T value) {
   T volatile hidden = value;
@@ -59,13 +59,13 @@ template <class T>
   return {unknown(data.data()), unknown(data.size())};
 }
 
-/// Room for the points of two packets, for whoever works now: the boards are small.
+/// Memory for the points of two packets, shared by all tests: the boards are small.
 using packet_room = std::array<g4lidar::point, g4lidar::max_samples>;
 inline packet_room room;
 inline packet_room other_room;
 
 // ---- packets to test with ----------------------------------------------------------------------
-/// A packet made by hand, byte by byte and without the library.
+/// A packet made byte by byte, without the library.
 class made_packet {
  public:
   struct angles {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A Cortex-M without a system: start-up, output and exit by semihosting, and the only four functions
-// that the core may ask of its surroundings. There is no heap: what allocates does not link.
+// A Cortex-M without an operating system: start-up, output and exit by semihosting, and the only
+// four functions that the core may use. There is no heap: code that allocates does not link.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 int main();
 
-// ---- the linker script's marks -----------------------------------------------------------------
+// ---- the linker script's flags -----------------------------------------------------------------
 extern "C" {
 extern std::uint32_t data_begin[], data_end[], bss_begin[], bss_end[];
 extern const std::uint32_t data_image[];
@@ -52,10 +52,10 @@ volatile std::uint32_t& device_register(std::uintptr_t address) {
 }
 
 // ---- the timer ---------------------------------------------------------------------------------
-/// An interrupt in so many cycles; none in 0.
+/// An interrupt after so many cycles; none for 0.
 void set_timer(std::uint32_t cycles) {
   device_register(0xE000E010) = 0;         // SysTick: off
-  device_register(0xE000ED04) = 1U << 25;  // ICSR: what it has asked for is forgotten
+  device_register(0xE000ED04) = 1U << 25;  // ICSR: clears a pending interrupt
   if (cycles == 0) return;
   device_register(0xE000E014) = cycles - 1;  // reload
   device_register(0xE000E018) = 0;           // current
@@ -87,8 +87,8 @@ extern "C" void reset() {
   leave(main());
 }
 
-// ---- what the core may ask for -----------------------------------------------------------------
-// This file is compiled so that these loops do not turn into calls of themselves.
+// ---- the functions that the core may use -------------------------------------------------------
+// This file is compiled so that these loops do not become calls of themselves.
 extern "C" void* memcpy(void* to, const void* from, std::size_t count) {
   auto* out = static_cast<std::uint8_t*>(to);
   const auto* in = static_cast<const std::uint8_t*>(from);
@@ -119,7 +119,7 @@ extern "C" int memcmp(const void* a, const void* b, std::size_t count) {
   return 0;
 }
 
-// ---- what the tests themselves ask for, and the core must not ---------------------------------
+// ---- functions for the tests, not for the core -------------------------------------------------
 extern "C" std::size_t strlen(const char* text) {
   std::size_t length = 0;
   while (text[length] != '\0') ++length;
@@ -134,7 +134,7 @@ extern "C" void* memchr(const void* in, int value, std::size_t count) {
   return nullptr;
 }
 
-/// What libstdc++'s string_view calls for a place behind its end.
+/// libstdc++'s string_view calls this for an index behind its end.
 namespace std {
 [[noreturn]] void __throw_out_of_range_fmt(const char* text, ...) {
   self_test::put(text);
@@ -143,7 +143,7 @@ namespace std {
 }
 }  // namespace std
 
-/// What newlib's assert() calls.
+/// newlib's assert() calls this.
 extern "C" [[noreturn]] void __assert_func(const char* file, int line, const char*,
                                            const char* text) {
   self_test::put(file);

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # cmake -DFROM=<directory> -DTO=<file.hpp> -P embed_transcripts.cmake
 #
-# Writes a header that holds every transcript of a directory as text, for where there are no files.
+# Writes a header that contains every transcript of a directory as text, for systems without files.
 
 cmake_minimum_required(VERSION 3.22)
 file(GLOB transcripts "${FROM}/*.txt")
@@ -16,7 +16,7 @@ foreach(transcript IN LISTS transcripts)
   set(literals)
   file(READ "${transcript}" text)
   string(REGEX REPLACE "#[^\n]*" "" text "${text}")
-  if(text MATCHES "[][\"\\;]") # what neither the format nor CMake's lists know
+  if(text MATCHES "[][\"\\;]") # characters that neither the format nor CMake lists support
     message(FATAL_ERROR "${name}.txt: a quote, backslash, semicolon or bracket outside of comments")
   endif()
   string(REPLACE "\n" ";" lines "${text}")

@@ -6,7 +6,7 @@ namespace self_test {
 void put_number(std::size_t) {}
 }  // namespace self_test
 
-int* volatile kept;  // else the compiler sees that it can do without
+int* volatile kept;  // otherwise the compiler removes the allocation
 
 int main() {
   kept = new int(1);

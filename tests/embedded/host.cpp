@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The board that is no board: the self-test as a program.
+// The host instead of a board: the self-test as a program.
 #include <cstdio>
 
 #include "check.hpp"
@@ -8,6 +8,6 @@ namespace self_test {
 
 void put(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
-void test_board() {}  // threads have tests of their own
+void test_board() {}  // other tests cover threads
 
 }  // namespace self_test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ring between an interrupt and a program, as on a real board: the interrupt falls between any two
-// instructions of the other side, also while the counters carry.
+// The ring between an interrupt and a program, as on a real board: the interrupt occurs between any
+// two instructions of the other side, also during a carry of the counters.
 #include "interrupts.hpp"
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <span>
 
 #include "check.hpp"
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 
 namespace self_test {
 namespace {
@@ -44,7 +44,7 @@ struct writer {
   }
 };
 
-/// The reader, with its account.
+/// The reader, with its counts.
 struct listener {
   ring_type::reader reader;
   std::uint64_t place;
@@ -63,7 +63,7 @@ struct listener {
 writer* interrupting_writer = nullptr;
 listener* interrupting_listener = nullptr;
 
-/// Cycles to the next interrupt: 50 to 2,097, in no pattern.
+/// Cycles to the next interrupt: 50 to 2,097, without a pattern.
 std::uint32_t next_delay() {
   static std::uint32_t state = 1;
   state = state * 1664525U + 1013904223U;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The board's one interrupt, for tests of what happens between any two instructions.
+// The interrupt of the board, for tests of events between any two instructions.
 #pragma once
 
 #include <cstdint>
 
 namespace self_test {
 
-/// Calls `handler` from an interrupt after `cycles` cycles of the processor, and again and again after
-/// as many cycles from its end as it gives.
+/// Calls `handler` from an interrupt after `cycles` cycles of the processor, and then repeatedly:
+/// the handler returns the number of cycles until the next interrupt.
 void start_ticks(std::uint32_t cycles, std::uint32_t (*handler)());
 void stop_ticks();
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The ring with its counts in words of 32 bits: every point and every miss accounted for, also where
-// the low word carries into the high one and where the whole count wraps.
-#include "g4lidar/point_ring.hpp"
+// The ring with its counts in words of 32 bits: every point is read or counted as missed, also at a
+// carry of the low word and at a wrap of the whole count.
+#include "g4lidar/core/point_ring.hpp"
 
 #include <array>
 #include <cstddef>
@@ -36,8 +36,8 @@ point numbered(std::uint64_t number) {
   return p;
 }
 
-/// Writes and reads in steps of many lengths from point `first` on, and holds each point against its
-/// number.
+/// Writes and reads in steps of many lengths from point `first` on, and compares each point with
+/// its number.
 template <class Ring>
 void test_accounts(std::uint64_t first) {
   Ring ring(first);
@@ -48,7 +48,7 @@ void test_accounts(std::uint64_t first) {
   bool right = true;
   bool balanced = true;
   for (std::size_t step = 0; step < 400; ++step) {
-    const std::size_t to_write = step * 7 % 41;  // now and then more than the ring holds
+    const std::size_t to_write = step * 7 % 41;  // sometimes more than the ring holds
     for (std::size_t i = 0; i < to_write; ++i) room[i] = numbered(written + i);
     ring.push(std::span<const point>(room).first(to_write));
     written += to_write;

@@ -56,7 +56,7 @@ int main() {
   run("session", test_session);
   run("board", test_board);
 #ifdef G4LIDAR_SELF_TEST_FAULT
-  check(unknown(1) == 2);  // a run with a fault must be seen to fail
+  check(unknown(1) == 2);  // a run with a fault must fail
 #endif
   put_number(result.passed);
   put(" passed, ");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Short dialogues with a device that is played by hand.
-#include "g4lidar/session.hpp"
+// Short dialogues with a device that the test plays.
+#include "g4lidar/core/session.hpp"
 
 #include <array>
 #include <cstddef>
@@ -18,40 +18,41 @@ constexpr std::array<std::uint8_t, 7> header{0xA5, 0x5A, 5, 0, 0, 0x40, 0x81};
 constexpr std::array<std::uint8_t, 27> info{0xA5, 0x5A, 0x14, 0, 0, 0, 4, 5, 2, 3, 3, 2, 0, 2,
                                             1,    1,    0,    1, 0, 0, 0, 0, 7, 0, 0, 7, 3};
 
-/// A line on which 1 ms passes between any two things.
+/// A connection on which 1 ms passes between any two events.
 class dialogue {
  public:
   [[nodiscard]] bool begins(const request& wanted) {
-    return !talk_.begin(wanted, unknown(now_ns_));
+    return !channel_.begin(wanted, unknown(now_ns_));
   }
   [[nodiscard]] bool sends(std::uint8_t code) {
-    const auto sent = talk_.to_send();
+    const auto sent = channel_.to_send();
     return sent && *sent == std::array<std::uint8_t, 2>{0xA5, code};
   }
-  [[nodiscard]] bool sends_nothing() { return !talk_.to_send(); }
+  [[nodiscard]] bool sends_nothing() { return !channel_.to_send(); }
   void hears(bytes frame) {
     now_ns_ += ms;
-    if (const auto reply = response_view::from(unknown(frame))) talk_.take(event(*reply), now_ns_);
+    if (const auto reply = response_view::from(unknown(frame)))
+      channel_.take(event(*reply), now_ns_);
   }
   void hears_byte(std::uint8_t value) {
     const std::array<std::uint8_t, 8> frame{0xA5, 0x5A, 1, 0, 0, 0, 4, value};
     hears(frame);
   }
   void waits() {
-    now_ns_ = talk_.next_look_ns();
-    talk_.look(now_ns_);
+    now_ns_ = channel_.next_look_ns();
+    channel_.look(now_ns_);
   }
   [[nodiscard]] bool ends(verdict how) {
-    last_ = talk_.finished();
+    last_ = channel_.finished();
     return last_ && last_->how == how;
   }
   [[nodiscard]] const answer& value() const { return last_->value; }
-  [[nodiscard]] const session& talk() const { return talk_; }
+  [[nodiscard]] const session& talk() const { return channel_; }
 
  private:
-  session talk_;
+  session channel_;
   std::optional<outcome> last_;
-  std::int64_t now_ns_ = 5'000'000'000 * ms;  // a board that has been up for long
+  std::int64_t now_ns_ = 5'000'000'000 * ms;  // a board with a long uptime
 };
 
 void test_lost_step() {
@@ -64,7 +65,7 @@ void test_lost_step() {
   check(line.sends(0xD1));
   line.hears_byte(1);
   check(line.sends(0xD0));
-  line.waits();  // the answer is lost: the line is cleared and the setting read back
+  line.waits();  // the answer is lost: the link is cleared and the setting queried
   check(line.sends(0x90));
   line.hears_byte(2);
   line.hears(info);

@@ -14,7 +14,7 @@ namespace {
 
 std::array<std::uint8_t, g4lidar::transcript::max_input> storage;
 
-/// The longest input of a transcript; 0 if it holds something that is no hexadecimal.
+/// The longest input of a transcript; 0 if it contains invalid hexadecimal.
 std::size_t longest_input(std::string_view text) {
   std::size_t longest = 0;
   std::size_t size = 0;

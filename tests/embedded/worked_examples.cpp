@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The worked examples of docs/protocol.md, from the bytes to the numbers.
+// The worked examples of docs/protocol.md, from bytes to numbers.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "check.hpp"
-#include "g4lidar/command.hpp"
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/packet.hpp"
-#include "g4lidar/response.hpp"
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/response.hpp"
 
 namespace self_test {
 namespace {
@@ -33,7 +33,7 @@ void test_zero_packet() {
   check(packet->first_angle_64ths() == 0xAE53 / 2);
   check(packet->sample(0) == 0);
 
-  // Each of its bits counts, but for those of the sample's and the checksum's that no header rules.
+  // Each of its bits matters, except those of the sample and the checksum that no header rules out.
   for (std::size_t bit = 0; bit < 8 * zero_packet.size(); ++bit) {
     std::array<std::uint8_t, 12> damaged = zero_packet;
     damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << bit % 8));
@@ -61,7 +61,7 @@ void test_forty_samples() {
   check(decode(*packet, compact_correction{}, 0, other_room).points.size() == 40);
   check(near(exact[0].angle_deg, 217.019064, 1e-5));
   check(near(exact[39].angle_deg, 235.631325, 1e-5));
-  check(near(exact[0].angle_deg, 217.0178, 0.0014));  // as the manual prints them
+  check(near(exact[0].angle_deg, 217.0178, 0.0014));  // as printed in the manual
   check(near(exact[39].angle_deg, 235.6326, 0.0014));
   check(near(compact[0].angle_deg, 217.019064, 1e-4));
   check(near(compact[39].angle_deg, 235.631325, 1e-4));
@@ -74,7 +74,7 @@ void test_corrections() {
     std::uint16_t raw;
     double correction_deg;
   };
-  constexpr std::array<example, 9> examples{{{0, 0.0},
+  constexpr std::array<example, 9> examples{{{0, -7.990596267964586},
                                              {1, 89.34190781437187},
                                              {40, 63.8819410867888},
                                              {621, 0.0025902761421393683},

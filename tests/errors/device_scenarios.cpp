@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Trouble with the device itself: a driver on the simulated one, in virtual time.
+// Problems of the device: a driver with the simulated device, in virtual time.
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -33,7 +35,7 @@ struct bench {
   sim::virtual_clock clock;
 };
 
-/// Of `does(device)`, where opening went well.
+/// The error of `does(device)`, if opening succeeded.
 template <class Does>
 trouble once_open(bench& on, Does does, const lidar_options& options = {}) {
   auto device = on.open(options);
@@ -41,7 +43,7 @@ trouble once_open(bench& on, Does does, const lidar_options& options = {}) {
   return does(*device);
 }
 
-/// The same, with the scan running.
+/// The same, during a scan.
 template <class Does>
 trouble once_scanning(bench& on, Does does, const lidar_options& options = {}) {
   return once_open(
@@ -62,7 +64,7 @@ trouble application(lidar& device, const bench& on) {
   return std::nullopt;
 }
 
-/// The time is four seconds past; by then all is as it should be.
+/// The time is after four seconds; by then everything should be normal.
 constexpr std::int64_t later = 4 * second;
 void wait_until(bench& on, std::int64_t then_ns) { on.clock.advance_to(then_ns); }
 
@@ -87,7 +89,7 @@ trouble running(const faults& wrong) {
 trouble unpowered() {
   sim::device_options options;
   options.boots_at_start = true;
-  options.boot_ns = 60 * second;  // longer than anybody waits
+  options.boot_ns = 60 * second;  // longer than any timeout
   return opening({}, options);
 }
 
@@ -132,9 +134,23 @@ trouble no_scan_yet() {
 }
 
 trouble frequency_too_high() {
-  bench on;
+  sim::device_options slow;
+  slow.highest_frequency_chz = 1000;
+  bench on({}, slow);
   return once_open(
-      on, [](lidar& device) { return error_in(device.ask(requests::set(scan_frequency{1500}))); });
+      on, [](lidar& device) { return error_in(device.ask(requests::set(scan_frequency{1200}))); });
+}
+
+/// The error of `wanted`, which is refused before a byte is sent.
+trouble refused(const request& wanted) {
+  bench on;
+  return once_open(on, [&](lidar& device) {
+    const auto sent = on.twin.log().size();
+    auto why = error_in(device.ask(wanted));
+    EXPECT_EQ(on.twin.log().size(), sent);
+    EXPECT_TRUE(device.start());
+    return why;
+  });
 }
 
 trouble asked_while_scanning() {
@@ -145,6 +161,26 @@ trouble asked_while_scanning() {
 trouble read_before_start() {
   bench on;
   return once_open(on, [](lidar& device) { return error_in(device.next_scan(10ms)); });
+}
+
+/// The first error of a call that is repeated, with reconnecting on, until the unplug.
+template <class Call>
+trouble unplugged_with_reconnecting(Call call) {
+  bench on({make_fault(fault_kind::unplug, later)});
+  lidar_options options;
+  options.reconnect = true;
+  return once_scanning(
+      on,
+      [&](lidar& device) -> trouble {
+        while (true) {
+          const auto done = call(device);
+          if (done) continue;
+          // Immediately, and not at the timeout of the call.
+          if (on.clock.now_ns() > later + second / 10) return std::nullopt;
+          return done.error();
+        }
+      },
+      options);
 }
 
 trouble unplugged_when_idle() {
@@ -209,13 +245,21 @@ std::vector<scenario> device_scenarios() {
       {"WrongAnswers", wrong_answer, task::asking, false, "virtual:g4, direction",
        [] { return asking(fault_kind::wrong, requests::get_direction()); }},
       {"FrequencyTooHigh", not_reached, task::asking, false,
-       "virtual:g4, scan frequency 15 Hz (reached 12 Hz)", frequency_too_high},
+       "virtual:g4, scan frequency 12 Hz (reached 10 Hz)", frequency_too_high},
+      {"FrequencyOutOfRange", bad_setting, task::asking, false, "virtual:g4, scan frequency 15 Hz",
+       [] { return refused(requests::set(scan_frequency{1500})); }},
+      {"NoSuchValue", bad_setting, task::asking, false, "virtual:g4, power-down protection",
+       [] { return refused(requests::set(static_cast<power_down_protection>(77))); }},
       {"AskedWhileScanning", scanning, task::asking, false, "virtual:g4, health",
        asked_while_scanning},
       {"ReadBeforeStart", not_scanning, task::reading, true, "virtual:g4", read_before_start},
       {"NotPlugged", no_port, task::opening, true, "virtual:g4", not_plugged},
       {"UnpluggedWhileScanning", gone, task::reading, true, "virtual:g4",
        [] { return running({make_fault(fault_kind::unplug, later)}); }},
+      {"LostWhileWaitingForAScan", reconnecting, task::reading, false, "virtual:g4, gone",
+       [] { return unplugged_with_reconnecting([](lidar& on) { return on.next_scan(2s); }); }},
+      {"LostWhileWaitingForPoints", reconnecting, task::reading, false, "virtual:g4, gone",
+       [] { return unplugged_with_reconnecting([](lidar& on) { return on.next_points(2s); }); }},
       {"UnpluggedWhenIdle", gone, task::writing, true, "virtual:g4", unplugged_when_idle},
       {"UsedAfterClose", gone, task::reading, true, "closed", used_after_close},
       {"StreamStops", stalled, task::reading, true, "virtual:g4",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// docs/errors.md, the enumeration, the names and the scenarios are the same set.
+// docs/errors.md, the enumeration, the names and the scenarios contain the same set.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -22,7 +22,7 @@ std::string document() {
   return text.str();
 }
 
-/// The sections that are named by one word of an enumeration, and their text.
+/// The sections that are named by one enumerator, and their text.
 std::map<std::string, std::string> sections() {
   std::map<std::string, std::string> found;
   std::string* current = nullptr;
@@ -40,7 +40,7 @@ std::map<std::string, std::string> sections() {
   return found;
 }
 
-/// What a section says at its end: "*Fatal.* Shown by `One`, `Another`."
+/// The end of a section: "*Fatal.* Shown by `One`, `Another`."
 struct ending {
   std::string fatal;
   std::set<std::string> scenarios;
@@ -81,7 +81,7 @@ TEST(ErrorsDocument, NamesTheScenariosOfEachProblem) {
   }
 }
 
-TEST(ErrorsDocument, SaysWhichProblemsAreFatal) {
+TEST(ErrorsDocument, StatesWhichProblemsAreFatal) {
   const auto all = sections();
   for (std::size_t i = 0; i < problem_count; ++i) {
     const auto what = static_cast<problem>(i);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each problem is brought about, and tells what it should.
+// Each problem is produced, and the error has the expected contents.
 #include "g4lidar/error.hpp"
 
 #include <gtest/gtest.h>
@@ -26,13 +26,13 @@ namespace {
 
 class Trouble : public testing::TestWithParam<scenario> {};
 
-TEST_P(Trouble, TellsWhatIsWrongAndWhatToTry) {
+TEST_P(Trouble, HasTheExpectedContents) {
   const scenario& of = GetParam();
   const auto told = of.bring_about();
   ASSERT_TRUE(told) << "nothing went wrong";
   const std::string message = told->message();
   SCOPED_TRACE(message);
-  EXPECT_EQ(name_of(told->what()), name_of(of.what));
+  EXPECT_EQ(name_of(told->code()), name_of(of.what));
   EXPECT_EQ(name_of(told->doing()), name_of(of.doing));
   EXPECT_EQ(told->is_fatal(), of.fatal);
   EXPECT_NE(told->subject().find(of.subject), std::string_view::npos) << told->subject();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What happens by itself is told, with its reason.
+// Each event is reported, with its reason.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,14 +22,15 @@ using sim::make_fault;
 
 constexpr std::int64_t second = 1'000'000'000;
 
-/// What happens while an application reads for twelve seconds with reconnecting on.
+/// The events while an application reads for twelve seconds with reconnecting on.
 struct story {
   std::string name;
   kind what;
   problem reason;
   sim::fault fault;
-  bool found_protected = false;  ///< The device comes with its protection on.
-  std::int64_t asleep_ns = 0;    ///< The application sees to nothing for so long, at 4 s.
+  bool found_protected = false;  ///< The protection of the device is on at the start.
+  std::int64_t silent_ns = 0;    ///< From the scan header to the first packet.
+  std::int64_t asleep_ns = 0;    ///< The application is suspended for this time, at 4 s.
 };
 
 void PrintTo(const story& of, std::ostream* out) { *out << of.name; }
@@ -37,13 +38,14 @@ void PrintTo(const story& of, std::ostream* out) { *out << of.name; }
 sim::device device_of(const story& of) {
   sim::device_options options;
   if (of.found_protected) options.initial.protection = power_down_protection::on;
+  options.silence_ns = of.silent_ns;
   return sim::device(sim::built_in_world(), options, {&of.fault, 1});
 }
 
 std::vector<lidar_event> lived(const story& of) {
   sim::device twin = device_of(of);
   sim::virtual_clock clock;
-  clock.advance_to(second);  // a device that scans has got up to speed by now
+  clock.advance_to(second);  // by then a scanning device has reached its speed
   lidar_options options;
   options.reconnect = true;
   if (of.asleep_ns > 0) options.protection = power_down_protection::on;
@@ -68,7 +70,7 @@ std::vector<lidar_event> lived(const story& of) {
 
 class Event : public testing::TestWithParam<story> {};
 
-TEST_P(Event, IsTold) {
+TEST_P(Event, IsReported) {
   const auto events = lived(GetParam());
   const auto found = std::ranges::find_if(events, [](const lidar_event& event) {
     const bool has_reason = event.what == kind::lost;
@@ -95,16 +97,17 @@ INSTANTIATE_TEST_SUITE_P(
               make_fault(fault_kind::unplug, 4 * second, second)},
         story{"FoundScanning", kind::found_scanning, problem::timeout,
               make_fault(fault_kind::scanning)},
-        story{"LookedTooLate", kind::protection_starved, problem::timeout, none(), false,
+        story{"LookedTooLate", kind::protection_starved, problem::timeout, none(), false, 0,
               4 * second},
         story{"FoundProtected", kind::protection_found_on, problem::timeout, none(), true},
+        story{"ColdMotor", kind::spinning_up, problem::timeout, none(), false, 2'500'000'000},
         story{"StartedAgain", kind::restarted, problem::timeout,
               make_fault(fault_kind::stall, 6 * second, 2 * second)},
         story{"WarnsOfItsHealth", kind::health_warning, problem::timeout,
               sim::fault{fault_kind::health, 0, sim::forever_ns, 0.0, 1}}),
     [](const auto& of) { return of.param.name; });
 
-TEST(Events, TheOldestGoAndThatIsTold) {
+TEST(Events, OldestAreDroppedAndThatIsReported) {
   sim::device twin(sim::built_in_world());
   sim::virtual_clock clock;
   lidar_options options;

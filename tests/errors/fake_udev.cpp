@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Just as much of libudev as listing ports needs. The linker prefers these to the library's.
+// The part of libudev that listing ports needs. The linker prefers these functions to the
+// library's.
 #include "fake_udev.hpp"
 
 #include <libudev.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A computer with chosen serial ports: stands in for libudev, whose functions it has.
+// A computer with chosen serial ports: replaces libudev, whose functions it defines.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace g4lidar::test {
 
-/// A USB bridge as it comes with a G4.
+/// The USB bridge of a G4.
 struct fake_bridge {
   std::string bus_path;  ///< "1-1.4"
-  std::string path;      ///< Where its port is.
+  std::string path;      ///< The path of its port.
 };
 
-/// What is plugged in, as long as this lives. One at a time.
+/// The attached bridges, as long as this object exists. One object at a time.
 class fake_computer {
  public:
   explicit fake_computer(std::vector<fake_bridge> bridges, bool answers = true);

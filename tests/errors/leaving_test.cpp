@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A device that is given up is told to stop, though nothing is heard of it.
+// A device that is given up gets a stop command, although nothing is received from it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -15,9 +15,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(GivenUp, IsToldToStop) {
+TEST(GivenUp, GetsAStopCommand) {
   constexpr std::int64_t second = 1'000'000'000;
-  // The line back is broken; the one to the device is not.
+  // The connection from the device is broken; the one to the device is not.
   const std::array faults{sim::make_fault(sim::fault_kind::stall, 4 * second)};
   sim::device twin(sim::built_in_world(), {}, faults);
   sim::virtual_clock clock;
@@ -29,7 +29,7 @@ TEST(GivenUp, IsToldToStop) {
     got = device->next_scan(500ms);
   }
   ASSERT_FALSE(got);
-  EXPECT_EQ(got.error().what(), problem::stalled);
+  EXPECT_EQ(got.error().code(), problem::stalled);
   static_cast<void>(twin.available(clock.now_ns() + second));
   EXPECT_FALSE(twin.is_scanning());
   EXPECT_FALSE(twin.motor_turns());

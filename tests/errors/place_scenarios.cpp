@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Trouble with telling which port is meant.
+// Problems with the selection of a port.
 #include <string>
 
 #include "fake_udev.hpp"

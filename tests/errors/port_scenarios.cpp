@@ -13,15 +13,15 @@
 #include <chrono>
 #include <string>
 
-#include "device/serial_line.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/serial_port.hpp"
 #include "g4lidar/sim/pty_port.hpp"
-#include "g4lidar/tcp_port.hpp"
-#include "ports/listener.hpp"
-#include "ports/pty.hpp"
-#include "ports/temporary_file.hpp"
+#include "g4lidar/transport/serial_port.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 #include "scenario.hpp"
+#include "transport/listener.hpp"
+#include "transport/opening.hpp"
+#include "transport/pty.hpp"
+#include "transport/temporary_file.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -245,7 +245,8 @@ std::vector<scenario> port_scenarios() {
       {"OpenedTwice", busy, task::opening, true, ", held by error_tests (", opened_twice},
       {"NoTerminal", not_serial, task::opening, true, "/dev/null",
        [] { return opening("/dev/null"); }},
-      {"AFileAsPort", not_serial, task::opening, true, "bytes-", a_file_as_port},
+      {"AFileAsPort", not_serial, task::opening, true,
+       ", a file, which opens as file:", a_file_as_port},
       {"SlowerBridge", bad_baud_rate, task::configuring, true, " at 230400 baud", slower_bridge},
       {"TooManyOpenFiles", system, task::opening, true, "/dev/pts/", too_many_open_files},
       {"PulledOut", gone, task::reading, true, "/dev/pts/", pulled_out},

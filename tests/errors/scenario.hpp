@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What brings each problem about, and what a user is then told.
+// Scenarios that produce each problem, and the resulting errors.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,21 @@
 
 namespace g4lidar::test {
 
-/// One way into trouble.
+/// A scenario.
 struct scenario {
-  std::string_view name;  ///< As docs/errors.md names it.
+  std::string_view name;  ///< The name in docs/errors.md.
   problem what;
   task doing;
-  bool fatal;                                       ///< Whether an application's loop ends by it.
+  bool fatal;                                       ///< Whether it ends the loop of an application.
   std::string_view subject;                         ///< A part of it.
-  std::optional<error> (*bring_about)() = nullptr;  ///< Nothing where all went well.
+  std::optional<error> (*bring_about)() = nullptr;  ///< Nothing if there was no error.
 };
 
-/// A driver on the simulated device, in virtual time.
+/// A driver with the simulated device, in virtual time.
 [[nodiscard]] std::vector<scenario> device_scenarios();
 /// Ports, connections and files of this computer.
 [[nodiscard]] std::vector<scenario> port_scenarios();
-/// Which of the computer's ports is meant.
+/// The selection of one of the computer's ports.
 [[nodiscard]] std::vector<scenario> place_scenarios();
 
 [[nodiscard]] std::vector<scenario> all_scenarios();

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <variant>
 
-#include "g4lidar/decode.hpp"
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 int main() {
   // One sample of 1000 mm at 90 degrees.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A consumer of g4lidar::sim. Exit code 0 if a simulated G4 sends a packet that is valid.
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/packet.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A bare number is no angle: it must say whether it counts degrees or radians.
+// A number is not an angle: the unit, degrees or radians, must be named.
 // expect: could not convert|no viable conversion|conversion from .* to non-scalar type
-#include "g4lidar/angle.hpp"
+#include "g4lidar/core/angle.hpp"
 
 float misuse() {
 #ifdef MISUSE

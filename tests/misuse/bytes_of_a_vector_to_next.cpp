@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A vector is no view that next() could shorten: the conversion would be a temporary.
+// A vector is not a view that next() could shorten: the conversion would be a temporary.
 // expect: cannot bind non-const lvalue reference|no matching member function for call to 'next'
 #include <cstdint>
 #include <vector>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 bool misuse(g4lidar::stream_parser& parser, std::vector<std::uint8_t>& received) {
 #ifdef MISUSE

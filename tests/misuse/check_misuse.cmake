@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
-# cmake -DCOMPILER=<c++> -DINCLUDE=<directory> -DEIGEN=<directory> -DSOURCE=<file>
-#   -P check_misuse.cmake
+# cmake -DCOMPILE=<command> -DEIGEN=<directory> -DHEADERS=<precompiled> -DSOURCE=<file> -P check_misuse.cmake
 
-set(compile "${COMPILER}" -std=c++20 -Wall -Wextra -Werror -fsyntax-only "-I${INCLUDE}"
-            -isystem "${EIGEN}")
+set(compile ${COMPILE} -isystem "${EIGEN}" -fsyntax-only -include "${HEADERS}")
 set(ENV{LC_ALL} C) # the messages in English, with plain quotes
 
 file(STRINGS "${SOURCE}" expectations REGEX "^// expect: ")
@@ -20,7 +18,7 @@ execute_process(COMMAND ${compile} -DMISUSE "${SOURCE}" RESULT_VARIABLE result E
 if(result EQUAL 0)
   message(FATAL_ERROR "With its bad line ${SOURCE} must not compile, but it does")
 endif()
-string(REGEX REPLACE "[][;]" " " lines "${said}") # the characters that mean something in a list
+string(REGEX REPLACE "[][;]" " " lines "${said}") # the characters with a meaning in a list
 string(REPLACE "\n" ";" lines "${lines}")
 foreach(expectation IN LISTS expectations)
   string(REGEX REPLACE "^// expect: " "" expectation "${expectation}")

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// decode() writes up to 80 points: memory that is known to be shorter does not compile.
+// decode() writes up to 80 points: memory of a known smaller size does not compile.
 // expect: (no matching function|no known conversion|could not convert|cannot convert)
 #include <array>
 
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
 
 std::size_t misuse(g4lidar::packet_view packet) {
 #ifdef MISUSE

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Finishing a parser that dies with the expression would give views into it: it does not compile.
+// Finishing a temporary parser would return views into it: this does not compile.
 // expect: deleted function.*stream_parser::finish|call to deleted member function 'finish'
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 bool misuse() {
 #ifdef MISUSE

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Two angles on a circle have no order: neither is the greater one.
+// Two angles on a circle have no order: neither is greater.
 // expect: deleted (function.*operator|operator ')<=>
-#include "g4lidar/angle.hpp"
+#include "g4lidar/core/angle.hpp"
 
 bool misuse(g4lidar::angle a, g4lidar::angle b) {
 #ifdef MISUSE

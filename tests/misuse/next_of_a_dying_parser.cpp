@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The views in an event may lie in the parser's carry: pulling from a parser that dies with the
-// expression does not compile.
+// The views in an event may point into the parser's carry: next() of a temporary parser does not
+// compile.
 // expect: deleted function.*stream_parser::next|call to deleted member function 'next'
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 bool misuse(g4lidar::bytes input) {
 #ifdef MISUSE

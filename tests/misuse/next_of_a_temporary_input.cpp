@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// next() says what is left by shortening its input: a temporary one, of which the caller would never
-// see what is left, does not compile.
+// next() shortens its input: a temporary input, whose rest the caller would never see, does not
+// compile.
 // expect: cannot bind non-const lvalue reference|no matching member function for call to 'next'
 #include <array>
 #include <cstdint>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 std::array<std::uint8_t, 100> received;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A map is a view of points: of points that die with the statement it does not compile.
+// A map is a view of points: a map of temporary points does not compile.
 // expect: deleted function
 #include <vector>
 

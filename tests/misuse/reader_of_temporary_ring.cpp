@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A reader does not outlive its ring: one of a ring that dies with the statement does not compile.
+// A reader must not outlive its ring: a reader of a temporary ring does not compile.
 // expect: deleted (member )?function
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 
 bool misuse() {
 #ifdef MISUSE

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A ring whose capacity is no power of two would lose its place where its counters wrap: it does not
+// A ring whose capacity is not a power of two would fail at a wrap of its counters: it does not
 // compile.
 // expect: the capacity of a point_ring is a power of two
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 
 #ifdef MISUSE
 constexpr std::size_t capacity = 3;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Readers hold on to the place of their ring: a ring is neither copied nor moved.
+// Readers refer to the address of their ring: a ring cannot be copied or moved.
 // expect: deleted (function|constructor)
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 
 std::uint64_t misuse(g4lidar::point_ring<64>& ring) {
 #ifdef MISUSE

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The assembler keeps only a view of its storage: storage that dies with the statement does not
-// compile.
+// The assembler keeps a view of its storage: temporary storage does not compile.
 // expect: (no matching (function|constructor)|could not convert|no (known|viable) conversion)
 #include <vector>
 
-#include "g4lidar/scan.hpp"
+#include "g4lidar/core/scan_assembler.hpp"
 
 std::vector<g4lidar::point> make_storage() { return std::vector<g4lidar::point>(2000); }
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The assembler keeps only a view of its storage: an array that dies with the statement does not
-// compile.
+// The assembler keeps a view of its storage: a temporary array does not compile.
 // expect: (no matching (function|constructor)|could not convert|no (known|viable) conversion)
 #include <array>
 
-#include "g4lidar/scan.hpp"
+#include "g4lidar/core/scan_assembler.hpp"
 
 int misuse() {
 #ifdef MISUSE

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The serial number is seen in the structure that holds it: of one that dies with the expression it
-// does not compile.
+// The serial number is a view of the structure: that of a temporary structure does not compile.
 // expect: deleted function.*serial_number|call to deleted member function 'serial_number'
 #include <string_view>
 
-#include "g4lidar/response.hpp"
+#include "g4lidar/core/response.hpp"
 
 g4lidar::device_information ask();
 

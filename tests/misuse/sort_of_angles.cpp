@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Angles on a circle cannot be sorted: what stands first needs a place to begin at.
+// Angles on a circle cannot be sorted: they have no first one.
 // expect: deleted (function.*operator|operator ')<=>
 #include <algorithm>
 #include <array>
 
-#include "g4lidar/angle.hpp"
+#include "g4lidar/core/angle.hpp"
 
 void misuse(std::array<g4lidar::angle, 10>& angles) {
 #ifdef MISUSE

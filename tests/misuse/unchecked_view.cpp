@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A packet_view of bytes that nobody has checked cannot be made.
+// A packet_view of unchecked bytes cannot be created.
 // expect: is private within this context|calling a private constructor
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/packet.hpp"
 
 bool misuse(g4lidar::bytes data) {
 #ifdef MISUSE

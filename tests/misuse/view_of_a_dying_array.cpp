@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A packet_view of an array that dies with the call, a const one too, does not compile.
+// A packet_view of a temporary array, also a const one, does not compile.
 // expect: deleted function.*packet_view::from|call to deleted function 'from'
 #include <array>
 #include <cstdint>
 
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/packet.hpp"
 
 const std::array<std::uint8_t, 12> read_a_packet();
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A packet_view of bytes that die with the call would dangle: it does not compile.
+// A packet_view of temporary bytes would dangle: it does not compile.
 // expect: deleted function.*packet_view::from|call to deleted function 'from'
 #include <array>
 #include <cstdint>
 #include <vector>
 
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/packet.hpp"
 
 std::vector<std::uint8_t> read_a_packet();
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A response_view of bytes that die with the call would dangle: it does not compile.
+// A response_view of temporary bytes would dangle: it does not compile.
 // expect: deleted function.*response_view::from|call to deleted function 'from'
 #include <cstdint>
 #include <vector>
 
-#include "g4lidar/response.hpp"
+#include "g4lidar/core/response.hpp"
 
 std::vector<std::uint8_t> read_a_reply();
 

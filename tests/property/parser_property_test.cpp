@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The parser against the reference on random streams, whole and damaged, however they are cut.
+// The parser and the reference on random streams, intact and damaged, for every division.
 #include <gtest/gtest.h>
 // GoogleTest first.
 #include <rapidcheck/gtest.h>
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "support/check_cases.hpp"
 #include "support/random_stream.hpp"
 #include "support/reference_parser.hpp"
@@ -41,7 +41,7 @@ random_stream any_stream(double length = 1.0) {
   return stream;
 }
 
-/// Sizes of pieces, to be used one after the other and again from the first; mostly small.
+/// Sizes of pieces, used in turn and repeatedly; mostly small.
 std::vector<std::size_t> any_cuts() {
   auto cuts = *rc::gen::container<std::vector<std::size_t>>(
       rc::gen::oneOf(rc::gen::inRange<std::size_t>(0, 5), rc::gen::inRange<std::size_t>(1, 40),
@@ -50,7 +50,7 @@ std::vector<std::size_t> any_cuts() {
   return cuts;
 }
 
-/// What is wrong with the way in which `parser` reads `data`; empty if nothing is.
+/// The first error of `parser` with `data`; empty if there is none.
 std::string complaint_of(stream_parser& parser, const buffer& data,
                          const std::vector<std::size_t>& cuts, const reference::reading& wanted) {
   test::stream_log log(data);
@@ -64,11 +64,11 @@ std::string complaint_of(stream_parser& parser, const buffer& data,
   return test::difference(log, wanted);
 }
 
-TEST(ParserProperty, AgreesWithTheReferenceHoweverTheInputIsCut) {
+TEST(ParserProperty, AgreesWithTheReferenceForEveryDivision) {
   check_cases(800, [] {
     const buffer data = any_stream().data();
     const reference::reading wanted = reference::read(data);
-    stream_parser parser;  // one for all: after finish() it is as new
+    stream_parser parser;  // one for all: finish() resets it
     RC_ASSERT(complaint_of(parser, data, {data.size() + 1}, wanted) == "");
     RC_ASSERT(complaint_of(parser, data, {1}, wanted) == "");
     for (int i = 0; i < 4; ++i) {
@@ -78,7 +78,7 @@ TEST(ParserProperty, AgreesWithTheReferenceHoweverTheInputIsCut) {
   });
 }
 
-TEST(ParserProperty, EveryCutInTwo) {
+TEST(ParserProperty, EveryDivisionInTwo) {
   check_cases(80, [] {
     const buffer data = any_stream(0.15).data();
     const reference::reading wanted = reference::read(data);
@@ -89,7 +89,7 @@ TEST(ParserProperty, EveryCutInTwo) {
   });
 }
 
-TEST(ParserProperty, DeliversWhatWasNotTouched) {
+TEST(ParserProperty, DeliversUndamagedPackets) {
   std::size_t intact = 0;
   std::size_t overlapped = 0;
   check_cases(1500, [&] {
@@ -103,7 +103,8 @@ TEST(ParserProperty, DeliversWhatWasNotTouched) {
     RC_ASSERT(test::difference(log, wanted) == "");
     for (const test::intact_frame& frame : stream.intact_frames()) {
       ++intact;
-      // The stretch that holds the frame's first byte: the frame itself, or an earlier valid one.
+      // The stretch that contains the frame's first byte: the frame itself, or an earlier valid
+      // one.
       const auto holder = std::find_if(
           log.stretches().begin(), log.stretches().end(),
           [&](const reference::stretch& s) { return s.offset + s.size > frame.offset; });
@@ -127,7 +128,7 @@ TEST(ParserProperty, DeliversWhatWasNotTouched) {
   EXPECT_LT(overlapped, intact / 10);
 }
 
-TEST(ParserProperty, MoreBytesNeverChangeAnAnswerButIncomplete) {
+TEST(ParserProperty, MoreBytes_ChangeOnlyIncompleteResults) {
   check_cases(200, [] {
     const buffer data = any_stream().data();
     for (std::size_t from = 0; from < data.size(); ++from) {
@@ -139,7 +140,7 @@ TEST(ParserProperty, MoreBytesNeverChangeAnAnswerButIncomplete) {
       for (std::size_t have = 1; have <= most; ++have) {
         const front now = what_stands_at_front(all.first(have));
         if (now.kind != front_kind::incomplete) {
-          // More noise behind noise is the one thing that makes an answer longer.
+          // Only further noise behind noise makes a result longer.
           const bool is_noise = now.kind == front_kind::skip && now.reason == skip_reason::noise;
           const bool same_noise = is_noise && last.kind == now.kind && last.reason == now.reason &&
                                   last.size >= now.size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The ring against a model that keeps every point ever written: any order of pushes and reads.
+// The ring and a model that keeps every point ever written: any order of pushes and reads.
 #include <gtest/gtest.h>
 // GoogleTest first.
 #include <rapidcheck/gtest.h>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 #include "support/check_cases.hpp"
 
 namespace g4lidar {
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t capacity = 16;
 
-/// What a reader of a ring must give: everything written and no older than `capacity`, in order.
+/// What a reader of a ring must return: everything written and no older than `capacity`, in order.
 struct model {
   std::vector<point> written;
 
@@ -47,10 +47,10 @@ void behaves_like_the_model(std::uint64_t first,
   const auto real = std::make_unique<ring>(first);
   model ideal;
   std::vector<std::pair<typename ring::reader, std::size_t>>
-      readers;  // with its place in the model
+      readers;  // with its position in the model
   for (const auto& [what, size] : steps) {
     switch (what % 4) {
-      case 0: {  // push many, more than the ring holds at times
+      case 0: {  // many points, sometimes more than the ring holds
         std::vector<point> points(size % 50);
         for (point& p : points)
           p.time_ns = static_cast<std::int64_t>(ideal.written.size() + 1 +
@@ -86,7 +86,7 @@ void behaves_like_the_model(std::uint64_t first,
 
 using steps_of = std::vector<std::pair<std::uint8_t, std::uint8_t>>;
 
-/// Numbers from which a counter soon carries, and any others.
+/// Numbers shortly before a carry of a counter, and any others.
 rc::Gen<std::uint64_t> first_numbers() {
   return rc::gen::oneOf(
       rc::gen::arbitrary<std::uint64_t>(), rc::gen::just(std::uint64_t{0}),

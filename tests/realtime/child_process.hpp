@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A program beside the test: started, sent signals, waited for, and never left behind.
+// A second program for the test: started, signalled, waited for, and always ended.
 #pragma once
 
 #include <fcntl.h>
@@ -50,7 +50,7 @@ class child_process {
     if (pid_ > 0) ::kill(pid_, signal);
   }
 
-  /// Its exit code, 128 and more for a signal that ended it; -1 where it does not end in 30 s.
+  /// Its exit code, 128 and more for a signal that ended it; -1 if it does not end within 30 s.
   [[nodiscard]] int wait() {
     for (int i = 0; i < 3000; ++i) {
       int status = 0;
@@ -64,12 +64,12 @@ class child_process {
     return -1;
   }
 
-  /// All that it has said so far.
+  /// Its output so far.
   [[nodiscard]] std::string said() const {
     std::ifstream file(said_);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
-  /// Whether it says this within 30 s.
+  /// Whether its output contains this within 30 s.
   [[nodiscard]] bool says(const std::string& text) const {
     for (int i = 0; i < 3000; ++i) {
       if (said().find(text) != std::string::npos) return true;

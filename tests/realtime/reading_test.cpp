@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A G4 on a pseudo-terminal is read as a real one is, in real time: nothing is lost by a reader that
-// comes late by little or is disturbed, and what is lost by one that is slow is no secret.
+// A G4 on a pseudo-terminal is read like a real one, in real time: a reader that is slightly late
+// or is interrupted loses nothing, and the losses of a slow reader are reported.
 #include <gtest/gtest.h>
 
 #include <pthread.h>
@@ -37,7 +37,7 @@ result<lidar> started(const twin_on_pty& twin) {
   return started(test::patient_options(twin.path()));
 }
 
-/// The whole ones among the next `count` scans; `between` is called behind each.
+/// The whole scans among the next `count` scans; calls `between` after each.
 template <class Between>
 std::vector<readings> whole_scans(lidar& device, int count, Between&& between) {
   std::vector<readings> all;
@@ -64,9 +64,9 @@ void expect_nothing_lost(const lidar& device) {
   EXPECT_EQ(counts.stream.suspect, 0U);
 }
 
-// 40 scans of 12 Hz; .ci/run has 1,000 of them.
+// 40 scans at 12 Hz; the nightly reads 1,000 of them (scripts/ci/thousand-scans).
 TEST(RealTime, ReadsScansWithoutLoss) {
-  test::until_the_line_holds([] {
+  test::expect_most(3, [] {
     auto options = quick_g4();
     options.truth_capacity = 1'000'000;
     twin_on_pty twin(options);
@@ -82,7 +82,7 @@ TEST(RealTime, ReadsScansWithoutLoss) {
     if (scans.empty()) return true;
     expect_nothing_lost(*device);
     EXPECT_EQ(device->counts().scans, static_cast<std::uint64_t>(count));
-    // One after the other, none left out.
+    // In order, without a gap.
     const auto sent = test::revolutions_of(twin.take_truth());
     const auto first = std::find(sent.begin(), sent.end(), scans.front());
     EXPECT_GE(sent.end() - first, static_cast<std::ptrdiff_t>(scans.size()));
@@ -93,9 +93,9 @@ TEST(RealTime, ReadsScansWithoutLoss) {
   });
 }
 
-// A pty holds some 16 KiB for a reader that is away, 0.8 s of a G4's line.
-TEST(RealTime, AReaderThatIsAwayForAMomentLosesNothing) {
-  test::until_the_line_holds([] {
+// A pty holds about 16 KiB for a reader that pauses, 0.8 s of the bytes of a G4.
+TEST(RealTime, ReaderThatPauses_LosesNothing) {
+  test::expect_most(3, [] {
     twin_on_pty twin;
     auto device = started(twin);
     EXPECT_TRUE(device) << device.error().message();
@@ -112,7 +112,7 @@ TEST(RealTime, AReaderThatIsAwayForAMomentLosesNothing) {
   });
 }
 
-/// How many samples were sent until the end of this revolution.
+/// The number of samples sent until the end of this revolution.
 std::size_t samples_until(const readings& last, const std::vector<sim::sent_sample>& sent) {
   readings current;
   for (std::size_t i = 0; i < sent.size(); ++i) {
@@ -123,8 +123,8 @@ std::size_t samples_until(const readings& last, const std::vector<sim::sent_samp
   return sent.size();
 }
 
-/// How many samples that were sent are neither points nor counted as lost, as a part of a turn, after a
-/// reader was away for longer than the line holds out.
+/// The number of sent samples that are neither points nor counted as lost, in turns, after a reader
+/// paused for longer than the buffer lasts.
 double turns_not_told() {
   twin_on_pty twin;
   auto device = started(twin);
@@ -151,20 +151,18 @@ double turns_not_told() {
   return missing / static_cast<double>(scans.back().size());
 }
 
-// The angles tell how much of a turn is missing. How many whole turns, only the time can tell, and of
-// bytes that were read late nobody knows when they came: where another program takes the processor
-// while a backlog is being read, too many may be counted.
-TEST(RealTime, ASlowReaderIsToldWhatItLost) {
-  double turns = 0.0;
-  for (int attempt = 0; attempt < 10; ++attempt) {
-    turns = turns_not_told();
-    if (turns > -0.1 && std::abs(turns - std::round(turns)) < 0.1) return;
-    if (testing::Test::HasFailure()) return;
-  }
-  ADD_FAILURE() << turns << " turns are missing";
+// The angles show how much of a turn is missing. The number of whole turns follows from the times
+// only, and the arrival times of bytes that were read late are not known: if another program takes
+// the processor while a backlog is read, too many may be counted. So two of three runs must be
+// right.
+TEST(RealTime, SlowReader_GetsTheNumberOfLostScans) {
+  test::expect_most(3, [] {
+    const double turns = turns_not_told();
+    return turns > -0.1 && std::abs(turns - std::round(turns)) < 0.1;
+  });
 }
 
-TEST(RealTime, AReaderSlowerThanTheLineGetsNoWrongScan) {
+TEST(RealTime, ReaderSlowerThanTheConnection_GetsNoWrongScan) {
   twin_on_pty twin;
   auto device = started(twin);
   ASSERT_TRUE(device) << device.error().message();
@@ -179,7 +177,7 @@ TEST(RealTime, AReaderSlowerThanTheLineGetsNoWrongScan) {
 
 extern "C" void heed_nothing(int) {}
 
-TEST(RealTime, AStormOfSignalsLosesNothing) {
+TEST(RealTime, ManySignals_LoseNothing) {
   struct sigaction action{};
   action.sa_handler = heed_nothing;  // and no SA_RESTART
   struct sigaction old{};
@@ -194,7 +192,7 @@ TEST(RealTime, AStormOfSignalsLosesNothing) {
       std::this_thread::sleep_for(200us);
     }
   });
-  test::until_the_line_holds([&] {
+  test::expect_most(3, [&] {
     twin_on_pty twin;
     const int before = sent_signals;
     auto device = started(twin);
@@ -220,7 +218,8 @@ TEST(RealTime, AStormOfSignalsLosesNothing) {
   ::sigaction(SIGUSR1, &old, nullptr);
 }
 
-/// What is not the twin's: 0 where every scan is one that it has sent, in order.
+/// The number of scans that differ from those of the simulator: 0 if every scan was sent by it, in
+/// order.
 std::size_t read_foreign(twin_on_pty& twin, char last_digit) {
   auto device = started(twin);
   EXPECT_TRUE(device) << device.error().message();
@@ -234,8 +233,8 @@ std::size_t read_foreign(twin_on_pty& twin, char last_digit) {
   return scans.size() - test::found_in_order(scans, test::revolutions_of(twin.take_truth()));
 }
 
-TEST(RealTime, TwoLidarsNeverMix) {
-  test::until_the_line_holds([] {
+TEST(RealTime, TwoLidars_AreNeverMixed) {
+  test::expect_most(3, [] {
     auto other = quick_g4(2);
     other.info.serial_digits.back() = '4';
     twin_on_pty one_twin;
@@ -249,17 +248,17 @@ TEST(RealTime, TwoLidarsNeverMix) {
   });
 }
 
-TEST(RealTime, APortIsNotOpenedTwice) {
+TEST(RealTime, Port_IsNotOpenedTwice) {
   twin_on_pty twin;
   auto device = started(twin);
   ASSERT_TRUE(device) << device.error().message();
   const auto second = lidar::open(twin.path());
   ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().what(), problem::busy) << second.error().message();
+  EXPECT_EQ(second.error().code(), problem::busy) << second.error().message();
   EXPECT_TRUE(device->next_scan(30s));
 }
 
-/// How long after the zero packet that ends it had gone down the line each scan was handed over.
+/// For each scan, the time from the transmission of the zero packet that ends it to its delivery.
 std::vector<std::chrono::nanoseconds> delays_of(int count) {
   twin_on_pty twin;
   std::int64_t offset_ns = 0;
@@ -293,25 +292,23 @@ std::vector<std::chrono::nanoseconds> delays_of(int count) {
   return delays;
 }
 
-// The first revolution, and half of all of them.
-TEST(RealTime, HandsScansOverAtOnce) {
-  static constexpr int scans = 5;
-  const auto worst = test::best_of(20, 50ms, [] {
-    auto delays = delays_of(scans);
-    EXPECT_EQ(delays.size(), std::size_t{scans});
-    if (delays.size() != std::size_t{scans}) return std::chrono::nanoseconds(0);
-    for (const auto delay : delays) EXPECT_GE(delay.count(), 0);
-    const auto first = delays.front();
-    std::sort(delays.begin(), delays.end());
-    return std::max(first, delays[scans / 2]);
-  });
-  EXPECT_LT(worst, 50ms);
+// The 90th percentile of 40 scans, the first ten of four starts.
+TEST(RealTime, DeliversScansImmediately) {
+  std::vector<std::chrono::nanoseconds> all;
+  for (int start = 0; start < 4; ++start) {
+    const auto delays = delays_of(10);
+    ASSERT_EQ(delays.size(), 10U);
+    all.insert(all.end(), delays.begin(), delays.end());
+  }
+  EXPECT_GE(*std::min_element(all.begin(), all.end()), 0ns);
+  std::size_t next = 0;
+  EXPECT_LT(test::percentile(90, all.size(), [&] { return all[next++]; }), 50ms);
 }
 
-// A G4 as it comes: its motor needs 0.6 s, a revolution that is cut up to 0.14 s, the first whole one
-// as long. The vendor's SDK needs 2.5 s.
-TEST(RealTime, TheFirstScanComesSoon) {
-  const auto best = test::best_of(6, 2500ms, [] {
+// A G4 with default options: its motor needs 0.6 s, a partial revolution up to 0.14 s, and the
+// first whole one as long. The vendor's SDK needs 2.5 s. The median of 3 runs.
+TEST(RealTime, FirstScan_ArrivesSoon) {
+  const auto time = test::percentile(50, 3, [] {
     twin_on_pty twin{sim::device_options{}};
     const auto begin = clock::now();
     auto device = started(twin);
@@ -319,8 +316,8 @@ TEST(RealTime, TheFirstScanComesSoon) {
     EXPECT_TRUE(device && device->next_scan(30s));
     return clock::now() - begin;
   });
-  EXPECT_LT(best, 2500ms);
-  RecordProperty("milliseconds", static_cast<int>(best / 1ms));
+  EXPECT_LT(time, 2500ms);
+  RecordProperty("milliseconds", static_cast<int>(time / 1ms));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The plug is pulled in each state of the driver: that is known at once, and the device comes back.
+// An unplug in each state of the driver: it is reported immediately, and the driver reconnects.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <optional>
@@ -19,7 +20,7 @@ using test::quick_g4;
 using test::twin_on_pty;
 using clock = std::chrono::steady_clock;
 
-/// Calls `work` until it fails fatally; nothing where it does not within half a minute.
+/// Calls `work` until it fails fatally; nothing if it does not within half a minute.
 std::optional<error> fate_of(const std::function<result<void>()>& work) {
   const auto end = clock::now() + 30s;
   while (clock::now() < end) {
@@ -35,10 +36,10 @@ result<void> without_value(const result<T>& given) {
   return {};
 }
 
-/// What a program is doing when the plug is pulled.
+/// The activity of a program during an unplug.
 struct activity {
   const char* name;
-  bool scans;  ///< It has been started before.
+  bool scans;  ///< It is started before.
   std::function<result<void>(lidar&)> work;
 };
 
@@ -63,7 +64,7 @@ std::vector<activity> activities() {
 
 class Unplug : public testing::TestWithParam<activity> {};
 
-/// How long it took to know, after the plug was pulled so long after the work began.
+/// The time from the unplug to the error, if the unplug comes `before` after the begin of the work.
 clock::duration time_to_know(const activity& doing, std::chrono::milliseconds before) {
   twin_on_pty twin;
   auto device = lidar::open(test::patient_options(twin.path()));
@@ -82,25 +83,25 @@ clock::duration time_to_know(const activity& doing, std::chrono::milliseconds be
   hand.join();
   EXPECT_TRUE(fate) << "after " << before.count() << " ms";
   if (fate) {
-    EXPECT_EQ(fate->what(), problem::gone) << fate->message();
+    EXPECT_EQ(fate->code(), problem::gone) << fate->message();
   }
-  EXPECT_EQ(device->process().error().what(), problem::gone);  // and it stays so
-  EXPECT_EQ(device->start().error().what(), problem::gone);
+  EXPECT_EQ(device->process().error().code(), problem::gone);  // the error persists
+  EXPECT_EQ(device->start().error().code(), problem::gone);
   test::expect_identity(device->counts());
   return known - pulled;
 }
 
-// Within 100 ms, where the machine has time for us. The waits differ, so that it comes at different
-// moments of the work.
-TEST_P(Unplug, IsKnownAtOnce) {
-  for (const auto before : {1ms, 12ms, 30ms, 55ms, 90ms, 170ms}) {
-    const auto measure = [&] { return time_to_know(GetParam(), before); };
-    EXPECT_LT(test::best_of(8, 100ms, measure), 100ms) << before.count();
-  }
+// Within 100 ms: the 75th percentile of 12 runs. The waits differ, so that the unplug comes at different moments
+// of the work.
+TEST_P(Unplug, IsReportedWithin100ms) {
+  constexpr std::array waits{1ms, 12ms, 30ms, 55ms, 90ms, 170ms};
+  std::size_t run = 0;
+  const auto measure = [&] { return time_to_know(GetParam(), waits.at(run++ % waits.size())); };
+  EXPECT_LT(test::percentile(75, 2 * waits.size(), measure), 100ms);
 }
 
-// Nobody has to do anything: it is set and started as before.
-TEST_P(Unplug, IsMadeUpForWhenTheDeviceComesBack) {
+// The program does nothing: the driver sets and starts the lidar as before.
+TEST_P(Unplug, Reconnect_RestoresTheState) {
   twin_on_pty twin;
   lidar_options options;
   options.device = twin.path();
@@ -145,30 +146,34 @@ INSTANTIATE_TEST_SUITE_P(While, Unplug, testing::ValuesIn(activities()), [](cons
   return name;
 });
 
-// While it is being opened, at any moment of that.
-TEST(Unplug, WhileItIsOpenedIsKnownAtOnce) {
-  for (const auto before : {0ms, 1ms, 2ms, 5ms, 10ms, 20ms, 40ms, 55ms}) {
-    const auto time = test::best_of(8, 100ms, [&] {
-      twin_on_pty twin;
-      clock::time_point pulled;
-      std::thread hand([&] {
-        std::this_thread::sleep_for(before);
-        pulled = twin.unplug();
-      });
-      const auto device = lidar::open(test::patient_options(twin.path()));
-      const auto known = clock::now();
-      hand.join();
-      if (device) return clock::duration(0);  // it was quicker
-      const auto what = device.error().what();
-      EXPECT_TRUE(what == problem::gone || what == problem::no_port) << device.error().message();
-      return known - pulled;
+// During opening, at any moment, and directly after it: the 75th percentile of 16 runs.
+TEST(Unplug, DuringOpening_IsReportedWithin100ms) {
+  constexpr std::array waits{0ms, 1ms, 2ms, 5ms, 10ms, 20ms, 40ms, 55ms};
+  std::size_t run = 0;
+  const auto measure = [&] {
+    twin_on_pty twin;
+    clock::time_point pulled;
+    std::thread hand([&, before = waits.at(run++ % waits.size())] {
+      std::this_thread::sleep_for(before);
+      pulled = twin.unplug();
     });
-    EXPECT_LT(time, 100ms) << before.count();
-  }
+    auto device = lidar::open(test::patient_options(twin.path()));
+    std::optional<error> fate;
+    if (device) {  // it was quicker: the next call returns the error
+      fate = fate_of([&] { return device->process(); });
+    } else {
+      fate = device.error();
+    }
+    const auto known = clock::now();
+    hand.join();
+    EXPECT_TRUE(fate && (*fate == problem::gone || *fate == problem::no_port));
+    return known - pulled;
+  };
+  EXPECT_LT(test::percentile(75, 2 * waits.size(), measure), 100ms);
 }
 
-// While it is coming back: lost again, identified, being prepared, spinning up, scanning.
-TEST(Unplug, AgainAndAgainWhileItComesBack) {
+// During a reconnect: lost again while identifying, preparing, spinning up, scanning.
+TEST(Unplug, RepeatedDuringReconnects) {
   twin_on_pty twin;
   lidar_options options;
   options.device = twin.path();
@@ -194,7 +199,7 @@ TEST(Unplug, AgainAndAgainWhileItComesBack) {
   while (device->counts().reconnects == before && clock::now() < end) read_for(20ms);
   EXPECT_GT(device->counts().reconnects, before);
   EXPECT_TRUE(device->next_scan(30s));
-  // Each loss and each return is told once, in turn.
+  // Each loss and each reconnect is reported once, in turn.
   bool is_lost = false;
   while (const auto event = device->next_event()) {
     if (event->what == lidar_event::kind::lost) {
@@ -209,8 +214,8 @@ TEST(Unplug, AgainAndAgainWhileItComesBack) {
   test::expect_identity(device->counts());
 }
 
-// Another lidar at the old place is not ours.
-TEST(Unplug, AnotherDeviceIsNotTakenForOurs) {
+// Another lidar at the old path is not used.
+TEST(Unplug, OtherDevice_IsNotUsed) {
   test::scratch_directory directory;
   const std::string path = directory.file("g4");
   const auto plugged = [&](char last_digit) {
@@ -234,7 +239,7 @@ TEST(Unplug, AnotherDeviceIsNotTakenForOurs) {
   };
   twin.reset();
   twin = std::move(*plugged('4'));
-  read_for(300ms);  // what had been read before may still come
+  read_for(300ms);  // earlier bytes may still be delivered
   EXPECT_EQ(read_for(1s), 0U);
   EXPECT_EQ(device->counts().reconnects, 0U);
   twin.reset();

@@ -13,7 +13,7 @@
 namespace g4lidar::mcap {
 namespace {
 
-/// As it is defined: bit by bit.
+/// The definition: bit by bit.
 std::uint32_t defined_crc32_of(bytes data) {
   std::uint32_t sum = 0xFFFFFFFFU;
   for (const std::uint8_t byte : data) {
@@ -33,14 +33,14 @@ std::vector<std::uint8_t> noise(std::size_t size) {
   return data;
 }
 
-TEST(Crc32, OfTheWordsThatEverybodyUses) {
+TEST(Crc32, OfTheStandardCheckValues) {
   constexpr std::array<std::uint8_t, 9> digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
   static_assert(crc32_of(digits) == 0xCBF43926U);
   static_assert(crc32_of({}) == 0);
   EXPECT_EQ(crc32_of(digits), 0xCBF43926U);
 }
 
-TEST(Crc32, OfEachLengthFromEachPlaceIsTheDefinition) {
+TEST(Crc32, EachLengthAtEachOffset_AgreesWithTheDefinition) {
   constexpr std::size_t most = 67;
   const std::vector<std::uint8_t> data = noise(most + 32);
   for (std::size_t from = 0; from <= 16; ++from) {
@@ -51,7 +51,7 @@ TEST(Crc32, OfEachLengthFromEachPlaceIsTheDefinition) {
   }
 }
 
-TEST(Crc32, OfPiecesIsThatOfTheWhole) {
+TEST(Crc32, Pieces_AgreeWithTheWhole) {
   const std::vector<std::uint8_t> data = noise(1'000);
   const std::uint32_t whole = defined_crc32_of(data);
   for (std::size_t piece = 1; piece <= 70; ++piece) {
@@ -65,7 +65,7 @@ TEST(Crc32, OfPiecesIsThatOfTheWhole) {
   }
 }
 
-TEST(Crc32, OfRunsOfOneByteIsTheDefinition) {
+TEST(Crc32, RunsOfOneByte_AgreeWithTheDefinition) {
   for (const std::uint8_t byte : std::initializer_list<std::uint8_t>{0x00, 0x01, 0x80, 0xFF}) {
     const std::vector<std::uint8_t> data(1'025, byte);
     EXPECT_EQ(crc32_of(data), defined_crc32_of(data)) << int{byte};

@@ -13,19 +13,19 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/recording.hpp"
-#include "g4lidar/recording_reader.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/recording/writer.hpp"
 #include "recording/file_reader.hpp"
 
 namespace g4lidar::test {
 
 inline constexpr std::int64_t ms = 1'000'000;
 inline constexpr std::int64_t second = 1'000 * ms;
-/// When what is made here begins, by its own clock.
+/// The first time in these recordings, by their own clock.
 inline constexpr std::int64_t begin_ns = 5 * second;
 inline constexpr std::int64_t wall_ahead_ns = 1'700'000'000 * second;
 
-/// A reading of its own length and content for each number.
+/// A read with its own length and content for each number.
 inline std::vector<std::uint8_t> reading(std::uint32_t number) {
   std::vector<std::uint8_t> data(40 + number * 7 % 61);
   std::uint32_t state = number * 2'654'435'761U + 1;
@@ -37,7 +37,7 @@ inline std::vector<std::uint8_t> reading(std::uint32_t number) {
 }
 inline std::int64_t time_of(std::uint32_t number) { return begin_ns + number * 10 * ms; }
 
-/// Readings from `first` on, 10 ms apart; a command goes out with every hundredth.
+/// Reads from `first` on, 10 ms apart; a command is sent with every hundredth.
 inline void record_readings(recording_writer& into, std::uint32_t first, std::uint32_t count) {
   for (std::uint32_t i = first; i < first + count; ++i) {
     if (i % 100 == 0) into.to_device(encode(command::health), time_of(i));
@@ -62,8 +62,8 @@ class memory_source final : public mcap::byte_source {
  public:
   explicit memory_source(bytes data) : data_(data.begin(), data.end()) {}
   [[nodiscard]] std::uint64_t size() const noexcept override { return data_.size(); }
-  [[nodiscard]] result<std::size_t> read(std::uint64_t at,
-                                         std::span<std::uint8_t> out) noexcept override {
+  [[nodiscard]] result<std::size_t> read_some(std::uint64_t at,
+                                              std::span<std::uint8_t> out) noexcept override {
     const std::size_t from = std::min(data_.size(), static_cast<std::size_t>(at));
     const std::size_t count = std::min(out.size(), data_.size() - from);
     std::copy_n(data_.begin() + static_cast<std::ptrdiff_t>(from), count, out.begin());
@@ -77,7 +77,7 @@ class memory_source final : public mcap::byte_source {
   std::uint64_t read_ = 0;
 };
 
-/// What a reader gives: the numbers of the readings that came, by their times, each of them checked.
+/// The contents of a recording: the numbers of the reads, by their times; each of them is checked.
 struct contents {
   std::vector<std::uint32_t> readings;
   std::size_t commands = 0;
@@ -99,7 +99,7 @@ contents contents_of(Reader& reader) {
     EXPECT_EQ((*item)->wall_ns - (*item)->time_ns, wall_ahead_ns);
     if ((*item)->what == recorded_item::kind::to_device) ++found.commands;
     if ((*item)->what == recorded_item::kind::note) {
-      found.gaps += (*item)->note.what == line_note::kind::gap ? 1U : 0U;
+      found.gaps += (*item)->note.what == recorded_event::kind::gap ? 1U : 0U;
     }
     if ((*item)->what != recorded_item::kind::from_device) continue;
     const auto number = static_cast<std::uint32_t>(((*item)->time_ns - begin_ns) / (10 * ms));
@@ -120,7 +120,7 @@ inline contents contents_of_file(const std::string& path, const reading_options&
   return contents_of(*reader);
 }
 
-/// Of a file in memory, which may be no recording.
+/// For a file in memory, which may be invalid.
 inline contents contents_of_bytes(bytes file) {
   auto reader = recording_access::open(std::make_shared<memory_source>(file), "memory", {});
   return reader ? contents_of(*reader) : contents{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Messages of a recording, each by itself: what is written is read, and what cannot be is refused.
+// Single messages of a recording: valid ones are read as written, invalid ones are refused.
 #include "recording/messages.hpp"
 
 #include <gtest/gtest.h>
@@ -7,14 +7,14 @@
 namespace g4lidar::test {
 namespace {
 
-bytes message_of(const line_note& note, mcap::record_text& memory) {
+bytes message_of(const recorded_event& note, mcap::record_text& memory) {
   mcap::put_note(memory, note, 0);
   return memory.all();
 }
 
-TEST(Messages, ANoteIsReadAsItWasWritten) {
+TEST(Messages, Event_IsReadAsWritten) {
   mcap::record_text memory;
-  const auto read = mcap::note_from(message_of({.what = line_note::kind::begun,
+  const auto read = mcap::note_from(message_of({.what = recorded_event::kind::begun,
                                                 .delivers = true,
                                                 .baud = 230400,
                                                 .samples_per_second = 8000,
@@ -23,26 +23,27 @@ TEST(Messages, ANoteIsReadAsItWasWritten) {
                                                 .time_ns = 123'456'789},
                                                memory));
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->what, line_note::kind::begun);
+  EXPECT_EQ(read->what, recorded_event::kind::begun);
   EXPECT_EQ(read->samples_per_second, 8000U);
   EXPECT_EQ(read->unparsed, 7U);
   EXPECT_EQ(read->events, 3U);
   EXPECT_EQ(read->time_ns, 123'456'789);
 }
 
-TEST(Messages, ARateThatNoClockCouldFollowIsRefused) {
+TEST(Messages, ExtremeSampleRate_IsRefused) {
   for (const std::uint32_t rate : {0U, 1'000'001U, UINT32_MAX}) {
     mcap::record_text memory;
-    const line_note note{.what = line_note::kind::begun, .samples_per_second = rate};
+    const recorded_event note{.what = recorded_event::kind::begun, .samples_per_second = rate};
     EXPECT_FALSE(mcap::note_from(message_of(note, memory))) << rate;
   }
-  mcap::record_text memory;  // who has not begun has no rate
-  EXPECT_TRUE(mcap::note_from(message_of({.what = line_note::kind::held}, memory)));
+  mcap::record_text memory;  // a stream that has not begun has no rate
+  EXPECT_TRUE(mcap::note_from(message_of({.what = recorded_event::kind::held}, memory)));
 }
 
-TEST(Messages, ANoteThatEndsEarlyIsRefused) {
+TEST(Messages, TruncatedEvent_IsRefused) {
   mcap::record_text memory;
-  const bytes whole = message_of({.what = line_note::kind::opened, .line = "/dev/ttyUSB0"}, memory);
+  const bytes whole =
+      message_of({.what = recorded_event::kind::opened, .line = "/dev/ttyUSB0"}, memory);
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_FALSE(mcap::note_from(whole.first(size))) << size;
   }

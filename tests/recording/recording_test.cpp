@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// What is written is read again, whole, cut off and damaged.
-#include "g4lidar/recording.hpp"
+// Written recordings are read again, intact, truncated and damaged.
+#include "g4lidar/recording/writer.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cerrno>
 #include <csignal>
 #include <limits>
 #include <numeric>
 #include <random>
 
 #include "made_recording.hpp"
-#include "recorded_life.hpp"
+#include "recorded_run.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -31,7 +32,7 @@ class Packed : public testing::TestWithParam<packing> {
   }
 };
 
-TEST_P(Packed, GivesBackWhatWasRecorded) {
+TEST_P(Packed, ReturnsTheRecordedItems) {
   const temporary_path path;
   auto writer = made_writer(path.text(), {.packed = GetParam()});
   record_readings(writer, 0, 1000);
@@ -51,7 +52,7 @@ TEST_P(Packed, GivesBackWhatWasRecorded) {
   EXPECT_FALSE(found.damage.any());
 }
 
-TEST_P(Packed, CutOffAnywhere_GivesTheChunksThatAreWhole) {
+TEST_P(Packed, CutOffAnywhere_ReturnsTheIntactChunks) {
   const temporary_path path;
   auto writer = made_writer(path.text(), {.packed = GetParam()});
   record_readings(writer, 0, 200);
@@ -68,7 +69,7 @@ TEST_P(Packed, CutOffAnywhere_GivesTheChunksThatAreWhole) {
     EXPECT_TRUE(found.damage.is_cut_off);
     EXPECT_EQ(found.readings, numbers(0, static_cast<std::uint32_t>(found.readings.size())));
     EXPECT_EQ(found.readings.size() % 50, 0U);  // of half a second each
-    EXPECT_GE(found.readings.size(), most);     // the more there is, the more comes
+    EXPECT_GE(found.readings.size(), most);     // a longer file has at least as many
     most = found.readings.size();
   }
   EXPECT_EQ(most, 200U);
@@ -104,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(With, Packed, testing::Values(packing::none, packing::z
                            return of.param == packing::none ? "None" : "Zstd";
                          });
 
-TEST(Recording, BytesAreLostInTheMiddle_TheRestIsFoundAgain) {
+TEST(Recording, BytesLostInTheMiddle_TheRestIsFound) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   record_readings(writer, 0, 1000);
@@ -123,7 +124,7 @@ TEST(Recording, BytesAreLostInTheMiddle_TheRestIsFoundAgain) {
   }
 }
 
-TEST(Recording, BeginsAndEndsWhereItIsAskedTo) {
+TEST(Recording, BeginsAndEndsAtTheRequestedTimes) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   record_readings(writer, 0, 6000);
@@ -145,13 +146,56 @@ TEST(Recording, BeginsAndEndsWhereItIsAskedTo) {
   EXPECT_TRUE(contents_of_file(path.text(), {.from_ns = 3600 * second}).readings.empty());
 }
 
-TEST(Recording, BeginsInTheMiddleWithTheLineAsItStandsThere) {
+/// A file on a disk that fails after its first bytes.
+class failing_source final : public mcap::byte_source {
+ public:
+  failing_source(bytes data, std::uint64_t good) : data_(data.begin(), data.end()), good_(good) {}
+  [[nodiscard]] std::uint64_t size() const noexcept override { return data_.size(); }
+
+ private:
+  [[nodiscard]] result<std::size_t> read_some(std::uint64_t at,
+                                              std::span<std::uint8_t> out) noexcept override {
+    // The summary at its end can be read.
+    const bool is_good = at < good_ || at + 64 * 1024 > size();
+    if (!is_good) return failure(task::reading, problem::system, "a bad disk", EIO);
+    const std::size_t from = std::min(data_.size(), static_cast<std::size_t>(at));
+    const std::size_t count = std::min(out.size(), data_.size() - from);
+    std::copy_n(data_.begin() + static_cast<std::ptrdiff_t>(from), count, out.begin());
+    return count;
+  }
+
+  std::vector<std::uint8_t> data_;
+  std::uint64_t good_;
+};
+
+TEST(Recording, UnreadableFile_IsAnErrorAndNoDamage) {
   const temporary_path path;
   auto writer = made_writer(path.text());
-  line_note note{.what = line_note::kind::opened, .baud = 230'400, .time_ns = time_of(0)};
+  record_readings(writer, 0, 20'000);
+  ASSERT_TRUE(writer.close());
+  const auto whole = bytes_of(path.text());
+  ASSERT_GT(whole.size(), std::size_t{1} << 20U);
+  auto reader = recording_access::open(
+      std::make_shared<failing_source>(bytes(whole), std::uint64_t{512} << 10U), "it", {});
+  ASSERT_TRUE(reader) << reader.error().message();
+  std::size_t items = 0;
+  auto next = reader->next();
+  for (; next && *next; next = reader->next()) ++items;
+  ASSERT_FALSE(next);
+  EXPECT_EQ(next.error(), problem::system);
+  EXPECT_EQ(next.error().system_errno(), EIO);
+  EXPECT_GT(items, 1000U);
+  EXPECT_FALSE(reader->damage().any());
+  EXPECT_FALSE(reader->next()) << "it stays so";
+}
+
+TEST(Recording, BeginInTheMiddle_ReturnsTheStateFirst) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  recorded_event note{.what = recorded_event::kind::opened, .baud = 230'400, .time_ns = time_of(0)};
   note.line = "/dev/ttyUSB7";
   writer.note(note);
-  note = {.what = line_note::kind::begun, .samples_per_second = 8000, .time_ns = time_of(1)};
+  note = {.what = recorded_event::kind::begun, .samples_per_second = 8000, .time_ns = time_of(1)};
   writer.note(note);
   record_readings(writer, 2, 1000);
   ASSERT_TRUE(writer.close());
@@ -160,14 +204,14 @@ TEST(Recording, BeginsInTheMiddleWithTheLineAsItStandsThere) {
   const auto first = reader->next();
   ASSERT_TRUE(first && *first);
   ASSERT_EQ((*first)->what, recorded_item::kind::note);
-  EXPECT_EQ((*first)->note.what, line_note::kind::state);
+  EXPECT_EQ((*first)->note.what, recorded_event::kind::state);
   EXPECT_EQ((*first)->note.samples_per_second, 8000U);
   EXPECT_EQ((*first)->note.baud, 230'400U);
   EXPECT_EQ((*first)->note.line, "/dev/ttyUSB7");
   EXPECT_TRUE((*first)->note.delivers);
 }
 
-TEST(Recording, KnowsItsDevice) {
+TEST(Recording, ContainsItsDevice) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   recorded_device known;
@@ -195,7 +239,7 @@ TEST(Recording, KnowsItsDevice) {
   }
 }
 
-TEST(Recording, GoesOnInAnotherFileWhenOneIsFull) {
+TEST(Recording, FullFile_ContinuesInAnother) {
   const temporary_path path;
   auto writer = made_writer(path.text(), {.rotate_bytes = std::uint64_t{1} << 20U});
   constexpr std::uint32_t count = 20'000;
@@ -220,7 +264,7 @@ TEST(Recording, GoesOnInAnotherFileWhenOneIsFull) {
   EXPECT_EQ(writer.counts().file_bytes, size);
 }
 
-TEST(Recording, GoesOnInAnotherFileWhenItsTimeHasCome) {
+TEST(Recording, RotationTime_ContinuesInAnotherFile) {
   const temporary_path path;
   auto writer = made_writer(path.text(), {.rotate_time = 2s});
   writer.device({});
@@ -244,7 +288,7 @@ TEST(Recording, GoesOnInAnotherFileWhenItsTimeHasCome) {
   }
 }
 
-/// For as long as this lives, no file grows beyond so many bytes.
+/// While this object exists, no file grows beyond this number of bytes.
 class full_disk {
  public:
   explicit full_disk(rlim_t size) {
@@ -265,7 +309,7 @@ class full_disk {
   void (*before_)(int) = nullptr;
 };
 
-TEST(Recording, ADiskIsFullForAWhile_IsToldOnceAndCostsThatOnly) {
+TEST(Recording, FullDisk_IsReportedOnceAndLosesOnlyThatTime) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   record_readings(writer, 0, 400);
@@ -274,7 +318,7 @@ TEST(Recording, ADiskIsFullForAWhile_IsToldOnceAndCostsThatOnly) {
     record_readings(writer, 400, 400);
     const auto told = writer.take_error();
     ASSERT_TRUE(told);
-    EXPECT_EQ(told->what(), problem::system);
+    EXPECT_EQ(told->code(), problem::system);
     EXPECT_EQ(told->system_errno(), EFBIG);
     EXPECT_FALSE(writer.take_error());
   }
@@ -292,11 +336,11 @@ TEST(Recording, ADiskIsFullForAWhile_IsToldOnceAndCostsThatOnly) {
   EXPECT_GE(found.readings.size(), 550U);
 }
 
-TEST(Recording, AKilledProgramLosesWhatIsNotYetAChunk) {
+TEST(Recording, KilledProgram_LosesOnlyTheOpenChunk) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   record_readings(writer, 0, 224);
-  // Nothing is closed: as after kill -9.
+  // Nothing is closed: like after kill -9.
   const contents found = contents_of_bytes(bytes_of(path.text()));
   EXPECT_EQ(found.readings, numbers(0, 200));
   EXPECT_TRUE(found.damage.is_cut_off);
@@ -305,7 +349,7 @@ TEST(Recording, AKilledProgramLosesWhatIsNotYetAChunk) {
   EXPECT_EQ(contents_of_bytes(bytes_of(path.text())).readings, numbers(0, 224));
 }
 
-TEST(Recording, DoesNotReplaceAFileUnlessItMay) {
+TEST(Recording, ExistingFile_IsReplacedOnRequestOnly) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
@@ -316,11 +360,11 @@ TEST(Recording, DoesNotReplaceAFileUnlessItMay) {
   EXPECT_TRUE(recording_writer::create(path.text(), {.overwrite = true}));
 }
 
-TEST(Recording, RefusesWhatItCannotDo) {
+TEST(Recording, InvalidOptions_AreRefused) {
   const temporary_path path;
   const auto refused = [&](const recording_options& how) {
     const auto made = recording_writer::create(path.text(), how);
-    return !made && made.error().what() == problem::bad_option;
+    return !made && made.error() == problem::bad_option;
   };
   EXPECT_TRUE(refused({.rotate_bytes = 1}));
   EXPECT_TRUE(refused({.rotate_time = -1s}));
@@ -338,7 +382,7 @@ TEST(Recording, RefusesWhatItCannotDo) {
   EXPECT_EQ(refused({.packed = packing::zstd}), !has_zstd());
 }
 
-TEST(Recording, ItsScansAreOnTheTopicThatIsAskedFor) {
+TEST(Recording, Scans_AreOnTheRequestedTopic) {
   for (const std::string& topic :
        {std::string("/scan"), std::string("/front_2/_hidden/a9"), "/" + std::string(254, 'x')}) {
     const temporary_path path;
@@ -349,7 +393,7 @@ TEST(Recording, ItsScansAreOnTheTopicThatIsAskedFor) {
     }
     const auto file = bytes_of(path.text());
     const std::string text(file.begin(), file.end());
-    std::string wanted{static_cast<char>(topic.size()), 0, 0, 0};  // as MCAP has texts
+    std::string wanted{static_cast<char>(topic.size()), 0, 0, 0};  // the format of MCAP texts
     wanted += topic;
     std::size_t found = 0;
     for (std::size_t at = 0; (at = text.find(wanted, at)) != std::string::npos; ++at) ++found;
@@ -358,11 +402,11 @@ TEST(Recording, ItsScansAreOnTheTopicThatIsAskedFor) {
   }
 }
 
-TEST(Recording, NoRecordingIsRefused) {
+TEST(Recording, OtherFiles_AreRefused) {
   const auto what_is_wrong = [](std::string_view text) {
     const bytes data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
     const auto reader = recording_access::open(std::make_shared<memory_source>(data), "it", {});
-    return reader ? std::optional<problem>() : std::optional(reader.error().what());
+    return reader ? std::optional<problem>() : std::optional(reader.error().code());
   };
   using namespace std::string_view_literals;
   EXPECT_EQ(what_is_wrong(""), problem::bad_file);
@@ -375,11 +419,11 @@ TEST(Recording, NoRecordingIsRefused) {
   EXPECT_EQ(missing.error().system_errno(), ENOENT);
   const auto directory = recording_reader::open("/dev");
   ASSERT_FALSE(directory);
-  EXPECT_EQ(directory.error().what(), problem::bad_option);
+  EXPECT_EQ(directory.error().code(), problem::bad_option);
   EXPECT_FALSE(is_recording("/dev/no-recording"));
 }
 
-TEST(Recording, AnEmptyOneIsNoMistake) {
+TEST(Recording, EmptyRecording_IsValid) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
@@ -388,7 +432,7 @@ TEST(Recording, AnEmptyOneIsNoMistake) {
   EXPECT_TRUE(contents_of_file(path.text()).readings.empty());
 }
 
-TEST(Recording, ReadingsOfAnySizeAreKept) {
+TEST(Recording, ReadsOfAnySize_AreRecorded) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   std::vector<std::uint8_t> large(3'000'000);

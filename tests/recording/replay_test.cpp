@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // A recording is a device: what comes out of it is what came out of the device.
-#include "g4lidar/replay.hpp"
+#include "g4lidar/recording/replay.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 #include <sstream>
 
-#include "recorded_life.hpp"
+#include "recorded_run.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -18,13 +19,13 @@ constexpr std::int64_t second = 1'000'000'000;
 /// Does what a program may do, in an order that the seed says.
 class program {
  public:
-  program(lidar& device, std::uint64_t seed) : device_(device), dice_(seed), all_(device) {}
+  program(lidar& device, std::uint64_t seed) : device_(device), dice_(seed) {}
 
-  void step(outcome_of_life& life) {
+  void step(run_result& run) {
     const unsigned what = static_cast<unsigned>(dice_() % 100);
     if (what < 60) {
       const auto scan = device_.next_scan(300ms);
-      if (scan) life.scans.emplace_back(scan->points.begin(), scan->points.end());
+      if (scan) run.scans.emplace_back(scan->points.begin(), scan->points.end());
     } else if (what < 80) {
       static_cast<void>(device_.next_points(20ms));
     } else if (what < 90) {
@@ -41,23 +42,21 @@ class program {
     } else {
       static_cast<void>(device_.start());
     }
-    all_.points(life);
   }
 
  private:
   lidar& device_;
   std::mt19937_64 dice_;
-  collector all_;
 };
 
-struct life_case {
+struct run_case {
   std::string_view name;
   std::vector<std::string_view> faults;
   std::chrono::milliseconds batch{0};
   bool only_scans = false;
 };
 
-outcome_of_life live(const life_case& of, std::uint64_t seed, recording_writer& into) {
+run_result live(const run_case& of, std::uint64_t seed, recording_writer& into) {
   sim::device_options how;
   how.scanner.seed = seed;
   const auto faults = faults_of(of.faults);
@@ -67,29 +66,37 @@ outcome_of_life live(const life_case& of, std::uint64_t seed, recording_writer& 
   options.batch = of.batch;
   if (seed % 3 == 1) options.protection = power_down_protection::on;
   into.set_wall_clock(1'700'000'000 * second);
-  outcome_of_life life;
+  run_result run;
   auto line = recorded(std::make_unique<virtual_connector>(bench), into);
   auto device = lidar::open(std::move(*line), options);
   if (!device) {
     ADD_FAILURE() << device.error().message();
-    return life;
+    return run;
   }
   into.device({.information = device->information()});
+  collector all(*device);
   {
-    program user(*device, seed);  // who does not read its ring misses nothing of what is compared
+    program user(*device, seed);
     static_cast<void>(device->start());
     while (bench.now_ns < 15 * second) {
       if (of.only_scans) {
         const auto scan = device->next_scan(500ms);
-        if (scan) life.scans.emplace_back(scan->points.begin(), scan->points.end());
+        if (scan) run.scans.emplace_back(scan->points.begin(), scan->points.end());
+        std::array<sim::sent_sample, 256> some;
+        while (const std::size_t count = bench.device.take_truth(some)) {
+          run.sent.insert(run.sent.end(), some.begin(),
+                          some.begin() + static_cast<std::ptrdiff_t>(count));
+        }
       } else {
-        user.step(life);
+        user.step(run);
       }
+      all.points(run);
     }
   }
   static_cast<void>(device->close());
-  life.counts = device->counts();
-  return life;
+  all.points(run);
+  run.counts = device->counts();
+  return run;
 }
 
 /// Everything that a file gives, but for how the line stands now and then, as a text.
@@ -106,8 +113,9 @@ std::vector<std::string> items_of(const std::string& path) {
       EXPECT_TRUE(item);
       break;
     }
-    const line_note& note = (*item)->note;
-    if ((*item)->what == recorded_item::kind::note && note.what == line_note::kind::state) continue;
+    const recorded_event& note = (*item)->note;
+    if ((*item)->what == recorded_item::kind::note && note.what == recorded_event::kind::state)
+      continue;
     std::ostringstream text;
     text << static_cast<int>((*item)->what) << ' ' << (*item)->time_ns << ' ' << (*item)->wall_ns
          << ' ' << name_of(note.what) << ' ' << name_of(note.reason) << ' ' << note.delivers << ' '
@@ -130,7 +138,7 @@ void expect_same_recording(const std::string& one, const std::string& other) {
   }
 }
 
-class Replay : public testing::TestWithParam<life_case> {};
+class Replay : public testing::TestWithParam<run_case> {};
 
 TEST_P(Replay, GivesTheSamePoints) {
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
@@ -138,9 +146,10 @@ TEST_P(Replay, GivesTheSamePoints) {
     const temporary_path path;
     auto writer = recording_writer::create(path.text());
     ASSERT_TRUE(writer) << writer.error().message();
-    const outcome_of_life before = live(GetParam(), seed, *writer);
+    const run_result before = live(GetParam(), seed, *writer);
     ASSERT_TRUE(writer->close());
     EXPECT_GT(before.points.size(), 10'000U);
+    EXPECT_EQ(before.counts.stream.points, before.points.size()) << "what is counted is delivered";
 
     auto line = replay::open(path.text());
     ASSERT_TRUE(line) << line.error().message();
@@ -148,7 +157,7 @@ TEST_P(Replay, GivesTheSamePoints) {
     auto again = recording_writer::create(copy.text());
     ASSERT_TRUE(again) << again.error().message();
     line = recorded(std::move(*line), *again);
-    const outcome_of_life after = replayed(std::move(*line), seed % 2 == 0);
+    const run_result after = replayed(std::move(*line), seed % 2 == 0);
     expect_same_points(before.points, after.points);
     EXPECT_TRUE(again->close());
     EXPECT_EQ(again->digest().payload, writer->digest().payload);
@@ -164,31 +173,69 @@ TEST_P(Replay, GivesTheSamePoints) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, Replay,
-    testing::Values(life_case{"Healthy", {}}, life_case{"Flip", {"flip*0.002"}},
-                    life_case{"Drop", {"drop*0.002"}}, life_case{"Insert", {"insert*0.002"}},
-                    life_case{"Unplug", {"unplug@3s+1s", "unplug@8s+500ms"}},
-                    life_case{"Scanning", {"scanning@0"}}, life_case{"Jolt", {"jolt*0.02"}},
-                    life_case{"Batch", {"batch=16ms"}}, life_case{"OwnBatch", {}, 20ms},
-                    life_case{"Truncate", {"truncate*0.02"}},
-                    life_case{"Stall", {"stall@4s+2s", "stall@9s+300ms"}},
-                    life_case{"Reboot", {"reboot@5s+1s"}},
-                    life_case{"Everything",
-                              {"flip*0.001", "drop*0.0005", "batch=16ms", "unplug@4s+700ms",
-                               "jolt*0.01", "late=50ms*0.3", "stall@8s+1500ms", "wrong*0.1"}}),
+    testing::Values(run_case{"Healthy", {}}, run_case{"Flip", {"flip*0.002"}},
+                    run_case{"Drop", {"drop*0.002"}}, run_case{"Insert", {"insert*0.002"}},
+                    run_case{"Unplug", {"unplug@3s+1s", "unplug@8s+500ms"}},
+                    run_case{"Scanning", {"scanning@0"}}, run_case{"Jolt", {"jolt*0.02"}},
+                    run_case{"Batch", {"batch=16ms"}}, run_case{"OwnBatch", {}, 20ms},
+                    run_case{"Truncate", {"truncate*0.02"}},
+                    run_case{"Stall", {"stall@4s+2s", "stall@9s+300ms"}},
+                    run_case{"Reboot", {"reboot@5s+1s"}},
+                    run_case{"Everything",
+                             {"flip*0.001", "drop*0.0005", "batch=16ms", "unplug@4s+700ms",
+                              "jolt*0.01", "late=50ms*0.3", "stall@8s+1500ms", "wrong*0.1"}}),
     [](const auto& of) { return std::string(of.param.name); });
 
-TEST(ReplayScans, AreTheSame) {
+/// The ranges of each scan.
+using ranges = std::vector<std::vector<float>>;
+
+ranges ranges_of(const std::vector<std::vector<point>>& scans) {
+  ranges all;
+  for (const auto& scan : scans) {
+    auto& into = all.emplace_back();
+    for (const point& each : scan) into.push_back(each.range_mm);
+  }
+  return all;
+}
+
+/// The ranges of each revolution that the device has sent from its zero packet to the next one.
+ranges revolutions_of(const std::vector<sim::sent_sample>& sent) {
+  ranges all;
+  for (const sim::sent_sample& each : sent) {
+    if (each.zero) all.emplace_back();
+    if (!all.empty()) all.back().push_back(static_cast<float>(each.truth.raw) * 0.25F);
+  }
+  if (!all.empty()) all.pop_back();  // its end was not sent
+  return all;
+}
+
+TEST(ReplayScans, AreTheRevolutionsThatTheDeviceSent) {
   const temporary_path path;
   auto writer = recording_writer::create(path.text());
   ASSERT_TRUE(writer) << writer.error().message();
-  const life_case quiet{"Scans", {"flip*0.001"}, 0ms, true};
-  const outcome_of_life before = live(quiet, 2, *writer);
+  const run_result before = live({"Scans", {}, 0ms, true}, 2, *writer);
   ASSERT_TRUE(writer->close());
   auto line = replay::open(path.text());
   ASSERT_TRUE(line) << line.error().message();
-  const outcome_of_life after = replayed(std::move(*line));
+  const ranges sent = revolutions_of(before.sent);
+  ASSERT_GE(sent.size(), 80U);
+  EXPECT_EQ(ranges_of(before.scans), sent);
+  EXPECT_EQ(ranges_of(replayed(std::move(*line)).scans), sent);
+}
+
+TEST(ReplayScans, OfADamagedStreamAreThoseThatWereCounted) {
+  const temporary_path path;
+  auto writer = recording_writer::create(path.text());
+  ASSERT_TRUE(writer) << writer.error().message();
+  const run_result before = live({"Scans", {"flip*0.001"}, 0ms, true}, 2, *writer);
+  ASSERT_TRUE(writer->close());
+  auto line = replay::open(path.text());
+  ASSERT_TRUE(line) << line.error().message();
+  const run_result after = replayed(std::move(*line));
   ASSERT_GE(before.scans.size(), 80U);
-  ASSERT_GE(after.scans.size(), before.scans.size());
+  // The program did not take a scan that ended while it closed.
+  EXPECT_EQ(after.scans.size(), before.scans.size() + before.counts.scans_missed);
+  EXPECT_EQ(after.scans.size(), before.counts.scans);
   for (std::size_t i = 0; i < before.scans.size(); ++i) {
     expect_same_points(before.scans[i], after.scans[i]);
   }

@@ -38,7 +38,7 @@ byte_vector frequency_answer(unsigned chz) {
 }
 
 const byte_vector healthy{0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06, 0x00, 0x00, 0x00};
-// The protocol page's example of a G4: firmware 3.2, hardware 3, serial 2021101000070073.
+// The example of the protocol page: firmware 3.2, hardware 3, serial 2021101000070073.
 const byte_vector information{0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04, 0x05, 0x02,
                               0x03, 0x03, 0x02, 0x00, 0x02, 0x01, 0x01, 0x00, 0x01,
                               0x00, 0x00, 0x00, 0x00, 0x07, 0x00, 0x00, 0x07, 0x03};
@@ -54,7 +54,15 @@ TEST(SimCommands, DeviceInformationAndHealth) {
   EXPECT_EQ(host_side(ill).ask(0x91), warning);
 }
 
-TEST(SimCommands, LowPowerMovesTheMotorInIdle) {
+// Bytes that do not fit into its buffer are lost: the next program gets an answer at once.
+TEST(SimCommands, Flood_DelaysTheAnswersByTheBufferOnly) {
+  host_side host;
+  host.twin.write(byte_vector(1'000'000, 'x'), host.now_ns);
+  EXPECT_THAT(host.listen(100 * ms), IsEmpty());
+  EXPECT_EQ(host.ask(0x90), information);
+}
+
+TEST(SimCommands, LowPower_ControlsTheIdleMotor) {
   host_side host;
   EXPECT_EQ(host.ask(0x05), byte_answer(1));
   EXPECT_FALSE(host.twin.motor_turns());
@@ -75,7 +83,7 @@ TEST(SimCommands, Direction) {
   EXPECT_EQ(host.ask(0x08), byte_answer(0));
 }
 
-TEST(SimCommands, TheScanFrequencySteps) {
+TEST(SimCommands, ScanFrequency_Steps) {
   host_side host;
   EXPECT_EQ(host.ask(0x0D), frequency_answer(700));
   EXPECT_EQ(host.ask(0x09), frequency_answer(710));
@@ -85,7 +93,7 @@ TEST(SimCommands, TheScanFrequencySteps) {
   EXPECT_EQ(host.ask(0x0D), frequency_answer(700));
 }
 
-TEST(SimCommands, TheScanFrequencyHasLimits) {
+TEST(SimCommands, ScanFrequency_HasLimits) {
   for (const sim::at_limit limit : {sim::at_limit::clamp, sim::at_limit::refuse}) {
     sim::device_options options;
     options.scanner.scan_frequency_chz = 1150;
@@ -107,7 +115,7 @@ TEST(SimCommands, ConstantFrequency) {
   EXPECT_EQ(host.twin.settings().constancy, constant_frequency::on);
 }
 
-TEST(SimCommands, TheRangingFrequencyGoesRound) {
+TEST(SimCommands, RangingFrequency_Cycles) {
   host_side host;
   EXPECT_EQ(host.ask(0xD1), byte_answer(2));
   EXPECT_EQ(host.ask(0xD0), byte_answer(0));
@@ -116,7 +124,7 @@ TEST(SimCommands, TheRangingFrequencyGoesRound) {
   EXPECT_EQ(host.ask(0xD0), byte_answer(2));
 }
 
-TEST(SimCommands, TheProtectionTogglesAndAnswersTheOtherWayRound) {
+TEST(SimCommands, Protection_TogglesAndAnswers) {
   host_side host;
   EXPECT_EQ(host.ask(0xD9), byte_answer(0));
   EXPECT_EQ(host.twin.settings().protection, power_down_protection::on);
@@ -129,7 +137,7 @@ TEST(SimCommands, StopsAreNotAnswered) {
   EXPECT_THAT(host.ask(0x00), IsEmpty());
 }
 
-TEST(SimCommands, OldFirmwareLeavesThingsUnanswered) {
+TEST(SimCommands, OldFirmware_DoesNotAnswerEverything) {
   sim::device_options old;
   old.answers_direction = old.answers_health_91 = old.answers_health_92 = false;
   old.obeys_restart_80 = false;
@@ -142,18 +150,18 @@ TEST(SimCommands, OldFirmwareLeavesThingsUnanswered) {
   EXPECT_FALSE(host.ask(0x40, second).empty());
 }
 
-TEST(SimCommands, WhatIsNoCommandIsIgnored) {
+TEST(SimCommands, UnknownCommands_AreIgnored) {
   host_side host;
   for (int code = 0; code < 256; ++code) {
     if (traits_of(static_cast<command>(code)) || code == 0xA5) continue;
     ASSERT_THAT(host.ask(static_cast<std::uint8_t>(code), 5 * ms), IsEmpty()) << code;
   }
-  // Bytes without their start are none, and a start twice is one.
+  // Bytes without a start byte are no commands, and two start bytes count as one.
   host.twin.write(byte_vector{0x90, 0x12, 0xA5, 0xA5, 0x90}, host.now_ns);
   EXPECT_EQ(host.listen(50 * ms), information);
 }
 
-TEST(SimCommands, AnswersComeOneAfterTheOther) {
+TEST(SimCommands, Answers_AreSentInSequence) {
   host_side host;
   host.twin.write(byte_vector{0xA5, 0x90, 0xA5, 0x91}, host.now_ns);
   byte_vector both = information;
@@ -181,8 +189,9 @@ TEST(SimCommands, AreLoggedWithTheirTimes) {
   EXPECT_THAT(host.twin.log(), IsEmpty());
 }
 
-// The last section of the protocol page: what vendor software sends for 9 kHz, 10 Hz, protection on.
-TEST(SimCommands, VendorSoftwareIsServed) {
+// The last section of the protocol page: the commands of the vendor's software for 9 kHz, 10 Hz,
+// protection on.
+TEST(SimCommands, VendorSoftware_Works) {
   host_side host;
   EXPECT_THAT(host.ask(0x00, ms), IsEmpty());
   EXPECT_THAT(host.ask(0x65, 500 * ms), IsEmpty());

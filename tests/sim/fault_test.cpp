@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each kind of fault does what it is called, while it is at work, and nothing else.
+// Each kind of fault has its effect while it is active, and no other.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ fault with_amount(fault f, std::int64_t amount) {
   return f;
 }
 
-// A device without strays that starts to scan, and what 10 s of it sound like.
+// A device without stray bytes that starts to scan, and its bytes of 10 s.
 heard ten_seconds(std::initializer_list<fault> faults) {
   sim::device_options options;
   options.stray_after_start = options.stray_before_zero = false;
@@ -72,7 +72,7 @@ TEST(SimFaults, DropsAndInsertsBytes) {
   EXPECT_NEAR(size(fault_kind::insert) - clean, 203.0, 60.0);
 }
 
-TEST(SimFaults, BurstsAreAsLongAsSaid) {
+TEST(SimFaults, Bursts_HaveTheGivenLength) {
   const heard clean = ten_seconds({});
   const heard hit = ten_seconds({with_amount(with_rate(make_fault(fault_kind::burst), 1e-4), 50)});
   ASSERT_EQ(hit.bytes.size(), clean.bytes.size());
@@ -89,7 +89,7 @@ TEST(SimFaults, TruncatesPackets) {
   EXPECT_GT(cut.skipped_bytes, 0U);
 }
 
-TEST(SimFaults, AStallKeepsBytesBackAndLosesNone) {
+TEST(SimFaults, Stall_DelaysBytesAndLosesNone) {
   host_side host({}, {make_fault(fault_kind::stall, second, 100 * ms)});
   (void)host.ask(command::start, second);
   EXPECT_THAT(host.listen(99 * ms), IsEmpty());
@@ -98,13 +98,13 @@ TEST(SimFaults, AStallKeepsBytesBackAndLosesNone) {
   EXPECT_NEAR(static_cast<double>(steady.size()), 2'036.0, 100.0);
 }
 
-TEST(SimFaults, AStallForEverIsSilence) {
+TEST(SimFaults, EndlessStall_IsSilence) {
   host_side host({}, {make_fault(fault_kind::stall, second)});
   (void)host.ask(command::start, 1'010 * ms);
   EXPECT_THAT(host.listen(10 * second), IsEmpty());
 }
 
-TEST(SimFaults, BatchesComeTogether) {
+TEST(SimFaults, Batch_DeliversBytesTogether) {
   host_side host({}, {with_amount(make_fault(fault_kind::batch), 16 * ms)});
   (void)host.ask(command::start, second);
   std::int64_t longest = 0;
@@ -122,13 +122,13 @@ TEST(SimFaults, BatchesComeTogether) {
   EXPECT_LT(longest, 17 * ms);
 }
 
-TEST(SimFaults, AnswersComeLate) {
+TEST(SimFaults, Late_DelaysAnswers) {
   host_side host({}, {with_amount(make_fault(fault_kind::late), 300 * ms)});
   EXPECT_THAT(host.ask(command::device_info, 299 * ms), IsEmpty());
   EXPECT_EQ(host.listen(10 * ms), information);
 }
 
-TEST(SimFaults, AnswersAreWrongYetPossible) {
+TEST(SimFaults, Wrong_SendsPossibleAnswers) {
   host_side host({}, {make_fault(fault_kind::wrong)});
   for (int i = 0; i < 50; ++i) {
     const heard got = test::taken_apart(host.ask(command::device_info));
@@ -138,7 +138,7 @@ TEST(SimFaults, AnswersAreWrongYetPossible) {
   }
 }
 
-TEST(SimFaults, AnswersComeTwiceOrNever) {
+TEST(SimFaults, TwiceAndMute_RepeatOrOmitAnswers) {
   host_side twice({}, {make_fault(fault_kind::twice)});
   byte_vector both = information;
   both.insert(both.end(), information.begin(), information.end());
@@ -150,14 +150,14 @@ TEST(SimFaults, AnswersComeTwiceOrNever) {
   EXPECT_EQ(never.ask(command::device_info), information);
 }
 
-TEST(SimFaults, TheRateIsOfAllAnswers) {
+TEST(SimFaults, Rate_IsOfAllAnswers) {
   host_side host({}, {with_rate(make_fault(fault_kind::mute), 0.25)});
   int answered = 0;
   for (int i = 0; i < 400; ++i) answered += host.ask(command::health, 10 * ms).empty() ? 0 : 1;
   EXPECT_NEAR(answered, 300, 40);
 }
 
-TEST(SimFaults, ADeadTransmitLine) {
+TEST(SimFaults, Deaf_ReceivesNoCommands) {
   host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::deaf)});
   (void)host.ask(command::stop);
   EXPECT_TRUE(host.twin.is_scanning());
@@ -165,7 +165,7 @@ TEST(SimFaults, ADeadTransmitLine) {
   EXPECT_THAT(host.twin.log(), IsEmpty());
 }
 
-TEST(SimFaults, AlreadyScanningAtFullSpeed) {
+TEST(SimFaults, Scanning_BeginsAtFullSpeed) {
   host_side host({}, {make_fault(fault_kind::scanning)});
   const heard got = host.hear(second);
   EXPECT_THAT(got.responses, IsEmpty()) << "no header";
@@ -175,7 +175,7 @@ TEST(SimFaults, AlreadyScanningAtFullSpeed) {
   EXPECT_GT(later.hear(second).packets, 200U);
 }
 
-TEST(SimFaults, AWrongBaudRateIsGarbage) {
+TEST(SimFaults, WrongBaudRate_IsGarbage) {
   host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::baud)});
   const heard got = host.hear(2 * second);
   EXPECT_GT(got.bytes.size(), 15'000U);
@@ -184,7 +184,7 @@ TEST(SimFaults, AWrongBaudRateIsGarbage) {
   EXPECT_TRUE(host.twin.is_scanning());
 }
 
-TEST(SimFaults, ABrownOutSilencesTheDeviceUntilItEnds) {
+TEST(SimFaults, BrownOut_SilencesTheDeviceUntilItEnds) {
   host_side host({}, {make_fault(fault_kind::brown_out, 0, 3 * second)});
   EXPECT_EQ(host.ask(command::device_info), information) << "without the motor all is well";
   const heard got = test::taken_apart(host.ask(command::start, second));
@@ -196,14 +196,14 @@ TEST(SimFaults, ABrownOutSilencesTheDeviceUntilItEnds) {
   EXPECT_GT(test::taken_apart(host.ask(command::start, second)).packets, 100U);
 }
 
-TEST(SimFaults, AMotorThatStopsInTimeCausesNoBrownOut) {
+TEST(SimFaults, MotorStoppedInTime_CausesNoBrownOut) {
   host_side host({}, {make_fault(fault_kind::brown_out)});
   (void)host.ask(command::start, 20 * ms);
   (void)host.ask(command::stop, second);
   EXPECT_EQ(host.ask(command::device_info), information);
 }
 
-TEST(SimFaults, WhatWasNotSaidBeforeThePowerWentIsNeverSaid) {
+TEST(SimFaults, BytesNotSentBeforePowerLoss_AreNeverSent) {
   host_side host({}, {make_fault(fault_kind::late)});
   (void)host.ask(command::health, 100 * ms);
   host.twin.unplug(host.now_ns);
@@ -212,7 +212,7 @@ TEST(SimFaults, WhatWasNotSaidBeforeThePowerWentIsNeverSaid) {
   EXPECT_EQ(host.ask(command::device_info, second), information);
 }
 
-TEST(SimFaults, ABrownOutMayBootAgain) {
+TEST(SimFaults, Reboot_BootsAgain) {
   host_side host({}, {make_fault(fault_kind::reboot)});
   for (int i = 0; i < 3; ++i) {
     const heard got = test::taken_apart(host.ask(command::start, 2 * second));
@@ -244,7 +244,7 @@ TEST(SimFaults, UnplugAndReplug) {
   }
 }
 
-TEST(SimFaults, ThePlugCanBePulledByHand) {
+TEST(SimFaults, UnplugByCall) {
   host_side host;
   (void)host.ask(command::start, second);
   host.twin.unplug(host.now_ns);
@@ -256,7 +256,7 @@ TEST(SimFaults, ThePlugCanBePulledByHand) {
   EXPECT_EQ(host.ask(command::device_info), information);
 }
 
-TEST(SimFaults, HealthTurnsBadAndGoodAgain) {
+TEST(SimFaults, Health_ChangesAndRecovers) {
   host_side host({}, {make_fault(fault_kind::health, second, second)});
   const auto status = [&host] { return host.ask(command::health).at(7); };
   EXPECT_EQ(status(), 0);
@@ -266,13 +266,13 @@ TEST(SimFaults, HealthTurnsBadAndGoodAgain) {
   EXPECT_EQ(status(), 0);
 }
 
-TEST(SimFaults, JoltsMakeSuspectPackets) {
+TEST(SimFaults, Jolts_CauseSuspectPackets) {
   const heard got = ten_seconds({with_rate(make_fault(fault_kind::jolt), 0.1)});
   EXPECT_GT(got.suspect, 100U);
   EXPECT_EQ(ten_seconds({}).suspect, 0U);
 }
 
-TEST(SimFaults, AFaultIsOverWhenItsTimeIsOver) {
+TEST(SimFaults, Fault_EndsAfterItsDuration) {
   for (int kind = 0; kind <= static_cast<int>(fault_kind::jolt); ++kind) {
     SCOPED_TRACE(name_of(static_cast<fault_kind>(kind)));
     fault f = make_fault(static_cast<fault_kind>(kind), second, second);
@@ -292,8 +292,8 @@ TEST(SimFaults, AFaultIsOverWhenItsTimeIsOver) {
   }
 }
 
-// Packets of which the twin says that they were whole arrive, and no others do (but for the
-// checksum's blind spots, of which these seeds have none).
+// Packets that the truth flags as whole arrive, and no others (except errors that the checksum
+// cannot detect, which do not occur with these seeds).
 void expect_whole_packets_and_no_others(host_side& host, const heard& got) {
   std::vector<sim::sent_sample> truth(16'384);
   truth.resize(host.twin.take_truth(truth));
@@ -314,7 +314,7 @@ void expect_whole_packets_and_no_others(host_side& host, const heard& got) {
   EXPECT_TRUE(std::equal(delivered.begin(), delivered.end(), whole.begin()));
 }
 
-TEST(SimFaults, TheTruthKnowsWhatWasDamaged) {
+TEST(SimFaults, Truth_FlagsDamagedPackets) {
   for (const fault_kind kind : {fault_kind::flip, fault_kind::drop, fault_kind::insert,
                                 fault_kind::burst, fault_kind::truncate}) {
     SCOPED_TRACE(name_of(kind));
@@ -324,7 +324,7 @@ TEST(SimFaults, TheTruthKnowsWhatWasDamaged) {
   }
 }
 
-TEST(SimFaults, TheTruthKnowsWhatWasPartedByAnAnswer) {
+TEST(SimFaults, Truth_FlagsPacketsInterruptedByAnAnswer) {
   for (const sim::disturbance how : {sim::disturbance::mid_packet, sim::disturbance::drops}) {
     sim::device_options options;
     options.while_scanning = how;

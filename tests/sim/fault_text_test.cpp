@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The text form of faults, and what it refuses.
+// The text form of faults, and invalid texts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::string refusal(std::string_view text) {
   return wrong == nullptr ? "nothing" : wrong->message;
 }
 
-TEST(SimFaultText, EveryKindHasItsWordAndItsDefaults) {
+TEST(SimFaultText, EveryKind_HasANameAndDefaults) {
   for (int kind = 0; kind <= static_cast<int>(fault_kind::jolt); ++kind) {
     const auto expected = make_fault(static_cast<fault_kind>(kind));
     const fault found = read(name_of(expected.kind));
@@ -41,7 +41,7 @@ TEST(SimFaultText, EveryKindHasItsWordAndItsDefaults) {
   }
 }
 
-TEST(SimFaultText, WhenAndHowLong) {
+TEST(SimFaultText, ParsesBeginAndDuration) {
   const fault f = read("unplug@5s+2s");
   EXPECT_EQ(f.kind, fault_kind::unplug);
   EXPECT_EQ(f.begin_ns, 5'000'000'000);
@@ -54,7 +54,7 @@ TEST(SimFaultText, WhenAndHowLong) {
   EXPECT_EQ(read("stall@0.000001s").begin_ns, 1'000);
 }
 
-TEST(SimFaultText, HowOftenAndHowMuch) {
+TEST(SimFaultText, ParsesRateAndAmount) {
   EXPECT_EQ(read("flip*0.001").rate, 0.001);
   EXPECT_EQ(read("flip*0.5%").rate, 0.005);
   EXPECT_EQ(read("late=120ms*1").amount, 120'000'000);
@@ -67,7 +67,7 @@ TEST(SimFaultText, HowOftenAndHowMuch) {
   EXPECT_EQ(read("health=2").amount, 2);
 }
 
-TEST(SimFaultText, WhatItRefuses) {
+TEST(SimFaultText, InvalidTexts_AreRefused) {
   EXPECT_THAT(refusal(""), HasSubstr("'' is no fault; there are flip, drop,"));
   EXPECT_THAT(refusal("Flip"), HasSubstr("'Flip' is no fault"));
   EXPECT_EQ(refusal("unplug=3"), "'unplug' takes no amount");

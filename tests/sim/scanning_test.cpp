@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the twin does while it scans: motor, rates, protection, disturbance, stop and restart.
+// The simulated G4 during a scan: motor, rates, protection, disturbance, stop and restart.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ heard started(host_side& host, std::int64_t for_ns) {
   return host.hear(for_ns);
 }
 
-TEST(SimScanning, TheMotorSpinsUpFromAStandstill) {
+TEST(SimScanning, Motor_SpinsUp) {
   host_side host;
   const heard first = started(host, 100 * ms);
   ASSERT_GE(first.packets, 5U);
@@ -51,7 +51,7 @@ TEST(SimScanning, TheMotorSpinsUpFromAStandstill) {
   EXPECT_NEAR(host.twin.motor_mhz(host.now_ns), 7'000.0, 20.0);
 }
 
-TEST(SimScanning, SamplesAndRevolutionsAreAsManyAsSet) {
+TEST(SimScanning, SampleRateAndFrequency_AreAsSet) {
   for (const ranging_frequency ranging :
        {ranging_frequency::khz_4, ranging_frequency::khz_8, ranging_frequency::khz_9}) {
     sim::device_options options;
@@ -66,18 +66,18 @@ TEST(SimScanning, SamplesAndRevolutionsAreAsManyAsSet) {
   }
 }
 
-TEST(SimScanning, TheTrueSampleRateMayBeOffAndDrift) {
+TEST(SimScanning, TrueSampleRate_MayDeviateAndDrift) {
   sim::device_options options;
   options.scanner.sample_rate_ratio = 1.03;
   options.scanner.sample_rate_drift_ppm = 10'000;
   host_side host(options);
   (void)started(host, second);
-  // In the first 30 s of its wave, the rate is higher all the time: by 0.5 % in the mean.
+  // In the first half of the period, 30 s, the rate is higher: by 0.5 % on average.
   const heard steady = host.hear(28 * second);
   EXPECT_NEAR(static_cast<double>(steady.samples), 28 * 9000 * 1.03 * 1.005, 300.0);
 }
 
-TEST(SimScanning, WithoutConstantFrequencyTheMotorDriftsMore) {
+TEST(SimScanning, NoConstantFrequency_MotorDriftsMore) {
   const auto spread = [](constant_frequency constancy) {
     sim::device_options options;
     options.initial.constancy = constancy;
@@ -96,17 +96,18 @@ TEST(SimScanning, WithoutConstantFrequencyTheMotorDriftsMore) {
   EXPECT_NEAR(spread(constant_frequency::off), 7000 * 0.06, 25.0);
 }
 
-TEST(SimScanning, LowPowerOffMeansNoSpinUp) {
+TEST(SimScanning, LowPowerOff_NoSpinUp) {
   host_side host;
   (void)host.ask(command::low_power_off, 2 * second);
   const heard first = started(host, second);
   EXPECT_NEAR(static_cast<double>(first.zero_packets), 7.0, 1.0);
 }
 
-TEST(SimScanning, StrayBytesStandBehindTheHeaderAndBeforeZeroPackets) {
+TEST(SimScanning, StrayBytes_FollowTheHeaderAndPrecedeZeroPackets) {
   host_side host;
   const heard healthy = started(host, 5 * second);
-  EXPECT_GE(healthy.skipped_bytes, 1 + healthy.zero_packets);  // and the packet cut off at the end
+  EXPECT_GE(healthy.skipped_bytes,
+            1 + healthy.zero_packets);  // and the truncated packet at the end
   EXPECT_LE(healthy.skipped_bytes, 1 + healthy.zero_packets + max_packet_size);
   sim::device_options clean;
   clean.stray_after_start = clean.stray_before_zero = false;
@@ -114,16 +115,16 @@ TEST(SimScanning, StrayBytesStandBehindTheHeaderAndBeforeZeroPackets) {
   EXPECT_LE(started(other, 5 * second).skipped_bytes, max_packet_size);
 }
 
-TEST(SimScanning, TheLineCarriesNoMoreThanItsRate) {
+TEST(SimScanning, Connection_CarriesNoMoreThanItsRate) {
   sim::device_options options;
-  options.scanner.samples_per_packet = 10;  // 27 kB/s at 9 kHz: more than fits
+  options.scanner.samples_per_packet = 10;  // 27 kB/s at 9 kHz: more than the capacity
   host_side host(options);
   const heard full = started(host, 10 * second);
   EXPECT_NEAR(static_cast<double>(full.bytes.size()), 230'400.0, 1'000.0);
   EXPECT_LE(full.skipped_bytes, full.zero_packets + 200) << "packets are lost whole";
 }
 
-TEST(SimScanning, StopCutsTheLastPacket) {
+TEST(SimScanning, Stop_TruncatesTheLastPacket) {
   for (const bool cuts : {true, false}) {
     sim::device_options options;
     options.stop_truncates = cuts;
@@ -143,7 +144,7 @@ TEST(SimScanning, StopCutsTheLastPacket) {
   }
 }
 
-TEST(SimScanning, ForcedStopMayBeUnknown) {
+TEST(SimScanning, ForcedStop_MayBeUnknown) {
   host_side host;
   (void)started(host, second);
   (void)host.ask(0x00);
@@ -162,14 +163,14 @@ TEST(SimScanning, ProtectionStopsAfterThreeSeconds) {
   (void)started(host, 2'900 * ms);
   EXPECT_TRUE(host.twin.is_scanning());
   (void)host.ask(command::start, 2'900 * ms);
-  EXPECT_TRUE(host.twin.is_scanning()) << "it was fed";
+  EXPECT_TRUE(host.twin.is_scanning()) << "it got keep-alives";
   (void)host.listen(200 * ms);
   EXPECT_FALSE(host.twin.is_scanning());
   EXPECT_FALSE(host.twin.motor_turns());
   EXPECT_THAT(host.listen(second), IsEmpty());
 }
 
-TEST(SimScanning, ProtectionThatIsTurnedOnWhileScanningCountsFromThen) {
+TEST(SimScanning, ProtectionTurnedOnDuringAScan_CountsFromThen) {
   host_side host;
   (void)started(host, 10 * second);
   (void)host.ask(command::protection_toggle, 2'900 * ms);
@@ -178,7 +179,7 @@ TEST(SimScanning, ProtectionThatIsTurnedOnWhileScanningCountsFromThen) {
   EXPECT_FALSE(host.twin.is_scanning());
 }
 
-TEST(SimScanning, AfterTheProtectionAStartMayBringNoHeader) {
+TEST(SimScanning, StartAfterTheProtection_MaySendNoHeader) {
   for (const bool header : {true, false}) {
     sim::device_options options;
     options.header_after_protection = header;
@@ -214,7 +215,7 @@ TEST(SimScanning, OtherCommandsDisturbTheStream) {
   EXPECT_EQ(disturbed(sim::disturbance::ignored).responses.size(), 1U);
 }
 
-TEST(SimScanning, CounterClockwiseMirrorsTheRoomOrLetsTheAnglesFall) {
+TEST(SimScanning, CounterClockwise_MirrorsTheRoomOrReversesTheAngles) {
   sim::device_options options;
   options.initial.direction = motor_direction::counter_clockwise;
   options.counter_clockwise = sim::turning::falling;
@@ -227,7 +228,7 @@ TEST(SimScanning, CounterClockwiseMirrorsTheRoomOrLetsTheAnglesFall) {
   options.scanner.min_range_mm = 0.25;
   host_side mirrored(options);
   EXPECT_EQ(started(mirrored, 3 * second).suspect, 0U);
-  // What a clockwise device in the mirrored room sees.
+  // The measurement of a clockwise device in the mirrored room.
   sim::world room = sim::built_in_world();
   for (sim::wall& w : room.walls) {
     w.y1_m = 2 * room.lidar.y_m - w.y1_m;
@@ -244,7 +245,7 @@ TEST(SimScanning, CounterClockwiseMirrorsTheRoomOrLetsTheAnglesFall) {
   }
 }
 
-TEST(SimScanning, RestartBootsAndForgets) {
+TEST(SimScanning, Restart_BootsAndResetsSettings) {
   for (const bool keeps : {false, true}) {
     sim::device_options options;
     options.settings_outlive_restart = keeps;
@@ -252,7 +253,7 @@ TEST(SimScanning, RestartBootsAndForgets) {
     (void)host.ask(command::frequency_up_1_hz);
     (void)started(host, second);
     host.send(command::restart);
-    (void)host.listen(5 * ms);  // what was on its way
+    (void)host.listen(5 * ms);  // bytes in transit
     EXPECT_FALSE(host.twin.is_up());
     (void)host.ask(command::device_info, 300 * ms);
     const heard boot = host.hear(second);
@@ -264,7 +265,7 @@ TEST(SimScanning, RestartBootsAndForgets) {
   }
 }
 
-TEST(SimScanning, AStartMayBeAnsweredAgain) {
+TEST(SimScanning, StartDuringAScan_MayBeAnswered) {
   sim::device_options options;
   options.start_again_answers = true;
   options.while_scanning = sim::disturbance::between;
@@ -273,7 +274,7 @@ TEST(SimScanning, AStartMayBeAnsweredAgain) {
   EXPECT_EQ(started(host, second).responses, std::vector{response_kind::scan_started});
 }
 
-TEST(SimScanning, AnErrorMayRefuseTheStart) {
+TEST(SimScanning, HealthError_MayRefuseTheStart) {
   sim::device_options options;
   options.condition = {health_status::error, 1};
   host_side willing(options);
@@ -283,8 +284,8 @@ TEST(SimScanning, AnErrorMayRefuseTheStart) {
   EXPECT_THAT(refusing.ask(command::start, second), IsEmpty());
 }
 
-// Each packet that the host has whole is one of the truth, sample by sample, in the same order.
-TEST(SimScanning, TheTruthIsWhatWasSent) {
+// Each complete packet is in the truth, sample by sample, in the same order.
+TEST(SimScanning, Truth_AgreesWithTheSentBytes) {
   sim::device_options options;
   options.scanner.noise_mm = 3.0;
   options.scanner.dropout_ratio = 0.05;
@@ -307,12 +308,12 @@ TEST(SimScanning, TheTruthIsWhatWasSent) {
       ASSERT_GE(s.sent_ns, s.truth.time_ns);
     }
   }
-  // What the bridge has not handed over yet is true as well.
+  // The truth includes samples that the bridge has not delivered yet.
   EXPECT_LE(truth.size() - at, 40U);
   EXPECT_EQ(host.twin.truth_missed(), 0U);
 }
 
-TEST(SimScanning, TruthThatNobodyTakesIsCounted) {
+TEST(SimScanning, TruthNotTaken_IsCounted) {
   sim::device_options options;
   options.truth_capacity = 100;
   host_side host(options);

@@ -1,27 +1,26 @@
 # SPDX-License-Identifier: MIT
-# cmake -DHEADERS=<include/g4lidar> -DFLOORS=<floors.txt> -P check_includes.cmake
+# cmake -DHEADERS=<include/g4lidar> -DLAYERS=<layers.txt> -P check_includes.cmake
 #
-# Fails unless every header of <HEADERS> has a floor and includes only headers of lower floors or
-# those that stand before it on its own floor in the table. The headers of the simulator, sim/, stand
-# on floors 0 and 1; they may include each other, but never round in a circle. Only its doors to
-# programs, sim/virtual_port and sim/pty_port, may see error, transport and connector of floor 6.
-# Eigen is seen by eigen.hpp alone.
+# Fails unless every header of <HEADERS> has a layer and includes only headers of lower layers or
+# those that precede it in its own layer of the table. The headers of the simulator, sim/, use
+# layers 0 and 1; they may include each other, but not in a circle. Only sim/virtual_port and
+# sim/pty_port may include error, transport and connector. Only eigen.hpp may include Eigen.
 
 cmake_minimum_required(VERSION 3.22)
 set(faults)
 
 # ---- the table ---------------------------------------------------------------------------------
 set(names)
-file(STRINGS "${FLOORS}" rows REGEX "^[0-9]")
+file(STRINGS "${LAYERS}" rows REGEX "^[0-9]")
 foreach(row IN LISTS rows)
   string(REGEX MATCHALL "[^ ]+" words "${row}")
-  list(POP_FRONT words floor)
+  list(POP_FRONT words layer)
   foreach(name IN LISTS words)
-    set(floor_of_${name} ${floor})
+    set(layer_of_${name} ${layer})
     list(LENGTH names height_of_${name})
     list(APPEND names ${name})
     if(NOT EXISTS "${HEADERS}/${name}.hpp")
-      list(APPEND faults "${name}.hpp has a floor in the table, but is not there")
+      list(APPEND faults "${name}.hpp has a layer in the table, but is not there")
     endif()
   endforeach()
 endforeach()
@@ -31,9 +30,9 @@ file(GLOB_RECURSE headers RELATIVE "${HEADERS}" "${HEADERS}/*.hpp")
 set(edges 0)
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "\\.hpp$" "" name "${header}")
-  string(REGEX MATCH "^sim/" in_sim "${name}")
+  string(REGEX MATCH "^(detail/)?sim/" in_sim "${name}")
   if(NOT in_sim AND NOT name IN_LIST names)
-    list(APPEND faults "${header} has no floor: add it to ${FLOORS}")
+    list(APPEND faults "${header} has no layer: add it to ${LAYERS}")
     continue()
   endif()
 
@@ -53,26 +52,26 @@ foreach(header IN LISTS headers)
     math(EXPR edges "${edges} + 1")
     list(APPEND below_${name} "${other}")
 
-    if(in_sim AND other MATCHES "^sim/")
-      continue() # circles are looked for below
+    if(in_sim AND other MATCHES "^(detail/)?sim/")
+      continue() # circles are detected below
     endif()
-    if(NOT DEFINED floor_of_${other})
-      list(APPEND faults "${header} includes ${other}.hpp, which has no floor")
+    if(NOT DEFINED layer_of_${other})
+      list(APPEND faults "${header} includes ${other}.hpp, which has no layer")
     elseif(in_sim)
-      if(name MATCHES "^sim/(virtual_port|pty_port)$" AND other MATCHES "^(error|transport|connector)$")
+      if(name MATCHES "^sim/(virtual_port|pty_port)$" AND other MATCHES "^(error|transport/transport|transport/connector)$")
         continue()
       endif()
-      if(floor_of_${other} GREATER 1)
-        list(APPEND faults "${header} includes ${other}.hpp of floor ${floor_of_${other}}; the simulator stands on floors 0 and 1")
+      if(layer_of_${other} GREATER 1)
+        list(APPEND faults "${header} includes ${other}.hpp of layer ${layer_of_${other}}; the simulator may use layers 0 and 1 only")
       endif()
     elseif(NOT height_of_${other} LESS height_of_${name})
-      list(APPEND faults "${header} (floor ${floor_of_${name}}) includes ${other}.hpp (floor ${floor_of_${other}}), which is not below it")
+      list(APPEND faults "${header} (layer ${layer_of_${name}}) includes ${other}.hpp (layer ${layer_of_${other}}), which is not below it")
     endif()
   endforeach()
 endforeach()
 
 # ---- circles -----------------------------------------------------------------------------------
-# Headers that include nothing more that is left are taken away until none is; a circle stays.
+# Headers without remaining includes are removed repeatedly; a circle remains.
 set(left)
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "\\.hpp$" "" name "${header}")

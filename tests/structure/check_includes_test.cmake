@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 # cmake -DSCRIPT=<check_includes.cmake> -DSCRATCH=<directory> -P check_includes_test.cmake
 #
-# The check itself, checked: small header trees with one fault each must be refused for that fault.
+# Test of the check itself: small header trees with one error each must be refused for that error.
 
 cmake_minimum_required(VERSION 3.22)
-file(WRITE "${SCRATCH}/floors.txt" "0 ground earth\n1 wall\n2 roof error\n")
+file(WRITE "${SCRATCH}/layers.txt" "0 ground earth\n1 wall\n2 roof error\n")
 
 function(tree name) # <file> <text>...: the sound tree with these files instead
   file(REMOVE_RECURSE "${SCRATCH}/${name}")
@@ -23,7 +23,7 @@ endfunction()
 
 function(expect name message)
   execute_process(
-    COMMAND "${CMAKE_COMMAND}" "-DHEADERS=${SCRATCH}/${name}" "-DFLOORS=${SCRATCH}/floors.txt" -P "${SCRIPT}"
+    COMMAND "${CMAKE_COMMAND}" "-DHEADERS=${SCRATCH}/${name}" "-DLAYERS=${SCRATCH}/layers.txt" -P "${SCRIPT}"
     OUTPUT_VARIABLE said ERROR_VARIABLE said
   )
   string(REGEX REPLACE "[ \n]+" " " said "${said}")
@@ -35,22 +35,22 @@ endfunction()
 tree(sound)
 expect(sound "6 headers, 3 includes among them, each downward")
 tree(upward wall.hpp "#include \"g4lidar/roof.hpp\"")
-expect(upward "wall.hpp .floor 1. includes roof.hpp .floor 2., which is not below it")
+expect(upward "wall.hpp .layer 1. includes roof.hpp .layer 2., which is not below it")
 expect(upward "a circle of includes")
 tree(sideways ground.hpp "  #  include <g4lidar/earth.hpp>")
-expect(sideways "ground.hpp .floor 0. includes earth.hpp .floor 0.")
+expect(sideways "ground.hpp .layer 0. includes earth.hpp .layer 0.")
 tree(neighbour earth.hpp "#include \"g4lidar/ground.hpp\"")
 expect(neighbour "each downward")
 tree(homeless shed.hpp "")
-expect(homeless "shed.hpp has no floor")
+expect(homeless "shed.hpp has no layer")
 tree(sim_above sim/world.hpp "#include \"g4lidar/roof.hpp\"")
-expect(sim_above "the simulator stands on floors 0 and 1")
+expect(sim_above "the simulator may use layers 0 and 1 only")
 tree(sim_door sim/virtual_port.hpp "#include \"g4lidar/error.hpp\"" error.hpp "")
 expect(sim_door "each downward")
 tree(sim_no_door sim/world.hpp "#include \"g4lidar/error.hpp\"" error.hpp "")
-expect(sim_no_door "includes error.hpp of floor 2")
+expect(sim_no_door "includes error.hpp of layer 2")
 tree(sim_door_too_far sim/pty_port.hpp "#include \"g4lidar/roof.hpp\"")
-expect(sim_door_too_far "includes roof.hpp of floor 2")
+expect(sim_door_too_far "includes roof.hpp of layer 2")
 tree(sim_circle sim/world.hpp "#include \"g4lidar/sim/ray.hpp\"" sim/ray.hpp "#include \"g4lidar/sim/world.hpp\"")
 expect(sim_circle "a circle of includes among or above: sim/ray, sim/world")
 tree(eigen wall.hpp "#include <Eigen/Core>")

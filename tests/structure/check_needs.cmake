@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # cmake -DNM=<nm> -DOBJECTS=<objects of a program> -DLIBRARIES=<shared libraries> -P check_needs.cmake
 #
-# Fails if the program needs something of namespace g4lidar that the libraries do not show.
+# Fails if the program needs a symbol of namespace g4lidar that the libraries do not export.
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -16,6 +16,7 @@ function(symbols variable)
   set(${variable} "${lines}" PARENT_SCOPE)
 endfunction()
 
+list(FILTER OBJECTS EXCLUDE REGEX "\\.gch$") # precompiled headers
 symbols(needed --undefined-only ${OBJECTS})
 symbols(own --defined-only ${OBJECTS})
 symbols(shown --dynamic --defined-only ${LIBRARIES})
@@ -26,10 +27,10 @@ if(needed)
   message(
     FATAL_ERROR
       "Needed, and not shown by ${LIBRARIES}:\n  ${text}\n"
-      "What is public and compiled is marked with G4LIDAR_API: see include/g4lidar/export.hpp"
+      "What is public and compiled is marked with G4LIDAR_API: see include/g4lidar/detail/api.hpp"
   )
 endif()
 list(LENGTH shown count)
 if(count EQUAL 0)
-  message(FATAL_ERROR "${LIBRARIES} show nothing at all")
+  message(FATAL_ERROR "${LIBRARIES} export nothing")
 endif()

@@ -10,8 +10,9 @@ execute_process(COMMAND "${NM}" -P "${OBJECT}" OUTPUT_VARIABLE listing COMMAND_E
 set(allowed memcpy memmove memset memcmp)
 set(helper "^$")
 if(PROCESSOR MATCHES "^arm")
-  # What the processor has no instruction for, from the compiler's own library: conversions, sums,
-  # products and comparisons of float and double, division, 64 bits; the jump tables of Thumb-1.
+  # Operations without an instruction on the processor, from the library of the compiler:
+  # conversions, sums, products and comparisons of float and double, division, 64 bits; the jump
+  # tables of Thumb-1.
   string(
     JOIN "|" helpers
     "__aeabi_(d2f|f2d|[df]2u?[il]z|u?[il]2[df])"
@@ -41,10 +42,10 @@ endforeach()
 
 if(faults)
   list(JOIN faults "\n  " text)
-  message(FATAL_ERROR "The core needs from outside:\n  ${text}")
+  message(FATAL_ERROR "The core needs these external symbols:\n  ${text}")
 endif()
 if(defined LESS 10)
   message(FATAL_ERROR "Only ${defined} functions in ${OBJECT}: is the core instantiated there?")
 endif()
 list(JOIN needed ", " text)
-message("${defined} functions of the core; needed from outside: ${text}")
+message("${defined} functions of the core; external symbols: ${text}")

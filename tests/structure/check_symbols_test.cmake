@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 # cmake -DSCRIPT=<check_symbols.cmake> -DSCRATCH=<directory> -P check_symbols_test.cmake
 #
-# The check itself, checked: listings with one wrong symbol each must be refused for that symbol.
+# Test of the check itself: listings with one wrong symbol each must be refused for that symbol.
 
 cmake_minimum_required(VERSION 3.22)
 
-# expect(<message> <processor> <symbol>...): what is said of an object that needs these symbols.
+# expect(<message> <processor> <symbol>...): the result for an object that needs these symbols.
 function(expect message processor)
   set(listing)
   foreach(i RANGE 1 12)
@@ -29,14 +29,14 @@ function(expect message processor)
   endif()
 endfunction()
 
-expect("12 functions of the core; needed from outside: memcpy, memset" x86_64 memcpy memset)
-expect("The core needs from outside: malloc" x86_64 memcpy malloc)
-expect("The core needs from outside: _Znwm" x86_64 _Znwm)
-expect("The core needs from outside: atan" x86_64 atan)
-expect("The core needs from outside: __assert_fail" x86_64 __assert_fail)
-expect("The core needs from outside: __cxa_throw" x86_64 __cxa_throw)
-expect("The core needs from outside: __atomic_load_8" arm __atomic_load_8)
-expect("The core needs from outside: __aeabi_dadd" x86_64 __aeabi_dadd)
-expect("needed from outside: __aeabi_dadd, __aeabi_ldivmod, __aeabi_f2lz" arm __aeabi_dadd __aeabi_ldivmod __aeabi_f2lz)
-expect("The core needs from outside: __aeabi_atexit" arm __aeabi_atexit)
-expect("The core needs from outside: __aeabi_unwind_cpp_pr0" arm __aeabi_unwind_cpp_pr0)
+expect("12 functions of the core; external symbols: memcpy, memset" x86_64 memcpy memset)
+expect("The core needs these external symbols: malloc" x86_64 memcpy malloc)
+expect("The core needs these external symbols: _Znwm" x86_64 _Znwm)
+expect("The core needs these external symbols: atan" x86_64 atan)
+expect("The core needs these external symbols: __assert_fail" x86_64 __assert_fail)
+expect("The core needs these external symbols: __cxa_throw" x86_64 __cxa_throw)
+expect("The core needs these external symbols: __atomic_load_8" arm __atomic_load_8)
+expect("The core needs these external symbols: __aeabi_dadd" x86_64 __aeabi_dadd)
+expect("external symbols: __aeabi_dadd, __aeabi_ldivmod, __aeabi_f2lz" arm __aeabi_dadd __aeabi_ldivmod __aeabi_f2lz)
+expect("The core needs these external symbols: __aeabi_atexit" arm __aeabi_atexit)
+expect("The core needs these external symbols: __aeabi_unwind_cpp_pr0" arm __aeabi_unwind_cpp_pr0)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The whole core, instantiated: what this translation unit needs from outside is what the core needs.
-// It is also what clang-tidy looks at to see the core's headers.
+// The whole core, instantiated: the external symbols of this translation unit are those of the
+// core. clang-tidy also uses it to check the headers of the core.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,24 +9,26 @@
 #include <span>
 #include <variant>
 
-#include "g4lidar/angle.hpp"
-#include "g4lidar/bytes.hpp"
 #include "g4lidar/cartesian.hpp"
-#include "g4lidar/command.hpp"
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/frame_check.hpp"
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/point_ring.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/core/sample_clock.hpp"
+#include "g4lidar/core/scan_assembler.hpp"
+#include "g4lidar/core/sensor_clock.hpp"
+#include "g4lidar/core/session.hpp"
+#include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/frame_check.hpp"
+#include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/packet.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/point_ring.hpp"
-#include "g4lidar/request.hpp"
-#include "g4lidar/response.hpp"
-#include "g4lidar/scan.hpp"
-#include "g4lidar/sensor_clock.hpp"
-#include "g4lidar/session.hpp"
-#include "g4lidar/stream_counts.hpp"
-#include "g4lidar/stream_parser.hpp"
 #include "g4lidar/version.hpp"
 
 namespace freestanding {
@@ -36,7 +38,7 @@ using namespace g4lidar;
 using any_point_ring = point_ring<1024>;
 using narrow_point_ring = point_ring<512, std::uint32_t>;
 
-// ---- ground and wire -------------------------------------------------------------------------
+// ---- bytes and packets -----------------------------------------------------------------------
 angle add(angle a, angle b) { return -(a + b - angle::from_radians(a.radians())); }
 float apart(angle a, angle b) { return a.apart_from(b) + a.forward_to(b) + b.signed_degrees(); }
 double wrap(double degrees) { return wrap_deg(degrees); }
@@ -71,7 +73,7 @@ std::optional<motor_direction> read_direction(std::uint8_t value) {
 front look(bytes data) { return what_stands_at_front(data); }
 std::optional<event> pull(stream_parser& parser, bytes& data) { return parser.next(data); }
 std::optional<event> end(stream_parser& parser) { return parser.finish(); }
-void push(stream_parser& parser, bytes data, stream_counts& counts) {
+void push(stream_parser& parser, bytes data, stream_counter& counts) {
   parser.feed(data, [&](const event& found) { counts.add(found); });
 }
 std::uint64_t skipped_for(const stream_counts& counts, skip_reason reason) {
@@ -83,7 +85,7 @@ double correct_exactly(std::uint16_t raw) { return exact_correction{}(raw); }
 float correct_compactly(std::uint16_t raw) { return compact_correction{}(raw); }
 float correct_by_table(const table_correction& table, std::uint16_t raw) { return table(raw); }
 const table_correction& make_table() {
-  // Made in place, as in a program's own memory: no guard, no destructor.
+  // Constructed in place, as in static memory of a program: no guard, no destructor.
   static constinit std::array<std::byte, sizeof(table_correction)> memory alignas(
       table_correction){};
   return *::new (memory.data()) table_correction;
@@ -108,7 +110,7 @@ std::span<xy_point> project(std::span<const point> points, std::span<xy_point> o
   return to_xy(points, frame::robot, out);
 }
 
-// ---- products --------------------------------------------------------------------------------
+// ---- ring, scans, grid -----------------------------------------------------------------------
 template <class Ring>
 std::uint64_t hand_over(Ring& ring, std::span<const point> in, std::span<point> out) {
   auto reader = ring.make_reader();
@@ -120,7 +122,7 @@ std::uint64_t hand_over(Ring& ring, std::span<const point> in, std::span<point> 
 std::uint64_t use_ring(any_point_ring& ring, std::span<const point> in, std::span<point> out) {
   return hand_over(ring, in, out);
 }
-// Where a word has 32 bits this is the same ring.
+// On a processor with words of 32 bits this is the same ring.
 std::uint64_t use_narrow_ring(narrow_point_ring& ring, std::span<const point> in,
                               std::span<point> out) {
   return hand_over(ring, in, out);
@@ -133,9 +135,18 @@ std::optional<scan> end(scan_assembler& assembler) {
   assembler.lost();
   return assembler.finish();
 }
-float measure(const scan& whole) { return whole.measured_frequency_hz(9000); }
+float measure(const scan& whole) { return whole.measured_frequency_hz(); }
 void fill(std::span<const point> points, std::span<float> ranges_m, const grid_options& options) {
   fill_grid(points, ranges_m, options);
+}
+
+std::span<point> keep(std::span<point> points, const point_filter& filter) {
+  const std::span<point> kept = filter_points(points, filter);
+  return filter_for_grid(kept, filter, kept);
+}
+void count_time(sample_clock& clock, point& p, std::size_t samples) {
+  p.time_ns = clock.now_ns();
+  clock.tick(samples);
 }
 
 packet_times stamp(sensor_clock& clock, const decoded& packet, std::span<point> points,
@@ -153,7 +164,7 @@ double restart(sensor_clock& clock, std::int64_t& bound_ns) {
   return clock.sample_rate_hz();
 }
 
-// ---- talk ------------------------------------------------------------------------------------
+// ---- session ---------------------------------------------------------------------------------
 std::optional<refusal> ask_device(session& talk, const request& wanted, std::int64_t now_ns) {
   if (wanted.what == ask::restart) talk.reset();
   return talk.begin(wanted, now_ns, while_scanning::stop_and_resume);

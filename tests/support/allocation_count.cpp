@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The replaced operators new and delete of the suites that count.
+// The replaced operators new and delete of the suites that count allocations.
 #include "support/allocation_count.hpp"
 
 #include <atomic>

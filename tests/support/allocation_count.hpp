@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts the calls of the global operator new and delete in a stretch of code.
+// Counts the calls of the global operator new and delete in a piece of code.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@ namespace g4lidar::test {
 /// Defined by allocation_count.cpp, which replaces them all.
 [[nodiscard]] std::size_t allocations_so_far();
 
-/// Whether from now on there is no memory for any operator new. Defined there, too.
+/// Whether every operator new fails from now on. Also defined there.
 void refuse_memory(bool refused);
 
-/// Does `work`, which does not throw, while there is none.
+/// Calls `work`, which must not throw, while every operator new fails.
 template <class Work>
 void without_memory(Work&& work) {
   refuse_memory(true);
@@ -21,7 +21,7 @@ void without_memory(Work&& work) {
   refuse_memory(false);
 }
 
-/// How often `work` allocates or frees.
+/// The number of allocations and deallocations in `work`.
 template <class Work>
 [[nodiscard]] std::size_t allocations_in(Work&& work) {
   const std::size_t before = allocations_so_far();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A truth to hold the sensor clock against: when samples are measured, and when packets arrive.
+// A model with known times for the sensor clock: when samples are measured, and when packets
+// arrive.
 #pragma once
 
 #include <algorithm>
@@ -9,33 +10,34 @@
 #include <cstdint>
 #include <numbers>
 
-#include "g4lidar/decode.hpp"
+#include "g4lidar/core/decode.hpp"
 
 namespace g4lidar::arrivals {
 
-/// How bytes come from the line to the program: at once (a pty), looked at every millisecond, by a
-/// timer of 16 ms, after 0 to 16 ms and then anew, or each packet late by 0 to 16 ms of its own.
+/// How bytes get from the connection to the program: immediately (a pty), every millisecond, by a
+/// timer of 16 ms, after 0 to 16 ms for each batch, or each packet late by 0 to 16 ms
+/// independently.
 enum class batching : std::uint8_t { direct, poll, ticks, gaps, each };
 
 struct options {
   std::uint64_t seed = 1;
   double nominal_hz = 9000.0;
-  double rate_error = 0.0;       ///< Of the true rate, against the nominal one.
+  double rate_error = 0.0;       ///< Of the true rate, relative to the nominal one.
   double drift_ppm = 200.0;      ///< Of the true rate: the amplitude of a sine.
   double drift_period_s = 60.0;  ///< Of that sine; 0: a steady drift, `drift_ppm` a minute.
   double motor_hz = 7.0;
-  double motor_drift = 0.02;  ///< Amplitude of a sine, as a part of the speed.
+  double motor_drift = 0.02;  ///< Amplitude of a sine, as a fraction of the speed.
   double motor_period_s = 20.0;
   int samples = 40;  ///< Of a packet; 0: 20 to 80, drawn for each.
   batching mode = batching::ticks;
-  double jitter_ns = 50e3;    ///< Mean of the exponential delay of each reading.
-  double loss = 0.0;          ///< How probable it is that a run of packets is lost here.
+  double jitter_ns = 50e3;    ///< Mean of the exponential delay of each read.
+  double loss = 0.0;          ///< The probability that a run of packets is lost here.
   double loss_length = 1.0;   ///< Mean length of the run.
-  double stalls_per_s = 0.0;  ///< When the reading program sleeps, for up to a second.
+  double stalls_per_s = 0.0;  ///< How often the reading program is suspended, for up to a second.
   double outage_at_s = 0.0;   ///< When all packets of `outage_s` are lost.
   double outage_s = 0.0;
   double baud = 230400.0;  ///< 0: bytes take no time.
-  double delay_ns = 0.0;   ///< Of all bytes, after the line.
+  double delay_ns = 0.0;   ///< Of all bytes, after the connection.
   std::int64_t start_ns = 1'000'000'000'000;
 };
 
@@ -44,14 +46,14 @@ struct delivery {
   decoded packet;
   std::int64_t arrival_ns = 0;
   std::array<double, max_samples> measured_ns{};  ///< After options::start_ns.
-  int lost_samples = 0;        ///< Measured after the delivery before this, and never delivered,
+  int lost_samples = 0;        ///< Measured after the previous delivery, and never delivered,
   std::size_t lost_bytes = 0;  ///< in packets of so many bytes.
-  std::size_t seen_bytes = 0;  ///< So many of its bytes came with a reading before the last;
-  std::int64_t seen_ns = 0;    ///< that was then.
+  std::size_t seen_bytes = 0;  ///< Bytes of it that came with a read before the last one;
+  std::int64_t seen_ns = 0;    ///< the time of that read.
 };
 
-/// A device, its line and the program that reads it. Allocates nothing; the same on every processor
-/// but for the last bits of libm.
+/// A device, its connection and the program that reads it. Allocates nothing; the same on every
+/// processor except for the last bits of libm.
 class model {
  public:
   explicit model(const options& o) : o_(o), state_(o.seed * 0x9E3779B97F4A7C15U + 1) {
@@ -130,7 +132,7 @@ class model {
     return d;
   }
 
-  /// A packet goes over the line when it is complete and the line is free.
+  /// A packet is transmitted when it is complete and the connection is free.
   void send(delivery& d) {
     const std::size_t size = packet_size(d.packet.sample_count);
     const double byte_ns = o_.baud > 0.0 ? 10e9 / o_.baud : 0.0;
@@ -143,10 +145,10 @@ class model {
       d.seen_ns = read(before);
     }
     d.arrival_ns = read(handed);
-    if (d.seen_ns == d.arrival_ns) d.seen_bytes = 0;  // one reading gave all of it
+    if (d.seen_ns == d.arrival_ns) d.seen_bytes = 0;  // one read returned all of it
   }
 
-  /// When what came at `t` is handed over, and when that was done last before.
+  /// When bytes that arrived at `t` are delivered, and when the previous delivery was.
   double handed_over(double t, double& before) {
     switch (o_.mode) {
       case batching::direct:
@@ -174,7 +176,7 @@ class model {
     return next;
   }
 
-  /// When the program reads what was handed over at `t`.
+  /// When the program reads what was delivered at `t`.
   std::int64_t read(double t) {
     if (o_.stalls_per_s > 0.0) {
       while (t > stall_end_ns_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How many cases a randomised test tries: the same ones each time, more of them on demand.
+// How many cases a randomised test tries: the same ones each time, more of them on request.
 #pragma once
 
 #include <gtest/gtest.h>

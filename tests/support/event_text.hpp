@@ -8,13 +8,13 @@
 #include <string_view>
 #include <variant>
 
-#include "g4lidar/packet.hpp"
-#include "g4lidar/response.hpp"
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 
 namespace g4lidar::transcript {
 
-/// A short line of text. What does not fit is cut off.
+/// A short line of text. Longer text is cut off.
 class line {
  public:
   constexpr line& operator<<(std::string_view text) {
@@ -81,20 +81,6 @@ constexpr void write_angle(line& out, int sixty_fourths) {
     out << "scan_started";
   }
   return out;
-}
-
-[[nodiscard]] constexpr std::string_view name_of(skip_reason reason) {
-  switch (reason) {
-    case skip_reason::noise:
-      return "noise";
-    case skip_reason::bad_header:
-      return "bad_header";
-    case skip_reason::bad_checksum:
-      return "bad_checksum";
-    case skip_reason::truncated:
-      return "truncated";
-  }
-  return "?";
 }
 
 [[nodiscard]] constexpr line text_of(const skipped& gone) {

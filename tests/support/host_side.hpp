@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The host's side of a simulated G4, in virtual time: asks, listens, and keeps the time.
+// The host's side of a simulated G4, in virtual time: sends commands, reads, and keeps the time.
 #pragma once
 
 #include <array>
@@ -11,8 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "g4lidar/stream_parser.hpp"
 
 namespace g4lidar::test {
 
@@ -21,7 +22,7 @@ using byte_vector = std::vector<std::uint8_t>;
 inline constexpr std::int64_t ms = 1'000'000;
 inline constexpr std::int64_t second = 1'000 * ms;
 
-/// What was heard, taken apart.
+/// The received bytes, parsed.
 struct heard {
   byte_vector bytes;
   std::size_t packets = 0;
@@ -64,7 +65,7 @@ class host_side {
   void send(std::uint8_t code) { twin.write(std::array<std::uint8_t, 2>{0xA5, code}, now_ns); }
   void send(command code) { send(static_cast<std::uint8_t>(code)); }
 
-  /// All bytes that come within this time.
+  /// All bytes that arrive within this time.
   byte_vector listen(std::int64_t for_ns) {
     const std::int64_t end_ns = now_ns + for_ns;
     byte_vector all;

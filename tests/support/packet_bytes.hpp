@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Builds the bytes of packets and replies for tests; the checksum is the reference's, not the
-// library's.
+// Builds the bytes of packets and responses for tests; the checksum is that of the reference, not
+// of the library.
 #pragma once
 
 #include <cstddef>
@@ -23,15 +23,15 @@ inline void append(buffer& out, const buffer& more) {
   out.insert(out.end(), more.begin(), more.end());
 }
 
-/// Writes into `packet` the checksum that its other bytes ask for, as many as its LSN says.
+/// Writes the checksum of the other bytes to `packet`; the number of samples is its LSN.
 inline void fix_checksum(buffer& packet) {
   const int sum = reference::checksum_of(reference::window(packet, 0));
   packet[8] = static_cast<std::uint8_t>(sum & 0xFF);
   packet[9] = static_cast<std::uint8_t>(sum >> 8);
 }
 
-/// A packet with these fields as they stand on the wire, check bits included, and a checksum that
-/// agrees. Nothing is asked of the fields.
+/// A packet with these raw fields, including check bits, and a matching checksum. The fields may be
+/// impossible.
 [[nodiscard]] inline buffer packet_bytes(unsigned ct, unsigned fsa, unsigned lsa,
                                          const std::vector<std::uint16_t>& samples) {
   buffer out{0xAA, 0x55, static_cast<std::uint8_t>(ct), static_cast<std::uint8_t>(samples.size())};
@@ -43,7 +43,7 @@ inline void fix_checksum(buffer& packet) {
   return out;
 }
 
-/// The wire's form of an angle in 1/64 of a degree, with its check bit.
+/// An angle in 1/64 of a degree in the format of the protocol, with its check bit.
 [[nodiscard]] constexpr unsigned wire_angle(unsigned sixty_fourths) {
   return sixty_fourths << 1 | 1U;
 }
@@ -57,7 +57,7 @@ inline void fix_checksum(buffer& packet) {
   return samples;
 }
 
-/// A reply: the seven bytes of its header and its content.
+/// A response: the seven bytes of its header and its content.
 [[nodiscard]] inline buffer response_bytes(std::uint8_t length, std::uint8_t top_bits,
                                            std::uint8_t type, const buffer& content) {
   buffer out{0xA5, 0x5A, length, 0, 0, top_bits, type};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Packets as a test wants them: any header and samples, with the checksum that belongs to them.
+// Packets for tests: any header and samples, with the matching checksum.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "g4lidar/bytes.hpp"
-#include "g4lidar/packet.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/packet.hpp"
 
 namespace g4lidar::made {
 

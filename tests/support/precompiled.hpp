@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What most tests include, compiled once where G4LIDAR_TEST_PCH is on. Nothing of our own is here: a
-// change to it would compile every test again. A test includes what it uses all the same.
+// The headers that most tests include, compiled once if G4LIDAR_TEST_PCH is on. It contains no
+// header of this library: a change of one would recompile every test. Each test includes the
+// headers that it uses nevertheless.
 #pragma once
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Builds streams of packets, replies, noise and false starts, damages them, and remembers which
-// frames came through untouched.
+// Builds streams of packets, responses, noise and false starts, damages them, and remembers the
+// undamaged frames.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +26,10 @@ class dice {
     z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
     return z ^ (z >> 31);
   }
-  /// One of 0 to `n` - 1; `n` is below 2^32.
+  /// A number from 0 to `n` - 1; `n` is below 2^32.
   std::size_t below(std::size_t n) { return static_cast<std::uint32_t>(next() % n); }
   std::uint8_t byte() { return static_cast<std::uint8_t>(next() & 0xFFU); }
-  /// A byte that means something to the parser more often than not.
+  /// A byte that usually has a meaning for the parser.
   std::uint8_t telling_byte() {
     constexpr std::array<std::uint8_t, 16> telling{0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01,
                                                    0x02, 0x03, 0x04, 0x05, 0x14, 0x40, 0x50, 0x81};
@@ -40,36 +40,35 @@ class dice {
   std::uint64_t state_;
 };
 
-/// What the part of a stream, or the damage done to it, is made from: a kind, and a seed for the
-/// rest.
+/// The seed of a part of a stream, or of its damage: a kind, and a seed for the rest.
 using recipe = std::pair<std::uint8_t, std::uint64_t>;
 
 inline constexpr std::uint8_t part_kinds = 13;
 inline constexpr std::uint8_t damage_kinds = 6;
 
-/// A stretch of the damaged stream that is a frame as it was sent.
+/// A stretch of the damaged stream that is an unchanged frame.
 struct intact_frame {
   std::size_t offset;
   std::size_t size;
 };
 
-/// A stream that is put together from parts and then damaged.
+/// A stream that is built from parts and then damaged.
 class random_stream {
  public:
   void add(const recipe& part);
   void damage(const recipe& harm);
 
-  /// The bytes. False headers of the kind that a checksum agrees with get theirs here, last of all.
+  /// The bytes. The checksums of false headers that must match are written here, last.
   [[nodiscard]] buffer data() const;
-  /// The frames none of whose bytes was touched, by their offsets in data().
+  /// The undamaged frames, by their offsets in data().
   [[nodiscard]] std::vector<intact_frame> intact_frames() const;
 
  private:
   struct cell {
     std::uint8_t value;
-    int frame;          // which frame it is of; -1: of none, or touched
-    std::size_t index;  // its place in the frame
-    bool seal;          // first byte of a header whose checksum is made to agree
+    int frame;          // the frame that it belongs to; -1: none, or damaged
+    std::size_t index;  // its index in the frame
+    bool seal;          // first byte of a header whose checksum must match
   };
 
   void add_bytes(const buffer& more) {
@@ -125,7 +124,7 @@ inline buffer random_stream::response(dice& random) {
   }
 }
 
-/// The first bytes of a header that is possible, and nothing true behind it.
+/// The first bytes of a possible header, without a frame behind it.
 inline buffer random_stream::false_header(dice& random, std::size_t size) {
   buffer out{0xAA, 0x55, random.byte(), static_cast<std::uint8_t>(1 + random.below(80))};
   append_u16(out, wire_angle(static_cast<unsigned>(random.below(23040))));
@@ -159,25 +158,25 @@ inline void random_stream::add(const recipe& part) {
     }
     case 7:
       return add_bytes(false_header(random, 2 + random.below(9)));
-    case 8: {  // a reply that breaks off
+    case 8: {  // an incomplete response
       buffer reply = response(random);
       reply.resize(1 + random.below(reply.size()));
       return add_bytes(reply);
     }
-    case 9: {  // a reply that is not possible
+    case 9: {  // an impossible response
       buffer reply = response(random);
       const std::size_t at = random.below(reply.size());
       const std::size_t more = random.below(2) == 0 ? 1 : 1 + random.below(255);
       reply[at] = static_cast<std::uint8_t>(reply[at] + more);
       return add_bytes(reply);
     }
-    case 10: {  // a packet that is not possible, or whose checksum fails
+    case 10: {  // an impossible packet, or one with a wrong checksum
       buffer bad = packet(random, 1 + random.below(20), random.byte());
       const std::size_t at = random.below(bad.size());
       bad[at] = static_cast<std::uint8_t>(bad[at] + 1 + random.below(255));
       return add_bytes(bad);
     }
-    case 11: {  // a header to which the checksum will agree, whatever follows
+    case 11: {  // a header with a matching checksum, whatever follows
       const std::size_t at = cells_.size();
       add_bytes(false_header(random, 10));
       cells_[at].seal = true;
@@ -205,7 +204,7 @@ inline void random_stream::damage(const recipe& harm) {
     case 2:  // some bytes lost
       cells_.erase(place, place + static_cast<std::ptrdiff_t>(length));
       return;
-    case 3: {  // some bytes too many
+    case 3: {  // some additional bytes
       std::vector<cell> more;
       for (std::size_t i = 0; i < length; ++i)
         more.push_back({random.telling_byte(), -1, 0, false});
@@ -215,7 +214,7 @@ inline void random_stream::damage(const recipe& harm) {
     case 4:  // a burst
       for (std::size_t i = at; i < at + length; ++i) cells_[i] = {random.byte(), -1, 0, false};
       return;
-    default:  // the end is cut off
+    default:  // the end is missing
       if (random.below(4) == 0) cells_.erase(place, cells_.end());
       return;
   }
@@ -227,7 +226,7 @@ inline buffer random_stream::data() const {
   for (std::size_t at = cells_.size(); at-- > 0;) {
     const std::size_t left = cells_.size() - at;
     if (!cells_[at].seal || left < 10 || left < 10 + 2 * std::size_t{out[at + 3]}) continue;
-    // The two bytes of a checksum that damage has moved onto a frame stay as they are.
+    // The two bytes of a checksum that damage has moved onto a frame are not changed.
     if (cells_[at + 8].frame >= 0 || cells_[at + 9].frame >= 0) continue;
     const int sum = reference::checksum_of(reference::window(out, at));
     out[at + 8] = static_cast<std::uint8_t>(sum & 0xFF);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the parser ought to find in a whole input, written a second time and in another way: without
-// a line of the library, byte by byte and without regard to speed. It judges the tests' streams.
+// The expected results of the parser for a complete input, written independently: without code of
+// the library, byte by byte and without regard to speed. The tests compare with it.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace reference {
 
-/// What a stretch of the input is.
+/// The kind of a stretch of the input.
 enum class kind { packet, response, noise, bad_header, bad_checksum, truncated };
 
 /// A stretch of the input: a frame, or neighbouring skipped bytes of one reason.
@@ -50,13 +50,13 @@ Stream& operator<<(Stream& out, const stretch& s) {
   return out;
 }
 
-/// Some bytes of an input by their place in it; those behind its end read as nothing.
+/// A part of an input by its offset; bytes behind its end are missing.
 class window {
  public:
   window(const std::vector<std::uint8_t>& input, std::size_t from) : input_(input), from_(from) {}
 
   [[nodiscard]] std::size_t left() const { return input_.size() - from_; }
-  /// Byte `i`, or -1 where the input has ended.
+  /// Byte `i`, or -1 behind the end of the input.
   [[nodiscard]] int operator[](std::size_t i) const {
     return i < left() ? static_cast<int>(input_[from_ + i]) : -1;
   }
@@ -66,8 +66,8 @@ class window {
   std::size_t from_;
 };
 
-/// Whether some valid packet header begins with the first `k` bytes, 1 <= k <= 8. What is not there
-/// yet is taken at its most favourable: a missing upper byte of an angle as 0.
+/// Whether some valid packet header begins with the first `k` bytes, 1 <= k <= 8. Missing bytes are
+/// assumed to be favourable: a missing upper byte of an angle counts as 0.
 [[nodiscard]] inline bool could_be_packet(const window& in, std::size_t k) {
   const auto angle_ok = [&](std::size_t low) {
     if (k <= low) return true;
@@ -79,7 +79,7 @@ class window {
          angle_ok(4) && angle_ok(6);
 }
 
-/// The checksum as the protocol page lists it: PH, FSA, the samples, CT with LSN, LSA.
+/// The checksum in the order of the protocol page: PH, FSA, the samples, CT with LSN, LSA.
 [[nodiscard]] inline int checksum_of(const window& in) {
   const auto word = [&](std::size_t i) { return in[i] + 256 * in[i + 1]; };
   int sum = 0x55AA;
@@ -92,7 +92,7 @@ class window {
   return sum;
 }
 
-/// Whether some valid reply begins with the first `k` bytes.
+/// Whether some valid response begins with the first `k` bytes.
 [[nodiscard]] inline bool could_be_response(const window& in, std::size_t k) {
   struct form {
     int length, top_bits, type, content;
@@ -121,11 +121,11 @@ class window {
   return false;
 }
 
-/// What begins at one place of the input, seen for itself.
+/// What begins at one offset of the input, without its context.
 struct start {
   enum { no_start, refused, unfinished, frame } state;
-  kind what;         ///< Of a frame: packet or response. Refused: why.
-  std::size_t size;  ///< Of a frame; refused: the bytes from the start to what spoke against it.
+  kind what;         ///< Of a frame: packet or response. Refused: the reason.
+  std::size_t size;  ///< Of a frame; refused: the bytes from the start to the first impossible one.
 };
 
 [[nodiscard]] inline start packet_start_at(const window& in) {
@@ -145,7 +145,7 @@ struct start {
 [[nodiscard]] inline start response_start_at(const window& in) {
   std::size_t k = 1;
   while (k <= in.left() && could_be_response(in, k)) {
-    // A reply is whole when nothing can follow: no reply is another one's beginning.
+    // A response is complete when nothing can follow: no response is the beginning of another.
     const int length = k >= 7 ? (in[2] == 5 ? 0 : in[2]) : -1;
     if (length >= 0 && k == 7 + static_cast<std::size_t>(length)) {
       return {start::frame, kind::response, k};
@@ -164,18 +164,18 @@ struct start {
   return {start::no_start, kind::noise, 1};
 }
 
-/// The whole input taken apart.
+/// The complete input, parsed.
 struct reading {
   std::vector<stretch> stretches;  ///< From the first byte to the last, without a gap.
-  std::size_t held_from;           ///< What lies from here on is told by finish() only.
+  std::size_t held_from;           ///< The bytes from here on are reported by finish() only.
 };
 
-/// Reads `input` from its first byte to its last, with finish() at the end. Each byte is part of a
-/// frame or has a reason. A refused start gives its reason to all bytes that it had laid claim to,
-/// unless an earlier one did so before it, and until a frame begins.
+/// Parses `input` from its first byte to its last, with finish() at the end. Each byte is part of a
+/// frame or has a reason. A refused start gives its reason to all bytes that it claimed, unless an
+/// earlier one claimed them before, and until a frame begins.
 [[nodiscard]] inline reading read(const std::vector<std::uint8_t>& input) {
   reading result{{}, input.size()};
-  bool ended = false;  // the input does not suffice to tell: from here on finish() decides
+  bool ended = false;  // the input is not sufficient to decide: from here on finish() decides
   std::size_t claimed_up_to = 0;
   kind claimed_for = kind::noise;
   const auto add = [&](std::size_t offset, std::size_t size, kind what, bool mergeable) {

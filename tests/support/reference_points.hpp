@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the points of a packet ought to be, in double precision from the manual's formulas and with
-// the system's arctangent: without a line of the library.
+// The expected points of a packet, in double precision from the formulas of the manual and with the
+// system's arctangent: without code of the library.
 #pragma once
 
 #include <cmath>
@@ -12,9 +12,9 @@
 
 namespace reference {
 
-/// The second-level correction as the manual writes it, in degrees.
+/// The second-level correction by the formula of the manual, in degrees; for no return, its limit.
 [[nodiscard]] inline double correction_deg(std::uint16_t raw) {
-  if (raw == 0) return 0.0;
+  if (raw == 0) return std::atan(-21.8 / 155.3) * 180.0 / std::numbers::pi;
   const double d = raw / 4.0;
   return std::atan(21.8 * (155.3 - d) / (155.3 * d)) * 180.0 / std::numbers::pi;
 }
@@ -37,7 +37,7 @@ struct sample {
   double angle_deg;        ///< Corrected; in [0, 360].
 };
 
-/// The samples of a packet that may be believed, or none if it is suspect.
+/// The samples of a packet, or none if it is suspect.
 [[nodiscard]] inline std::vector<sample> samples_of(std::span<const std::uint8_t> packet) {
   const auto word = [&](std::size_t at) { return packet[at] + 256 * packet[at + 1]; };
   const int count = packet[3];

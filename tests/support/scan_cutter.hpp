@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Packets into the assembler, and the scans that come out kept beside it.
+// Passes packets to the assembler, and stores the scans.
 #pragma once
 
 #include <array>
@@ -8,20 +8,20 @@
 #include <optional>
 #include <vector>
 
-#include "g4lidar/correction.hpp"
-#include "g4lidar/decode.hpp"
-#include "g4lidar/packet.hpp"
-#include "g4lidar/scan.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/scan_assembler.hpp"
 
 namespace g4lidar::test {
 
-/// A scan with points of its own, which `view.points` shows. To be moved, not copied.
+/// A scan with points of its own, which `view.points` refers to. Can be moved, not copied.
 struct kept_scan {
   scan view;
   std::vector<point> points;
 };
 
-/// Feeds an assembler as a program would, and keeps what it gives.
+/// Feeds an assembler like a program, and stores its scans.
 class scan_cutter {
  public:
   explicit scan_cutter(std::size_t room) : storage_(room), assembler_(storage_) {}
@@ -40,14 +40,15 @@ class scan_cutter {
   }
   void add(skipped gone) { assembler_.add(gone); }
   void lost() { assembler_.lost(); }
+  void set_sample_rate(std::uint32_t hz) { assembler_.set_sample_rate(hz); }
   void finish() {
     while (const std::optional<scan> found = assembler_.finish()) keep(*found);
   }
 
   [[nodiscard]] const std::vector<kept_scan>& scans() const { return scans_; }
-  /// All points so far, as they went in.
+  /// All points so far, in input order.
   [[nodiscard]] const std::vector<point>& put_in() const { return put_in_; }
-  /// All points of all scans so far, one behind the other.
+  /// All points of all scans so far, one after the other.
   [[nodiscard]] std::vector<point> came_out() const {
     std::vector<point> all;
     for (const kept_scan& kept : scans_) {

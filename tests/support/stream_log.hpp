@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the parser over an input cut into pieces that live no longer than they must, and puts down
-// what it finds in the words of the reference, so that the two can be compared.
+// Runs the parser over an input in pieces with the shortest possible lifetime, and logs its results
+// in the terms of the reference, so that the two can be compared.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "support/reference_parser.hpp"
 
 namespace g4lidar::test {
@@ -41,12 +41,12 @@ using buffer = std::vector<std::uint8_t>;
   return std::get<skipped>(found).count;
 }
 
-/// Watches a parser from outside: puts its events together and notes the first promise it breaks.
+/// Observes a parser: collects its events and records the first promise that it breaks.
 class stream_log {
  public:
   explicit stream_log(const buffer& whole) : whole_(whole) {}
 
-  /// Feeds the next `count` bytes of the whole input, in memory of their own.
+  /// Feeds the next `count` bytes of the complete input, in memory of their own.
   void feed(stream_parser& parser, std::size_t count) {
     const auto from = whole_.begin() + static_cast<std::ptrdiff_t>(fed_);
     const buffer piece(from, from + static_cast<std::ptrdiff_t>(count));
@@ -72,7 +72,7 @@ class stream_log {
   }
 
   [[nodiscard]] const std::vector<reference::stretch>& stretches() const { return stretches_; }
-  /// Where the bytes began that were held when finish() was called.
+  /// The offset of the bytes that were held when finish() was called.
   [[nodiscard]] std::size_t held_from() const { return held_from_; }
   /// The first broken promise; empty if none is.
   [[nodiscard]] const std::string& complaint() const { return complaint_; }
@@ -107,13 +107,13 @@ class stream_log {
 
   const buffer& whole_;
   std::size_t fed_ = 0;
-  std::size_t told_ = 0;  // bytes that the events so far speak of
+  std::size_t told_ = 0;  // bytes covered by the events so far
   std::size_t held_from_ = 0;
   std::vector<reference::stretch> stretches_;
   std::string complaint_;
 };
 
-/// The first difference between the log and the reference, in words; empty if there is none.
+/// The first difference between the log and the reference, as text; empty if there is none.
 [[nodiscard]] inline std::string difference(const stream_log& log,
                                             const reference::reading& wanted) {
   if (!log.complaint().empty()) return log.complaint();

@@ -10,12 +10,12 @@
 #include <string_view>
 #include <variant>
 
-#include "g4lidar/stream_parser.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "support/event_text.hpp"
 
 namespace g4lidar::transcript {
 
-/// The most bytes that one section of a transcript sends.
+/// The maximum number of input bytes of a section of a transcript.
 inline constexpr std::size_t max_input = 1024;
 
 /// One line of a transcript without its comment.
@@ -25,7 +25,7 @@ struct script_line {
   std::size_t number = 0;  ///< From 1.
 };
 
-/// Gives the lines of a transcript one after the other, but for the empty ones.
+/// Returns the lines of a transcript one after the other, except empty ones.
 class reader {
  public:
   constexpr explicit reader(std::string_view transcript) : rest_(transcript) { advance(); }
@@ -58,8 +58,8 @@ class reader {
   return -1;
 }
 
-/// Writes the bytes that `hex` spells ("AA 55") to the front of `out`; how many, or nothing if it is
-/// not pairs of digits or does not fit.
+/// Writes the bytes of the text `hex` ("AA 55") to the front of `out`; returns their number, or
+/// nothing if it is not pairs of digits or does not fit.
 [[nodiscard]] constexpr std::optional<std::size_t> read_hex(std::string_view hex,
                                                             std::span<std::uint8_t> out) {
   std::size_t count = 0;
@@ -77,13 +77,14 @@ class reader {
   return count;
 }
 
-/// Feeds `input` to `parser`, cut by `cut(from) -> bytes of the next piece`, then ends it, and shows
-/// `emit` each line of the log, neighbouring skips of one reason as one. False, after a line that
-/// says so, if a frame is not the input's own bytes at its place or if bytes went astray.
+/// Feeds `input` to `parser`, cut by `cut(from) -> bytes of the next piece`, then ends it, and
+/// passes each line of the log to `emit`; adjacent skips with one reason are one line. Returns
+/// false, after a line with the error, if a frame differs from the bytes of the input or if bytes
+/// are missing.
 template <class Cut, class Emit>
 [[nodiscard]] constexpr bool log_section(stream_parser& parser, bytes input, Cut&& cut,
                                          Emit&& emit) {
-  std::size_t told = 0;  // bytes of the input that the events so far speak of
+  std::size_t told = 0;  // bytes of the input covered by the events so far
   bool sound = true;
   skipped pending{0, skip_reason::noise};
   const auto show = [&](const line& text) { emit(text.view()); };
@@ -125,7 +126,7 @@ template <class Cut, class Emit>
   return sound;
 }
 
-/// Where a replay left its transcript; `ok` if nowhere.
+/// The first difference between a replay and its transcript; `ok` if there is none.
 struct outcome {
   bool ok = true;
   std::size_t line_number = 0;
@@ -133,7 +134,7 @@ struct outcome {
   line got;
 };
 
-/// Replays all sections of `transcript` through one parser, each cut by `cut`. `storage` takes the
+/// Replays all sections of `transcript` through one parser, each cut by `cut`. `storage` holds the
 /// input of one section at a time.
 template <class Cut>
 [[nodiscard]] constexpr outcome replay(std::string_view transcript, std::span<std::uint8_t> storage,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The simulated device as lines of a driver, in virtual time.
+// The simulated device as a transport of a driver, in virtual time.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 #include <span>
 #include <string_view>
 
-#include "g4lidar/connector.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device.hpp"
+#include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar::test {
 
-/// A device and the time, shared by everything on it.
+/// A device and the time, shared by all transports to it.
 struct virtual_bench {
   explicit virtual_bench(const sim::device_options& options = {},
                          std::span<const sim::fault> faults = {})
@@ -23,8 +23,10 @@ struct virtual_bench {
 
   sim::device device;
   std::int64_t now_ns = 1'000'000'000;
-  std::int64_t step_ns = 1'000;  ///< That each call takes.
-  std::uint32_t baud = 230400;   // that the line says it has
+  std::int64_t step_ns = 1'000;   ///< The time that each call takes.
+  std::uint32_t baud = 230400;    // of the transport
+  std::size_t kept_bytes = 4095;  ///< While nobody reads.
+  std::size_t largest_read = 0;
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
   std::uint64_t pauses = 0;
@@ -44,6 +46,7 @@ class virtual_line final : public transport {
       if (is_gone()) return failure(task::reading, problem::gone, name());
       if (bench_->woken()) return failure(task::reading, problem::cancelled, name());
       const std::size_t count = bench_->device.read(out, bench_->now_ns);
+      bench_->largest_read = std::max(bench_->largest_read, count);
       if (count > 0 || bench_->now_ns >= deadline_ns) return received{count, bench_->now_ns};
       wait(deadline_ns);
     }
@@ -61,7 +64,7 @@ class virtual_line final : public transport {
     while (bench_->now_ns < deadline_ns) {
       if (is_gone()) return failure(task::reading, problem::gone, name());
       if (bench_->woken()) return failure(task::reading, problem::cancelled, name());
-      // Bytes may be there all the time: only the plug is watched.
+      // Bytes may arrive at any time: only the unplug is checked.
       bench_->now_ns = std::min(deadline_ns, bench_->now_ns + 1'000'000);
     }
     return {};
@@ -70,9 +73,10 @@ class virtual_line final : public transport {
   void wake() noexcept override { bench_->wake = true; }
   [[nodiscard]] std::string_view name() const noexcept override { return "virtual"; }
   [[nodiscard]] std::uint32_t baud() const noexcept override { return bench_->baud; }
+  [[nodiscard]] std::size_t kept_bytes() const noexcept override { return bench_->kept_bytes; }
 
  private:
-  /// A line that was opened before the plug was pulled stays dead.
+  /// A transport that was opened before an unplug stays invalid.
   [[nodiscard]] bool is_gone() noexcept {
     return !bench_->device.is_plugged(bench_->now_ns) || bench_->device.replugs() != replugs_;
   }
@@ -85,7 +89,7 @@ class virtual_line final : public transport {
   std::uint64_t replugs_;
 };
 
-/// Gives lines to the device while it is plugged in.
+/// Returns transports to the device while it is plugged in.
 class virtual_connector final : public connector {
  public:
   explicit virtual_connector(virtual_bench& bench) : bench_(&bench) {}

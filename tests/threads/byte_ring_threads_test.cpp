@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ring of the microcontroller's example: a thread plays the interrupt. Run under the thread sanitizer,
-// too.
+// The ring of the microcontroller's example: a thread takes the role of the interrupt. Also run
+// with the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ std::vector<std::uint8_t> all_of(std::span<const std::uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(ByteRing, BytesComeOutInOrderRoundAndRound) {
+TEST(ByteRing, ReturnsBytesInOrder) {
   byte_ring<8> ring;
   std::array<std::uint8_t, 5> out;
   EXPECT_TRUE(ring.take(out).empty());
@@ -36,7 +36,7 @@ TEST(ByteRing, BytesComeOutInOrderRoundAndRound) {
   EXPECT_EQ(ring.overruns(), 0U);
 }
 
-TEST(ByteRing, WhatFindsNoRoomIsCountedAndTheRestStays) {
+TEST(ByteRing, BytesWithoutRoom_AreCounted) {
   byte_ring<4> ring;
   for (std::uint8_t byte = 1; byte <= 7; ++byte) ring.push(byte);
   EXPECT_EQ(ring.overruns(), 3U);
@@ -48,15 +48,15 @@ TEST(ByteRing, WhatFindsNoRoomIsCountedAndTheRestStays) {
   EXPECT_EQ(ring.overruns(), 3U);
 }
 
-TEST(ByteRing, NoByteIsTornTwiceOrOutOfPlaceBetweenTwoThreads) {
+TEST(ByteRing, BetweenTwoThreads_NoByteIsLostOrRepeated) {
   const auto count = static_cast<std::uint32_t>(g4lidar::test::scaled(20'000));
   byte_ring<64> ring;
   std::atomic<bool> is_done{false};
-  std::uint32_t pushed = 0;  // that found room
+  std::uint32_t pushed = 0;  // that had room
   std::thread producer([&] {
     for (std::uint32_t tried = 0; tried < count; ++tried) {
       const std::uint32_t lost = ring.overruns();
-      ring.push(static_cast<std::uint8_t>(pushed));  // the next number is that of the next place
+      ring.push(static_cast<std::uint8_t>(pushed));  // the next number is that of the next position
       if (ring.overruns() == lost) {
         ++pushed;
       } else {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ring at full speed: one writer, three readers, every point told whole from torn, every point
-// read or counted as missed. Run under the thread sanitizer too.
+// The ring at full speed: one writer, three readers, every torn point is detected, every point is
+// read or counted as missed. Also run with the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "g4lidar/point_ring.hpp"
+#include "g4lidar/core/point_ring.hpp"
 #include "support/test_scale.hpp"
 
 namespace g4lidar {
@@ -30,8 +30,8 @@ const auto scale = [] { return static_cast<std::uint64_t>(test::test_scale()); }
 
 using point_words = std::array<std::uint32_t, sizeof(point) / 4>;
 
-/// A point of which every word follows from its number, and no word is that of a neighbour: a mixture
-/// of two points has no number.
+/// A point in which every word follows from its number and differs from that of its neighbours: a
+/// mixture of two points has no number.
 point_words words_of(std::uint64_t number) {
   point_words words;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -40,15 +40,16 @@ point_words words_of(std::uint64_t number) {
   return words;
 }
 
-/// What one reader saw.
+/// The results of one reader.
 struct account {
   std::uint64_t read = 0;
   std::uint64_t missed = 0;
   std::uint64_t wrong = 0;  ///< Torn, repeated or out of place.
-  bool overtook = false;    ///< Something was ahead of what had been written.
+  bool overtook = false;    ///< A point was read before it was written.
 };
 
-/// Takes what there is, up to `out`'s room, and holds each point against the number it must have.
+/// Reads the available points, up to the size of `out`, and compares each point with its expected
+/// number.
 template <class Reader>
 std::size_t take(Reader& reader, std::span<point> out, std::uint64_t first, account& sum) {
   const ring_read got = reader.read(out);
@@ -62,7 +63,7 @@ std::size_t take(Reader& reader, std::span<point> out, std::uint64_t first, acco
 }
 
 /// One writer pushes `total` points from the number `first` on, in pushes of all sizes up to
-/// `longest_push`, while three readers of different habits read.
+/// `longest_push`, while three readers with different read sizes read.
 template <std::size_t Capacity, class Word>
 void run(std::uint64_t first, std::uint64_t total, std::size_t longest_push) {
   const auto ring = std::make_unique<point_ring<Capacity, Word>>(first);
@@ -76,7 +77,7 @@ void run(std::uint64_t first, std::uint64_t total, std::size_t longest_push) {
     std::vector<point> out(habit == 1 ? 1 : Capacity);
     start.arrive_and_wait();
     for (std::uint64_t round = 0;; ++round) {
-      const bool last = done.load();  // before the read: what was written before it is all there
+      const bool last = done.load();  // before the read: everything written before it is available
       const std::size_t count = take(reader, out, first, sum);
       if (sum.read + sum.missed > total) sum.overtook = true;
       if (last && count == 0) break;
@@ -130,22 +131,22 @@ TYPED_TEST_SUITE(RingThreads, words, word_names);
 
 constexpr std::uint64_t low_carry = std::uint64_t{1} << 32;
 
-TYPED_TEST(RingThreads, NoPointIsTornAndEachIsReadOrCounted) {
+TYPED_TEST(RingThreads, NoPointIsTorn_EachIsReadOrCounted) {
   run<64, TypeParam>(0, 2'000'000 * scale(), 24);
 }
 
-TYPED_TEST(RingThreads, ALargeRingAcrossTheCarryOfTheLowWord) {
+TYPED_TEST(RingThreads, LargeRing_AcrossTheCarryOfTheLowWord) {
   const std::uint64_t total = 2'000'000 * scale();
   run<4096, TypeParam>(low_carry - total / 2, total, 80);
 }
 
-TYPED_TEST(RingThreads, ASmallRingAcrossTheWrapOfTheWholeCount) {
+TYPED_TEST(RingThreads, SmallRing_AcrossTheWrapOfTheCount) {
   const std::uint64_t total = 1'000'000 * scale();
   run<8, TypeParam>(0 - total / 2, total, 13);
 }
 
-TEST(PublishedCountThreads, NeverLooksAcrossACarry) {
-  // The carry is met again and again: each round counts over it in small steps.
+TEST(PublishedCountThreads, Load_IsConsistentAcrossACarry) {
+  // The carry occurs repeatedly: each round counts across it in small steps.
   constexpr std::uint64_t around = 24;
   const std::uint64_t rounds = 20'000 * scale();
   published_count<std::uint32_t> count(0);

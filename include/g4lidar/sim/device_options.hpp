@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// How a simulated G4 is: what stands in its memory, and which way each open question falls.
+// The properties of a simulated G4: its stored settings, and the choice for each open question.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-#include "g4lidar/command.hpp"
-#include "g4lidar/export.hpp"
-#include "g4lidar/response.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
 #include "g4lidar/sim/scanner.hpp"
 
 namespace g4lidar::sim {
 
-/// What commands set, as it stands in the device. By default as a G4 comes.
+/// The settings that commands change, as stored in the device. The defaults are those of a G4.
 struct device_settings {
   low_power idle_power = low_power::on;
   motor_direction direction = motor_direction::clockwise;
@@ -25,26 +25,26 @@ struct device_settings {
   friend bool operator==(const device_settings&, const device_settings&) = default;
 };
 
-/// What a step of the scan frequency does that would lead beyond 5 or 12 Hz.
+/// The effect of a step of the scan frequency beyond 5 or 12 Hz.
 enum class at_limit : std::uint8_t {
-  clamp,   ///< It goes to the limit.
-  refuse,  ///< It goes nowhere.
+  clamp,   ///< The frequency becomes the limit.
+  refuse,  ///< The frequency does not change.
 };
 
-/// What a command does that may not be sent while scanning.
+/// The effect of a command that must not be sent while scanning.
 enum class disturbance : std::uint8_t {
-  mid_packet,  ///< Its answer comes in the middle of a packet.
-  between,     ///< Its answer comes between two packets.
-  drops,       ///< As mid_packet, and the rest of that packet is lost.
-  ignored,     ///< Nothing: no answer, and it is not carried out.
+  mid_packet,  ///< It is answered in the middle of a packet.
+  between,     ///< It is answered between two packets.
+  drops,       ///< Like mid_packet, and the rest of that packet is lost.
+  ignored,     ///< No answer, and it is not executed.
 };
 
-/// Everything about a device that is no fault. By default a healthy G4, wherever that is known.
+/// All properties of a device that are not faults. By default a healthy G4, as far as it is known.
 struct device_options {
-  /// How it measures, and the seed of all that is random here. Its scan and ranging frequency are
-  /// the device's own defaults; `start_deg` is not used: each start has a random angle.
+  /// Measurement options, and the seed of everything random here. Its scan and ranging frequency
+  /// are the defaults of the device; `start_deg` is not used: each start has a random angle.
   scanner_options scanner;
-  /// What it answers to 90.
+  /// The answer to 90.
   device_information info{
       model_g4,
       3,
@@ -53,58 +53,67 @@ struct device_options {
       {'2', '0', '2', '1', '1', '0', '1', '0', '0', '0', '0', '7', '0', '0', '7', '3'}};
   health condition{health_status::ok, 0};
 
-  // The line.
+  // The connection.
   std::uint32_t baud = 230'400;
-  /// How long bytes wait in the USB bridge, drawn for each batch. A fault `batch` overrides it.
+  /// How long bytes wait in the USB bridge, random for each batch. A fault `batch` overrides it.
   std::int64_t batch_min_ns = 0;
   std::int64_t batch_max_ns = 1'000'000;
-  std::int64_t reaction_ns = 1'000'000;  ///< From a command's last byte to its effect and answer.
+  std::int64_t reaction_ns =
+      1'000'000;                     ///< From the last byte of a command to its effect and answer.
+  std::int64_t first_answer_ns = 0;  ///< Additional delay of the first answer after a boot.
+
+  // The start of a scan: the motor turns from the command on.
+  std::int64_t header_ns = 0;  ///< From the effect of the command to the scan header.
+  std::int64_t silence_ns =
+      0;  ///< From the header to the first packet; earlier measurements are not sent.
 
   // The motor.
   std::uint32_t acceleration_mhz_per_s = 14'000;  ///< Of the scan frequency; 7 Hz in half a second.
   std::int64_t standstill_ns = 60'000'000;        ///< Until the motor begins to move.
-  /// How far the speed wanders to either side, in millionths, with and without constant frequency,
-  /// and how long it takes there and back.
+  /// The deviation of the speed to either side, in millionths, with and without constant frequency,
+  /// and the period of the deviation.
   std::uint32_t motor_drift_ppm = 2'000;
   std::uint32_t free_motor_drift_ppm = 30'000;
   std::int64_t motor_drift_period_ns = 20'000'000'000;
-  /// What counter-clockwise does to the angles.
+  /// The effect of counter-clockwise rotation on the angles.
   turning counter_clockwise = turning::mirrored;
 
-  // What healthy devices send beside the protocol.
+  // What healthy devices send in addition to the protocol.
   bool stray_after_start = true;  ///< A 00 after the scan header.
   bool stray_before_zero = true;  ///< A random byte before every zero packet.
-  bool stop_truncates = true;     ///< A stop cuts the packet that is on the line.
-  bool boot_text = true;          ///< ASCII after a restart and after power has come.
-  bool boot_information = true;   ///< Then the device information, unasked.
+  bool stop_truncates = true;     ///< A stop truncates the packet that is being sent.
+  bool boot_text = true;          ///< ASCII after a restart and after power-on.
+  bool boot_information = true;   ///< Then the device information, without a query.
   std::int64_t boot_ns = 400'000'000;
 
   // Open questions of the protocol.
   at_limit frequency_at_limit = at_limit::clamp;
+  std::uint16_t highest_frequency_chz = 1200;  ///< The highest possible frequency.
   disturbance while_scanning = disturbance::mid_packet;
   bool settings_outlive_power = false;
   bool settings_outlive_restart = false;
-  bool answers_direction = true;  ///< To 08.
+  bool answers_direction = true;  ///< To command 08.
   bool answers_health_91 = true;
   bool answers_health_92 = true;
-  bool obeys_forced_stop = true;  ///< 00.
+  bool obeys_forced_stop = true;  ///< Command 00.
   bool obeys_restart_80 = true;
   bool obeys_restart_40 = true;
-  bool error_refuses_start = false;     ///< With health error, 60 is not answered.
-  bool start_again_answers = false;     ///< 60 while scanning brings another header.
-  bool header_after_protection = true;  ///< 60 brings a header when the protection had stopped it.
+  bool error_refuses_start = false;  ///< With a health error, 60 is not answered.
+  bool start_again_answers = false;  ///< 60 during a scan is answered with another header.
+  bool header_after_protection =
+      true;  ///< 60 is answered with a header after a stop by the protection.
   std::int64_t protection_ns = 3'000'000'000;
 
-  // How it stands there at time 0: with power, idle, and booted long ago.
-  device_settings initial;      ///< But for the two frequencies, which `scanner` has.
-  bool boots_at_start = false;  ///< It gets its power at time 0.
+  // The state at time 0: powered, idle, and booted long before.
+  device_settings initial;      ///< Except the two frequencies, which are in `scanner`.
+  bool boots_at_start = false;  ///< It is powered on at time 0.
 
-  // What is kept for whoever asks; the oldest is lost beyond that.
+  // Capacities; the oldest entries beyond them are lost.
   std::size_t truth_capacity = 16'384;  ///< Samples.
   std::size_t log_capacity = 1'024;     ///< Commands.
 };
 
-/// What is wrong with `options`, a sentence to be shown to a person; empty if nothing is. *Pure.*
+/// What is wrong with `options`, a sentence for people; empty if nothing is. *Pure.*
 [[nodiscard]] G4LIDAR_API std::string_view problem_with(const device_options& options) noexcept;
 
 }  // namespace g4lidar::sim

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A simulated G4 on a pseudo-terminal, in real time: any program that opens serial ports can use it.
+// A simulated G4 on a pseudo-terminal or behind a network bridge, in real time: for any program
+// that opens serial ports, or connects to tcp:HOST:PORT.
 #pragma once
 
 #include <cstdint>
@@ -8,74 +9,80 @@
 #include <span>
 #include <string>
 
+#include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/export.hpp"
 #include "g4lidar/sim/device.hpp"
 
 namespace g4lidar::sim {
 
-/// A device that is being served. Its time 0 is when it was opened. While the plug is out there is
-/// neither port nor link; putting it in again makes a new port and moves the link to it. A program
-/// that does not read loses bytes, as on a real line, and never holds the device up.
-/// *Single thread. Allocates on open and on each replug.*
+/// A device with its port. Its time 0 is when it was opened. While it is unplugged there is neither
+/// port nor link; plugging it in creates a new port and moves the link to it. A program that does
+/// not read loses bytes, as with a real port, and never delays the device. *Single thread.
+/// Allocates on open and on each replug.*
 class G4LIDAR_API pty_port {
  public:
-  /// Opens a pty in raw mode. `link`, where not empty, becomes a symbolic link to it until the end;
-  /// one that leads to another pty is taken over, anything else there is left alone. Fails with
-  /// busy where something stands at `link`, or system.
+  /// Opens a pty in raw mode. If `link` is not empty, a symbolic link to the pty exists there until
+  /// the destructor. A link that a terminated program left is replaced. Fails with busy if another
+  /// device is running at `link` (system_errno() is EADDRINUSE) or something else exists there
+  /// (EEXIST), or with system.
   [[nodiscard]] static result<pty_port> open(device twin, const std::string& link = {});
+  /// Behind a network bridge instead: listens at a numeric IPv4 address and a port (0: any), for
+  /// one client at a time; further clients are refused. Fails with bad_option or system.
+  [[nodiscard]] static result<pty_port> listen(device twin, const std::string& address,
+                                               std::uint16_t port);
   pty_port(pty_port&&) noexcept;
   pty_port& operator=(pty_port&&) noexcept;
   ~pty_port();
 
-  /// Where the port is now: the link where there is one, or the pty's own name. Good until the next
-  /// call of process().
+  /// The current name of the port: the link if there is one, the name of the pty, or
+  /// "tcp:ADDRESS:PORT". Valid until the next call of process().
   [[nodiscard]] const std::string& path() const noexcept;
   /// The time of the device.
   [[nodiscard]] std::int64_t now_ns() const noexcept;
-  /// The device; good as long as this.
+  /// The device; valid as long as this.
   [[nodiscard]] device& twin() noexcept;
-  /// How many bytes were lost since no program had read those before them: a pseudo-terminal holds
-  /// 4 KiB at least, and some 16 KiB as a rule.
+  /// The number of bytes that were lost because no program had read the bytes before them: a
+  /// pseudo-terminal holds at least 4 KiB, usually about 16 KiB.
   [[nodiscard]] std::uint64_t bytes_lost() const noexcept;
 
-  /// Carries bytes both ways as far as that goes without waiting; when to call again at the latest,
-  /// in ns of now_ns(). Fails with system where a replug could not be brought about.
+  /// Moves bytes in both directions without waiting. Returns the latest time for the next call, in
+  /// ns of now_ns(). Fails with system if a replug failed.
   [[nodiscard]] result<std::int64_t> process();
-  /// For poll(): process() is due when one of them is readable. -1: none.
+  /// For poll(): call process() when one of them is readable. -1: none.
   struct handles {
     int line;
     int visitors;
   };
-  /// Those of now; a replug makes others.
+  /// The current ones; a replug replaces them.
   [[nodiscard]] handles native_handles() const noexcept;
 
  private:
   class state;
   explicit pty_port(std::unique_ptr<state> made) noexcept;
+  static result<pty_port> opened(std::unique_ptr<state> made);
   std::unique_ptr<state> state_;
 };
 
-/// Serves them all until `stop` becomes readable or hangs up. `after_each`, where given, is called
-/// whenever something may have happened. Waits without spinning. Fails as process() does.
+/// Runs all of them until `stop` becomes readable or hangs up. `after_each`, if given, is called
+/// whenever something may have happened. Waits without busy looping. Fails like process().
 [[nodiscard]] G4LIDAR_API result<void> serve(std::span<pty_port> ports, int stop,
                                              const std::function<void()>& after_each = {});
 
-/// One device served by a thread of its own, for tests of programs that want a path.
+/// One device with a thread of its own, for tests of programs that need a path.
 class G4LIDAR_API background_pty {
  public:
-  /// As pty_port::open(), and starts the thread. Fails with busy or system.
+  /// Like pty_port::open(), and starts the thread. Fails with busy or system.
   [[nodiscard]] static result<background_pty> open(device twin, const std::string& link = {});
   background_pty(background_pty&&) noexcept;
   background_pty& operator=(background_pty&&) noexcept;
-  /// Takes the port away, as if unplugged.
+  /// Removes the port, like an unplug.
   ~background_pty();
 
-  /// As pty_port's; with faults or unplug() good only where there is a link.
+  /// See pty_port; with faults or unplug() it stays valid only if there is a link.
   [[nodiscard]] const std::string& path() const noexcept;
-  /// Looks at the device, or pulls its plug, between two steps of the thread.
+  /// Calls a function with the device, or unplugs it, between two steps of the thread.
   void with(const std::function<void(device& twin, std::int64_t now_ns)>& look);
-  /// As pty_port's.
+  /// See pty_port.
   [[nodiscard]] std::uint64_t bytes_lost() const;
 
  private:

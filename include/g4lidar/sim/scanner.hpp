@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The measuring half of a simulated G4: a turning head, its samples, and the packets it sends.
+// The measuring part of a simulated G4: a rotating head, its samples, and its packets.
 #pragma once
 
 #include <array>
@@ -9,105 +9,106 @@
 #include <span>
 #include <string_view>
 
-#include "g4lidar/bytes.hpp"
-#include "g4lidar/command.hpp"
-#include "g4lidar/export.hpp"
-#include "g4lidar/packet.hpp"
-#include "g4lidar/sim/random.hpp"
-#include "g4lidar/sim/ray_caster.hpp"
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/detail/sim/ray_caster.hpp"
+#include "g4lidar/settings.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {
 
-/// Which way the head turns, and what becomes of its angles.
+/// The direction of rotation, and its effect on the angles.
 enum class turning : std::uint8_t {
-  clockwise,  ///< As a G4 comes.
-  mirrored,   ///< Counter-clockwise, and the angles grow along with it: a mirrored room.
-  falling,    ///< Counter-clockwise, and the angles fall: receivers take such packets for suspect.
+  clockwise,  ///< The default of a G4.
+  mirrored,   ///< Counter-clockwise; the angles increase nevertheless: a mirrored room.
+  falling,    ///< Counter-clockwise; the angles decrease: receivers take such packets for suspect.
 };
 
-/// How the device is set and how good it is. By default a G4 as it comes, without flaws.
+/// Settings and quality of the device. By default a G4 without errors.
 struct scanner_options {
-  std::uint64_t seed = 1;                  ///< Of everything that is drawn at random below.
-  std::uint16_t scan_frequency_chz = 700;  ///< Revolutions in 100 s, constant; 500 to 1200.
+  std::uint64_t seed = 1;                  ///< The seed of all random values below.
+  std::uint16_t scan_frequency_chz = 700;  ///< Revolutions per 100 s, constant; 500 to 1200.
   ranging_frequency ranging = ranging_frequency::khz_9;
   std::size_t samples_per_packet = 40;  ///< 1 to 80.
   double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
   /// The angle at the first sample, [0, 360); drawn at random where not given.
   std::optional<double> start_deg = std::nullopt;
-  bool reports_frequency = true;   ///< Whether a zero packet's CT tells the scan frequency.
-  double min_range_mm = 280.0;     ///< What is nearer gives no return.
-  double max_range_mm = 16'000.0;  ///< What is farther gives no return; at most 16383.75.
-  double noise_mm = 0.0;           ///< Standard deviation of a range, and what each millimetre of
-  double noise_ratio = 0.0;        ///< range adds to it. Both >= 0.
-  double dropout_ratio = 0.0;  ///< How many of all samples give no return for no reason, 0 to 1.
-  /// The true sample rate by the nominal one, 0.9 to 1.1, and how far it wanders from that to either
-  /// side within a minute, 0 to 10000 millionths.
+  bool reports_frequency = true;   ///< Whether CT of a zero packet contains the scan frequency.
+  double min_range_mm = 280.0;     ///< A nearer target gives no return.
+  double max_range_mm = 16'000.0;  ///< A farther target gives no return; at most 16383.75.
+  double noise_mm = 0.0;           ///< Standard deviation of a range, >= 0, and its
+  double noise_ratio = 0.0;        ///< increase per millimetre of range, >= 0.
+  double dropout_ratio =
+      0.0;  ///< The fraction of all samples without a return for no reason, 0 to 1.
+  /// The true sample rate divided by the nominal one, 0.9 to 1.1, and its deviation to either side
+  /// within a minute, 0 to 10000 millionths.
   double sample_rate_ratio = 1.0;
   double sample_rate_drift_ppm = 0.0;
-  std::uint8_t ordinary_ct = 0;  ///< CT of packets that are no zero packets; its bit 0 is ignored.
+  std::uint8_t ordinary_ct = 0;  ///< CT of packets that are not zero packets; its bit 0 is ignored.
 };
 
-/// What is wrong with `options`, a sentence to be shown to a person; empty if nothing is. *Pure.*
+/// What is wrong with `options`, a sentence for people; empty if nothing is. *Pure.*
 [[nodiscard]] G4LIDAR_API std::string_view problem_with(const scanner_options& options) noexcept;
 
-/// What a sample truly was, before it was squeezed into the wire's format.
+/// The true values of a sample, before it was rounded to the format of the protocol.
 struct sample_truth {
   std::uint64_t index;   ///< Of the sample, from 0.
   std::int64_t time_ns;  ///< When it was measured; sample 0 at 0.
-  /// From 0; one more with each zero packet that is not the first packet.
+  /// From 0; one more with each zero packet except the first packet.
   std::uint64_t revolution;
-  double first_level_deg;  ///< The head's angle, clockwise, [0, 360).
-  double bearing_deg;      ///< Where the target stands, clockwise, [0, 360). Where there is none,
-                           ///< where a far one would stand.
-  double range_mm;         ///< Of the target, however far and without noise; 0: there is none.
-  std::uint16_t raw;       ///< As sent: quarters of a millimetre, 0 for no return.
+  double first_level_deg;  ///< The angle of the head, clockwise, [0, 360).
+  double
+      bearing_deg;  ///< The direction of the target, clockwise, [0, 360); without a target, of an infinitely distant one.
+  double range_mm;  ///< Of the target, at any distance and without noise; 0: there is none.
+  std::uint16_t raw;  ///< As sent: quarters of a millimetre, 0 for no return.
 };
 
-/// A packet as it leaves the device, and what its samples truly were.
+/// A packet as the device sends it, and the true values of its samples.
 struct sent_packet {
-  bytes data;                             ///< Good until the scanner's next call.
-  std::span<const sample_truth> samples;  ///< The same number, in order; good as long as `data`.
-  std::int64_t complete_ns;               ///< When the last sample was measured: not sent before.
+  bytes data;                             ///< Valid until the next call of the scanner.
+  std::span<const sample_truth> samples;  ///< The same number, in order; valid as long as `data`.
+  std::int64_t complete_ns;  ///< When the last sample was measured: the packet is not sent before.
 };
 
-/// What a device sends first when scanning starts: the reply to the start command, 7 bytes, good
-/// for ever. (protocol: Commands, 60)
+/// What a device sends first when scanning starts: the reply to the start command, 7 bytes. Valid
+/// forever. (protocol: Commands, 60)
 [[nodiscard]] G4LIDAR_API bytes scan_start_reply() noexcept;
 
-/// A turning head that measures in virtual time: each next() is one packet further. Same options
-/// and same world, same bytes, on every processor. *Single thread. Allocates on construction only.*
-/// A copy lives on independently.
+/// A rotating head that measures in virtual time: each next() returns one packet. The same options
+/// and world give the same bytes on every processor. *Single thread. Allocates on construction
+/// only.* A copy is independent.
 class G4LIDAR_API scanner {
  public:
-  /// `problem_with(options)` is empty; a mistake there is an assertion.
+  /// `problem_with(options)` must be empty; otherwise an assertion fails.
   scanner(const world& scene, const scanner_options& options);
 
-  /// The next packet. It never ends. A zero packet when the index has passed, with the first sample
+  /// The next packet, without end. A zero packet when the index has passed, with the first sample
   /// after it; then packets of `samples_per_packet`, the last one of a revolution shorter.
   [[nodiscard]] sent_packet next() noexcept;
 
-  /// From the next packet on the head turns this many times in 1000 s, at most 20'000; at 0 it
-  /// stands, and all samples have one angle.
+  /// From the next packet on the head makes this many turns per 1000 s, at most 20'000; at 0 it
+  /// does not turn, and all samples have the same angle.
   void set_speed_mhz(std::uint32_t speed_mhz) noexcept;
-  /// From the next packet on it measures as often as that.
+  /// From the next packet on it has this sample rate.
   void set_ranging(ranging_frequency ranging) noexcept;
-  /// From the next packet on the head turns that way.
+  /// From the next packet on the head turns in this direction.
   void set_turning(turning way) noexcept { turning_ = way; }
-  /// The next sample is measured at `at_ns`, not before the last one, with the head `phase` / 2^64
-  /// turns behind the index.
+  /// The next sample is measured at `at_ns`, not before the last one, when the head is `phase` /
+  /// 2^64 turns after the index.
   void resume(std::int64_t at_ns, std::uint64_t phase) noexcept;
-  /// When the next sample will be measured, unless resume() says otherwise.
+  /// When the next sample is measured, unless resume() changes it.
   [[nodiscard]] std::int64_t next_sample_ns() const noexcept;
 
-  /// As given, but for `ranging`, which set_ranging() changes; good as long as the scanner.
+  /// As given, except `ranging`, which set_ranging() changes; valid as long as the scanner.
   [[nodiscard]] const scanner_options& options() const noexcept { return options_; }
 
  private:
   [[nodiscard]] sample_truth measure() noexcept;
   [[nodiscard]] std::uint16_t raw_sample(double range_mm) noexcept;
   void turn_on() noexcept;
-  [[nodiscard]] bytes frame_of(std::size_t samples, bool zero) noexcept;
+  [[nodiscard]] bytes packet_of(std::size_t samples, bool zero) noexcept;
   void keep_rate() noexcept;
   void set_step() noexcept;
 
@@ -119,15 +120,15 @@ class G4LIDAR_API scanner {
   turning turning_ = turning::clockwise;
   std::uint32_t speed_mhz_;
   std::uint64_t rate_mhz_;        // the true one, in 0.001 Hz
-  std::int64_t since_ns_ = 0;     // the rate has been that since then,
-  std::uint64_t index_then_ = 0;  // when this sample was measured
+  std::int64_t since_ns_ = 0;     // the time since which that rate is valid,
+  std::uint64_t index_then_ = 0;  // and the sample that was measured then
   std::uint64_t phase_;           // since the index, in 2^-64 of a turn
   std::uint64_t step_;            // of a sample
   std::uint64_t index_ = 0;
   std::uint64_t revolution_ = 0;
   bool at_index_;  // the index has passed since the last sample
   std::array<sample_truth, max_samples> truths_{};
-  std::array<std::uint8_t, max_packet_size> frame_{};
+  std::array<std::uint8_t, max_packet_size> packet_{};
 };
 
 }  // namespace g4lidar::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A line to a simulated G4 in the same program, in virtual time: waiting costs no time.
+// A transport to a simulated G4 in the same program, in virtual time: waiting takes no real time.
 #pragma once
 
 #include <atomic>
@@ -10,31 +10,31 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/connector.hpp"
+#include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/export.hpp"
 #include "g4lidar/sim/device.hpp"
-#include "g4lidar/transport.hpp"
+#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar::sim {
 
 /// The time that devices and the ports to them share. *Single thread.*
 class virtual_clock {
  public:
-  /// Each call of a port or connector takes `tick_ns`, so that a loop which never waits comes to an
-  /// end, too; 0: no time passes but by waiting.
+  /// Each call of a port or connector takes `tick_ns`, so that a loop that never waits also ends;
+  /// 0: time passes only by waiting.
   explicit virtual_clock(std::int64_t tick_ns = 1'000) noexcept : tick_ns_(tick_ns) {}
 
   /// The time.
   [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
-  /// It never goes back.
+  /// Moves the time forward; it never goes back.
   void advance_to(std::int64_t at_ns) noexcept { now_ns_ = at_ns > now_ns_ ? at_ns : now_ns_; }
-  /// A call has been made.
+  /// A call was made.
   void tick() noexcept {
     now_ns_ += tick_ns_;
     ++calls_;
   }
-  /// Of all ports and connectors.
+  /// For all ports and connectors.
   [[nodiscard]] std::uint64_t calls() const noexcept { return calls_; }
 
  private:
@@ -43,11 +43,11 @@ class virtual_clock {
   std::uint64_t calls_ = 0;
 };
 
-/// A transport to a device in virtual time. The device and the clock are the caller's and outlive
-/// it. A port is dead once the plug was out, as a descriptor is. *Never allocates.*
+/// A transport to a device in virtual time. The caller owns device and clock, which must outlive
+/// it. After an unplug a port is invalid, like a descriptor. *Never allocates.*
 class G4LIDAR_API virtual_port final : public transport {
  public:
-  /// `name` lives as long as the port.
+  /// `name` must outlive the port.
   virtual_port(device& twin, virtual_clock& clock, std::string_view name = "virtual:g4") noexcept;
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
@@ -58,6 +58,8 @@ class G4LIDAR_API virtual_port final : public transport {
   void wake() noexcept override { woken_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
   [[nodiscard]] std::uint32_t baud() const noexcept override { return 230'400; }
+  /// As a tty.
+  [[nodiscard]] std::size_t kept_bytes() const noexcept override { return 4095; }
 
  private:
   [[nodiscard]] result<void> look(task doing) noexcept;
@@ -69,17 +71,17 @@ class G4LIDAR_API virtual_port final : public transport {
   std::atomic<bool> woken_{false};
 };
 
-/// Connects to simulated devices, whichever of them are plugged in, in turn.
+/// Connects to simulated devices: to those that are plugged in, in turn.
 class G4LIDAR_API virtual_connector final : public connector {
  public:
-  /// The devices and the clock are the caller's and outlive it.
+  /// The caller owns devices and clock, which must outlive this.
   virtual_connector(std::vector<device*> twins, virtual_clock& clock)
       : twins_(std::move(twins)), clock_(&clock) {}
   /// The same for one device.
   virtual_connector(device& twin, virtual_clock& clock)
       : virtual_connector(std::vector<device*>{&twin}, clock) {}
 
-  /// Fails with no_port while none is plugged in.
+  /// Fails with no_port if none is plugged in.
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return clock_->now_ns(); }
   [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A thread that serves one device; a pipe ends it, and lets others have the device for a moment.
-#include <fcntl.h>
+// A thread that runs one device; an eventfd ends it, and lets other threads use the device for a
+// moment.
 #include <poll.h>
-#include <unistd.h>
+#include <sys/eventfd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -19,7 +20,7 @@ namespace g4lidar::sim {
 
 class G4LIDAR_HIDDEN background_pty::state {
  public:
-  state(pty_port port, std::array<file_handle, 2> bell)
+  state(pty_port port, file_handle bell)
       : port_(std::move(port)), path_(port_.path()), bell_(std::move(bell)) {
     thread_ = std::thread([this] { run(); });
   }
@@ -45,13 +46,12 @@ class G4LIDAR_HIDDEN background_pty::state {
 
  private:
   void ring() const noexcept {
-    const char byte = 0;
-    [[maybe_unused]] const ssize_t ignored = ::write(bell_[1].number(), &byte, 1);
+    [[maybe_unused]] const int ignored = ::eventfd_write(bell_.number(), 1);
   }
 
   void run() {
     while (!ending_) {
-      std::array<pollfd, 3> waiting{{{bell_[0].number(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
+      std::array<pollfd, 3> waiting{{{bell_.number(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
       std::int64_t sleep_ns = forever_ns;
       {
         const std::lock_guard lock(mutex_);
@@ -68,16 +68,15 @@ class G4LIDAR_HIDDEN background_pty::state {
       const timespec sleep{static_cast<std::time_t>(sleep_ns / second_ns),
                            static_cast<long>(sleep_ns % second_ns)};
       if (::ppoll(waiting.data(), waiting.size(), &sleep, nullptr) > 0 && waiting[0].revents != 0) {
-        std::array<char, 64> rung;
-        [[maybe_unused]] const ssize_t ignored =
-            ::read(bell_[0].number(), rung.data(), rung.size());
+        eventfd_t rung = 0;
+        [[maybe_unused]] const int ignored = ::eventfd_read(bell_.number(), &rung);
       }
     }
   }
 
   pty_port port_;
   std::string path_;
-  std::array<file_handle, 2> bell_;
+  file_handle bell_;
   std::mutex mutex_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
@@ -89,11 +88,8 @@ background_pty& background_pty::operator=(background_pty&&) noexcept = default;
 background_pty::~background_pty() = default;
 
 result<background_pty> background_pty::open(device twin, const std::string& link) {
-  std::array<int, 2> ends{-1, -1};
-  if (::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK) != 0) {
-    return failure(task::opening, problem::system, "a pipe", errno);
-  }
-  std::array<file_handle, 2> bell{file_handle(ends[0]), file_handle(ends[1])};
+  file_handle bell(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!bell) return failure(task::opening, problem::system, "an eventfd", errno);
   result<pty_port> port = pty_port::open(std::move(twin), link);
   if (!port) return tl::unexpected<error>(port.error());
   return background_pty(std::make_unique<state>(std::move(*port), std::move(bell)));

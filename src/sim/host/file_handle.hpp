@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A descriptor that is closed when its owner goes.
+// A descriptor that is closed by its owner's destructor.
 #pragma once
 
 #include <unistd.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The slave is held open, or reading the master would fail between two programs. Therefore the
-// kernel never sees a last close, and what it would do then is done here: inotify tells of it.
+// The slave is kept open, otherwise reads from the master would fail between two programs.
+// Therefore the kernel never detects a last close; this file does what the kernel would do then,
+// when inotify reports the close.
 #include "pty.hpp"
 
 #include <fcntl.h>
@@ -14,33 +15,36 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "claim.hpp"
+
 namespace g4lidar::sim {
 
-result<pty> pty::open() {
+result<std::unique_ptr<served_line>> pty::open() {
   const auto failed = [](const char* what) {
     return failure(task::opening, problem::system, what, errno);
   };
-  pty made;
-  made.master_ = file_handle(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
-  if (!made.master_) return failed("a pseudo-terminal");
+  auto made = std::make_unique<pty>();
+  made->master_ = file_handle(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
+  if (!made->master_) return failed("a pseudo-terminal");
   std::array<char, 64> name{};
-  if (::grantpt(made.master()) != 0 || ::unlockpt(made.master()) != 0 ||
-      ::ptsname_r(made.master(), name.data(), name.size()) != 0 ||
-      ::fcntl(made.master(), F_SETFL, O_NONBLOCK) != 0) {
+  if (::grantpt(made->handle()) != 0 || ::unlockpt(made->handle()) != 0 ||
+      ::ptsname_r(made->handle(), name.data(), name.size()) != 0 ||
+      ::fcntl(made->handle(), F_SETFL, O_NONBLOCK) != 0) {
     return failed("a pseudo-terminal");
   }
-  made.name_ = name.data();
-  made.watch_ = file_handle(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
-  if (made.watch_ && ::inotify_add_watch(made.watch(), name.data(), IN_OPEN | IN_CLOSE) < 0) {
-    made.watch_.close();
+  made->name_ = name.data();
+  made->claim_ = claim(made->name_).hold();
+  made->watch_ = file_handle(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  if (made->watch_ && ::inotify_add_watch(made->watch(), name.data(), IN_OPEN | IN_CLOSE) < 0) {
+    made->watch_.close();
   }
-  made.slave_ = file_handle(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
-  if (!made.slave_ || !made.make_raw()) return failed(name.data());
-  made.find_out_whether_watching_works();
+  made->slave_ = file_handle(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  if (!made->slave_ || !made->make_raw()) return failed(name.data());
+  made->find_out_whether_watching_works();
   return made;
 }
 
-// Our own opening was the first thing to be told.
+// The first event was our own opening.
 void pty::find_out_whether_watching_works() noexcept {
   if (!watch_) return;
   look_for_visitors();
@@ -79,14 +83,14 @@ void pty::look_for_visitors() noexcept {
 }
 
 std::size_t pty::read(std::span<std::uint8_t> out) noexcept {
-  const ssize_t count = ::read(master(), out.data(), out.size());
+  const ssize_t count = ::read(handle(), out.data(), out.size());
   return count > 0 ? static_cast<std::size_t>(count) : 0;
 }
 
 std::size_t pty::write(bytes data) noexcept {
   if (watch_ && visitors_ <= 0) return 0;
   while (!data.empty()) {
-    const ssize_t count = ::write(master(), data.data(), data.size());
+    const ssize_t count = ::write(handle(), data.data(), data.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     data = data.subspan(static_cast<std::size_t>(count));

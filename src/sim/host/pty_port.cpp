@@ -1,44 +1,46 @@
 // SPDX-License-Identifier: MIT
-// The device's clock is the steady clock since it was opened; between two looks the loop sleeps.
+// The device's clock is the steady clock since it was opened; the loop sleeps between two events.
 #include "g4lidar/sim/pty_port.hpp"
 
 #include <poll.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
-#include <optional>
+#include <memory>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <filesystem>
 
+#include "claim.hpp"
 #include "pty.hpp"
+#include "tcp_line.hpp"
 
 namespace g4lidar::sim {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Waking more often than that is worth nothing to anybody.
+// More frequent wake-ups have no use.
 constexpr std::int64_t shortest_sleep_ns = 500'000;
 
 std::int64_t steady_ns() noexcept {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// A symbolic link to a pty, ours to replace.
+// A symbolic link to a pty, which may be replaced.
 bool leads_to_a_pty(const fs::path& link) {
   std::error_code none;
   const fs::path target = fs::read_symlink(link, none);
   return !none && target.native().starts_with("/dev/pts/");
 }
 
-// Never a moment without a link where there was one.
+// Replaced atomically: there is always a link.
 result<void> point(const fs::path& link, const std::string& target) {
   std::error_code wrong;
   const fs::file_status there = fs::symlink_status(link, wrong);
@@ -54,6 +56,23 @@ result<void> point(const fs::path& link, const std::string& target) {
   return {};
 }
 
+// The claim of a link, kept as long as a device uses it, also while it is unplugged.
+result<file_handle> claim_link_at(const std::string& link) {
+  std::error_code none;
+  const fs::path place = fs::absolute(link, none);
+  const fs::path whole = fs::weakly_canonical(place.parent_path(), none) / place.filename();
+  std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
+  for (const char c : whole.native()) {
+    digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  std::array<char, 17> name{};
+  std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(digest));
+  file_handle held = claim(name.data()).hold();
+  if (held) return held;
+  const bool is_served = errno == EADDRINUSE;
+  return failure(task::opening, is_served ? problem::busy : problem::system, link, errno);
+}
+
 void unpoint(const fs::path& link, const std::string& target) {
   std::error_code none;
   if (!link.empty() && fs::read_symlink(link, none) == target) fs::remove(link, none);
@@ -63,18 +82,33 @@ void unpoint(const fs::path& link, const std::string& target) {
 
 class G4LIDAR_HIDDEN pty_port::state {
  public:
+  /// At a link, without a link, or at a TCP address.
   state(device of, const std::string& link) : twin(std::move(of)), link_(link) {}
+  state(device of, std::string address, std::uint16_t port)
+      : twin(std::move(of)), address_(std::move(address)), port_(port) {}
   ~state() { unplug(); }
   state(const state&) = delete;
   state& operator=(const state&) = delete;
 
-  result<void> plug() {
-    result<pty> made = pty::open();
-    if (!made) return tl::unexpected<error>(made.error());
+  result<void> open() {
     if (!link_.empty()) {
-      if (result<void> linked = point(link_, made->name()); !linked) return linked;
+      result<file_handle> held = claim_link_at(link_);
+      if (!held) return tl::unexpected<error>(held.error());
+      claim_ = std::move(*held);
     }
-    line_ = std::move(*made);
+    return twin.is_plugged(0) ? plug() : result<void>();
+  }
+
+  result<void> plug() {
+    auto opened = address_.empty() ? pty::open() : tcp_line::open(address_, port_);
+    if (!opened) return tl::unexpected<error>(opened.error());
+    line_ = std::move(*opened);
+    if (!link_.empty()) {
+      if (result<void> linked = point(link_, line_->name()); !linked) {
+        line_.reset();
+        return linked;
+      }
+    }
     path_ = link_.empty() ? line_->name() : link_;
     return {};
   }
@@ -101,16 +135,16 @@ class G4LIDAR_HIDDEN pty_port::state {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t bytes_lost() const noexcept { return bytes_lost_; }
   [[nodiscard]] handles native_handles() const noexcept {
-    return line_ ? handles{line_->master(), line_->watch()} : handles{-1, -1};
+    return line_ ? handles{line_->handle(), line_->watch()} : handles{-1, -1};
   }
 
   device twin;
 
  private:
-  void carry(pty& line, std::int64_t now) noexcept {
+  void carry(served_line& line, std::int64_t now) noexcept {
     line.look_for_visitors();
     std::array<std::uint8_t, 4096> data;
-    // A program that floods the line gets its turn, and no more.
+    // A program that sends without end does not block the device.
     for (int turn = 0; turn < 4; ++turn) {
       const std::size_t count = line.read(data);
       if (count == 0) break;
@@ -122,8 +156,11 @@ class G4LIDAR_HIDDEN pty_port::state {
   }
 
   std::string link_;
+  file_handle claim_;  // of the link
   std::string path_;
-  std::optional<pty> line_;
+  std::string address_;  // empty: a pseudo-terminal
+  std::uint16_t port_ = 0;
+  std::unique_ptr<served_line> line_;
   std::uint64_t replugs_ = 0;
   std::uint64_t bytes_lost_ = 0;
   std::int64_t begin_ns_ = steady_ns();
@@ -135,11 +172,16 @@ pty_port& pty_port::operator=(pty_port&&) noexcept = default;
 pty_port::~pty_port() = default;
 
 result<pty_port> pty_port::open(device twin, const std::string& link) {
-  auto made = std::make_unique<state>(std::move(twin), link);
-  if (made->twin.is_plugged(0)) {
-    if (const result<void> plugged = made->plug(); !plugged) {
-      return tl::unexpected<error>(plugged.error());
-    }
+  return opened(std::make_unique<state>(std::move(twin), link));
+}
+
+result<pty_port> pty_port::listen(device twin, const std::string& address, std::uint16_t port) {
+  return opened(std::make_unique<state>(std::move(twin), address, port));
+}
+
+result<pty_port> pty_port::opened(std::unique_ptr<state> made) {
+  if (const result<void> opened = made->open(); !opened) {
+    return tl::unexpected<error>(opened.error());
   }
   return pty_port(std::move(made));
 }

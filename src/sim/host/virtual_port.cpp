@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Waiting is looking up when the device has something next, and putting the clock there.
+// A wait asks the device for its next event and sets the clock to that time.
 #include "g4lidar/sim/virtual_port.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace g4lidar::sim {
 virtual_port::virtual_port(device& twin, virtual_clock& clock, std::string_view name) noexcept
     : twin_(&twin), clock_(&clock), name_(name), replugs_(twin.replugs()) {}
 
-// Whether there is still a line, and nobody wants the call to end.
+// Whether the port still exists, and no wake() ended the call.
 result<void> virtual_port::look(task doing) noexcept {
   const bool plugged = twin_->is_plugged(clock_->now_ns());
   if (!plugged || twin_->replugs() != replugs_) return failure(doing, problem::gone, name_);

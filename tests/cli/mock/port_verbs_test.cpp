@@ -79,7 +79,7 @@ TEST_F(PortVerbs, List_NoPort) {
   const outcome done = run({"list"});
   EXPECT_EQ(done.code, 3);
   EXPECT_EQ(done.out, "");
-  EXPECT_EQ(done.err, "There is no serial port.\n");
+  EXPECT_EQ(done.err, "no serial port found\n");
   EXPECT_EQ(run({"list", "--json"}).out, "");
 }
 
@@ -89,7 +89,7 @@ TEST_F(PortVerbs, List_NoBridgeOfAG4) {
   const outcome done = run({"list"});
   EXPECT_EQ(done.code, 3);
   EXPECT_EQ(lines_of(done.out).size(), 3U);
-  EXPECT_THAT(done.err, HasSubstr("No serial port is behind a G4's bridge"));
+  EXPECT_THAT(done.err, HasSubstr("no serial port has the USB bridge of a G4"));
   EXPECT_EQ(run({"list", "-q"}).err, "");
 }
 

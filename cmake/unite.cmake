@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+# Fewer and larger translation units: several sources are combined to one, each with an unnamed
+# namespace of its own, so that their names do not conflict. With G4LIDAR_UNITE=OFF each source is
+# compiled alone, as in the nightly: only this shows that it includes what it uses.
+
+# As a script: cmake -DTO=<file> -P unite.cmake -- <source>...
+if(CMAKE_SCRIPT_MODE_FILE AND TO)
+  set(united)
+  set(is_source OFF)
+  foreach(index RANGE ${CMAKE_ARGC})
+    set(argument "${CMAKE_ARGV${index}}")
+    if(is_source AND argument)
+      cmake_path(GET argument STEM stem)
+      file(READ "${argument}" text)
+      string(REGEX REPLACE "\nnamespace {\n" "\nnamespace of_${stem} { namespace {\n" text "${text}")
+      string(REGEX REPLACE "\n}  // namespace\n" "\n} }  // namespace\n" text "${text}")
+      string(APPEND united "#line 1 \"${argument}\"\n${text}")
+    elseif(argument STREQUAL "--")
+      set(is_source ON)
+    endif()
+  endforeach()
+  file(WRITE "${TO}" "${united}")
+  return()
+endif()
+
+set(G4LIDAR_UNITE_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
+
+# g4lidar_unite(<target> <maximum> <source>...): adds the sources to the target, combined if
+# G4LIDAR_UNITE is on. A source with its own macros stays alone, also one with more than its unnamed
+# namespace.
+function(g4lidar_unite target most)
+  set(sources)
+  foreach(source IN LISTS ARGN)
+    cmake_path(ABSOLUTE_PATH source)
+    file(READ "${source}" text)
+    if(G4LIDAR_UNITE AND NOT text MATCHES "\n#define" AND NOT text MATCHES "\nnamespace {\n.*\nnamespace {\n" AND text MATCHES
+                                                           "\n}  // namespace\n(}  // namespace [a-z0-9_:]+\n)*$"
+    )
+      list(APPEND sources "${source}")
+    else()
+      target_sources(${target} PRIVATE "${source}")
+    endif()
+  endforeach()
+  list(LENGTH sources count)
+  if(count EQUAL 0)
+    return()
+  endif()
+  # Batches of nearly the same size.
+  math(EXPR batches "(${count} + ${most} - 1) / ${most}")
+  math(EXPR most "(${count} + ${batches} - 1) / ${batches}")
+  set(directories)
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH directory)
+    list(APPEND directories "${directory}")
+  endforeach()
+  list(REMOVE_DUPLICATES directories)
+  target_include_directories(${target} PRIVATE ${directories}) # for headers in the directory of a source
+  foreach(batch RANGE 1 ${batches})
+    math(EXPR first "(${batch} - 1) * ${most}")
+    list(SUBLIST sources ${first} ${most} batch_sources)
+    set(united "${CMAKE_CURRENT_BINARY_DIR}/united/${target}_${batch}.cpp")
+    add_custom_command(
+      OUTPUT "${united}"
+      COMMAND "${CMAKE_COMMAND}" "-DTO=${united}" -P "${G4LIDAR_UNITE_SCRIPT}" -- ${batch_sources}
+      DEPENDS ${batch_sources} "${G4LIDAR_UNITE_SCRIPT}"
+      COMMENT "Uniting the sources of ${target}, ${batch} of ${batches}"
+      VERBATIM
+    )
+    target_sources(${target} PRIVATE "${united}")
+  endforeach()
+endfunction()

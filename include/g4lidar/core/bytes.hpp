@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Bytes on the wire and little-endian loads from them, the same on every processor.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <ranges>
+#include <span>
+#include <type_traits>
+
+#include "g4lidar/detail/cpp20.hpp"
+
+namespace g4lidar {
+
+/// A view of bytes on the wire. The caller owns them.
+using bytes = std::span<const std::uint8_t>;
+
+/// The 16 bits at `data[at]` and `data[at + 1]`, least significant byte first. *Pure.*
+/// Reading past the end is a mistake of the caller.
+[[nodiscard]] constexpr std::uint16_t load_u16(bytes data, std::size_t at) noexcept {
+  return static_cast<std::uint16_t>(data[at] | (data[at + 1] << 8));
+}
+
+/// The 32 bits that start at `data[at]`, least significant byte first. *Pure.*
+[[nodiscard]] constexpr std::uint32_t load_u32(bytes data, std::size_t at) noexcept {
+  return static_cast<std::uint32_t>(load_u16(data, at)) |
+         (static_cast<std::uint32_t>(load_u16(data, at + 2)) << 16);
+}
+
+/// The 64 bits that start at `data[at]`, least significant byte first. *Pure.*
+[[nodiscard]] constexpr std::uint64_t load_u64(bytes data, std::size_t at) noexcept {
+  const std::uint8_t* const p = data.data() + at;
+  // One expression over single bytes: compilers translate it to a plain 8-byte load.
+  return static_cast<std::uint64_t>(p[0]) | static_cast<std::uint64_t>(p[1]) << 8 |
+         static_cast<std::uint64_t>(p[2]) << 16 | static_cast<std::uint64_t>(p[3]) << 24 |
+         static_cast<std::uint64_t>(p[4]) << 32 | static_cast<std::uint64_t>(p[5]) << 40 |
+         static_cast<std::uint64_t>(p[6]) << 48 | static_cast<std::uint64_t>(p[7]) << 56;
+}
+
+/// Writes `value` to `out[at]` and `out[at + 1]`, least significant byte first.
+constexpr void store_u16(std::span<std::uint8_t> out, std::size_t at,
+                         std::uint16_t value) noexcept {
+  out[at] = static_cast<std::uint8_t>(value & 0xFFU);
+  out[at + 1] = static_cast<std::uint8_t>(value >> 8);
+}
+
+/// An argument that owns its bytes and is destroyed at the end of the call: a view of it would
+/// dangle, so the functions that return views refuse it at compile time.
+template <class T>
+concept dying_owner =
+    !std::is_lvalue_reference_v<T> && !std::ranges::borrowed_range<std::remove_cvref_t<T>> &&
+    std::convertible_to<const std::remove_cvref_t<T>&, bytes>;
+
+}  // namespace g4lidar

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// From a packet to corrected points in the caller's memory.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// Numbers the revolutions of a stream: 0 at its beginning, and one more with each zero packet
+/// except the very first packet. *Single thread.*
+class revolution_counter {
+ public:
+  /// The revolution of `packet`. Call it once for every packet, also for suspect ones.
+  constexpr std::uint32_t count(packet_view packet) noexcept {
+    if (packet.is_zero() && !first_) ++revolution_;
+    first_ = false;
+    return revolution_;
+  }
+
+ private:
+  std::uint32_t revolution_ = 0;
+  bool first_ = true;
+};
+
+/// The points of one packet, and its properties. `points` is in the memory that was given to
+/// decode().
+struct decoded {
+  std::span<const point> points;            ///< Empty if the packet is suspect.
+  std::uint32_t revolution = 0;             ///< As given to decode().
+  std::uint16_t sample_count = 0;           ///< Of the packet, suspect or not.
+  std::uint16_t first_angle_64ths = 0;      ///< First-level angle of the first sample, 1/64 degree.
+  std::int16_t span_64ths = 0;              ///< Clockwise turn to the last sample, 1/64 degree.
+  std::uint8_t reported_frequency_dhz = 0;  ///< 0.1 Hz; 0 if none is reported.
+  bool starts_revolution = false;           ///< A zero packet, suspect or not.
+  bool suspect = false;                     ///< The angles of its samples are not known.
+};
+
+/// The flags of a sample that follow from its range. *Pure*, and without a branch.
+[[nodiscard]] constexpr point_flags flag_of(std::uint16_t raw) noexcept {
+  static_assert(static_cast<int>(point_flags::too_near) - 1 ==
+                static_cast<int>(point_flags::no_return));
+  constexpr auto too_near_raw = static_cast<std::uint16_t>(4 * too_near_mm);
+  const int near = raw < too_near_raw;
+  const int no_return = raw == 0;
+  return static_cast<point_flags>(2 * near - no_return);
+}
+
+/// The first-level angles of a packet that is not suspect, in degrees: sample `i` is at `first` +
+/// `i` * `step`. If the packet passes zero, the first angle is negative, so that no angle is 360 or
+/// more: there, single precision has only half the resolution.
+template <std::floating_point Real>
+struct first_level_angles {
+  Real first;
+  Real step;
+
+  /// The angles of `packet`.
+  explicit constexpr first_level_angles(packet_view packet) noexcept {
+    const int begin = packet.first_angle_64ths();
+    const int way = packet.span_64ths();
+    const int gaps = static_cast<int>(packet.sample_count()) - 1;
+    first = static_cast<Real>(begin + way >= turn_64ths ? begin - turn_64ths : begin) / Real(64);
+    step = gaps > 0 ? static_cast<Real>(way) / static_cast<Real>(64 * gaps) : Real(0);
+  }
+};
+
+/// The properties of `packet` without its points. *Pure.*
+[[nodiscard]] constexpr decoded without_points(packet_view packet,
+                                               std::uint32_t revolution) noexcept {
+  decoded result;
+  result.revolution = revolution;
+  result.sample_count = static_cast<std::uint16_t>(packet.sample_count());
+  result.first_angle_64ths = static_cast<std::uint16_t>(packet.first_angle_64ths());
+  result.span_64ths = static_cast<std::int16_t>(packet.span_64ths());
+  result.reported_frequency_dhz = static_cast<std::uint8_t>(packet.reported_frequency_dhz());
+  result.starts_revolution = packet.is_zero();
+  result.suspect = packet.is_suspect();
+  return result;
+}
+
+/// Writes the corrected points of `packet` to the front of `out`, which has room for the longest
+/// packet, and returns them with the properties of the packet. *Pure, never allocates.* A suspect
+/// packet gives no points. Times are 0, not known. (protocol: Point packets)
+template <correction_form Form>
+constexpr decoded decode(packet_view packet, const Form& correction, std::uint32_t revolution,
+                         std::span<point, max_samples> out) noexcept {
+  using real = decltype(correction(std::uint16_t{}));
+  decoded result = without_points(packet, revolution);
+  if (result.suspect) return result;
+
+  const std::size_t count = packet.sample_count();
+  const first_level_angles<real> angles(packet);
+  // First all directions, sixteen at a time: compilers vectorize a loop with a constant number of
+  // rounds and no branch. Behind the last sample the copy holds zeros.
+  constexpr std::int32_t at_once = 16;
+  std::array<std::uint16_t, max_samples> raw;
+  std::array<real, max_samples> angles_deg;
+  packet.copy_samples(raw);
+  for (std::size_t from = 0; from < count; from += at_once) {
+    const std::uint16_t* const raw_here = raw.data() + from;
+    real* const angles_here = angles_deg.data() + from;
+    const auto place = static_cast<std::int32_t>(from);
+    for (std::int32_t i = 0; i < at_once; ++i) {
+      const real turned = static_cast<real>(place + i) * angles.step + correction(raw_here[i]);
+      angles_here[i] = wrap_once_deg(angles.first + turned);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    auto angle_deg = static_cast<float>(angles_deg[i]);
+    if constexpr (sizeof(real) > sizeof(float)) angle_deg = wrap_once_deg(angle_deg);
+    const auto whole = static_cast<std::int32_t>(raw[i]);
+    out[i] = {angle_deg, static_cast<float>(whole) * 0.25F, 0, revolution, flag_of(raw[i]), {}};
+  }
+  if (result.starts_revolution) out[0].flags = out[0].flags | point_flags::revolution_start;
+  result.points = out.first(count);
+  return result;
+}
+
+}  // namespace g4lidar

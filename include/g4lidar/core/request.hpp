@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+// Requests to a device, each with the type of its answer, and their outcomes.
+#pragma once
+
+#include <cstdint>
+#include <variant>
+
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
+
+namespace g4lidar {
+
+/// The four step sizes of the scan frequency.
+enum class frequency_step : std::uint8_t {
+  up_0_1_hz = static_cast<std::uint8_t>(command::frequency_up_0_1_hz),
+  down_0_1_hz = static_cast<std::uint8_t>(command::frequency_down_0_1_hz),
+  up_1_hz = static_cast<std::uint8_t>(command::frequency_up_1_hz),
+  down_1_hz = static_cast<std::uint8_t>(command::frequency_down_1_hz),
+};
+
+/// The kinds of request.
+enum class ask : std::uint8_t {
+  device_info,
+  health,
+  get_low_power,
+  set_low_power,
+  get_direction,
+  set_direction,
+  get_scan_frequency,
+  step_scan_frequency,
+  set_scan_frequency,
+  set_constant_frequency,
+  get_ranging,
+  set_ranging,
+  set_protection,
+  restart,
+  start,
+  stop,
+};
+
+/// One request. Made by the functions of namespace requests, where each value has a type of its own.
+struct request {
+  ask what;
+  std::uint16_t value = 0;  ///< The value to set; 0 if the request sets nothing.
+  friend constexpr bool operator==(const request&, const request&) noexcept = default;
+};
+
+/// A request whose answer is an `Answer`; void if there is only success or failure.
+template <class Answer>
+struct request_for : request {};
+
+namespace requests {
+
+/// Answer: a device_information.
+[[nodiscard]] constexpr request_for<device_information> device_info() noexcept {
+  return {{ask::device_info}};
+}
+/// Answer: a health. Sends `91`, and `92` if `91` is not answered.
+[[nodiscard]] constexpr request_for<g4lidar::health> health() noexcept { return {{ask::health}}; }
+/// Queries whether the motor stops when idle. Answer: a low_power.
+[[nodiscard]] constexpr request_for<low_power> get_low_power() noexcept {
+  return {{ask::get_low_power}};
+}
+/// Sets whether the motor stops when idle.
+[[nodiscard]] constexpr request_for<low_power> set(low_power wanted) noexcept {
+  return {{ask::set_low_power, static_cast<std::uint16_t>(wanted)}};
+}
+/// Queries the direction of the motor. Answer: a motor_direction. Old firmware may not answer.
+[[nodiscard]] constexpr request_for<motor_direction> get_direction() noexcept {
+  return {{ask::get_direction}};
+}
+/// Sets the direction of the motor.
+[[nodiscard]] constexpr request_for<motor_direction> set(motor_direction wanted) noexcept {
+  return {{ask::set_direction, static_cast<std::uint16_t>(wanted)}};
+}
+/// Queries the configured scan frequency, not the measured one. Answer: a scan_frequency.
+[[nodiscard]] constexpr request_for<scan_frequency> get_scan_frequency() noexcept {
+  return {{ask::get_scan_frequency}};
+}
+/// One step. Answer: the configured frequency after the step; at the end of the device's range it
+/// is the same as before.
+[[nodiscard]] constexpr request_for<scan_frequency> step(frequency_step by) noexcept {
+  return {{ask::step_scan_frequency, static_cast<std::uint16_t>(by)}};
+}
+/// Steps until the frequency is within 0.05 Hz of `wanted` or does not change any more. Answer: the
+/// frequency that was reached.
+[[nodiscard]] constexpr request_for<scan_frequency> set(scan_frequency wanted) noexcept {
+  return {{ask::set_scan_frequency, wanted.chz}};
+}
+/// Sets whether the lidar regulates its frequency; the protocol has no query for it.
+[[nodiscard]] constexpr request_for<constant_frequency> set(constant_frequency wanted) noexcept {
+  return {{ask::set_constant_frequency, static_cast<std::uint16_t>(wanted)}};
+}
+/// Queries the sample rate. Answer: a ranging_frequency.
+[[nodiscard]] constexpr request_for<ranging_frequency> get_ranging() noexcept {
+  return {{ask::get_ranging}};
+}
+/// Steps through the ranging frequencies until the wanted one is set.
+[[nodiscard]] constexpr request_for<ranging_frequency> set(ranging_frequency wanted) noexcept {
+  return {{ask::set_ranging, static_cast<std::uint16_t>(wanted)}};
+}
+/// Toggles the protection until the device reports the wanted state.
+[[nodiscard]] constexpr request_for<power_down_protection> set(
+    power_down_protection wanted) noexcept {
+  return {{ask::set_protection, static_cast<std::uint16_t>(wanted)}};
+}
+/// Restarts the device. Answered when the device replies again.
+[[nodiscard]] constexpr request_for<void> restart() noexcept { return {{ask::restart}}; }
+/// Answered when the device has confirmed the start, or its first packet has arrived.
+[[nodiscard]] constexpr request start() noexcept { return {ask::start}; }
+/// Answered when no more bytes arrive.
+[[nodiscard]] constexpr request stop() noexcept { return {ask::stop}; }
+
+}  // namespace requests
+
+/// How a request ended.
+enum class verdict : std::uint8_t {
+  answered,     ///< `outcome::value` contains the answer, if the request has one.
+  not_reached,  ///< The device did not reach the wanted value; `value` is the value that it reached.
+  timed_out,    ///< No valid answer, after all permitted repetitions.
+  still_scanning,  ///< The device did not stop scanning, so nothing could be sent.
+};
+
+/// What arrived from the device during a request.
+struct heard_from_device {
+  std::uint32_t skipped_bytes = 0;  ///< Bytes that belong to no frame.
+  std::uint32_t responses = 0;
+  std::uint32_t packets = 0;
+  friend constexpr bool operator==(const heard_from_device&,
+                                   const heard_from_device&) noexcept = default;
+};
+
+/// An answer, in the type of the request; start, stop and restart have none.
+using answer =
+    std::variant<std::monostate, device_information, health, low_power, motor_direction,
+                 scan_frequency, constant_frequency, ranging_frequency, power_down_protection>;
+
+/// The outcome of a request.
+struct outcome {
+  request asked;
+  verdict how = verdict::answered;
+  answer value{};
+  std::uint8_t retries = 0;  ///< Commands that were repeated, without those that clear the link.
+  std::uint8_t wrong_answers = 0;  ///< Answers that are impossible for the command.
+  /// Start commands that were sent, for a start or to resume the scan. More than one: the device did not
+  /// start at once, and may have restarted and lost its settings.
+  std::uint8_t starts = 0;
+  heard_from_device heard{};
+
+  /// Whether not a single byte arrived.
+  [[nodiscard]] constexpr bool heard_nothing() const noexcept {
+    return heard == heard_from_device{};
+  }
+  /// Whether bytes arrived, but no frame: most likely the wrong baud rate.
+  [[nodiscard]] constexpr bool heard_noise_only() const noexcept {
+    return heard.skipped_bytes > 0 && heard.responses == 0 && heard.packets == 0;
+  }
+  friend constexpr bool operator==(const outcome&, const outcome&) noexcept = default;
+};
+
+/// Why a request is refused.
+enum class refusal : std::uint8_t {
+  busy,         ///< Another request is in progress, or its outcome has not been taken.
+  scanning,     ///< Any command but start and stop would disturb the running scan.
+  bad_setting,  ///< A G4 cannot have this value; see is_possible().
+};
+
+/// Whether a request may stop a running scan.
+enum class while_scanning : std::uint8_t {
+  refuse,
+  stop_and_resume,  ///< Stop, send, and start again; the outcome is available when the scan runs again.
+};
+
+/// What a session reports without a request of the caller.
+enum class notice : std::uint8_t {
+  none,
+  found_scanning,  ///< Packets arrived although no scan had been started; the device is stopped.
+  protection_starved,   ///< A keep-alive was sent too late for the protection; started again.
+  protection_found_on,  ///< The scan ended as if by protection; started again, with keep-alives.
+  spinning_up,          ///< Started, and no packet has arrived yet; the session only waits.
+  restarted,            ///< The scan ended by itself for another reason; started again.
+  stalled,  ///< The scan ended by itself, or never sent a packet, and another start did not help: given up. A cause is insufficient power for the motor.
+};
+
+}  // namespace g4lidar

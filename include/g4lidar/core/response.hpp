@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// A response on the wire: its header, the possible contents, and their meaning.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/detail/frame_check.hpp"
+#include "g4lidar/device_information.hpp"
+#include "g4lidar/settings.hpp"
+
+namespace g4lidar {
+
+/// The number of bytes of a response before its content: start, length and mode, type code.
+inline constexpr std::size_t response_header_size = 7;
+/// The size of the longest content, the device information.
+inline constexpr std::size_t max_response_content = 20;
+/// The first two bytes of every response.
+inline constexpr std::array<std::uint8_t, 2> response_start{0xA5, 0x5A};
+
+/// The mode of a response, the top two bits of its sixth byte. (protocol: Commands, reply header)
+enum class response_mode : std::uint8_t { single = 0, continuous = 1 };
+
+/// The kinds of response that can be distinguished without the command. What a byte or a frequency
+/// *means* depends on the command that was sent. (protocol: Commands)
+enum class response_kind : std::uint8_t {
+  scan_started,  ///< The header before the endless packets; without content.
+  device_info,   ///< 20 bytes.
+  health,        ///< 3 bytes.
+  byte,          ///< One byte, 0 to 2.
+  frequency,     ///< Four bytes: Hz x 100.
+};
+
+/// The seven fixed bytes of a kind of response, and the number of content bytes behind them.
+struct response_layout {
+  response_kind kind;
+  std::array<std::uint8_t, response_header_size> header;
+  std::uint8_t content;
+};
+
+/// Every kind of response. The length field of the scan header is 5 and must be ignored.
+inline constexpr std::array<response_layout, 5> response_layouts{{
+    {response_kind::scan_started, {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81}, 0},
+    {response_kind::device_info, {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04}, 20},
+    {response_kind::health, {0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06}, 3},
+    {response_kind::byte, {0xA5, 0x5A, 0x01, 0x00, 0x00, 0x00, 0x04}, 1},
+    {response_kind::frequency, {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00, 0x04}, 4},
+}};
+
+/// The highest frequency that a response can contain, in 0.01 Hz.
+inline constexpr std::uint32_t max_frequency_chz = 2000;
+
+/// Whether byte `at` of a content of this kind is possible, given the bytes before it. *Pure.*
+/// (protocol: Commands, a reply is believed only if ...)
+[[nodiscard]] constexpr bool is_possible(response_kind kind, bytes content,
+                                         std::size_t at) noexcept {
+  const std::uint8_t value = content[at];
+  switch (kind) {
+    case response_kind::scan_started:
+      return false;
+    case response_kind::device_info:
+      return at < 4 || value <= 9;  // each byte of the serial number is a decimal digit
+    case response_kind::health:
+      return at > 0 || value <= 2;
+    case response_kind::byte:
+      return value <= 2;
+    case response_kind::frequency:
+      if (at == 0) return true;
+      if (at == 1) return load_u16(content, 0) <= max_frequency_chz;
+      return value == 0;
+  }
+  return false;
+}
+
+/// The index of the layout with this length byte, which differs in all five;
+/// response_layouts.size() if there is none. *Pure.*
+[[nodiscard]] constexpr std::size_t layout_of_length(std::uint8_t length) noexcept {
+  std::size_t at = 0;
+  while (at < response_layouts.size() && response_layouts[at].header[2] != length) ++at;
+  return at;
+}
+
+/// Whether `data` begins with a response: one of the headers above and a possible content. Each
+/// byte is checked as soon as it is available. *Pure.*
+[[nodiscard]] constexpr frame_check check_response(bytes data) noexcept {
+  const std::size_t have = data.size();
+  const auto refused_at = [](std::size_t at) {
+    return frame_check{frame_state::bad_header, at + 1};
+  };
+  if (have > 0 && data[0] != response_start[0]) return refused_at(0);
+  if (have > 1 && data[1] != response_start[1]) return refused_at(1);
+  if (have < 3) return {frame_state::incomplete, have + 1};
+  const std::size_t which = layout_of_length(data[2]);
+  if (which == response_layouts.size()) return refused_at(2);
+  const response_layout& layout = response_layouts[which];
+  for (std::size_t at = 3; at < response_header_size && at < have; ++at) {
+    if (data[at] != layout.header[at]) return refused_at(at);
+  }
+  const std::size_t size = response_header_size + layout.content;
+  for (std::size_t at = response_header_size; at < size && at < have; ++at) {
+    const std::size_t in_content = at - response_header_size;
+    if (!is_possible(layout.kind, data.subspan(response_header_size), in_content)) {
+      return refused_at(at);
+    }
+  }
+  if (have < size) return {frame_state::incomplete, have + 1};
+  return {frame_state::valid, size};
+}
+
+/// A one-byte answer as `Setting`, an enumeration of settings.hpp; nothing if the byte is not one
+/// of its values. *Pure.*
+template <class Setting>
+[[nodiscard]] constexpr std::optional<Setting> reply_byte(std::uint8_t value) noexcept {
+  const auto setting = static_cast<Setting>(value);
+  return is_valid(setting) ? std::optional(setting) : std::nullopt;
+}
+
+/// A view of a valid response; valid as long as its bytes do not change.
+class response_view {
+ public:
+  /// The response that `frame` contains from its first to its last byte, or nothing.
+  [[nodiscard]] static constexpr std::optional<response_view> from(bytes frame) noexcept {
+    const frame_check check = check_response(frame);
+    if (check.state != frame_state::valid || check.size != frame.size()) return std::nullopt;
+    return response_view(frame);
+  }
+  /// Deleted: the bytes are destroyed at the end of the call.
+  template <dying_owner Owner>
+  static constexpr std::optional<response_view> from(Owner&&) = delete;
+
+  /// All bytes of the response; valid as long as the bytes of the view.
+  [[nodiscard]] constexpr bytes data() const noexcept { return frame_; }
+  /// The bytes behind the header, 0 to 20; valid as long as data().
+  [[nodiscard]] constexpr bytes content() const noexcept {
+    return frame_.subspan(response_header_size);
+  }
+  /// Whether this is a single answer or the begin of an endless stream. (protocol: Commands, reply
+  /// header)
+  [[nodiscard]] constexpr response_mode mode() const noexcept {
+    return static_cast<response_mode>(frame_[5] >> 6);
+  }
+  /// The seventh byte: 04h, 06h or 81h. Several kinds have the same code; kind() distinguishes
+  /// them.
+  [[nodiscard]] constexpr std::uint8_t type_code() const noexcept { return frame_[6]; }
+  /// The kind of the response, by its length byte.
+  [[nodiscard]] constexpr response_kind kind() const noexcept {
+    return response_layouts[layout_of_length(frame_[2])].kind;  // always found: it was checked
+  }
+
+  /// The device information, if the response contains it.
+  [[nodiscard]] constexpr std::optional<device_information> as_device_info() const noexcept {
+    if (kind() != response_kind::device_info) return std::nullopt;
+    const bytes raw = content();
+    device_information info{raw[0], raw[2], raw[1], raw[3], {}};
+    for (std::size_t i = 0; i < info.serial_digits.size(); ++i) {
+      info.serial_digits[i] = static_cast<char>('0' + raw[4 + i]);
+    }
+    return info;
+  }
+  /// The health, if the response contains it.
+  [[nodiscard]] constexpr std::optional<health> as_health() const noexcept {
+    if (kind() != response_kind::health) return std::nullopt;
+    return health{static_cast<health_status>(content()[0]), load_u16(content(), 1)};
+  }
+  /// The single byte, if the response contains one; see reply_byte().
+  [[nodiscard]] constexpr std::optional<std::uint8_t> as_byte() const noexcept {
+    if (kind() != response_kind::byte) return std::nullopt;
+    return content()[0];
+  }
+  /// The scan frequency in 0.01 Hz, if the response contains it.
+  [[nodiscard]] constexpr std::optional<std::uint16_t> as_frequency_chz() const noexcept {
+    if (kind() != response_kind::frequency) return std::nullopt;
+    return load_u16(content(), 0);  // the upper half is 0 in a valid response
+  }
+
+ private:
+  friend class stream_parser;  // creates views of frames that it has checked
+
+  explicit constexpr response_view(bytes frame) noexcept : frame_(frame) {}
+
+  bytes frame_;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+// Estimates when each sample was measured, from sample counts and arrival times.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/detail/arrival_window.hpp"
+#include "g4lidar/detail/sample_counter.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// What a sensor_clock cannot determine by itself.
+struct sensor_clock_options {
+  double sample_rate_hz = 9000.0;  ///< Nominal, above 0; the true rate is within 4 % of it.
+  std::int64_t transport_delay_ns =
+      0;                        ///< The least delay of every byte after the serial connection.
+  std::uint32_t baud = 230400;  ///< Bits per second, 10 bits per byte; 0: bytes take no time.
+};
+
+/// The measurement times of the samples of one packet.
+struct packet_times {
+  std::int64_t first_ns = 0;  ///< Of the first sample.
+  double step_ns = 0.0;       ///< From each sample to the next.
+  std::int64_t bound_ns = 0;  ///< The greatest possible difference of these times from the truth.
+  std::int64_t lost = 0;      ///< Samples that were lost before this packet.
+
+  /// The time of sample `i`.
+  [[nodiscard]] constexpr std::int64_t at(std::size_t i) const noexcept {
+    return first_ns + ((static_cast<std::int64_t>(i) * step_fixed()) >> fraction_bits);
+  }
+  /// Writes the times to all points of the packet.
+  constexpr void write_to(std::span<point> points) const noexcept {
+    const std::int64_t step = step_fixed();
+    std::int64_t way = 0;
+#pragma GCC unroll 8
+    for (point& p : points) {
+      p.time_ns = first_ns + (way >> fraction_bits);
+      way += step;
+    }
+  }
+
+ private:
+  /// A step of a second, 80 times, fits with so many bits behind the point.
+  static constexpr int fraction_bits = 20;
+  [[nodiscard]] constexpr std::int64_t step_fixed() const noexcept {
+    return static_cast<std::int64_t>(step_ns * (1 << fraction_bits));
+  }
+};
+
+/// Estimates when samples were measured. *Single thread, never allocates, never waits*: bounded
+/// work per packet.
+///
+/// Samples are equidistant, and arrivals are late, never early: the times of the samples are the
+/// line below the arrivals. A delay that all arrivals have in common cannot be derived from them;
+/// it is an option. `docs/design/sensor_clock.md` has the accuracy and the reasons.
+class sensor_clock {
+ public:
+  /// An option out of range is an assertion.
+  explicit constexpr sensor_clock(const sensor_clock_options& options = {}) noexcept
+      : options_(options), nominal_ns_(1e9 / options.sample_rate_hz), window_(nominal_ns_) {
+    assert(options.sample_rate_hz > 0.0);
+    line_.period_ns = nominal_ns_;
+    restart();
+  }
+
+  /// The times of the samples of `packet`, whose last byte arrived at `arrival_ns` of a monotonic
+  /// clock, within 70 years of 0. Call it once for every packet, in order, also for suspect ones.
+  /// Times are strictly increasing, from sample to sample and from packet to packet, in all cases.
+  constexpr packet_times stamp(const decoded& packet, std::int64_t arrival_ns) noexcept {
+    const std::int64_t count = std::max<std::int64_t>(packet.sample_count, 1);
+    const sample_gap gap = counter_.next(packet, hinted_, late_samples(count, arrival_ns));
+    if (gap.lost > 0) seen_bytes_ = 0;  // bytes of a packet that never arrived
+    const std::int64_t before = measured_before(count, arrival_ns);
+    hinted_ = false;
+    skipped_bytes_ = 0.0;
+    next_ += gap.lost + count;
+    doubt(gap);
+    const std::int64_t missed = observe({next_ - 1, before});
+    packet_times times = times_until(std::min(line_.at(next_ - 1), before), count);
+    if (is_late_) times.bound_ns += before - line_.at(next_ - 1);  // samples may be missing
+    bound_ns_ = times.bound_ns;
+    times.lost = gap.lost + missed;
+    return times;
+  }
+
+  /// Optional; makes the times several times more accurate if bytes arrive in bursts: `count` bytes
+  /// of an incomplete packet, with its header, have arrived by `arrival_ns`. After each read into a
+  /// stream_parser: `if (parser.held() >= packet_header_size) clock.seen(parser.held(), now)`. A
+  /// device sends no byte of a packet before its last sample is measured, so this gives as much
+  /// information as the arrival of a whole packet.
+  constexpr void seen(std::size_t count, std::int64_t arrival_ns) noexcept {
+    if (count < packet_header_size || count > max_packet_size) return;
+    const std::int64_t before = arrival_ns - line_time_ns(count);
+    seen_before_ns_ = seen_bytes_ == 0 ? before : std::min(before, seen_before_ns_);
+    seen_bytes_ = std::max(seen_bytes_, count);
+  }
+
+  /// Packets were probably lost here: call it after each skip with a reason other than noise, of
+  /// `count` bytes. Gaps are counted without it too; with it, short gaps are counted more exactly,
+  /// and gaps longer than a turn immediately.
+  constexpr void lost(std::size_t count) noexcept {
+    hinted_ = is_torn_ = true;
+    skipped_bytes_ += static_cast<double>(count);
+    seen_bytes_ = 0;
+  }
+
+  /// The stream starts again: nothing is known except, approximately, the sample rate. Times still
+  /// increase.
+  constexpr void reset() noexcept {
+    counter_.reset();
+    hinted_ = false;
+    skipped_bytes_ = 0.0;
+    seen_bytes_ = 0;
+    restart();
+  }
+  /// The same with another nominal sample rate, above 0.
+  constexpr void reset(double sample_rate_hz) noexcept {
+    assert(sample_rate_hz > 0.0);
+    nominal_ns_ = 1e9 / sample_rate_hz;
+    line_.period_ns = nominal_ns_;
+    window_ = arrival_window(nominal_ns_);
+    rate_known_ = false;
+    reset();
+  }
+
+  /// The last estimate of the sample rate.
+  [[nodiscard]] constexpr double sample_rate_hz() const noexcept { return 1e9 / line_.period_ns; }
+  /// When the sample after the last one of the last packet is measured; 0 before the first packet.
+  [[nodiscard]] constexpr std::int64_t next_sample_ns() const noexcept {
+    return started_ ? line_.at(next_) : 0;
+  }
+  /// The bound of the last packet, in nanoseconds; 0 before the first.
+  [[nodiscard]] constexpr std::int64_t bound_ns() const noexcept { return bound_ns_; }
+
+ private:
+  /// A packet that is later than this was delayed by more than batching.
+  static constexpr double late_ns = 25e6;
+  /// A stream whose packets are usually later than that is not live.
+  static constexpr double most_delay_ns = 10e6;
+  /// After so much time without a packet in time, and without a decrease of the delay by this much,
+  /// samples were lost without being counted.
+  static constexpr double all_late_ns = 40e6;
+  static constexpr double catching_up_ns = 5e6;
+  /// The same if no byte was skipped: a loss nearly always damages a frame.
+  static constexpr double surely_late_ns = 1e9;
+  /// A window longer than this determines the rate by itself.
+  static constexpr double enough_ns = 4e9;
+  /// An arrival earlier than this, and earlier than the bound allows, disproves the count.
+  static constexpr double early_ns = 1e6;
+  /// If the count of lost samples is uncertain by more than this, no times can be derived.
+  static constexpr double most_doubt_ns = 1e6;
+  /// The limit of the difference of the period from the nominal one, with a margin.
+  static constexpr double widest = 0.05;
+  /// The limit of the error of a rate that was learnt.
+  static constexpr double known_rate = 300e-6;
+  /// The assumed delay of packets until it is known, and its minimum.
+  static constexpr double unknown_late_ns = 8e6;
+  static constexpr double least_late_ns = 1e3;
+
+  [[nodiscard]] constexpr std::int64_t line_time_ns(std::size_t count) const noexcept {
+    const auto bits = static_cast<std::int64_t>(count) * 10;
+    return options_.baud == 0 ? 0 : bits * 1'000'000'000 / options_.baud;
+  }
+
+  /// By how many samples a packet of `count` samples is later than it would be without loss; 0 if
+  /// fewer bytes were skipped than that, because then the program may have been suspended.
+  [[nodiscard]] constexpr double late_samples(std::int64_t count,
+                                              std::int64_t arrival_ns) const noexcept {
+    if (!started_ || skipped_bytes_ <= 0.0) return 0.0;
+    const std::int64_t expected = line_.at(next_ + count - 1) + options_.transport_delay_ns;
+    const double late = static_cast<double>(arrival_ns - expected) / line_.period_ns;
+    return late < skipped_bytes_ ? late : 0.0;  // at least two bytes per sample
+  }
+
+  /// A time before which the last of the `count` samples of a packet was measured.
+  [[nodiscard]] constexpr std::int64_t measured_before(std::int64_t count,
+                                                       std::int64_t arrival_ns) noexcept {
+    arrival_ns_ = std::max(arrival_ns_, arrival_ns);
+    const std::size_t size = packet_size(static_cast<std::size_t>(count));
+    std::int64_t before = arrival_ns_ - line_time_ns(size);
+    if (seen_bytes_ > 0 && seen_bytes_ < size) before = std::min(before, seen_before_ns_);
+    seen_bytes_ = 0;
+    return before - options_.transport_delay_ns;
+  }
+
+  /// Clears the window. The rate is kept: a device that starts again has the same oscillator.
+  constexpr void restart() noexcept {
+    const double slope = line_.period_ns / nominal_ns_ - 1.0;
+    const double doubt = rate_known_ ? known_rate : 2.0 * widest;
+    slopes_ = {std::max(-widest, slope - doubt), std::min(widest, slope + doubt)};
+    window_.clear();
+    started_ = false;
+    is_late_ = is_torn_ = false;
+  }
+
+  /// A gap whose count is uncertain widens the bound; a gap of unknown size separates the times
+  /// before it from those after it.
+  constexpr void doubt(const sample_gap& gap) noexcept {
+    const double doubt_ns = gap.doubt_samples * line_.period_ns;
+    if (!gap.known || doubt_ns > most_doubt_ns) return restart();
+    doubt_ns_ = std::max(doubt_ns_, doubt_ns);
+  }
+
+  /// Updates the line. Returns how many samples must have been lost without being detected.
+  constexpr std::int64_t observe(arrival next) noexcept {
+    double late = started_ ? static_cast<double>(next.time_ns - line_.at(next.sample)) : 0.0;
+    std::int64_t missed = 0;
+    const double too_early = std::max(early_ns, 3.0 * line_.bound_ns);
+    if (late < -too_early || stays_late(late, next)) {
+      if (late > 0.0) missed = unseen_samples(late);
+      if (window_.span_ns() <= enough_ns) rate_known_ = false;  // it may be the error
+      mean_late_ns_ = unknown_late_ns;
+      restart();
+      late = 0.0;
+    }
+    if (is_late_) return 0;
+    if (-late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
+    started_ = true;
+    in_time_ = next.sample;
+    mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;
+    if (!window_.add(next, line_.period_ns)) return missed;
+    if (window_.span_ns() > enough_ns) {
+      rate_known_ = true;
+      slopes_ = {-widest, widest};
+    }
+    line_ = window_.fit(slopes_, mean_late_ns_);
+    return missed;
+  }
+
+  /// How many samples were lost if packets stay late by so much: whole turns, since the angles show
+  /// the rest. The remainder is delay of the host.
+  [[nodiscard]] constexpr std::int64_t unseen_samples(double late) const noexcept {
+    const double samples = late / line_.period_ns;
+    const double step = counter_.step_64ths();
+    if (step <= 0.0) return static_cast<std::int64_t>(samples);
+    const double of_turn = turn_64ths / step;
+    const auto turns = static_cast<std::int64_t>(samples / of_turn + 0.5);
+    return static_cast<std::int64_t>(static_cast<double>(turns) * of_turn + 0.5);
+  }
+
+  /// Whether packets have been too late for too long: then samples were lost without being counted.
+  /// After a suspension of the program the packets become less and less late, unless it is
+  /// suspended again.
+  [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
+    const bool was_late = is_late_;
+    const double usual_ns = std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
+    is_late_ = late > usual_ns && late > usual_ns + drift_since_ns(next);
+    if (!is_late_) {
+      is_torn_ = false;
+      return false;
+    }
+    if (!was_late || late < least_late_ns_ - catching_up_ns) {
+      least_late_ns_ = late;
+      late_since_ns_ = steady_since_ns_ = next.time_ns;
+    }
+    if (late > least_late_ns_ + late_ns) steady_since_ns_ = next.time_ns;
+    const auto late_for_ns = static_cast<double>(next.time_ns - late_since_ns_);
+    const auto steady_for_ns = static_cast<double>(next.time_ns - steady_since_ns_);
+    return (is_torn_ && steady_for_ns > all_late_ns) || late_for_ns > surely_late_ns;
+  }
+
+  /// The largest delay of packets since the last one in time, if the rate differs from the assumed
+  /// one.
+  [[nodiscard]] constexpr double drift_since_ns(arrival next) const noexcept {
+    const double slope = line_.period_ns / nominal_ns_ - 1.0;
+    const bool known = rate_known_ || window_.span_ns() > enough_ns;
+    const double doubt = known ? known_rate : std::max(slopes_.highest - slope, known_rate);
+    return doubt * static_cast<double>(next.sample - in_time_) * nominal_ns_;
+  }
+
+  /// The times of `count` samples of which the last one is at `last_ns`. If that is not after the
+  /// previous samples, the steps are shortened until it is.
+  [[nodiscard]] constexpr packet_times times_until(std::int64_t last_ns,
+                                                   std::int64_t count) noexcept {
+    const double steps = static_cast<double>(count - 1);
+    const double shortest_ns = line_.period_ns / 4.0;
+    const std::int64_t first_ns = last_ns - static_cast<std::int64_t>(steps * line_.period_ns);
+    packet_times times;
+    times.first_ns = first_ns;
+    times.step_ns = line_.period_ns;
+    if (any_) {
+      times.first_ns = std::max(first_ns, last_ns_ + static_cast<std::int64_t>(shortest_ns));
+    }
+    if (times.first_ns > first_ns && count > 1) {
+      const double fitting = static_cast<double>(last_ns - times.first_ns) / steps;
+      times.step_ns = std::max(shortest_ns, fitting);
+    }
+    any_ = true;
+    last_ns_ = times.at(static_cast<std::size_t>(count - 1));
+    const double behind_ns = static_cast<double>(times.first_ns - first_ns);
+    times.bound_ns = static_cast<std::int64_t>(line_.bound_ns + behind_ns + doubt_ns_) + 1000;
+    doubt_ns_ *= 0.999;  // later arrivals reduce the doubt
+    return times;
+  }
+
+  sensor_clock_options options_;
+  double nominal_ns_;
+  sample_counter counter_;
+  arrival_window window_;
+  sampling_line line_;
+  arrival_window::slopes slopes_{};
+  std::int64_t next_ = 0;  // number of the next sample
+  std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
+  std::size_t seen_bytes_ = 0;  // of the next packet, and the limit that they give
+  std::int64_t seen_before_ns_ = 0;
+  std::int64_t in_time_ = 0;          // the last sample of a packet that was in time
+  std::int64_t late_since_ns_ = 0;    // late since then, without a decrease
+  std::int64_t steady_since_ns_ = 0;  // without a further delay since then
+  double least_late_ns_ = 0.0;
+  std::int64_t last_ns_ = 0;  // the time of the last sample
+  std::int64_t bound_ns_ = 0;
+  double mean_late_ns_ = unknown_late_ns;
+  double skipped_bytes_ = 0.0;  // since the last packet
+  double doubt_ns_ = 0.0;       // by uncertain counts of lost samples
+  bool started_ = false;        // the line exists
+  bool rate_known_ = false;
+  bool is_late_ = false;
+  bool is_torn_ = false;  // bytes were skipped since the last packet in time
+  bool hinted_ = false;
+  bool any_ = false;  // times were given
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// Bytes of a stream that belong to no frame: how many, and why.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "g4lidar/detail/cpp20.hpp"
+
+namespace g4lidar {
+
+/// Why bytes were skipped.
+enum class skip_reason : std::uint8_t {
+  noise,       ///< No frame begins here: boot text, and the stray bytes that healthy devices send.
+  bad_header,  ///< The start of a frame whose header or content is impossible.
+  bad_checksum,  ///< A complete packet by its header; a byte of it is damaged or missing.
+  truncated,     ///< A frame that was not complete at the end of the input.
+};
+/// The number of reasons for a skip.
+inline constexpr std::size_t skip_reasons = 4;
+
+/// Bytes of the stream that belong to no frame.
+struct skipped {
+  std::size_t count;
+  skip_reason reason;
+
+  friend constexpr bool operator==(const skipped&, const skipped&) = default;
+};
+
+/// The name of a reason in the tools. Valid forever.
+[[nodiscard]] constexpr const char* name_of(skip_reason reason) noexcept {
+  switch (reason) {
+    case skip_reason::noise:
+      return "noise";
+    case skip_reason::bad_header:
+      return "bad_header";
+    case skip_reason::bad_checksum:
+      return "bad_checksum";
+    case skip_reason::truncated:
+      break;
+  }
+  return "truncated";
+}
+
+}  // namespace g4lidar

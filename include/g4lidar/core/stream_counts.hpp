@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Counts of the contents of a stream; they are consistent at every moment.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "g4lidar/core/skipped.hpp"
+
+namespace g4lidar {
+
+/// Counts over a stream. At every moment the bytes given to the parser are
+/// frame_bytes + skipped_bytes() + the parser's held(). A stream_counter counts them.
+struct stream_counts {
+  std::uint64_t frame_bytes = 0;
+  std::uint64_t packets = 0;    ///< Valid packets, including suspect ones.
+  std::uint64_t responses = 0;  ///< Valid responses.
+  std::uint64_t points = 0;     ///< Samples of packets that are not suspect.
+  std::uint64_t suspect = 0;    ///< Packets whose samples have no known angles.
+  std::array<std::uint64_t, skip_reasons> skipped_by_reason{};  ///< Bytes.
+
+  /// Bytes skipped for `reason`.
+  [[nodiscard]] constexpr std::uint64_t skipped(skip_reason reason) const noexcept {
+    return skipped_by_reason[static_cast<std::size_t>(reason)];
+  }
+  /// Bytes skipped for any reason.
+  [[nodiscard]] constexpr std::uint64_t skipped_bytes() const noexcept {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t count : skipped_by_reason) sum += count;
+    return sum;
+  }
+
+  friend constexpr bool operator==(const stream_counts&, const stream_counts&) = default;
+};
+
+}  // namespace g4lidar

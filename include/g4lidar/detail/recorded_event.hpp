@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// The events of a connection that a recording contains in addition to the received bytes, for
+// replay.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/error.hpp"
+
+namespace g4lidar {
+
+struct recorded_device;
+
+/// One event between two reads of a transport. A view; the function that returns it defines its
+/// lifetime.
+///
+/// A driver that reads a recording processes its bytes like the recorded driver, at the same
+/// places, so that the same points result. A place is defined by what had been made of the last
+/// read: `events` were taken from it, and `unparsed` of its bytes were left.
+struct recorded_event {
+  /// The kinds of event.
+  enum class kind : std::uint8_t {
+    opened,  ///< The transport was opened, the first time or again: `line`, `baud`.
+    closed,  ///< The transport was closed, or the connection broke: `reason`.
+    sent,    ///< `data` was sent to the device.
+    begun,   ///< The following points begin a new stream: `samples_per_second`, `delivers`.
+    held,    ///< From here on packets produce no points, until the next `begun`.
+    cut,  ///< The unparsed bytes were discarded, and a held frame was parsed again from its second byte.
+    gap,    ///< Bytes are missing from the recording at this place.
+    state,  ///< The current state, repeated for readers that begin here: all of the above.
+  };
+  kind what;
+  problem reason = problem::cancelled;   ///< Of `closed`; cancelled: no error.
+  bool delivers = true;                  ///< Whether packets produce points from here on.
+  std::uint32_t baud = 0;                ///< See transport::baud().
+  std::uint32_t samples_per_second = 0;  ///< The nominal sample rate.
+  std::uint32_t unparsed = 0;            ///< Bytes of the last read.
+  std::uint32_t events = 0;              ///< Of the parser, since the last read.
+  std::int64_t time_ns = 0;              ///< By the clock of the transport.
+  std::string_view line{};               ///< transport::name(), of `opened` and `state`.
+  bytes data{};                          ///< Of `sent`.
+};
+
+/// The names in tools and documents. Valid forever.
+[[nodiscard]] G4LIDAR_API std::string_view name_of(recorded_event::kind what) noexcept;
+
+/// The events that were recorded with the bytes, for the driver that replays them.
+class G4LIDAR_API recorded_event_source {
+ public:
+  virtual ~recorded_event_source() = default;
+  recorded_event_source(const recorded_event_source&) = delete;
+  recorded_event_source& operator=(const recorded_event_source&) = delete;
+
+  /// The next event between the last read and the next one: call it until it returns nothing. Valid
+  /// until the next call of any function of the recording.
+  [[nodiscard]] virtual std::optional<recorded_event> next_event() noexcept = 0;
+  /// What is known about the recorded lidar. Valid as long as this.
+  [[nodiscard]] virtual const recorded_device& device() const noexcept = 0;
+  /// The end, by the clock of the recording, of a call that waits this long by the clock of the
+  /// caller.
+  [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept = 0;
+  /// How long the caller has to wait for the next read, by its own clock. 0 if it has arrived, or
+  /// if there is none.
+  [[nodiscard]] virtual std::int64_t wait_for_next_ns() noexcept = 0;
+
+ protected:
+  recorded_event_source() = default;
+};
+
+/// Receives events from a driver, to record them.
+class G4LIDAR_API recorded_event_sink {
+ public:
+  virtual ~recorded_event_sink() = default;
+  recorded_event_sink(const recorded_event_sink&) = delete;
+  recorded_event_sink& operator=(const recorded_event_sink&) = delete;
+
+  /// This event happened after the last read and before the next one.
+  virtual void note(const recorded_event& what) noexcept = 0;
+
+ protected:
+  recorded_event_sink() = default;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+// The commands of a request, their retry after a lost or impossible answer, and its result.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/core/response.hpp"
+
+namespace g4lidar {
+
+/// Whether a G4 can have the value: a frequency of 5 to 12 Hz, an enumerator of its type. *Pure.*
+/// (protocol: Commands)
+[[nodiscard]] constexpr bool is_possible(const request& wanted) noexcept {
+  switch (wanted.what) {
+    case ask::set_scan_frequency:
+      return wanted.value >= min_scan_frequency_chz && wanted.value <= max_scan_frequency_chz;
+    case ask::step_scan_frequency:
+      return wanted.value >= static_cast<std::uint16_t>(frequency_step::up_0_1_hz) &&
+             wanted.value <= static_cast<std::uint16_t>(frequency_step::down_1_hz);
+    case ask::set_ranging:
+      return wanted.value <= static_cast<std::uint16_t>(ranging_frequency::khz_9);
+    case ask::set_low_power:
+    case ask::set_direction:
+    case ask::set_constant_frequency:
+    case ask::set_protection:
+      return wanted.value <= 1;
+    default:
+      return wanted.what <= ask::stop && wanted.value == 0;
+  }
+}
+
+/// The next step of a request.
+struct request_step {
+  /// What to do.
+  enum class action : std::uint8_t {
+    ask,      ///< Send `code` and wait for its answer.
+    doubt,    ///< The answer is impossible: clear the link, then call lost().
+    end,      ///< The request has ended with `how` and `value`.
+    give_up,  ///< No answer can be obtained.
+  };
+  action what = action::give_up;
+  command code = command::device_info;
+  /// For ask: the one possible answer is known, so that no copy of another answer is taken for it.
+  bool foretold = false;
+  verdict how = verdict::answered;
+  answer value{};
+};
+
+/// The commands of one request. Has no clock and no connection: it receives valid answers, and
+/// reports of lost answers after the link was cleared.
+///
+/// The answer to a command that changes state is predicted from the last answer. After any other
+/// answer, and after none, the setting is queried. A value that was reached by changes is queried
+/// once more, because responses have no checksum. (protocol: Commands)
+class request_retry {
+ public:
+  constexpr request_retry() noexcept = default;
+  /// The steps of `wanted`.
+  explicit constexpr request_retry(const request& wanted) noexcept : wanted_(wanted) {}
+
+  /// The first step.
+  [[nodiscard]] constexpr request_step first() const noexcept { return ask(question()); }
+
+  /// `heard` must be a possible answer to the last command.
+  [[nodiscard]] constexpr request_step answered(const response_view& heard) noexcept {
+    if (const auto info = heard.as_device_info()) return end(*info);
+    if (const auto state = heard.as_health()) return end(*state);
+    const std::uint16_t value = heard.as_frequency_chz().value_or(heard.as_byte().value_or(0));
+    if (wanted_.what == ask::set_protection) return toggled(value);
+    if (!is_moving()) return end(as_answer(value));
+    switch (waits_for_) {
+      case answer_of::query:
+        return queried(value);
+      case answer_of::move:
+        return moved(value);
+      case answer_of::confirmation:
+        break;
+    }
+    return confirmed(value);
+  }
+
+  /// The answer was missing or impossible, and no bytes are in transit.
+  [[nodiscard]] constexpr request_step lost() noexcept {
+    if (++losses_ == max_losses) return {};
+    waits_for_ = answer_of::query;
+    is_known_ = false;
+    return ask(question());
+  }
+
+ private:
+  enum class answer_of : std::uint8_t { query, move, confirmation };
+
+  static constexpr int max_losses = 4;   // of answers, without a change between them
+  static constexpr int max_unmoved = 3;  // changes without effect and without an answer
+  static constexpr int max_toggles = 8;  // two for each loss
+  static constexpr int max_moves = 60;   // more than all steps from one end to the other
+  static constexpr int tolerance_chz = 5;
+  static constexpr int coarse_chz = 100;
+  static constexpr int fine_chz = 10;
+
+  [[nodiscard]] static constexpr request_step ask(command code, bool foretold = false) noexcept {
+    return {request_step::action::ask, code, foretold, verdict::answered, {}};
+  }
+  [[nodiscard]] static constexpr request_step end(const answer& value,
+                                                  verdict how = verdict::answered) noexcept {
+    return {request_step::action::end, command::device_info, false, how, value};
+  }
+  [[nodiscard]] static constexpr request_step doubt() noexcept {
+    return {request_step::action::doubt, command::device_info, false, verdict::answered, {}};
+  }
+
+  /// Whether the request needs commands that change state, and queries of that state.
+  [[nodiscard]] constexpr bool is_moving() const noexcept {
+    return wanted_.what == ask::step_scan_frequency || wanted_.what == ask::set_scan_frequency ||
+           wanted_.what == ask::set_ranging;
+  }
+
+  /// The first command, which is also repeated after a loss.
+  [[nodiscard]] constexpr command question() const noexcept {
+    const bool is_one = wanted_.value == 1;
+    switch (wanted_.what) {
+      case ask::health:  // alternating: a device answers one of them, and the answer may be lost
+        return losses_ % 2 == 0 ? command::health : command::health_vendor;
+      case ask::get_low_power:
+        return command::low_power_query;
+      case ask::set_low_power:
+        return is_one ? command::low_power_on : command::low_power_off;
+      case ask::get_direction:
+        return command::motor_direction_query;
+      case ask::set_direction:
+        return is_one ? command::motor_counter_clockwise : command::motor_clockwise;
+      case ask::get_scan_frequency:
+      case ask::step_scan_frequency:
+      case ask::set_scan_frequency:
+        return command::frequency_query;
+      case ask::set_constant_frequency:
+        return is_one ? command::constant_frequency_on : command::constant_frequency_off;
+      case ask::get_ranging:
+      case ask::set_ranging:
+        return command::ranging_query;
+      case ask::set_protection:
+        return command::protection_toggle;
+      default:
+        return command::device_info;
+    }
+  }
+
+  /// A byte or frequency, in the type of the request.
+  [[nodiscard]] constexpr answer as_answer(std::uint16_t value) const noexcept {
+    const auto byte = static_cast<std::uint8_t>(value);
+    switch (wanted_.what) {
+      case ask::get_low_power:
+      case ask::set_low_power:
+        return static_cast<low_power>(byte);
+      case ask::get_direction:
+      case ask::set_direction:
+        return static_cast<motor_direction>(byte);
+      case ask::set_constant_frequency:
+        return static_cast<constant_frequency>(byte);
+      case ask::get_ranging:
+      case ask::set_ranging:
+        return static_cast<ranging_frequency>(byte);
+      case ask::set_protection:
+        return static_cast<power_down_protection>(byte);
+      default:
+        return scan_frequency{value};
+    }
+  }
+
+  // ---- D9 has no query: its answers must alternate ----
+  constexpr request_step toggled(std::uint16_t value) noexcept {
+    if (++moves_ > max_toggles) return {};
+    if (is_known_ && value == current_) return doubt();
+    is_known_ = true;
+    current_ = value;
+    if (value == wanted_.value) return end(as_answer(value));
+    return ask(command::protection_toggle, true);
+  }
+
+  // ---- 09 to 0C and D0: query, change, confirm ----
+  constexpr request_step queried(std::uint16_t value) noexcept {
+    current_ = value;
+    if (!has_origin_) origin_ = value;
+    has_origin_ = true;
+    if (std::exchange(has_moved_, false)) judge_move();
+    return go_on();
+  }
+  constexpr request_step moved(std::uint16_t value) noexcept {
+    if (!is_move_to(value)) {
+      denied_ = value == current_;
+      return doubt();
+    }
+    current_ = value;
+    count_progress();
+    return go_on();
+  }
+  constexpr request_step confirmed(std::uint16_t value) noexcept {
+    if (value == current_) return end(as_answer(value));
+    if (++losses_ == max_losses) return {};
+    current_ = value;
+    return go_on();
+  }
+
+  /// The answer to a change was not received; the state has been queried.
+  constexpr void judge_move() noexcept {
+    if (current_ != before_) return count_progress();
+    if (++unmoved_ < max_unmoved && !denied_) return;  // the command itself may have been lost
+    (is_coarse_ ? coarse_stuck_ : stuck_) = true;
+    count_progress();
+  }
+  constexpr void count_progress() noexcept {
+    has_moved_ = false;
+    denied_ = false;
+    unmoved_ = 0;
+    losses_ = 0;
+  }
+
+  [[nodiscard]] constexpr request_step go_on() noexcept {
+    if (has_arrived()) {
+      waits_for_ = answer_of::confirmation;
+      return ask(question());
+    }
+    if (is_at_end() || moves_ == max_moves) return end(as_answer(current_), verdict_at_end());
+    ++moves_;
+    before_ = current_;
+    has_moved_ = true;
+    waits_for_ = answer_of::move;
+    return ask(next_move(), true);
+  }
+
+  [[nodiscard]] constexpr int missing() const noexcept {
+    return static_cast<int>(wanted_.value) - static_cast<int>(current_);
+  }
+  [[nodiscard]] constexpr bool has_arrived() const noexcept {
+    if (wanted_.what == ask::step_scan_frequency) return current_ != origin_;
+    if (wanted_.what == ask::set_ranging) return missing() == 0;
+    return missing() <= tolerance_chz && -missing() <= tolerance_chz;
+  }
+  [[nodiscard]] constexpr bool is_at_end() const noexcept {
+    return stuck_ || (coarse_stuck_ && wanted_.what == ask::step_scan_frequency);
+  }
+  /// A device that refuses the last step to the end of its range is as near as possible.
+  [[nodiscard]] constexpr verdict verdict_at_end() const noexcept {
+    const bool is_near = missing() < fine_chz && -missing() < fine_chz;
+    if (wanted_.what == ask::set_scan_frequency && is_near) return verdict::answered;
+    return wanted_.what == ask::step_scan_frequency ? verdict::answered : verdict::not_reached;
+  }
+
+  [[nodiscard]] constexpr command next_move() noexcept {
+    is_coarse_ = false;
+    if (wanted_.what == ask::set_ranging) return command::ranging_next;
+    const bool is_up = missing() > 0;
+    const int far = is_up ? missing() : -missing();
+    move_ = is_up ? command::frequency_up_0_1_hz : command::frequency_down_0_1_hz;
+    if (far >= coarse_chz - tolerance_chz && !coarse_stuck_) {
+      move_ = is_up ? command::frequency_up_1_hz : command::frequency_down_1_hz;
+    }
+    if (wanted_.what == ask::step_scan_frequency) move_ = static_cast<command>(wanted_.value);
+    is_coarse_ = move_ == command::frequency_up_1_hz || move_ == command::frequency_down_1_hz;
+    return move_;
+  }
+
+  /// Whether the last change can have led from `current_` to `value`; at the end of the device's
+  /// range a step may be shorter.
+  [[nodiscard]] constexpr bool is_move_to(std::uint16_t value) const noexcept {
+    if (wanted_.what == ask::set_ranging) return value == (current_ + 1) % 3;
+    const bool is_up = move_ == command::frequency_up_0_1_hz || move_ == command::frequency_up_1_hz;
+    const int by = is_up ? value - current_ : current_ - value;
+    return by > 0 && by <= (is_coarse_ ? coarse_chz : fine_chz);
+  }
+
+ public:
+  // ---- the state; public for tests that compare and change it ----
+  request wanted_{ask::device_info};
+  answer_of waits_for_ = answer_of::query;
+  command move_ = command::frequency_query;
+  std::uint16_t origin_ = 0;   // the first value
+  std::uint16_t current_ = 0;  // the last value
+  std::uint16_t before_ = 0;   // the value before the last change
+  std::uint8_t losses_ = 0;
+  std::uint8_t unmoved_ = 0;
+  std::uint8_t moves_ = 0;
+  bool has_origin_ = false;
+  bool is_known_ = false;   // for the protection: `current_` holds an answer
+  bool has_moved_ = false;  // the effect of a change is not known yet
+  bool denied_ = false;     // the answer reported no change
+  bool is_coarse_ = false;  // the change was a step by 1 Hz
+  bool coarse_stuck_ = false;
+  bool stuck_ = false;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// What the beam of a G4 hits: rays that are curved by the inverse of the second-level correction.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/sim/world.hpp"
+
+namespace g4lidar::sim {
+
+/// The second-level correction of a target at `range_mm` > 0, in degrees, in double precision and
+/// written independently of the core. *Pure.* (protocol: Point packets, second-level correction)
+[[nodiscard]] G4LIDAR_API double correction_deg(double range_mm) noexcept;
+
+/// The limit of the correction for far targets, in degrees.
+inline constexpr double far_correction_deg = -7.990596267964585603;
+
+/// A target on the beam.
+struct sighting {
+  double range_mm;     ///< From the centre of the lidar, > 0.
+  double bearing_deg;  ///< Its direction: first-level angle + correction, in [0, 360).
+  std::uint32_t wall;  ///< The index of the wall that was hit.
+};
+
+/// Finds the wall that the beam hits first. The correction depends on the range, so the beam is not
+/// a straight line but a curve: its point at range d is at the bearing theta + correction(d).
+/// Allocates on construction only; any number of threads may use a `const` caster at once.
+class G4LIDAR_API ray_caster {
+ public:
+  /// `scene` is copied as far as needed.
+  explicit ray_caster(const world& scene);
+
+  /// The nearest target on the beam at `first_level_deg` in [0, 360), at any distance; nothing if
+  /// the beam hits no wall. Targets nearer than 1 mm are not seen.
+  [[nodiscard]] std::optional<sighting> cast(double first_level_deg) const noexcept;
+
+ private:
+  // A wall in millimetres in the lidar's frame: x at bearing 0, y at bearing 90.
+  struct seen_wall {
+    double normal_x, normal_y;      // unit vector, from the lidar to the line of the wall
+    double tangent_x, tangent_y;    // unit vector
+    double distance;                // of the line of the wall, >= 0
+    double along_begin, along_end;  // where the wall begins and ends on its line
+    double nearest, farthest;       // distances of the wall's points
+    std::uint32_t index;
+  };
+  struct beam;
+
+  [[nodiscard]] static seen_wall as_seen(const wall& w, const pose& from,
+                                         std::uint32_t index) noexcept;
+  [[nodiscard]] static std::optional<double> meet(const seen_wall& target, const beam& ray,
+                                                  double not_beyond_mm) noexcept;
+
+  std::vector<seen_wall> walls_;  // the nearest first
+  std::vector<std::uint32_t>
+      candidates_;  // indices into walls_, sector by sector, in the order of walls_
+  std::vector<std::uint32_t> sector_begin_;  // into candidates_, one more than there are sectors
+};
+
+}  // namespace g4lidar::sim

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// What a diagnostic run reports: stages, verdicts, evidence, and each diagnosis with cause and advice.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/error.hpp"
+
+namespace g4lidar {
+
+/// The stages of a diagnostic run, in the order in which they are reported.
+enum class diagnostic_stage : std::uint8_t {
+  port,
+  permission,
+  holder,
+  baud_rate,
+  answers,
+  identity,
+  health,
+  motor,
+  stream,
+  rate,
+  loss,
+  usb_latency,
+};
+/// The number of stages.
+inline constexpr std::size_t diagnostic_stage_count =
+    static_cast<std::size_t>(diagnostic_stage::usb_latency) + 1;
+
+/// How a stage ended, the worst last.
+enum class stage_verdict : std::uint8_t { ok, skipped, warn, fail };
+
+/// Every possible diagnosis. describe() returns cause and advice of each.
+enum class diagnosis : std::uint8_t {
+  no_port,
+  several_ports,
+  not_serial,
+  cannot_connect,
+  system,
+  bad_file,
+  permission,
+  busy,
+  interference,
+  bad_baud_rate,
+  wrong_baud_rate,
+  silent,
+  deaf,
+  was_scanning,
+  answers_late,
+  answers_wrong,
+  answers_twice,
+  answers_missing,
+  other_device,
+  health_warning,
+  health_error,
+  brown_out,
+  reboots,
+  does_not_start,
+  motor_stuck,
+  motor_unsteady,
+  unplugged,
+  stalls,
+  scan_ends,
+  protection_on,
+  jolts,
+  host_busy,
+  frequency_off,
+  sample_rate_off,
+  bits_flipped,
+  bytes_dropped,
+  bytes_inserted,
+  bursts,
+  packets_truncated,
+  packets_lost,
+  line_noise,
+  usb_latency,
+};
+/// The number of diagnoses.
+inline constexpr std::size_t diagnosis_count = static_cast<std::size_t>(diagnosis::usb_latency) + 1;
+
+/// The description of a diagnosis. Valid forever.
+struct diagnosis_info {
+  std::string_view name;    ///< Equal to the enumerator. It does not change: for programs.
+  stage_verdict severity;   ///< warn or fail.
+  std::string_view cause;   ///< The most likely cause: sentences.
+  std::string_view advice;  ///< What to try: sentences. The same as error::advice(), where the
+                            ///< library has an error for it.
+  std::span<const diagnosis>
+      alternatives;  ///< Diagnoses that look the same to a host, the most likely first.
+};
+
+/// *Any thread.* (docs/design/doctor.md)
+[[nodiscard]] G4LIDAR_API diagnosis_info describe(diagnosis what) noexcept;
+/// "baud_rate", "answer". The names do not change.
+[[nodiscard]] G4LIDAR_API std::string_view name_of(diagnostic_stage where) noexcept;
+/// "ok", "skipped", "warn", "fail".
+[[nodiscard]] G4LIDAR_API std::string_view name_of(stage_verdict how) noexcept;
+/// The diagnosis for an error that ended a connection, or prevented it from being opened.
+[[nodiscard]] G4LIDAR_API diagnosis diagnosis_of(problem what) noexcept;
+
+/// One measurement or fact: a name that ends in its unit ("slowest_ms"), and a value.
+struct evidence {
+  std::string name;
+  std::variant<std::int64_t, double, std::string> value;
+
+  /// "ms", "s", "Hz", "%", "1/s" or "baud"; empty for counts and texts. Valid forever.
+  [[nodiscard]] G4LIDAR_API std::string_view unit() const noexcept;
+  /// The value for people, without its unit: numbers with four digits or all before the point.
+  [[nodiscard]] G4LIDAR_API std::string text() const;
+};
+
+/// How one stage ended.
+struct stage_report {
+  diagnostic_stage stage = diagnostic_stage::port;
+  stage_verdict outcome = stage_verdict::ok;
+  std::vector<diagnosis> diagnoses{};  ///< The most likely first.
+  std::vector<evidence> measurements{};
+  std::string remark{};  ///< One more sentence; empty: none.
+
+  /// Adds a diagnosis, once, and raises the verdict to its severity.
+  G4LIDAR_API void find(diagnosis what);
+  /// Adds evidence.
+  template <class Value>
+  void add(std::string name, Value value) {
+    if constexpr (std::is_integral_v<Value>) {
+      measurements.push_back({std::move(name), static_cast<std::int64_t>(value)});
+    } else if constexpr (std::is_floating_point_v<Value>) {
+      measurements.push_back({std::move(name), static_cast<double>(value)});
+    } else {
+      measurements.push_back({std::move(name), std::string(std::move(value))});
+    }
+  }
+};
+
+}  // namespace g4lidar

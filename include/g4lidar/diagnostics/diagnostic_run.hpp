@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Examines a lidar, its connection, its port, or a file of its bytes.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
+#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/transport.hpp"
+
+namespace g4lidar {
+
+/// The current activity of a diagnostic run.
+enum class diagnostic_activity : std::uint8_t {
+  listening,    ///< Bytes that arrive without a query.
+  asking,       ///< All queries, several times.
+  starting,     ///< The start command was sent.
+  spinning_up,  ///< The lidar has accepted the start command and has sent no packet yet; up to 10 s.
+  measuring,    ///< The running scan.
+};
+
+/// Options and callbacks of a diagnostic run. The callbacks may be empty.
+struct diagnostic_options {
+  std::uint32_t baud = 230400;
+  /// How long to measure the running scan; a file is always read completely.
+  std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);
+  /// Called about 20 times a second; returning true ends the run. The lidar is stopped then, too.
+  std::function<bool()> is_cancelled{};
+  /// Called with each stage when it ends, also with stages that are skipped.
+  std::function<void(const stage_report&)> on_stage{};
+  /// Called when the run begins to wait for something.
+  std::function<void(diagnostic_activity)> on_activity{};
+  /// Opens the same port with another baud rate, for a device whose bytes contain no frames;
+  /// returns null if that fails. Called after the earlier transport was closed.
+  std::function<std::unique_ptr<transport>(std::uint32_t)> reopen{};
+};
+
+/// Executes all stages and returns their reports: for the lidar that `source` names, as in
+/// lidar_options::device, or for "file:PATH", a recording or raw bytes. Stages that need a device
+/// are skipped for a file.
+///
+/// Takes about 3 s plus `measuring_time` with a healthy lidar. Sends queries, one start, and stops;
+/// changes no setting; the motor is stopped at the end. *Allocates. Single thread.*
+[[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
+    std::string_view source, const diagnostic_options& options = {});
+
+/// The same for an open transport: the stages from baud_rate on.
+[[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
+    std::unique_ptr<transport> opened, const diagnostic_options& options = {});
+
+/// The same for the transports of `from`. If it fails to connect, the first stages report that.
+[[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
+    connector& from, const diagnostic_options& options = {});
+
+}  // namespace g4lidar

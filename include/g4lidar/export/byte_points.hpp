@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Raw bytes of a lidar as points or revolutions, with times counted from samples, in constant memory.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/sample_clock.hpp"
+#include "g4lidar/core/scan_assembler.hpp"
+#include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/export/text_sink.hpp"
+
+namespace g4lidar {
+
+/// Parses and decodes bytes and passes them to a point_writer: as points, or as revolutions if the
+/// writer accepts these. Raw bytes contain no times, so they are counted from the first point on at
+/// a constant rate; samples of suspect packets are counted, lost ones are not. *Single thread,
+/// allocates on construction*; exceptions of the sink are passed on.
+class G4LIDAR_API byte_points {
+ public:
+  /// `writer` and `out` must outlive this. `samples_per_second`: 1 to 10^9.
+  byte_points(point_writer& writer, text_sink& out, std::uint32_t samples_per_second);
+
+  /// Adds the next bytes, in pieces of any size.
+  void take(g4lidar::bytes data);
+  /// The bytes have ended: writes the last piece of a revolution.
+  void finish();
+
+  /// What the parser found so far.
+  [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
+  /// The number of bytes added so far.
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+
+ private:
+  // A G4 at its lowest frequency makes 1,800 points per revolution; this is nine times as many.
+  static constexpr std::size_t max_scan_points = 16'384;
+
+  void take(const event& found);
+  void take(packet_view packet);
+
+  text_sink& out_;
+  point_writer& writer_;
+  bool by_scan_;
+  std::uint64_t bytes_ = 0;
+  stream_parser parser_;
+  stream_counter counts_;
+  revolution_counter revolutions_;
+  sample_clock clock_;
+  std::array<point, max_samples> points_{};
+  std::vector<point> scan_storage_;
+  scan_assembler assembler_;
+};
+
+}  // namespace g4lidar

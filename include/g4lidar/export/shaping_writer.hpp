@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// A writer before another writer: filters points, converts their times, and stops at a limit.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/export/text_sink.hpp"
+#include "g4lidar/export/time_shift.hpp"
+#include "g4lidar/filter.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// What a shaping_writer does. By default it changes nothing.
+struct shaping_options {
+  point_filter filter{};  ///< Which points are written. Its ignored sectors outlive the writer.
+  bool for_grid = false;  ///< Filters with filter_for_grid(), for make_grid_writer().
+  time_style time = time_style::monotonic;  ///< What is written in the place of times.
+  std::int64_t wall_ahead_ns = 0;   ///< For time_style::absolute: wall clock minus monotonic clock.
+  bool follows_wall_clock = false;  ///< Measures that again while it runs: for live data.
+  bool partial_scans = true;        ///< Whether pieces of revolutions are written.
+  /// Points before this time since the first point are left out, and revolutions with such points.
+  std::int64_t from_ns = 0;
+  /// The same for points at this time and later. The first such point ends the output.
+  std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();
+  std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  ///< The most records.
+};
+
+/// Passes points or revolutions on to another writer, as `shaping_options` say. *Single thread,
+/// allocates.* Exceptions of the sink pass through.
+class G4LIDAR_API shaping_writer final : public point_writer {
+ public:
+  /// `inner` is not null.
+  shaping_writer(std::unique_ptr<point_writer> inner, const shaping_options& options);
+
+  /// As the other writer.
+  [[nodiscard]] bool takes_scans() const noexcept override { return inner_->takes_scans(); }
+  /// As point_writer::begin(); the first record calls it if nobody has.
+  void begin(text_sink& out) override;
+  /// Writes any number of points.
+  void write_points(std::span<const point> points, text_sink& out) override;
+  /// Writes a revolution, or a piece of one.
+  void write_scan(const scan_record& record, text_sink& out) override;
+
+  /// Whether nothing more will be written: the count or the end of the range is reached.
+  [[nodiscard]] bool is_done() const noexcept { return done_; }
+  /// How many pieces of revolutions were left out.
+  [[nodiscard]] std::uint64_t pieces_left_out() const noexcept { return pieces_; }
+
+ private:
+  /// Those of `points` that are in the range of time.
+  [[nodiscard]] std::span<const point> in_range(std::span<const point> points);
+  /// Those that the filter keeps, with the times that are written.
+  [[nodiscard]] std::span<const point> shaped(std::span<const point> points);
+  void follow_wall_clock();
+
+  std::unique_ptr<point_writer> inner_;
+  shaping_options options_;
+  std::vector<point> shaped_;
+  time_shift times_;
+  time_shift scan_times_;
+  std::optional<std::int64_t> first_ns_;
+  bool begun_ = false;
+  bool done_ = false;
+  std::uint64_t records_ = 0;
+  std::uint64_t pieces_ = 0;
+};
+
+}  // namespace g4lidar

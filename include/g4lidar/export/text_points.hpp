@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Points from text in the format of the writers: csv and jsonl, one line per point.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/export/text_sink.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// The format of the text.
+enum class text_source : std::uint8_t { csv, jsonl };
+
+/// The point of a line.
+struct read_point {
+  g4lidar::point point;
+  /// Whether its revolution is incomplete, if the line has that value.
+  std::optional<bool> partial{};
+};
+
+/// Parses lines. Columns and keys are found by their names (angle_deg, and range_mm or range_m;
+/// optionally scan and time_ns), in any order, among any others. *Single thread.*
+class G4LIDAR_API point_lines {
+ public:
+  /// `in`: the frame of the angles in the text.
+  point_lines(text_source form, frame in) noexcept : form_(form), frame_(in) {}
+
+  /// The point of a line without its line end; nothing if it contains none, like the header line of
+  /// csv.
+  [[nodiscard]] std::optional<read_point> read(std::string_view line);
+  /// Whether the header line of csv lacks the columns that points need.
+  [[nodiscard]] bool is_foreign() const noexcept { return is_foreign_; }
+
+ private:
+  static constexpr std::size_t no_column = 1000;
+  struct columns {
+    std::size_t scan = no_column;
+    std::size_t angle = no_column;
+    std::size_t range = no_column;
+    std::size_t time = no_column;
+  };
+  struct fields {
+    std::string_view scan{};
+    std::string_view angle{};
+    std::string_view range{};
+    std::string_view time{};
+  };
+
+  void read_names(std::string_view line);
+  [[nodiscard]] fields csv_fields(std::string_view line) const;
+  [[nodiscard]] fields json_fields(std::string_view line);
+  [[nodiscard]] std::optional<point> point_of(const fields& found) const;
+
+  text_source form_;
+  g4lidar::frame frame_;
+  columns columns_;
+  bool has_names_ = false;
+  bool is_foreign_ = false;
+  float mm_ = 1.0F;  // the unit of the range in mm
+};
+
+/// Reads text in pieces and passes its points to a point_writer, or its revolutions if the writer
+/// accepts these. Constant memory: lines of up to 64 KiB, revolutions of up to 16,384 points.
+/// *Single thread, allocates on construction.*
+class G4LIDAR_API text_points {
+ public:
+  /// `writer` and `out` must outlive this.
+  text_points(text_source form, frame in, point_writer& writer, text_sink& out);
+
+  /// Adds the next text, in pieces of any size.
+  void take(std::string_view text);
+  /// The text has ended: writes the rest.
+  void finish();
+
+  /// Points read so far.
+  [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
+  /// Lines without a point, except the header line of csv and empty lines.
+  [[nodiscard]] std::uint64_t bad_lines() const noexcept { return bad_lines_; }
+  /// See point_lines.
+  [[nodiscard]] bool is_foreign() const noexcept { return lines_.is_foreign(); }
+
+ private:
+  static constexpr std::size_t longest_line = 65'536;
+  static constexpr std::size_t largest_scan = 16'384;
+
+  void take_line(std::string_view line);
+  void take_point(const read_point& read);
+  /// Passes the collected points to the writer; `cut`: although the revolution is not complete.
+  void hand_over(bool cut);
+
+  point_lines lines_;
+  point_writer& writer_;
+  text_sink& out_;
+  bool by_scan_;
+  std::string rest_;  // of an incomplete line
+  bool is_too_long_ = false;
+  std::vector<point> gathered_;
+  std::optional<bool> partial_;  // the value of the lines
+  bool begun_ = false;
+  bool is_header_due_ = false;
+  bool is_first_scan_ = true;
+  bool was_cut_ = false;
+  std::uint32_t revolution_ = 0;
+  std::uint64_t points_ = 0;
+  std::uint64_t bad_lines_ = 0;
+};
+
+}  // namespace g4lidar

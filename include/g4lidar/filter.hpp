@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Selects points: range limits, a field of view, ignored sectors.
+#pragma once
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "g4lidar/core/angle.hpp"
+#include "g4lidar/point.hpp"
+
+namespace g4lidar {
+
+/// The directions from one angle to another, in the sense in which angles grow, both ends included.
+/// It may contain the zero direction: 350 to 10 is 20 degrees wide.
+class sector {
+ public:
+  /// Every direction.
+  constexpr sector() noexcept = default;
+  /// Degrees, any finite number of turns. If `to_deg` is 360 or more above `from_deg`, every
+  /// direction; if both are equal, that one direction.
+  constexpr sector(double from_deg, double to_deg) noexcept
+      : everything_(to_deg - from_deg >= 360.0),
+        from_(everything_ ? 0.0 : wrap_deg(from_deg)),
+        to_(everything_ ? 360.0 : wrap_deg(to_deg)) {}
+
+  /// Whether it contains every direction. *Pure.*
+  [[nodiscard]] constexpr bool is_everything() const noexcept { return everything_; }
+  /// Whether it contains `degrees`, in [0, 360). *Pure.*
+  [[nodiscard]] constexpr bool has(double degrees) const noexcept {
+    const bool is_from_on = degrees >= from_;
+    const bool is_up_to = degrees <= to_;
+    return from_ > to_ ? is_from_on || is_up_to : is_from_on && is_up_to;
+  }
+
+ private:
+  bool everything_ = true;
+  double from_ = 0.0;
+  double to_ = 360.0;
+};
+
+/// Which points are kept: those that meet every condition. By default all points.
+struct point_filter {
+  /// The frame of the sectors: vendor, clockwise from the cable; or robot, counter-clockwise from
+  /// straight ahead, where -90 to 90 is the front half.
+  frame in = frame::vendor;
+  sector field_of_view{};  ///< Points in other directions are left out.
+  std::span<const sector>
+      ignored_sectors{};  ///< Points in one of them are left out. A view of the caller's memory.
+  /// Limits of the range in millimetres, both included. A point without return has range 0, so it
+  /// is left out where `least_range_mm` is above 0.
+  float least_range_mm = 0.0F;
+  float greatest_range_mm = std::numeric_limits<float>::infinity();
+  bool returns_only = false;  ///< Points without return are left out.
+  bool trusted_only = false;  ///< Points flagged too_near are left out.
+
+  /// Whether the direction is in the field of view and in no ignored sector. *Pure.*
+  [[nodiscard]] constexpr bool has_direction(const point& p) const noexcept {
+    if (field_of_view.is_everything() && ignored_sectors.empty()) return true;
+    const auto degrees = static_cast<double>(bearing_deg(p.angle_deg, in));
+    if (!field_of_view.has(degrees)) return false;
+    for (const sector& ignored : ignored_sectors) {
+      if (ignored.has(degrees)) return false;
+    }
+    return true;
+  }
+  /// Whether the range is within the limits. *Pure.*
+  [[nodiscard]] constexpr bool has_range(const point& p) const noexcept {
+    return p.range_mm >= least_range_mm && p.range_mm <= greatest_range_mm;
+  }
+  /// Whether there are range limits. *Pure.*
+  [[nodiscard]] constexpr bool limits_ranges() const noexcept {
+    return least_range_mm > 0.0F || greatest_range_mm < std::numeric_limits<float>::infinity();
+  }
+  /// Whether `p` is kept. *Pure.*
+  [[nodiscard]] constexpr bool keeps(const point& p) const noexcept {
+    return has_range(p) && has_direction(p) && !(returns_only && p.is_no_return()) &&
+           !(trusted_only && p.is_too_near());
+  }
+  /// Whether every point is kept. *Pure.*
+  [[nodiscard]] constexpr bool keeps_everything() const noexcept {
+    return field_of_view.is_everything() && ignored_sectors.empty() && !limits_ranges() &&
+           !returns_only && !trusted_only;
+  }
+};
+
+/// Copies the points that `filter` keeps, in their order, to the front of `out`, which is at least
+/// as long as `points`, and returns them. `out` may begin where `points` begins, to filter in
+/// place. *Pure, never allocates.*
+constexpr std::span<point> filter_points(std::span<const point> points, const point_filter& filter,
+                                         std::span<point> out) noexcept {
+  assert(out.size() >= points.size());
+  std::size_t count = 0;
+  for (const point& p : points) {
+    out[count] = p;
+    count += filter.keeps(out[count]) ? 1U : 0U;
+  }
+  return out.first(count);
+}
+
+/// The same, in place.
+constexpr std::span<point> filter_points(std::span<point> points,
+                                         const point_filter& filter) noexcept {
+  return filter_points(points, filter, points);
+}
+
+/// The same for fill_grid(), which must distinguish "no obstacle" from "not known". Points in
+/// excluded directions are left out, so that their bins become NaN. A return outside the range
+/// limits stays and is flagged too_near, so that its bin becomes NaN and not empty. A return within
+/// limits that the caller set loses that flag, even if it is near, because the caller requested it.
+/// Points without return stay. *Pure, never allocates.*
+constexpr std::span<point> filter_for_grid(std::span<const point> points,
+                                           const point_filter& filter,
+                                           std::span<point> out) noexcept {
+  assert(out.size() >= points.size());
+  using enum point_flags;
+  std::size_t count = 0;
+  for (const point& p : points) {
+    if (!filter.has_direction(p)) continue;
+    point& kept = out[count++] = p;
+    if (kept.is_no_return() || !filter.limits_ranges()) continue;
+    kept.flags = (kept.flags & revolution_start) | (filter.has_range(kept) ? none : too_near);
+  }
+  return out.first(count);
+}
+
+}  // namespace g4lidar

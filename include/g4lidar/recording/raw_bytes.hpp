@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Raw bytes of a lidar, from a file or a pipe, as a connector: with times, so that a driver can
+// decode them and a recording can be made of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/transport/connector.hpp"
+
+namespace g4lidar {
+
+/// Opens the file at `path`, or standard input for "-". The connector returns one transport, once;
+/// it ends with end_of_input, and no device answers.
+///
+/// A regular file contains no times, so they are counted: its packets arrive at the rate of their
+/// samples, `samples_per_second` (1 to 1,000,000), each packet as a whole with its last sample; the
+/// first sample has the modification time of the file as its wall-clock time. Calls do not wait:
+/// now_ns() is the time of the bytes read last, and begins at 1 s. Bytes of a pipe, a terminal or a
+/// device have the time at which they are read. *Allocates on open.*
+///
+/// Fails with system; reading fails with bad_file if a pipe contains a recording.
+[[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
+    const std::string& path, std::uint32_t samples_per_second);
+
+}  // namespace g4lidar

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Reads recordings from front to back, intact, cut off or damaged.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/detail/recorded_device.hpp"
+#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/recording/digest.hpp"
+
+namespace g4lidar {
+
+/// Whether the file at `path` begins like an MCAP file. Also false if it cannot be read.
+[[nodiscard]] G4LIDAR_API bool is_recording(std::string_view path) noexcept;
+
+/// One recorded item. A view, valid until the next call of any function of its reader.
+struct recorded_item {
+  /// The kind of item.
+  enum class kind : std::uint8_t {
+    from_device,  ///< `data` was read in one call.
+    to_device,    ///< `data` was sent.
+    note,         ///< The event `note` happened.
+  };
+  kind what;
+  std::int64_t time_ns;  ///< By the clock of the transport, when `data` had arrived or was sent.
+  std::int64_t wall_ns;  ///< The same by the wall clock, nanoseconds since 1970.
+  bytes data;
+  recorded_event note;
+};
+
+/// What is damaged in a file. All intact parts are read nevertheless.
+struct recording_damage {
+  std::uint64_t bytes_skipped = 0;  ///< Bytes of the file that belong to no intact part.
+  std::uint64_t chunks_lost = 0;    ///< Chunks that were found with changed contents.
+  bool is_cut_off = false;  ///< It has no proper end: the program was killed, or the disk was full.
+  /// Whether there is any damage.
+  [[nodiscard]] bool any() const noexcept {
+    return bytes_skipped > 0 || chunks_lost > 0 || is_cut_off;
+  }
+};
+
+/// How a recording is read.
+struct reading_options {
+  /// Only what was recorded from `from_ns` on and before `to_ns`, since the beginning of the
+  /// recording.
+  std::int64_t from_ns = 0;
+  std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();
+};
+
+/// Reads one file. *Single thread.* Memory is bounded for every file: one compressed chunk and one
+/// uncompressed, of at most 64 MiB. With `from_ns` it begins at the right chunk, by the index if
+/// the file has one.
+class G4LIDAR_API recording_reader {
+ public:
+  /// Opens the file and finds the first recorded item. Fails with bad_file if it is not a recording
+  /// of a lidar or has no intact part; with system.
+  [[nodiscard]] static result<recording_reader> open(std::string_view path,
+                                                     const reading_options& options = {});
+
+  recording_reader(recording_reader&&) noexcept;
+  recording_reader& operator=(recording_reader&&) noexcept;
+  ~recording_reader();
+
+  /// The next item; nothing at the end. Where bytes are missing it returns an event `gap`. Fails
+  /// with system if the rest of the file cannot be read.
+  [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
+
+  /// What is known about the lidar: from the metadata, or from its first replies; for a cut-off
+  /// file, from what has been read so far.
+  [[nodiscard]] const std::optional<recorded_device>& device() const noexcept;
+  /// The digests of this file; only if it was closed.
+  [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept;
+  /// The time of the first item.
+  [[nodiscard]] std::int64_t first_ns() const noexcept;
+  /// The time of the last item; 0 if the file was cut off.
+  [[nodiscard]] std::int64_t last_ns() const noexcept;
+  /// The damage found so far.
+  [[nodiscard]] const recording_damage& damage() const noexcept;
+  /// The position in the file, in bytes: for a progress bar.
+  [[nodiscard]] std::uint64_t position() const noexcept;
+  /// The size of the file, in bytes.
+  [[nodiscard]] std::uint64_t size() const noexcept;
+
+ private:
+  friend struct recording_access;  // opens inputs that are not files
+  class G4LIDAR_HIDDEN file_reader;
+  explicit recording_reader(std::unique_ptr<file_reader> made) noexcept;
+  std::unique_ptr<file_reader> made_;
+};
+
+}  // namespace g4lidar

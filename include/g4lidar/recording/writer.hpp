@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// Recordings: the bytes of a connection to a lidar, in MCAP files that other tools can also open.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/detail/recorded_device.hpp"
+#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/point.hpp"
+#include "g4lidar/recording/digest.hpp"
+#include "g4lidar/scan.hpp"
+#include "g4lidar/transport/connector.hpp"
+
+namespace g4lidar {
+
+/// Whether the chunks of a file are compressed.
+enum class packing : std::uint8_t { none, zstd };
+
+/// Whether this library was built with zstd; without it, `packing::zstd` is a bad_option.
+[[nodiscard]] G4LIDAR_API bool has_zstd() noexcept;
+
+/// How a recording is written. All members have defaults.
+struct recording_options {
+  packing packed = packing::none;
+  bool overwrite = false;  ///< Whether an existing file may be replaced.
+
+  /// A new file is begun, beside the first one, before a file becomes larger than this or lasts
+  /// this long; 0: never. `walk.mcap` is followed by `walk-0001.mcap`. Each file is complete by
+  /// itself. At least 1 MiB and 1 s.
+  std::uint64_t rotate_bytes = 0;
+  std::chrono::seconds rotate_time{0};
+
+  /// Data is passed to the system at least this often, so a crash loses at most this much; 10 ms to
+  /// 10 s. Measured with the times of the recorded data: if nothing arrives there is nothing to
+  /// lose, but see flush().
+  std::chrono::milliseconds chunk_time{500};
+
+  /// The topic of the LaserScan messages, a full ROS name: `/front/scan`. At most 255 bytes, and
+  /// different from the topics of the recording itself.
+  std::string topic = "/scan";
+  std::string frame_id = "laser";  ///< Of the LaserScan messages.
+  std::uint32_t scan_bins = 720;   ///< The number of ranges in each of them, 1 to 65536.
+};
+
+/// Counts since create(), over all files.
+struct recording_counts {
+  std::uint64_t bytes_from_device = 0;
+  std::uint64_t bytes_to_device = 0;
+  std::uint64_t readings = 0;  ///< Messages of bytes from the device.
+  std::uint64_t scans = 0;     ///< LaserScan messages.
+  std::uint64_t chunks = 0;    ///< Written.
+  std::uint64_t files = 0;
+  std::uint64_t file_bytes = 0;  ///< Written to all of them.
+  std::uint64_t bytes_lost = 0;  ///< From and to the device, in chunks that could not be written.
+  std::uint64_t chunks_lost = 0;
+};
+
+/// Writes recordings. *Single thread.* *Allocates on open*, when a new file is begun, and
+/// occasionally for the list of its chunks. Each chunk is passed to the system as a whole, when it
+/// is full or its time has passed; call flush() if no more data arrives. docs/recordings.md
+/// describes the format.
+///
+/// Recording functions never fail: if the disk is full, chunks are left out and counted, the
+/// written part stays valid, and take_error() returns the reason, once until writing succeeds
+/// again.
+class G4LIDAR_API recording_writer {
+ public:
+  /// Creates the file `path`. Fails with bad_option, or with system: EEXIST if it exists already.
+  [[nodiscard]] static result<recording_writer> create(std::string_view path,
+                                                       const recording_options& options = {});
+
+  recording_writer(recording_writer&&) noexcept;
+  recording_writer& operator=(recording_writer&&) noexcept;
+  /// Like close().
+  ~recording_writer();
+
+  /// Records bytes of one read, and their arrival time: nanoseconds of the transport's clock. Reads
+  /// the wall clock, but see set_wall_clock().
+  void from_device(bytes data, std::int64_t time_ns) noexcept;
+  /// The same for bytes that were sent.
+  void to_device(bytes data, std::int64_t time_ns) noexcept;
+  /// Records any other event; for `sent` use to_device().
+  void note(const recorded_event& what) noexcept;
+  /// Records a revolution, as a LaserScan with its points in the robot's frame.
+  void scan(const g4lidar::scan& revolution) noexcept;
+  /// Adds delivered points, in order, to their digest; the points are not stored.
+  void points(std::span<const point> delivered) noexcept;
+  /// Identity and settings of the lidar, for the metadata of this file and of those that follow.
+  void device(const recorded_device& known) noexcept;
+  /// From now on the wall clock is the transport's clock plus `ahead_ns`; for transports with a
+  /// time of their own: simulations and recordings.
+  void set_wall_clock(std::int64_t ahead_ns) noexcept;
+
+  /// Ends the chunk, so that everything is passed to the system. May wait for the disk. Error:
+  /// system.
+  [[nodiscard]] result<void> flush() noexcept;
+  /// Ends the file with its summary and digests. After that every function does nothing. May wait for
+  /// the disk. Error: system.
+  [[nodiscard]] result<void> close() noexcept;
+
+  /// Why something could not be written, once for each failure; nothing otherwise.
+  [[nodiscard]] std::optional<error> take_error() noexcept;
+  /// All counts as they are now.
+  [[nodiscard]] recording_counts counts() const noexcept;
+  /// The digest of everything so far, in all files.
+  [[nodiscard]] recorded_digest digest() const noexcept;
+  /// The path of the current file. Valid until the next call of any function.
+  [[nodiscard]] std::string_view path() const noexcept;
+
+ private:
+  friend result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
+                                                     recording_writer& into);
+  class G4LIDAR_HIDDEN file_writer;
+  explicit recording_writer(std::unique_ptr<file_writer> made) noexcept;
+  std::unique_ptr<file_writer> made_;
+};
+
+/// `from`, with recording: the bytes that are read and sent, and when its transports open and
+/// break. The writer must outlive the result; it may be moved meanwhile, and must be used by the
+/// same thread. Recording a replayed recording gives an equal recording.
+[[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> recorded(
+    std::unique_ptr<connector> from, recording_writer& into);
+
+}  // namespace g4lidar

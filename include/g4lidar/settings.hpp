@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The settings of a lidar, each with a type of its own.
+#pragma once
+
+#include <cstdint>
+
+#include "g4lidar/detail/cpp20.hpp"
+
+namespace g4lidar {
+
+/// The rotation frequency of the head in 0.01 Hz, the unit of the protocol.
+struct scan_frequency {
+  std::uint16_t chz;
+
+  /// `scan_frequency::hz(7.5)`: the nearest multiple of 0.01 Hz, limited to 16 bits. The limits of
+  /// a G4, 5 to 12 Hz, are checked where the value is used. *Pure.*
+  [[nodiscard]] static constexpr scan_frequency hz(double value) noexcept {
+    const double scaled = value * 100.0 + 0.5;
+    if (!(scaled > 0.0)) return {0};  // also not-a-number
+    return {scaled < 65535.0 ? static_cast<std::uint16_t>(scaled) : std::uint16_t{65535}};
+  }
+  /// In Hz. *Pure.*
+  [[nodiscard]] constexpr double hz() const noexcept { return chz / 100.0; }
+
+  friend constexpr bool operator==(scan_frequency, scan_frequency) noexcept = default;
+};
+
+/// The lowest scan frequency of a G4, in 0.01 Hz.
+inline constexpr std::uint16_t min_scan_frequency_chz = 500;
+/// The highest scan frequency of a G4, in 0.01 Hz.
+inline constexpr std::uint16_t max_scan_frequency_chz = 1200;
+
+/// The direction in which the head turns, seen from above. (commands 06, 07, 08)
+enum class motor_direction : std::uint8_t { clockwise = 0, counter_clockwise = 1 };
+/// The measurements per second: 4000, 8000 or 9000. (commands D0, D1)
+enum class ranging_frequency : std::uint8_t { khz_4 = 0, khz_8 = 1, khz_9 = 2 };
+/// Whether the lidar stops scanning by itself 3 s after the last command. (command D9)
+enum class power_down_protection : std::uint8_t { on = 0, off = 1 };
+/// Whether the motor stops while no scan is running. (commands 01, 02, 05)
+enum class low_power : std::uint8_t { off = 0, on = 1 };
+/// Whether the lidar regulates its scan frequency. (commands 0E, 0F)
+enum class constant_frequency : std::uint8_t { off = 0, on = 1 };
+
+/// Whether `value` is an enumerator: it may be a number that was cast. *Pure.*
+[[nodiscard]] constexpr bool is_valid(scan_frequency wanted) noexcept {
+  return wanted.chz >= min_scan_frequency_chz && wanted.chz <= max_scan_frequency_chz;
+}
+/// The same for the setting with three values,
+[[nodiscard]] constexpr bool is_valid(ranging_frequency wanted) noexcept {
+  return wanted <= ranging_frequency::khz_9;
+}
+/// and for the settings with two.
+template <class Setting>
+[[nodiscard]] constexpr bool is_valid(Setting wanted) noexcept {
+  return static_cast<std::uint8_t>(wanted) <= 1;
+}
+
+/// The measurements per second. *Pure.*
+[[nodiscard]] constexpr std::uint32_t samples_per_second(ranging_frequency frequency) noexcept {
+  switch (frequency) {
+    case ranging_frequency::khz_4:
+      return 4000;
+    case ranging_frequency::khz_8:
+      return 8000;
+    case ranging_frequency::khz_9:
+      break;
+  }
+  return 9000;
+}
+
+}  // namespace g4lidar

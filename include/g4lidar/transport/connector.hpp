@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// Opens transports to a device, repeatedly: the base for a driver that reconnects.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/transport/transport.hpp"
+
+namespace g4lidar {
+
+class recorded_event_source;
+class recorded_event_sink;
+
+/// Opens the transport to a device, the first time and after each loss. *Single thread* except
+/// wake(). Simulations and tests provide their own.
+class G4LIDAR_API connector {
+ public:
+  virtual ~connector() = default;
+  connector(const connector&) = delete;
+  connector& operator=(const connector&) = delete;
+
+  /// A transport to which the device may be attached. Returns soon. If there are several
+  /// candidates, each call returns another one; the driver identifies its device by the serial
+  /// number. Fails with no_port if there is none, or like transport::read() and the opening of
+  /// ports.
+  [[nodiscard]] virtual result<std::unique_ptr<transport>> connect() noexcept = 0;
+
+  /// The time, by the same clock as that of the transports.
+  [[nodiscard]] virtual std::int64_t now_ns() const noexcept = 0;
+
+  /// Waits while there is no transport. Returns false if wake() ended the wait.
+  [[nodiscard]] virtual bool pause(std::int64_t deadline_ns) noexcept = 0;
+
+  /// Ends a waiting pause(), or the next one, early, once. *Any thread.*
+  virtual void wake() noexcept = 0;
+
+  /// On the last transport another lidar than the wanted one answered. A connector that can detect
+  /// a replug does not return that port again before its replug; other connectors do nothing.
+  virtual void refuse() noexcept {}
+
+  // A connector that wraps another one must forward these functions, too.
+
+  /// Whether a device answers on its transports. Nothing is written to files and recordings.
+  [[nodiscard]] virtual bool answers() const noexcept { return true; }
+  /// The events that were recorded with the bytes of its transports; null if this is no recording.
+  /// Valid as long as this.
+  [[nodiscard]] virtual recorded_event_source* recorded_events() noexcept { return nullptr; }
+  /// Wall clock minus now_ns(), if this connector knows it better than the system: the bytes of a
+  /// file arrived when they were recorded.
+  [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
+    return std::nullopt;
+  }
+  /// The receiver of recorded events of the driver; null if nothing is recorded. Valid as long as
+  /// this.
+  [[nodiscard]] virtual recorded_event_sink* recorder() noexcept { return nullptr; }
+
+ protected:
+  connector() = default;
+};
+
+}  // namespace g4lidar

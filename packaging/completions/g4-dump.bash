@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: MIT
+# Completion of g4-dump for bash. g4-dump says what can follow; a line / stands for names of files.
+# shellcheck shell=bash
+
+_g4_dump() {
+  local words typed word begin
+  read -ra words <<<"${COMP_LINE:0:COMP_POINT}"
+  if [[ ${COMP_LINE:0:COMP_POINT} == *[[:space:]] ]]; then words+=(''); fi
+  typed=${words[-1]}
+  COMPREPLY=()
+  while IFS=$'\t' read -r word _; do
+    if [[ $word == / ]]; then
+      mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < <(compgen -f -- "$typed")
+    else
+      COMPREPLY+=("$word")
+    fi
+  done < <("$1" --complete "${words[@]:1}" 2>/dev/null)
+  # bash splits words at = and : and replaces only what follows them.
+  begin=${typed%"${typed##*[=:]}"}
+  COMPREPLY=("${COMPREPLY[@]#"$begin"}")
+}
+
+complete -o filenames -F _g4_dump g4-dump

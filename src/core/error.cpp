@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// The text of an error.
+#include "g4lidar/error.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "one_of.hpp"
+
+namespace g4lidar {
+namespace {
+
+struct words {
+  problem what;
+  std::string_view name;
+  std::string_view says;    // "<task> <subject>: <says>."
+  std::string_view advice;  // A sentence.
+};
+
+// In the order of the enumeration.
+constexpr std::array<words, problem_count> all_words{{
+    {problem::bad_option, "bad_option", "the option cannot have this value",
+     "Correct the value or omit the option; every option has a default."},
+    {problem::no_port, "no_port", "no serial port with a lidar was found",
+     "Connect the lidar with a data cable and check `dmesg` for a new ttyUSB port; in a container, "
+     "pass the device through. Or name the port."},
+    {problem::several_ports, "several_ports", "more than one lidar is connected",
+     "Name one: by its path, as serial:<number of the lidar>, or as usb:<USB path>."},
+    {problem::permission, "permission", "this user has no permission to open it",
+     "Install the udev rule, or join the group that owns the port (`sudo usermod -aG dialout "
+     "$USER`) and log in again."},
+    {problem::busy, "busy", "another program has it open",
+     "Close that program (`fuser -v <port>` names it); only one program at a time can use the "
+     "lidar."},
+    {problem::not_serial, "not_serial", "this is not a serial port",
+     "Name a serial port such as /dev/ttyUSB0; for a recording or a file of bytes, write "
+     "file:PATH."},
+    {problem::bad_baud_rate, "bad_baud_rate", "the port does not support this baud rate",
+     "A G4 uses 230400 baud: use an adapter that supports it (CP2102), or omit the option."},
+    {problem::cannot_connect, "cannot_connect", "the network address does not answer",
+     "Check that the bridge (for example ser2net) is running, that host and port are correct, and "
+     "that no firewall blocks them."},
+    {problem::silence, "silence", "no byte was received",
+     "Check that the lidar has power (its own 5 V supply if necessary), that the cable carries "
+     "data, that this is the port of the lidar, and that the baud rate is 230400."},
+    {problem::garbage, "garbage", "bytes were received, but no valid data",
+     "The baud rate is probably wrong: a G4 uses 230400 baud. Otherwise check for a loose cable or "
+     "another kind of device."},
+    {problem::other_device, "other_device", "the device that answers is not a G4",
+     "Check the label of the device, and name the port of the G4."},
+    {problem::does_not_stop, "does_not_stop", "it continues to scan and cannot be stopped",
+     "Commands do not reach it: check the wire of the host's transmit pin, or unplug the lidar and "
+     "plug it in again."},
+    {problem::unhealthy, "unhealthy", "the lidar reports that it is defective",
+     "Unplug it and plug it in again. If it reports the error again, have it repaired; the "
+     "manufacturer knows the error code."},
+    {problem::timeout, "timeout", "no data arrived in time",
+     "Try again, or wait longer: the first scan arrives about 0.7 s after the start, later with a "
+     "heavy or cold motor. If it fails again, unplug the lidar and plug it in again."},
+    {problem::wrong_answer, "wrong_answer", "the answers do not match the request",
+     "Try again. If it fails again, check that no other program uses the lidar, and unplug it and "
+     "plug it in again."},
+    {problem::not_reached, "not_reached", "the lidar does not accept this value",
+     "Choose a value that the lidar supports; it keeps the nearest value that it accepted."},
+    {problem::bad_setting, "bad_setting", "no G4 can be set to this value",
+     "Choose a scan frequency of 5 to 12 Hz, and for other settings one of the named values."},
+    {problem::scanning, "scanning", "refused, because it would disturb the running scan",
+     "Stop the scan first, or allow it to be interrupted."},
+    {problem::not_scanning, "not_scanning", "no scan is running", "Start the scan first."},
+    {problem::reconnecting, "reconnecting",
+     "the connection was lost, and the driver is reconnecting",
+     "Call again: the next call waits until the lidar is back. If it does not come back, check the "
+     "plug, the cable and the power supply."},
+    {problem::gone, "gone", "the port is no longer there",
+     "Unless the program closed it, the lidar was unplugged: plug it in and open it again."},
+    {problem::stalled, "stalled", "the data stopped although the port is still there",
+     "Check whether the head turns: if not, check the power supply and the motor; if it does, the "
+     "cable and the adapter."},
+    {problem::brown_out, "brown_out", "the data stopped when the motor started",
+     "The lidar gets too little power: use a separate supply, a shorter cable, or a port that can "
+     "deliver 1 A."},
+    {problem::interference, "interference", "another program reads from or writes to the port",
+     "Close the other program (`fuser -v <port>` names it); the udev rule keeps ModemManager and "
+     "brltty away from the port."},
+    {problem::read_only, "read_only", "a file cannot be asked or set",
+     "A file contains only recorded data: open the lidar itself for that."},
+    {problem::bad_file, "bad_file", "the file contains nothing that can be used",
+     "Name a recording. To read a file as raw bytes of a port, write file:PATH."},
+    {problem::end_of_input, "end_of_input", "there is no more data to read",
+     "The recording has ended, or the other side has closed the connection: open it again."},
+    {problem::cancelled, "cancelled", "cancelled by this program",
+     "Nothing is wrong: the program called wake()."},
+    {problem::system, "system", "the operating system reported an error",
+     "Check what the system error means; `dmesg` may show more."},
+}};
+
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < all_words.size(); ++i) {
+    if (static_cast<std::size_t>(all_words[i].what) != i) return false;
+  }
+  return true;
+}
+static_assert(in_order());
+
+const words& words_of(problem what) noexcept { return all_words[static_cast<std::size_t>(what)]; }
+
+constexpr std::array<std::string_view, 8> task_names{
+    "finding", "opening", "configuring", "asking", "starting", "reading", "writing", "stopping"};
+
+}  // namespace
+
+error::error(g4lidar::task doing, problem code, std::string_view subject, int system_errno) noexcept
+    : size_(static_cast<std::uint8_t>(std::min(subject.size(), subject_.size()))),
+      errno_(system_errno),
+      doing_(doing),
+      code_(code) {
+  std::copy_n(subject.begin(), size_, subject_.begin());
+}
+
+bool error::is_fatal() const noexcept {
+  using enum problem;
+  return !is_one_of(code_, timeout, wrong_answer, not_reached, bad_setting, scanning, reconnecting,
+                    read_only, cancelled);
+}
+
+std::string_view error::advice() const noexcept { return words_of(code_).advice; }
+
+std::string error::message() const {
+  std::string text(name_of(doing_));
+  if (size_ > 0) text.append(" ").append(subject());
+  text.append(": ").append(words_of(code_).says);
+  if (errno_ != 0) {
+    // Of glibc; thread-safe and independent of the locale, unlike strerror.
+    const char* name = strerrorname_np(errno_);
+    const char* says = strerrordesc_np(errno_);
+    if (name != nullptr && says != nullptr) {
+      text.append(" (").append(name).append(", ").append(says).append(")");
+    }
+  }
+  return text.append(". ").append(words_of(code_).advice);
+}
+
+std::string_view name_of(problem code) noexcept { return words_of(code).name; }
+
+std::string_view description_of(problem code) noexcept { return words_of(code).says; }
+
+std::string_view name_of(task doing) noexcept {
+  return task_names[static_cast<std::size_t>(doing)];
+}
+
+}  // namespace g4lidar

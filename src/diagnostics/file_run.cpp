@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// The stages of a file: a recording, or raw bytes without times.
+#include "stages.hpp"
+
+#include <array>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/transport/byte_file.hpp"
+#include "link_monitor.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr const char* needs_device = "This stage needs a device; this is a file.";
+/// Between two checks of the speed of the head.
+constexpr std::uint64_t steady_samples = 1'000;
+
+bool is_stop(bytes sent) noexcept {
+  return sent.size() == 2 && (sent[1] == static_cast<std::uint8_t>(command::stop) ||
+                              sent[1] == static_cast<std::uint8_t>(command::forced_stop));
+}
+
+class file_run {
+ public:
+  explicit file_run(stage_log& log) : log_(log) {}
+
+  void run(const std::string& path) {
+    port_.add("path", path);
+    const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
+    splitter_.finish(to_);
+    if (!is_read || measured_.arrivals().bytes() == 0) {
+      port_.find(diagnosis::bad_file);
+      log_.report(std::move(port_));
+      return log_.skip_from(diagnostic_stage::permission, "Not reached.");
+    }
+    log_.report(std::move(port_));
+    report();
+  }
+
+ private:
+  bool read_recording(const std::string& path) {
+    port_.add("format", "recording");
+    auto opened = recording_reader::open(path);
+    if (!opened) return fail(opened.error());
+    recording_reader& reader = *opened;
+    for (;;) {
+      const auto next = reader.next();
+      if (!next) return fail(next.error());
+      const std::optional<recorded_item>& item = *next;
+      if (!item || is_cancelled()) break;
+      take(*item);
+    }
+    const recording_damage& damage = reader.damage();
+    if (damage.bytes_skipped > 0) port_.add("damaged_bytes", damage.bytes_skipped);
+    if (damage.chunks_lost > 0) port_.add("lost_chunks", damage.chunks_lost);
+    if (damage.is_cut_off) port_.remark = "The recording was cut off: it has no end.";
+    if (const auto& device = reader.device()) {
+      if (!device_.information) device_.information = device->information;
+      device_.frequency = device->frequency;
+      device_.ranging = device->ranging;
+    }
+    seconds_ = static_cast<double>(last_ns_ - reader.first_ns()) / 1e9;
+    return true;
+  }
+
+  bool read_bytes(const std::string& path) {
+    port_.add("format", "bytes");
+    const auto opened = byte_file::open(path);
+    if (!opened) return fail(opened.error());
+    std::array<std::uint8_t, 4096> buffer{};
+    while (!is_cancelled()) {
+      const auto got = (*opened)->read(buffer, never_ns);
+      if (!got) return got.error() == problem::end_of_input || fail(got.error());
+      take(bytes(buffer).first(got->count), 0);
+    }
+    return true;
+  }
+
+  bool fail(const error& why) {
+    port_.remark = why.message();
+    return false;
+  }
+  [[nodiscard]] bool is_cancelled() const {
+    return log_.options().is_cancelled && log_.options().is_cancelled();
+  }
+
+  void take(const recorded_item& item) {
+    last_ns_ = item.time_ns;
+    switch (item.what) {
+      case recorded_item::kind::from_device:
+        return take(item.data, item.time_ns);
+      case recorded_item::kind::to_device:
+        if (is_stop(item.data)) await_speed();
+        return;
+      case recorded_item::kind::note:
+        if (item.note.what == recorded_event::kind::gap) measured_.part();
+        if (item.note.what == recorded_event::kind::closed) await_speed();
+        return;
+    }
+  }
+
+  void take(bytes data, std::int64_t arrival_ns) {
+    // Before a scan runs, silence is not a stall; only recordings show how long it lasted.
+    const bool follows = is_judging_ && arrival_ns > 0 && arrival_ns_ > 0;
+    measured_.take(reading{data.size(), arrival_ns, follows ? arrival_ns - arrival_ns_ : 0});
+    arrival_ns_ = arrival_ns;
+    splitter_.take(data, arrival_ns, to_);
+  }
+
+  void take(const observed_event& came) {
+    if (const auto* response = std::get_if<response_view>(&came.what)) {
+      device_.take(*response);
+      if (response->kind() == response_kind::scan_started) await_speed();
+    }
+    measured_.take(came);
+    if (is_judging_ || measured_.samples() < looked_ + steady_samples) return;
+    looked_ = measured_.samples();
+    if (!measured_.is_steady()) return;
+    measured_.resume();
+    is_judging_ = true;
+  }
+
+  /// A scan begins: its packets are evaluated when the head has reached its speed.
+  void await_speed() {
+    measured_.suspend();
+    is_judging_ = false;
+    looked_ = measured_.samples();
+  }
+
+  void report() {
+    log_.skip(diagnostic_stage::permission, needs_device);
+    log_.skip(diagnostic_stage::holder, needs_device);
+    stage_report baud{.stage = diagnostic_stage::baud_rate};
+    const stream_counts& counts = measured_.counts();
+    baud.add("bytes", measured_.arrivals().bytes());
+    baud.add("packets", counts.packets);
+    baud.add("responses", counts.responses);
+    if (counts.packets + counts.responses == 0) {
+      baud.find(diagnosis::wrong_baud_rate);
+      baud.remark = "It is also possible that these bytes are not those of a lidar.";
+    }
+    log_.report(std::move(baud));
+    log_.skip(diagnostic_stage::answers, needs_device);
+    report_identity(log_, device_.information);
+    report_health(log_, device_.condition);
+    stage_report motor{.stage = diagnostic_stage::motor};
+    judge_motor(motor, measured_);
+    if (counts.packets <= few_packets) {
+      motor.outcome = stage_verdict::skipped;
+      motor.remark = "There are too few packets.";
+    }
+    log_.report(std::move(motor));
+    if (counts.packets == 0)
+      return log_.skip_from(diagnostic_stage::stream, "There are no packets.");
+    stage_report stream{.stage = diagnostic_stage::stream};
+    if (splitter_.boots() > 0) stream.add("boots", splitter_.boots());
+    judge_stream(stream, measured_, seconds_);
+    log_.report(std::move(stream));
+    report_rate(log_, measured_, device_);
+    report_loss(log_, measured_);
+    log_.skip(diagnostic_stage::usb_latency,
+              "The reader of a file or a recording groups bytes itself.");
+  }
+
+  stage_log& log_;
+  stage_report port_{};
+  event_splitter splitter_;
+  observer to_{.event = [this](const observed_event& came) { take(came); }};
+  stream_statistics measured_;
+  device_snapshot device_;
+  std::uint64_t looked_ = 0;  // samples at the last check of the speed
+  bool is_judging_ = false;
+  std::int64_t arrival_ns_ = 0;
+  std::int64_t last_ns_ = 0;
+  double seconds_ = 0.0;
+};
+
+}  // namespace
+
+void examine_file(const std::string& path, stage_log& log) { file_run(log).run(path); }
+
+}  // namespace g4lidar

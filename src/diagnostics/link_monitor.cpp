@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "link_monitor.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace g4lidar {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+/// The longest wait of a read, so that a cancellation is noticed and silence is certain.
+constexpr std::int64_t slice_ns = 50 * ms;
+/// A read that takes this much longer was delayed by the host.
+constexpr std::int64_t host_pause_ns = 25 * ms;
+/// The wait for a second reply.
+constexpr std::int64_t second_answer_ns = 35 * ms;
+/// The wait for the right reply after a wrong one.
+constexpr std::int64_t after_wrong_ns = 250 * ms;
+/// After a stop, a link without bytes for this time is quiet.
+constexpr std::int64_t quiet_ns = 70 * ms;
+/// A device that has not stopped by then gets another stop.
+constexpr std::int64_t stop_ns = 500 * ms;
+/// The number of consecutive letters of a boot text.
+constexpr std::size_t text_letters = 16;
+
+std::size_t size_of(const event& found) noexcept {
+  if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
+  if (const auto* response = std::get_if<response_view>(&found)) return response->data().size();
+  const auto* gone = std::get_if<skipped>(&found);
+  return gone == nullptr ? 0 : gone->count;
+}
+
+}  // namespace
+
+void event_splitter::take(bytes input, std::int64_t arrival_ns, const observer& to) {
+  arrival_ns_ = arrival_ns;
+  raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(raw_begin_));
+  raw_begin_ = 0;
+  raw_.insert(raw_.end(), input.begin(), input.end());
+  while (const auto found = parser_.next(input)) give(*found, to);
+}
+
+void event_splitter::finish(const observer& to) {
+  while (const auto found = parser_.finish()) give(*found, to);
+}
+
+void event_splitter::give(const event& found, const observer& to) {
+  const std::size_t size = std::min(size_of(found), raw_.size() - raw_begin_);
+  const bytes raw = bytes(raw_).subspan(raw_begin_, size);
+  raw_begin_ += size;
+  const auto* gone = std::get_if<skipped>(&found);
+  if (gone != nullptr && gone->reason == skip_reason::noise) {
+    look_for_text(raw);
+  } else {
+    letters_ = 0;
+    in_text_ = false;
+  }
+  counts_.add(found);
+  if (to.event) to.event({found, raw, arrival_ns_});
+}
+
+void event_splitter::look_for_text(bytes raw) {
+  for (const std::uint8_t byte : raw) {
+    const bool is_letter = (byte >= 0x20 && byte < 0x7F) || byte == '\r' || byte == '\n';
+    letters_ = is_letter ? letters_ + 1 : 0;
+    if (letters_ == text_letters) {
+      if (!in_text_) ++boots_;
+      in_text_ = true;
+    }
+  }
+  if (letters_ == 0) in_text_ = false;
+}
+
+// A wait that is too long is not caused by the device: this program was suspended.
+void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
+  if (read_ns_ < 0) read_ns_ = now_ns();
+  for (std::int64_t begin_ns = now_ns(); !is_over(); begin_ns = read_ns_) {
+    cancelled_ = is_cancelled_ && is_cancelled_();
+    if (cancelled_ || begin_ns >= until_ns) return;
+    const auto got = transport_->read(buffer_, std::min(until_ns, begin_ns + slice_ns));
+    const std::int64_t before_ns = std::exchange(read_ns_, now_ns());
+    const std::int64_t took_ns = read_ns_ - before_ns;
+    if (!got) {
+      if (got.error().code() == problem::cancelled) continue;
+      error_ = got.error();
+      splitter_.finish(to);
+      return;
+    }
+    reading what{got->count, got->arrival_ns};
+    if (took_ns > slice_ns + host_pause_ns) {
+      what.host_pause_ns = took_ns;
+      ++host_pauses_;
+      has_backlog_ = true;
+    }
+    if (got->count > 0) {
+      take(*got, what, to);
+      continue;
+    }
+    has_backlog_ = false;
+    silence_ns_ += std::min(took_ns, slice_ns);
+    if (splitter_.held() > 0 && read_ns_ >= heard_ns_ + frame_pause_ns_) splitter_.finish(to);
+  }
+}
+
+void link_monitor::take(const received& got, reading what, const observer& to) {
+  heard_ns_ = got.arrival_ns;
+  what.silence_ns = std::exchange(silence_ns_, 0);
+  what.is_backlog = has_backlog_;
+  has_backlog_ = has_backlog_ && got.count == buffer_.size();
+  if (to.arrival) to.arrival(what);
+  splitter_.take(bytes(buffer_).first(got.count), got.arrival_ns, to);
+}
+
+void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
+  while (!is_over() && now_ns() < until_ns) {
+    listen(std::min(now_ns() + quiet, until_ns), {});
+    if (now_ns() >= heard_ns_ + quiet) return splitter_.finish({});
+  }
+}
+
+void link_monitor::write(bytes data) {
+  if (is_over()) return;
+  const auto sent = transport_->write(data, transport_->now_ns() + 500 * ms);
+  if (!sent && sent.error().code() != problem::cancelled) error_ = sent.error();
+}
+
+bool link_monitor::stop() {
+  session_times times;
+  times.quiet_ns = quiet_ns;
+  times.drain_ns = stop_ns;
+  command_channel channel(times);
+  channel.drain(now_ns());
+  channel_state state = channel_state::going_on;
+  while (!is_over() && state == channel_state::going_on) {
+    while (const auto command_bytes = channel.to_send()) write(*command_bytes);
+    std::int64_t until_ns = channel.next_look_ns();
+    listen(until_ns, {.event = [&](const observed_event& came) {
+             if (state == channel_state::going_on) state = channel.take(came.what, came.arrival_ns);
+             until_ns = state == channel_state::going_on ? channel.next_look_ns() : 0;
+           }});
+    if (state == channel_state::going_on) state = channel.look(now_ns());
+  }
+  const bool is_quiet = now_ns() >= heard_ns_ + quiet_ns;  // also without noise
+  if (is_quiet) splitter_.finish({});
+  return state == channel_state::quiet && is_quiet;
+}
+
+void link_monitor::stop_after_failure() {
+  if (!transport_ || !error_) return;
+  for (const command code : {command::forced_stop, command::stop}) {
+    static_cast<void>(transport_->write(encode(code), transport_->now_ns() + 100 * ms));
+  }
+}
+
+exchange link_monitor::ask(command code, std::int64_t patience_ns) {
+  exchange made{.asked = code};
+  send(code);
+  made.asked_ns = now_ns();
+  await(made, patience_ns);
+  return made;
+}
+
+// The channel decides which reply belongs to the command. Its repetitions are not used, because
+// losses are measured here.
+void link_monitor::await(exchange& made, std::int64_t patience_ns) {
+  command_channel channel{session_times{}};
+  channel.ask(made.asked, true, now_ns());
+  static_cast<void>(channel.to_send());  // it was sent before
+  const stream_counts before = counts();
+  const std::uint64_t boots_before = boots();
+  const std::uint64_t pauses_before = host_pauses_;
+  std::int64_t until_ns = now_ns() + patience_ns;
+  observer to;
+  to.event = [&](const observed_event& came) {
+    const channel_state state = channel.take(came.what, came.arrival_ns);
+    const auto* response = std::get_if<response_view>(&came.what);
+    if (response == nullptr) return;
+    if (state != channel_state::answered) {
+      ++made.wrong;
+      until_ns = std::min(until_ns, came.arrival_ns + after_wrong_ns);
+    } else if (made.is_answered()) {
+      ++made.copies;
+    } else {
+      made.answered_ns = came.arrival_ns;
+      made.reply.assign(response->data().begin(), response->data().end());
+      until_ns = std::min(until_ns, came.arrival_ns + second_answer_ns);
+    }
+  };
+  listen(until_ns, to);
+  splitter_.finish(to);
+  made.packets += counts().packets - before.packets;
+  made.skipped += counts().skipped_bytes() - before.skipped_bytes();
+  made.is_disturbed |= boots() != boots_before || host_pauses_ != pauses_before;
+}
+
+void link_monitor::replace(const std::function<std::unique_ptr<transport>()>& make) {
+  ended_ns_ = now_ns();
+  transport_.reset();
+  transport_ = make();
+  splitter_ = {};
+  silence_ns_ = 0;
+  read_ns_ = -1;
+}
+
+}  // namespace g4lidar

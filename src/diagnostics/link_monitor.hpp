@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// Observes a transport byte by byte and sends commands on it: the base of the live stages.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/command_channel.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/transport/transport.hpp"
+
+namespace g4lidar {
+
+/// An event of the parser, its bytes, and when the last of them arrived.
+struct observed_event {
+  const event& what;
+  bytes raw;
+  std::int64_t arrival_ns;
+};
+
+/// Bytes of one read.
+struct reading {
+  std::size_t count;
+  std::int64_t arrival_ns;
+  std::int64_t silence_ns = 0;     ///< Before them, while the program was waiting.
+  std::int64_t host_pause_ns = 0;  ///< How long the program was suspended before them.
+  bool is_backlog = false;         ///< They were waiting since such a pause.
+};
+
+/// Receives the observations. Either may be empty.
+struct observer {
+  std::function<void(const observed_event&)> event{};
+  std::function<void(const reading&)> arrival{};
+};
+
+/// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*
+class event_splitter {
+ public:
+  void take(bytes input, std::int64_t arrival_ns, const observer& to);
+  /// The held bytes have ended.
+  void finish(const observer& to);
+  [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
+  /// Counts of all events so far.
+  [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
+  /// Boot texts so far.
+  [[nodiscard]] std::uint64_t boots() const noexcept { return boots_; }
+
+ private:
+  void give(const event& found, const observer& to);
+  void look_for_text(bytes raw);
+
+  stream_parser parser_;
+  stream_counter counts_;
+  std::vector<std::uint8_t> raw_;  // not part of an event yet
+  std::size_t raw_begin_ = 0;
+  std::int64_t arrival_ns_ = 0;
+  std::uint64_t boots_ = 0;
+  std::size_t letters_ = 0;  // consecutive
+  bool in_text_ = false;
+};
+
+/// A command and the replies to it.
+struct exchange {
+  command asked{};
+  std::int64_t asked_ns = 0;
+  std::int64_t answered_ns = -1;  ///< -1: not answered.
+  std::vector<std::uint8_t> reply{};
+  unsigned copies = 0;  ///< Of the same reply, after the first.
+  unsigned wrong = 0;   ///< Replies that cannot belong to this command.
+  std::uint64_t packets = 0;
+  std::uint64_t skipped = 0;  ///< Bytes in no frame.
+  bool is_disturbed = false;  ///< By a boot or a pause of the host: its times have no meaning.
+
+  [[nodiscard]] bool is_answered() const noexcept { return answered_ns >= 0; }
+  [[nodiscard]] std::int64_t latency_ns() const noexcept { return answered_ns - asked_ns; }
+  [[nodiscard]] bool heard_nothing() const noexcept {
+    return !is_answered() && wrong == 0 && packets == 0 && skipped == 0;
+  }
+};
+
+/// *Single thread.* After a loss (error()) nothing arrives, and every call returns immediately.
+class link_monitor {
+ public:
+  link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled)
+      : transport_(std::move(opened)), is_cancelled_(std::move(is_cancelled)) {}
+
+  /// Observes until `until_ns`, which the observer may change.
+  void listen(const std::int64_t& until_ns, const observer& to);
+  void listen_for(std::int64_t time_ns) { listen(now_ns() + time_ns, {}); }
+  /// Observes until nothing has arrived for `quiet_ns`, at most until `until_ns`.
+  void listen_for_quiet(std::int64_t quiet_ns, std::int64_t until_ns);
+  /// A frame that does not continue for this time has ended. On a link that stalls it takes longer.
+  void set_frame_pause(std::int64_t pause_ns) noexcept { frame_pause_ns_ = pause_ns; }
+
+  void send(command code) { write(encode(code)); }
+  /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.
+  [[nodiscard]] exchange ask(command code, std::int64_t patience_ns);
+  /// Waits for the reply to a command that was sent before.
+  void await(exchange& made, std::int64_t patience_ns);
+  /// Stops the device, with up to three attempts. Returns whether it is silent.
+  bool stop();
+  /// If reading has failed, a write may still stop the motor.
+  void stop_after_failure();
+
+  [[nodiscard]] std::int64_t now_ns() const noexcept {
+    return transport_ ? transport_->now_ns() : ended_ns_;
+  }
+  /// The error that ended the connection.
+  [[nodiscard]] const std::optional<error>& failure() const noexcept { return error_; }
+  [[nodiscard]] bool is_cancelled() const noexcept { return cancelled_; }
+  /// From now on the run cannot be cancelled: only the motor is to be stopped.
+  void ignore_cancel() noexcept {
+    is_cancelled_ = nullptr;
+    cancelled_ = false;
+  }
+  [[nodiscard]] bool is_over() const noexcept { return cancelled_ || error_ || !transport_; }
+  /// When the last byte arrived.
+  [[nodiscard]] std::int64_t heard_ns() const noexcept { return heard_ns_; }
+  [[nodiscard]] std::uint64_t boots() const noexcept { return splitter_.boots(); }
+  /// Counts of everything observed since replace().
+  [[nodiscard]] const stream_counts& counts() const noexcept { return splitter_.counts(); }
+  [[nodiscard]] std::uint32_t baud() const noexcept { return transport_ ? transport_->baud() : 0; }
+  /// Uses another transport from now on; calls `make` after closing the earlier one.
+  void replace(const std::function<std::unique_ptr<transport>()>& make);
+
+ private:
+  void take(const received& got, reading what, const observer& to);
+  void write(bytes data);
+
+  std::unique_ptr<transport> transport_;
+  std::function<bool()> is_cancelled_;
+  std::optional<error> error_;
+  bool cancelled_ = false;
+  bool has_backlog_ = false;
+  std::int64_t ended_ns_ = 0;
+  std::int64_t read_ns_ = -1;  // the end of the last read
+  event_splitter splitter_;
+  std::array<std::uint8_t, 4096> buffer_{};
+  std::int64_t heard_ns_ = 0;
+  std::int64_t frame_pause_ns_ = 60'000'000;
+  std::int64_t silence_ns_ = 0;
+  std::uint64_t host_pauses_ = 0;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The stages of a device, with an open transport and its clock. Queries, a start and stops are
+// sent: no setting is changed, and the motor is stopped at the end.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "g4lidar/error.hpp"
+#include "g4lidar/transport/transport.hpp"
+#include "link_monitor.hpp"
+#include "reply_statistics.hpp"
+#include "stages.hpp"
+#include "stream_statistics.hpp"
+
+namespace g4lidar {
+
+/// One run. *Single thread.*
+class live_run {
+ public:
+  /// Reports the stages from baud_rate on to `log`, which must outlive this.
+  live_run(std::unique_ptr<transport> opened, stage_log& log);
+
+  void run();
+
+ private:
+  enum class scan_state : std::uint8_t {
+    runs,
+    silent,  ///< No more bytes arrive.
+    over,    ///< The connection or the run has ended.
+  };
+  /// The state of a device whose scan has become silent.
+  enum class fate : std::uint8_t { resumed, booted, answers, dead, over };
+  /// Since the last start command.
+  struct start_record {
+    std::int64_t sent_ns = 0;
+    std::int64_t kept_alive_ns = 0;  // the last start command, as keep-alive
+    std::uint64_t boots_before = 0;
+    std::int64_t first_packet_ns = 0;
+    bool has_header = false;
+    bool has_introduced_itself = false;  // without a query
+    bool is_spinning_up = false;         // this was reported as an activity
+  };
+
+  /// The stage baud_rate. Returns whether there is a device to continue with.
+  bool find_device();
+  /// The stages answer, identity, health.
+  bool interview();
+  /// The stage motor. Returns whether the scan runs.
+  bool start_motor();
+  void measure_scan();
+  void report_stream();
+
+  /// Observes bytes without a query, and stops a scan. False if it does not stop, or there are no
+  /// frames.
+  bool make_quiet();
+  bool first_contact();
+  void ask_the_rest(exchange last, std::int64_t begin_ns);
+  void look_for_baud_rate(stage_report& baud);
+  [[nodiscard]] bool scans_when_started();
+  void start_scan();
+  /// Waits until the head has its speed, or will not reach it.
+  [[nodiscard]] scan_state warm_up(stream_statistics& measured);
+  [[nodiscard]] scan_state listen_once(stream_statistics& measured);
+  /// How long the scan may be silent at this time.
+  [[nodiscard]] std::int64_t patience_ns() const;
+  void follow(const observed_event& came);
+  [[nodiscard]] fate fate_of_silent();
+  /// The scan became silent during the measurement. Returns whether it continues.
+  bool revive(std::int64_t& until_ns);
+  bool restart_scan(std::int64_t& until_ns);
+  /// Adds the error that ended the connection, if there is one.
+  void add_failure(stage_report& report);
+
+  stage_log& log_;
+  link_monitor link_;
+  reply_statistics replies_;
+  device_snapshot device_;
+  stream_statistics measured_;
+  stage_report answer_{.stage = diagnostic_stage::answers};
+  stage_report stream_{.stage = diagnostic_stage::stream};
+  start_record started_;
+  bool is_deaf_ = false;      // it scans and ignores commands
+  bool keeps_alive_ = false;  // with keep-alives, because the protection is on
+  std::uint32_t baud_ = 0;
+  std::uint64_t garbage_ = 0;  // bytes without a frame, before the first query
+  std::int64_t measured_ns_ = 0;
+  unsigned restarts_ = 0;
+};
+
+}  // namespace g4lidar

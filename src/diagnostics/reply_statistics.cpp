@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "reply_statistics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "g4lidar/core/bytes.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr int rounds = 5;
+constexpr std::array questions{command::device_info,          command::health,
+                               command::health_vendor,        command::frequency_query,
+                               command::ranging_query,        command::low_power_query,
+                               command::motor_direction_query};
+/// A single reply with this delay is caused by a stall of the link.
+constexpr std::int64_t very_late_ns = 400 * ms;
+/// The number of commands without a reply at the end of a series that means a dead link.
+constexpr unsigned dead_line = 6;
+
+bool may_be_unknown(command code) noexcept {
+  return code == command::health || code == command::health_vendor ||
+         code == command::motor_direction_query || code == command::low_power_query;
+}
+
+}  // namespace
+
+std::ptrdiff_t reply_statistics::answered() const noexcept {
+  return std::ranges::count_if(made_, &exchange::is_answered);
+}
+
+bytes reply_statistics::usual(command code) const {
+  bytes best;
+  std::ptrdiff_t most = 0;
+  for (const exchange& one : made_) {
+    if (one.asked != code || !one.is_answered()) continue;
+    const auto same = std::count_if(made_.begin(), made_.end(), [&](const exchange& other) {
+      return other.asked == code && other.reply == one.reply;
+    });
+    if (same <= most) continue;
+    most = same;
+    best = one.reply;
+  }
+  return best;
+}
+
+bool reply_statistics::is_odd(const exchange& one) const {
+  if (!one.is_answered() || one.asked == command::health || one.asked == command::health_vendor) {
+    return false;  // a health may change
+  }
+  return !std::ranges::equal(usual(one.asked), one.reply);
+}
+
+bool reply_statistics::is_unknown(command code) const {
+  if (!may_be_unknown(code)) return false;
+  return std::none_of(made_.begin(), made_.end(), [&](const exchange& e) {
+    return e.asked == code && (e.is_answered() || e.wrong > 0);
+  });
+}
+
+reply_statistics::tally reply_statistics::count() const {
+  tally sum;
+  for (const exchange& one : made_) {
+    if (one.packets > 0 || one.is_disturbed) continue;
+    if (one.is_answered()) {
+      sum.late += one.latency_ns() > late_ns ? 1U : 0U;
+      sum.very_late += one.latency_ns() > very_late_ns ? 1U : 0U;
+      sum.twice += one.copies > 0 ? 1U : 0U;
+      sum.damaged += is_odd(one) ? 1U : 0U;
+      sum.missing_at_end = 0;
+      sum.missing_before = sum.missing;
+    } else if (one.heard_nothing()) {
+      ++sum.missing_at_end;
+      if (!is_unknown(one.asked)) ++sum.missing;
+    } else if (one.wrong == 0) {
+      ++sum.damaged;
+      sum.missing_at_end = 0;
+    }
+    sum.wrong += one.wrong > 0 ? 1U : 0U;
+  }
+  return sum;
+}
+
+bool reply_statistics::is_clear() const {
+  const tally sum = count();
+  return sum.late >= 4 || sum.wrong >= 6 || sum.missing_at_end >= dead_line;
+}
+
+bool reply_statistics::has_died() const {
+  const tally sum = count();
+  return answered() > 0 && sum.missing_at_end >= dead_line && sum.missing_before <= 1;
+}
+
+void reply_statistics::judge(stage_report& report) const {
+  const tally sum = count();
+  std::int64_t slowest_ns = 0;
+  for (const exchange& e : made_) {
+    if (e.is_answered()) slowest_ns = std::max(slowest_ns, e.latency_ns());
+  }
+  report.add("asked", made_.size());
+  report.add("answered", answered());
+  report.add("slowest_ms", static_cast<double>(slowest_ns) / 1e6);
+  for (const auto& [name, value] :
+       {std::pair("late", sum.late), std::pair("wrong", sum.wrong), std::pair("twice", sum.twice),
+        std::pair("missing", sum.missing), std::pair("damaged", sum.damaged)}) {
+    if (value > 0) report.add(name, value);
+  }
+  const bool died = has_died();
+  // Late replies leave commands without a reply, and count as wrong replies to the next command.
+  const bool is_late = sum.late >= 2;
+  // The very first reply may have waited for the end of a boot.
+  const bool is_held_up = sum.very_late == 1 && made_.front().latency_ns() <= very_late_ns;
+  if (is_late) report.find(diagnosis::answers_late);
+  if (died || (!is_late && is_held_up)) report.find(diagnosis::stalls);
+  if (is_late || died) return;
+  if (sum.wrong > 0 && !is_held_up) report.find(diagnosis::answers_wrong);
+  if (sum.twice > 0) report.find(diagnosis::answers_twice);
+  if (sum.missing > 0 && !is_held_up) report.find(diagnosis::answers_missing);
+}
+
+void device_snapshot::take(const response_view& reply) {
+  if (const auto found = reply.as_device_info()) information = found;
+  if (const auto found = reply.as_health()) condition = found;
+}
+
+device_snapshot reply_statistics::snapshot() const {
+  device_snapshot known;
+  for (const command code : questions) {
+    const auto reply = response_view::from(usual(code));
+    if (!reply || (code == command::health_vendor && known.condition)) continue;
+    known.take(*reply);
+    if (const auto chz = reply->as_frequency_chz()) known.frequency = scan_frequency{*chz};
+    const auto value = reply->as_byte();
+    if (value && code == command::ranging_query) {
+      known.ranging = reply_byte<ranging_frequency>(*value);
+    }
+  }
+  return known;
+}
+
+void ask_all(link_monitor& link, reply_statistics& replies, std::int64_t first_latency_ns) {
+  const std::int64_t patience_ns =
+      std::max<std::int64_t>(600 * ms, 2 * first_latency_ns + 300 * ms);
+  bool has_waited_long = false;
+  std::array<int, questions.size()> silent{};
+  for (int round = 0; round < rounds && !link.is_over() && !replies.is_clear(); ++round) {
+    for (std::size_t i = 0; i < questions.size() && !link.is_over(); ++i) {
+      const bool is_known = silent[i] < 0;
+      if (silent[i] >= 2 && may_be_unknown(questions[i])) continue;
+      exchange made = link.ask(questions[i], patience_ns);
+      if (made.packets > 0) return replies.add(std::move(made));  // it scans: that is handled first
+      if (made.heard_nothing() && round > 0 && is_known && !has_waited_long) {
+        has_waited_long = true;  // a link that stalls delivers it at the end
+        link.await(made, 3'000 * ms);
+      }
+      silent[i] = made.is_answered() ? -100 : silent[i] + 1;
+      replies.add(std::move(made));
+    }
+  }
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Sends all queries several times, and collects statistics of the replies.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "g4lidar/core/request.hpp"
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
+#include "link_monitor.hpp"
+
+namespace g4lidar {
+
+/// What is known about a device.
+struct device_snapshot {
+  std::optional<device_information> information{};
+  std::optional<health> condition{};
+  std::optional<scan_frequency> frequency{};
+  std::optional<ranging_frequency> ranging{};
+
+  /// The information or the health, if the reply contains it.
+  void take(const response_view& reply);
+};
+
+/// All commands that were sent. Those that were disturbed by packets, a boot or a pause of the host
+/// are not counted.
+class reply_statistics {
+ public:
+  void add(exchange made) { made_.push_back(std::move(made)); }
+  [[nodiscard]] const std::vector<exchange>& exchanges() const noexcept { return made_; }
+  [[nodiscard]] std::ptrdiff_t answered() const noexcept;
+  /// From most of its replies.
+  [[nodiscard]] device_snapshot snapshot() const;
+  /// Adds diagnoses and numbers.
+  void judge(stage_report& report) const;
+  /// There were replies, and later none.
+  [[nodiscard]] bool has_died() const;
+  /// So many replies were wrong that further commands are useless.
+  [[nodiscard]] bool is_clear() const;
+
+  /// A reply that takes longer is late.
+  static constexpr std::int64_t late_ns = 150'000'000;
+
+ private:
+  struct tally {
+    unsigned late = 0;
+    unsigned very_late = 0;
+    unsigned wrong = 0;
+    unsigned twice = 0;
+    unsigned missing = 0;
+    unsigned damaged = 0;
+    unsigned missing_at_end = 0;  // consecutive, for any command
+    unsigned missing_before = 0;  // the missing ones before these
+  };
+  [[nodiscard]] tally count() const;
+  /// A query that firmware need not support, and without any reply.
+  [[nodiscard]] bool is_unknown(command code) const;
+  /// Differs from the most frequent reply to the same command.
+  [[nodiscard]] bool is_odd(const exchange& one) const;
+  /// The most frequent reply; empty if there is none.
+  [[nodiscard]] bytes usual(command code) const;
+
+  std::vector<exchange> made_;
+};
+
+/// Sends all queries, in rounds, and adds the replies. `first_latency_ns`: that of an earlier
+/// reply.
+void ask_all(link_monitor& link, reply_statistics& replies, std::int64_t first_latency_ns);
+
+}  // namespace g4lidar

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// The stages motor and stream: the scan is started and measured.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include "live_run.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr session_times times;
+constexpr std::int64_t slice_ns = 50 * ms;
+/// A scan without bytes for this time has become silent.
+constexpr std::int64_t silence_ns = 500 * ms;
+/// The pause caused by an answer.
+constexpr std::int64_t frame_pause_ns = 60 * ms;
+/// The time by which the head has its speed.
+constexpr std::int64_t spin_up_ns = 6'000 * ms;
+/// Between two checks of the speed.
+constexpr std::int64_t steady_ns = 250 * ms;
+/// A device that becomes silent this soon after the start does so because of the start.
+constexpr std::int64_t of_the_start_ns = 1'500 * ms;
+/// The longest stall or boot: by then bytes arrive again.
+constexpr std::int64_t signs_ns = 2'500 * ms;
+/// The time at which power-down protection ends a scan without a keep-alive.
+constexpr std::int64_t protection_from_ns = 2'600 * ms;
+constexpr std::int64_t protection_to_ns = 3'400 * ms;
+constexpr unsigned most_restarts = 2;
+
+}  // namespace
+
+void live_run::start_scan() {
+  log_.begin(diagnostic_activity::starting);
+  link_.send(command::start);
+  started_ = {
+      .sent_ns = link_.now_ns(), .kept_alive_ns = link_.now_ns(), .boots_before = link_.boots()};
+}
+
+void live_run::follow(const observed_event& came) {
+  if (std::holds_alternative<packet_view>(came.what) && started_.first_packet_ns == 0) {
+    started_.first_packet_ns = came.arrival_ns;
+  }
+  const auto* response = std::get_if<response_view>(&came.what);
+  if (response == nullptr) return;
+  started_.has_introduced_itself |= response->kind() == response_kind::device_info;
+  started_.has_header |= response->kind() == response_kind::scan_started;
+}
+
+std::int64_t live_run::patience_ns() const {
+  const bool has_packets = started_.first_packet_ns != 0;
+  if (has_packets || link_.boots() > started_.boots_before) return silence_ns;
+  return started_.has_header ? times.first_packet_ns : times.start_ns;
+}
+
+live_run::scan_state live_run::listen_once(stream_statistics& measured) {
+  observer to;
+  to.event = [&](const observed_event& came) {
+    measured.take(came);
+    follow(came);
+  };
+  to.arrival = [&](const reading& came) { measured.take(came); };
+  if (keeps_alive_ && link_.now_ns() >= started_.kept_alive_ns + times.keep_alive_ns) {
+    link_.send(command::start);
+    started_.kept_alive_ns = link_.now_ns();
+  }
+  const std::int64_t until_ns = link_.now_ns() + slice_ns;
+  link_.set_frame_pause(signs_ns);
+  link_.listen(until_ns, to);
+  link_.set_frame_pause(frame_pause_ns);
+  if (link_.is_over()) return scan_state::over;
+  const std::int64_t patience = patience_ns();
+  const std::int64_t since_ns = std::max(link_.heard_ns(), started_.sent_ns);
+  if (patience == times.first_packet_ns && link_.now_ns() >= since_ns + times.spin_up_notice_ns &&
+      !std::exchange(started_.is_spinning_up, true)) {
+    log_.begin(diagnostic_activity::spinning_up);
+  }
+  return link_.now_ns() >= since_ns + patience ? scan_state::silent : scan_state::runs;
+}
+
+live_run::scan_state live_run::warm_up(stream_statistics& measured) {
+  std::int64_t until_ns = link_.now_ns() + spin_up_ns;
+  std::int64_t looked_ns = link_.now_ns();
+  while (link_.now_ns() < until_ns) {
+    const scan_state state = listen_once(measured);
+    if (state != scan_state::runs) return state;
+    if (started_.first_packet_ns == 0) until_ns = link_.now_ns() + spin_up_ns;
+    if (link_.now_ns() < looked_ns + steady_ns) continue;
+    if (measured.is_steady()) return scan_state::runs;
+    looked_ns = link_.now_ns();
+  }
+  return scan_state::runs;
+}
+
+bool live_run::start_motor() {
+  stage_report motor{.stage = diagnostic_stage::motor};
+  if (!is_deaf_) start_scan();
+  scan_state state = warm_up(measured_);
+  const bool had_packets = measured_.counts().packets > 0;
+  if (had_packets && state == scan_state::runs) {
+    motor.add("spin_up_ms", (link_.now_ns() - started_.sent_ns) / ms);
+    motor.add("first_packet_ms", (started_.first_packet_ns - started_.sent_ns) / ms);
+    if (is_deaf_) motor.measurements.clear();
+  }
+  if (state == scan_state::silent) {
+    const fate what = fate_of_silent();
+    if (what == fate::resumed) {
+      stream_.find(diagnosis::stalls);
+      state = warm_up(measured_);
+    }
+    if (what == fate::booted) motor.find(diagnosis::reboots);
+    if (what == fate::dead) {
+      motor.find(replies_.has_died() ? diagnosis::stalls : diagnosis::brown_out);
+    }
+    if (what == fate::answers) {
+      motor.find(had_packets ? diagnosis::reboots : diagnosis::does_not_start);
+    }
+  }
+  if (state == scan_state::runs) judge_motor(motor, measured_);
+  add_failure(motor);
+  const bool runs = state == scan_state::runs && !link_.is_over();
+  log_.report(std::move(motor));
+  return runs;
+}
+
+// It gets no command before it has had the time to continue by itself.
+live_run::fate live_run::fate_of_silent() {
+  const std::uint64_t before = link_.counts().packets;
+  std::int64_t until_ns = link_.now_ns() + signs_ns;
+  link_.listen(until_ns, {.event = [&](const observed_event& came) {
+                 follow(came);
+                 if (link_.counts().packets > before) until_ns = 0;
+               }});
+  if (link_.counts().packets > before) return fate::resumed;
+  if (link_.is_over()) return fate::over;
+  if (link_.boots() > started_.boots_before || started_.has_introduced_itself) return fate::booted;
+  for (int i = 0; i < 2 && !link_.is_over(); ++i) {
+    const exchange made = link_.ask(command::device_info, 800 * ms);
+    if (made.packets > 0) return fate::resumed;
+    if (!made.heard_nothing()) return fate::answers;
+  }
+  return link_.is_over() ? fate::over : fate::dead;
+}
+
+void live_run::measure_scan() {
+  measured_.begin();
+  const std::int64_t begin_ns = link_.now_ns();
+  std::int64_t until_ns = begin_ns + log_.options().measuring_time.count();
+  while (link_.now_ns() < until_ns) {
+    const scan_state state = listen_once(measured_);
+    if (state == scan_state::over) break;
+    if (state == scan_state::silent && !revive(until_ns)) break;
+  }
+  measured_ns_ = link_.now_ns() - begin_ns;
+}
+
+bool live_run::revive(std::int64_t& until_ns) {
+  const std::int64_t lasted_ns = link_.heard_ns() - started_.sent_ns;
+  const std::int64_t unkept_ns = link_.heard_ns() - started_.kept_alive_ns;
+  switch (fate_of_silent()) {
+    case fate::resumed:
+      stream_.find(diagnosis::stalls);
+      measured_.part();
+      return true;
+    case fate::booted:
+      stream_.find(diagnosis::reboots);
+      return false;
+    case fate::dead:
+      stream_.find(lasted_ns < of_the_start_ns ? diagnosis::brown_out : diagnosis::stalls);
+      return false;
+    case fate::over:
+      return false;
+    case fate::answers:
+      break;
+  }
+  const bool may_be_protected =
+      !keeps_alive_ && unkept_ns >= protection_from_ns && unkept_ns <= protection_to_ns;
+  if (!may_be_protected) stream_.find(diagnosis::scan_ends);
+  if (restarts_ == most_restarts) return false;
+  keeps_alive_ = keeps_alive_ || may_be_protected;
+  if (!restart_scan(until_ns)) return false;
+  if (may_be_protected) stream_.find(diagnosis::protection_on);
+  return true;
+}
+
+bool live_run::restart_scan(std::int64_t& until_ns) {
+  ++restarts_;
+  stream_statistics warming;
+  start_scan();
+  if (warm_up(warming) != scan_state::runs) return false;
+  // With keep-alive commands it must last longer than without.
+  while (keeps_alive_ && link_.now_ns() < started_.sent_ns + protection_to_ns) {
+    if (listen_once(warming) != scan_state::runs) {
+      stream_.find(diagnosis::scan_ends);
+      return false;
+    }
+  }
+  measured_.part();
+  until_ns = std::max(until_ns, link_.now_ns() + log_.options().measuring_time.count() / 2);
+  return true;
+}
+
+void live_run::report_stream() {
+  judge_stream(stream_, measured_, static_cast<double>(measured_ns_) / 1e9);
+  if (restarts_ > 0) stream_.add("restarts", restarts_);
+  add_failure(stream_);
+  log_.report(std::move(stream_));
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// The stages that devices and files share, from the measurements.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "stages.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr double frequency_tolerance = 0.06;
+constexpr double sample_rate_tolerance = 0.12;
+/// More than a USB packet of 64 bytes at 230400 baud.
+constexpr double held_back_limit_ms = 3.3;
+/// The amount of damage up to which there is only a warning.
+constexpr std::uint64_t few_events = 2;
+constexpr double few_lost = 0.002;
+
+}  // namespace
+
+bool report_identity(stage_log& log, const std::optional<device_information>& known) {
+  if (!known) {
+    log.skip(diagnostic_stage::identity, "There is no device information.");
+    return true;
+  }
+  stage_report identity{.stage = diagnostic_stage::identity};
+  identity.add("model", static_cast<int>(known->model));
+  identity.add("firmware", std::to_string(known->firmware_major)
+                               .append(".")
+                               .append(std::to_string(known->firmware_minor)));
+  identity.add("hardware", static_cast<int>(known->hardware));
+  identity.add("serial_number",
+               std::string(known->serial_digits.begin(), known->serial_digits.end()));
+  if (known->model != model_g4) identity.find(diagnosis::other_device);
+  log.report(std::move(identity));
+  return known->model == model_g4;
+}
+
+bool report_health(stage_log& log, const std::optional<health>& known) {
+  if (!known) {
+    log.skip(diagnostic_stage::health, "There is no health information.");
+    return true;
+  }
+  stage_report report{.stage = diagnostic_stage::health};
+  constexpr std::array<std::string_view, 3> names{"ok", "warning", "error"};
+  const auto status = static_cast<std::size_t>(known->status);
+  report.add("status", names[std::min<std::size_t>(status, 2)]);
+  report.add("error_code", known->error_code);
+  if (known->status == health_status::warning) report.find(diagnosis::health_warning);
+  if (known->status == health_status::error) report.find(diagnosis::health_error);
+  log.report(std::move(report));
+  return known->status != health_status::error;
+}
+
+void judge_stream(stage_report& stream, const stream_statistics& measured, double seconds) {
+  const arrival_statistics& arrivals = measured.arrivals();
+  const stream_counts& counts = measured.counts();
+  if (seconds > 0.0) stream.add("seconds", seconds);
+  stream.add("bytes", arrivals.bytes());
+  stream.add("packets", counts.packets);
+  stream.add("points", counts.points);
+  if (measured.jerks() > 0) stream.add("jerks", measured.jerks());
+  if (seconds > 0.0) stream.add("longest_silence_ms", arrivals.longest_silence_ns() / 1'000'000);
+  if (arrivals.longest_host_pause_ns() > 0) {
+    stream.add("longest_host_pause_ms", arrivals.longest_host_pause_ns() / 1'000'000);
+  }
+  if (arrivals.stalls() > 0) {
+    stream.add("stalls", arrivals.stalls());
+    if (stream.diagnoses.empty()) stream.find(diagnosis::stalls);  // otherwise the reason is known
+  }
+  if (measured.has_become_garbage()) {
+    stream.add("bytes_since_last_packet", measured.bytes_since_packet());
+    stream.find(diagnosis::wrong_baud_rate);
+  }
+  // Among many damaged packets some have a matching checksum, and look like jolts.
+  if (20 * measured.jerks() > measured.damage().changed && measured.was_steady()) {
+    stream.find(diagnosis::jolts);
+  }
+  if (arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns) {
+    stream.find(diagnosis::host_busy);
+  }
+}
+
+void judge_motor(stage_report& motor, const stream_statistics& measured) {
+  if (measured.counts().packets <= few_packets || measured.was_steady()) return;
+  motor.find(measured.stands() ? diagnosis::motor_stuck : diagnosis::motor_unsteady);
+}
+
+void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known) {
+  const double frequency_hz = measured.frequency_hz();
+  const double rate_hz = measured.sample_rate_hz();
+  stage_report rate{.stage = diagnostic_stage::rate};
+  if (measured.reported_hz() > 0.0) rate.add("reported_hz", measured.reported_hz());
+  if (measured.turns_per_sample() > 0.0) {
+    rate.add("samples_per_revolution", 1.0 / measured.turns_per_sample());
+  }
+  if (frequency_hz <= 0.0) {
+    rate.outcome = stage_verdict::skipped;
+    rate.remark = "There is too little with times to measure it.";
+    return log.report(std::move(rate));
+  }
+  rate.add("measured_hz", frequency_hz);
+  if (known.frequency) {
+    const double set_hz = known.frequency->chz / 100.0;
+    rate.add("set_hz", set_hz);
+    const bool is_off = std::abs(frequency_hz - set_hz) > frequency_tolerance * set_hz;
+    if (is_off && measured.was_steady()) rate.find(diagnosis::frequency_off);
+  }
+  rate.add("samples_per_s", rate_hz);
+  if (known.ranging) {
+    const double nominal_hz = samples_per_second(*known.ranging);
+    rate.add("nominal_samples_per_s", nominal_hz);
+    const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
+    if (is_off) rate.find(diagnosis::sample_rate_off);
+  }
+  log.report(std::move(rate));
+}
+
+void report_loss(stage_log& log, const stream_statistics& measured) {
+  if (measured.arrivals().bytes() == 0) return log.skip(diagnostic_stage::loss, "Nothing arrived.");
+  stage_report loss{.stage = diagnostic_stage::loss};
+  const double all = static_cast<double>(measured.samples() + measured.samples_lost());
+  const double lost = static_cast<double>(measured.samples_lost()) / std::max(all, 1.0);
+  loss.add("lost_percent", 100.0 * lost);
+  loss.add("samples_lost", measured.samples_lost());
+  for (const auto reason : {skip_reason::noise, skip_reason::bad_header, skip_reason::bad_checksum,
+                            skip_reason::truncated}) {
+    loss.add(std::string("skipped_") + name_of(reason), measured.counts().skipped(reason));
+  }
+  const damage_counts& damage = measured.damage();
+  for (const auto& [name, count] :
+       {std::pair("changed", damage.changed), std::pair("shortened", damage.shortened),
+        std::pair("cut", damage.cut), std::pair("lengthened", damage.lengthened),
+        std::pair("vanished", damage.vanished), std::pair("unclear", damage.unclear)}) {
+    if (count > 0) loss.add(name, count);
+  }
+  if (damage.one_packet > 0) {
+    loss.add("wrong_bits_in_a_checksum",
+             static_cast<double>(damage.wrong_bits) / static_cast<double>(damage.one_packet));
+  }
+  if (measured.was_steady()) {
+    for (const diagnosis what : diagnoses_of(measured)) loss.find(what);
+  }
+  if (damage.all() <= few_events) {
+    if (!loss.diagnoses.empty()) loss.remark = "This is little evidence: measure longer.";
+    if (lost < few_lost) loss.outcome = std::min(loss.outcome, stage_verdict::warn);
+  }
+  log.report(std::move(loss));
+}
+
+void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud) {
+  if (baud == 0 || measured.arrivals().bytes() == 0) {
+    return log.skip(diagnostic_stage::usb_latency, "There is nothing to measure it by.");
+  }
+  stage_report latency{.stage = diagnostic_stage::usb_latency};
+  const double held_ms = measured.arrivals().held_back_ms(baud);
+  latency.add("held_back_ms", held_ms);
+  if (held_ms > held_back_limit_ms) latency.find(diagnosis::usb_latency);
+  log.report(std::move(latency));
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The reports of a diagnostic run so far, and the stages without a class of their own.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/transport/transport.hpp"
+#include "reply_statistics.hpp"
+#include "stream_statistics.hpp"
+
+namespace g4lidar {
+
+/// *Single thread.*
+class stage_log {
+ public:
+  explicit stage_log(const diagnostic_options& options) : options_(options) {}
+
+  void report(stage_report done) {
+    if (options_.on_stage) options_.on_stage(done);
+    stages_.push_back(std::move(done));
+  }
+  void skip(diagnostic_stage where, std::string why) {
+    report({.stage = where, .outcome = stage_verdict::skipped, .remark = std::move(why)});
+  }
+  /// Skips all stages from `where` on.
+  void skip_from(diagnostic_stage where, const std::string& why) {
+    for (auto at = static_cast<std::size_t>(where); at < diagnostic_stage_count; ++at) {
+      skip(static_cast<diagnostic_stage>(at), why);
+    }
+  }
+  void begin(diagnostic_activity what) {
+    if (options_.on_activity) options_.on_activity(what);
+  }
+  [[nodiscard]] const diagnostic_options& options() const noexcept { return options_; }
+  [[nodiscard]] std::vector<stage_report>& stages() noexcept { return stages_; }
+
+ private:
+  const diagnostic_options& options_;
+  std::vector<stage_report> stages_;
+};
+
+/// Reports port, permission and holder, and opens the port. Returns null if that fails; then all
+/// further stages are reported as skipped, except the one with the reason.
+[[nodiscard]] std::unique_ptr<transport> open_port(const std::string& source, stage_log& log);
+/// Reports the stage with the reason, all stages before it as passed and all after it as skipped.
+void report_unopened(stage_log& log, stage_report current, const error& why);
+/// Whether other baud rates can make a difference: not on a pseudo-terminal.
+[[nodiscard]] bool has_baud_rates(const std::string& path);
+
+/// Reports all stages of a recording or of raw bytes; those that need a device as skipped.
+void examine_file(const std::string& path, stage_log& log);
+
+// The stages that devices and files share.
+
+/// identity; false for another model.
+bool report_identity(stage_log& log, const std::optional<device_information>& known);
+/// health; false if the device reports an error.
+bool report_health(stage_log& log, const std::optional<health>& known);
+/// Up to this number of packets the motor cannot be evaluated.
+inline constexpr std::uint64_t few_packets = 30;
+/// The diagnoses of the stage motor, if it has reached its speed or had the time to.
+void judge_motor(stage_report& motor, const stream_statistics& measured);
+void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known);
+void report_loss(stage_log& log, const stream_statistics& measured);
+/// `baud` 0: bytes take no time.
+void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud);
+/// Numbers and diagnoses of the stage stream.
+void judge_stream(stage_report& stream, const stream_statistics& measured, double seconds);
+
+}  // namespace g4lidar

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/discovery.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "g4lidar/transport/serial_port.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::string_view serial_prefix = "serial:";
+constexpr std::string_view usb_prefix = "usb:";
+
+result<device_information> ask(const port_info& port, const find_options& options) {
+  auto line = serial_port::open(port.path, {.baud = options.baud});
+  if (!line) return tl::unexpected(line.error());
+  transport& opened = **line;
+  return probe(opened, opened.now_ns() + std::chrono::nanoseconds(options.probe_timeout).count());
+}
+
+/// The ports that the library may write to: only this function decides that.
+result<std::vector<port_info>> candidates(const find_options& options) {
+  auto ports = list_ports();
+  if (ports && !options.probe_all_ports) {
+    std::erase_if(*ports, [](const port_info& port) { return !is_g4_bridge(port); });
+  }
+  return ports;
+}
+
+/// A port that could not be queried, so that it may belong to a G4.
+bool is_unasked(const error& why) noexcept {
+  return why == problem::busy || why == problem::permission;
+}
+
+tl::unexpected<error> several(const std::vector<port_info>& ports) {
+  std::string paths;
+  for (const port_info& port : ports) paths.append(paths.empty() ? "" : ", ").append(port.path);
+  return failure(task::finding, problem::several_ports, paths);
+}
+
+result<port_info> the_only_one(std::vector<port_info> ports, std::string_view which) {
+  if (ports.empty()) return failure(task::finding, problem::no_port, which);
+  if (ports.size() > 1) return several(ports);
+  return std::move(ports.front());
+}
+
+result<port_info> at_usb_place(std::string_view place, std::string_view which) {
+  if (place.empty()) return failure(task::finding, problem::bad_option, which);
+  auto ports = list_ports();
+  if (!ports) return tl::unexpected(ports.error());
+  std::erase_if(*ports, [&](const port_info& port) { return port.bus_path != place; });
+  return the_only_one(*std::move(ports), which);
+}
+
+bool is_serial_number(std::string_view digits) noexcept {
+  return digits.size() == 16 && digits.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+result<port_info> with_serial_number(std::string_view digits, std::string_view which,
+                                     const find_options& options) {
+  if (!is_serial_number(digits)) {
+    return failure(task::finding, problem::bad_option, std::string(which) + ", not 16 digits");
+  }
+  const auto ports = candidates(options);
+  if (!ports) return tl::unexpected(ports.error());
+  std::optional<error> unasked;
+  for (const port_info& port : *ports) {
+    const auto device = ask(port, options);
+    if (device && device->serial_number() == digits) return port;
+    if (!device && !unasked && is_unasked(device.error())) unasked = device.error();
+  }
+  if (unasked) return tl::unexpected(*unasked);
+  return failure(task::finding, problem::no_port, which);
+}
+
+result<port_info> the_only_g4(const find_options& options) {
+  auto ports = candidates(options);
+  if (!ports) return tl::unexpected(ports.error());
+  if (ports->size() == 1) return the_only_one(*std::move(ports), "");
+  std::erase_if(*ports, [&](const port_info& port) {
+    const auto device = ask(port, options);
+    return !device && !is_unasked(device.error());
+  });
+  return the_only_one(*std::move(ports), "");
+}
+
+}  // namespace
+
+result<std::vector<found_lidar>> find_lidars(const find_options& options) {
+  auto ports = candidates(options);
+  if (!ports) return tl::unexpected(ports.error());
+  std::vector<found_lidar> found;
+  for (port_info& port : *ports) {
+    if (const auto device = ask(port, options)) found.push_back({std::move(port), *device});
+  }
+  return found;
+}
+
+result<port_info> select_port(std::string_view which, const find_options& options) {
+  if (which.empty()) return the_only_g4(options);
+  if (which.starts_with(usb_prefix)) return at_usb_place(which.substr(usb_prefix.size()), which);
+  if (which.starts_with(serial_prefix)) {
+    return with_serial_number(which.substr(serial_prefix.size()), which, options);
+  }
+  port_info named;
+  named.path = which;
+  return named;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "port_holder.hpp"
+
+#include <sys/sysmacros.h>
+
+#include <array>
+#include <climits>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include "directory.hpp"
+
+namespace g4lidar {
+namespace {
+
+bool is_number(std::string_view text) noexcept {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// "screen (1234)", or "1234" if the name is not known.
+std::string program(std::string_view pid) {
+  const std::string number(pid);
+  std::string name;
+  std::ifstream comm("/proc/" + number + "/comm");
+  std::getline(comm, name);
+  return name.empty() ? number : name + " (" + number + ")";
+}
+
+/// The process in a line of /proc/locks, if the line is about the file:
+/// "1: FLOCK  ADVISORY  WRITE 1234 00:05:678 0 EOF"
+std::optional<long> locker(const std::string& line, const struct stat& file) {
+  long pid = 0;
+  unsigned major_number = 0;
+  unsigned minor_number = 0;
+  unsigned long inode = 0;
+  if (std::sscanf(line.c_str(), "%*u: FLOCK %*s %*s %ld %x:%x:%lu", &pid, &major_number,
+                  &minor_number, &inode) != 4) {
+    return std::nullopt;
+  }
+  const bool is_it = major_number == major(file.st_dev) && minor_number == minor(file.st_dev) &&
+                     inode == file.st_ino;
+  // 0 and less: a process that is not visible from this container.
+  return is_it && pid > 0 ? std::optional(pid) : std::nullopt;
+}
+
+}  // namespace
+
+std::string lock_holder(const struct stat& file) {
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    if (const auto pid = locker(line, file)) return program(std::to_string(*pid));
+  }
+  return {};
+}
+
+std::map<std::string, std::string> device_holders() {
+  std::map<std::string, std::string> holders;
+  each_entry("/proc", [&](std::string_view pid) {
+    if (!is_number(pid)) return;
+    const std::string files = "/proc/" + std::string(pid) + "/fd/";
+    each_entry(files, [&](std::string_view fd) {
+      if (!is_number(fd)) return;
+      const std::string target = link_target(files + std::string(fd));
+      if (target.starts_with("/dev/") && !holders.contains(target)) {
+        holders.emplace(target, program(pid));
+      }
+    });
+  });
+  return holders;
+}
+
+std::string port_holder(const std::string& path) {
+  struct stat file{};
+  if (::stat(path.c_str(), &file) == 0) {
+    if (std::string locked = lock_holder(file); !locked.empty()) return locked;
+  }
+  std::array<char, PATH_MAX> real{};
+  if (::realpath(path.c_str(), real.data()) == nullptr) return {};
+  const auto holders = device_holders();
+  const auto found = holders.find(real.data());
+  return found == holders.end() ? std::string() : found->second;
+}
+
+std::string port_conflict(const std::string& path) {
+  std::array<char, PATH_MAX> real{};
+  if (::realpath(path.c_str(), real.data()) == nullptr) return {};
+  const std::string self = std::to_string(::getpid());
+  const bool is_pty = std::string_view(real.data()).starts_with("/dev/pts/");
+  std::string name;
+  each_entry("/proc", [&](std::string_view pid) {
+    if (!name.empty() || !is_number(pid) || pid == self) return;
+    const std::string files = "/proc/" + std::string(pid) + "/fd/";
+    bool has_port = false;
+    bool has_master = false;
+    each_entry(files, [&](std::string_view fd) {
+      const std::string target = link_target(files + std::string(fd));
+      has_port = has_port || target == real.data();
+      has_master = has_master || (is_pty && target.ends_with("/ptmx"));
+    });
+    if (has_port && !has_master) name = program(pid);
+  });
+  return name;
+}
+
+}  // namespace g4lidar

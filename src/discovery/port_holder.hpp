@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Which process has a port open, as far as this user may know. Reads /proc; allocates.
+#pragma once
+
+#include <sys/stat.h>
+
+#include <map>
+#include <string>
+
+namespace g4lidar {
+
+/// The process that holds the lock on this file, "screen (1234)"; empty if the system does not show
+/// it.
+[[nodiscard]] std::string lock_holder(const struct stat& file);
+
+/// By path: which process has a file below /dev open. Only root sees the processes of other users.
+[[nodiscard]] std::map<std::string, std::string> device_holders();
+
+/// The process that holds the port at `path`, by its lock or by having it open; empty if none is
+/// visible.
+[[nodiscard]] std::string port_holder(const std::string& path);
+
+/// Which other process has the port at `path` open, "cat (1234)"; empty if none is visible. The
+/// simulator of a device, at the other end of a pseudo-terminal, is not counted.
+[[nodiscard]] std::string port_conflict(const std::string& path);
+
+}  // namespace g4lidar

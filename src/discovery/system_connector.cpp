@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "system_connector.hpp"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <new>
+#include <utility>
+
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/transport/byte_file.hpp"
+#include "g4lidar/transport/serial_port.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::string_view tcp_prefix = "tcp:";
+constexpr std::string_view file_prefix = "file:";
+constexpr std::string_view serial_prefix = "serial:";
+constexpr std::string_view usb_prefix = "usb:";
+
+/// Whether the user named a serial port by its path: the library may write to that port, whatever
+/// is attached to it.
+bool names_path(std::string_view device) noexcept {
+  return !device.empty() && !device.starts_with(serial_prefix) && !device.starts_with(usb_prefix);
+}
+
+/// A number that changes when the device node is created again; 0 if there is none.
+std::uint64_t node_of(const std::string& path) noexcept {
+  struct stat node{};
+  if (::lstat(path.c_str(), &node) != 0) return 0;
+  const auto made_ns = static_cast<std::uint64_t>(node.st_ctim.tv_sec) * 1'000'000'000U +
+                       static_cast<std::uint64_t>(node.st_ctim.tv_nsec);
+  return made_ns ^ static_cast<std::uint64_t>(node.st_ino) << 1U ^ 1U;
+}
+
+}  // namespace
+
+system_connector::system_connector(std::string_view device, std::uint32_t baud)
+    : device_(device), baud_(baud), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+
+system_connector::~system_connector() {
+  if (wake_ >= 0) ::close(wake_);
+}
+
+result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
+                                                          std::uint32_t baud) {
+  std::string_view path = device;
+  if (path.starts_with(file_prefix)) path.remove_prefix(file_prefix.size());
+  if (is_recording(path)) return replay::open(path);
+  return std::unique_ptr<connector>(new system_connector(device, baud));
+}
+
+/// A reconnect must not end the program if there is no memory.
+result<std::unique_ptr<transport>> system_connector::connect() noexcept {
+  try {
+    return open_line();
+  } catch (const std::bad_alloc&) {
+    return failure(task::opening, problem::system, device_, ENOMEM);
+  }
+}
+
+bool system_connector::answers() const noexcept { return !device_.starts_with(file_prefix); }
+
+result<std::unique_ptr<transport>> system_connector::open_line() {
+  const std::string_view device = device_;
+  if (device.starts_with(tcp_prefix)) {
+    tcp_options how;
+    how.baud = baud_;
+    return tcp_port::open(device.substr(tcp_prefix.size()), how);
+  }
+  if (device.starts_with(file_prefix)) return byte_file::open(device.substr(file_prefix.size()));
+  return first_.path.empty() ? first_connect() : connect_again();
+}
+
+result<std::unique_ptr<transport>> system_connector::first_connect() {
+  find_options how;
+  how.baud = baud_;
+  const auto port = select_port(device_, how);
+  if (!port) return tl::unexpected(port.error());
+  auto opened = serial_port::open(port->path, {.baud = baud_});
+  if (opened) {
+    first_ = *port;
+    last_path_ = port->path;
+  }
+  return opened;
+}
+
+/// Each call tries the next candidate; at the end of a round it fails with no_port once.
+result<std::unique_ptr<transport>> system_connector::connect_again() {
+  if (paths_.empty()) list_candidates();
+  while (!paths_.empty()) {
+    const std::string next = std::move(paths_.front());
+    paths_.erase(paths_.begin());
+    if (next.empty()) break;
+    if (auto opened = serial_port::open(next, {.baud = baud_})) {
+      last_path_ = next;
+      return opened;
+    }
+  }
+  return failure(task::finding, problem::no_port, first_.path);
+}
+
+/// The path that the user named, then the old path, then the other ports; an empty one ends the round.
+void system_connector::list_candidates() {
+  if (names_path(device_) && !is_refused(first_.path)) paths_.push_back(first_.path);
+  if (const auto ports = list_ports()) {
+    for (const port_info& port : *ports) {
+      if (!may_be_ours(port) || is_refused(port.path)) continue;
+      if (std::ranges::find(paths_, port.path) != paths_.end()) continue;
+      paths_.insert(port.path == first_.path ? paths_.begin() : paths_.end(), port.path);
+    }
+  }
+  paths_.emplace_back();
+}
+
+/// The USB bridge of a G4, or an adapter of the same model at the USB port that the user named.
+bool system_connector::may_be_ours(const port_info& port) const noexcept {
+  if (is_g4_bridge(port)) return true;
+  return device_.starts_with(usb_prefix) && port.bus_path == first_.bus_path &&
+         port.vendor_id == first_.vendor_id && port.product_id == first_.product_id;
+}
+
+bool system_connector::is_refused(const std::string& path) const {
+  return std::ranges::find(refused_, refused_port{path, node_of(path)}) != refused_.end();
+}
+
+/// Another lidar is attached there. Its port is not opened again before a replug.
+void system_connector::refuse() noexcept {
+  try {
+    std::erase_if(refused_, [&](const refused_port& old) { return old.path == last_path_; });
+    if (!last_path_.empty()) refused_.push_back({last_path_, node_of(last_path_)});
+  } catch (const std::bad_alloc&) {
+    refused_.clear();  // they are queried again, at the interval of the driver's backoff
+  }
+}
+
+std::int64_t system_connector::now_ns() const noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool system_connector::pause(std::int64_t deadline_ns) noexcept {
+  while (true) {
+    const std::int64_t left = std::max<std::int64_t>(deadline_ns - now_ns(), 0);
+    const timespec time{static_cast<std::time_t>(left / 1'000'000'000),
+                        static_cast<long>(left % 1'000'000'000)};
+    pollfd woken{wake_, POLLIN, 0};
+    const int ready = ppoll(&woken, 1, &time, nullptr);
+    if (ready > 0) {
+      eventfd_t count = 0;
+      static_cast<void>(eventfd_read(wake_, &count));
+      return false;
+    }
+    if (ready == 0) return true;  // otherwise a signal arrived: continue waiting
+  }
+}
+
+void system_connector::wake() noexcept { static_cast<void>(eventfd_write(wake_, 1)); }
+
+}  // namespace g4lidar

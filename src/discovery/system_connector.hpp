@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Opens the transports of this computer: serial ports, network bridges, files.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/discovery.hpp"
+#include "g4lidar/transport/connector.hpp"
+
+namespace g4lidar {
+
+/// Opens the device that lidar_options::device names, repeatedly. It searches a lost lidar at its
+/// old path and at every USB bridge of a G4; the driver identifies it by its number. It opens a
+/// port only if the user named its path, or if a G4 may be attached to it: see may_be_ours().
+class system_connector final : public connector {
+ public:
+  /// Fails with bad_option if `device` has no known form.
+  [[nodiscard]] static result<std::unique_ptr<connector>> make(std::string_view device,
+                                                               std::uint32_t baud);
+  ~system_connector() override;
+
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
+  [[nodiscard]] std::int64_t now_ns() const noexcept override;
+  [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override;
+  void wake() noexcept override;
+  void refuse() noexcept override;
+  [[nodiscard]] bool answers() const noexcept override;
+
+ private:
+  /// A device node at the time when another lidar answered there. A replug creates the node again.
+  struct refused_port {
+    std::string path;
+    std::uint64_t node;
+
+    friend bool operator==(const refused_port&, const refused_port&) = default;
+  };
+
+  system_connector(std::string_view device, std::uint32_t baud);
+
+  [[nodiscard]] result<std::unique_ptr<transport>> open_line();
+  [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
+  [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
+  [[nodiscard]] bool may_be_ours(const port_info& port) const noexcept;
+  [[nodiscard]] bool is_refused(const std::string& path) const;
+  void list_candidates();
+
+  std::string device_;
+  std::uint32_t baud_;
+  port_info first_;                    // the port of the first connection
+  std::vector<std::string> paths_;     // to be tried in this round
+  std::string last_path_;              // of the last connection
+  std::vector<refused_port> refused_;  // ports of other lidars
+  int wake_;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "driver.hpp"
+
+#include <utility>
+
+#include "live_driver.hpp"
+#include "replay_player.hpp"
+
+namespace g4lidar {
+namespace {
+
+std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& options) {
+  if (parts.line.from().answers()) return std::make_unique<live_driver>(parts, options);
+  return std::make_unique<replay_player>(parts, options);
+}
+
+}  // namespace
+
+lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options)
+    : parts_{connection(std::move(from), options.device),
+             point_pipeline(options.transport_delay.count(), options.partial_scans),
+             {}},
+      feeder_(make_feeder(parts_, options)),
+      reader_(parts_.pipeline.ring().make_reader()),
+      points_(8192) {}
+
+lidar::driver::~driver() { static_cast<void>(close()); }
+
+result<void> lidar::driver::close() {
+  result<void> stopped;
+  while (feeder_->has_motor_on()) {
+    stopped = stop();
+    if (stopped || stopped.error() != problem::cancelled) break;
+  }
+  release();
+  return stopped;
+}
+
+void lidar::driver::release() noexcept {
+  feeder_->release();
+  while (true) {
+    const ring_read left = reader_.read(points_);
+    if (hands_points_over_) points_missed_ += left.missed + left.points;
+    if (left.points == 0) return;
+  }
+}
+
+result<scan> lidar::driver::next_scan(std::int64_t timeout_ns) {
+  point_pipeline& pipeline = parts_.pipeline;
+  if (!pipeline.has_scan()) {
+    if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
+  }
+  const std::int64_t deadline_ns = feeder_->deadline_after_ns(timeout_ns);
+  bool last = false;
+  while (!pipeline.has_scan()) {
+    if (last) return failure(task::reading, problem::timeout, name());
+    if (auto done = feeder_->step(deadline_ns); !done) return tl::unexpected(done.error());
+    last = is_over(deadline_ns);
+  }
+  return pipeline.take_scan();
+}
+
+/// Available points are returned before any error.
+result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_ns) {
+  hands_points_over_ = true;
+  feeder_->take_points();
+  const std::int64_t deadline_ns = feeder_->deadline_after_ns(timeout_ns);
+  bool last = false;
+  while (true) {
+    const ring_read read = reader_.read(points_);
+    points_missed_ += read.missed;
+    if (read.points > 0) return std::span<const point>(points_).first(read.points);
+    if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
+    if (last) return failure(task::reading, problem::timeout, name());
+    parts_.pipeline.drop_scan();
+    if (auto done = feeder_->step(deadline_ns); !done) return tl::unexpected(done.error());
+    last = is_over(deadline_ns);
+  }
+}
+
+result<void> lidar::driver::process() {
+  parts_.pipeline.drop_scan();
+  return feeder_->step(parts_.line.now_ns());
+}
+
+lidar_counts lidar::driver::counts() const noexcept {
+  lidar_counts all = parts_.pipeline.counts();
+  all.points_missed = points_missed_;
+  feeder_->add_to(all);
+  return all;
+}
+
+}  // namespace g4lidar

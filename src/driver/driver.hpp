@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The implementation of a lidar: its parts, and the calls that return their results.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "feeder.hpp"
+#include "g4lidar/lidar.hpp"
+
+namespace g4lidar {
+
+/// *Single thread* except wake(). The calls are loops over the steps of the feeder.
+class G4LIDAR_HIDDEN lidar::driver {
+ public:
+  driver(std::unique_ptr<connector> from, const lidar_options& options);
+  driver(const driver&) = delete;
+  driver& operator=(const driver&) = delete;
+  ~driver();
+
+  result<void> open() { return feeder_->open(); }
+  result<void> start() { return feeder_->start(); }
+  result<void> stop() { return feeder_->stop(); }
+  result<void> close();
+  void release() noexcept;
+  result<answer> ask(const request& wanted, while_scanning how) {
+    return feeder_->ask(wanted, how);
+  }
+  result<scan> next_scan(std::int64_t timeout_ns);
+  result<std::span<const point>> next_points(std::int64_t timeout_ns);
+  result<void> process();
+  void wake() noexcept { parts_.line.wake(); }
+
+  [[nodiscard]] int native_handle() const noexcept { return parts_.line.native_handle(); }
+  /// Whoever asks this waits for no bytes while none are needed.
+  [[nodiscard]] std::int64_t next_deadline_ns() noexcept {
+    const std::int64_t due_ns = feeder_->next_deadline_ns();
+    const std::int64_t rest_ns = feeder_->rest_until_ns();
+    const bool rests = rest_ns > parts_.line.now_ns();
+    parts_.line.rest(rests);
+    return rests ? std::min(due_ns, rest_ns) : due_ns;
+  }
+  [[nodiscard]] const device_information& information() const noexcept {
+    return feeder_->information();
+  }
+  [[nodiscard]] std::string_view name() const noexcept { return parts_.line.name(); }
+  [[nodiscard]] bool is_scanning() const noexcept { return feeder_->is_scanning(); }
+  [[nodiscard]] lidar_counts counts() const noexcept;
+  [[nodiscard]] std::optional<lidar_event> next_event() noexcept { return parts_.events.take(); }
+  [[nodiscard]] lidar_ring& points() noexcept {
+    feeder_->take_points();
+    return parts_.pipeline.ring();
+  }
+
+ private:
+  [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
+    return parts_.line.now_ns() >= deadline_ns && parts_.pipeline.is_empty();
+  }
+
+  feeder::parts parts_;
+  std::unique_ptr<feeder> feeder_;
+  lidar_ring::reader reader_;
+  std::vector<point> points_;
+  bool hands_points_over_ = false;  // by next_points()
+  std::uint64_t points_missed_ = 0;
+};
+
+}  // namespace g4lidar

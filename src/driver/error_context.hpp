@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The subject of an error, composed without the heap: the transport, the command, the numbers.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "g4lidar/core/request.hpp"
+
+namespace g4lidar {
+
+/// As much of the text as an error can hold. *Never allocates.*
+class error_context {
+ public:
+  explicit error_context(std::string_view begin) noexcept { add(begin); }
+
+  error_context& add(std::string_view text) noexcept {
+    const std::size_t count = std::min(text.size(), text_.size() - size_);
+    std::copy_n(text.begin(), count, text_.begin() + size_);
+    size_ += count;
+    return *this;
+  }
+  error_context& add(std::uint32_t number) noexcept {
+    std::array<char, 10> digits{};
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    return add({digits.data(), static_cast<std::size_t>(end - digits.data())});
+  }
+  /// "12 Hz", "7.5 Hz", "7.03 Hz".
+  error_context& add(scan_frequency frequency) noexcept {
+    add(std::uint32_t{frequency.chz} / 100U);
+    const std::uint32_t rest = frequency.chz % 100U;
+    if (rest != 0) add(rest < 10 ? ".0" : ".").add(rest % 10 == 0 ? rest / 10 : rest);
+    return add(" Hz");
+  }
+  /// "scan frequency 12 Hz", "health". Empty if the task is sufficient: start, stop.
+  error_context& add(const request& wanted) noexcept;
+
+  // NOLINTNEXTLINE(google-explicit-constructor): it is a text.
+  operator std::string_view() const noexcept { return {text_.data(), size_}; }
+
+ private:
+  std::array<char, 95> text_{};
+  std::size_t size_ = 0;
+};
+
+}  // namespace g4lidar

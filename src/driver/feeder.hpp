@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The source of the bytes of a lidar: a live device or a recording.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "connection.hpp"
+#include "event_queue.hpp"
+#include "g4lidar/core/session.hpp"
+#include "g4lidar/detail/recorded_event.hpp"
+#include "point_pipeline.hpp"
+#include "receiver.hpp"
+
+namespace g4lidar {
+
+/// *Single thread.* The pipeline, the connection and the events must outlive it.
+class feeder {
+ public:
+  /// The parts that it works on.
+  struct parts {
+    connection line;
+    point_pipeline pipeline;
+    event_queue events;
+  };
+
+  feeder(parts& of, const lidar_options& options) noexcept
+      : connection_(of.line),
+        pipeline_(of.pipeline),
+        events_(of.events),
+        receiver_(options.batch) {}
+  virtual ~feeder() = default;
+  feeder(const feeder&) = delete;
+  feeder& operator=(const feeder&) = delete;
+
+  [[nodiscard]] virtual result<void> open() = 0;
+  [[nodiscard]] virtual result<void> start() = 0;
+  [[nodiscard]] virtual result<void> stop() = 0;
+  [[nodiscard]] virtual result<answer> ask(const request& wanted, while_scanning how) = 0;
+  /// From now on each packet is wanted when it is complete, not only whole scans. *Any thread.*
+  void take_points() noexcept { takes_points_.store(true, std::memory_order_relaxed); }
+  /// Releases the connection, and leaves the device as it is.
+  virtual void release() noexcept = 0;
+
+  /// Does everything that is due, and waits for bytes until the deadline at most once. Stops at a
+  /// scan. A woken call has made progress, so that calls that are woken repeatedly complete. If
+  /// this returns an error that ends the scan, all scans and points were delivered before.
+  [[nodiscard]] result<void> step(std::int64_t deadline_ns) {
+    auto done = advance(connection_.is_woken() ? connection_.now_ns() : deadline_ns);
+    if (done && connection_.take_wake()) {
+      return failure(task::reading, problem::cancelled, connection_.name());
+    }
+    return done;
+  }
+
+  /// Why nothing can be read, if so.
+  [[nodiscard]] virtual result<void> can_read() const noexcept = 0;
+  /// Whether a scan is running or being set up.
+  [[nodiscard]] virtual bool has_motor_on() const noexcept = 0;
+  [[nodiscard]] virtual bool is_scanning() const noexcept = 0;
+  [[nodiscard]] virtual std::int64_t next_deadline_ns() const noexcept = 0;
+  /// The time until which bytes need not be read; may be in the past.
+  [[nodiscard]] virtual std::int64_t rest_until_ns() const noexcept { return 0; }
+  /// The end of a call that waits for this time.
+  [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept = 0;
+  [[nodiscard]] const device_information& information() const noexcept { return information_; }
+  /// Adds the counts that do not belong to the pipeline.
+  virtual void add_to(lidar_counts& counts) const noexcept = 0;
+
+ protected:
+  [[nodiscard]] virtual result<void> advance(std::int64_t deadline_ns) = 0;
+
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return connection_.now_ns(); }
+  void tell(lidar_event::kind what, problem reason = problem::timeout) noexcept {
+    events_.put({what, reason, now_ns()});
+  }
+
+  connection& connection_;
+  point_pipeline& pipeline_;
+  event_queue& events_;
+  std::atomic<bool> takes_points_ = false;
+  receiver receiver_;
+  device_information information_{};
+  std::uint32_t samples_per_second_ = 9000;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// The driver of a live device: connects, sets up, reads, and reconnects after a loss.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "feeder.hpp"
+#include "setup_sequence.hpp"
+
+namespace g4lidar {
+
+/// The state machine of a live device. *Single thread.*
+///
+///     stage        action                                next stage
+///     -----------  ------------------------------------  --------------------------------------------
+///     closed       none                                  -
+///     lost         connects again, with growing pauses   identifying
+///     identifying  queries the identity                  idle; preparing, if it was scanning before;
+///                                                        lost, if it is another device
+///     idle         the requests of the caller            preparing, by start()
+///     preparing    health, settings, start               scanning
+///     scanning     reads                                 idle, by stop(); preparing, if the device
+///                                                        seems to have rebooted
+///     breaking     decodes the received bytes            broken
+///     broken       waits until the last scan is taken    lost; closed, if reconnecting is off
+///
+/// A connection that breaks in the stage identifying leads to lost or closed, in a later stage to breaking.
+class live_driver final : public feeder {
+ public:
+  live_driver(parts& of, const lidar_options& options);
+
+  [[nodiscard]] result<void> open() override;
+  [[nodiscard]] result<void> start() override;
+  [[nodiscard]] result<void> stop() override;
+  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
+  void release() noexcept override;
+
+  [[nodiscard]] result<void> can_read() const noexcept override;
+  [[nodiscard]] bool has_motor_on() const noexcept override {
+    return stage_ == stage::scanning || stage_ == stage::preparing;
+  }
+  [[nodiscard]] bool is_scanning() const noexcept override {
+    return stage_ == stage::scanning && goal_ == goal::scanning;  // otherwise a stop was woken
+  }
+  [[nodiscard]] std::int64_t next_deadline_ns() const noexcept override;
+  [[nodiscard]] std::int64_t rest_until_ns() const noexcept override;
+  [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override;
+  void add_to(lidar_counts& counts) const noexcept override;
+
+ private:
+  enum class stage : std::uint8_t {
+    closed,
+    lost,
+    identifying,
+    idle,
+    preparing,
+    scanning,
+    breaking,
+    broken
+  };
+  /// The state that the caller wants.
+  enum class goal : std::uint8_t {
+    idle,
+    stopping,  ///< A stop was added to the setup sequence, and may have been woken.
+    scanning,
+  };
+  /// Why the setup sequence runs.
+  enum class setup_cause : std::uint8_t {
+    caller,
+    restarted,  ///< The device may have lost its settings.
+  };
+  /// The search for a lost lidar.
+  struct reconnection {
+    std::int64_t next_attempt_ns = 0;
+    std::int64_t backoff_ns = 0;
+    std::uint64_t count = 0;
+    bool is_under_way = false;  ///< Connected again, but the previous state is not restored yet.
+    /// The number of another lidar that answered instead of the lost one: it is reported once.
+    std::optional<decltype(device_information::serial_digits)> refused_lidar{};
+  };
+
+  [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
+
+  // The connection.
+  [[nodiscard]] result<void> connect();
+  [[nodiscard]] result<void> wait_for_return(std::int64_t deadline_ns);
+  [[nodiscard]] result<void> break_off(const error& broken);
+  [[nodiscard]] result<void> hang_up();
+  void leave_stopped(const error& why) noexcept;
+  void flush();
+  [[nodiscard]] error unavailable() const;
+
+  // One round.
+  [[nodiscard]] result<void> round(std::int64_t deadline_ns);
+  [[nodiscard]] result<void> serve();
+  [[nodiscard]] result<void> send_commands();
+  [[nodiscard]] result<void> look_if_due();
+  [[nodiscard]] result<void> take_notice();
+  [[nodiscard]] result<void> receive(std::int64_t deadline_ns);
+  [[nodiscard]] bool digest();
+  void follow_delivery();
+  void begin_points();
+  void cut();
+  void record(recorded_event::kind what);
+  [[nodiscard]] reading how_to_read() const noexcept;
+  [[nodiscard]] bool is_frame_silent() const noexcept;
+  [[nodiscard]] bool is_waiting_for_answer() const noexcept {
+    return session_.is_busy() || !session_.is_scanning();
+  }
+
+  // The setup sequence.
+  void add_step(setup_step step);
+  void add_start();
+  [[nodiscard]] bool set_up_again();
+  [[nodiscard]] result<void> run_setup();
+  [[nodiscard]] result<void> go_on_with_setup();
+  [[nodiscard]] result<void> finish_step(const outcome& done);
+  [[nodiscard]] result<void> identified(const device_information& who);
+  [[nodiscard]] result<void> give_up(const error& why);
+  [[nodiscard]] result<void> begin_question(const request& wanted, while_scanning how);
+  void learn_rate(const outcome& done);
+  void remember(const outcome& done);
+  void restore_settings(const outcome& done);
+  void started();
+  void back_again();
+  [[nodiscard]] task task_of(const request& asked) const noexcept;
+  [[nodiscard]] error error_of(const outcome& done) const;
+  [[nodiscard]] error fallen_silent() const;
+  [[nodiscard]] error spoilt(const error& why) const;
+
+  lidar_options options_;
+  session session_;
+  setup_sequence setup_;
+  stage stage_ = stage::closed;
+  goal goal_ = goal::idle;
+  setup_cause cause_ = setup_cause::caller;
+  bool is_known_ = false;      // its identity is known
+  bool has_streamed_ = false;  // a whole revolution was complete since the start
+  bool has_outcome_ = false;   // an outcome was taken in this round
+  reconnection reconnection_;
+  int set_ups_ = 0;                           // consecutive setups of scans that ended early
+  error lost_{task::reading, problem::gone};  // why it is lost or closed
+  std::optional<error> refused_;  // why a setup ended, although the connection works; see advance()
+  std::optional<outcome>* asked_ = nullptr;  // of the waiting ask()
+  std::optional<request> woken_question_;    // of an ask() that was woken and continues
+};
+
+}  // namespace g4lidar

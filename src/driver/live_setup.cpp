@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// The setup of a live device: when each step is sent, and the effects of the answers.
+#include <utility>
+
+#include "error_context.hpp"
+#include "live_driver.hpp"
+
+namespace g4lidar {
+namespace {
+
+/// The limit of consecutive setups of a device whose scans are shorter than this, or that sends no
+/// packet.
+constexpr int max_set_ups = 3;
+constexpr int max_silent_set_ups = 1;
+constexpr std::int64_t long_scan_ns = 6'000'000'000;
+
+}  // namespace
+
+void live_driver::add_step(setup_step step) {
+  woken_question_.reset();
+  setup_.add(step);
+}
+
+void live_driver::add_start() {
+  stage_ = stage::preparing;
+  woken_question_.reset();
+  setup_.add_start(options_);
+}
+
+/// The device ended a scan by itself. If it rebooted, it has lost its settings. Returns false if
+/// this happens repeatedly.
+bool live_driver::set_up_again() {
+  const std::int64_t length_ns = session_.scan_length_ns();
+  const bool is_short = length_ns < long_scan_ns;
+  if (is_short && set_ups_ >= (length_ns > 0 ? max_set_ups : max_silent_set_ups)) return false;
+  set_ups_ = is_short ? set_ups_ + 1 : 1;
+  setup_.clear();
+  cause_ = setup_cause::restarted;
+  add_step(setup_step::stop);
+  add_start();
+  return true;
+}
+
+/// Waits until all steps are done, or one fails. It ends, because every request ends. If the caller
+/// calls repeatedly while the device is away, a later call completes after the reconnect.
+result<void> live_driver::run_setup() {
+  if (stage_ == stage::lost) {
+    if (auto tried = step(now_ns()); !tried) return tried;
+  }
+  if (stage_ == stage::closed || stage_ == stage::lost) return tl::unexpected(unavailable());
+  while (stage_ >= stage::breaking || !setup_.is_done() || session_.is_busy()) {
+    // A scan may be complete before the start is done: next_scan() returns it.
+    if (!(stage_ == stage::preparing && session_.is_scanning())) pipeline_.drop_scan();
+    if (auto done = step(never_ns); !done) return done;
+    if (stage_ == stage::lost) return tl::unexpected(unavailable());
+  }
+  return {};
+}
+
+/// Takes the outcome of the last command, and sends the next.
+result<void> live_driver::go_on_with_setup() {
+  while (true) {
+    if (const auto done = session_.finished()) {
+      has_outcome_ = true;
+      learn_rate(*done);
+      if (!setup_.is_done() && asked_ == nullptr) {
+        if (auto good = finish_step(*done); !good) return good;
+      } else {
+        remember(*done);  // for every request, also if its caller no longer waits
+        restore_settings(*done);
+      }
+      if (asked_ != nullptr) *asked_ = done;
+    }
+    if (asked_ != nullptr || setup_.is_done() || session_.is_busy()) return {};
+    if (setup_.next() == setup_step::start) {
+      begin_points();
+      has_streamed_ = has_streamed_ && cause_ == setup_cause::restarted;
+    }
+    const request next = request_of(setup_.next(), options_);
+    const auto refused = session_.begin(next, now_ns());
+    if (refused == refusal::bad_setting) {
+      const error_context about = error_context(connection_.name()).add(next);
+      return give_up({task::configuring, problem::bad_setting, about});
+    }
+    if (refused) return {};  // the session is busy with its own recovery
+    if (session_.is_busy()) return {};
+  }
+}
+
+void live_driver::learn_rate(const outcome& done) {
+  const auto* ranging = std::get_if<ranging_frequency>(&done.value);
+  if (ranging == nullptr || samples_per_second(*ranging) == samples_per_second_) return;
+  samples_per_second_ = samples_per_second(*ranging);
+  if (pipeline_.delivers()) begin_points();
+}
+
+/// A setting of ask() is set again like an option, after a restart immediately.
+void live_driver::remember(const outcome& done) {
+  if (done.how != verdict::answered) return;
+  const auto keep = [&]<class Setting>(std::optional<Setting>& option) {
+    if (const auto* value = std::get_if<Setting>(&done.value)) option = *value;
+  };
+  switch (done.asked.what) {
+    case ask::set_low_power:
+      return keep(options_.idle);
+    case ask::set_direction:
+      return keep(options_.direction);
+    case ask::step_scan_frequency:
+    case ask::set_scan_frequency:
+      return keep(options_.frequency);
+    case ask::set_constant_frequency:
+      return keep(options_.constant);
+    case ask::set_ranging:
+      return keep(options_.ranging);
+    case ask::set_protection:
+      return keep(options_.protection);
+    default:
+      return;
+  }
+}
+
+/// The device was restarted by the caller, or perhaps by itself: its scan was not resumed at once.
+void live_driver::restore_settings(const outcome& done) {
+  const bool is_wanted = done.asked.what == ask::restart;
+  if (goal_ != goal::scanning || (!is_wanted && done.starts <= 1)) return;
+  if (is_wanted) set_ups_ = 0;  // requests of the caller are not limited
+  static_cast<void>(set_up_again());
+}
+
+result<void> live_driver::finish_step(const outcome& done) {
+  const setup_step finished = setup_.next();
+  setup_.finish_next();
+  if (done.how != verdict::answered) {
+    // A device that does not answer a command that every G4 knows is lost.
+    if (!is_needed(finished, options_) && !done.heard_nothing()) return {};
+    return give_up(error_of(done));
+  }
+  if (const auto* said = std::get_if<health>(&done.value)) {
+    if (said->status == health_status::error) {
+      const error_context code = error_context(connection_.name())
+                                     .add(", error code ")
+                                     .add(std::uint32_t{said->error_code});
+      return give_up(error(task::starting, problem::unhealthy, code));
+    }
+    if (said->status == health_status::warning) tell(lidar_event::kind::health_warning);
+  }
+  if (const auto* who = std::get_if<device_information>(&done.value)) return identified(*who);
+  const bool is_start = finished == setup_step::start;
+  if (is_doubtful(finished, done) && setup_.repeat_start(options_, is_start)) return {};
+  if (is_start) started();
+  return {};
+}
+
+/// A device that answers, but cannot be set up, is not lost: only the request fails.
+result<void> live_driver::give_up(const error& why) {
+  setup_.clear();
+  const bool is_again = cause_ == setup_cause::restarted;
+  const bool is_silent = why == problem::silence || why == problem::timeout;
+  if (is_again && is_silent) return tl::unexpected(fallen_silent());
+  const bool of_use = stage_ == stage::preparing && why != problem::silence;
+  const bool goes_on = goal_ == goal::scanning && (reconnection_.is_under_way || is_again);
+  if (!of_use || goes_on) return tl::unexpected(why);
+  stage_ = stage::idle;
+  goal_ = goal::idle;
+  cause_ = setup_cause::caller;
+  refused_ = why;
+  return {};
+}
+
+result<void> live_driver::identified(const device_information& who) {
+  if (who.model != model_g4) {
+    const error_context model =
+        error_context(connection_.name()).add(", model ").add(std::uint32_t{who.model});
+    return failure(task::opening, problem::other_device, model);
+  }
+  if (is_known_ && who.serial_digits != information_.serial_digits) {
+    connection_.from().refuse();  // the wanted lidar may be behind another port
+    if (reconnection_.refused_lidar != who.serial_digits) tell(lidar_event::kind::other_lidar);
+    reconnection_.refused_lidar = who.serial_digits;
+    return failure(task::finding, problem::no_port, connection_.name());
+  }
+  reconnection_.is_under_way = std::exchange(is_known_, true);
+  information_ = who;
+  stage_ = stage::idle;
+  if (goal_ == goal::scanning) {
+    add_start();
+  } else if (reconnection_.is_under_way) {
+    back_again();
+  }
+  return {};
+}
+
+void live_driver::started() {
+  stage_ = stage::scanning;
+  cause_ = setup_cause::caller;
+  if (reconnection_.is_under_way) back_again();
+}
+
+void live_driver::back_again() {
+  reconnection_.refused_lidar.reset();
+  reconnection_.is_under_way = false;
+  reconnection_.backoff_ns = 0;
+  ++reconnection_.count;
+  tell(lidar_event::kind::reconnected);
+}
+
+/// A device that has ended a scan and does not continue.
+error live_driver::fallen_silent() const {
+  if (has_streamed_) return {task::reading, problem::stalled, connection_.name()};
+  return {task::starting, problem::brown_out, connection_.name()};
+}
+
+task live_driver::task_of(const request& asked) const noexcept {
+  if (asked.what == ask::start) return task::starting;
+  if (asked.what == ask::stop) return task::stopping;
+  if (stage_ == stage::identifying) return task::opening;
+  if (stage_ != stage::preparing) return task::asking;
+  return asked.what == ask::health ? task::starting : task::configuring;
+}
+
+error live_driver::error_of(const outcome& done) const {
+  const task doing = task_of(done.asked);
+  error_context about(connection_.name());
+  if (stage_ != stage::identifying) about.add(done.asked);
+  if (done.how == verdict::not_reached) {
+    if (const auto* reached = std::get_if<scan_frequency>(&done.value)) {
+      about.add(" (reached ").add(*reached).add(")");
+    }
+    return {doing, problem::not_reached, about};
+  }
+  if (done.how == verdict::still_scanning) return spoilt({doing, problem::does_not_stop, about});
+  const bool is_setting_up = stage_ == stage::identifying || stage_ == stage::preparing;
+  if (done.heard_nothing() && is_setting_up) return spoilt({doing, problem::silence, about});
+  if (done.heard_noise_only()) return spoilt({doing, problem::garbage, about});
+  return spoilt({doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about});
+}
+
+}  // namespace g4lidar

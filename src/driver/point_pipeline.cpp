@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "point_pipeline.hpp"
+
+#include <variant>
+
+namespace g4lidar {
+
+const event* point_pipeline::next() noexcept {
+  if (is_ending_frame_) {
+    event_ = parser_.finish();
+    is_ending_frame_ = event_.has_value();
+  } else {
+    const std::size_t before = input_.size();
+    event_ = parser_.next(input_);
+    counts_.bytes += before - input_.size();
+    if (!event_ && before > 0 && delivers_) decoder_.seen(parser_.held(), arrival_ns_);
+  }
+  if (!event_) return nullptr;
+  stream_counts_.add(*event_);
+  return &*event_;
+}
+
+bool point_pipeline::find_scan() noexcept {
+  while (!scan_) {
+    if (is_open_) {
+      const auto found = assembler_.next(open_);
+      is_open_ = found.has_value();
+      if (found) keep(*found);
+    } else if (event_) {
+      ++events_of_reading_;
+      const auto* const packet = std::get_if<packet_view>(&*event_);
+      if (delivers_ && packet != nullptr) add(*packet);
+      if (const auto* const gone = std::get_if<skipped>(&*event_); delivers_ && gone != nullptr) {
+        assembler_.add(*gone);
+        decoder_.gone(*gone);
+      }
+      event_.reset();
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Decodes the packet into the storage of the scan, where its points stay.
+void point_pipeline::add(packet_view packet) noexcept {
+  const std::span<point> room = assembler_.room();
+  const bool fits = room.size() >= max_samples;
+  bool lost = false;
+  open_ = decoder_.decode(packet, arrival_ns_, input_.size(),
+                          fits ? room.first<max_samples>() : std::span(spare_), lost);
+  ring_->push(open_.points);
+  if (lost) assembler_.lost();  // whole packets are missing, so no bytes were skipped
+  is_open_ = true;
+}
+
+/// Counts a scan, and keeps it if the caller wants it: revolutions, also with lost points, and
+/// pieces according to the options.
+void point_pipeline::keep(const scan& found) noexcept {
+  ++(found.is_piece() ? counts_.partial_scans : counts_.scans);
+  if (found.is_piece() && !partial_scans_) return;
+  drop_scan();
+  scan_ = found;
+}
+
+void point_pipeline::begin(std::uint32_t samples_per_second) noexcept {
+  end();
+  scans_at_begin_ = counts_.scans;
+  decoder_.begin(samples_per_second);
+  assembler_.set_sample_rate(samples_per_second);
+}
+
+void point_pipeline::end() noexcept {
+  if (const auto rest = assembler_.finish()) keep(*rest);
+}
+
+lidar_counts point_pipeline::counts() const noexcept {
+  lidar_counts all = counts_;
+  all.stream = stream_counts_;
+  all.stream.points = ring_->written();  // the packets of a device that is being stopped make none
+  all.held = parser_.held();
+  all.samples_lost = decoder_.samples_lost();
+  all.largest_gap_ns = decoder_.largest_gap_ns();
+  return all;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// From bytes to points in a ring and revolutions, whether the bytes are live or recorded.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "g4lidar/core/scan_assembler.hpp"
+#include "g4lidar/core/sensor_clock.hpp"
+#include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/lidar.hpp"
+#include "timed_decoder.hpp"
+
+namespace g4lidar {
+
+/// *Single thread, allocates on open.* The bytes of one read are fed at a time. Then, until nothing
+/// is left:
+///
+///     find_scan()   decodes the last event, if points are wanted; stops at a scan
+///     next()        the next event; the caller handles it before the next find_scan()
+///
+/// So a scan is delivered before the following bytes are parsed, and nothing here calls back.
+class point_pipeline {
+ public:
+  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans)
+      : partial_scans_(partial_scans),
+        decoder_(transport_delay_ns),
+        storage_(largest_scan),
+        assembler_(storage_) {}
+
+  // ---- bytes ----
+
+  /// The bytes of one read; valid until they are parsed. Only if is_empty().
+  void feed(bytes reading, std::int64_t arrival_ns) noexcept {
+    input_ = reading;
+    arrival_ns_ = arrival_ns;
+    events_of_reading_ = 0;
+  }
+  /// No more bytes follow: the unparsed bytes are discarded, and the next calls of next() parse the
+  /// held frame again.
+  void cut() noexcept {
+    input_ = {};
+    is_ending_frame_ = true;
+  }
+  /// Whether everything that was fed has been processed.
+  [[nodiscard]] bool is_empty() const noexcept {
+    return input_.empty() && !is_ending_frame_ && !event_ && !has_scans();
+  }
+
+  // ---- events ----
+
+  /// The next event, or nothing; valid until the next call. Only after find_scan() has returned
+  /// false.
+  [[nodiscard]] const event* next() noexcept;
+
+  /// Whether packets produce points from here on, including the packet of the last event.
+  void deliver(bool wanted) noexcept { delivers_ = wanted; }
+  [[nodiscard]] bool delivers() const noexcept { return delivers_; }
+  /// A new stream of points begins, including those of the last event. The unfinished revolution
+  /// becomes a piece.
+  void begin(std::uint32_t samples_per_second) noexcept;
+  /// The stream of points has ended: the unfinished revolution becomes a piece.
+  void end() noexcept;
+  /// The following bytes are from another transport; see transport::baud(). Before begin().
+  void follow(std::uint32_t baud) noexcept { decoder_.follow(baud); }
+
+  // ---- scans ----
+
+  /// Whether there is a scan. It must be taken or dropped before other calls.
+  [[nodiscard]] bool find_scan() noexcept;
+  [[nodiscard]] bool has_scan() const noexcept { return scan_.has_value(); }
+  /// Valid until the next call of find_scan(), begin() or end().
+  [[nodiscard]] scan take_scan() noexcept {
+    const scan found = scan_.value_or(scan{});
+    scan_.reset();
+    return found;
+  }
+  /// It is counted as missed.
+  void drop_scan() noexcept {
+    if (scan_) ++counts_.scans_missed;
+    scan_.reset();
+  }
+
+  // ---- position ----
+
+  [[nodiscard]] bytes unparsed() const noexcept { return input_; }
+  [[nodiscard]] std::uint32_t events_of_reading() const noexcept { return events_of_reading_; }
+  [[nodiscard]] std::int64_t arrival_ns() const noexcept { return arrival_ns_; }
+  [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
+  [[nodiscard]] std::size_t missing() const noexcept { return parser_.missing(); }
+  /// Whether a whole revolution was complete since begin().
+  [[nodiscard]] bool has_begun() const noexcept { return counts_.scans > scans_at_begin_; }
+  /// The time from one sample to the next, as far as it is known.
+  [[nodiscard]] double period_ns() const noexcept { return decoder_.period_ns(); }
+  /// When the first sample of the next packet, or of the last event, was measured, if none was lost.
+  [[nodiscard]] std::int64_t next_sample_ns() const noexcept { return decoder_.next_sample_ns(); }
+  [[nodiscard]] lidar_ring& ring() noexcept { return *ring_; }
+  /// All counts except those of the caller.
+  [[nodiscard]] lidar_counts counts() const noexcept;
+
+ private:
+  /// 9 kHz at 5 Hz make 1,800 points; a motor that spins up makes more per turn.
+  static constexpr std::size_t largest_scan = 8192;
+
+  void add(packet_view packet) noexcept;
+  [[nodiscard]] bool has_scans() const noexcept { return scan_ || is_open_; }
+  void keep(const scan& found) noexcept;
+
+  bool partial_scans_;
+  bool delivers_ = false;
+  bool is_ending_frame_ = false;
+  bool is_open_ = false;  // the last packet may complete more scans
+  stream_parser parser_;
+  bytes input_;
+  std::int64_t arrival_ns_ = 0;
+  std::optional<event> event_;  // found, and not decoded yet
+  std::uint32_t events_of_reading_ = 0;
+  timed_decoder decoder_;
+  std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
+  std::vector<point> storage_;
+  scan_assembler assembler_;
+  std::array<point, max_samples> spare_{};  // used where the storage ends
+  decoded open_{};
+  std::optional<scan> scan_;
+  lidar_counts counts_;
+  stream_counter stream_counts_;
+  std::uint64_t scans_at_begin_ = 0;
+};
+
+}  // namespace g4lidar

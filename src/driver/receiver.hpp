@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Reads a transport when a read is worth its system calls.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <vector>
+
+#include "g4lidar/transport/transport.hpp"
+#include "read_schedule.hpp"
+
+namespace g4lidar {
+
+/// What a read waits for.
+enum class reading : std::uint8_t {
+  at_once,  ///< Any byte.
+  paced,    ///< When the next packet can be complete.
+  scans,    ///< When the revolution can be complete.
+  batched,  ///< The interval that the caller has chosen.
+};
+
+/// *Single thread.* *Allocates on open.*
+class receiver {
+ public:
+  explicit receiver(std::chrono::nanoseconds batch) : batch_ns_(batch.count()), buffer_(65536) {}
+
+  /// Another transport follows. `baud` 0: bytes take no time. See read_schedule.
+  void reset(std::uint32_t baud, std::size_t kept, std::int64_t now_ns) noexcept {
+    pace_.reset(baud, kept);
+    last_bytes_ns_ = read_until_ns_ = now_ns;
+  }
+
+  /// One read, which waits until bytes arrive or the deadline. The result is valid until the next
+  /// read. `held` bytes of a frame have arrived, and at least `missing` have not.
+  [[nodiscard]] result<received> receive(transport& from, reading how, std::size_t held,
+                                         std::size_t missing, std::int64_t deadline_ns) noexcept {
+    auto got = read(from, how, again_ns(how, held, missing), deadline_ns);
+    // A program that is woken before each call must make progress, too: available bytes are read.
+    if (is_woken(got)) got = from.read(buffer_, at_once);
+    if (is_woken(got)) return received{};
+    if (!got) return got;
+    read_until_ns_ = got->count == 0 ? from.now_ns() : got->arrival_ns;
+    if (got->count == 0) return got;
+    last_bytes_ns_ = got->arrival_ns;
+    pace_.came(got->count, got->arrival_ns);
+    return got;
+  }
+  /// The bytes of the last read.
+  [[nodiscard]] bytes buffer(std::size_t count) const noexcept {
+    return bytes(buffer_).first(count);
+  }
+
+  /// A packet was complete; see read_schedule.
+  void packet(packet_view found, std::size_t behind, std::int64_t measured_ns,
+              double period_ns) noexcept {
+    pace_.packet(found, behind, measured_ns, period_ns);
+  }
+  [[nodiscard]] bool is_batched() const noexcept { return batch_ns_ > 0; }
+  [[nodiscard]] std::int64_t last_bytes_ns() const noexcept { return last_bytes_ns_; }
+  /// Bytes that arrived by this time have been read.
+  [[nodiscard]] std::int64_t read_until_ns() const noexcept { return read_until_ns_; }
+
+  /// When a reading is worth its system calls; what comes before that is not waited for.
+  [[nodiscard]] std::int64_t again_ns(reading how, std::size_t held,
+                                      std::size_t missing) const noexcept {
+    if (how == reading::batched) return read_until_ns_ + batch_ns_;
+    if (how == reading::at_once) return 0;
+    return pace_.next_ns(held, missing, how == reading::scans ? demand::scans : demand::points);
+  }
+
+ private:
+  static constexpr std::int64_t at_once = 0;  // a deadline that has passed
+
+  [[nodiscard]] static bool is_woken(const result<received>& got) noexcept {
+    return !got && got.error() == problem::cancelled;
+  }
+  /// Waits until a read is worth it, then for bytes. After a wait they have usually arrived; a poll
+  /// first would be an additional call.
+  [[nodiscard]] result<received> read(transport& from, reading how, std::int64_t again_ns,
+                                      std::int64_t deadline_ns) noexcept {
+    const std::int64_t until = std::min(again_ns, deadline_ns);
+    const bool is_batched = how == reading::batched;
+    if (until > from.now_ns()) {
+      const auto paused = from.pause(until);
+      const bool woken = !paused && paused.error() == problem::cancelled;
+      if (paused || woken) {  // a transport that broke is read to its end, like any other
+        const auto got = from.read(buffer_, at_once);
+        if (woken || is_batched || until == deadline_ns || !got || got->count > 0) return got;
+        if (how == reading::paced) pace_.in_vain();
+      }
+    }
+    return from.read(buffer_, is_batched ? at_once : deadline_ns);
+  }
+
+  std::int64_t batch_ns_;
+  std::vector<std::uint8_t> buffer_;
+  read_schedule pace_;
+  std::int64_t last_bytes_ns_ = 0;
+  std::int64_t read_until_ns_ = 0;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// The connection of a live device: opened, lost, and opened again.
+#include <algorithm>
+#include <utility>
+
+#include "error_context.hpp"
+#include "live_driver.hpp"
+#include "port_conflict.hpp"
+
+namespace g4lidar {
+namespace {
+
+/// The first pause between attempts; the first attempt is immediate.
+constexpr std::int64_t first_pause_ns = 20'000'000;
+
+}  // namespace
+
+result<void> live_driver::connect() {
+  if (auto opened = connection_.open(); !opened) return opened;
+  session_.reset();
+  if (goal_ == goal::stopping) goal_ = goal::idle;
+  const transport& on = connection_.on();
+  receiver_.reset(on.baud(), on.kept_bytes(), now_ns());
+  pipeline_.follow(connection_.on().baud());
+  setup_.clear();
+  set_ups_ = 0;  // the session has forgotten the scans before, too
+  stage_ = stage::identifying;
+  record(recorded_event::kind::held);
+  add_step(setup_step::identify);
+  return {};
+}
+
+result<void> live_driver::wait_for_return(std::int64_t deadline_ns) {
+  if (now_ns() < reconnection_.next_attempt_ns) {
+    connection_.pause(std::min(deadline_ns, reconnection_.next_attempt_ns));
+    if (now_ns() < reconnection_.next_attempt_ns) return {};
+  }
+  auto connected = connect();
+  if (connected) connected = serve();
+  return connected ? connected : break_off(connected.error());
+}
+
+/// The connection has broken, or is of no use. The bytes received so far are still processed.
+result<void> live_driver::break_off(const error& broken) {
+  lost_ = spoilt(broken);
+  if (stage_ <= stage::identifying) return hang_up();
+  leave_stopped(lost_);
+  cut();
+  stage_ = stage::breaking;
+  return {};
+}
+
+/// The device will not be controlled any more. It may receive this stop, even if nothing is
+/// received from it.
+void live_driver::leave_stopped(const error& why) noexcept {
+  if (why == problem::gone) return;
+  for (const command each : {command::forced_stop, command::stop}) {
+    if (!connection_.send(encode(each))) return;
+  }
+}
+
+/// Returns an error if waiting calls must know of it: not for a failed attempt to reconnect.
+result<void> live_driver::hang_up() {
+  const bool was_up = stage_ == stage::broken;
+  if (!was_up) flush();
+  connection_.close();
+  setup_.clear();
+  cause_ = setup_cause::caller;
+  if (was_up) {
+    tell(lidar_event::kind::lost, lost_.code());
+    reconnection_.backoff_ns = 0;
+  }
+  if (!options_.reconnect || !is_known_) {
+    stage_ = stage::closed;
+    return tl::unexpected(lost_);
+  }
+  stage_ = stage::lost;
+  std::int64_t& backoff_ns = reconnection_.backoff_ns;
+  reconnection_.next_attempt_ns = now_ns() + backoff_ns;
+  const auto longest = std::chrono::nanoseconds(options_.longest_backoff).count();
+  backoff_ns = std::min(std::max(2 * backoff_ns, first_pause_ns), longest);
+  if (was_up) return tl::unexpected(unavailable());
+  return {};
+}
+
+/// Decodes the received bytes. Scans that are completed here are not taken.
+void live_driver::flush() {
+  if (!connection_.is_open()) return;
+  pipeline_.drop_scan();
+  cut();
+  while (digest()) pipeline_.drop_scan();
+}
+
+/// Why nothing can be sent or read now.
+error live_driver::unavailable() const {
+  if (stage_ == stage::closed) return lost_;
+  const error_context about = error_context(lost_.subject()).add(", ").add(name_of(lost_.code()));
+  return {task::reading, problem::reconnecting, about};
+}
+
+/// Another process on the port explains more than its effects.
+error live_driver::spoilt(const error& why) const {
+  return connection_.is_open() ? with_port_conflict(why, connection_.on()) : why;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+#include "replay_player.hpp"
+
+#include <utility>
+
+#include "core/saturating.hpp"
+#include "error_context.hpp"
+#include "g4lidar/detail/recorded_device.hpp"
+
+namespace g4lidar {
+
+replay_player::replay_player(parts& of, const lidar_options& options) : feeder(of, options) {}
+
+result<void> replay_player::open() {
+  if (auto opened = connection_.open(); !opened) return opened;
+  source_ = connection_.from().recorded_events();
+  receiver_.reset(0, 0, now_ns());
+  pipeline_.follow(connection_.on().baud());
+  stage_ = stage::idle;
+  if (source_ == nullptr) return {};
+  information_ = source_->device().information;
+  if (const auto ranging = source_->device().ranging) {
+    samples_per_second_ = samples_per_second(*ranging);
+  }
+  static_cast<void>(digest());
+  return {};
+}
+
+result<void> replay_player::start() {
+  if (stage_ != stage::idle) return can_read();
+  stage_ = stage::playing;
+  return {};
+}
+
+result<void> replay_player::stop() {
+  if (stage_ == stage::closed) return tl::unexpected(why_);
+  pipeline_.drop_scan();
+  pipeline_.cut();
+  while (digest()) pipeline_.drop_scan();
+  pipeline_.end();
+  if (stage_ == stage::playing) stage_ = stage::idle;
+  return {};
+}
+
+result<answer> replay_player::ask(const request& /*wanted*/, while_scanning /*how*/) {
+  if (stage_ == stage::closed) return tl::unexpected(why_);
+  return failure(task::asking, problem::read_only, connection_.name());
+}
+
+void replay_player::release() noexcept {
+  if (stage_ != stage::closed) static_cast<void>(stop());
+  pipeline_.drop_scan();
+  connection_.close();
+  stage_ = stage::closed;
+  why_ = error(task::reading, problem::gone, "this lidar, which was closed");
+}
+
+result<void> replay_player::can_read() const noexcept {
+  if (stage_ == stage::closed) return tl::unexpected(why_);
+  if (stage_ != stage::idle) return {};
+  return failure(task::reading, problem::not_scanning, connection_.name());
+}
+
+result<void> replay_player::advance(std::int64_t deadline_ns) {
+  switch (stage_) {
+    case stage::closed:
+      return tl::unexpected(why_);
+    case stage::ended:
+      if (pipeline_.has_scan()) return {};
+      connection_.close();
+      stage_ = stage::closed;
+      tell(lidar_event::kind::lost, why_.code());
+      return tl::unexpected(why_);
+    default:
+      break;
+  }
+  follow_delivery();
+  if (digest()) return {};
+  if (stage_ == stage::ending) {
+    pipeline_.end();
+    stage_ = stage::ended;
+    return {};
+  }
+  tell_long_pause();
+  const reading how = receiver_.is_batched() && is_scanning() ? reading::batched : reading::at_once;
+  const auto got =
+      receiver_.receive(connection_.on(), how, pipeline_.held(), pipeline_.missing(), deadline_ns);
+  if (!got) {
+    why_ = got.error();
+    pipeline_.cut();
+    stage_ = stage::ending;
+    return {};
+  }
+  if (got->count == 0) return {};
+  is_pause_told_ = false;
+  pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
+  static_cast<void>(digest());
+  return {};
+}
+
+/// Once per pause.
+void replay_player::tell_long_pause() {
+  constexpr std::int64_t long_pause_ns = 60'000'000'000;
+  if (source_ == nullptr || is_pause_told_ || source_->wait_for_next_ns() < long_pause_ns) return;
+  is_pause_told_ = true;
+  tell(lidar_event::kind::long_pause);
+}
+
+/// Parses until there is a scan (true), or until nothing is left and all recorded actions before
+/// the next read are done.
+bool replay_player::digest() {
+  while (!pipeline_.find_scan()) {
+    static_cast<void>(play_events(false));
+    if (pipeline_.next() != nullptr) {
+      static_cast<void>(play_events(false));
+      follow_delivery();
+    } else if (!play_events(true)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void replay_player::follow_delivery() {
+  const bool ends = stage_ == stage::ending;  // as in the previous call
+  const bool wanted = delivers_ && (is_scanning() || (ends && pipeline_.delivers()));
+  if (wanted == pipeline_.delivers()) return;
+  pipeline_.deliver(wanted);
+  if (wanted) pipeline_.begin(samples_per_second_);
+}
+
+/// Whether the event happened when this much of the read had been processed.
+bool replay_player::is_here(const recorded_event& what) const noexcept {
+  switch (what.what) {
+    case recorded_event::kind::begun:
+    case recorded_event::kind::held:
+    case recorded_event::kind::cut:
+      return pipeline_.unparsed().size() <= what.unparsed &&
+             pipeline_.events_of_reading() >= what.events;
+    case recorded_event::kind::sent:
+    case recorded_event::kind::state:
+      return true;  // the place does not matter
+    case recorded_event::kind::opened:
+    case recorded_event::kind::closed:
+    case recorded_event::kind::gap:
+      break;
+  }
+  return false;  // after the complete read
+}
+
+/// Repeats the recorded action of this place, or all actions before the next read. Where a frame
+/// was cut, the resulting events come first. Returns whether anything was done.
+bool replay_player::play_events(bool all) {
+  bool any = false;
+  while (source_ != nullptr) {
+    if (!event_) event_ = source_->next_event();
+    if (!event_ || (!all && (is_cut_ || !is_here(*event_)))) return any;
+    const auto what = event_->what;
+    const bool ends_here = what == recorded_event::kind::cut;
+    const bool cuts =
+        ends_here || what == recorded_event::kind::closed || what == recorded_event::kind::gap;
+    if (cuts && !std::exchange(is_cut_, true)) {
+      pipeline_.cut();
+      if (ends_here) {
+        is_cut_ = false;
+        event_.reset();
+      }
+      return true;
+    }
+    is_cut_ = false;
+    play(*event_);
+    event_.reset();
+    any = true;
+  }
+  return any;
+}
+
+void replay_player::play(const recorded_event& what) {
+  switch (what.what) {
+    case recorded_event::kind::opened:
+      pipeline_.follow(what.baud);
+      delivers_ = true;  // the driver's first event corrects this
+      if (!std::exchange(is_lost_, false)) return;
+      ++reconnects_;
+      return tell(lidar_event::kind::reconnected);
+    case recorded_event::kind::closed:
+      delivers_ = false;
+      if (what.reason == problem::cancelled) return;
+      is_lost_ = true;
+      return tell(lidar_event::kind::lost, what.reason);
+    case recorded_event::kind::begun:
+      delivers_ = what.delivers;
+      samples_per_second_ = what.samples_per_second;
+      return pipeline_.begin(samples_per_second_);
+    case recorded_event::kind::held:
+      delivers_ = false;
+      return;
+    case recorded_event::kind::gap:
+      return pipeline_.begin(samples_per_second_);
+    case recorded_event::kind::state:
+      return play_state(what);
+    case recorded_event::kind::cut:
+    case recorded_event::kind::sent:
+      return;
+  }
+}
+
+/// Repeated regularly in a recording: usually nothing changes.
+void replay_player::play_state(const recorded_event& what) {
+  pipeline_.follow(what.baud);
+  delivers_ = what.delivers;
+  const std::uint32_t rate = what.samples_per_second;
+  if (rate == 0 || rate == samples_per_second_) return;
+  samples_per_second_ = rate;
+  pipeline_.begin(rate);
+}
+
+/// This depends on the bytes only.
+std::int64_t replay_player::next_deadline_ns() const noexcept {
+  if (stage_ == stage::closed) return never_ns;
+  return stage_ >= stage::ending || !pipeline_.is_empty() ? now_ns() : never_ns;
+}
+
+/// The caller's time, converted with the playback speed.
+std::int64_t replay_player::deadline_after_ns(std::int64_t timeout_ns) const noexcept {
+  if (source_ != nullptr) return source_->deadline_after_ns(timeout_ns);
+  return saturating_add(now_ns(), timeout_ns);
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Plays sources that do not answer: a recording, or a file of bytes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "feeder.hpp"
+
+namespace g4lidar {
+
+/// *Single thread.* The actions of the recorded driver are repeated at the same places, so the same
+/// points result. In a file of bytes every packet produces points.
+class replay_player final : public feeder {
+ public:
+  replay_player(parts& of, const lidar_options& options);
+
+  [[nodiscard]] result<void> open() override;
+  [[nodiscard]] result<void> start() override;
+  [[nodiscard]] result<void> stop() override;
+  [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
+  void release() noexcept override;
+
+  [[nodiscard]] result<void> can_read() const noexcept override;
+  [[nodiscard]] bool has_motor_on() const noexcept override { return false; }
+  [[nodiscard]] bool is_scanning() const noexcept override { return stage_ == stage::playing; }
+  [[nodiscard]] std::int64_t next_deadline_ns() const noexcept override;
+  [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override;
+  void add_to(lidar_counts& counts) const noexcept override { counts.reconnects = reconnects_; }
+
+ private:
+  enum class stage : std::uint8_t {
+    closed,
+    idle,     ///< Reads, and produces no points.
+    playing,  ///< Produces points.
+    ending,   ///< No more bytes; produces the last points.
+    ended,    ///< Waits until the last scan is taken.
+  };
+
+  [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
+  [[nodiscard]] bool digest();
+  void follow_delivery();
+  void tell_long_pause();
+  [[nodiscard]] bool play_events(bool all);
+  [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
+  void play(const recorded_event& what);
+  void play_state(const recorded_event& what);
+
+  recorded_event_source* source_ = nullptr;  // of a recording
+  stage stage_ = stage::closed;
+  error why_{task::reading, problem::gone};  // why it ended
+  std::optional<recorded_event> event_;      // the next one, whose place has not been reached yet
+  bool is_cut_ = false;                      // for this event; the rest of it follows
+  bool delivers_ = true;                     // whether packets produced points in the recording
+  bool is_pause_told_ = false;               // the event long_pause was reported
+  bool is_lost_ = false;                     // the recorded connection was lost
+  std::uint64_t reconnects_ = 0;
+};
+
+}  // namespace g4lidar

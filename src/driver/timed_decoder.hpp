@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// Decodes packets to points with their times.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/bulk_kernels.hpp"
+#include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/sensor_clock.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+
+namespace g4lidar {
+
+/// *Single thread, never allocates.*
+class timed_decoder {
+ public:
+  explicit timed_decoder(std::int64_t transport_delay_ns) noexcept
+      : transport_delay_ns_(transport_delay_ns) {}
+
+  /// The following bytes are from another transport; see transport::baud(). Before begin().
+  void follow(std::uint32_t baud) noexcept {
+    if (baud == baud_) return;  // the clock may continue
+    baud_ = baud;
+    byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
+    clock_ = sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud});
+  }
+  /// A scan begins, or continues after an interruption. `samples_per_second` is nominal.
+  void begin(std::uint32_t samples_per_second) noexcept {
+    clock_.reset(samples_per_second);
+    last_packet_ns_ = 0;
+  }
+
+  /// Writes the points of a packet to the front of `out`. `behind` bytes behind it were read in the
+  /// same read, at `read_ns`. `lost` is set if samples were lost without skipped bytes.
+  [[nodiscard]] decoded decode(packet_view packet, std::int64_t read_ns, std::size_t behind,
+                               std::span<point, max_samples> out, bool& lost) noexcept {
+    const std::int64_t arrival_ns = read_ns - gathered_for_ns(packet, behind);
+    decoded found = without_points(packet, revolutions_.count(packet));
+    const packet_times times = clock_.stamp(found, arrival_ns);
+    if (!found.suspect) {
+      to_points_(packet, found.revolution, times, out);
+      found.points = out.first(packet.sample_count());
+    }
+    samples_lost_ += static_cast<std::uint64_t>(times.lost);
+    lost = times.lost > 0;
+    if (last_packet_ns_ != 0) {
+      largest_gap_ns_ = std::max(largest_gap_ns_, arrival_ns - last_packet_ns_);
+    }
+    last_packet_ns_ = arrival_ns;
+    return found;
+  }
+  /// Bytes were skipped within the scan.
+  void gone(skipped what) noexcept {
+    if (what.reason != skip_reason::noise) clock_.lost(what.count);
+  }
+  /// So many bytes of an unfinished frame have arrived. See sensor_clock::seen().
+  void seen(std::size_t held, std::int64_t arrival_ns) noexcept { clock_.seen(held, arrival_ns); }
+
+  /// The time from one sample to the next, as far as it is known.
+  [[nodiscard]] double period_ns() const noexcept { return 1e9 / clock_.sample_rate_hz(); }
+  /// When the sample after the last one is measured.
+  [[nodiscard]] std::int64_t next_sample_ns() const noexcept { return clock_.next_sample_ns(); }
+  [[nodiscard]] std::uint64_t samples_lost() const noexcept { return samples_lost_; }
+  [[nodiscard]] std::int64_t largest_gap_ns() const noexcept { return largest_gap_ns_; }
+
+ private:
+  /// Bytes that accumulated for longer were not read in time.
+  static constexpr std::int64_t longest_batch_ns = 50'000'000;
+
+  /// The least time for which `behind` bytes accumulated behind a packet. They arrive one after the
+  /// other, and not before their samples are measured: for the first packet nothing else is known.
+  /// Later the clock itself detects a suspended program, because packets become less and less late,
+  /// but not if all packets appear to be nearly in time.
+  [[nodiscard]] std::int64_t gathered_for_ns(packet_view first, std::size_t behind) const noexcept {
+    const auto line_ns = static_cast<std::int64_t>(behind) * byte_ns_;
+    if (last_packet_ns_ != 0) return line_ns > longest_batch_ns ? line_ns / 2 : line_ns;
+    const std::size_t count = std::min<std::size_t>(first.sample_count(), 40);
+    const auto samples =
+        static_cast<double>(behind * count) / static_cast<double>(packet_size(count));
+    return std::max(line_ns, static_cast<std::int64_t>(0.95 * samples * period_ns()));
+  }
+
+  std::int64_t transport_delay_ns_;
+  std::optional<std::uint32_t> baud_;  // of its transport
+  std::int64_t byte_ns_ = 0;           // the time of a byte
+  decltype(bulk::kernels::to_timed_points) to_points_ =
+      bulk::kernels_of(best_instruction_set()).to_timed_points;
+  sensor_clock clock_;
+  revolution_counter revolutions_;
+  std::int64_t last_packet_ns_ = 0;  // since begin()
+  std::int64_t largest_gap_ns_ = 0;
+  std::uint64_t samples_lost_ = 0;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/export/byte_points.hpp"
+
+#include <variant>
+
+#include "g4lidar/core/correction.hpp"
+
+namespace g4lidar {
+namespace {
+
+/// Its times were counted from its samples, so they do not show its duration.
+scan_record record_of(const g4lidar::scan& scan) {
+  scan_record made{.scan = scan};
+  if (!scan.points.empty()) made.time_ns = scan.points.front().time_ns;
+  g4lidar::scan untimed = scan;
+  untimed.duration_ns = 0;
+  made.measured_hz = static_cast<double>(untimed.measured_frequency_hz());
+  return made;
+}
+
+}  // namespace
+
+byte_points::byte_points(point_writer& writer, text_sink& out, std::uint32_t rate_hz)
+    : out_(out),
+      writer_(writer),
+      by_scan_(writer.takes_scans()),
+      clock_(rate_hz),
+      scan_storage_(by_scan_ ? max_scan_points : 1),
+      assembler_(scan_storage_) {
+  assembler_.set_sample_rate(rate_hz);
+}
+
+void byte_points::take(g4lidar::bytes data) {
+  bytes_ += data.size();
+  parser_.feed(data, [this](const event& found) { take(found); });
+}
+
+void byte_points::finish() {
+  while (const auto found = parser_.finish()) take(*found);
+  if (!by_scan_) return;
+  if (const auto scan = assembler_.finish()) {
+    writer_.write_scan(record_of(*scan), out_);
+  }
+}
+
+void byte_points::take(const event& found) {
+  counts_.add(found);
+  if (const auto* packet = std::get_if<packet_view>(&found)) return take(*packet);
+  if (const auto* gone = std::get_if<skipped>(&found)) assembler_.add(*gone);
+}
+
+void byte_points::take(g4lidar::packet_view packet) {
+  if (counts_.packets == 1) writer_.begin(out_);
+  g4lidar::decoded decoded =
+      g4lidar::decode(packet, g4lidar::compact_correction{}, revolutions_.count(packet), points_);
+  for (g4lidar::point& p : std::span(points_).first(decoded.points.size())) {
+    p.time_ns = clock_.now_ns();
+    clock_.tick();
+  }
+  // The samples of a suspect packet were also measured, although their angles are not known. The
+  // clock begins with the first point.
+  if (decoded.suspect && counts_.points > 0) clock_.tick(decoded.sample_count);
+  if (!by_scan_) return writer_.write_points(decoded.points, out_);
+  while (const auto scan = assembler_.next(decoded)) {
+    writer_.write_scan(record_of(*scan), out_);
+  }
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/export/shaping_writer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "g4lidar/wall_clock.hpp"
+
+namespace g4lidar {
+
+shaping_writer::shaping_writer(std::unique_ptr<point_writer> inner, const shaping_options& options)
+    : inner_(std::move(inner)),
+      options_(options),
+      times_(options.time, options.wall_ahead_ns),
+      scan_times_(options.time, options.wall_ahead_ns) {}
+
+void shaping_writer::begin(text_sink& out) {
+  if (!std::exchange(begun_, true)) inner_->begin(out);
+}
+
+void shaping_writer::follow_wall_clock() {
+  if (!options_.follows_wall_clock) return;
+  const std::int64_t ahead_ns = wall_clock().ahead().count();
+  times_.set_wall_ahead(ahead_ns);
+  scan_times_.set_wall_ahead(ahead_ns);
+}
+
+std::span<const point> shaping_writer::in_range(std::span<const point> points) {
+  const shaping_options everything;
+  const bool has_limits =
+      options_.from_ns > everything.from_ns || options_.to_ns < everything.to_ns;
+  if (!has_limits || points.empty()) return points;
+  if (!first_ns_) first_ns_ = points.front().time_ns;
+  const auto find = [&points, first_ns = *first_ns_](auto begin, std::int64_t since_ns) {
+    return std::find_if(begin, points.end(),
+                        [&](const point& p) { return p.time_ns - first_ns >= since_ns; });
+  };
+  const auto begin = find(points.begin(), options_.from_ns);
+  const auto end = find(begin, options_.to_ns);
+  done_ = end != points.end();
+  return {begin, end};
+}
+
+std::span<const point> shaping_writer::shaped(std::span<const point> points) {
+  const bool is_same = options_.filter.keeps_everything() && times_.changes_nothing();
+  if (!options_.for_grid && is_same) return points;
+  if (shaped_.size() < points.size()) shaped_.resize(points.size());
+  const auto kept = options_.for_grid ? filter_for_grid(points, options_.filter, shaped_)
+                                      : filter_points(points, options_.filter, shaped_);
+  for (point& p : kept) p.time_ns = times_.of(p.time_ns);
+  return kept;
+}
+
+void shaping_writer::write_points(std::span<const point> points, text_sink& out) {
+  if (done_) return;
+  points = in_range(points);
+  if (points.empty()) return;
+  begin(out);
+  follow_wall_clock();
+  times_.come(points.front().time_ns);
+  points = shaped(points);
+  const std::uint64_t left = options_.count - records_;
+  points = points.first(static_cast<std::size_t>(std::min<std::uint64_t>(points.size(), left)));
+  inner_->write_points(points, out);
+  records_ += points.size();
+  done_ = done_ || records_ >= options_.count;
+}
+
+void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
+  if (done_) return;
+  begin(out);
+  if (record.scan.is_piece() && !options_.partial_scans) {
+    ++pieces_;
+    return;
+  }
+  follow_wall_clock();
+  if (in_range(record.scan.points).size() < record.scan.points.size()) return;
+  times_.come(record.time_ns);
+  scan_times_.come(record.time_ns);
+  scan_record changed = record;
+  changed.scan.points = shaped(record.scan.points);
+  changed.time_ns = scan_times_.of(record.time_ns);
+  inner_->write_scan(changed, out);
+  done_ = ++records_ >= options_.count;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The values of points and scans as text, for all formats. The columns of csv are in csv_writer.cpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "g4lidar/export/digits.hpp"
+#include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
+
+namespace g4lidar {
+
+/// The angle in `Frame` with this number of decimals, at most 11 characters and digits::slack.
+template <frame Frame, unsigned Decimals = 6>
+char* put_angle_column(char* at, const point& p) noexcept {
+  if constexpr (Frame == frame::robot) {
+    const float degrees = bearing_deg(p.angle_deg, Frame);
+    return digits::put_signed_angle<Decimals>(at, static_cast<double>(degrees));
+  }
+  return digits::put_angle<Decimals>(at, static_cast<double>(p.angle_deg));
+}
+template <unsigned Decimals = 6>
+char* put_angle_column(char* at, const point& p, frame to) noexcept {
+  return to == frame::robot ? put_angle_column<frame::robot, Decimals>(at, p)
+                            : put_angle_column<frame::vendor, Decimals>(at, p);
+}
+
+/// The range: millimetres with two decimals, metres with five, so that no digit is lost.
+template <length_unit Unit>
+char* put_range_column(char* at, const point& p) noexcept {
+  const auto range_mm = static_cast<double>(p.range_mm);
+  if constexpr (Unit == length_unit::millimetres) return digits::put_fixed<2>(at, range_mm);
+  return digits::put_scaled<5>(at, digits::nearest(range_mm * 100.0));
+}
+inline char* put_range_column(char* at, const point& p, length_unit unit) noexcept {
+  return unit == length_unit::metres ? put_range_column<length_unit::metres>(at, p)
+                                     : put_range_column<length_unit::millimetres>(at, p);
+}
+
+[[nodiscard]] inline const char* name_of(length_unit unit) noexcept {
+  return unit == length_unit::metres ? "m" : "mm";
+}
+
+/// Seconds with six decimals, truncated; at most 20 characters and digits::slack.
+char* put_seconds(char* at, std::int64_t time_ns) noexcept;
+
+/// Any finite number, rounded as printf does.
+[[nodiscard]] std::string with_decimals(double number, int decimals);
+/// With the least number of digits that distinguishes the number from all others of its type.
+[[nodiscard]] std::string shortest(double number);
+[[nodiscard]] std::string shortest(float number);
+/// A number above 0, or else `unknown`.
+[[nodiscard]] std::string if_known(double number, int decimals, const char* unknown);
+/// `text`, right-aligned.
+[[nodiscard]] std::string in_column(std::size_t width, const std::string& text);
+
+[[nodiscard]] std::size_t returns_in(const scan& scan) noexcept;
+/// 0 if the device did not report it.
+[[nodiscard]] inline double reported_hz(const scan& scan) noexcept {
+  return scan.reported_frequency_dhz / 10.0;
+}
+/// The names of the set flags, with `before` and `after` each and `between` them.
+[[nodiscard]] std::string names_of(scan_flags flags, std::string_view before,
+                                   std::string_view between, std::string_view after);
+
+// The writers that make_point_writer() creates.
+[[nodiscard]] std::unique_ptr<point_writer> make_csv_writer(const text_style& style);
+[[nodiscard]] std::unique_ptr<point_writer> make_jsonl_writer(const text_style& style);
+[[nodiscard]] std::unique_ptr<point_writer> make_text_writer(const text_style& style);
+
+}  // namespace g4lidar

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+#include "file_reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <new>
+#include <utility>
+
+namespace g4lidar {
+
+using mcap::chunk_source;
+using mcap::field_reader;
+using mcap::opcode;
+using mcap::record_header_size;
+using mcap::topic;
+
+namespace {
+
+/// In a file without a summary, metadata are searched in this number of blocks at its front.
+constexpr int blocks_at_front = 32;
+/// The maximum number of each kind in a summary.
+constexpr int most_records = 1000;
+/// The resolution of the search for the begin; the rest is read.
+constexpr std::uint64_t near_enough = std::uint64_t{64} << 10U;
+
+/// The sum of two of them does not overflow.
+bool is_a_time(std::int64_t time_ns) noexcept {
+  constexpr std::int64_t age = std::int64_t{1} << 62U;  // 146 years
+  return time_ns > -age && time_ns < age;
+}
+
+}  // namespace
+
+recording_reader::file_reader::file_reader(std::shared_ptr<mcap::byte_source> file,
+                                           std::string_view path)
+    : path_(path), file_(std::move(file)), chunks_(std::make_unique<chunk_source>(file_)) {}
+
+result<std::unique_ptr<recording_reader::file_reader>> recording_reader::file_reader::open(
+    std::shared_ptr<mcap::byte_source> file, std::string_view path,
+    const reading_options& options) {
+  const bool is_mcap = mcap::has_magic(*file);
+  if (const auto& why = file->trouble()) return tl::unexpected(*why);
+  if (!is_mcap) return failure(task::opening, problem::bad_file, path);
+  std::unique_ptr<file_reader> made(new file_reader(std::move(file), path));
+  if (auto begun = made->begin(options); !begun) return tl::unexpected(begun.error());
+  return made;
+}
+
+result<void> recording_reader::file_reader::begin(const reading_options& options) {
+  read_summary();
+  read_front();
+  const std::optional<recorded_item> first = read();
+  if (const auto& why = file_->trouble()) return tl::unexpected(*why);
+  const bool is_ours =
+      std::ranges::any_of(channels_, [](const auto& id) { return id.has_value(); });
+  if (!is_ours || (!first && damage().any())) {
+    return failure(task::opening, problem::bad_file, path_);
+  }
+  if (!first) {
+    is_over_ = true;
+    return {};
+  }
+  first_ns_ = first->time_ns;
+  const auto behind_first = [&](std::int64_t time_ns) {
+    return time_ns > never_ns - std::max<std::int64_t>(first_ns_, 0) ? never_ns
+                                                                     : first_ns_ + time_ns;
+  };
+  to_ns_ = behind_first(std::max<std::int64_t>(options.to_ns, 0));
+  if (options.from_ns <= 0) {
+    waiting_ = first;
+  } else {
+    seek(behind_first(options.from_ns));
+  }
+  if (const auto& why = file_->trouble()) return tl::unexpected(*why);
+  return {};
+}
+
+// ---- metadata
+// ------------------------------------------------------------------------------------
+
+/// Channels and metadata, by the groups of the summary.
+void recording_reader::file_reader::read_summary() {
+  const auto start = chunks_->summary_start();
+  if (start == 0) return;
+  const std::uint64_t footer = size() - mcap::magic.size() - mcap::footer_size;
+  const auto content = chunks_->record_at(footer, opcode::footer);
+  if (content.size() < 16) return;
+  std::uint64_t at = load_u64(content, 8);
+  if (at < start || at > footer) return read_group(start, footer);
+  for (int i = 0; i < most_records && at < footer; ++i) {
+    const auto offset = chunks_->record_at(at, opcode::summary_offset);
+    if (offset.empty()) return;
+    field_reader fields(offset);
+    at += record_header_size + offset.size();
+    const auto kind = static_cast<opcode>(fields.take<std::uint8_t>());
+    const auto begin = fields.take<std::uint64_t>();
+    const auto length = fields.take<std::uint64_t>();
+    if (kind != opcode::channel && kind != opcode::metadata_index) continue;
+    if (begin < start || begin > footer || length > footer - begin) continue;
+    read_group(begin, begin + length);
+  }
+}
+
+void recording_reader::file_reader::read_group(std::uint64_t at, std::uint64_t end) {
+  for (int i = 0; i < most_records && at < end; ++i) {
+    const auto channel = chunks_->record_at(at, opcode::channel);
+    if (!channel.empty()) {
+      take_channel(field_reader(channel));
+      at += record_header_size + channel.size();
+      continue;
+    }
+    const auto index = chunks_->record_at(at, opcode::metadata_index);
+    if (index.empty()) return;
+    at += record_header_size + index.size();
+    const std::uint64_t offset = field_reader(index).take<std::uint64_t>();
+    const auto metadata = chunks_->record_at(offset, opcode::metadata);
+    if (!metadata.empty()) take_metadata(field_reader(metadata));
+  }
+}
+
+/// The same where there is no summary.
+void recording_reader::file_reader::read_front() {
+  if (device_ || chunks_->summary_start() != 0) return;
+  chunk_source front(file_);
+  for (int i = 0; i < blocks_at_front && !device_; ++i) {
+    const auto block = front.next();
+    if (block.records.empty()) break;
+    field_reader records(block.records);
+    const auto kind = static_cast<opcode>(records.take<std::uint8_t>());
+    field_reader record(records.take(records.take<std::uint64_t>()));
+    if (kind == opcode::metadata) take_metadata(record);
+    if (kind == opcode::channel) take_channel(record);
+  }
+}
+
+void recording_reader::file_reader::take_channel(field_reader record) noexcept {
+  const auto id = record.take<std::uint16_t>();
+  static_cast<void>(record.take<std::uint16_t>());
+  const std::string_view name = record.take_text();
+  const std::string_view encoding = record.take_text();
+  if (!record.is_good() || encoding != "cdr") return;
+  for (const mcap::topic_words& known : mcap::all_topics()) {
+    if (known.id != topic::scan && known.name == name) {
+      channels_[static_cast<std::size_t>(known.id) - 1] = id;
+    }
+  }
+}
+
+void recording_reader::file_reader::take_metadata(field_reader record) {
+  const std::string_view name = record.take_text();
+  if (name == mcap::device_metadata) device_ = mcap::device_of(record);
+  if (name == mcap::digest_metadata) digest_ = mcap::digest_of(record, last_ns_);
+}
+
+// ---- reading from there on ---------------------------------------------------------------------
+
+void recording_reader::file_reader::seek(std::int64_t from_ns) {
+  from_ns_ = from_ns;
+  is_line_told_ = false;
+  line_ = {};
+  const std::optional<std::uint64_t> offset = chunk_before(from_ns);
+  chunks_ = std::make_unique<chunk_source>(file_);
+  records_ = {};
+  sequence_.reset();
+  is_gap_ = false;
+  if (offset) chunks_->seek(*offset);
+}
+
+/// The last chunk that begins before then, found by bisection: with or without an index.
+std::optional<std::uint64_t> recording_reader::file_reader::chunk_before(std::int64_t from_ns) {
+  std::optional<std::uint64_t> best;
+  std::uint64_t low = 0;
+  std::uint64_t high = size();
+  while (high - low > near_enough) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    chunk_source probe(file_);
+    probe.seek(middle);
+    std::optional<std::int64_t> time_ns;
+    std::uint64_t at = middle;
+    while (!time_ns) {
+      const auto block = probe.next();
+      if (block.records.empty()) break;
+      at = block.offset;
+      time_ns = first_time_in(block.records);
+    }
+    if (time_ns && *time_ns <= from_ns && at < high) {
+      best = at;
+      low = std::max(at, middle);
+    } else {
+      high = middle;
+    }
+  }
+  return best;
+}
+
+std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes records) noexcept {
+  field_reader rest(records);
+  while (!rest.is_at_end()) {
+    const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
+    const field_reader record(rest.take(rest.take<std::uint64_t>()));
+    if (kind == opcode::channel) take_channel(record);
+    if (kind != opcode::message) continue;
+    if (const auto item = item_in(record)) return item->time_ns;
+  }
+  return std::nullopt;
+}
+
+/// Skips items before the requested time; the state of the transport at that time is returned
+/// first.
+std::optional<recorded_item> recording_reader::file_reader::advance() {
+  while (true) {
+    std::optional<recorded_item> item = std::exchange(waiting_, std::nullopt);
+    if (!item) item = read();
+    if (!item) return item;
+    if (item->time_ns >= to_ns_) {
+      is_over_ = true;
+      return std::nullopt;
+    }
+    const bool is_note = item->what == recorded_item::kind::note;
+    if (item->time_ns < from_ns_) {
+      if (is_note) line_.take(item->note);
+      continue;
+    }
+    if (!std::exchange(is_line_told_, true) && line_.is_known) {
+      if (!waiting_)
+        waiting_ =
+            item;  // otherwise this item is a gap, which does not matter for a reader that begins here
+      item->what = recorded_item::kind::note;
+      item->data = {};
+      item->note = line_.as_note(item->time_ns);
+    } else if (is_note) {
+      line_.take(item->note);
+    }
+    return item;
+  }
+}
+
+result<std::optional<recorded_item>> recording_reader::file_reader::next() noexcept {
+  if (is_over_) return std::nullopt;
+  try {
+    auto item = advance();
+    if (const auto& why = file_->trouble()) return tl::unexpected(*why);
+    return item;
+  } catch (const std::bad_alloc&) {
+    return failure(task::reading, problem::system, path_, ENOMEM);
+  }
+}
+
+/// The next item of the file.
+std::optional<recorded_item> recording_reader::file_reader::read() {
+  while (true) {
+    while (!records_.empty()) {
+      field_reader rest(records_);
+      const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
+      const field_reader record(rest.take(rest.take<std::uint64_t>()));
+      if (!rest.is_good()) {
+        bytes_skipped_ += records_.size();
+        records_ = {};
+        break;
+      }
+      records_ = rest.rest();
+      if (kind == opcode::channel) take_channel(record);
+      if (kind == opcode::metadata) take_metadata(record);
+      if (kind != opcode::message) continue;
+      auto item = item_in(record);
+      if (!item) continue;
+      last_ns_ = std::max(last_ns_, item->time_ns);
+      if (!std::exchange(is_gap_, false)) return item;
+      waiting_ = item;
+      item->what = recorded_item::kind::note;
+      item->data = {};
+      item->note = {.what = recorded_event::kind::gap, .time_ns = item->time_ns};
+      return item;
+    }
+    records_ = chunks_->next().records;
+    if (records_.empty()) return std::nullopt;
+  }
+}
+
+std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader record) noexcept {
+  const auto id = record.take<std::uint16_t>();
+  const auto sequence = record.take<std::uint32_t>();
+  const auto wall_ns = static_cast<std::int64_t>(record.take<std::uint64_t>());
+  static_cast<void>(record.take<std::uint64_t>());
+  if (!record.is_good() || !is_a_time(wall_ns)) return std::nullopt;
+  const auto is = [&](topic which) { return channels_[static_cast<std::size_t>(which) - 1] == id; };
+  const bool is_from_device = is(topic::from_device);
+  if (is_from_device || is(topic::to_device)) {
+    const auto found = mcap::line_bytes_from(record.rest());
+    if (!found || !is_a_time(found->time_ns)) return std::nullopt;
+    if (is_from_device && skips(sequence)) is_gap_ = true;
+    const auto what =
+        is_from_device ? recorded_item::kind::from_device : recorded_item::kind::to_device;
+    return recorded_item{what, found->time_ns, wall_ns, found->data, {}};
+  }
+  if (!is(topic::notes)) return std::nullopt;
+  const auto note = mcap::note_from(record.rest());
+  if (!note || !is_a_time(note->time_ns)) return std::nullopt;
+  return recorded_item{recorded_item::kind::note, note->time_ns, wall_ns, {}, *note};
+}
+
+/// Whether reads are missing before this one. Files of other programs may not count: then all are
+/// 0.
+bool recording_reader::file_reader::skips(std::uint32_t sequence) noexcept {
+  const auto before = std::exchange(sequence_, sequence);
+  return before && sequence != *before + 1 && !(sequence == 0 && *before == 0);
+}
+
+const recording_damage& recording_reader::file_reader::damage() const noexcept {
+  damage_ = chunks_->damage();
+  damage_.bytes_skipped += bytes_skipped_;
+  return damage_;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// The names in the text of a setup in one table, and what a setup needs of the file system.
+#include "g4lidar/sim/setup.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "claim.hpp"
+#include "file_handle.hpp"
+#include "sim/read_time.hpp"
+
+namespace g4lidar::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view prefix = "sim:";
+
+// Members of device_options with a name in texts; where that is their unit, they are times.
+using options = device_options;
+using member = std::variant<std::int64_t options::*, std::uint32_t options::*, bool options::*>;
+constexpr std::array<std::pair<std::string_view, member>, 31> members{{
+    {"baud", &options::baud},
+    {"batch_min_ns", &options::batch_min_ns},
+    {"batch_max_ns", &options::batch_max_ns},
+    {"reaction_ns", &options::reaction_ns},
+    {"first_answer_ns", &options::first_answer_ns},
+    {"header_ns", &options::header_ns},
+    {"silence_ns", &options::silence_ns},
+    {"acceleration_mhz_per_s", &options::acceleration_mhz_per_s},
+    {"standstill_ns", &options::standstill_ns},
+    {"motor_drift_ppm", &options::motor_drift_ppm},
+    {"free_motor_drift_ppm", &options::free_motor_drift_ppm},
+    {"motor_drift_period_ns", &options::motor_drift_period_ns},
+    {"stray_after_start", &options::stray_after_start},
+    {"stray_before_zero", &options::stray_before_zero},
+    {"stop_truncates", &options::stop_truncates},
+    {"boot_text", &options::boot_text},
+    {"boot_information", &options::boot_information},
+    {"boot_ns", &options::boot_ns},
+    {"settings_outlive_power", &options::settings_outlive_power},
+    {"settings_outlive_restart", &options::settings_outlive_restart},
+    {"answers_direction", &options::answers_direction},
+    {"answers_health_91", &options::answers_health_91},
+    {"answers_health_92", &options::answers_health_92},
+    {"obeys_forced_stop", &options::obeys_forced_stop},
+    {"obeys_restart_80", &options::obeys_restart_80},
+    {"obeys_restart_40", &options::obeys_restart_40},
+    {"error_refuses_start", &options::error_refuses_start},
+    {"start_again_answers", &options::start_again_answers},
+    {"header_after_protection", &options::header_after_protection},
+    {"protection_ns", &options::protection_ns},
+    {"boots_at_start", &options::boots_at_start},
+}};
+
+std::string refused(std::string_view value, std::string_view why) {
+  return "'" + std::string(value) + "' " + std::string(why);
+}
+
+std::string read_into(std::int64_t& time_ns, std::string_view value) {
+  const bool has_unit = value.empty() || value.back() < '0' || value.back() > '9';
+  const auto read = read_time_ns(std::string(value) + (has_unit ? "" : "s"));
+  if (!read) return refused(value, "is not a time such as 10s, 500ms or 2min");
+  time_ns = *read;
+  return {};
+}
+
+std::string read_into(bool& flag, std::string_view value) {
+  if (value != "true" && value != "false") return refused(value, "is not one of true, false");
+  flag = value == "true";
+  return {};
+}
+
+template <class Number>
+std::string read_into(Number& number, std::string_view value) {
+  const char* const end = value.data() + value.size();
+  const auto [at, error] = std::from_chars(value.data(), end, number);
+  if (error == std::errc() && at == end) return {};
+  return refused(value,
+                 "is not in the range 0 to " + std::to_string(std::numeric_limits<Number>::max()));
+}
+
+std::string add_fault(std::vector<fault>& faults, std::string_view value) {
+  const auto read = parse_fault(value);
+  const auto* const wrong = std::get_if<fault_error>(&read);
+  if (wrong != nullptr) return std::string(value) + ": " + wrong->message;
+  faults.push_back(std::get<fault>(read));
+  return {};
+}
+
+std::string set_member(device_options& device, std::string_view name, std::string_view value) {
+  std::string known;
+  for (const auto& [each, place] : members) {
+    if (each == name) {
+      return std::visit([&](auto found) { return read_into(device.*found, value); }, place);
+    }
+    known.append(each).append(", ");
+  }
+  return refused(name, "is not one of " + known + "fault, model, seed, serial, world");
+}
+
+// "a%41" is "aA".
+std::string decoded(std::string_view coded) {
+  std::string text;
+  for (std::size_t i = 0; i < coded.size(); ++i) {
+    const char* const digits = coded.data() + i + 1;
+    unsigned char byte = 0;
+    if (coded[i] == '%' && i + 2 < coded.size() &&
+        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      text += static_cast<char>(byte);
+      i += 2;
+    } else {
+      text += coded[i];
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string set(setup& into, std::string_view word) {
+  const std::string_view name = word.substr(0, word.find('='));
+  const std::string_view value = word.substr(std::min(name.size() + 1, word.size()));
+  if (name == "world") {
+    into.world_file = value;
+    return {};
+  }
+  if (name == "seed") return read_into(into.device.scanner.seed, value);
+  if (name == "model") return read_into(into.device.info.model, value);
+  if (name == "fault") return add_fault(into.faults, value);
+  if (name != "serial") return set_member(into.device, name, value);
+  auto& digits = into.device.info.serial_digits;
+  if (value.size() != digits.size() || value.find_first_not_of("0123456789") != value.npos) {
+    return refused(value, "is not a serial number: a serial number has 16 decimal digits");
+  }
+  std::copy(value.begin(), value.end(), digits.begin());
+  return {};
+}
+
+bool is_simulated(std::string_view source) noexcept { return source.starts_with(prefix); }
+
+std::variant<setup, setup_error> parse_setup(std::string_view source) {
+  if (!is_simulated(source)) return setup_error{refused(source, "does not begin with sim:")};
+  source.remove_prefix(prefix.size());
+  if (source.starts_with('?')) source.remove_prefix(1);
+  setup read;
+  while (!source.empty()) {
+    const std::string_view piece = source.substr(0, source.find('&'));
+    source.remove_prefix(std::min(piece.size() + 1, source.size()));
+    if (std::string wrong = set(read, decoded(piece)); !wrong.empty()) return setup_error{wrong};
+  }
+  const std::string_view problem = problem_with(read.device);
+  if (!problem.empty()) return setup_error{std::string(problem)};
+  return read;
+}
+
+std::variant<world, world_error> load_world(const std::string& file) {
+  constexpr std::size_t longest = std::size_t{16} * 1024 * 1024;
+  if (file.empty()) return built_in_world();
+  std::error_code none;
+  if (fs::is_directory(file, none)) return world_error{0, "it is a directory"};
+  const file_handle in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  std::string text;
+  std::array<char, 16'384> part;
+  ssize_t count = in ? 1 : -1;
+  while (count > 0 && text.size() <= longest) {
+    count = ::read(in.number(), part.data(), part.size());
+    if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
+  }
+  if (count < 0) {
+    return world_error{0, "it cannot be read: " + std::generic_category().message(errno)};
+  }
+  if (text.size() > longest) return world_error{0, "it is longer than 16 MB, and 10,000 walls"};
+  return parse_world(text);
+}
+
+std::vector<device_options> several(const device_options& each, std::size_t count,
+                                    std::vector<std::string> serials) {
+  constexpr std::uint64_t all_serials = 10'000'000'000'000'000;
+  std::uint64_t next = 0;
+  [[maybe_unused]] const std::string is_number = read_into(next, each.info.serial_number());
+  for (; serials.size() < count; ++next) {
+    std::string serial = std::to_string(all_serials + next % all_serials).substr(1);
+    if (std::find(serials.begin(), serials.end(), serial) == serials.end()) {
+      serials.push_back(std::move(serial));
+    }
+  }
+  std::vector<device_options> made(count, each);
+  for (std::size_t i = 0; i < count; ++i) {
+    made[i].scanner.seed += i;
+    auto& digits = made[i].info.serial_digits;
+    std::copy_n(serials[i].begin(), std::min(serials[i].size(), digits.size()), digits.begin());
+  }
+  return made;
+}
+
+std::string registered_link(std::string_view serial) {
+  const std::string directory = registry();
+  if (directory.empty()) return {};
+  std::error_code unimportant;  // opening the link fails then
+  fs::create_directories(directory, unimportant);
+  return directory + "/g4-" + std::string(serial);
+}
+
+result<std::shared_ptr<background_pty>> serve_alone(device twin) {
+  std::error_code none;
+  std::string directory = (fs::temp_directory_path(none) / "g4-sim-XXXXXX").native();
+  if (none || ::mkdtemp(directory.data()) == nullptr) {
+    return failure(task::opening, problem::system, directory, none ? none.value() : errno);
+  }
+  result<background_pty> port = background_pty::open(std::move(twin), directory + "/g4");
+  if (!port) {
+    fs::remove(directory, none);
+    return tl::unexpected<error>(port.error());
+  }
+  return std::shared_ptr<background_pty>(new background_pty(std::move(*port)),
+                                         [directory](const background_pty* served) {
+                                           delete served;
+                                           std::error_code unimportant;
+                                           fs::remove_all(directory, unimportant);
+                                         });
+}
+
+}  // namespace g4lidar::sim

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// A TCP socket that forwards raw bytes to one client at a time, as a network bridge does.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "file_handle.hpp"
+#include "g4lidar/error.hpp"
+#include "served_line.hpp"
+
+namespace g4lidar::sim {
+
+class tcp_line final : public served_line {
+ public:
+  /// Listens at a numeric IPv4 address; port 0: any. Fails with bad_option or system.
+  [[nodiscard]] static result<std::unique_ptr<served_line>> open(const std::string& address,
+                                                                 std::uint16_t port);
+
+  /// "tcp:127.0.0.1:4000"
+  [[nodiscard]] const std::string& name() const noexcept override { return name_; }
+  [[nodiscard]] int handle() const noexcept override { return client_.number(); }
+  [[nodiscard]] int watch() const noexcept override { return listener_.number(); }
+  [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
+  std::size_t write(bytes data) noexcept override;
+  /// Accepts a client; further ones are refused.
+  void look_for_visitors() noexcept override;
+
+ private:
+  file_handle listener_;
+  file_handle client_;
+  std::string name_;
+};
+
+}  // namespace g4lidar::sim

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/transport/serial_port.hpp"
+
+#include <fcntl.h>
+#include <grp.h>
+#include <linux/serial.h>
+#include <sys/file.h>
+#include <sys/ioctl.h>
+#include <sys/sysmacros.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "custom_baud.hpp"
+#include "discovery/port_holder.hpp"
+#include "fd_port.hpp"
+#include "opening.hpp"
+
+namespace g4lidar {
+namespace {
+
+struct named_speed {
+  std::uint32_t baud;
+  speed_t speed;
+};
+
+constexpr std::array named_speeds{
+    named_speed{1200, B1200},       named_speed{2400, B2400},       named_speed{4800, B4800},
+    named_speed{9600, B9600},       named_speed{19200, B19200},     named_speed{38400, B38400},
+    named_speed{57600, B57600},     named_speed{115200, B115200},   named_speed{230400, B230400},
+    named_speed{460800, B460800},   named_speed{500000, B500000},   named_speed{576000, B576000},
+    named_speed{921600, B921600},   named_speed{1000000, B1000000}, named_speed{1152000, B1152000},
+    named_speed{1500000, B1500000}, named_speed{2000000, B2000000}, named_speed{2500000, B2500000},
+    named_speed{3000000, B3000000}, named_speed{3500000, B3500000}, named_speed{4000000, B4000000},
+};
+
+std::optional<speed_t> speed_of(std::uint32_t baud) noexcept {
+  const auto* named = std::ranges::find(named_speeds, baud, &named_speed::baud);
+  return named == named_speeds.end() ? std::nullopt : std::optional(named->speed);
+}
+
+bool has_name(speed_t speed) noexcept {
+  return speed <= B38400 ||
+         std::ranges::find(named_speeds, speed, &named_speed::speed) != named_speeds.end();
+}
+
+/// The flag would remain after a program was killed if another process keeps the slave of a pty
+/// open, as simulators do. On a pty only programs that respect the lock need to be kept out.
+bool is_pty(const struct stat& file) noexcept {
+  return major(file.st_rdev) >= 136 && major(file.st_rdev) <= 143;
+}
+
+std::string group_of(gid_t group) {
+  std::array<char, 1024> memory{};
+  struct group entry{};
+  struct group* found = nullptr;
+  const int failed = ::getgrgid_r(group, &entry, memory.data(), memory.size(), &found);
+  return failed == 0 && found != nullptr ? found->gr_name : std::to_string(group);
+}
+
+tl::unexpected<error> not_opened(const std::string& path, int system_errno,
+                                 const struct stat& file) {
+  switch (system_errno) {
+    case ENOENT:
+    case ENOTDIR:
+    case ENXIO:  // a name without a driver or without hardware
+    case ENODEV:
+    case EIO:
+      return failure(task::opening, problem::no_port, path, system_errno);
+    case EACCES:
+    case EPERM:
+      return failure(task::opening, problem::permission,
+                     path + " of group " + group_of(file.st_gid), system_errno);
+    case EBUSY: {
+      const std::string holder = port_holder(path);
+      return failure(task::opening, problem::busy,
+                     holder.empty() ? path : path + ", held by " + holder, system_errno);
+    }
+    case EISDIR:
+    case ENOTTY:
+      return failure(task::opening, problem::not_serial, path, system_errno);
+    default:
+      return failure(task::opening, problem::system, path, system_errno);
+  }
+}
+
+result<owned_fd> open_path(const std::string& path, const system_calls& calls) {
+  struct stat file{};
+  // Checked before it is opened: opening a pipe or a disk can have effects on others.
+  if (uninterrupted([&] { return calls.stat(path.c_str(), &file); }) != 0) {
+    const int system_errno = errno;
+    if (system_errno == EACCES) {
+      return failure(task::opening, problem::permission, path, system_errno);
+    }
+    return not_opened(path, system_errno, file);
+  }
+  if (!S_ISCHR(file.st_mode)) {
+    constexpr std::size_t longest = 30;  // the subject of an error holds 95 characters
+    const bool fits = S_ISREG(file.st_mode) && path.size() <= longest;
+    const std::string hint = fits ? ", a file, which opens as file:" + path : "";
+    return failure(task::opening, problem::not_serial, path + hint);
+  }
+  constexpr int flags = O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;
+  owned_fd fd(calls, uninterrupted([&] { return calls.open(path.c_str(), flags); }));
+  if (fd.get() < 0) return not_opened(path, errno, file);
+  return fd;
+}
+
+// ---- serial_line -------------------------------------------------------------------------------
+
+/// An open serial port, and the settings that are restored when it is closed.
+class serial_line final : public fd_port {
+ public:
+  serial_line(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
+              std::string path, std::uint32_t baud) noexcept;
+  ~serial_line() override;
+
+  // In this order, each once. The destructor reverts incomplete steps.
+  [[nodiscard]] result<void>
+  look() noexcept;  ///< Reads the current settings; not_serial if there are none.
+  [[nodiscard]] result<void> hold();
+  [[nodiscard]] result<void> configure() noexcept;
+  void hasten() noexcept;
+  [[nodiscard]] result<void> discard_input() noexcept;
+
+ private:
+  [[nodiscard]] ssize_t write_some(bytes data) noexcept override;
+
+  [[nodiscard]] int control(unsigned long request, void* argument) const noexcept;
+  [[nodiscard]] tl::unexpected<error> refused(int system_errno) const noexcept;
+  [[nodiscard]] tl::unexpected<error> refused_baud(int system_errno) const noexcept;
+  [[nodiscard]] tl::unexpected<error> held() const;
+  [[nodiscard]] bool set(int when, const termios& wanted) const noexcept;
+  [[nodiscard]] bool drained() const noexcept;
+  void restore() noexcept;
+
+  termios found_{};
+  std::uint32_t found_custom_baud_ = 0;  // if it had a non-standard rate
+  int found_flags_ = 0;
+  bool is_changed_ = false;
+  bool is_exclusive_ = false;
+  bool is_hastened_ = false;
+};
+
+serial_line::serial_line(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
+                         std::string path, std::uint32_t baud) noexcept
+    : fd_port(calls, std::move(fd), std::move(waits), std::move(path), baud, problem::gone) {}
+
+serial_line::~serial_line() {
+  if (!is_gone()) restore();
+}
+
+int serial_line::control(unsigned long request, void* argument) const noexcept {
+  return uninterrupted([&] { return calls().ioctl(fd(), request, argument); });
+}
+
+tl::unexpected<error> serial_line::refused(int system_errno) const noexcept {
+  switch (system_errno) {
+    case EIO:
+    case ENXIO:
+    case ENODEV:
+      return failure(task::opening, problem::no_port, name(), system_errno);
+    case ENOTTY:
+      return failure(task::opening, problem::not_serial, name(), system_errno);
+    default:
+      return failure(task::opening, problem::system, name(), system_errno);
+  }
+}
+
+result<void> serial_line::look() noexcept {
+  if (uninterrupted([&] { return calls().tcgetattr(fd(), &found_); }) != 0) {
+    return refused(errno == EINVAL ? ENOTTY : errno);  // some devices report it this way
+  }
+  if (!has_name(cfgetospeed(&found_))) found_custom_baud_ = custom_baud(calls().ioctl, fd());
+  return {};
+}
+
+tl::unexpected<error> serial_line::held() const {
+  const std::string path(name());
+  const std::string holder = port_holder(path);
+  return failure(task::opening, problem::busy,
+                 holder.empty() ? path : path + ", held by " + holder);
+}
+
+// flock() is the guarantee, because the system releases it however its holder ends. TIOCEXCL also
+// excludes programs that do not use locks.
+result<void> serial_line::hold() {
+  if (uninterrupted([&] { return calls().flock(fd(), LOCK_EX | LOCK_NB); }) != 0) {
+    if (errno == EWOULDBLOCK) return held();
+    return failure(task::opening, problem::system, name(), errno);
+  }
+  int exclusive = 0;  // open() by root succeeds despite it
+  if (control(TIOCGEXCL, &exclusive) == 0 && exclusive != 0) return held();
+  struct stat file{};
+  const bool known = uninterrupted([&] { return calls().fstat(fd(), &file); }) == 0;
+  if (known && !is_pty(file)) is_exclusive_ = control(TIOCEXCL, nullptr) == 0;
+  return {};
+}
+
+bool serial_line::set(int when, const termios& wanted) const noexcept {
+  return uninterrupted([&] { return calls().tcsetattr(fd(), when, &wanted); }) == 0;
+}
+
+tl::unexpected<error> serial_line::refused_baud(int system_errno) const noexcept {
+  std::array<char, 95> subject{};
+  const int size = std::snprintf(subject.data(), subject.size(), "%.*s at %u baud",
+                                 static_cast<int>(name().size()), name().data(), baud());
+  const auto length =
+      std::clamp<std::size_t>(static_cast<std::size_t>(size), 0, subject.size() - 1);
+  return failure(task::configuring, problem::bad_baud_rate, {subject.data(), length}, system_errno);
+}
+
+result<void> serial_line::configure() noexcept {
+  const auto speed = speed_of(baud());
+  termios wanted = found_;
+  cfmakeraw(&wanted);
+  wanted.c_cflag |= CLOCAL | CREAD;
+  wanted.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+  wanted.c_iflag &= ~static_cast<tcflag_t>(IXOFF | INPCK);
+  wanted.c_cc[VMIN] =
+      1;  // with 0, a read without bytes would return 0, like a read from an unplugged port
+  wanted.c_cc[VTIME] = 0;
+  cfsetspeed(&wanted, speed.value_or(B38400));
+  is_changed_ = true;
+  if (!set(TCSANOW, wanted)) return refused(errno);
+  if (!speed) {
+    if (!set_custom_baud(calls().ioctl, fd(), baud())) {
+      return errno == EIO ? refused(EIO) : refused_baud(errno);
+    }
+    return is_near(custom_baud(calls().ioctl, fd()), baud()) ? result<void>{} : refused_baud(0);
+  }
+  // tcsetattr() succeeds if any part of it does, so the settings are read back.
+  termios got{};
+  if (uninterrupted([&] { return calls().tcgetattr(fd(), &got); }) != 0) return refused(errno);
+  if (cfgetospeed(&got) != *speed) return refused_baud(0);
+  return {};
+}
+
+void serial_line::hasten() noexcept {
+  serial_struct serial{};
+  if (control(TIOCGSERIAL, &serial) != 0) return;
+  constexpr int low_latency = static_cast<int>(ASYNC_LOW_LATENCY);
+  if ((serial.flags & low_latency) != 0) return;
+  found_flags_ = serial.flags;
+  serial.flags |= low_latency;
+  is_hastened_ = control(TIOCSSERIAL, &serial) == 0;
+}
+
+result<void> serial_line::discard_input() noexcept {
+  if (uninterrupted([&] { return calls().tcflush(fd(), TCIFLUSH); }) != 0) return refused(errno);
+  return {};
+}
+
+ssize_t serial_line::write_some(bytes data) noexcept {
+  return calls().write(fd(), data.data(), data.size());
+}
+
+/// Waits until the output has been sent, at most 50 ms: more than any command of the library needs.
+bool serial_line::drained() const noexcept {
+  for (int tries = 0; tries < 50; ++tries) {
+    int waiting = 0;
+    if (control(TIOCOUTQ, &waiting) != 0 || waiting == 0) return true;
+    const timespec a_while{0, 1'000'000};
+    calls().ppoll(nullptr, 0, &a_while);
+  }
+  return false;
+}
+
+void serial_line::restore() noexcept {
+  if (is_changed_) {
+    // A last command must not be sent at another rate; and pending output would delay close() for
+    // half a minute.
+    const bool is_empty = drained();
+    if (!is_empty) {
+      static_cast<void>(uninterrupted([&] { return calls().tcflush(fd(), TCOFLUSH); }));
+    }
+    static_cast<void>(set(is_empty ? TCSADRAIN : TCSANOW, found_));
+    if (found_custom_baud_ != 0) {
+      static_cast<void>(set_custom_baud(calls().ioctl, fd(), found_custom_baud_));
+    }
+  }
+  if (is_hastened_) {
+    serial_struct serial{};
+    if (control(TIOCGSERIAL, &serial) == 0) {
+      serial.flags = found_flags_;
+      static_cast<void>(control(TIOCSSERIAL, &serial));
+    }
+  }
+  if (is_exclusive_) static_cast<void>(control(TIOCNXCL, nullptr));
+}
+
+// ---- opening -----------------------------------------------------------------------------------
+
+}  // namespace
+
+result<std::unique_ptr<transport>> open_serial_line(std::string_view path,
+                                                    const serial_options& options,
+                                                    const system_calls& calls) {
+  if (path.empty()) return failure(task::opening, problem::bad_option, "an empty path");
+  if (options.baud == 0) return failure(task::opening, problem::bad_option, "baud 0");
+  std::string name(path);
+  auto fd = open_path(name, calls);
+  if (!fd) return tl::unexpected(fd.error());
+  auto waits = std::make_unique<waker>(calls);
+  if (!waits->is_open()) return failure(task::opening, problem::system, "eventfd", errno);
+  auto line = std::make_unique<serial_line>(calls, std::move(*fd), std::move(waits),
+                                            std::move(name), options.baud);
+  if (const auto done = line->look(); !done) return tl::unexpected(done.error());
+  if (options.exclusive) {
+    if (const auto done = line->hold(); !done) return tl::unexpected(done.error());
+  }
+  if (const auto done = line->configure(); !done) return tl::unexpected(done.error());
+  if (options.low_latency) line->hasten();
+  if (const auto done = line->discard_input(); !done) return tl::unexpected(done.error());
+  return line;
+}
+
+result<std::unique_ptr<transport>> serial_port::open(std::string_view path,
+                                                     const serial_options& options) {
+  return open_serial_line(path, options, real_system_calls());
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Files of raw bytes, examined as far as bytes tell.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "diagnostics/doctor_bench.hpp"
+#include "g4lidar/core/command.hpp"
+#include "transport/temporary_file.hpp"
+
+namespace {
+
+using namespace g4lidar;
+using namespace g4lidar::test;
+
+constexpr std::int64_t second = 1'000'000'000;
+
+/// What a device sends in so many seconds that is asked who it is, and started.
+std::string bytes_of(std::initializer_list<std::string_view> faults, std::int64_t seconds,
+                     const sim::device_options& options = {}) {
+  sim::device twin(sim::built_in_world(), options, faults_of(faults));
+  std::string all;
+  std::array<std::uint8_t, 4096> buffer{};
+  twin.write(encode(command::device_info), 1);
+  for (std::int64_t now = 1; now < seconds * second; now += 10'000'000) {
+    if (now > second / 2 && now <= second / 2 + 10'000'000) twin.write(encode(command::start), now);
+    while (const std::size_t count = twin.read(buffer, now)) {
+      all.append(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+  }
+  return all;
+}
+
+examined in_file(const std::string& content) {
+  const temporary_file file(content);
+  examined done;
+  done.stages = diagnose("file:" + file.path());
+  return done;
+}
+
+TEST(Bytes, OfAHealthyDeviceGetNoDiagnosis) {
+  const examined done = in_file(bytes_of({}, 6));
+  EXPECT_EQ(done.diagnoses(), "") << done;
+  ASSERT_EQ(done.stages.size(), diagnostic_stage_count);
+  for (const auto stage : {diagnostic_stage::permission, diagnostic_stage::holder,
+                           diagnostic_stage::answers, diagnostic_stage::usb_latency}) {
+    EXPECT_EQ(done.at(stage).outcome, stage_verdict::skipped) << done;
+  }
+  const auto& identity = done.at(diagnostic_stage::identity).measurements;
+  ASSERT_EQ(identity.size(), 4U) << done;
+  EXPECT_EQ(identity[3].name, "serial_number");
+  EXPECT_EQ(std::get<std::string>(identity[3].value), "2021101000070073");
+  // 9000 samples a second at 7 Hz.
+  const auto& rate = done.at(diagnostic_stage::rate).measurements;
+  ASSERT_EQ(rate.back().name, "samples_per_revolution") << done;
+  EXPECT_NEAR(std::get<double>(rate.back().value), 9000.0 / 7.0, 4.0);
+}
+
+TEST(Bytes, TellDamage) {
+  EXPECT_EQ(in_file(bytes_of({"flip"}, 6)).diagnoses(), "bits_flipped");
+  EXPECT_EQ(in_file(bytes_of({"drop"}, 6)).diagnoses(), "bytes_dropped");
+  EXPECT_EQ(in_file(bytes_of({"insert"}, 6)).diagnoses(), "bytes_inserted");
+  EXPECT_EQ(in_file(bytes_of({"truncate"}, 6)).diagnoses(), "packets_truncated");
+  EXPECT_EQ(in_file(bytes_of({"jolt"}, 6)).diagnoses(), "jolts");
+}
+
+TEST(Bytes, OfAnotherRateOrModelAreFound) {
+  EXPECT_EQ(in_file(bytes_of({"baud", "scanning"}, 3)).diagnoses(), "wrong_baud_rate");
+  sim::device_options options;
+  options.info.model = 4;
+  EXPECT_EQ(in_file(bytes_of({}, 3, options)).diagnoses(), "other_device");
+}
+
+TEST(Bytes, ThatAreFewOrNoneAreNoFault) {
+  EXPECT_EQ(in_file("").diagnoses(), "bad_file");
+  EXPECT_EQ(in_file(bytes_of({}, 1).substr(0, 400)).diagnoses(), "");
+}
+
+}  // namespace

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Which ports a reconnect writes to, and which it does not. Runs with umockdev preloaded.
+#include <gmock/gmock.h>
+#include <poll.h>
+#include <termios.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "discovery/system_connector.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/sim/pty_port.hpp"
+#include "testbed.hpp"
+#include "transport/pty.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using namespace std::chrono_literals;
+using kind = lidar_event::kind;
+
+class Reconnect : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* preload = std::getenv("LD_PRELOAD");
+    if (preload == nullptr ||
+        std::string_view(preload).find("umockdev") == std::string_view::npos) {
+      GTEST_SKIP() << "umockdev is not preloaded; run this with umockdev-wrapper";
+    }
+  }
+
+  void link(const bridge& what, const pty& device) const {
+    std::filesystem::create_symlink(device.path(), bed.dev(what.name));
+  }
+  void remove(const bridge& what) {
+    bed.unplug(what);
+    std::filesystem::remove(bed.dev(what.name));
+  }
+
+  /// A G4 whose number ends with this digit, attached to a port.
+  [[nodiscard]] sim::background_pty serve(const bridge& what, char last_digit) const {
+    sim::device_options options;
+    options.info.serial_digits.back() = last_digit;
+    auto served =
+        sim::background_pty::open(sim::device(sim::built_in_world(), options), bed.dev(what.name));
+    EXPECT_TRUE(served) << served.error().message();
+    return *std::move(served);
+  }
+
+  /// Connects with `device` while a G4 is attached, replaces the G4 by another device, and connects
+  /// twice more. Returns whether the other device was opened.
+  [[nodiscard]] bool opens_stranger(std::string_view device) {
+    auto made = system_connector::make(device, 230'400);
+    EXPECT_TRUE(made);
+    bed.plug(first);
+    {
+      const auto lidar = serve(first, '1');
+      EXPECT_TRUE((*made)->connect());
+    }
+    bed.unplug(first);
+    bed.plug(stranger);
+    const pty printer;
+    link(stranger, printer);
+    auto line = (*made)->connect();
+    if (!line) line = (*made)->connect();
+    const bool opened = line.has_value();
+    termios settings{};
+    EXPECT_EQ(::tcgetattr(printer.keep(), &settings), 0);
+    EXPECT_EQ(::cfgetospeed(&settings) == B230400, opened) << "the stranger's rate was changed";
+    pollfd written{printer.master(), POLLIN, 0};
+    EXPECT_EQ(::poll(&written, 1, 0), 0) << "the stranger was written to";
+    remove(stranger);
+    return opened;
+  }
+
+  testbed bed;
+  const bridge first{};
+  const bridge second{.name = "ttyUSB1", .place = "1-1.2"};
+  /// Another adapter, at the same USB port and with the same name.
+  const bridge stranger{.vendor = "067b", .product = "2303", .driver = "pl2303"};
+};
+
+TEST_F(Reconnect, OtherDeviceOnTheOldPath_IsNotOpened) {
+  for (const char* device : {"", "serial:2021101000070071", "usb:1-1.4"}) {
+    EXPECT_FALSE(opens_stranger(device)) << device;
+  }
+}
+
+TEST_F(Reconnect, PathNamedByTheUser_IsOpened) { EXPECT_TRUE(opens_stranger("/dev/ttyUSB0")); }
+
+TEST_F(Reconnect, RefusedPort_ReturnsAfterAReplug) {
+  bed.plug(first);
+  const pty port;
+  link(first, port);
+  auto connector = *system_connector::make("", 230'400);
+  ASSERT_TRUE(connector->connect());
+  connector->refuse();
+  for (int round = 0; round < 3; ++round) EXPECT_FALSE(connector->connect());
+  remove(first);
+  bed.plug(first);
+  link(first, port);
+  EXPECT_TRUE(connector->connect());
+}
+
+TEST_F(Reconnect, OtherLidarOnTheOldPath_IsReportedOnceAndOursIsFound) {
+  bed.plug(first);
+  auto ours = std::make_optional(serve(first, '1'));
+  lidar_options options;
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  ASSERT_TRUE(device->next_scan(3s));
+  ours.reset();
+  bed.unplug(first);
+  bed.plug(first);
+  const auto spare = serve(first, '2');
+  std::vector<kind> events;
+  const auto read_for = [&](std::chrono::milliseconds time) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    while (std::chrono::steady_clock::now() < end) static_cast<void>(device->next_scan(50ms));
+    while (const auto event = device->next_event()) events.push_back(event->what);
+  };
+  read_for(2s);
+  EXPECT_THAT(events, testing::ElementsAre(kind::lost, kind::other_lidar));
+  bed.plug(second);
+  const auto moved = serve(second, '1');
+  events.clear();
+  read_for(4s);
+  EXPECT_THAT(events, testing::Contains(kind::reconnected));
+  EXPECT_THAT(events, testing::Not(testing::Contains(kind::other_lidar)));
+  EXPECT_EQ(device->name(), "/dev/ttyUSB1");
+}
+
+}  // namespace
+}  // namespace g4lidar::test

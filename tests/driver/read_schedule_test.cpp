@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// When a read is worth its system calls: the rules alone, and the savings of a driver.
+#include "driver/read_schedule.hpp"
+
+#include <gtest/gtest.h>
+
+#include "g4lidar/lidar.hpp"
+#include "support/packet_maker.hpp"
+#include "support/virtual_line.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t us = 1'000;
+constexpr std::int64_t ms = 1'000 * us;
+constexpr std::int64_t second = 1'000 * ms;
+constexpr std::int64_t byte_ns = 10'000'000'000 / 230'400;
+constexpr double period_ns = 1e9 / 9000;
+constexpr std::int64_t packet_ns = 40 * second / 9000;
+
+/// A pace that has received a zero packet and two packets of 40 samples and 10 degrees behind it,
+/// the last one just now, alone.
+struct PaceFarFromTheEnd : testing::Test {
+  PaceFarFromTheEnd() {
+    pace.reset(230'400, 4095);
+    take(made::packet(1, 0, 0, 1));
+    take(made::packet(0, 10 * 64, 20 * 64, 40));
+    take(made::packet(0, 20 * 64, 30 * 64, 40));
+  }
+  void take(const made::packet& next, std::size_t behind = 0) {
+    now_ns += 10 * ms;
+    pace.came(next.data().size() + behind, now_ns);
+    // The last sample was measured when the packet began to be sent.
+    const auto size = static_cast<std::int64_t>(next.data().size() + behind);
+    pace.packet(next.view(), behind, now_ns - size * byte_ns, period_ns);
+  }
+
+  read_schedule pace;
+  std::int64_t now_ns = second;
+};
+
+TEST_F(PaceFarFromTheEnd, NextPacket_IsExpectedWhenItsSamplesAreMeasured) {
+  EXPECT_NEAR(static_cast<double>(pace.next_ns(0, 1, demand::points)),
+              static_cast<double>(now_ns + packet_ns), 50e3);
+}
+
+TEST_F(PaceFarFromTheEnd, ExpectedPacket_IsReadEarlierEachTime) {
+  const std::int64_t due_ns = pace.next_ns(0, 1, demand::points);
+  now_ns = due_ns - 10 * ms + 80 * us;  // where take() finds it: late by a wake-up
+  take(made::packet(0, 30 * 64, 40 * 64, 40));
+  const std::int64_t apart_ns = pace.next_ns(0, 1, demand::points) - due_ns;
+  EXPECT_LT(apart_ns, packet_ns - 20 * us);
+  EXPECT_GT(apart_ns, packet_ns - 50 * us);
+}
+
+TEST_F(PaceFarFromTheEnd, IncompletePacket_RestIsWaitedFor) {
+  now_ns += 4 * ms;
+  pace.came(80, now_ns);
+  EXPECT_EQ(pace.next_ns(80, 10, demand::points), now_ns + 10 * byte_ns);
+}
+
+TEST_F(PaceFarFromTheEnd, BytesBehindAPacket_ShowItsAge) {
+  pace.came(1, now_ns);  // not as expected
+  take(made::packet(0, 30 * 64, 40 * 64, 40), 20);
+  const std::int64_t expected_ns = now_ns - 20 * byte_ns + packet_ns;
+  EXPECT_NEAR(static_cast<double>(pace.next_ns(20, 70, demand::points)),
+              static_cast<double>(expected_ns), 50e3);
+}
+
+TEST_F(PaceFarFromTheEnd, NearTheEnd_NoScanIsDelayed) {
+  take(made::packet(0, 330 * 64, 340 * 64, 40));
+  EXPECT_LE(pace.next_ns(0, 1, demand::points), now_ns + 12 * byte_ns);
+  EXPECT_LE(pace.next_ns(11, 1, demand::points), now_ns);
+}
+
+TEST_F(PaceFarFromTheEnd, NoZeroPacket_AnyPacketMayBeTheEnd) {
+  pace.reset(230'400, 4095);
+  take(made::packet(0, 10 * 64, 20 * 64, 40));
+  take(made::packet(0, 20 * 64, 30 * 64, 40));
+  EXPECT_LE(pace.next_ns(0, 1, demand::points), now_ns + 12 * byte_ns);
+}
+
+TEST_F(PaceFarFromTheEnd, TruncatedPacket_DoesNotPredictTheNext) {
+  take(made::packet(0, 350 * 64, 359 * 64, 36));
+  take(made::packet(1, 0, 0, 1));
+  EXPECT_NEAR(static_cast<double>(pace.next_ns(0, 1, demand::points)),
+              static_cast<double>(now_ns + packet_ns), 50e3);
+}
+
+TEST_F(PaceFarFromTheEnd, Flood_IsReadWithoutWaiting) {
+  for (int i = 0; i < 3; ++i) pace.came(4096, now_ns += 100 * us);
+  EXPECT_EQ(pace.next_ns(11, 79, demand::points), 0);
+  pace.came(1, now_ns += second);
+  EXPECT_GT(pace.next_ns(12, 78, demand::points), now_ns);
+}
+
+TEST_F(PaceFarFromTheEnd, StalledTransport_MayCatchUp) {
+  pace.came(10, now_ns += 190 * ms);
+  pace.came(3'000, now_ns += 100 * us);
+  EXPECT_GT(pace.next_ns(11, 79, demand::points), now_ns);
+}
+
+TEST_F(PaceFarFromTheEnd, UselessWaits_BecomeRare) {
+  int rests = 0;
+  for (int i = 0; i < 1'000; ++i) {
+    pace.came(10, now_ns += 16 * ms);
+    if (pace.next_ns(10, 80, demand::points) <= now_ns) continue;
+    ++rests;
+    pace.in_vain();
+  }
+  EXPECT_GT(rests, 10);
+  EXPECT_LT(rests, 30);
+  pace.reset(230'400, 4095);
+  pace.came(10, now_ns += 16 * ms);
+  EXPECT_GT(pace.next_ns(10, 80, demand::points), now_ns);
+}
+
+TEST_F(PaceFarFromTheEnd, NoBaudRate_NoWait) {
+  pace.reset(0, 4095);
+  pace.came(10, now_ns);
+  EXPECT_EQ(pace.next_ns(10, 80, demand::points), 0);
+}
+
+TEST(Pace, SavesReadsAndDelaysNoScan) {
+  test::virtual_bench bench;
+  auto lidar = test::open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  static_cast<void>(lidar->points());  // each packet is wanted
+  while (bench.now_ns < 4 * second) static_cast<void>(lidar->next_scan(500ms));
+  const std::uint64_t before = bench.reads + bench.pauses;
+  std::uint64_t scans = 0;
+  while (bench.now_ns < 14 * second) {
+    const auto scan = lidar->next_scan(500ms);
+    ASSERT_TRUE(scan);
+    ++scans;
+    // The transmission of the last packet of a revolution takes 4 ms at most, and its end half a
+    // millisecond.
+    EXPECT_LT(bench.now_ns - scan->points.back().time_ns, 6 * ms);
+  }
+  EXPECT_GT(scans, 65U);
+  EXPECT_LT(bench.reads + bench.pauses - before, 11'000U);
+}
+
+TEST(Pace, Wake_EndsAWait) {
+  test::virtual_bench bench;
+  auto lidar = test::open_virtual(bench);
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 100; ++i) {
+    static_cast<void>(lidar->next_scan(9ms));
+    const std::int64_t begin_ns = bench.now_ns;
+    lidar->wake();
+    const auto woken = lidar->next_scan(2000ms);
+    ASSERT_FALSE(woken);
+    ASSERT_EQ(woken.error().code(), problem::cancelled);
+    ASSERT_LT(bench.now_ns - begin_ns, ms);
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The simulated G4 in a program of its own, which is killed or paused: g4-dump sim --link.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "realtime/child_process.hpp"
+#include "realtime/twin_on_pty.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+class TwinProgram : public testing::Test {
+ protected:
+  void begin() {
+    program_.reset();  // its link is free for the next one
+    program_ = std::make_unique<test::child_process>(
+        std::vector<std::string>{G4_DUMP, "sim", "--link", path_}, directory_.file("said"));
+    ASSERT_TRUE(program_->says(" at " + path_)) << program_->said();
+  }
+
+  test::scratch_directory directory_;
+  std::string path_ = directory_.file("g4");
+  std::unique_ptr<test::child_process> program_;
+};
+
+/// The time from its end until the error.
+clock::duration time_to_know_the_end(lidar& device, const test::child_process& program) {
+  clock::time_point killed;
+  std::thread hand([&] {
+    std::this_thread::sleep_for(50ms);
+    killed = clock::now();
+    program.send(SIGKILL);
+  });
+  auto scan = device.next_scan(30s);
+  while (scan) scan = device.next_scan(30s);
+  const auto known = clock::now();
+  hand.join();
+  EXPECT_EQ(scan.error().code(), problem::gone) << scan.error().message();
+  return known - killed;
+}
+
+// The 75th percentile of 8 runs.
+TEST_F(TwinProgram, Killed_IsGone) {
+  const auto time_to_know = test::percentile(75, 8, [&] {
+    begin();
+    auto device = lidar::open(test::patient_options(path_));
+    EXPECT_TRUE(device && device->start() && device->next_scan(30s));
+    const auto time = device ? time_to_know_the_end(*device, *program_) : clock::duration(0);
+    EXPECT_EQ(program_->wait(), 128 + SIGKILL);
+    return time;
+  });
+  EXPECT_LT(time_to_know, 100ms);
+}
+
+TEST_F(TwinProgram, KilledAndRestarted_IsTheSameDevice) {
+  begin();
+  lidar_options options;
+  options.device = path_;
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  ASSERT_TRUE(device->next_scan(30s));
+  program_->send(SIGKILL);
+  EXPECT_EQ(program_->wait(), 128 + SIGKILL);
+  begin();
+  const auto end = clock::now() + 60s;
+  while (device->counts().reconnects == 0 && clock::now() < end) {
+    const auto scan = device->next_scan(100ms);
+    if (!scan) {
+      ASSERT_FALSE(scan.error().is_fatal()) << scan.error().message();
+    }
+  }
+  EXPECT_EQ(device->counts().reconnects, 1U);
+  EXPECT_TRUE(device->next_scan(30s));
+}
+
+// Like a short suspension of a laptop, or a debugger: afterwards everything continues as before.
+TEST_F(TwinProgram, PausedForASecond_Continues) {
+  begin();
+  lidar_options options;
+  options.device = path_;
+  options.reconnect = true;
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  ASSERT_TRUE(device->next_scan(30s));
+  program_->send(SIGSTOP);
+  std::thread hand([&] {
+    std::this_thread::sleep_for(1s);
+    program_->send(SIGCONT);
+  });
+  int scans = 0;
+  const auto end = clock::now() + 60s;
+  while (scans < 10 && clock::now() < end) {
+    const auto scan = device->next_scan(100ms);
+    if (scan) {
+      ++scans;
+    } else {
+      EXPECT_FALSE(scan.error().is_fatal()) << scan.error().message();
+    }
+  }
+  hand.join();
+  EXPECT_EQ(scans, 10);
+  test::expect_identity(device->counts());
+}
+
+// Without reconnecting, a short silence is not an error either. The delayed bytes are sent at once,
+// and a pseudo-terminal holds no more than 0.8 s of them.
+TEST_F(TwinProgram, PausedBriefly_IsNoEvent) {
+  test::expect_most(3, [&] {
+    begin();
+    auto device = lidar::open(test::patient_options(path_));
+    EXPECT_TRUE(device && device->start() && device->next_scan(30s));
+    if (!device) return false;
+    program_->send(SIGSTOP);
+    std::thread hand([&] {
+      std::this_thread::sleep_for(400ms);
+      program_->send(SIGCONT);
+    });
+    for (int i = 0; i < 7; ++i) EXPECT_TRUE(device->next_scan(30s));
+    hand.join();
+    EXPECT_FALSE(device->next_event());
+    test::expect_identity(device->counts());
+    return device->counts().samples_lost == 0;
+  });
+}
+
+}  // namespace
+}  // namespace g4lidar

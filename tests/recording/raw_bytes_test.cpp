@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Raw bytes of a file as a connector: times are counted from samples, nothing waits, nothing answers.
+#include "g4lidar/recording/raw_bytes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "support/packet_maker.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+
+std::string packet_of(std::size_t samples) {
+  const made::packet made(0, 64, 10 * 64, std::vector<std::uint16_t>(samples, 4000));
+  return {made.data().begin(), made.data().end()};
+}
+
+class RawBytes : public ::testing::Test {
+ protected:
+  ~RawBytes() override { std::filesystem::remove(path_); }
+  std::unique_ptr<connector> opened(const std::string& bytes, std::uint32_t rate_hz) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+    auto made = open_raw_bytes(path_, rate_hz);
+    EXPECT_TRUE(made);
+    return made ? std::move(*made) : nullptr;
+  }
+
+  std::string path_ =
+      std::filesystem::temp_directory_path() / ("g4lidar-raw-bytes-" + std::to_string(::getpid()));
+};
+
+struct reading {
+  std::size_t count;
+  std::int64_t since_ns;
+  bool operator==(const reading&) const = default;
+};
+
+// Packets of 9 and 18 samples at 9000 per second, 3 stray bytes, and a truncated packet.
+TEST_F(RawBytes, OfAFile_ArriveAtTheTimeOfTheirSamples) {
+  const std::string all =
+      packet_of(9) + packet_of(18) + std::string("\0\x13\0", 3) + packet_of(9).substr(0, 20);
+  const auto lines = opened(all, 9000);
+  const std::int64_t begin_ns = lines->now_ns();
+  auto line = lines->connect();
+  ASSERT_TRUE(line);
+  std::vector<reading> readings;
+  std::string bytes;
+  std::array<std::uint8_t, 1000> memory{};
+  while (true) {
+    const auto got = (*line)->read(memory, 0);  // in the past: it does not wait
+    if (!got) {
+      EXPECT_EQ(got.error(), problem::end_of_input);
+      break;
+    }
+    readings.push_back({got->count, got->arrival_ns - begin_ns});
+    bytes.append(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(got->count));
+  }
+  EXPECT_EQ(bytes, all);
+  const std::vector<reading> expected{{28, 1'000'000}, {46, 3'000'000}, {23, 3'000'000}};
+  EXPECT_EQ(readings, expected);
+  EXPECT_EQ(lines->now_ns() - begin_ns, 3'000'000);
+}
+
+TEST_F(RawBytes, TimesDoNotDrift) {
+  std::string all;
+  for (int i = 0; i < 700; ++i) all += packet_of(10);
+  const auto lines = opened(all, 7);  // 1000 s
+  auto line = lines->connect();
+  ASSERT_TRUE(line);
+  const std::int64_t begin_ns = lines->now_ns();
+  std::array<std::uint8_t, 7> small{};  // less than a packet at a time
+  std::int64_t samples = 0;
+  std::size_t bytes = 0;
+  while (const auto got = (*line)->read(small, 0)) {
+    bytes += got->count;
+    if (bytes % 30 != 0) continue;
+    samples += 10;
+    ASSERT_EQ(got->arrival_ns - begin_ns, samples * second_ns / 7);
+  }
+  EXPECT_EQ(samples, 7000);
+}
+
+TEST_F(RawBytes, ReturnTheirTransportOnceAndDiscardWrites) {
+  const auto lines = opened(packet_of(9), 9000);
+  auto line = lines->connect();
+  ASSERT_TRUE(line);
+  EXPECT_TRUE((*line)->write(std::array<std::uint8_t, 2>{0xA5, 0x60}, 0));
+  EXPECT_EQ(std::string((*line)->name()), path_);
+  (*line)->wake();
+  std::array<std::uint8_t, 10> memory{};
+  EXPECT_EQ((*line)->read(memory, 0).error(), problem::cancelled);
+  EXPECT_TRUE((*line)->read(memory, 0));
+  const auto second = lines->connect();
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error(), problem::end_of_input);
+}
+
+TEST_F(RawBytes, MissingFileOrDirectory_IsRefused) {
+  EXPECT_EQ(open_raw_bytes("/nowhere/at/all", 9000).error(), problem::system);
+  EXPECT_EQ(open_raw_bytes("/", 9000).error(), problem::system);
+}
+
+}  // namespace
+}  // namespace g4lidar::test

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+// Texts of simulated lidars, and the places where they are served.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/sim/setup.hpp"
+
+namespace {
+
+using namespace g4lidar;
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+namespace fs = std::filesystem;
+
+sim::setup read(std::string_view source) {
+  const auto found = sim::parse_setup(source);
+  if (const auto* wrong = std::get_if<sim::setup_error>(&found)) {
+    ADD_FAILURE() << source << ": " << wrong->message;
+    return {};
+  }
+  return std::get<sim::setup>(found);
+}
+
+std::string refusal(std::string_view source) {
+  const auto found = sim::parse_setup(source);
+  const auto* wrong = std::get_if<sim::setup_error>(&found);
+  return wrong == nullptr ? "nothing" : wrong->message;
+}
+
+class SimSetup : public testing::Test {
+ protected:
+  SimSetup() {
+    std::string name = fs::temp_directory_path() / "g4lidar-setup-XXXXXX";
+    directory_ = ::mkdtemp(name.data());
+  }
+  ~SimSetup() override { fs::remove_all(directory_); }
+
+  std::string written(const std::string& text) {
+    std::ofstream(directory_ / "room.txt") << text;
+    return directory_ / "room.txt";
+  }
+  fs::path directory_;
+};
+
+TEST_F(SimSetup, TheShortestText_IsAHealthyDevice) {
+  EXPECT_TRUE(sim::is_simulated("sim:"));
+  EXPECT_FALSE(sim::is_simulated("/dev/ttyUSB0"));
+  for (const char* const source : {"sim:", "sim:?"}) {
+    const sim::setup found = read(source);
+    EXPECT_EQ(found.world_file, "");
+    EXPECT_EQ(found.device.scanner.seed, 1U);
+    EXPECT_EQ(found.device.info.serial_number(), "2021101000070073");
+    EXPECT_TRUE(found.faults.empty());
+  }
+}
+
+TEST_F(SimSetup, EveryKindOfValue) {
+  const sim::setup found = read(
+      "sim:?world=a%20room%3D1.txt&seed=18446744073709551615&serial=0000000000000042&model=255"
+      "&fault=unplug@5s%2B2s&fault=flip&boot_text=false&boots_at_start=true&baud=115200"
+      "&header_ns=1.5s&silence_ns=2&standstill_ns=0");
+  EXPECT_EQ(found.world_file, "a room=1.txt");
+  EXPECT_EQ(found.device.scanner.seed, 18'446'744'073'709'551'615U);
+  EXPECT_EQ(found.device.info.serial_number(), "0000000000000042");
+  EXPECT_EQ(found.device.info.model, 255);
+  ASSERT_EQ(found.faults.size(), 2U);
+  EXPECT_EQ(found.faults[0].kind, sim::fault_kind::unplug);
+  EXPECT_EQ(found.faults[0].begin_ns, 5'000'000'000);
+  EXPECT_EQ(found.faults[0].duration_ns, 2'000'000'000);
+  EXPECT_EQ(found.faults[1].kind, sim::fault_kind::flip);
+  EXPECT_FALSE(found.device.boot_text);
+  EXPECT_TRUE(found.device.boots_at_start);
+  EXPECT_EQ(found.device.baud, 115'200U);
+  EXPECT_EQ(found.device.header_ns, 1'500'000'000);
+  EXPECT_EQ(found.device.silence_ns, 2'000'000'000) << "a number alone is seconds";
+  EXPECT_EQ(found.device.standstill_ns, 0);
+}
+
+TEST_F(SimSetup, TheOrderOfTheOptionsIsFree) {
+  for (const char* const source :
+       {"sim:?batch_min_ns=5ms&batch_max_ns=10ms", "sim:?batch_max_ns=10ms&batch_min_ns=5ms"}) {
+    EXPECT_EQ(read(source).device.batch_min_ns, 5'000'000);
+    EXPECT_EQ(read(source).device.batch_max_ns, 10'000'000);
+  }
+}
+
+TEST_F(SimSetup, InvalidTexts_AreRefused) {
+  EXPECT_THAT(refusal("/dev/ttyUSB0"), HasSubstr("does not begin with sim:"));
+  EXPECT_THAT(refusal("sim:?colour=red"), StartsWith("'colour' is not one of baud, batch_min_ns,"));
+  EXPECT_THAT(refusal("sim:colour"),
+              HasSubstr("boots_at_start, fault, model, seed, serial, world"));
+  EXPECT_THAT(refusal("sim:?&"), StartsWith("'' is not one of baud"));
+  EXPECT_EQ(refusal("sim:?seed=-1"), "'-1' is not in the range 0 to 18446744073709551615");
+  EXPECT_EQ(refusal("sim:?seed="), "'' is not in the range 0 to 18446744073709551615");
+  EXPECT_EQ(refusal("sim:?model=256"), "'256' is not in the range 0 to 255");
+  EXPECT_EQ(refusal("sim:?baud=9600x"), "'9600x' is not in the range 0 to 4294967295");
+  EXPECT_EQ(refusal("sim:?boot_text"), "'' is not one of true, false");
+  EXPECT_THAT(refusal("sim:?header_ns=2parsecs"), StartsWith("'2parsecs' is not a time such as"));
+  EXPECT_THAT(refusal("sim:?header_ns="), StartsWith("'' is not a time such as"));
+  EXPECT_THAT(refusal("sim:?header_ns=2min"), HasSubstr("must take 0 to 60 s"));
+  EXPECT_THAT(refusal("sim:?serial=123"), HasSubstr("a serial number has 16 decimal digits"));
+  EXPECT_THAT(refusal("sim:?serial=123456789012345x"), HasSubstr("has 16 decimal digits"));
+  EXPECT_THAT(refusal("sim:?fault=unplug@5"), StartsWith("unplug@5: '5' is no time"));
+}
+
+TEST_F(SimSetup, SeveralDevicesDifferInSeedAndSerial) {
+  sim::setup first = read("sim:?seed=7&serial=0000000000000042&model=4");
+  const auto made = sim::several(first.device, 4, {"1234567890123456", "0000000000000043"});
+  ASSERT_EQ(made.size(), 4U);
+  EXPECT_EQ(made[0].info.serial_number(), "1234567890123456");
+  EXPECT_EQ(made[1].info.serial_number(), "0000000000000043");
+  EXPECT_EQ(made[2].info.serial_number(), "0000000000000042");
+  EXPECT_EQ(made[3].info.serial_number(), "0000000000000044") << "43 is in use";
+  EXPECT_EQ(made[3].scanner.seed, 10U);
+  EXPECT_EQ(made[3].info.model, 4);
+  first.device.info.serial_digits.fill('9');
+  EXPECT_EQ(sim::several(first.device, 2, {})[1].info.serial_number(), "0000000000000000");
+}
+
+TEST_F(SimSetup, WorldFiles) {
+  const auto error_of = [](const std::string& file) {
+    const auto found = sim::load_world(file);
+    const auto* wrong = std::get_if<sim::world_error>(&found);
+    return wrong == nullptr ? "nothing" : std::to_string(wrong->line) + ": " + wrong->message;
+  };
+  EXPECT_GT(std::get<sim::world>(sim::load_world("")).walls.size(), 10U);
+  const auto found = sim::load_world(written("lidar 0 0 90\nwall -2 1 2 1\n"));
+  ASSERT_EQ(std::get<sim::world>(found).walls.size(), 1U);
+  EXPECT_EQ(std::get<sim::world>(found).lidar.heading_deg, 90.0);
+  EXPECT_THAT(error_of(written("lidar 0 0 0\nwindow 3 3\n")), StartsWith("2: 'window' is unknown"));
+  EXPECT_EQ(error_of(directory_ / "none"), "0: it cannot be read: No such file or directory");
+  EXPECT_EQ(error_of(directory_), "0: it is a directory");
+  EXPECT_THAT(error_of("/dev/zero"), StartsWith("0: it is longer than 16 MB"));
+}
+
+TEST_F(SimSetup, RegisteredLinksAreInTheDirectoryOfTheVariable) {
+  ::unsetenv("G4LIDAR_SIM_DIR");
+  EXPECT_EQ(sim::registered_link("1234567890123456"), "");
+  const std::string place = directory_ / "of" / "ports";
+  ::setenv("G4LIDAR_SIM_DIR", place.c_str(), 1);
+  EXPECT_EQ(sim::registered_link("1234567890123456"), place + "/g4-1234567890123456");
+  EXPECT_TRUE(fs::is_directory(place));
+  ::unsetenv("G4LIDAR_SIM_DIR");
+}
+
+TEST_F(SimSetup, ADeviceServedAlone_KeepsItsPath) {
+  ::setenv("TMPDIR", directory_.c_str(), 1);
+  auto served = sim::serve_alone(sim::device(sim::built_in_world()));
+  ::unsetenv("TMPDIR");
+  ASSERT_TRUE(served) << served.error().message();
+  const std::string path = (*served)->path();
+  EXPECT_THAT(path, StartsWith(directory_.native()));
+  const auto is_there = [&path](bool wanted) {
+    for (int i = 0; i < 2'000 && fs::exists(path) != wanted; ++i) std::this_thread::sleep_for(1ms);
+    return fs::exists(path);
+  };
+  EXPECT_TRUE(is_there(true));
+  (*served)->with([](sim::device& twin, std::int64_t now_ns) { twin.unplug(now_ns); });
+  EXPECT_FALSE(is_there(false));
+  (*served)->with([](sim::device& twin, std::int64_t now_ns) { twin.replug(now_ns); });
+  EXPECT_TRUE(is_there(true));
+  EXPECT_EQ((*served)->path(), path);
+  served->reset();
+  EXPECT_TRUE(fs::is_empty(directory_));
+}
+
+TEST_F(SimSetup, WithoutAPlaceForTheLink_ServingFails) {
+  ::setenv("TMPDIR", (directory_ / "none").c_str(), 1);
+  const auto served = sim::serve_alone(sim::device(sim::built_in_world()));
+  ::unsetenv("TMPDIR");
+  ASSERT_FALSE(served);
+  EXPECT_EQ(served.error(), problem::system);
+}
+
+}  // namespace

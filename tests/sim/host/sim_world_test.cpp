@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// Worlds from text: valid ones, and the errors of invalid ones, with the line.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/world.hpp"
+
+namespace {
+
+using namespace g4lidar;
+
+// The world, or a test failure with the error.
+sim::world good(std::string_view text) {
+  auto read = sim::parse_world(text);
+  if (const auto* error = std::get_if<sim::world_error>(&read)) {
+    ADD_FAILURE() << "line " << error->line << ": " << error->message;
+    return {};
+  }
+  return std::get<sim::world>(std::move(read));
+}
+
+struct refusal {
+  const char* name;
+  std::string_view text;
+  std::size_t line;
+  std::string_view says;
+};
+
+void PrintTo(const refusal& r, std::ostream* out) { *out << r.name; }
+
+class SimWorldRefuses : public testing::TestWithParam<refusal> {};
+
+TEST_P(SimWorldRefuses, WithTheLineAndAReason) {
+  const auto read = sim::parse_world(GetParam().text);
+  const auto* error = std::get_if<sim::world_error>(&read);
+  ASSERT_NE(error, nullptr);
+  EXPECT_EQ(error->line, GetParam().line);
+  EXPECT_NE(error->message.find(GetParam().says), std::string::npos) << error->message;
+}
+
+using namespace std::string_view_literals;
+
+INSTANTIATE_TEST_SUITE_P(
+    Text, SimWorldRefuses,
+    testing::Values(
+        refusal{"nothing", "", 0, "there is no line 'lidar x y heading_deg'"},
+        refusal{"no_lidar", "wall 1 0 1 1\n", 0, "there is no line 'lidar"},
+        refusal{"two_lidars", "lidar 0 0 0\n\nlidar 1 1 0\n", 3, "second lidar"},
+        refusal{"unknown_word", "lidar 0 0 0\nWall 1 0 1 1\n", 2, "'Wall' is unknown"},
+        refusal{"unprintable_word", "\x01\xFF\x7F 1 2\n"sv, 1, "'?\?\?' is unknown"},
+        refusal{"zero_byte", "lidar 0 0 0\0"sv, 1, "'0?' is not a number"},
+        refusal{"long_word", "abcdefghijklmnopqrstuvwxyz", 1, "'abcdefghijklmnopqrstuvwx...'"},
+        refusal{"too_few", "lidar 0 0 0\nwall 1 0 1", 2,
+                "expected 'wall x1 y1 x2 y2', found 3 numbers"},
+        refusal{"too_many", "lidar 0 0 0 0", 1, "expected 'lidar x y heading_deg', found 4"},
+        refusal{"one", "wall 1", 1, "found 1 number"},
+        refusal{"letter", "lidar 0 0 x", 1, "'x' is not a number"},
+        refusal{"exponent", "lidar 0 1e3 0", 1, "'1e3' is not a number"},
+        refusal{"infinity", "lidar 0 inf 0", 1, "'inf' is not a number"},
+        refusal{"two_points", "lidar 0 1.2.3 0", 1, "'1.2.3' is not a number"},
+        refusal{"comma", "lidar 0 1,5 0", 1, "'1,5' is not a number"},
+        refusal{"sign_alone", "lidar - 0 0", 1, "'-' is not a number"},
+        refusal{"point_alone", "lidar . 0 0", 1, "'.' is not a number"},
+        refusal{"two_signs", "lidar +-1 0 0", 1, "'+-1' is not a number"},
+        refusal{"digits", "lidar 0.1234567890123456 0 0", 1, "up to 15 digits"},
+        refusal{"decimals", "lidar 0.0000000000000001 0 0", 1, "up to 15 digits"},
+        refusal{"huge", "lidar 99999999999999999999999999 0 0", 1, "is not a number"},
+        refusal{"far_wall", "lidar 0 0 0\nwall 1 0 1000.1 1", 2, "beyond 1000 m"},
+        refusal{"far_lidar", "lidar 0 -1000.1 0", 1, "beyond 1000 m"},
+        refusal{"heading", "lidar 0 0 360.5", 1, "-360 to 360"},
+        refusal{"no_length", "lidar 0 0 0\nwall 1 1 1 1.0005", 2, "shorter than 1 mm"},
+        refusal{"at_the_lidar", "lidar 1 1 0\nwall 5 5 6 6\nwall 0 1 2 1.01", 3, "within 1 cm"},
+        refusal{"behind_a_comment", "# a\n# b\nlidar 0 0\n", 3, "found 2 numbers"}),
+    [](const auto& case_) { return std::string(case_.param.name); });
+
+TEST(SimWorld, ReadsWallsAndTheLidar) {
+  const sim::world world = good(
+      "# a corner\n"
+      "\n"
+      "wall -1.5 2 +3.25 .5   # with a comment\n"
+      "  lidar\t0.5 0 -90\r\n"
+      "wall 1 1. 2 -0");
+  ASSERT_EQ(world.walls.size(), 2U);
+  EXPECT_EQ(world.walls[0].x1_m, -1.5);
+  EXPECT_EQ(world.walls[0].y1_m, 2.0);
+  EXPECT_EQ(world.walls[0].x2_m, 3.25);
+  EXPECT_EQ(world.walls[0].y2_m, 0.5);
+  EXPECT_EQ(world.walls[1].y1_m, 1.0);
+  EXPECT_EQ(world.lidar.x_m, 0.5);
+  EXPECT_EQ(world.lidar.y_m, 0.0);
+  EXPECT_EQ(world.lidar.heading_deg, -90.0);
+}
+
+TEST(SimWorld, ReadsNumbersAsTheCompilerDoes) {
+  const sim::world world = good("lidar 0.1 123.456789 359.999999999999\nwall 0.3 0.7 1.1 -2.675");
+  EXPECT_EQ(world.lidar.x_m, 0.1);
+  EXPECT_EQ(world.lidar.y_m, 123.456789);
+  EXPECT_EQ(world.lidar.heading_deg, 359.999999999999);
+  EXPECT_EQ(world.walls.at(0).x1_m, 0.3);
+  EXPECT_EQ(world.walls.at(0).y1_m, 0.7);
+  EXPECT_EQ(world.walls.at(0).x2_m, 1.1);
+  EXPECT_EQ(world.walls.at(0).y2_m, -2.675);
+}
+
+TEST(SimWorld, WorldWithoutWalls_IsAccepted) { EXPECT_TRUE(good("lidar 0 0 0").walls.empty()); }
+
+TEST(SimWorld, MoreThanTenThousandWalls_AreRefused) {
+  std::string text = "lidar 0 0 0\n";
+  for (std::size_t i = 0; i < sim::max_walls; ++i) text += "wall 1 1 2 2\n";
+  EXPECT_EQ(good(text).walls.size(), sim::max_walls);
+  const auto read = sim::parse_world(text + "wall 1 1 2 2\n");
+  const auto* error = std::get_if<sim::world_error>(&read);
+  ASSERT_NE(error, nullptr);
+  EXPECT_EQ(error->line, sim::max_walls + 2);
+}
+
+TEST(SimWorld, AnyBytesAreAWorldOrAnError) {
+  constexpr std::string_view letters = "wall lidar 0123456789.-+#\n\n\t\r\xFF";
+  sim::random_stream random(7);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string text = i % 2 == 0 ? "lidar 0 0 0\n" : "";
+    for (std::uint64_t n = random.next() % 80; n > 0; --n) {
+      text += i % 4 < 2 ? letters[random.next() % letters.size()]
+                        : static_cast<char>(random.next() & 0xFFU);
+    }
+    const auto read = sim::parse_world(text);
+    const auto* error = std::get_if<sim::world_error>(&read);
+    if (error != nullptr) {
+      EXPECT_FALSE(error->message.empty());
+    }
+  }
+}
+
+TEST(SimWorld, BuiltInWorld_MeetsTheRulesOfAFile) {
+  const sim::world world = sim::built_in_world();
+  std::string text = "lidar " + std::to_string(world.lidar.x_m) + " " +
+                     std::to_string(world.lidar.y_m) + " " +
+                     std::to_string(world.lidar.heading_deg) + "\n";
+  for (const sim::wall& w : world.walls) {
+    text += "wall " + std::to_string(w.x1_m) + " " + std::to_string(w.y1_m) + " " +
+            std::to_string(w.x2_m) + " " + std::to_string(w.y2_m) + "\n";
+  }
+  const sim::world read = good(text);
+  ASSERT_EQ(read.walls.size(), world.walls.size());
+  for (std::size_t i = 0; i < read.walls.size(); ++i) {
+    EXPECT_EQ(read.walls[i].x1_m, world.walls[i].x1_m);
+    EXPECT_EQ(read.walls[i].y1_m, world.walls[i].y1_m);
+    EXPECT_EQ(read.walls[i].x2_m, world.walls[i].x2_m);
+    EXPECT_EQ(read.walls[i].y2_m, world.walls[i].y2_m);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The options of the device that delay its first answer, its scan header and its first packet.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "g4lidar/sim/device.hpp"
+#include "support/host_side.hpp"
+
+namespace {
+
+using namespace g4lidar;
+using test::host_side;
+using test::ms;
+using test::taken_apart;
+
+/// More than the transmission of a command and its answer, and the delay of a bridge.
+constexpr std::int64_t slack_ns = 10 * ms;
+
+TEST(SimStartTimes, OnlyTheFirstAnswerAfterABoot_IsLate) {
+  sim::device_options options;
+  options.first_answer_ns = 700 * ms;
+  options.boot_ns = 100 * ms;
+  options.boots_at_start = true;
+  options.boot_text = options.boot_information = false;
+  host_side host(options);
+  EXPECT_TRUE(host.listen(200 * ms).empty());
+  host.send(0x90);
+  EXPECT_TRUE(host.listen(699 * ms).empty());
+  EXPECT_FALSE(host.listen(slack_ns).empty());
+  host.send(0x90);
+  EXPECT_FALSE(host.listen(slack_ns).empty());
+}
+
+TEST(SimStartTimes, Header_IsLateAndPacketsFollow) {
+  sim::device_options options;
+  options.header_ns = 800 * ms;
+  host_side host(options);
+  host.send(0x60);
+  EXPECT_TRUE(host.listen(799 * ms).empty());
+  const auto header = taken_apart(host.listen(slack_ns));
+  ASSERT_FALSE(header.responses.empty());
+  EXPECT_EQ(header.responses.front(), response_kind::scan_started);
+  EXPECT_GT(taken_apart(host.listen(500 * ms)).packets, 0U);
+}
+
+TEST(SimStartTimes, Stop_CancelsALateHeader) {
+  sim::device_options options;
+  options.header_ns = 800 * ms;
+  host_side host(options);
+  host.send(0x60);
+  EXPECT_TRUE(host.listen(100 * ms).empty());
+  host.send(0x65);
+  EXPECT_TRUE(taken_apart(host.listen(2'000 * ms)).responses.empty());
+}
+
+TEST(SimStartTimes, SpinUp_IsSilentAfterTheHeader) {
+  sim::device_options options;
+  options.silence_ns = 2'500 * ms;
+  host_side host(options);
+  host.send(0x60);
+  const auto header = taken_apart(host.listen(2'490 * ms));
+  EXPECT_EQ(header.responses.size(), 1U);
+  EXPECT_EQ(header.packets, 0U);
+  EXPECT_GT(taken_apart(host.listen(100 * ms)).packets, 0U);
+}
+
+}  // namespace

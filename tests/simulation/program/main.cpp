@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// simulation_run: Runs the driver on the simulated device in virtual time, with all that a seed draws.
+//
+//     simulation_run --seed 7 --verbose              one run, and what happens in it
+//     simulation_run --from 1 --count 100            a hundred
+//     simulation_run --from 1 --step 2 --minutes 3   every second one, as many as there is time for
+//     simulation_run --unplugs 10000                 a single long one, unplugged again and again
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+
+#include "simulation/simulation_run.hpp"
+#include "simulation/soak.hpp"
+#include "simulation/summary.hpp"
+
+namespace {
+
+using namespace g4lidar::simulation;
+
+struct arguments {
+  std::uint64_t from = 1;
+  std::uint64_t count = 1;
+  std::uint64_t step = 1;
+  std::uint64_t unplugs = 0;
+  double minutes = 0.0;  // 0: `count` of them
+  bool verbose = false;
+  bool good = true;
+};
+
+arguments read_arguments(int count, char** words) {
+  arguments read;
+  for (int i = 1; i < count; ++i) {
+    const std::string_view word = words[i];
+    const char* const value = i + 1 < count ? words[i + 1] : nullptr;
+    const auto number = [&] { return std::strtoull(words[++i], nullptr, 10); };
+    if (word == "--verbose") {
+      read.verbose = true;
+    } else if (value == nullptr) {
+      read.good = false;
+    } else if (word == "--seed" || word == "--from") {
+      read.from = number();
+    } else if (word == "--count") {
+      read.count = number();
+    } else if (word == "--unplugs") {
+      read.unplugs = number();
+    } else if (word == "--step") {
+      read.step = number();
+    } else if (word == "--minutes") {
+      read.minutes = std::strtod(words[++i], nullptr);
+    } else {
+      read.good = false;
+    }
+  }
+  return read;
+}
+
+int run_soak(std::uint64_t unplugs) {
+  const soak_report soaked = soak(unplugs);
+  std::printf(
+      "%llu unplugs, came back %llu times, after %.3f s at the latest; memory grown by %lld bytes, "
+      "%lld descriptors\n",
+      static_cast<unsigned long long>(soaked.unplugs),
+      static_cast<unsigned long long>(soaked.reconnects),
+      static_cast<double>(soaked.slowest_ns) * 1e-9, static_cast<long long>(soaked.grown_bytes),
+      static_cast<long long>(soaked.grown_handles));
+  if (soaked.failure.empty()) return 0;
+  std::printf("failed: %s\n", soaked.failure.c_str());
+  return 1;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const arguments wanted = read_arguments(count, words);
+  if (!wanted.good) {
+    std::fputs(
+        "usage: simulation_run [--seed N | --from N] [--count N | --minutes M] [--step N] "
+        "[--verbose] "
+        "[--unplugs N]\n",
+        stderr);
+    return 2;
+  }
+  if (wanted.unplugs > 0) return run_soak(wanted.unplugs);
+  using clock = std::chrono::steady_clock;
+  const auto end = clock::now() + std::chrono::duration<double, std::ratio<60>>(wanted.minutes);
+  summary all;
+  for (std::uint64_t i = 0; wanted.minutes > 0.0 ? clock::now() < end : i < wanted.count; ++i) {
+    const std::uint64_t seed = wanted.from + i * wanted.step;
+    const run_parameters parameters = draw_run(seed);
+    const run_report report = run_simulation(parameters, wanted.verbose);
+    all.add(parameters, report);
+    if (report.failure.empty()) continue;
+    std::printf("run %llu failed at %.6f s: %s\n  again: %s --seed %llu --verbose\n",
+                static_cast<unsigned long long>(seed), static_cast<double>(report.failed_ns) * 1e-9,
+                report.failure.c_str(), words[0], static_cast<unsigned long long>(seed));
+    std::fflush(stdout);
+  }
+  std::fputs(all.text().c_str(), stdout);
+  if (const std::string wrong = all.problem(); !wrong.empty()) {
+    std::printf("over all runs: %s\n", wrong.c_str());
+    return 1;
+  }
+  return all.failed() > 0 ? 1 : 0;
+}

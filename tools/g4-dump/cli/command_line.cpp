@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// The table of verbs as CLI11 wants it; the only place that sees CLI11.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "exit_code.hpp"
+#include "g4lidar/version.hpp"
+#include "global_options.hpp"
+#include "io/file_id.hpp"
+#include "logger.hpp"
+#include "verb.hpp"
+#include "verbs.hpp"
+
+namespace g4_dump {
+namespace {
+
+/// "--output" of "-o,--output".
+std::string long_name(const std::string& names) {
+  const std::size_t comma = names.rfind(',');
+  return comma == std::string::npos ? names : names.substr(comma + 1);
+}
+
+void add(CLI::App& app, const option_row& row) {
+  const std::string name = long_name(row.names);
+  const auto take = [inner = row.take, name](const std::vector<std::string>& words) {
+    try {
+      for (const std::string& word : words) inner(word);
+    } catch (const bad_value& reason) {
+      throw CLI::ValidationError(name, reason.what());  // which says the name, too
+    }
+  };
+  CLI::Option* option = nullptr;
+  if (row.value.empty() && name.starts_with('-')) {
+    option = app.add_flag_function(row.names, [take](std::int64_t) { take({""}); }, row.help);
+  } else {
+    const bool is_list = row.repeatable && !name.starts_with('-');
+    option = app.add_option_function<std::vector<std::string>>(row.names, take, row.help)
+                 ->type_name(row.value)
+                 ->expected(1, is_list ? CLI::detail::expected_max_vector_size : 1)
+                 ->allow_extra_args(is_list)
+                 ->required(row.required)
+                 ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
+                                                      : CLI::MultiOptionPolicy::Throw);
+  }
+  if (!row.group.empty()) option->group(row.group);
+}
+
+/// The codes that are among `wanted`, or all.
+std::string exit_code_list(const std::vector<int>& wanted) {
+  std::string text = "Exit codes:";
+  for (const exit_code_row& row : exit_codes) {
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), row.code) != wanted.end()) {
+      text += fmt::format("{} {} {}", text.back() == ':' ? "" : ",", row.code, row.meaning);
+    }
+  }
+  return wrapped(text + '.', 0, 0);
+}
+
+std::string footer_of(const verb& shown) {
+  std::string text = shown.details;
+  if (!shown.examples.empty()) text += "\n\nExamples:";
+  for (const example& each : shown.examples) text += "\n  " + each.line + "\n      " + each.words;
+  return text + (text.empty() ? "" : "\n\n") + exit_code_list(shown.exits);
+}
+
+CLI::App* add(CLI::App& app, const verb& added) {
+  CLI::App* const made = app.add_subcommand(added.name, added.summary)->group("Commands");
+  made->footer(footer_of(added));
+  for (const option_row& row : added.arguments) add(*made, row);
+  for (const option_row& row : added.options) add(*made, row);
+  for (const option_row& row : added.options) {
+    CLI::Option* const option = made->get_option(long_name(row.names));
+    for (const std::string& other : row.excludes) option->excludes(made->get_option(other));
+  }
+  return made;
+}
+
+std::string known_verbs(const CLI::App& app) {
+  std::string names;
+  for (const CLI::App* const each : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names += (names.empty() ? "" : ", ") + each->get_name();
+  }
+  return names;
+}
+
+/// What is wrong with the command line, without a full stop.
+std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
+  const bool has_verb = !app.get_subcommands().empty();
+  const std::vector<std::string> rest = app.remaining(has_verb);
+  if (!has_verb && rest.empty()) return "no command; commands are: " + known_verbs(app);
+  if (!has_verb || (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())) {
+    const bool is_option = rest.front().front() == '-';
+    const char* const what = is_option  ? "unknown option"
+                             : has_verb ? "unexpected argument"
+                                        : "unknown command";
+    return fmt::format("{} {}{}", what, in_quotes(rest.front()),
+                       has_verb ? "" : "; commands are: " + known_verbs(app));
+  }
+  std::string words = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    words = words.substr(0, words.find(':')) + " needs one value";
+  }
+  if (!words.empty() && words.back() == '.') words.pop_back();
+  return words;
+}
+
+int explain(const std::string& problem, const std::string& verb) {
+  logger::error(fmt::format("{}. See: g4-dump{} --help", problem, verb), exit_code::usage);
+  return static_cast<int>(exit_code::usage);
+}
+
+/// `run`, and a value that it refuses is a wrong command line.
+std::function<int()> guarded(const verb& chosen) {
+  return [run = chosen.run, name = " " + chosen.name] {
+    try {
+      return run();
+    } catch (const bad_value& reason) {
+      return explain(reason.what(), name);
+    }
+  };
+}
+
+/// How many words from `at` on are the program's own options, which may stand before the verb; 0:
+/// none.
+std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
+  const std::string& word = words[at];
+  if (word == "--color") return 2;
+  if (word == "--quiet" || word == "--verbose" || word == "--json-errors") return 1;
+  if (word.starts_with("--color=")) return 1;
+  const bool is_short = word.size() > 1 && word.front() == '-';
+  return is_short && word.find_first_not_of("qv", 1) == std::string::npos ? 1 : 0;
+}
+
+/// Whether an option or a source stands where a verb could: for the verb that needs not be named.
+/// `--help` and `--version` are the program's own. A file need not look like one.
+bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
+  std::size_t at = 0;
+  while (at < words.size() && own_words(words, at) > 0) at += own_words(words, at);
+  if (at >= words.size()) return true;
+  const std::string& first = words[at];
+  if (first == "-h" || first == "--help" || first == "--version") return false;
+  if (first.empty() || first.front() == '-') return true;
+  const auto is_it = [&first](const verb& each) { return each.name == first; };
+  if (std::any_of(verbs.begin(), verbs.end(), is_it)) return false;
+  std::error_code unimportant;
+  return first.find_first_of("/:.") != std::string::npos ||
+         std::filesystem::is_regular_file(first, unimportant);
+}
+
+std::string app_footer() {
+  std::string text = fmt::format(
+      "\nThe default command is {}. The default SOURCE is the only G4. Other sources:\n",
+      default_verb);
+  for (const source_form& each : source_forms) {
+    text += fmt::format("  {:<25}{}\n", each.form, each.meaning);
+  }
+  return text + "Data goes to standard output, messages go to standard error.\n" +
+         exit_code_list({}) + "\nHelp for a command: g4-dump COMMAND --help";
+}
+
+}  // namespace
+
+std::function<int()> read_command_line(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given
+  if (words == std::vector<std::string>{"--generate", "man"}) return print_man_page;
+  if (words.size() >= 2 && words[0] == "--complete") {
+    return [words] { return complete(std::span(words).subspan(1)); };
+  }
+  const std::vector<verb> verbs = all_verbs();
+  CLI::App app("The console tool for the YDLIDAR G4", "g4-dump");
+  app.set_version_flag("--version",
+                       fmt::format("g4-dump {}.{}.{}", G4LIDAR_VERSION_MAJOR, G4LIDAR_VERSION_MINOR,
+                                   G4LIDAR_VERSION_PATCH),
+                       "Print the version and exit");
+  app.fallthrough();
+  app.footer(app_footer());
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->column_width(36);
+  for (const option_row& row : global_rows()) add(app, row);
+  std::function<int()> chosen;
+  for (const verb& each : verbs) {
+    add(app, each)->callback([&chosen, &each] { chosen = guarded(each); });
+  }
+  if (leaves_out_verb(words, verbs)) words.insert(words.begin(), std::string(default_verb));
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  const auto done = [](int code) { return [code] { return code; }; };
+  try {
+    app.parse(words);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return done(app.exit(wanted));
+  } catch (const CLI::ParseError& error) {
+    const std::vector<CLI::App*> named = app.get_subcommands();
+    return done(
+        explain(problem_with(app, error), named.empty() ? "" : " " + named.back()->get_name()));
+  }
+  return chosen;
+}
+
+}  // namespace g4_dump

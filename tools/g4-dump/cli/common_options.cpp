@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "common_options.hpp"
+
+#include <cmath>
+
+namespace g4_dump {
+
+option_row source_argument(common_options& options) {
+  return text_row("SOURCE", "", "The lidar, a recording, raw bytes, or sim: (the only G4)",
+                  options.source, completion::source);
+}
+
+option_row output_row(common_options& options) {
+  return text_row("-o,--output", "OUT", "Output file; - for standard output (-)", options.output);
+}
+
+option_row duration_row(common_options& options) {
+  return duration_row("-d,--duration", "Stop after this time: 10s, 500ms, 2min", options.duration);
+}
+
+option_rows ending_rows(common_options& options, bool with_idle) {
+  option_rows rows{number_row("-n,--count", "N", "Stop after N records", options.count,
+                              std::uint64_t{1}, UINT64_MAX),
+                   duration_row(options)};
+  if (with_idle)
+    rows.push_back(duration_row("--idle", "Stop when no data came for this time", options.idle));
+  return in_group("End condition", rows);
+}
+
+option_rows filter_rows(common_options& options) {
+  option_row range{"--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16"};
+  range.take = [&filter = options.filter](const std::string& word) {
+    const auto [from, to] = range_of(word, 0.0, 100.0);
+    if (to < from) throw bad_value("'" + word + "' ends before it begins");
+    // To the nearest thousandth of a millimetre, so that 0.28 is 280.
+    filter.least_range_mm = static_cast<float>(std::round(from * 1e6) / 1e3);
+    filter.greatest_range_mm = static_cast<float>(std::round(to * 1e6) / 1e3);
+  };
+  const auto directions = [](const std::string& word) {
+    const auto [from, to] = range_of(word, -360.0, 360.0);
+    return sector(from, to);
+  };
+  option_row ignore{"--ignore", "FROM:TO", "Leave out these directions: 30:40; may be repeated",
+                    [&options, directions](const std::string& word) {
+                      options.ignored.push_back(directions(word));
+                    }};
+  ignore.repeatable = true;
+  return in_group("Filters", {range,
+                              value_row("--fov", "FROM:TO",
+                                        "Keep these directions, in degrees of the frame: -90:90",
+                                        options.filter.field_of_view, directions),
+                              ignore});
+}
+
+option_row frame_row(const char* name, const char* help, frame& into) {
+  return choice_row(name, help, into,
+                    choices<frame>{{"vendor", frame::vendor}, {"robot", frame::robot}});
+}
+
+option_row time_row(common_options& options) {
+  return choice_row("--time", "Since 1970, monotonic, since the last or the first record (abs)",
+                    options.time,
+                    choices<time_style>{{"abs", time_style::absolute},
+                                        {"mono", time_style::monotonic},
+                                        {"delta", time_style::delta},
+                                        {"zero", time_style::zero}});
+}
+
+option_rows shape_rows(common_options& options) {
+  return in_group("Output form",
+                  {frame_row("--frame", "vendor: clockwise from the cable; robot: REP 103 (vendor)",
+                             options.frame),
+                   choice_row("--unit", "Unit of ranges (mm)", options.unit,
+                              choices<length_unit>{{"mm", length_unit::millimetres},
+                                                   {"m", length_unit::metres}}),
+                   time_row(options)});
+}
+
+option_row format_row(text_format& into, const char* help) {
+  return choice_row(
+      "-f,--format", help, into,
+      choices<text_format>{
+          {"csv", text_format::csv}, {"jsonl", text_format::jsonl}, {"text", text_format::text}});
+}
+
+option_rows baud_row(common_options& options) {
+  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)", options.baud, 1U,
+                                        10'000'000U)});
+}
+
+option_rows device_rows(common_options& options) {
+  return joined(
+      in_group("Device",
+               {choice_row("--on-loss", "wait: also for a device that is not connected yet (exit)",
+                           options.on_loss,
+                           choices<loss_rule>{{"exit", loss_rule::exit},
+                                              {"wait", loss_rule::wait},
+                                              {"reconnect", loss_rule::reconnect}})}),
+      baud_row(options));
+}
+
+option_row json_row(common_options& options) {
+  return flag_row("--json", "Write JSON, one object in each line", options.json);
+}
+
+option_row compress_row(packing& into) {
+  return value_row("--compress", "", "Compress a recording with zstd", into,
+                   [](const std::string&) {
+                     if (!has_zstd()) throw bad_value("this g4-dump was built without zstd");
+                     return packing::zstd;
+                   });
+}
+
+}  // namespace g4_dump

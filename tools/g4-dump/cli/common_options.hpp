@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The options that the verbs share, and their rows in the table. A verb takes the rows that mean
+// something for it.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "exit_code.hpp"
+#include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/export/time_shift.hpp"
+#include "g4lidar/filter.hpp"
+#include "g4lidar/point.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "rows.hpp"
+#include "verb.hpp"
+
+namespace g4_dump {
+
+/// What a command does when its device is not connected.
+enum class loss_rule : unsigned char {
+  exit,       ///< It ends.
+  reconnect,  ///< It continues when the device is connected again.
+  wait,       ///< It also waits for a device that is not connected yet.
+};
+
+struct common_options {
+  std::string source;        ///< Empty: the only G4.
+  std::string output = "-";  ///< `-`: standard output.
+  std::uint32_t baud = 230400;
+  std::uint64_t count = 0;               ///< So many records, then the end; 0: no end.
+  std::chrono::nanoseconds duration{0};  ///< 0: no end.
+  std::chrono::nanoseconds idle{0};      ///< The end when nothing has come for so long; 0: never.
+  point_filter filter;  ///< But for its frame, which is `frame`, and its ignored sectors.
+  std::vector<sector> ignored;
+  g4lidar::frame frame = g4lidar::frame::vendor;
+  length_unit unit = length_unit::millimetres;
+  std::optional<time_style> time;  ///< Where nothing is said, what suits the source.
+  loss_rule on_loss = loss_rule::exit;
+  bool json = false;  ///< JSON instead of text.
+};
+
+using shared_options = std::shared_ptr<common_options>;
+
+/// The words of lidar_options::device, a file, `-`, or `sim:`; see source.hpp.
+[[nodiscard]] option_row source_argument(common_options& options);
+[[nodiscard]] option_row output_row(common_options& options);
+/// -d.
+[[nodiscard]] option_row duration_row(common_options& options);
+/// -n, -d, --idle.
+[[nodiscard]] option_rows ending_rows(common_options& options, bool with_idle = true);
+/// --range, --fov, --ignore.
+[[nodiscard]] option_rows filter_rows(common_options& options);
+/// --frame, --unit, --time.
+[[nodiscard]] option_rows shape_rows(common_options& options);
+[[nodiscard]] option_row time_row(common_options& options);
+[[nodiscard]] option_row frame_row(const char* name, const char* help, g4lidar::frame& into);
+/// --format csv|jsonl|text.
+[[nodiscard]] option_row format_row(text_format& into, const char* help = "Output format (text)");
+/// --json.
+[[nodiscard]] option_row json_row(common_options& options);
+/// --compress.
+[[nodiscard]] option_row compress_row(packing& into);
+[[nodiscard]] option_rows baud_row(common_options& options);
+/// --on-loss and --baud.
+[[nodiscard]] option_rows device_rows(common_options& options);
+
+}  // namespace g4_dump

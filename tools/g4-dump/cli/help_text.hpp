@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Paragraphs of the help that several verbs share.
+#pragma once
+
+namespace g4_dump::help_text {
+
+inline constexpr const char* shape =
+    R"(  --range FROM:TO  A point without a return has the range 0: it is left out unless FROM is 0.
+  --fov, --ignore  Directions in the frame of the output, both ends included: 350:10 is 20 degrees
+                   around 0; in the robot frame -90:90 is the half in front.
+  --frame vendor   Angles grow clockwise seen from above, 0 at the cable, in [0, 360).
+  --frame robot    Angles grow counter-clockwise, 0 ahead (opposite the cable), in [-180, 180).
+  --time abs       Since 1970, by the clock of the computer (default).
+  --time mono      Time of the monotonic clock.
+  --time zero      Since the first record that came.
+  --time delta     Since the previous record that was written.
+
+Raw bytes carry no times: times are counted from the first sample with --sample-rate; abs and
+mono are refused.)";
+
+inline constexpr const char* ending =
+    R"(From a lidar or a pipe, OUT is created (or replaced) with the first record and grows. From a
+file, OUT appears when everything is written. ^C stops the lidar; the records so far are
+written. With --on-loss reconnect or wait the command waits for a lost lidar, until --idle ends
+it; with wait also for one that is not connected yet. For files, -d counts the times of the
+points.)";
+
+inline constexpr const char* point_columns =
+    R"(Columns of csv:
+  scan       number of the revolution
+  angle_deg  direction of the point
+  range_mm   distance (range_m with --unit m); 0: no return
+  time_ns    time of the point
+
+More columns may follow in later versions. jsonl has the same names, and no_return and too_near
+(below 100 mm: not reliable). text is for people.)";
+
+inline constexpr const char* scan_columns =
+    R"(A record is a revolution, flagged where data are missing; with --partial also a piece of one.
+
+Columns of csv:
+  scan         number of the revolution
+  time_ns      time of its first point
+  points       number of points
+  returns      number of points with a return
+  partial      true or false
+  why          why it is partial, joined by +: start_missing, end_missing, data_lost, turn_short,
+               and where a zero packet was lost start_by_angle, end_by_angle
+  turned_deg   angle between the first and the last point, about 360
+  reported_hz  scan frequency as the lidar reports it; empty if unknown
+  measured_hz  scan frequency as measured; empty if unknown
+
+More columns may follow in later versions. jsonl: an object with the same names, and all points
+in arrays: angle_deg, range_mm or range_m, time_ns.)";
+
+}  // namespace g4_dump::help_text

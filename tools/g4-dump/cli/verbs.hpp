@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Every verb of g4-dump, made in verbs/, what the help says beside them, and the command line, the man
+// page and the completions, which are made from that.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "verb.hpp"
+
+namespace g4_dump {
+
+[[nodiscard]] verb make_list_verb();
+[[nodiscard]] verb make_watch_verb();
+[[nodiscard]] verb make_info_verb();
+[[nodiscard]] verb make_health_verb();
+[[nodiscard]] verb make_stats_verb();
+[[nodiscard]] verb make_dump_verb();
+[[nodiscard]] verb make_scan_verb();
+[[nodiscard]] verb make_doctor_verb();
+[[nodiscard]] verb make_packets_verb();
+[[nodiscard]] verb make_decode_verb();
+[[nodiscard]] verb make_sim_verb();
+[[nodiscard]] verb make_set_verb();
+[[nodiscard]] verb make_start_verb();
+[[nodiscard]] verb make_stop_verb();
+[[nodiscard]] verb make_restart_verb();
+[[nodiscard]] verb make_record_verb();
+[[nodiscard]] verb make_replay_verb();
+[[nodiscard]] verb make_convert_verb();
+
+/// All of them, in the order of the help.
+[[nodiscard]] std::vector<verb> all_verbs();
+
+/// The verb that need not be named.
+inline constexpr std::string_view default_verb = "dump";
+
+/// --help and --version.
+[[nodiscard]] option_rows standard_rows();
+
+/// The exit codes and what they mean.
+struct exit_code_row {
+  int code;
+  std::string_view meaning;
+};
+inline constexpr std::array<exit_code_row, 12> exit_codes{{
+    {0, "success"},
+    {2, "invalid command line"},
+    {3, "no device found"},
+    {4, "permission denied"},
+    {5, "device in use by another program"},
+    {6, "no answer, or wrong baud rate"},
+    {7, "another device answered"},
+    {8, "the device reports an error or does not obey"},
+    {9, "connection lost"},
+    {10, "file cannot be read or written"},
+    {11, "out of memory or internal error"},
+    {130, "ended by ^C (128 + the number of the signal)"},
+}};
+
+/// What SOURCE can be.
+struct source_form {
+  std::string_view form;
+  std::string_view meaning;
+};
+inline constexpr std::array<source_form, 7> source_forms{{
+    {"/dev/ttyUSB0", "a serial port"},
+    {"serial:2021101000070073", "the lidar with this serial number, at any port"},
+    {"usb:1-1.4", "the port at this place on the USB bus"},
+    {"tcp:HOST:PORT", "a network bridge that forwards raw bytes"},
+    {"FILE, -", "a recording, or raw bytes; - is standard input"},
+    {"file:FILE", "the same, whatever its name"},
+    {"sim:", "a simulated G4; sim:?world=FILE&seed=N&fault=FAULT"},
+}};
+
+/// Reads the command line; what is to be run then, which returns the exit code. Where everything has
+/// been said already (--help, --version, a wrong command line), it only does that.
+[[nodiscard]] std::function<int()> read_command_line(int argc, const char* const* argv);
+
+/// `g4-dump --generate man`, which the build runs: prints g4-dump(1). Returns the exit code.
+[[nodiscard]] int print_man_page();
+
+/// `g4-dump --complete WORD...`, which the scripts of the shells run: prints what the last word,
+/// which may be empty, can become, each with a tab and what it means; `/` stands for the names of
+/// files. Returns the exit code.
+[[nodiscard]] int complete(std::span<const std::string> words);
+
+}  // namespace g4_dump

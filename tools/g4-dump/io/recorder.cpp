@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "file_id.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "read_loop.hpp"
+#include "service_watch.hpp"
+
+namespace g4_dump {
+namespace {
+
+/// What is wrong with the file of a recording, and what to try.
+failure file_failure(const g4lidar::error& why, const std::string& path) {
+  const int number = why.system_errno();
+  if (why.code() == problem::bad_option) return {exit_code::usage, in_tool_words(why.message())};
+  if (why.code() != problem::system || number == 0)
+    return {exit_code::bad_file, in_tool_words(why.message())};
+  const bool is_full = number == ENOSPC || number == EDQUOT || number == EFBIG;
+  return {exit_code::bad_file,
+          fmt::format(
+              "cannot write {}: {}. {}{}", in_quotes(path),
+              number == EEXIST ? "it exists already" : std::generic_category().message(number),
+              advice_on_writing(number), is_full ? " What was written before can be read." : "")};
+}
+
+/// One recording, from its beginning to its end.
+class recorder {
+ public:
+  explicit recorder(const recording_job& job) : job_(job), line_(job.shows_counts) {}
+
+  recorded_result run() {
+    try {
+      open();
+      output nowhere("/dev/null");
+      read_source(*source_, job_.common, sink(), nowhere);
+      end();
+      if (const auto why = file_error_) throw file_failure(*why, title_);
+    } catch (...) {
+      end();
+      if (job_.shows_counts && has_run_) report_recorded(result_, title_);
+      throw;
+    }
+    return result_;
+  }
+
+ private:
+  /// The file is there before the source is opened, for that is recorded, too.
+  void open() {
+    opening how = job_.source;
+    how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
+    how.tap = [this](std::unique_ptr<g4lidar::connector> line)
+        -> g4lidar::result<std::unique_ptr<g4lidar::connector>> {
+      if (!writer_) {
+        auto made = g4lidar::recording_writer::create(job_.path, job_.made);
+        if (!made) throw file_failure(made.error(), title_);
+        writer_ = std::make_unique<g4lidar::recording_writer>(std::move(*made));
+      }
+      return g4lidar::recorded(std::move(line), *writer_);
+    };
+    source_ = std::make_unique<opened_source>(job_.common, how);
+    points_ =
+        std::make_unique<g4lidar::lidar_ring::reader>(source_->lidar().points().make_reader());
+    has_run_ = true;
+    describe();
+  }
+
+  /// What is known of the device; nothing is changed for it. Of a recording, recorded() knows it.
+  void describe() {
+    const source_kind kind = kind_of(job_.common.source);
+    if (kind == source_kind::recording || kind == source_kind::bytes) return;
+    g4lidar::lidar& lidar = source_->lidar();
+    g4lidar::recorded_device known;
+    known.information = lidar.information();
+    if (const auto got = lidar.ask(g4lidar::requests::get_ranging())) known.ranging = *got;
+    if (const auto got = lidar.ask(g4lidar::requests::get_scan_frequency())) known.frequency = *got;
+    writer_->device(known);
+  }
+
+  read_sink sink() {
+    const auto take = [this](const g4lidar::scan& scan) -> std::uint64_t {
+      if (job_.scans && !scan.is_piece()) writer_->scan(scan);
+      return scan.is_piece() ? 0 : 1;
+    };
+    return {.scan = take, .pulse = [this] { pulse(); }, .with_bar = !job_.shows_counts};
+  }
+
+  void pulse() {
+    take_points();
+    report_to_service();
+    if (const auto why = writer_->take_error()) throw file_failure(*why, title_);
+    if (!line_.is_due()) return;
+    const g4lidar::lidar_counts lidar = source_->lidar().counts();
+    line_.draw(fmt::format(
+        "{:.0f} s  {}  {}  {} skipped  {:.1f} MB in {}", line_.seconds(),
+        counted(lidar.stream.points, "point"), counted(lidar.scans, "scan"),
+        counted(lidar.stream.skipped_bytes(), "byte"),
+        static_cast<double>(writer_->counts().file_bytes) / 1e6,
+        printable(job_.title.empty() ? writer_->path() : std::string_view(job_.title))));
+  }
+
+  void take_points() {
+    while (const std::size_t count = points_->read(memory_).points) {
+      writer_->points(std::span(memory_).first(count));
+    }
+  }
+
+  /// A service is ready when the lidar scans, and alive with each turn.
+  void report_to_service() {
+    service_.ready();
+    service_.alive();
+    if (service_.is_heard()) {
+      service_.status(fmt::format("recording {}: {}", writer_->path(),
+                                  counted(source_->lidar().counts().scans, "scan")));
+    }
+  }
+
+  /// Ends the scan, the connection and the file, in this order; an earlier error is kept.
+  void end() {
+    line_.clear();
+    service_.stopping();
+    if (!writer_) return;
+    if (source_) {
+      result_.damage = source_->damage();
+      if (const auto* played = source_->recording()) result_.recorded = played->digest();
+      static_cast<void>(source_->lidar().close());
+      if (points_) take_points();
+      result_.lidar = source_->lidar().counts();
+    }
+    points_.reset();
+    source_.reset();
+    const auto closed = writer_->close();
+    file_error_ = writer_->take_error();
+    if (!closed && !file_error_) file_error_ = closed.error();
+    result_.file = writer_->counts();
+    result_.digest = writer_->digest();
+    std::error_code unimportant;
+    // It holds an attempt to open the source, and nothing else.
+    const bool is_file = std::filesystem::is_regular_file(job_.path, unimportant);
+    if (!has_run_ && is_file) std::filesystem::remove(job_.path, unimportant);
+    writer_.reset();
+  }
+
+  const recording_job& job_;
+  const std::string& title_ = job_.title.empty() ? job_.path : job_.title;
+  status_line line_;
+  service_watch service_;
+  std::unique_ptr<recording_writer> writer_;  // outlives the source, which is recorded by it
+  std::unique_ptr<opened_source> source_;
+  std::unique_ptr<g4lidar::lidar_ring::reader> points_;
+  std::array<g4lidar::point, 512> memory_{};
+  std::optional<g4lidar::error> file_error_;
+  recorded_result result_;
+  bool has_run_ = false;
+};
+
+}  // namespace
+
+recorded_result record(const recording_job& job) { return recorder(job).run(); }
+
+void report_recorded(const recorded_result& result, const std::string& path) {
+  const g4lidar::recording_counts& file = result.file;
+  logger::info(fmt::format("{}: {} in {}: {} from the lidar, {} to it, {}\n", path,
+                           counted(file.file_bytes, "byte"), counted(file.files, "file"),
+                           counted(file.bytes_from_device, "byte"), file.bytes_to_device,
+                           counted(file.scans, "scan")));
+  if (file.chunks_lost > 0) {
+    logger::info(fmt::format("{} in {} could not be written\n", counted(file.bytes_lost, "byte"),
+                             counted(file.chunks_lost, "chunk")));
+  }
+  logger::info(fmt::format("digest of all bytes {:016x}, of {} {:016x}\n", result.digest.payload,
+                           counted(result.digest.point_count, "point"), result.digest.points));
+}
+
+}  // namespace g4_dump

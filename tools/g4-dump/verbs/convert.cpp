@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+// The verb convert.
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "g4lidar/transport/transport.hpp"
+#include "io/file_id.hpp"
+#include "io/input.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/point_job.hpp"
+#include "io/read_loop.hpp"
+#include "io/recorder.hpp"
+#include "io/stream_report.hpp"
+
+namespace g4_dump {
+namespace {
+
+enum class file_form : unsigned char { recording, raw_bytes, csv, jsonl, pcd };
+
+struct convert_options {
+  point_job points;               ///< Its source is IN, its output OUT; also for bytes.
+  std::optional<file_form> from;  ///< Else by its contents and name.
+  std::optional<file_form> to;    ///< Else by its name.
+  bool shapes = false;            ///< An option was given that only points can have.
+  g4lidar::packing packed{};      ///< A recording.
+
+  [[nodiscard]] const std::string& in() const noexcept { return points.common->source; }
+  [[nodiscard]] const std::string& out() const noexcept { return points.common->output; }
+  [[nodiscard]] const g4lidar::reading_options& range() const noexcept {
+    return points.source.played.range;
+  }
+};
+
+/// Those that are read, with pcd those that are written, then other names of them.
+const choices<file_form>& forms() {
+  static const choices<file_form> all{{"mcap", file_form::recording}, {"bin", file_form::raw_bytes},
+                                      {"csv", file_form::csv},        {"jsonl", file_form::jsonl},
+                                      {"pcd", file_form::pcd},        {"ndjson", file_form::jsonl},
+                                      {"raw", file_form::raw_bytes}};
+  return all;
+}
+
+std::optional<file_form> form_of_name(const std::string& name) {
+  for (const auto& [word, form] : forms()) {
+    if (name.ends_with("." + word)) return form;
+  }
+  return std::nullopt;
+}
+
+file_form form_of_input(const convert_options& options) {
+  const std::string& name = options.in();
+  const source_kind kind = kind_of(name);
+  if (kind == source_kind::device && !std::filesystem::exists(path_of(name))) {
+    throw failure(exit_code::bad_file, "there is no file " + in_quotes(name) +
+                                           ". Check the name. For a lidar, use g4-dump dump or "
+                                           "g4-dump record.");
+  }
+  if (kind == source_kind::simulated || kind == source_kind::device) {
+    throw bad_value(in_quotes(name) + " is not a file: use dump or record");
+  }
+  const bool is_recording = kind == source_kind::recording;
+  const file_form by_looks =
+      is_recording ? file_form::recording : form_of_name(name).value_or(file_form::raw_bytes);
+  const file_form form = options.from.value_or(by_looks);
+  if (form == file_form::pcd) throw bad_value("pcd is written, but not read");
+  if (form == file_form::recording && !is_recording) {
+    throw failure(exit_code::bad_file,
+                  in_quotes(name) + " is not a recording. Give a file made by g4-dump record.");
+  }
+  return form;
+}
+
+file_form form_of_output(const convert_options& options) {
+  const std::string& name = options.out();
+  std::error_code unknown;
+  if (options.to) return *options.to;
+  if (name.ends_with('/') || std::filesystem::is_directory(name, unknown)) return file_form::pcd;
+  if (const auto form = form_of_name(name)) return *form;
+  throw bad_value(
+      fmt::format("'{}' does not end in .mcap, .bin, .csv, .jsonl or .pcd; give its "
+                  "format with --to-format",
+                  name));
+}
+
+bool is_text(file_form form) { return form == file_form::csv || form == file_form::jsonl; }
+
+void refuse_nonsense(const convert_options& options, file_form from, file_form to) {
+  const bool to_points = is_text(to) || to == file_form::pcd;
+  if (is_text(from) && !to_points) {
+    throw bad_value(
+        fmt::format("{} holds points, not bytes of a lidar: it can be converted to csv, jsonl and "
+                    "pcd, but not to raw bytes or a recording",
+                    in_quotes(options.in())));
+  }
+  if (!to_points && options.shapes) {
+    throw bad_value(
+        "raw bytes and recordings hold what the lidar sent: --range, --fov, --ignore, "
+        "--frame, --unit, --time and --scans are for points");
+  }
+  if (to == file_form::recording && options.out() == "-") {
+    throw bad_value("a recording is written to a file, not to standard output");
+  }
+}
+
+int to_points(convert_options options, file_form from, file_form to) {
+  point_job& job = options.points;
+  if (from == file_form::csv) job.text = text_source::csv;
+  if (from == file_form::jsonl) job.text = text_source::jsonl;
+  if (to == file_form::pcd) job.file = scan_file::pcd;
+  job.partial = to != file_form::pcd;
+  job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
+  return run(job);
+}
+
+/// What the lidar sent, as it sent it.
+void copy_recording(const convert_options& options, output& out) {
+  std::uint64_t count = 0;
+  const auto take = [&](const g4lidar::recorded_item& item) {
+    if (item.what == g4lidar::recorded_item::kind::from_device) {
+      out.write({reinterpret_cast<const char*>(item.data.data()), item.data.size()});
+      count += item.data.size();
+    }
+    return !out.is_closed();
+  };
+  const auto reader = read_items(path_of(options.in()), options.range(), take);
+  logger::info(
+      fmt::format("{} from the lidar\n{}", counted(count, "byte"), describe(reader.damage())));
+}
+
+/// A part of raw bytes, by times that are counted.
+void copy_bytes(const convert_options& options, output& out) {
+  auto line = open_raw_bytes(path_of(options.in()), options.points.source.bytes_rate_hz);
+  if (!line) throw failure(line.error());
+  const std::int64_t begin_ns = (*line)->now_ns();
+  auto opened = (*line)->connect();
+  if (!opened) throw failure(opened.error());
+  std::array<std::uint8_t, 32'768> memory;
+  while (interrupt() == 0 && !out.is_closed()) {
+    const auto got = (*opened)->read(memory, (*opened)->now_ns() + 50'000'000);
+    if (!got && got.error().code() == g4lidar::problem::end_of_input) break;
+    if (!got) throw failure(got.error());
+    const std::int64_t since_ns = got->arrival_ns - begin_ns;
+    if (got->count == 0 || since_ns < options.range().from_ns) continue;
+    if (since_ns >= options.range().to_ns) break;
+    out.write({reinterpret_cast<const char*>(memory.data()), got->count});
+  }
+}
+
+int to_bytes(const convert_options& options, file_form from) {
+  output out(options.out());
+  if (out.is_terminal()) {
+    throw failure(exit_code::usage, "raw bytes are not for a terminal. Give a file as OUT.");
+  }
+  refuse_same_file(id_of_name(path_of(options.in())), out);
+  from == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
+  out.commit();
+  return exit_code_now();
+}
+
+[[noreturn]] void refuse_without_packets(const convert_options& options,
+                                         const recorded_result& result) {
+  input in(path_of(options.in()), "Give a recording or raw bytes.");
+  std::array<std::uint8_t, 4096> begin;
+  const bool has_text = looks_like_text(std::span(begin).first(in.read(begin)));
+  throw failure(exit_code::bad_file,
+                why_no_packet(result.lidar.stream, result.lidar.bytes, has_text, in.title()));
+}
+
+int to_recording(const convert_options& options) {
+  output out(options.out());
+  refuse_same_file(id_of_name(path_of(options.in())), out);
+  recording_job job;
+  job.common = *options.points.common;
+  job.source = options.points.source;
+  job.path = out.place();
+  job.made.overwrite = true;
+  job.made.packed = options.packed;
+  job.title = options.out();
+  const recorded_result result = record(job);
+  if (result.lidar.stream.packets == 0 && interrupt() == 0) refuse_without_packets(options, result);
+  out.commit();
+  report_counts(result.lidar);
+  logger::info(describe(result.damage));
+  report_recorded(result, job.title);
+  return exit_code_now();
+}
+
+int run(const convert_options& options) {
+  const file_form from = form_of_input(options);
+  const file_form to = form_of_output(options);
+  refuse_nonsense(options, from, to);
+  if (to == file_form::recording) return to_recording(options);
+  if (to == file_form::raw_bytes) return to_bytes(options, from);
+  return to_points(options, from, to);
+}
+
+constexpr const char* details =
+    R"(IN is a recording, csv or jsonl as g4-dump writes them for points, else raw bytes. If OUT is a
+directory or a name such as scan-%04d.pcd, each revolution gets a pcd file.
+
+Points of a recording are those of the driver that was recorded, with their times. Raw bytes
+carry no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
+are. From a recording to a recording, all bytes both ways are kept, and the LaserScan messages
+are made anew.
+
+--from and --to count from the beginning of IN. Of a damaged IN the undamaged part is converted,
+and the rest is counted on standard error. OUT appears, or is replaced, when everything is
+written. ^C ends the command with what came so far.)";
+
+option_rows form_rows(convert_options& options) {
+  const choices<file_form> inputs(forms().begin(), forms().begin() + 4);
+  const choices<file_form> outputs(forms().begin(), forms().begin() + 5);
+  point_job& job = options.points;
+  g4lidar::reading_options& range = job.source.played.range;
+  return {
+      choice_row("--from-format", "Format of IN (by its contents and name)", options.from, inputs),
+      choice_row("--to-format", "Format of OUT (by its name)", options.to, outputs),
+      moment_row("--from", "Leave out what came before: 10s", range.from_ns),
+      moment_row("--to", "Leave out what came from then on: 40s", range.to_ns),
+      value_row("--ascii", "", "Write pcd as text", job.data,
+                [](const std::string&) { return pcd_data::ascii; }),
+      sample_rate_row(job.source.bytes_rate_hz),
+      frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
+      compress_row(options.packed)};
+}
+
+/// Rows that make sense for points only.
+option_rows point_rows(convert_options& options) {
+  common_options& common = *options.points.common;
+  option_rows rows = joined(flag_row("--scans", "A record for each revolution, in csv and jsonl",
+                                     options.points.style.scans),
+                            filter_rows(common), shape_rows(common));
+  for (option_row& row : rows) {
+    row = checked(std::move(row), [&options](const std::string&) { options.shapes = true; });
+  }
+  return rows;
+}
+
+}  // namespace
+
+verb make_convert_verb() {
+  const auto options = std::make_shared<convert_options>();
+  common_options& common = *options->points.common;
+  options->points.whole_file = true;
+  options->points.style = {};
+  return {
+      .name = "convert",
+      .summary = "Convert recordings, raw bytes, csv, jsonl and pcd",
+      .arguments = {file_argument("IN", "A recording, raw bytes, csv or jsonl", common.source),
+                    file_argument("OUT", "The file to write; - with --to-format: standard output",
+                                  common.output)},
+      .options = joined(form_rows(*options), point_rows(*options)),
+      .details = details,
+      .examples =
+          {{"g4-dump convert walk.mcap walk.csv --from 10s --to 40s", "The points of 30 s as csv"},
+           {"g4-dump convert walk.mcap scans/scan-%04d.pcd --frame robot",
+            "A point cloud for each revolution"},
+           {"g4-dump convert walk.mcap walk.bin", "The bytes that the lidar sent"},
+           {"g4-dump convert walk.bin walk.mcap --compress", "Raw bytes to a compressed recording"},
+           {"g4-dump convert walk.csv walk.jsonl --range 0.28:16", "The near returns as JSON"}},
+      .exits = {0, 2, 10, 130},
+      .run = [options] { return run(*options); }};
+}
+
+}  // namespace g4_dump

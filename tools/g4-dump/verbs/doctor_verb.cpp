@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// The verb doctor: the stages in words or as JSON, each as it is done.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <ranges>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cli/common_options.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/global_options.hpp"
+#include "cli/logger.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "g4lidar/export/printable.hpp"
+#include "io/command_source.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/source.hpp"
+
+namespace g4_dump {
+namespace {
+
+using g4lidar::describe;
+
+constexpr std::size_t text_indent = 15;
+
+std::string list_of(std::span<const diagnosis> all) {
+  const auto name = [](diagnosis each) { return describe(each).name; };
+  return fmt::format("{}", fmt::join(all | std::views::transform(name), ", "));
+}
+
+/// "FAIL" in red, on a terminal.
+std::string flag_of(stage_verdict how, bool colored) {
+  constexpr std::array<std::string_view, 4> words{"ok", "skipped", "warn", "FAIL"};
+  constexpr std::array<int, 4> colors{32, 2, 33, 31};
+  const auto at = static_cast<std::size_t>(how);
+  if (!colored) return fmt::format("{:<4}", words[at]);
+  return fmt::format("\033[{}m{:<4}\033[0m", colors[at], words[at]);
+}
+
+std::string text_of(const stage_report& report, bool colored) {
+  std::vector<std::string> lines;
+  for (const diagnosis what : report.diagnoses) {
+    const diagnosis_info& info = describe(what);
+    lines.push_back(fmt::format("{}: {}", info.name, info.cause));
+    if (!info.alternatives.empty()) lines.push_back("or: " + list_of(info.alternatives));
+    lines.push_back("try: " + in_tool_words(info.advice));
+  }
+  std::string measured;
+  for (const evidence& each : report.measurements) {
+    measured.append(measured.empty() ? "" : ", ");
+    measured.append(each.name).append(" ").append(printable(each.text()));
+  }
+  if (!measured.empty()) lines.push_back((lines.empty() ? "" : "measured: ") + measured);
+  if (!report.remark.empty() || lines.empty()) lines.push_back(printable(report.remark));
+  std::string text =
+      fmt::format("{:<13}{} ", name_of(report.stage), flag_of(report.outcome, colored));
+  for (const std::string& line : lines) {
+    const bool is_first = &line == lines.data();
+    if (!is_first) text.append(text_indent, ' ');
+    text += wrapped(line, is_first ? text_indent + 3 : text_indent, text_indent) + "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json json_of(const stage_report& report) {
+  using nlohmann::ordered_json;
+  ordered_json line{{"stage", name_of(report.stage)},
+                    {"verdict", name_of(report.outcome)},
+                    {"diagnoses", ordered_json::array()},
+                    {"evidence", ordered_json::object()}};
+  for (const diagnosis what : report.diagnoses) {
+    const diagnosis_info& info = describe(what);
+    ordered_json others = ordered_json::array();
+    for (const diagnosis other : info.alternatives) others.push_back(describe(other).name);
+    line["diagnoses"].push_back({{"name", info.name},
+                                 {"cause", info.cause},
+                                 {"or", others},
+                                 {"try", in_tool_words(info.advice)}});
+  }
+  for (const evidence& each : report.measurements) {
+    std::visit([&](const auto& value) { line["evidence"][each.name] = value; }, each.value);
+  }
+  if (!report.remark.empty()) line["remark"] = report.remark;
+  return line;
+}
+
+/// Where a stage failed by another one, the lidar is unhealthy.
+constexpr std::array<std::pair<diagnosis, exit_code>, 15> failure_codes{{
+    {diagnosis::no_port, exit_code::no_device},
+    {diagnosis::several_ports, exit_code::no_device},
+    {diagnosis::not_serial, exit_code::no_device},
+    {diagnosis::cannot_connect, exit_code::no_device},
+    {diagnosis::system, exit_code::no_device},
+    {diagnosis::bad_file, exit_code::bad_file},
+    {diagnosis::permission, exit_code::permission},
+    {diagnosis::busy, exit_code::busy},
+    {diagnosis::interference, exit_code::busy},
+    {diagnosis::bad_baud_rate, exit_code::silent},
+    {diagnosis::wrong_baud_rate, exit_code::silent},
+    {diagnosis::silent, exit_code::silent},
+    {diagnosis::other_device, exit_code::not_a_g4},
+    {diagnosis::unplugged, exit_code::lost},
+    {diagnosis::stalls, exit_code::lost},
+}};
+
+/// The exit code of the first stage that failed.
+exit_code exit_code_of(std::span<const stage_report> stages) noexcept {
+  for (const stage_report& each : stages) {
+    for (const diagnosis what : each.diagnoses) {
+      if (std::min(each.outcome, describe(what).severity) != stage_verdict::fail) continue;
+      for (const auto& [failed, code] : failure_codes) {
+        if (failed == what) return code;
+      }
+      return exit_code::unhealthy;
+    }
+  }
+  return exit_code::ok;
+}
+
+/// The last line, for people.
+std::string summary_of(std::span<const stage_report> stages) {
+  std::vector<diagnosis> found;
+  for (const stage_report& each : stages) {
+    found.insert(found.end(), each.diagnoses.begin(), each.diagnoses.end());
+  }
+  return found.empty() ? "healthy: nothing is wrong\n" : "found: " + list_of(found) + "\n";
+}
+
+/// The source as the library names it; a simulated device is served as long as `served` lives.
+std::string device_of(const std::string& source, simulated_port& served) {
+  if (source == "-") throw bad_value("doctor examines a device or a file, not standard input");
+  const source_kind kind = kind_of(source);
+  if (kind == source_kind::simulated) {
+    served = serve_simulated(source);
+    return served->path();
+  }
+  return kind == source_kind::device ? source : "file:" + path_of(source);
+}
+
+int examine(const common_options& options) {
+  output out(options.output);
+  simulated_port served;
+  const std::string source = device_of(options.source, served);
+  diagnostic_options how;
+  how.baud = options.baud;
+  if (options.duration.count() > 0) how.measuring_time = options.duration;
+  how.is_cancelled = [] { return interrupt() != 0; };
+  how.on_stage = [&, colored = wants_color(out.descriptor())](const stage_report& report) {
+    options.json ? write_line(out, json_of(report)) : out.write(text_of(report, colored));
+    out.flush();
+  };
+  how.on_activity = [&](diagnostic_activity what) {
+    if (options.json || what != diagnostic_activity::spinning_up) return;
+    out.write("spinning up: the lidar has started and sends nothing yet\n");
+    out.flush();
+  };
+  const std::vector<stage_report> stages = diagnose(source, how);
+  if (!options.json && interrupt() == 0) out.write(summary_of(stages));
+  out.commit();
+  return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code_of(stages));
+}
+
+constexpr const char* details =
+    R"(It examines port, permission, holder, baud rate, answers, identity, health, motor, stream, rate,
+loss and USB latency. It reports for each what was measured; where something is wrong also the
+likely cause and what to try. A healthy lidar takes about 8 seconds. No setting is changed, and
+the motor stands at the end. A recording or a file of raw bytes is examined as far as its bytes
+tell; stages that need a device are skipped. The exit code is that of the first stage that
+failed; a stage that only warns leaves it at 0.)";
+
+}  // namespace
+
+verb make_doctor_verb() {
+  const auto options = std::make_shared<common_options>();
+  option_row time = duration_row(*options);
+  time.help = "Listen to the scan for so long (5s)";
+  option_row json = json_row(*options);
+  json.help = "A JSON object for each stage, a line each";
+  return {.name = "doctor",
+          .summary = "What is wrong with a lidar, its port or a file, and what to try",
+          .arguments = {source_argument(*options)},
+          .options = joined(output_row(*options), json, time, baud_row(*options)),
+          .details = details,
+          .examples = {{"g4-dump doctor", "Examine the only G4"},
+                       {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
+                        "Listen to one port for 30 s, as JSON"},
+                       {"g4-dump doctor walk.mcap", "Examine a recording"},
+                       {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"}},
+          .run = [options] { return examine(*options); }};
+}
+
+}  // namespace g4_dump

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// The verbs dump and scan: points and whole revolutions of any source; decode: dump with other
+// defaults.
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "cli/help_text.hpp"
+#include "cli/verbs.hpp"
+#include "io/point_job.hpp"
+
+namespace g4_dump {
+namespace {
+
+constexpr const char* forms =
+    R"(--grid N writes N ranges at equal steps of 360/N degrees, from 0 degrees on, in the robot frame
+from -180. Columns of csv: scan, time_ns, partial, and range_mm_0 or range_m_0 to range_mm_N-1.
+inf: no return; nan: unknown, because the direction is left out, or the return is outside the
+range or below 100 mm (unless --range includes it). jsonl: angle_min_deg, angle_step_deg, and
+ranges_mm or ranges_m, with "inf" and null for these.
+
+-f pcd writes a PCD 0.7 file with the returns of one revolution: x, y, z in meters, range_m,
+angle_deg, time_ns. In the vendor frame x points to 0 and y to 90 degrees clockwise; in the
+robot frame x points ahead and y to the left. -f svg writes a picture, seen from above, with ahead
+at the top and a circle at each meter. If OUT contains %d or %04d, or is a directory, each
+revolution gets a numbered file; else the first one is written and the command ends.)";
+
+constexpr const char* decoding =
+    R"(The same as g4-dump dump with a file as SOURCE, but: the default input is standard input, the
+default format is csv, a device file such as /dev/ttyUSB0 is read as raw bytes, and OUT appears
+when everything is written.
+
+time_ns is counted from the first point with --sample-rate. Samples of suspect packets count,
+lost samples do not. jsonl adds partial to each point: its revolution was not seen whole. It is
+therefore written revolution by revolution.)";
+
+}  // namespace
+
+verb make_dump_verb() {
+  const auto job = std::make_shared<point_job>();
+  common_options& common = *job->common;
+  const auto refuse_pcd = [](const std::string& word) {
+    if (word == "pcd") throw bad_value("'pcd' holds revolutions; see the verb scan");
+  };
+  return {.name = "dump",
+          .summary = "Print points (the default verb)",
+          .arguments = {source_argument(common)},
+          .options = joined(output_row(common), checked(format_row(job->style.format), refuse_pcd),
+                            sample_rate_row(job->source.bytes_rate_hz), ending_rows(common),
+                            filter_rows(common), shape_rows(common), device_rows(common)),
+          .details = fmt::format("{}\n\n{}\n\n{}", help_text::point_columns, help_text::shape,
+                                 help_text::ending),
+          .examples = {{"g4-dump", "Print the points of the only G4"},
+                       {"g4-dump -n 1000 -f csv -o points.csv", "Write 1000 points to a csv file"},
+                       {"g4-dump --frame robot --fov -90:90 --range 0.28:16 --unit m",
+                        "Print the points in front of the lidar, in meters"},
+                       {"g4-dump dump sim: -d 2s -f jsonl",
+                        "Print 2 s of points of a simulated G4 as JSON"}},
+          .run = [job] { return run(*job); }};
+}
+
+verb make_scan_verb() {
+  const auto job = std::make_shared<point_job>();
+  job->style.scans = true;
+  common_options& common = *job->common;
+  option_row format = format_row(job->style.format);
+  format.value = "csv|jsonl|pcd|svg|text";
+  format.take = [file = &job->file, take = format.take](const std::string& word) {
+    *file = word == "pcd" ? scan_file::pcd : word == "svg" ? scan_file::svg : scan_file::none;
+    if (*file == scan_file::none) take(word);
+  };
+  return {
+      .name = "scan",
+      .summary = "Print whole revolutions",
+      .arguments = {source_argument(common)},
+      .options = joined(
+          output_row(common), format,
+          number_row("--grid", "N", "Write N ranges at equal angles, no points", job->bins,
+                     std::size_t{1}, std::size_t{65'536}),
+          flag_row("--partial", "Write pieces of revolutions, too", job->partial),
+          choice_row("--pcd-data", "Data of pcd files (binary)", job->data,
+                     choices<pcd_data>{{"binary", pcd_data::binary}, {"ascii", pcd_data::ascii}}),
+          sample_rate_row(job->source.bytes_rate_hz), ending_rows(common), filter_rows(common),
+          shape_rows(common), device_rows(common)),
+      .details = fmt::format("{}\n\n{}\n\n{}\n\n{}", help_text::scan_columns, forms,
+                             help_text::shape, help_text::ending),
+      .examples = {{"g4-dump scan -n 5", "Print five revolutions"},
+                   {"g4-dump scan 'sim:?seed=7' -d 3s -f csv",
+                    "Three seconds of a simulated G4 as csv"},
+                   {"g4-dump scan --grid 720 --frame robot --unit m -f jsonl",
+                    "Ranges at steps of half a degree, as JSON"},
+                   {"g4-dump scan -n 10 -f pcd -o scan-%04d.pcd", "Ten point clouds in ten files"},
+                   {"g4-dump scan sim: -f svg -o scan.svg", "A picture of one revolution"}},
+      .run = [job] { return run(*job); }};
+}
+
+verb make_decode_verb() {
+  const auto job = std::make_shared<point_job>();
+  job->style = {.format = text_format::csv};
+  job->partial = job->whole_file = true;
+  job->common->source = "-";
+  common_options& common = *job->common;
+  const auto as_file = [](const std::string& word) {
+    return kind_of(word) == source_kind::device ? "file:" + word : word;
+  };
+  option_row file = value_row("FILE", "", "Raw bytes or a recording; - for standard input (-)",
+                              common.source, as_file);
+  file.complete = completion::file;
+  return {.name = "decode",
+          .summary = "Print the points of a file (dump with other defaults)",
+          .arguments = {file},
+          .options =
+              joined(output_row(common), format_row(job->style.format, "Output format (csv)"),
+                     flag_row("--scans", "A record for each revolution", job->style.scans),
+                     flag_row("--valid", "Leave out points without a return", job->returns_only),
+                     sample_rate_row(job->source.bytes_rate_hz),
+                     choice_row("--stats", "Form of the counts on standard error (words)",
+                                job->json_counts, choices<bool>{{"words", false}, {"json", true}}),
+                     ending_rows(common), filter_rows(common), shape_rows(common)),
+          .details = fmt::format("{}\n\n{}\n\nWith --scans:\n\n{}", decoding,
+                                 help_text::point_columns, help_text::scan_columns),
+          .examples = {{"g4-dump decode walk.bin -o walk.csv", "Raw bytes to csv"},
+                       {"g4-dump decode walk.bin --format jsonl --scans --valid",
+                        "The returns of each revolution as JSON"},
+                       {"g4-dump sim --seconds 60 | g4-dump decode --format text --scans",
+                        "The revolutions of a simulated G4"},
+                       {"tail -c +1 -f growing.bin | g4-dump decode -", "A file that grows"}},
+          .exits = {0, 2, 10, 130},
+          .run = [job] { return run(*job); }};
+}
+
+}  // namespace g4_dump

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// The verb list: the serial ports, and with --probe the devices behind them.
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/settings.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/discovery.hpp"
+#include "g4lidar/transport/serial_port.hpp"
+#include "io/command_source.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/port_row.hpp"
+
+namespace g4_dump {
+namespace {
+
+struct list_options : common_options {
+  bool probe = false;
+  bool all = false;  ///< Probe other ports, too.
+};
+
+/// A port, and the result of probing it, if that was done.
+struct listed_port {
+  port_info port;
+  std::optional<result<device_information>> answer{};
+};
+
+result<device_information> ask_at(const port_info& port, std::uint32_t baud) {
+  using enum g4lidar::problem;
+  // Probing would disturb a program that has not locked the port.
+  if (!port.holder.empty()) {
+    return g4lidar::failure(task::opening, busy, port.path + ", held by " + port.holder);
+  }
+  auto line = serial_port::open(port.path, {.baud = baud});
+  if (!line) return tl::unexpected(line.error());
+  const auto longest = find_options{}.probe_timeout;
+  return probe(**line, (*line)->now_ns() + std::chrono::nanoseconds(longest).count());
+}
+
+void probe(std::vector<listed_port>& ports, const list_options& options) {
+  for (listed_port& each : ports) {
+    if (!options.all && !is_g4_bridge(each.port)) continue;
+    if (interrupt() != 0) throw interrupted();
+    const auto& answer = each.answer.emplace(ask_at(each.port, options.baud));
+    if (!answer) logger::info(in_tool_words(answer.error().message()) + "\n");
+  }
+}
+
+std::vector<std::string> cells_of(const listed_port& listed, bool probed) {
+  const auto& [port, answer] = listed;
+  std::vector<std::string> cells = port_cells(port);
+  if (answer && *answer) {
+    const device_information& who = **answer;
+    cells.insert(cells.end(), {"g4", std::string(who.serial_number()), firmware_of(who)});
+  } else if (probed) {
+    cells.insert(cells.end(),
+                 {answer ? std::string(name_of(answer->error().code())) : "-", "-", "-"});
+  }
+  cells.push_back(port.holder.empty() ? "-" : printable(port.holder));
+  return cells;
+}
+
+void write_table(const std::vector<listed_port>& ports, bool probed, output& out) {
+  std::vector<std::vector<std::string>> rows{port_columns()};
+  if (probed) rows[0].insert(rows[0].end(), {"ANSWER", "SERIAL", "FIRMWARE"});
+  rows[0].emplace_back("HOLDER");
+  for (const listed_port& each : ports) rows.push_back(cells_of(each, probed));
+  std::vector<std::size_t> widths(rows[0].size());
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  for (const auto& row : rows) out.write(line_of(row, widths));
+}
+
+nlohmann::ordered_json object_of(const listed_port& listed) {
+  const auto& [port, answer] = listed;
+  nlohmann::ordered_json all = port_object(port);
+  all["device"] = answer && *answer ? json_of(std::optional(**answer)) : nullptr;
+  all["problem"] = nullptr;
+  if (answer && !*answer) {
+    all["problem"] = {{"name", name_of(answer->error().code())},
+                      {"message", in_tool_words(answer->error().message())}};
+  }
+  return all;
+}
+
+/// 0 where a G4 (or its bridge) was found; else the reason.
+exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
+  const bool found = std::any_of(ports.begin(), ports.end(), [probed](const listed_port& each) {
+    return probed ? each.answer && *each.answer : is_g4_bridge(each.port);
+  });
+  if (found) return exit_code::ok;
+  for (const auto& [port, answer] : ports) {
+    if (is_g4_bridge(port) && answer) return exit_code_for(answer->error());
+  }
+  logger::info(ports.empty() ? "no serial port found\n"
+                             : "no serial port has the USB bridge of a G4\n");
+  return exit_code::no_device;
+}
+
+int list(const list_options& options) {
+  output out(options.output);
+  auto found = list_ports();
+  if (!found) throw failure(found.error());
+  find_holders(*found);
+  std::vector<listed_port> ports;
+  for (port_info& port : *found) ports.push_back({.port = std::move(port)});
+  const bool probed = options.probe || options.all;
+  if (probed) probe(ports, options);
+  if (options.json) {
+    for (const listed_port& each : ports) write_line(out, object_of(each));
+  } else if (!ports.empty()) {
+    write_table(ports, probed, out);
+  }
+  out.commit();
+  return static_cast<int>(verdict_on(ports, probed));
+}
+
+constexpr const char* details =
+    R"(A line for each serial port, sorted by PATH; unknown values are -:
+
+  PATH, USB  the port, and its place on the USB bus; as SOURCE: usb:1-1.4
+  ID         USB vendor and product
+  DRIVER     kernel driver
+  BRIDGE     g4: a CP2102, as in a G4 and in many other devices; other; -: not a USB device
+  OPEN       whether this user may open it
+  BY-ID      the link made by udev
+  ANSWER     with --probe: g4, or the problem (busy, silence, ...); -: not probed
+  SERIAL     with --probe: serial number of the lidar; as SOURCE: serial:NUMBER
+  FIRMWARE   with --probe
+  HOLDER     the process that has it open, if this user may see it; may contain blanks
+
+With --json: an object for each port, with path, usb, id, driver, is_g4_bridge, may_open, by_id,
+holder, manufacturer, product, usb_serial, device (model, serial, firmware, hardware) and problem
+(name, message); unknown values are null.
+
+--probe sends two commands to each port with the bridge of a G4 that no process has open, and
+stops a lidar that is scanning. The exit code is 3 if no port has that bridge; with --probe, if
+no G4 answered, that of the problem at the first such port.)";
+
+}  // namespace
+
+verb make_list_verb() {
+  const auto options = std::make_shared<list_options>();
+  return {
+      .name = "list",
+      .summary = "List serial ports and the lidars behind them",
+      .options = joined(
+          flag_row("--probe", "Ask for the device at each port with a G4's bridge", options->probe),
+          flag_row("--all", "Ask at every port: sends two commands to any device", options->all),
+          json_row(*options), output_row(*options), baud_row(*options)),
+      .details = details,
+      .examples = {{"g4-dump list", "The serial ports"},
+                   {"g4-dump list --probe", "The lidars that answer"}},
+      .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
+      .run = [options] { return list(*options); }};
+}
+
+}  // namespace g4_dump

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// The verb packets: the bytes between host and lidar, both ways, as text.
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/export/protocol_log.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/transport/forwarding.hpp"
+#include "g4lidar/wall_clock.hpp"
+#include "io/input.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/read_loop.hpp"
+#include "io/source.hpp"
+#include "io/stream_report.hpp"
+
+namespace g4_dump {
+namespace {
+
+struct packets_options {
+  shared_options common = std::make_shared<common_options>();
+  protocol_log_style style;
+};
+
+void end(protocol_log& log, output& out) {
+  if (!log.is_done()) log.finish();  // else what is left was not wanted
+  out.commit();
+  logger::info(stats_in_words(log.counts(), log.bytes_from_device()));
+}
+
+void list_bytes(const packets_options& options) {
+  const common_options& common = *options.common;
+  if (common.time)
+    throw bad_value("--time: raw bytes carry no times; lines begin with the place of the bytes");
+  input in(path_of(common.source),
+           "Give a file of raw bytes from the lidar's port, or pipe them in.");
+  output out(common.output, in.id() ? output::appears::whole : output::appears::growing);
+  refuse_same_file(in.id(), out);
+  protocol_log log(options.style, time_shift(time_style::monotonic, 0), out);
+  in.pump(out,
+          {.take = [&](std::span<const std::uint8_t> got) { log.from_device(got, 0); },
+           .is_done = [&] { return log.is_done(); }},
+          common);
+  end(log, out);
+}
+
+/// An event of the transport in a recording.
+void log_event(const g4lidar::recorded_event& note, protocol_log& log) {
+  using enum g4lidar::recorded_event::kind;
+  if (note.what == opened) return log.remark(fmt::format("opened {}", note.line), note.time_ns);
+  if (note.what != closed && note.what != gap) return;
+  log.finish();
+  log.remark(note.what == closed ? "closed" : "bytes are missing from the recording here",
+             note.time_ns);
+}
+
+void list_recording(const packets_options& options) {
+  const common_options& common = *options.common;
+  const std::string path = path_of(common.source);
+  output out(common.output);
+  refuse_same_file(id_of_name(path), out);
+  const time_style wanted = common.time.value_or(time_style::absolute);
+  std::optional<protocol_log> log;
+  std::optional<std::int64_t> end_ns;
+  const auto reader = read_items(path, {}, [&](const g4lidar::recorded_item& item) {
+    if (!log) {
+      log.emplace(options.style, time_shift(wanted, item.wall_ns - item.time_ns), out);
+      if (common.duration.count() > 0) end_ns = item.time_ns + common.duration.count();
+    }
+    if (end_ns && item.time_ns >= *end_ns) return false;
+    if (item.what == g4lidar::recorded_item::kind::from_device) {
+      log->from_device(item.data, item.time_ns);
+    } else if (item.what == g4lidar::recorded_item::kind::to_device) {
+      log->to_device(item.data, item.time_ns);
+    } else {
+      log_event(item.note, *log);
+    }
+    return !out.is_closed() && !log->is_done();
+  });
+  log ? end(*log, out) : out.commit();
+  logger::info(describe(reader.damage()));
+}
+
+/// Logs what passes over a connection, and that it was opened and closed.
+class logged_transport final : public forwarding_transport {
+ public:
+  logged_transport(std::unique_ptr<transport> inner, protocol_log& log)
+      : forwarding_transport(std::move(inner)), log_(log) {
+    log_.remark(fmt::format("opened {}", name()), now_ns());
+  }
+  logged_transport(const logged_transport&) = delete;
+  logged_transport& operator=(const logged_transport&) = delete;
+  ~logged_transport() override {
+    log_.finish();
+    log_.remark("closed", inner().now_ns());
+  }
+
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> into,
+                                      std::int64_t deadline_ns) noexcept override {
+    auto got = inner().read(into, deadline_ns);
+    if (got && got->count > 0) log_.from_device(into.first(got->count), got->arrival_ns);
+    return got;
+  }
+  [[nodiscard]] result<void> write(bytes data, std::int64_t deadline_ns) noexcept override {
+    auto done = inner().write(data, deadline_ns);
+    if (done) log_.to_device(data, now_ns());
+    return done;
+  }
+
+ private:
+  protocol_log& log_;
+};
+
+void list_lidar(const packets_options& options) {
+  const common_options& common = *options.common;
+  output out(common.output, output::appears::growing);
+  // Kept until it can be written: a transport must not throw where a file is full.
+  std::string lines;
+  callback_sink kept([&](std::string_view text) { lines += text; });
+  const time_style wanted = common.time.value_or(time_style::absolute);
+  protocol_log log(options.style, time_shift(wanted, wall_clock().ahead().count()), kept);
+  const auto write = [&] {
+    kept.flush();
+    out.write(lines);
+    lines.clear();
+  };
+  read_sink sink;
+  sink.points = [](std::span<const point>) {};
+  sink.pulse = write;
+  sink.is_done = [&] { return log.is_done(); };
+  try {
+    opening how;
+    how.each = [&](auto line) { return std::make_unique<logged_transport>(std::move(line), log); };
+    opened_source source(common, how);
+    read_source(source, common, sink, out);
+  } catch (const failure&) {  // the bytes so far show why
+    write();
+    log.bytes_from_device() > 0 ? end(log, out) : out.commit();
+    throw;
+  }
+  write();
+  end(log, out);
+}
+
+int run(packets_options options) {
+  const source_kind kind = kind_of(options.common->source);
+  options.style.lines = options.common->count;
+  options.style.has_times = kind != source_kind::bytes;
+  const auto list = kind == source_kind::bytes       ? list_bytes
+                    : kind == source_kind::recording ? list_recording
+                                                     : list_lidar;
+  list(options);
+  return exit_code_now();
+}
+
+constexpr const char* details =
+    R"(A line has a time (in seconds; for raw bytes, which carry none, the place of the first byte), a
+mark and a description. Marks:
+  >  sent to the lidar
+  <  sent by the lidar
+  !  not readable or suspect, with the reason: noise (healthy lidars send single bytes, too),
+     bad header, bad checksum, truncated
+  -  event of the connection
+
+Lines for commands and skipped bytes show the first 16 bytes; --hex shows all bytes of
+everything. What was exchanged before a failure is written, too. -n counts lines.)";
+
+}  // namespace
+
+verb make_packets_verb() {
+  const auto options = std::make_shared<packets_options>();
+  common_options& common = *options->common;
+  protocol_log_style& style = options->style;
+  return {
+      .name = "packets",
+      .summary = "Print commands, responses and packets, both ways",
+      .arguments = {source_argument(common)},
+      .options = joined(
+          output_row(common), flag_row("--hex", "Show all bytes", style.hex),
+          flag_row("--errors", "Show only skipped bytes and suspect packets", style.errors),
+          ending_rows(common), in_group("Output form", {time_row(common)}), device_rows(common)),
+      .details = details,
+      .examples = {{"g4-dump packets -n 20", "The first 20 lines of the only G4"},
+                   {"g4-dump packets sim: --hex -d 1s", "All bytes of a simulated G4"},
+                   {"g4-dump packets walk.bin --errors", "What cannot be read in a file"}},
+      .run = [options] { return run(*options); }};
+}
+
+}  // namespace g4_dump

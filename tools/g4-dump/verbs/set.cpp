@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// The verb set: settings, each shown before and after.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/settings.hpp"
+#include "cli/verbs.hpp"
+#include "io/command_source.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+
+namespace g4_dump {
+namespace {
+
+struct set_options : common_options {
+  std::vector<wish> wishes;
+};
+
+void add_wish(set_options& options, const std::string& word) {
+  if (!is_wish(word)) throw bad_value(fmt::format("'{}' is not NAME=VALUE such as rate=9k", word));
+  const wish added = wish_of(word);
+  for (const wish& earlier : options.wishes) {
+    if (earlier.which == added.which)
+      throw bad_value(fmt::format("{} is given twice", added.which->name));
+  }
+  options.wishes.push_back(added);
+}
+
+void write_row(output& out, std::string_view name, std::string_view before,
+               std::string_view after) {
+  out.write(fmt::format("{:<11} {:<8} {}\n", name, before, after));
+}
+
+/// Sets one. Where the value is not reached, the value read back is written and the command fails.
+void carry_out(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) {
+  const maybe_answer before = read_setting(lidar, *wanted.which);
+  const auto given = lidar.ask(wanted.how);
+  if (!given && given.error().is_fatal()) throw failure(given.error());
+  const maybe_answer after = given ? *given : read_setting(lidar, *wanted.which);
+  if (json) {
+    write_line(out, {{"name", wanted.which->name},
+                     {"before", json_of(before)},
+                     {"wanted", json_of(wanted.value)},
+                     {"after", json_of(after)}});
+  } else {
+    write_row(out, wanted.which->name, text_of(before), text_of(after));
+  }
+  out.flush();
+  if (!given) throw failure(given.error());
+}
+
+/// What to know about these settings.
+void report_notes(const std::vector<wish>& wishes) {
+  logger::info("The settings may be lost when the lidar restarts or has no power.\n");
+  const bool is_protected = std::any_of(wishes.begin(), wishes.end(), [](const wish& each) {
+    return each.value == answer(power_down_protection::on);
+  });
+  if (is_protected) {
+    logger::info(
+        "With protection on, the lidar stops 3 s after the last keep-alive: dump, scan and record "
+        "send them, start does not.\n");
+  }
+}
+
+int set(const set_options& options) {
+  if (options.wishes.empty()) throw bad_value("nothing to set; give NAME=VALUE such as rate=9k");
+  output out("-");
+  command_source source(options, task::configuring);
+  if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
+  for (const wish& each : options.wishes) {
+    if (interrupt() != 0) return 128 + interrupt();
+    carry_out(source.lidar(), each, out, options.json);
+  }
+  out.commit();
+  report_notes(options.wishes);
+  return static_cast<int>(exit_code::ok);
+}
+
+constexpr const char* details =
+    R"(Settings:
+  rate=4k|8k|9k       samples per second (also 4000, 8000, 9000)
+  freq=5..12          revolutions per second, in steps of 0.1
+  direction=cw|ccw    direction of rotation, seen from above
+  constant=on|off     constant scan frequency
+  idle=on|off         stop the motor while not scanning (also low-power=)
+  protection=on|off   stop 3 s after the last keep-alive of the host
+
+Nothing is changed if one of them is not valid. Each is read, set and read back: a line with
+NAME, BEFORE and AFTER; with --json an object with name, before, wanted, after. A G4 cannot be
+asked for constant and protection: BEFORE is unknown. If the device refuses a value, AFTER is the
+value that it has, the settings that follow are not changed, and the exit code is 8.)";
+
+}  // namespace
+
+verb make_set_verb() {
+  const auto options = std::make_shared<set_options>();
+  const auto take_wish = [set = options.get()](const std::string& word) { add_wish(*set, word); };
+  option_row source = source_argument(*options);
+  source.help = "The lidar (the only G4)";
+  source.take = [take_wish, as_source = source.take](const std::string& word) {
+    is_wish(word) ? take_wish(word) : as_source(word);
+  };
+  return {
+      .name = "set",
+      .summary = "Change settings; prints them before and after",
+      .arguments = {source,
+                    {"NAME=VALUE", "", "The settings to change", take_wish, completion::setting,
+                     true}},
+      .options = joined(json_row(*options), device_rows(*options)),
+      .details = details,
+      .examples = {{"g4-dump set rate=9k freq=10", "9000 samples and 10 revolutions per second"},
+                   {"g4-dump set /dev/ttyUSB0 protection=on", "Turn on power-down protection"},
+                   {"g4-dump set sim: rate=4k freq=7.5 direction=ccw --json",
+                    "Three settings of a simulated G4"}},
+      .run = [options] { return set(*options); }};
+}
+
+}  // namespace g4_dump

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+// The verb sim: the bytes of a simulated lidar to a file, or simulated lidars as devices.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/rows.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/export/digits.hpp"
+#include "g4lidar/export/printable.hpp"
+#include "g4lidar/export/protocol_log.hpp"
+#include "g4lidar/sim/scanner.hpp"
+#include "io/file_id.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/source.hpp"
+
+namespace g4_dump {
+namespace {
+
+struct sim_options {
+  double seconds = 10.0;
+  sim::setup setup;
+  std::string truth;
+  std::string output = "-";
+  // Devices instead of a file, each at one of these places.
+  std::vector<std::string> links{};
+  std::vector<std::pair<std::string, std::uint16_t>> bridges{};
+  bool is_registered = false;
+  std::vector<std::string> serials{};  ///< Of the first of them.
+  bool has_device_options = false;     ///< Whether an option of devices alone was given.
+  bool log = false;                    ///< Whether their commands are written to standard error.
+
+  [[nodiscard]] std::size_t devices() const noexcept {
+    return links.size() + bridges.size() + (is_registered ? 1U : 0U);
+  }
+};
+
+void write_truth(std::span<const sim::sample_truth> samples, output& out) {
+  using namespace g4lidar::digits;
+  constexpr std::size_t max_row = 160;
+  for (const sim::sample_truth& sample : samples) {
+    char* at = out.room(max_row);
+    const auto put = [&at](char* end) {
+      at = end;
+      *at++ = ',';
+    };
+    put(put_number(at, sample.index));
+    put(put_number(at, static_cast<std::uint64_t>(sample.time_ns)));
+    put(put_number(at, sample.revolution));
+    put(put_angle<6>(at, sample.first_level_deg));
+    put(put_angle<6>(at, sample.bearing_deg));
+    put(put_fixed<3>(at, sample.range_mm));
+    at = put_number(at, sample.raw);
+    *at++ = '\n';
+    out.wrote(at);
+  }
+}
+
+void check(const sim_options& options) {
+  if (const auto problem = problem_with(options.setup.device); !problem.empty()) {
+    throw bad_value(std::string(problem));
+  }
+  const auto plain = [](const std::string& name) {
+    return std::filesystem::path(name).lexically_normal();
+  };
+  if (!options.truth.empty() && plain(options.truth) == plain(options.output)) {
+    throw bad_value("--truth and -o name the same file");
+  }
+  if (options.devices() == 0 && options.has_device_options) {
+    throw bad_value("--serial, --fault, --device and --log need --link, --tcp or --register");
+  }
+  if (options.serials.size() > options.devices()) {
+    throw bad_value("there are more --serial than devices (--link, --tcp, --register)");
+  }
+}
+
+/// Throws a failure for a port that could not be opened.
+sim::pty_port opened(g4lidar::result<sim::pty_port> port, const std::string& place) {
+  if (port) return *std::move(port);
+  if (port.error().code() != g4lidar::problem::busy) {
+    throw failure(exit_code::bad_file, in_tool_words(port.error().message()));
+  }
+  const bool is_served = port.error().system_errno() == EADDRINUSE;
+  throw failure(is_served ? exit_code::busy : exit_code::bad_file,
+                fmt::format("{} {}. Give another path for --link.", place,
+                            is_served ? "leads to a device that another program simulates"
+                                      : "exists and is not a link to a pseudo-terminal"));
+}
+
+/// At the links, then the registered one, then the bridges.
+std::vector<sim::pty_port> open_ports(const sim_options& options,
+                                      const std::vector<sim::device_options>& devices) {
+  const sim::world scene = load_world(options.setup.world_file);
+  std::vector<std::string> links = options.links;
+  if (options.is_registered) {
+    links.push_back(sim::registered_link(devices[links.size()].info.serial_number()));
+    if (links.back().empty()) {
+      throw bad_value(
+          "--register: set the environment variable G4LIDAR_SIM_DIR to a directory, here and for "
+          "the programs that are to discover the lidar");
+    }
+  }
+  std::vector<sim::pty_port> ports;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    sim::device twin(scene, devices[i], options.setup.faults);
+    const bool has_link = i < links.size();
+    const auto& [address, port] =
+        has_link ? std::pair(links[i], std::uint16_t{0}) : options.bridges[i - links.size()];
+    ports.push_back(opened(has_link ? sim::pty_port::open(std::move(twin), address)
+                                    : sim::pty_port::listen(std::move(twin), address, port),
+                           address));
+    const std::string& path = ports.back().path();
+    logger::write(fmt::format("G4 {} at {}\n", devices[i].info.serial_number(),
+                              printable(path.empty() ? address : path)));
+  }
+  return ports;
+}
+
+/// Serves the devices until a signal comes.
+int serve(const sim_options& options) {
+  const auto devices = sim::several(options.setup.device, options.devices(), options.serials);
+  std::vector<sim::pty_port> ports = open_ports(options, devices);
+  const auto log = [&] {
+    for (std::size_t i = 0; i < ports.size(); ++i) {
+      for (const sim::asked& what : ports[i].twin().log()) {
+        if (!options.log) break;
+        logger::write(fmt::format(
+            "{:.3f} {} A5 {:02X} {}{}{}\n", static_cast<double>(what.time_ns) / 1e9,
+            devices[i].info.serial_number(), what.code, g4lidar::word_for_command(what.code),
+            what.scanning ? ", while scanning" : "", what.obeyed ? "" : ", not obeyed"));
+      }
+      ports[i].twin().clear_log();
+    }
+  };
+  const auto served = sim::serve(ports, interrupt_handle(), log);
+  if (!served) throw failure(exit_code::bad_file, in_tool_words(served.error().message()));
+  return 128 + interrupt();
+}
+
+int run(const sim_options& options) {
+  check(options);
+  if (options.devices() > 0) return serve(options);
+  output out(options.output);
+  if (out.is_terminal()) {
+    throw failure(exit_code::usage,
+                  "raw bytes are not for a terminal. Give a file with -o FILE, or a pipe: "
+                  "g4-dump sim | g4-dump decode");
+  }
+  std::optional<output> truth;
+  if (!options.truth.empty()) {
+    truth.emplace(options.truth);
+    refuse_same_file(out.id(), *truth);
+    truth->write("index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw\n");
+  }
+  const auto write = [&out](g4lidar::bytes data) {
+    out.write({reinterpret_cast<const char*>(data.data()), data.size()});
+  };
+  sim::scanner scanner(load_world(options.setup.world_file, &out), options.setup.device.scanner);
+  const auto end_ns = static_cast<std::int64_t>(std::llround(options.seconds * 1e9));
+  write(sim::scan_start_reply());
+  while (interrupt() == 0 && !out.is_closed()) {
+    const sim::sent_packet packet = scanner.next();
+    if (packet.complete_ns >= end_ns) break;
+    write(packet.data);
+    if (truth) write_truth(packet.samples, *truth);
+  }
+  // An interrupted simulation is of no use: it can be repeated.
+  if (interrupt() != 0) {
+    if (options.output == "-") out.flush();
+    return 128 + interrupt();
+  }
+  if (truth) truth->commit();
+  out.commit();
+  return static_cast<int>(exit_code::ok);
+}
+
+constexpr const char* details =
+    R"(The same options give the same bytes on every computer: the response to the start command, and
+all packets that were complete before N seconds. Columns of --truth: index, time_ns, scan,
+first_level_deg, bearing_deg (direction of the target), range_mm (its distance, exact; 0: no
+target), raw (as sent, in quarters of a millimeter).
+
+With --link PATH the command serves a device that answers commands, on a pseudo-terminal to
+which the symbolic link PATH leads, until ^C. With --tcp PORT it serves a device for
+tcp:HOST:PORT, at 127.0.0.1 unless an ADDRESS such as 0.0.0.0 is given. With --register it serves
+a device in the directory that the environment variable G4LIDAR_SIM_DIR names. Programs that have
+the same variable discover it there as a G4: g4-dump list, serial:NUMBER, and a source that is
+left out.)";
+
+/// "NAME=VALUE", as in a source `sim:?NAME=VALUE`.
+void set(sim::setup& setup, const std::string& word) {
+  if (const std::string wrong = sim::set(setup, word); !wrong.empty()) throw bad_value(wrong);
+}
+
+option_rows file_rows(sim_options& options) {
+  return {
+      number_row("--seconds", "N", "Duration of the scan (10)", options.seconds, 0.0, 1e9),
+      {"--seed", "S", "Seed of the random numbers (1)",
+       [&options](const std::string& word) { set(options.setup, "seed=" + word); }},
+      text_row("-o,--output", "FILE", "Output file; - for standard output (-)", options.output),
+      text_row("--truth", "FILE", "Write the exact value of each sample, as csv", options.truth),
+      text_row("--world", "FILE", "The walls (a flat of a few rooms); see docs/sim.md",
+               options.setup.world_file)};
+}
+
+option_rows scanner_rows(sim::scanner_options& scanner) {
+  using g4lidar::ranging_frequency;
+  const auto number = [](const char* name, const char* value, const char* help, auto& into) {
+    return number_row(name, value, help, into, -1e9, 1e9);
+  };
+  const auto centihertz = [](const std::string& word) {
+    return static_cast<std::uint16_t>(number_of(word, 5.0, 12.0) * 100.0 + 0.5);
+  };
+  return {value_row("--frequency", "HZ", "Revolutions per second, 5 to 12 (7)",
+                    scanner.scan_frequency_chz, centihertz),
+          choice_row("--sample-rate", "Samples per second (9000)", scanner.ranging,
+                     choices<ranging_frequency>{{"4000", ranging_frequency::khz_4},
+                                                {"8000", ranging_frequency::khz_8},
+                                                {"9000", ranging_frequency::khz_9}}),
+          number_row("--samples", "N", "Samples in a packet, 1 to 80 (40)",
+                     scanner.samples_per_packet, std::size_t{1}, std::size_t{80}),
+          number("--start-deg", "DEG", "Angle of the first sample (random)", scanner.start_deg),
+          number("--index-deg", "DEG", "Angle at which a revolution starts (0)", scanner.index_deg),
+          number("--noise-mm", "MM", "Standard deviation of each range (0)", scanner.noise_mm),
+          number("--noise-ratio", "RATIO", "Standard deviation to add for each mm of range (0)",
+                 scanner.noise_ratio),
+          number("--dropout", "RATIO", "Share of samples without a return, 0 to 1 (0)",
+                 scanner.dropout_ratio),
+          value_row("--no-reported-frequency", "", "Packets do not report the scan frequency",
+                    scanner.reports_frequency, [](const std::string&) { return false; })};
+}
+
+/// The address and the port of "4000" or "0.0.0.0:4000".
+std::pair<std::string, std::uint16_t> tcp_place_of(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const bool has_address = colon != std::string::npos;
+  try {
+    return {has_address ? text.substr(0, colon) : "127.0.0.1",
+            number_of(text.substr(has_address ? colon + 1 : 0), std::uint16_t{0},
+                      std::uint16_t{65'535})};
+  } catch (const bad_value&) {
+    throw bad_value(in_quotes(text) + " is not PORT or ADDRESS:PORT");
+  }
+}
+
+void add_new(std::vector<std::string>& all, const std::string& word) {
+  if (std::find(all.begin(), all.end(), word) != all.end()) {
+    throw bad_value(in_quotes(word) + " is given twice");
+  }
+  all.push_back(word);
+}
+
+/// The options that make it serve devices.
+option_rows served_rows(sim_options& options) {
+  const auto listed = [](const char* name, const char* value, const char* help, auto take,
+                         completion complete = completion::nothing) {
+    return option_row{name, value, help, std::move(take), complete, true};
+  };
+  option_rows doors{
+      listed(
+          "--link", "PATH", "Serve a device at this path; repeat for more devices",
+          [&options](const std::string& word) {
+            add_new(options.links, std::filesystem::path(word).lexically_normal().string());
+          },
+          completion::file),
+      listed(
+          "--tcp", "PORT", "Serve a device at [ADDRESS:]PORT, as a network bridge does",
+          [&options](const std::string& word) { options.bridges.push_back(tcp_place_of(word)); }),
+      flag_row("--register", "Serve a device where list and serial: find it",
+               options.is_registered)};
+  for (option_row& row : doors) row.excludes = {"--seconds", "--output", "--truth"};
+  option_rows of_devices{
+      listed("--serial", "DIGITS", "Serial numbers of the devices, in turn: 16 digits each",
+             [&options](const std::string& word) {
+               sim::setup unused;
+               set(unused, "serial=" + word);
+               add_new(options.serials, word);
+             }),
+      listed(
+          "--fault", "FAULT", "KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]]; see docs/sim.md",
+          [&options](const std::string& word) { set(options.setup, "fault=" + word); },
+          completion::fault),
+      listed("--device", "NAME=VALUE", "An option of the devices; see docs/sim.md",
+             [&options](const std::string& word) { set(options.setup, word); }),
+      flag_row("--log", "Write the commands to standard error", options.log)};
+  for (option_row& row : of_devices) {
+    row = checked(std::move(row),
+                  [&options](const std::string&) { options.has_device_options = true; });
+  }
+  return in_group("Devices in real time", joined(doors, of_devices));
+}
+
+}  // namespace
+
+verb make_sim_verb() {
+  const auto options = std::make_shared<sim_options>();
+  return {
+      .name = "sim",
+      .summary = "Simulate a G4: write its bytes, or serve a device",
+      .options = joined(file_rows(*options), scanner_rows(options->setup.device.scanner),
+                        served_rows(*options)),
+      .details = details,
+      .examples =
+          {{"g4-dump sim --seconds 60 --seed 7 -o room.bin --truth room.csv",
+            "A minute of raw bytes, and their exact values"},
+           {"g4-dump sim --seconds 5 --noise-mm 8 --dropout 0.02 | g4-dump decode --format text",
+            "Print the points of a noisy lidar"},
+           {"g4-dump sim --link /tmp/lidar --log", "Serve a device at /tmp/lidar"},
+           {"G4LIDAR_SIM_DIR=/tmp/g4 g4-dump sim --register",
+            "Serve a device for G4LIDAR_SIM_DIR=/tmp/g4 g4-dump list --probe"},
+           {"g4-dump sim --link /tmp/front --link /tmp/rear --fault unplug@5s+2s "
+            "--fault 'flip*0.01%'",
+            "Serve two devices with faults"}},
+      .exits = {0, 2, 10, 11, 130},
+      .run = [options] { return run(*options); }};
+}
+
+}  // namespace g4_dump

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// The verbs start, stop and restart. After start the device goes on scanning when the command has ended.
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/verbs.hpp"
+#include "io/command_source.hpp"
+#include "io/interrupt.hpp"
+#include "io/read_loop.hpp"
+
+namespace g4_dump {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+/// Longer than the session tries to start a scan.
+constexpr auto longest_start = 40s;
+
+/// A device with too little power may confirm the start and fail after its first points.
+void wait_for_revolution(g4lidar::lidar& lidar) {
+  const auto end = clock::now() + longest_start;
+  while (interrupt() == 0) {
+    const auto got = lidar.next_scan(100ms);
+    if (got) return;
+    if (got.error().is_fatal() || clock::now() > end) throw failure(got.error());
+  }
+  throw interrupted();
+}
+
+int start(const common_options& options) {
+  command_source source(options, task::starting);
+  g4lidar::lidar& lidar = source.lidar();
+  if (const auto started = lidar.start(); !started) throw failure(started.error());
+  wait_for_revolution(lidar);
+  report_events(lidar);
+  logger::info(fmt::format("{}: scanning\n", lidar.name()));
+  lidar.release();
+  return static_cast<int>(exit_code::ok);
+}
+
+int stop(const common_options& options) {
+  command_source source(options, task::stopping);  // which has stopped it
+  if (!source.was_scanning()) {
+    logger::info(fmt::format("{}: stopped; it was not scanning\n", source.lidar().name()));
+  }
+  return static_cast<int>(exit_code::ok);
+}
+
+int restart(const common_options& options) {
+  command_source source(options, task::asking);
+  g4lidar::lidar& lidar = source.lidar();
+  const auto begin = clock::now();
+  const auto restarted = lidar.ask(requests::restart());
+  if (!restarted) throw failure(restarted.error());
+  const std::chrono::duration<double> took = clock::now() - begin;
+  logger::info(fmt::format("{}: restarted; it answered after {:.1f} s. Its settings may be lost.\n",
+                           lidar.name(), took.count()));
+  return static_cast<int>(exit_code::ok);
+}
+
+}  // namespace
+
+verb make_start_verb() {
+  return device_verb(
+      {.name = "start",
+       .summary = "Start scanning",
+       .details =
+           R"(The command ends when a whole revolution has come; the device continues to scan. With power-down
+protection the device stops 3 s later, because no program sends keep-alives. No setting is
+changed.)",
+       .examples = {{"g4-dump start", "Start the only G4"},
+                    {"g4-dump start /dev/ttyUSB0", "Start the one at this port"}}},
+      start);
+}
+
+verb make_stop_verb() {
+  return device_verb({.name = "stop",
+                      .summary = "Stop scanning",
+                      .details = "The command ends when the device is silent. It is no error if "
+                                 "the device was not scanning.",
+                      .examples = {{"g4-dump stop", "Stop the only G4"}}},
+                     stop);
+}
+
+verb make_restart_verb() {
+  return device_verb(
+      {.name = "restart",
+       .summary = "Restart the device and wait until it answers",
+       .details = "It does not scan after the restart, and its settings may be lost.",
+       .examples = {{"g4-dump restart", "Restart the only G4"}}},
+      restart);
+}
+
+}  // namespace g4_dump
