@@ -128,7 +128,7 @@ TEST_F(Serve, OptionsOfTheDeviceAreAtWork) {
   expect_refused("colour=red", "'colour' is not one of baud, ");
   expect_refused("header_ns=2parsecs", "'2parsecs' is not a time");
   expect_refused("header_ns=2min", "must take 0 to 60 s");
-  expect_refused("boot_text=1", "'1' is not one of true, false");
+  expect_refused("boot_text=1", "'1' is not one of false, true");
   EXPECT_THAT(run({"sim", "--device", "boot_ns=1s"}).err, HasSubstr("need --link"));
 }
 

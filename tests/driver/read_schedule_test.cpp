@@ -2,20 +2,13 @@
 // When a read is worth its system calls: the rules alone, and the savings of a driver.
 #include "driver/read_schedule.hpp"
 
-#include <gtest/gtest.h>
-
-#include "g4lidar/lidar.hpp"
+#include "pace_bench.hpp"
 #include "support/packet_maker.hpp"
-#include "support/virtual_line.hpp"
 
 namespace g4lidar {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr std::int64_t us = 1'000;
-constexpr std::int64_t ms = 1'000 * us;
-constexpr std::int64_t second = 1'000 * ms;
+using namespace test;
 constexpr std::int64_t byte_ns = 10'000'000'000 / 230'400;
 constexpr double period_ns = 1e9 / 9000;
 constexpr std::int64_t packet_ns = 40 * second / 9000;

@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A program that takes only whole scans is woken for whole scans: what that saves, and that it loses nothing.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "g4lidar/lidar.hpp"
-#include "support/virtual_line.hpp"
+#include "pace_bench.hpp"
 
 namespace g4lidar {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr std::int64_t us = 1'000;
-constexpr std::int64_t ms = 1'000 * us;
-constexpr std::int64_t second = 1'000 * ms;
+using namespace test;
 
 struct setup {
   ranging_frequency ranging = ranging_frequency::khz_9;

@@ -30,8 +30,8 @@ struct setup_error {
   std::string message;
 };
 
-/// Sets what "NAME=VALUE" says: `world`, `seed`, `serial`, `model`, a further `fault`, or the member
-/// of device_options of that name (docs/sim.md lists them). Returns what is wrong, a sentence
+/// Sets what "NAME=VALUE" says: `world`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
+/// the member of device_options of that name (docs/sim.md lists them). Returns what is wrong, a sentence
 /// without a full stop; empty if nothing is. Does not check the values against each other: see
 /// problem_with(). Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::string set(setup& into, std::string_view word);

@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "claim.hpp"
@@ -29,8 +30,13 @@ constexpr std::string_view prefix = "sim:";
 
 // Members of device_options with a name in texts; where that is their unit, they are times.
 using options = device_options;
-using member = std::variant<std::int64_t options::*, std::uint32_t options::*, bool options::*>;
-constexpr std::array<std::pair<std::string_view, member>, 31> members{{
+using stored = device_settings;
+using member =
+    std::variant<std::int64_t options::*, std::uint32_t options::*, std::uint16_t options::*,
+                 bool options::*, turning options::*, at_limit options::*, disturbance options::*,
+                 low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
+                 power_down_protection stored::*>;
+constexpr std::array<std::pair<std::string_view, member>, 39> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -43,12 +49,16 @@ constexpr std::array<std::pair<std::string_view, member>, 31> members{{
     {"motor_drift_ppm", &options::motor_drift_ppm},
     {"free_motor_drift_ppm", &options::free_motor_drift_ppm},
     {"motor_drift_period_ns", &options::motor_drift_period_ns},
+    {"counter_clockwise", &options::counter_clockwise},
     {"stray_after_start", &options::stray_after_start},
     {"stray_before_zero", &options::stray_before_zero},
     {"stop_truncates", &options::stop_truncates},
     {"boot_text", &options::boot_text},
     {"boot_information", &options::boot_information},
     {"boot_ns", &options::boot_ns},
+    {"frequency_at_limit", &options::frequency_at_limit},
+    {"highest_frequency_chz", &options::highest_frequency_chz},
+    {"while_scanning", &options::while_scanning},
     {"settings_outlive_power", &options::settings_outlive_power},
     {"settings_outlive_restart", &options::settings_outlive_restart},
     {"answers_direction", &options::answers_direction},
@@ -61,8 +71,36 @@ constexpr std::array<std::pair<std::string_view, member>, 31> members{{
     {"start_again_answers", &options::start_again_answers},
     {"header_after_protection", &options::header_after_protection},
     {"protection_ns", &options::protection_ns},
+    {"initial_idle_power", &stored::idle_power},
+    {"initial_direction", &stored::direction},
+    {"initial_constancy", &stored::constancy},
+    {"initial_protection", &stored::protection},
     {"boots_at_start", &options::boots_at_start},
 }};
+
+template <class Value>
+Value& at(options& device, Value options::* place) noexcept {
+  return device.*place;
+}
+template <class Value>
+Value& at(options& device, Value stored::* place) noexcept {
+  return device.initial.*place;
+}
+
+// The words of an enumeration, in its order.
+using namespace std::string_view_literals;
+constexpr auto words_of(turning) { return std::array{"clockwise"sv, "mirrored"sv, "falling"sv}; }
+constexpr auto words_of(at_limit) { return std::array{"clamp"sv, "refuse"sv}; }
+constexpr auto words_of(disturbance) {
+  return std::array{"mid_packet"sv, "between"sv, "drops"sv, "ignored"sv};
+}
+constexpr auto words_of(low_power) { return std::array{"off"sv, "on"sv}; }
+constexpr auto words_of(motor_direction) {
+  return std::array{"clockwise"sv, "counter_clockwise"sv};
+}
+constexpr auto words_of(constant_frequency) { return std::array{"off"sv, "on"sv}; }
+constexpr auto words_of(power_down_protection) { return std::array{"on"sv, "off"sv}; }
+constexpr auto words_of(bool) { return std::array{"false"sv, "true"sv}; }
 
 std::string refused(std::string_view value, std::string_view why) {
   return "'" + std::string(value) + "' " + std::string(why);
@@ -76,10 +114,18 @@ std::string read_into(std::int64_t& time_ns, std::string_view value) {
   return {};
 }
 
-std::string read_into(bool& flag, std::string_view value) {
-  if (value != "true" && value != "false") return refused(value, "is not one of true, false");
-  flag = value == "true";
-  return {};
+template <class Value>
+  requires(std::is_enum_v<Value> || std::is_same_v<Value, bool>)
+std::string read_into(Value& chosen, std::string_view value) {
+  constexpr auto words = words_of(Value{});
+  const auto found = std::find(words.begin(), words.end(), value);
+  if (found != words.end()) {
+    chosen = static_cast<Value>(found - words.begin());
+    return {};
+  }
+  std::string known(words.front());
+  for (std::size_t i = 1; i < words.size(); ++i) known.append(", ").append(words[i]);
+  return refused(value, "is not one of " + known);
 }
 
 template <class Number>
@@ -103,11 +149,20 @@ std::string set_member(device_options& device, std::string_view name, std::strin
   std::string known;
   for (const auto& [each, place] : members) {
     if (each == name) {
-      return std::visit([&](auto found) { return read_into(device.*found, value); }, place);
+      return std::visit([&](auto found) { return read_into(at(device, found), value); }, place);
     }
     known.append(each).append(", ");
   }
-  return refused(name, "is not one of " + known + "fault, model, seed, serial, world");
+  return refused(name, "is not one of " + known + "fault, firmware, model, seed, serial, world");
+}
+
+// "3.2"
+std::string read_firmware(device_information& info, std::string_view value) {
+  const std::string_view major = value.substr(0, value.find('.'));
+  const std::string_view minor = value.substr(std::min(major.size() + 1, value.size()));
+  const bool is_read = read_into(info.firmware_major, major).empty() &&
+                       read_into(info.firmware_minor, minor).empty();
+  return is_read ? "" : refused(value, "is not a firmware version such as 3.2");
 }
 
 // "a%41" is "aA".
@@ -138,6 +193,7 @@ std::string set(setup& into, std::string_view word) {
   }
   if (name == "seed") return read_into(into.device.scanner.seed, value);
   if (name == "model") return read_into(into.device.info.model, value);
+  if (name == "firmware") return read_firmware(into.device.info, value);
   if (name == "fault") return add_fault(into.faults, value);
   if (name != "serial") return set_member(into.device, name, value);
   auto& digits = into.device.info.serial_digits;

@@ -87,6 +87,40 @@ TEST_F(SimSetup, EveryKindOfValue) {
   EXPECT_EQ(found.device.standstill_ns, 0);
 }
 
+TEST_F(SimSetup, OpenQuestionsOfTheProtocol) {
+  const sim::device_options ours = read("sim:").device;
+  EXPECT_EQ(ours.counter_clockwise, sim::turning::mirrored);
+  const auto direction = [](const char* source) { return read(source).device.counter_clockwise; };
+  EXPECT_EQ(direction("sim:?counter_clockwise=clockwise"), sim::turning::clockwise);
+  EXPECT_EQ(direction("sim:?counter_clockwise=mirrored"), sim::turning::mirrored);
+  EXPECT_EQ(direction("sim:?counter_clockwise=falling"), sim::turning::falling);
+  const auto limit = [](const char* source) { return read(source).device.frequency_at_limit; };
+  EXPECT_EQ(limit("sim:?frequency_at_limit=clamp"), sim::at_limit::clamp);
+  EXPECT_EQ(limit("sim:?frequency_at_limit=refuse"), sim::at_limit::refuse);
+  const auto disturbed = [](const char* source) { return read(source).device.while_scanning; };
+  EXPECT_EQ(disturbed("sim:?while_scanning=mid_packet"), sim::disturbance::mid_packet);
+  EXPECT_EQ(disturbed("sim:?while_scanning=between"), sim::disturbance::between);
+  EXPECT_EQ(disturbed("sim:?while_scanning=drops"), sim::disturbance::drops);
+  EXPECT_EQ(disturbed("sim:?while_scanning=ignored"), sim::disturbance::ignored);
+  EXPECT_EQ(read("sim:?highest_frequency_chz=1030").device.highest_frequency_chz, 1030);
+  const device_information info = read("sim:?firmware=2.17").device.info;
+  EXPECT_EQ(info.firmware_major, 2);
+  EXPECT_EQ(info.firmware_minor, 17);
+}
+
+TEST_F(SimSetup, StoredSettings) {
+  const auto initial = [](const char* source) { return read(source).device.initial; };
+  EXPECT_EQ(initial("sim:?initial_idle_power=off").idle_power, low_power::off);
+  EXPECT_EQ(initial("sim:?initial_idle_power=on").idle_power, low_power::on);
+  EXPECT_EQ(initial("sim:?initial_direction=counter_clockwise").direction,
+            motor_direction::counter_clockwise);
+  EXPECT_EQ(initial("sim:?initial_direction=clockwise").direction, motor_direction::clockwise);
+  EXPECT_EQ(initial("sim:?initial_constancy=off").constancy, constant_frequency::off);
+  EXPECT_EQ(initial("sim:?initial_constancy=on").constancy, constant_frequency::on);
+  EXPECT_EQ(initial("sim:?initial_protection=on").protection, power_down_protection::on);
+  EXPECT_EQ(initial("sim:?initial_protection=off").protection, power_down_protection::off);
+}
+
 TEST_F(SimSetup, TheOrderOfTheOptionsIsFree) {
   for (const char* const source :
        {"sim:?batch_min_ns=5ms&batch_max_ns=10ms", "sim:?batch_max_ns=10ms&batch_min_ns=5ms"}) {
@@ -99,13 +133,22 @@ TEST_F(SimSetup, InvalidTexts_AreRefused) {
   EXPECT_THAT(refusal("/dev/ttyUSB0"), HasSubstr("does not begin with sim:"));
   EXPECT_THAT(refusal("sim:?colour=red"), StartsWith("'colour' is not one of baud, batch_min_ns,"));
   EXPECT_THAT(refusal("sim:colour"),
-              HasSubstr("boots_at_start, fault, model, seed, serial, world"));
+              HasSubstr("boots_at_start, fault, firmware, model, seed, serial, world"));
   EXPECT_THAT(refusal("sim:?&"), StartsWith("'' is not one of baud"));
   EXPECT_EQ(refusal("sim:?seed=-1"), "'-1' is not in the range 0 to 18446744073709551615");
   EXPECT_EQ(refusal("sim:?seed="), "'' is not in the range 0 to 18446744073709551615");
   EXPECT_EQ(refusal("sim:?model=256"), "'256' is not in the range 0 to 255");
   EXPECT_EQ(refusal("sim:?baud=9600x"), "'9600x' is not in the range 0 to 4294967295");
-  EXPECT_EQ(refusal("sim:?boot_text"), "'' is not one of true, false");
+  EXPECT_EQ(refusal("sim:?boot_text"), "'' is not one of false, true");
+  EXPECT_EQ(refusal("sim:?while_scanning=never"),
+            "'never' is not one of mid_packet, between, drops, ignored");
+  EXPECT_EQ(refusal("sim:?initial_protection=true"), "'true' is not one of on, off");
+  EXPECT_EQ(refusal("sim:?highest_frequency_chz=70000"), "'70000' is not in the range 0 to 65535");
+  EXPECT_THAT(refusal("sim:?highest_frequency_chz=699"), HasSubstr("from the device's own"));
+  for (const char* const version : {"", "3", "3.", ".2", "3.256", "3.2.1", "three"}) {
+    EXPECT_EQ(refusal("sim:?firmware=" + std::string(version)),
+              "'" + std::string(version) + "' is not a firmware version such as 3.2");
+  }
   EXPECT_THAT(refusal("sim:?header_ns=2parsecs"), StartsWith("'2parsecs' is not a time such as"));
   EXPECT_THAT(refusal("sim:?header_ns="), StartsWith("'' is not a time such as"));
   EXPECT_THAT(refusal("sim:?header_ns=2min"), HasSubstr("must take 0 to 60 s"));
