@@ -12,6 +12,7 @@
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/detail/arrival_window.hpp"
+#include "g4lidar/detail/late_packets.hpp"
 #include "g4lidar/detail/sample_counter.hpp"
 #include "g4lidar/point.hpp"
 
@@ -77,7 +78,7 @@ class sensor_clock {
   constexpr packet_times stamp(const decoded& packet, std::int64_t arrival_ns) noexcept {
     const std::int64_t count = std::max<std::int64_t>(packet.sample_count, 1);
     const sample_gap gap = counter_.next(packet, hinted_, late_samples(count, arrival_ns));
-    if (gap.lost > 0) seen_bytes_ = 0;  // bytes of a packet that never arrived
+    if (gap.lost > 0) part_.forget();  // bytes of a packet that never arrived
     const std::int64_t before = measured_before(count, arrival_ns);
     hinted_ = false;
     skipped_bytes_ = 0.0;
@@ -85,7 +86,7 @@ class sensor_clock {
     doubt(gap);
     const std::int64_t missed = observe({next_ - 1, before});
     packet_times times = times_until(std::min(line_.at(next_ - 1), before), count);
-    if (is_late_) times.bound_ns += before - line_.at(next_ - 1);  // samples may be missing
+    if (late_.is_late()) times.bound_ns += before - line_.at(next_ - 1);  // samples may be missing
     bound_ns_ = times.bound_ns;
     times.lost = gap.lost + missed;
     return times;
@@ -98,18 +99,17 @@ class sensor_clock {
   /// information as the arrival of a whole packet.
   constexpr void seen(std::size_t count, std::int64_t arrival_ns) noexcept {
     if (count < packet_header_size || count > max_packet_size) return;
-    const std::int64_t before = arrival_ns - line_time_ns(count);
-    seen_before_ns_ = seen_bytes_ == 0 ? before : std::min(before, seen_before_ns_);
-    seen_bytes_ = std::max(seen_bytes_, count);
+    part_.add(count, arrival_ns - line_time_ns(count));
   }
 
   /// Packets were probably lost here: call it after each skip with a reason other than noise, of
   /// `count` bytes. Gaps are counted without it too; with it, short gaps are counted more exactly,
   /// and gaps longer than a turn immediately.
   constexpr void lost(std::size_t count) noexcept {
-    hinted_ = is_torn_ = true;
+    hinted_ = true;
+    late_.skipped();
     skipped_bytes_ += static_cast<double>(count);
-    seen_bytes_ = 0;
+    part_.forget();
   }
 
   /// The stream starts again: nothing is known except, approximately, the sample rate. Times still
@@ -118,7 +118,7 @@ class sensor_clock {
     counter_.reset();
     hinted_ = false;
     skipped_bytes_ = 0.0;
-    seen_bytes_ = 0;
+    part_.forget();
     restart();
   }
   /// The same with another nominal sample rate, above 0.
@@ -141,16 +141,61 @@ class sensor_clock {
   [[nodiscard]] constexpr std::int64_t bound_ns() const noexcept { return bound_ns_; }
 
  private:
-  /// A packet that is later than this was delayed by more than batching.
-  static constexpr double late_ns = 25e6;
+  /// The received part of the next packet, and the limit that it gives for the times.
+  class received_part {
+   public:
+    /// `count` bytes; their last sample was measured before `before_ns`.
+    constexpr void add(std::size_t count, std::int64_t before_ns) noexcept {
+      before_ns_ = count_ == 0 ? before_ns : std::min(before_ns, before_ns_);
+      count_ = std::max(count_, count);
+    }
+    constexpr void forget() noexcept { count_ = 0; }
+    /// The limit of the packet of `size` bytes, which gives `before_ns` itself.
+    [[nodiscard]] constexpr std::int64_t take_limit(std::size_t size,
+                                                    std::int64_t before_ns) noexcept {
+      const bool is_part = count_ > 0 && count_ < size;
+      forget();
+      return is_part ? std::min(before_ns, before_ns_) : before_ns;
+    }
+
+   private:
+    std::size_t count_ = 0;
+    std::int64_t before_ns_ = 0;
+  };
+
+  /// Times that increase from sample to sample and from packet to packet.
+  class increasing_times {
+   public:
+    /// The times of `count` samples of which the last one is at `last_ns`. If that is not after the
+    /// previous samples, the steps are shortened until it is; the bound is the delay that results.
+    [[nodiscard]] constexpr packet_times until(std::int64_t last_ns, std::int64_t count,
+                                               double period_ns) noexcept {
+      const double steps = static_cast<double>(count - 1);
+      const double shortest_ns = period_ns / 4.0;
+      const std::int64_t first_ns = last_ns - static_cast<std::int64_t>(steps * period_ns);
+      packet_times times;
+      times.first_ns = first_ns;
+      times.step_ns = period_ns;
+      if (any_) {
+        times.first_ns = std::max(first_ns, last_ns_ + static_cast<std::int64_t>(shortest_ns));
+      }
+      if (times.first_ns > first_ns && count > 1) {
+        const double fitting = static_cast<double>(last_ns - times.first_ns) / steps;
+        times.step_ns = std::max(shortest_ns, fitting);
+      }
+      any_ = true;
+      last_ns_ = times.at(static_cast<std::size_t>(count - 1));
+      times.bound_ns = times.first_ns - first_ns;
+      return times;
+    }
+
+   private:
+    bool any_ = false;
+    std::int64_t last_ns_ = 0;  // the time of the last sample
+  };
+
   /// A stream whose packets are usually later than that is not live.
   static constexpr double most_delay_ns = 10e6;
-  /// After so much time without a packet in time, and without a decrease of the delay by this much,
-  /// samples were lost without being counted.
-  static constexpr double all_late_ns = 40e6;
-  static constexpr double catching_up_ns = 5e6;
-  /// The same if no byte was skipped: a loss nearly always damages a frame.
-  static constexpr double surely_late_ns = 1e9;
   /// A window longer than this determines the rate by itself.
   static constexpr double enough_ns = 4e9;
   /// An arrival earlier than this, and earlier than the bound allows, disproves the count.
@@ -185,10 +230,7 @@ class sensor_clock {
                                                        std::int64_t arrival_ns) noexcept {
     arrival_ns_ = std::max(arrival_ns_, arrival_ns);
     const std::size_t size = packet_size(static_cast<std::size_t>(count));
-    std::int64_t before = arrival_ns_ - line_time_ns(size);
-    if (seen_bytes_ > 0 && seen_bytes_ < size) before = std::min(before, seen_before_ns_);
-    seen_bytes_ = 0;
-    return before - options_.transport_delay_ns;
+    return part_.take_limit(size, arrival_ns_ - line_time_ns(size)) - options_.transport_delay_ns;
   }
 
   /// Clears the window. The rate is kept: a device that starts again has the same oscillator.
@@ -198,7 +240,7 @@ class sensor_clock {
     slopes_ = {std::max(-widest, slope - doubt), std::min(widest, slope + doubt)};
     window_.clear();
     started_ = false;
-    is_late_ = is_torn_ = false;
+    late_.reset();
   }
 
   /// A gap whose count is uncertain widens the bound; a gap of unknown size separates the times
@@ -221,7 +263,7 @@ class sensor_clock {
       restart();
       late = 0.0;
     }
-    if (is_late_) return 0;
+    if (late_.is_late()) return 0;
     if (-late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
     started_ = true;
     in_time_ = next.sample;
@@ -247,24 +289,10 @@ class sensor_clock {
   }
 
   /// Whether packets have been too late for too long: then samples were lost without being counted.
-  /// After a suspension of the program the packets become less and less late, unless it is
-  /// suspended again.
   [[nodiscard]] constexpr bool stays_late(double late, arrival next) noexcept {
-    const bool was_late = is_late_;
-    const double usual_ns = std::max(late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
-    is_late_ = late > usual_ns && late > usual_ns + drift_since_ns(next);
-    if (!is_late_) {
-      is_torn_ = false;
-      return false;
-    }
-    if (!was_late || late < least_late_ns_ - catching_up_ns) {
-      least_late_ns_ = late;
-      late_since_ns_ = steady_since_ns_ = next.time_ns;
-    }
-    if (late > least_late_ns_ + late_ns) steady_since_ns_ = next.time_ns;
-    const auto late_for_ns = static_cast<double>(next.time_ns - late_since_ns_);
-    const auto steady_for_ns = static_cast<double>(next.time_ns - steady_since_ns_);
-    return (is_torn_ && steady_for_ns > all_late_ns) || late_for_ns > surely_late_ns;
+    const double usual_ns =
+        std::max(late_packets::late_ns, 8.0 * std::min(line_.mean_delay_ns, most_delay_ns));
+    return late_.add(late > usual_ns && late > usual_ns + drift_since_ns(next), late, next.time_ns);
   }
 
   /// The largest delay of packets since the last one in time, if the rate differs from the assumed
@@ -276,26 +304,10 @@ class sensor_clock {
     return doubt * static_cast<double>(next.sample - in_time_) * nominal_ns_;
   }
 
-  /// The times of `count` samples of which the last one is at `last_ns`. If that is not after the
-  /// previous samples, the steps are shortened until it is.
   [[nodiscard]] constexpr packet_times times_until(std::int64_t last_ns,
                                                    std::int64_t count) noexcept {
-    const double steps = static_cast<double>(count - 1);
-    const double shortest_ns = line_.period_ns / 4.0;
-    const std::int64_t first_ns = last_ns - static_cast<std::int64_t>(steps * line_.period_ns);
-    packet_times times;
-    times.first_ns = first_ns;
-    times.step_ns = line_.period_ns;
-    if (any_) {
-      times.first_ns = std::max(first_ns, last_ns_ + static_cast<std::int64_t>(shortest_ns));
-    }
-    if (times.first_ns > first_ns && count > 1) {
-      const double fitting = static_cast<double>(last_ns - times.first_ns) / steps;
-      times.step_ns = std::max(shortest_ns, fitting);
-    }
-    any_ = true;
-    last_ns_ = times.at(static_cast<std::size_t>(count - 1));
-    const double behind_ns = static_cast<double>(times.first_ns - first_ns);
+    packet_times times = times_.until(last_ns, count, line_.period_ns);
+    const auto behind_ns = static_cast<double>(times.bound_ns);
     times.bound_ns = static_cast<std::int64_t>(line_.bound_ns + behind_ns + doubt_ns_) + 1000;
     doubt_ns_ *= 0.999;  // later arrivals reduce the doubt
     return times;
@@ -309,23 +321,17 @@ class sensor_clock {
   arrival_window::slopes slopes_{};
   std::int64_t next_ = 0;  // number of the next sample
   std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
-  std::size_t seen_bytes_ = 0;  // of the next packet, and the limit that they give
-  std::int64_t seen_before_ns_ = 0;
-  std::int64_t in_time_ = 0;          // the last sample of a packet that was in time
-  std::int64_t late_since_ns_ = 0;    // late since then, without a decrease
-  std::int64_t steady_since_ns_ = 0;  // without a further delay since then
-  double least_late_ns_ = 0.0;
-  std::int64_t last_ns_ = 0;  // the time of the last sample
+  received_part part_;
+  late_packets late_;
+  increasing_times times_;
+  std::int64_t in_time_ = 0;  // the last sample of a packet that was in time
   std::int64_t bound_ns_ = 0;
   double mean_late_ns_ = unknown_late_ns;
   double skipped_bytes_ = 0.0;  // since the last packet
   double doubt_ns_ = 0.0;       // by uncertain counts of lost samples
   bool started_ = false;        // the line exists
   bool rate_known_ = false;
-  bool is_late_ = false;
-  bool is_torn_ = false;  // bytes were skipped since the last packet in time
   bool hinted_ = false;
-  bool any_ = false;  // times were given
 };
 
 }  // namespace g4lidar
