@@ -37,7 +37,7 @@ std::int64_t device::next_ns(std::int64_t now_ns) const noexcept {
 
 bool device::is_plugged(std::int64_t now_ns) noexcept {
   machine_->advance(now_ns);
-  return machine_->plugged;
+  return machine_->plug.is_in();
 }
 
 void device::unplug(std::int64_t now_ns) noexcept {
@@ -52,7 +52,7 @@ void device::replug(std::int64_t now_ns) noexcept {
 
 std::int64_t device::next_plug_ns() const noexcept { return machine_->next_edge_ns(); }
 
-std::uint64_t device::replugs() const noexcept { return machine_->replugs; }
+std::uint64_t device::replugs() const noexcept { return machine_->plug.replugs(); }
 bool device::is_scanning() const noexcept { return machine_->is_scanning(); }
 bool device::is_up() const noexcept { return machine_->is_up(); }
 bool device::motor_turns() const noexcept { return machine_->head.is_driven(); }
@@ -69,8 +69,8 @@ bool device::is_idle_and_silent(std::int64_t now_ns) const noexcept {
 
 const device_settings& device::settings() const noexcept { return machine_->settings; }
 
-std::span<const asked> device::log() const noexcept { return machine_->log; }
-std::uint64_t device::log_missed() const noexcept { return machine_->log_missed; }
+std::span<const asked> device::log() const noexcept { return machine_->log.entries(); }
+std::uint64_t device::log_missed() const noexcept { return machine_->log.missed(); }
 void device::clear_log() noexcept { machine_->log.clear(); }
 
 std::size_t device::take_truth(std::span<sent_sample> out) noexcept {

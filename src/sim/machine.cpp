@@ -27,19 +27,17 @@ device::machine::machine(const world& scene, const device_options& options,
                          std::span<const fault> faults)
     : to_host(options),
       truths(options.truth_capacity),
+      log(options.log_capacity),
       settings(first_settings(options)),
       head(options),
       options_(options),
       faults_(faults, options.scanner.seed),
-      scanner_(scene, options.scanner),
+      sampler_(scene, options.scanner),
       wire_(options.baud),
-      phases_(stream_for(options.scanner.seed, purpose::phases)),
-      strays_(stream_for(options.scanner.seed, purpose::strays)),
       garbage_(stream_for(options.scanner.seed, purpose::garbage)) {
   assert(problem_with(options).empty());
   assert(std::all_of(faults.begin(), faults.end(),
                      [](const fault& f) { return problem_with(f).empty(); }));
-  log.reserve(options.log_capacity);
   use_settings();
   if (options.boots_at_start) {
     power_on(true);
@@ -55,10 +53,10 @@ device::machine::event device::machine::next_event() const noexcept {
     if (at_ns < first.at_ns) first = {at_ns, what};
   };
   consider(faults_.next_edge_ns(), happening::fault_edge);
-  if (!from_host_.empty()) consider(from_host_.front().at_ns, happening::host_byte);
-  if (!commands_.empty()) consider(commands_.front().due_ns, happening::command_due);
-  consider(answer_ns_, happening::answer_due);
-  consider(packet_ns_, happening::packet_measured);
+  consider(from_host_.next_byte_ns(), happening::host_byte);
+  consider(from_host_.next_command_ns(), happening::command_due);
+  consider(answers_.next_ns(), happening::answer_due);
+  consider(sampler_.next_ns(), happening::packet_measured);
   if (is_scanning() && settings.protection == power_down_protection::on) {
     consider(fed_ns_ + options_.protection_ns, happening::protection);
   }
@@ -84,13 +82,10 @@ void device::machine::handle(happening what) noexcept {
       return fault_edge();
     case happening::host_byte:
       return host_byte_arrives();
-    case happening::command_due: {
-      const pending_command due = commands_.front();
-      commands_.pop();
-      return execute(due);
-    }
+    case happening::command_due:
+      return execute(from_host_.take_command());
     case happening::answer_due:
-      return answers_due();
+      return answers_.take_due(now_ns_, [this](const answer_bytes& due) { send(due); });
     case happening::packet_measured:
       return packet_measured();
     case happening::protection:
@@ -122,33 +117,24 @@ std::int64_t device::machine::next_ns(std::int64_t now_ns) const noexcept {
 }
 
 bool device::machine::is_silent() const noexcept {
-  return wire_.is_silent() && to_host.next_ns() == forever_ns && from_host_.empty() &&
-         commands_.empty() && answer_ns_ == forever_ns;
+  return wire_.is_silent() && to_host.next_ns() == forever_ns && from_host_.is_empty() &&
+         answers_.next_ns() == forever_ns;
 }
 
 void device::machine::write(bytes from_host) noexcept {
-  if (!plugged) return;
-  host_free_ns_ = std::max(host_free_ns_, now_ns_);
-  for (const std::uint8_t byte : from_host) {  // what does not fit is lost, and takes no time
-    const std::int64_t through_ns = host_free_ns_ + 10'000'000'000 / options_.baud;
-    if (from_host_.push({through_ns, byte})) host_free_ns_ = through_ns;
-  }
+  if (plug.is_in()) from_host_.write(from_host, options_.baud, now_ns_);
 }
 
 void device::machine::fault_edge() noexcept {
   faults_.set_time(now_ns_);
-  const bool plug = !held_unplugged_ && faults_.find(fault_kind::unplug) == nullptr;
-  if (plug != plugged) {
-    plugged = plug;
-    if (plug) {
-      ++replugs;
+  if (plug.update(faults_.find(fault_kind::unplug) != nullptr)) {
+    if (plug.is_in()) {
       browned_out_ = false;
       power_on(options_.settings_outlive_power);
     } else {
       power_off();
       to_host.reset();
-      from_host_.clear();
-      host_free_ns_ = 0;
+      from_host_.unplug();
     }
   }
   if (browned_out_ && faults_.find(fault_kind::brown_out) == nullptr) {
@@ -163,11 +149,11 @@ void device::machine::fault_edge() noexcept {
 
 void device::machine::power_off() noexcept {
   state_ = state::off;
-  packet_ns_ = booted_ns_ = death_ns_ = answer_ns_ = forever_ns;
-  answers_.fill({});
-  commands_.clear();
+  booted_ns_ = death_ns_ = forever_ns;
+  sampler_.end();
+  answers_.clear();
+  from_host_.power_off();
   wire_.reset();
-  start_byte_seen_ = false;
   stopped_by_protection_ = false;
   keep_motor();
 }
@@ -178,7 +164,7 @@ void device::machine::power_on(bool keep_settings) noexcept {
     settings = first_settings(options_);
     use_settings();
   }
-  has_answered_ = false;
+  answers_.boot();
   state_ = state::booting;
   booted_ns_ = now_ns_ + options_.boot_ns;
 }
@@ -186,7 +172,7 @@ void device::machine::power_on(bool keep_settings) noexcept {
 void device::machine::booted() noexcept {
   booted_ns_ = forever_ns;
   state_ = state::idle;
-  if (options_.boot_text) say(text_bytes(boot_words));
+  if (options_.boot_text) wire_.say(text_bytes(boot_words), now_ns_);
   if (options_.boot_information) send(answer_with(options_.info));
   keep_motor();
 }

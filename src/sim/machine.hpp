@@ -3,19 +3,20 @@
 // behaviour does not depend on how often it is called.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
+#include "answer_queue.hpp"
 #include "bridge.hpp"
+#include "command_log.hpp"
+#include "command_receiver.hpp"
 #include "fault_line.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "motor.hpp"
-#include "ring.hpp"
+#include "sampler.hpp"
 #include "settings.hpp"
 #include "truth_log.hpp"
+#include "usb_plug.hpp"
 #include "wire.hpp"
 
 namespace g4lidar::sim {
@@ -34,7 +35,7 @@ class G4LIDAR_HIDDEN device::machine {
   }
 
   void hold_unplugged(bool held) noexcept {
-    held_unplugged_ = held;
+    plug.hold_unplugged(held);
     fault_edge();
   }
   [[nodiscard]] std::int64_t next_edge_ns() const noexcept { return faults_.next_edge_ns(); }
@@ -42,12 +43,10 @@ class G4LIDAR_HIDDEN device::machine {
   // The state for the host.
   bridge to_host;
   truth_log truths;
-  std::vector<asked> log;
-  std::uint64_t log_missed = 0;
+  command_log log;
   device_settings settings;
   motor head;
-  std::uint64_t replugs = 0;
-  bool plugged = true;
+  usb_plug plug;
 
   [[nodiscard]] bool is_up() const noexcept { return state_ >= state::idle; }
   [[nodiscard]] bool is_scanning() const noexcept { return state_ == state::scanning; }
@@ -70,19 +69,6 @@ class G4LIDAR_HIDDEN device::machine {
   struct event {
     std::int64_t at_ns;
     happening what;
-  };
-  struct host_byte {
-    std::int64_t at_ns;
-    std::uint8_t byte;
-  };
-  struct pending_command {
-    std::int64_t due_ns;
-    std::int64_t asked_ns;
-    std::uint8_t code;
-  };
-  struct late_answer {
-    std::int64_t due_ns = forever_ns;  // forever_ns: none
-    answer_bytes what;
   };
 
   [[nodiscard]] event next_event() const noexcept;
@@ -108,11 +94,8 @@ class G4LIDAR_HIDDEN device::machine {
   // Answers.
   void answer(answer_bytes what, std::int64_t later_ns = 0) noexcept;
   [[nodiscard]] answer_bytes another_than(const answer_bytes& right) noexcept;
-  void send_later(const answer_bytes& what, std::int64_t due_ns) noexcept;
   void forget_header() noexcept;
   void send(const answer_bytes& what) noexcept;
-  void say(bytes content) noexcept;
-  void answers_due() noexcept;
 
   // Scanning.
   void begin_scan() noexcept;
@@ -124,29 +107,16 @@ class G4LIDAR_HIDDEN device::machine {
 
   device_options options_;
   fault_line faults_;
-  scanner scanner_;
+  command_receiver from_host_;
+  answer_queue answers_;
+  sampler sampler_;
   wire wire_;
-  random_stream phases_;
-  random_stream strays_;
   random_stream garbage_;
 
   std::int64_t now_ns_ = 0;
   state state_ = state::idle;
-  bool held_unplugged_ = false;
   bool browned_out_ = false;
   bool stopped_by_protection_ = false;
-  bool start_byte_seen_ = false;
-  std::int64_t host_free_ns_ = 0;  // the end of the last byte from the host
-  ring<host_byte, 1'024> from_host_;
-  ring<pending_command, 64> commands_;
-  std::array<late_answer, 16> answers_{};
-  std::int64_t answer_ns_ = forever_ns;  // the time of the first of them
-  transmission measuring_;               // the packet that is being measured
-  transmission speaking_;                // temporary
-  std::uint64_t packets_ = 0;
-  std::int64_t packet_ns_ = forever_ns;  // when it is complete
-  std::int64_t silent_until_ns_ = 0;     // no packet is sent before this time
-  bool has_answered_ = true;             // since it booted
   std::int64_t fed_ns_ = 0;
   std::int64_t booted_ns_ = forever_ns;
   std::int64_t death_ns_ = forever_ns;

@@ -10,31 +10,18 @@
 namespace g4lidar::sim {
 
 void device::machine::host_byte_arrives() noexcept {
-  std::uint8_t byte = from_host_.front().byte;
-  from_host_.pop();
+  std::uint8_t byte = from_host_.take_byte();
   if (faults_.find(fault_kind::baud) != nullptr) {
     byte = static_cast<std::uint8_t>(garbage_.next() >> 56);
   }
-  if (!is_up() || faults_.find(fault_kind::deaf) != nullptr) {
-    start_byte_seen_ = false;
-    return;
-  }
-  if (byte == command_start || !start_byte_seen_) {
-    start_byte_seen_ = byte == command_start;
-    return;
-  }
-  start_byte_seen_ = false;
-  commands_.push({now_ns_ + options_.reaction_ns, now_ns_, byte});
+  if (!is_up() || faults_.find(fault_kind::deaf) != nullptr) return from_host_.ignore();
+  from_host_.hear(byte, now_ns_, options_.reaction_ns);
 }
 
 void device::machine::execute(const pending_command& asked_for) noexcept {
   const bool scanning = is_scanning();
   const bool obeyed = obey(static_cast<command>(asked_for.code));
-  if (log.size() == options_.log_capacity) {
-    ++log_missed;
-    return;
-  }
-  log.push_back({asked_for.asked_ns, asked_for.code, obeyed, scanning});
+  log.add({asked_for.asked_ns, asked_for.code, obeyed, scanning});
 }
 
 bool device::machine::obey(command code) noexcept {
@@ -87,8 +74,7 @@ bool device::machine::obey_setting(command code) noexcept {
 
 void device::machine::use_settings() noexcept {
   const bool clockwise = settings.direction == motor_direction::clockwise;
-  scanner_.set_ranging(settings.ranging);
-  scanner_.set_turning(clockwise ? turning::clockwise : options_.counter_clockwise);
+  sampler_.set(settings.ranging, clockwise ? turning::clockwise : options_.counter_clockwise);
   head.hold(settings.constancy);
 }
 
@@ -104,7 +90,7 @@ bool device::machine::obey_start() noexcept {
     if (options_.stray_after_start) header.data[header.size++] = 0x00;
     answer(header, options_.header_ns);
   }
-  silent_until_ns_ = now_ns_ + options_.header_ns + options_.silence_ns;
+  sampler_.silence_until(now_ns_ + options_.header_ns + options_.silence_ns);
   begin_scan();
   return true;
 }
@@ -119,7 +105,7 @@ health device::machine::condition() const noexcept {
 void device::machine::restart() noexcept { power_on(options_.settings_outlive_restart); }
 
 void device::machine::answer(answer_bytes what, std::int64_t later_ns) noexcept {
-  if (!std::exchange(has_answered_, true)) later_ns += options_.first_answer_ns;
+  if (answers_.begin_answer()) later_ns += options_.first_answer_ns;
   if (faults_.strike(fault_kind::mute) != nullptr) return;
   if (faults_.strike(fault_kind::wrong) != nullptr) what = another_than(what);
   const bool twice = faults_.strike(fault_kind::twice) != nullptr;
@@ -127,7 +113,7 @@ void device::machine::answer(answer_bytes what, std::int64_t later_ns) noexcept 
   if (late != nullptr) later_ns += late->amount;
   for (int times = twice ? 2 : 1; times > 0; --times) {
     if (later_ns > 0) {
-      send_later(what, now_ns_ + later_ns);
+      answers_.add(what, now_ns_ + later_ns);
     } else {
       send(what);
     }
@@ -146,46 +132,17 @@ answer_bytes device::machine::another_than(const answer_bytes& right) noexcept {
   return others[which];
 }
 
-void device::machine::send_later(const answer_bytes& what, std::int64_t due_ns) noexcept {
-  for (late_answer& place : answers_) {
-    if (place.due_ns != forever_ns) continue;
-    place = {due_ns, what};
-    answer_ns_ = std::min(answer_ns_, due_ns);
-    return;
-  }
-}
-
 /// A stopped device sends no header; a header that a fault has delayed is still sent.
 void device::machine::forget_header() noexcept {
-  if (options_.header_ns == 0) return;
-  const answer_bytes header = answer_with(response_kind::scan_started, {});
-  for (late_answer& place : answers_) {
-    const bool is_header =
-        std::equal(header.data.begin(), header.data.begin() + header.size, place.what.data.begin());
-    if (is_header) place.due_ns = forever_ns;
-  }
-}
-
-void device::machine::answers_due() noexcept {
-  answer_ns_ = forever_ns;
-  for (late_answer& place : answers_) {
-    if (place.due_ns <= now_ns_) {
-      place.due_ns = forever_ns;
-      send(place.what);
-    }
-    answer_ns_ = std::min(answer_ns_, place.due_ns);
-  }
+  if (options_.header_ns > 0) answers_.remove(answer_with(response_kind::scan_started, {}));
 }
 
 void device::machine::send(const answer_bytes& what) noexcept {
-  if (!is_scanning() || options_.while_scanning == disturbance::between) return say(what.view());
+  if (!is_scanning() || options_.while_scanning == disturbance::between) {
+    return wire_.say(what.view(), now_ns_);
+  }
   if (options_.while_scanning == disturbance::drops) wire_.cut_front();
   wire_.interject(what, now_ns_);
-}
-
-void device::machine::say(bytes content) noexcept {
-  speaking_.assign(content);
-  wire_.say(speaking_, now_ns_);
 }
 
 }  // namespace g4lidar::sim

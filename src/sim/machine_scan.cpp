@@ -13,14 +13,14 @@ void device::machine::begin_scan() noexcept {
   fed_ns_ = now_ns_;
   stopped_by_protection_ = false;
   keep_motor();
-  scanner_.resume(now_ns_, phases_.next());
+  sampler_.begin(now_ns_);
   measure();
 }
 
 void device::machine::end_scan() noexcept {
   if (!is_scanning()) return;
   state_ = state::idle;
-  packet_ns_ = forever_ns;
+  sampler_.end();
   forget_header();
   wire_.cut(options_.stop_truncates);
   keep_motor();
@@ -38,32 +38,22 @@ void device::machine::keep_motor() noexcept {
   if (weak != nullptr) death_ns_ = now_ns_ + weak->amount;
 }
 
-// The next packet, as it will be when its last sample has been measured.
 void device::machine::measure() noexcept {
-  scanner_.set_speed_mhz(head.speed_mhz(scanner_.next_sample_ns()));
   const bool jolts = faults_.strike(fault_kind::jolt) != nullptr &&
                      settings.direction == motor_direction::clockwise;
-  if (jolts) scanner_.set_turning(turning::falling);
-  const sent_packet packet = scanner_.next();
-  if (jolts) scanner_.set_turning(turning::clockwise);
-  std::optional<std::uint8_t> stray;
-  if (options_.stray_before_zero && (packet.data[2] & 1U) != 0) {
-    stray = static_cast<std::uint8_t>(strays_.next() >> 56);
-  }
-  measuring_.assign(packet, stray);
-  packet_ns_ = packet.complete_ns;
+  sampler_.measure(head, jolts, options_.stray_before_zero);
 }
 
 void device::machine::packet_measured() noexcept {
-  if (now_ns_ < silent_until_ns_) return measure();
-  measuring_.packet = packets_++;
+  transmission* const packet = sampler_.take(now_ns_);
+  if (packet == nullptr) return measure();
   if (faults_.strike(fault_kind::truncate) != nullptr) {
-    const auto most = static_cast<std::uint64_t>(measuring_.size - measuring_.begin - 1);
+    const auto most = static_cast<std::uint64_t>(packet->size - packet->begin - 1);
     const std::uint64_t stays = 1 + faults_.draw(fault_kind::truncate, most);
-    measuring_.size = static_cast<std::uint8_t>(measuring_.begin + stays);
-    measuring_.damaged = true;
+    packet->size = static_cast<std::uint8_t>(packet->begin + stays);
+    packet->damaged = true;
   }
-  wire_.say(measuring_, now_ns_);
+  wire_.say(*packet, now_ns_);
   measure();
 }
 

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// The receiver of a simulated G4: bytes of the host become commands, one byte time after the other.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/sim/fault.hpp"
+#include "ring.hpp"
+
+namespace g4lidar::sim {
+
+/// A command that was received, and is due for execution.
+struct pending_command {
+  std::int64_t due_ns;
+  std::int64_t asked_ns;
+  std::uint8_t code;
+};
+
+/// What does not fit into the buffers is lost.
+class command_receiver {
+ public:
+  /// The host sends bytes at `baud`.
+  void write(bytes from_host, std::uint32_t baud, std::int64_t now_ns) noexcept {
+    free_ns_ = std::max(free_ns_, now_ns);
+    for (const std::uint8_t byte : from_host) {  // what does not fit takes no time
+      const std::int64_t through_ns = free_ns_ + 10'000'000'000 / baud;
+      if (bytes_.push({through_ns, byte})) free_ns_ = through_ns;
+    }
+  }
+  /// When the next byte has arrived.
+  [[nodiscard]] std::int64_t next_byte_ns() const noexcept {
+    return bytes_.empty() ? forever_ns : bytes_.front().at_ns;
+  }
+  /// Takes this byte.
+  [[nodiscard]] std::uint8_t take_byte() noexcept {
+    const std::uint8_t byte = bytes_.front().byte;
+    bytes_.pop();
+    return byte;
+  }
+  /// The device hears a byte: the second byte of a command is due after `reaction_ns`.
+  void hear(std::uint8_t byte, std::int64_t now_ns, std::int64_t reaction_ns) noexcept {
+    const bool is_second = start_byte_seen_ && byte != command_start;
+    start_byte_seen_ = byte == command_start;
+    if (is_second) commands_.push({now_ns + reaction_ns, now_ns, byte});
+  }
+  /// The device does not hear the byte.
+  void ignore() noexcept { start_byte_seen_ = false; }
+
+  /// When the next command is due.
+  [[nodiscard]] std::int64_t next_command_ns() const noexcept {
+    return commands_.empty() ? forever_ns : commands_.front().due_ns;
+  }
+  /// Takes this command.
+  [[nodiscard]] pending_command take_command() noexcept {
+    const pending_command due = commands_.front();
+    commands_.pop();
+    return due;
+  }
+  [[nodiscard]] bool is_empty() const noexcept { return bytes_.empty() && commands_.empty(); }
+
+  /// No power: bytes on the way still arrive.
+  void power_off() noexcept {
+    commands_.clear();
+    start_byte_seen_ = false;
+  }
+  void unplug() noexcept {
+    bytes_.clear();
+    free_ns_ = 0;
+  }
+
+ private:
+  struct host_byte {
+    std::int64_t at_ns;
+    std::uint8_t byte;
+  };
+
+  std::int64_t free_ns_ = 0;  // the end of the last byte
+  ring<host_byte, 1'024> bytes_;
+  bool start_byte_seen_ = false;
+  ring<pending_command, 64> commands_;
+};
+
+}  // namespace g4lidar::sim
