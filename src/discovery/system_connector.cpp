@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <ctime>
@@ -143,6 +144,22 @@ void system_connector::refuse() noexcept {
   }
 }
 
+/// Of a network bridge nothing is known before the attempt.
+int system_connector::watch() noexcept {
+  try {
+    if (!watch_ && !first_.path.empty()) watch_.emplace(first_.path);
+  } catch (const std::bad_alloc&) {
+    return -1;  // the driver tries without it
+  }
+  return watch_handle();
+}
+
+bool system_connector::may_be_back() noexcept {
+  if (!watch_ || !watch_->take()) return false;
+  paths_.clear();
+  return true;
+}
+
 std::int64_t system_connector::now_ns() const noexcept {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -152,14 +169,14 @@ bool system_connector::pause(std::int64_t deadline_ns) noexcept {
     const std::int64_t left = std::max<std::int64_t>(deadline_ns - now_ns(), 0);
     const timespec time{static_cast<std::time_t>(left / 1'000'000'000),
                         static_cast<long>(left % 1'000'000'000)};
-    pollfd woken{wake_, POLLIN, 0};
-    const int ready = ppoll(&woken, 1, &time, nullptr);
-    if (ready > 0) {
+    std::array<pollfd, 2> ends{{{wake_, POLLIN, 0}, {watch_handle(), POLLIN, 0}}};
+    const int ready = ppoll(ends.data(), ends.size(), &time, nullptr);
+    if (ends[0].revents != 0) {
       eventfd_t count = 0;
       static_cast<void>(eventfd_read(wake_, &count));
       return false;
     }
-    if (ready == 0) return true;  // otherwise a signal arrived: continue waiting
+    if (ready >= 0) return true;  // otherwise a signal arrived: continue waiting
   }
 }
 

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/connector.hpp"
+#include "path_watch.hpp"
 
 namespace g4lidar {
 
@@ -28,6 +30,8 @@ class system_connector final : public connector {
   [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override;
   void wake() noexcept override;
   void refuse() noexcept override;
+  [[nodiscard]] int watch() noexcept override;
+  [[nodiscard]] bool may_be_back() noexcept override;
   [[nodiscard]] bool answers() const noexcept override;
 
  private:
@@ -47,6 +51,7 @@ class system_connector final : public connector {
   [[nodiscard]] bool may_be_ours(const port_info& port) const noexcept;
   [[nodiscard]] bool is_refused(const std::string& path) const;
   void list_candidates();
+  [[nodiscard]] int watch_handle() const noexcept { return watch_ ? watch_->native_handle() : -1; }
 
   std::string device_;
   std::uint32_t baud_;
@@ -54,6 +59,7 @@ class system_connector final : public connector {
   std::vector<std::string> paths_;     // to be tried in this round
   std::string last_path_;              // of the last connection
   std::vector<refused_port> refused_;  // ports of other lidars
+  std::optional<path_watch> watch_;    // from the first loss on
   int wake_;
 };
 

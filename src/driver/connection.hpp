@@ -33,7 +33,9 @@ class connection {
   /// Sends all of a command. A wake-up does not interrupt it: half a command would be worse than a
   /// late one.
   [[nodiscard]] result<void> send(bytes command) noexcept;
-  /// Waits while nothing is open; returns early after a wake().
+  /// From now on the handle is readable when the device may be back.
+  void watch() noexcept { ready_.follow(connector_->watch()); }
+  /// Waits while nothing is open; returns early after a wake(), and when the device may be back.
   void pause(std::int64_t deadline_ns) noexcept {
     static_cast<void>(connector_->pause(deadline_ns));
   }

@@ -33,6 +33,10 @@ result<void> live_driver::connect() {
 result<void> live_driver::wait_for_return(std::int64_t deadline_ns) {
   if (now_ns() < reconnection_.next_attempt_ns) {
     connection_.pause(std::min(deadline_ns, reconnection_.next_attempt_ns));
+    if (connection_.from().may_be_back()) {
+      reconnection_.next_attempt_ns = now_ns();
+      reconnection_.backoff_ns = first_pause_ns;
+    }
     if (now_ns() < reconnection_.next_attempt_ns) return {};
   }
   auto connected = connect();
@@ -75,6 +79,7 @@ result<void> live_driver::hang_up() {
     return tl::unexpected(lost_);
   }
   stage_ = stage::lost;
+  connection_.watch();
   std::int64_t& backoff_ns = reconnection_.backoff_ns;
   reconnection_.next_attempt_ns = now_ns() + backoff_ns;
   const auto longest = std::chrono::nanoseconds(options_.longest_backoff).count();

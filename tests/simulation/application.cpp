@@ -56,6 +56,7 @@ application::application(const run_parameters& parameters, bool verbose)
       checker_(parameters, environment_) {
   environment_.on_call = [this] { checker_.look(); };
   environment_.wake = [this] { wake(); };
+  environment_.watches = parameters.seed % 2 == 1;
   if (verbose_) std::fputs(describe(parameters_).c_str(), stdout);
 }
 

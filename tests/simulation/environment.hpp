@@ -36,6 +36,7 @@ struct environment {
   std::function<void()> on_call;    ///< Before each call: all that was read before is digested.
   std::int64_t wake_ns = never_ns;  ///< Then somebody wakes the driver, once.
   std::function<void()> wake;
+  bool watches = true;  ///< Whether the system tells when the device is plugged in.
 };
 
 /// A transport that reports each call, and during which the driver may be woken.
@@ -100,13 +101,27 @@ class observed_connector final : public connector {
   bool pause(std::int64_t deadline_ns) noexcept override {
     environment_->on_call();
     ++environment_->calls.pauses;
-    return connector_.pause(deadline_ns);
+    if (!environment_->watches) return connector_.pause(deadline_ns);
+    while (!has_returned() && now_ns() < deadline_ns) {
+      if (!connector_.pause(std::min(deadline_ns, now_ns() + 1'000'000))) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool may_be_back() noexcept override {
+    if (!environment_->watches || !has_returned()) return false;
+    replugs_ = environment_->device.replugs();
+    return true;
   }
   void wake() noexcept override { connector_.wake(); }
 
  private:
+  [[nodiscard]] bool has_returned() noexcept {
+    return environment_->device.is_plugged(now_ns()) && environment_->device.replugs() != replugs_;
+  }
+
   environment* environment_;
   sim::virtual_connector connector_;
+  std::uint64_t replugs_ = 0;
 };
 
 }  // namespace g4lidar::simulation

@@ -26,6 +26,7 @@ struct virtual_bench {
   std::int64_t step_ns = 1'000;   ///< The time that each call takes.
   std::uint32_t baud = 230400;    // of the transport
   std::size_t kept_bytes = 4095;  ///< While nobody reads.
+  bool watches = true;            ///< Whether the connector learns of a replug.
   std::size_t largest_read = 0;
   std::uint64_t reads = 0;
   std::uint64_t writes = 0;
@@ -104,13 +105,27 @@ class virtual_connector final : public connector {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return bench_->now_ns; }
   bool pause(std::int64_t deadline_ns) noexcept override {
     if (bench_->woken()) return false;
-    bench_->now_ns = std::max(bench_->now_ns + bench_->step_ns, deadline_ns);
+    bench_->now_ns += bench_->step_ns;
+    while (bench_->now_ns < deadline_ns && !has_returned()) {
+      bench_->now_ns = std::min(deadline_ns, bench_->now_ns + 1'000'000);
+    }
     return true;
+  }
+  bool may_be_back() noexcept override {
+    const bool changed = has_returned();
+    replugs_ = bench_->device.replugs();
+    return changed;
   }
   void wake() noexcept override { bench_->wake = true; }
 
  private:
+  [[nodiscard]] bool has_returned() noexcept {
+    return bench_->watches && bench_->device.is_plugged(bench_->now_ns) &&
+           bench_->device.replugs() != replugs_;
+  }
+
   virtual_bench* bench_;
+  std::uint64_t replugs_ = 0;
 };
 
 inline result<lidar> open_virtual(virtual_bench& bench, const lidar_options& options = {}) {

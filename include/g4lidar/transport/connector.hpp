@@ -44,6 +44,13 @@ class G4LIDAR_API connector {
 
   // A connector that wraps another one must forward these functions, too.
 
+  /// Begins to watch for the return of a lost device. Returns a descriptor for poll() that is readable when
+  /// may_be_back() may be true; -1 if there is none. Called again, it changes nothing.
+  [[nodiscard]] virtual int watch() noexcept { return -1; }
+  /// Whether a port has appeared or changed since the last call, so that connect() may succeed; this also
+  /// ends a pause() early. Without it the driver tries at growing intervals only.
+  [[nodiscard]] virtual bool may_be_back() noexcept { return false; }
+
   /// Whether a device answers on its transports. Nothing is written to files and recordings.
   [[nodiscard]] virtual bool answers() const noexcept { return true; }
   /// The events that were recorded with the bytes of its transports; null if this is no recording.

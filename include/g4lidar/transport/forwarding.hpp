@@ -66,6 +66,8 @@ class forwarding_connector : public connector {
   }
   void wake() noexcept override { inner_->wake(); }
   void refuse() noexcept override { inner_->refuse(); }
+  [[nodiscard]] int watch() noexcept override { return inner_->watch(); }
+  [[nodiscard]] bool may_be_back() noexcept override { return inner_->may_be_back(); }
   [[nodiscard]] bool answers() const noexcept override { return inner_->answers(); }
   [[nodiscard]] recorded_event_source* recorded_events() noexcept override {
     return inner_->recorded_events();

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <termios.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -44,6 +45,9 @@ class Reconnect : public testing::Test {
   [[nodiscard]] sim::background_pty serve(const bridge& what, char last_digit) const {
     sim::device_options options;
     options.info.serial_digits.back() = last_digit;
+    options.boot_ns = 0;
+    options.standstill_ns = 0;
+    options.acceleration_mhz_per_s = 100'000'000;
     auto served =
         sim::background_pty::open(sim::device(sim::built_in_world(), options), bed.dev(what.name));
     EXPECT_TRUE(served) << served.error().message();
@@ -133,6 +137,37 @@ TEST_F(Reconnect, OtherLidarOnTheOldPath_IsReportedOnceAndOursIsFound) {
   EXPECT_THAT(events, testing::Contains(kind::reconnected));
   EXPECT_THAT(events, testing::Not(testing::Contains(kind::other_lidar)));
   EXPECT_EQ(device->name(), "/dev/ttyUSB1");
+}
+
+// At another USB port, after an outage of 3 s: without the notice, the next attempt is up to a second later. The 75th
+// percentile of 4 runs.
+TEST_F(Reconnect, NewPort_IsNoticedAtOnce) {
+  std::vector<std::chrono::steady_clock::duration> times;
+  for (int run = 0; run < 4; ++run) {
+    bed.plug(first);
+    auto ours = std::make_optional(serve(first, '1'));
+    lidar_options options;
+    options.reconnect = true;
+    auto device = lidar::open(options);
+    ASSERT_TRUE(device) << device.error().message();
+    ASSERT_TRUE(device->start());
+    ASSERT_TRUE(device->next_scan(3s));
+    ours.reset();
+    remove(first);
+    const auto back = std::chrono::steady_clock::now() + 3s;
+    while (std::chrono::steady_clock::now() < back) static_cast<void>(device->next_scan(10ms));
+    bed.plug(second);
+    ours.emplace(serve(second, '1'));
+    const auto begin = std::chrono::steady_clock::now();
+    while (!device->next_scan(100ms) && std::chrono::steady_clock::now() < begin + 10s) {
+    }
+    times.push_back(std::chrono::steady_clock::now() - begin);
+    device->release();
+    ours.reset();
+    remove(second);
+  }
+  std::sort(times.begin(), times.end());
+  EXPECT_LT(times[2], 400ms);
 }
 
 }  // namespace

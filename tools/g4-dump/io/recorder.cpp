@@ -62,6 +62,8 @@ class recorder {
   void open() {
     opening how = job_.source;
     how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
+    // The ring holds the points of many readings; nobody waits for the single packet.
+    how.how.pace = g4lidar::read_pace::revolutions;
     how.tap = [this](std::unique_ptr<g4lidar::connector> line)
         -> g4lidar::result<std::unique_ptr<g4lidar::connector>> {
       if (!writer_) {
