@@ -36,11 +36,11 @@ result<std::unique_ptr<served_line>> tcp_line::open(const std::string& address,
 }
 
 void tcp_line::look_for_visitors() noexcept {
-  // What one has sent before it hung up is read first: the next one waits for that.
-  pollfd present{client_.number(), POLLRDHUP, 0};
-  if (client_ && ::poll(&present, 1, 0) > 0) return;
-  // Those who connect all the time get their turn, and no more.
+  // At most so many at a time, even if programs connect continuously.
   for (int turn = 0; turn < 16; ++turn) {
+    // The bytes of a program that has disconnected are read first: the next program waits for that.
+    pollfd present{client_.number(), POLLRDHUP, 0};
+    if (client_ && ::poll(&present, 1, 0) > 0) return;
     file_handle next(::accept4(listener_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!next) return;
     if (client_) continue;  // closed by this loop
