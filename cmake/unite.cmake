@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
-# Fewer and larger translation units: several sources are combined to one, each with an unnamed
-# namespace of its own, so that their names do not conflict. With G4LIDAR_UNITE=OFF each source is
-# compiled alone, as in the nightly: only this shows that it includes what it uses.
+# Fewer and larger translation units. With G4LIDAR_UNITE=OFF each source is compiled alone, as in the
+# nightly: only this shows that it includes what it uses.
+# - g4lidar_unite_directories: library and tool, with the unity build of CMake. Sources of the same
+#   directory have no conflicting names.
+# - g4lidar_unite: tests. Each source gets an unnamed namespace of its own, so that names may
+#   conflict.
 
 # As a script: cmake -DTO=<file> -P unite.cmake -- <source>...
 if(CMAKE_SCRIPT_MODE_FILE AND TO)
@@ -22,6 +25,37 @@ if(CMAKE_SCRIPT_MODE_FILE AND TO)
   file(WRITE "${TO}" "${united}")
   return()
 endif()
+
+# g4lidar_unite_directories(<target> <maximum> <source>...): if G4LIDAR_UNITE is on, combines the
+# sources of a directory that the target has, except the named ones.
+function(g4lidar_unite_directories target most)
+  if(NOT G4LIDAR_UNITE)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.cpp$")
+  list(REMOVE_ITEM sources ${ARGN})
+  foreach(source IN LISTS sources)
+    cmake_path(GET source PARENT_PATH directory)
+    cmake_path(GET directory FILENAME group)
+    list(APPEND in_${group} "${source}")
+    list(APPEND groups ${group})
+  endforeach()
+  list(REMOVE_DUPLICATES groups)
+  foreach(group IN LISTS groups)
+    # Batches of nearly the same size.
+    list(LENGTH in_${group} count)
+    math(EXPR batches "(${count} + ${most} - 1) / ${most}")
+    math(EXPR size "(${count} + ${batches} - 1) / ${batches}")
+    set(index 0)
+    foreach(source IN LISTS in_${group})
+      math(EXPR batch "${index} / ${size} + 1")
+      math(EXPR index "${index} + 1")
+      set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}_${batch}")
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
 
 set(G4LIDAR_UNITE_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
 

@@ -81,8 +81,8 @@ build() {
 
 # run_tests <preset> <ctest argument>...: as many in parallel as there are processors. The time
 # limit of a test is that of the preset, multiplied for longer random tests (G4LIDAR_TEST_SCALE).
-# ctest counts a skipped test as passed: the last line does not, and each skipped test has a line
-# "SKIPPED: name".
+# ctest counts a skipped test as passed: the last line does not. Each skipped test has a line
+# "SKIPPED: name", each failed one a line "FAILED: name".
 run_tests() {
   local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=() code=0
   local results=$PWD/build/$preset/tests.xml
@@ -97,7 +97,7 @@ run_tests() {
         match($0, /name="[^"]*"/)
         name = substr($0, RSTART + 6, RLENGTH - 7)
         if (/status="run"/) ++passed
-        else if (/status="fail"/) ++failed
+        else if (/status="fail"/) { ++failed; print "FAILED: " name }
         else { ++skipped; print "SKIPPED: " name }
       }
       END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }' "$results"

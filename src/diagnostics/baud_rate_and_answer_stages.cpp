@@ -14,7 +14,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 /// The time of observation before anything is sent.
 constexpr std::int64_t unasked_ns = 300 * ms;
 /// The wait for the first reply, for each attempt: a device may be booting, and a reply may be

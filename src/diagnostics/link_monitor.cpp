@@ -8,7 +8,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 /// The longest wait of a read, so that a cancellation is noticed and silence is certain.
 constexpr std::int64_t slice_ns = 50 * ms;
 /// A read that takes this much longer was delayed by the host.

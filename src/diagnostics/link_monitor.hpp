@@ -18,6 +18,8 @@
 
 namespace g4lidar {
 
+inline constexpr std::int64_t ms = 1'000'000;  // in ns
+
 /// An event of the parser, its bytes, and when the last of them arrived.
 struct observed_event {
   const event& what;

@@ -10,7 +10,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr int rounds = 5;
 constexpr std::array questions{command::device_info,          command::health,
                                command::health_vendor,        command::frequency_query,

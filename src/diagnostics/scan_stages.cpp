@@ -10,9 +10,8 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t ms = 1'000'000;
 constexpr session_times times;
-constexpr std::int64_t slice_ns = 50 * ms;
+constexpr std::int64_t observed_ns = 50 * ms;
 /// A scan without bytes for this time has become silent.
 constexpr std::int64_t silence_ns = 500 * ms;
 /// The pause caused by an answer.
@@ -66,7 +65,7 @@ live_run::scan_state live_run::listen_once(stream_statistics& measured) {
     link_.send(command::start);
     started_.kept_alive_ns = link_.now_ns();
   }
-  const std::int64_t until_ns = link_.now_ns() + slice_ns;
+  const std::int64_t until_ns = link_.now_ns() + observed_ns;
   link_.set_frame_pause(signs_ns);
   link_.listen(until_ns, to);
   link_.set_frame_pause(frame_pause_ns);

@@ -5,14 +5,12 @@
 #include <utility>
 
 #include "g4lidar/transport/serial_port.hpp"
+#include "system_connector.hpp"
 
 namespace g4lidar {
 namespace {
 
-constexpr std::string_view serial_prefix = "serial:";
-constexpr std::string_view usb_prefix = "usb:";
-
-result<device_information> ask(const port_info& port, const find_options& options) {
+result<device_information> probe_of(const port_info& port, const find_options& options) {
   auto line = serial_port::open(port.path, {.baud = options.baud});
   if (!line) return tl::unexpected(line.error());
   transport& opened = **line;
@@ -66,7 +64,7 @@ result<port_info> with_serial_number(std::string_view digits, std::string_view w
   if (!ports) return tl::unexpected(ports.error());
   std::optional<error> unasked;
   for (const port_info& port : *ports) {
-    const auto device = ask(port, options);
+    const auto device = probe_of(port, options);
     if (device && device->serial_number() == digits) return port;
     if (!device && !unasked && is_unasked(device.error())) unasked = device.error();
   }
@@ -79,7 +77,7 @@ result<port_info> the_only_g4(const find_options& options) {
   if (!ports) return tl::unexpected(ports.error());
   if (ports->size() == 1) return the_only_one(*std::move(ports), "");
   std::erase_if(*ports, [&](const port_info& port) {
-    const auto device = ask(port, options);
+    const auto device = probe_of(port, options);
     return !device && !is_unasked(device.error());
   });
   return the_only_one(*std::move(ports), "");
@@ -92,7 +90,7 @@ result<std::vector<found_lidar>> find_lidars(const find_options& options) {
   if (!ports) return tl::unexpected(ports.error());
   std::vector<found_lidar> found;
   for (port_info& port : *ports) {
-    if (const auto device = ask(port, options)) found.push_back({std::move(port), *device});
+    if (const auto device = probe_of(port, options)) found.push_back({std::move(port), *device});
   }
   return found;
 }

@@ -25,8 +25,6 @@ namespace {
 
 constexpr std::string_view tcp_prefix = "tcp:";
 constexpr std::string_view file_prefix = "file:";
-constexpr std::string_view serial_prefix = "serial:";
-constexpr std::string_view usb_prefix = "usb:";
 
 /// Whether the user named a serial port by its path: the library may write to that port, whatever
 /// is attached to it.

@@ -15,6 +15,9 @@
 
 namespace g4lidar {
 
+inline constexpr std::string_view serial_prefix = "serial:";
+inline constexpr std::string_view usb_prefix = "usb:";
+
 /// Opens the device that lidar_options::device names, repeatedly. It searches a lost lidar at its
 /// old path and at every USB bridge of a G4; the driver identifies it by its number. It opens a
 /// port only if the user named its path, or if a G4 may be attached to it: see may_be_ours().

@@ -47,7 +47,8 @@ void write_svg(std::span<const point> points, text_sink& out) {
   for (const point& p : points) {
     if (!is_drawn(p)) continue;
     const xy_point place = to_xy(p, frame::robot);  // x forward is up, y to the left is left
-    out.write("M" + centimetres(-place.y_m) + " " + centimetres(-place.x_m) + "h0");
+    out.write("M");
+    out.write(centimetres(-place.y_m) + " " + centimetres(-place.x_m) + "h0");
   }
   out.write("\" stroke=\"#0b62a8\" stroke-linecap=\"round\" stroke-width=\"" + dot +
             "\"/>\n</svg>\n");

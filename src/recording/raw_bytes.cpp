@@ -25,9 +25,8 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 /// The time of the first bytes of a file; 0 would mean that it is not known.
-constexpr std::int64_t begin_ns = second_ns;
+constexpr std::int64_t file_begin_ns = second_ns;
 /// Of bytes that belong to no packet.
 constexpr std::size_t longest_piece = 16'384;
 
@@ -151,8 +150,8 @@ class counted_line final : public byte_line {
   }
   void count(std::size_t samples) noexcept {
     samples_ += static_cast<std::int64_t>(samples);
-    *now_ns_ =
-        begin_ns + samples_ / rate_hz_ * second_ns + samples_ % rate_hz_ * second_ns / rate_hz_;
+    *now_ns_ = file_begin_ns + samples_ / rate_hz_ * second_ns +
+               samples_ % rate_hz_ * second_ns / rate_hz_;
   }
 
   std::int64_t rate_hz_;
@@ -212,10 +211,11 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::unique_ptr<byte_line> line;
   if (is_known && S_ISREG(file.st_mode)) {
     const std::int64_t wall_ns = file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec;
-    auto now_ns = std::make_shared<std::int64_t>(begin_ns);
+    auto now_ns = std::make_shared<std::int64_t>(file_begin_ns);
     line =
         std::make_unique<counted_line>(std::move(fd), std::move(title), samples_per_second, now_ns);
-    return std::make_unique<byte_connector>(std::move(line), std::move(now_ns), wall_ns - begin_ns);
+    return std::make_unique<byte_connector>(std::move(line), std::move(now_ns),
+                                            wall_ns - file_begin_ns);
   }
   line = std::make_unique<piped_line>(std::move(fd), std::move(title));
   return std::make_unique<byte_connector>(std::move(line), nullptr, std::nullopt);

@@ -24,7 +24,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 /// At this rate a nanosecond of the recording takes a millisecond.
 constexpr double least_rate = 1e-6;
 constexpr double largest_rate = 1000;

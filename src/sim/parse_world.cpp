@@ -16,7 +16,6 @@ namespace g4lidar::sim {
 namespace {
 
 constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
-constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 // Takes the next word from the front of `line`; empty at its end.
 std::string_view next_word(std::string_view& line) noexcept {
@@ -52,7 +51,7 @@ std::optional<double> number(std::string_view word) noexcept {
       behind_point = true;
       continue;
     }
-    if (!is_digit(c)) return std::nullopt;
+    if (c < '0' || c > '9') return std::nullopt;
     any = true;
     digits = digits * 10 + (c - '0');
     if (behind_point) scale *= 10.0;

@@ -15,7 +15,6 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 /// The interval of bursts: a USB bridge delivers bytes in such bursts.
 constexpr std::int64_t burst_ns = 1'000'000;
 

@@ -14,6 +14,8 @@
 
 namespace g4lidar {
 
+inline constexpr std::int64_t second_ns = 1'000'000'000;
+
 /// A clock, and a wait that wake() ends early. *Single thread* except wake().
 class waker {
  public:

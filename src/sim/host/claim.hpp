@@ -30,7 +30,8 @@ class claim {
     address_.sun_family = AF_UNIX;
     char* const begin = std::copy(prefix.begin(), prefix.end(), address_.sun_path + 1);
     const auto room = static_cast<std::size_t>(std::end(address_.sun_path) - begin);
-    const char* const end = std::copy_n(name.data(), std::min(name.size(), room), begin);
+    name = name.substr(0, room);
+    const char* const end = std::copy(name.begin(), name.end(), begin);
     size_ = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path)) +
             static_cast<socklen_t>(end - address_.sun_path);
   }

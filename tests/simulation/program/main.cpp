@@ -2,15 +2,20 @@
 // simulation_run: Runs the driver on the simulated device in virtual time, with all that a seed draws.
 //
 //     simulation_run --seed 7 --verbose              one run, and what happens in it
-//     simulation_run --from 1 --count 100            a hundred
-//     simulation_run --from 1 --step 2 --minutes 3   every second one, as many as there is time for
+//     simulation_run --from 1 --count 100 --jobs 2   a hundred, two at a time
+//     simulation_run --from 1 --minutes 3 --jobs 2   as many as there is time for
 //     simulation_run --unplugs 10000                 a single long one, unplugged again and again
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 #include "simulation/simulation_run.hpp"
 #include "simulation/soak.hpp"
@@ -23,7 +28,7 @@ using namespace g4lidar::simulation;
 struct arguments {
   std::uint64_t from = 1;
   std::uint64_t count = 1;
-  std::uint64_t step = 1;
+  std::uint64_t jobs = 1;
   std::uint64_t unplugs = 0;
   double minutes = 0.0;  // 0: `count` of them
   bool verbose = false;
@@ -46,8 +51,8 @@ arguments read_arguments(int count, char** words) {
       read.count = number();
     } else if (word == "--unplugs") {
       read.unplugs = number();
-    } else if (word == "--step") {
-      read.step = number();
+    } else if (word == "--jobs") {
+      read.jobs = std::max<std::uint64_t>(number(), 1);
     } else if (word == "--minutes") {
       read.minutes = std::strtod(words[++i], nullptr);
     } else {
@@ -71,33 +76,50 @@ int run_soak(std::uint64_t unplugs) {
   return 1;
 }
 
+/// The runs are independent of each other, in `jobs` threads, and added up together.
+summary run_all(const arguments& wanted, const char* program) {
+  using clock = std::chrono::steady_clock;
+  const auto end = clock::now() + std::chrono::duration<double, std::ratio<60>>(wanted.minutes);
+  summary all;
+  std::mutex one_at_a_time;
+  std::atomic<std::uint64_t> next = 0;
+  const auto work = [&] {
+    while (wanted.minutes <= 0.0 || clock::now() < end) {
+      const std::uint64_t index = next++;
+      if (wanted.minutes <= 0.0 && index >= wanted.count) return;
+      const std::uint64_t seed = wanted.from + index;
+      const run_parameters parameters = draw_run(seed);
+      const run_report report = run_simulation(parameters, wanted.verbose);
+      const std::lock_guard lock(one_at_a_time);
+      all.add(parameters, report);
+      if (report.failure.empty()) continue;
+      std::printf("run %llu failed at %.6f s: %s\n  again: %s --seed %llu --verbose\n",
+                  static_cast<unsigned long long>(seed),
+                  static_cast<double>(report.failed_ns) * 1e-9, report.failure.c_str(), program,
+                  static_cast<unsigned long long>(seed));
+      std::fflush(stdout);
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::uint64_t i = 1; i < wanted.jobs; ++i) others.emplace_back(work);
+  work();
+  others.clear();
+  return all;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   const arguments wanted = read_arguments(count, words);
   if (!wanted.good) {
     std::fputs(
-        "usage: simulation_run [--seed N | --from N] [--count N | --minutes M] [--step N] "
-        "[--verbose] "
-        "[--unplugs N]\n",
+        "usage: simulation_run [--seed N | --from N] [--count N | --minutes M] [--jobs N] "
+        "[--verbose] [--unplugs N]\n",
         stderr);
     return 2;
   }
   if (wanted.unplugs > 0) return run_soak(wanted.unplugs);
-  using clock = std::chrono::steady_clock;
-  const auto end = clock::now() + std::chrono::duration<double, std::ratio<60>>(wanted.minutes);
-  summary all;
-  for (std::uint64_t i = 0; wanted.minutes > 0.0 ? clock::now() < end : i < wanted.count; ++i) {
-    const std::uint64_t seed = wanted.from + i * wanted.step;
-    const run_parameters parameters = draw_run(seed);
-    const run_report report = run_simulation(parameters, wanted.verbose);
-    all.add(parameters, report);
-    if (report.failure.empty()) continue;
-    std::printf("run %llu failed at %.6f s: %s\n  again: %s --seed %llu --verbose\n",
-                static_cast<unsigned long long>(seed), static_cast<double>(report.failed_ns) * 1e-9,
-                report.failure.c_str(), words[0], static_cast<unsigned long long>(seed));
-    std::fflush(stdout);
-  }
+  const summary all = run_all(wanted, words[0]);
   std::fputs(all.text().c_str(), stdout);
   if (const std::string wrong = all.problem(); !wrong.empty()) {
     std::printf("over all runs: %s\n", wrong.c_str());

@@ -114,8 +114,8 @@ std::string text_of(const maybe_answer& value) {
 }
 
 nlohmann::ordered_json json_of(const maybe_answer& value) {
-  const std::string text = text_of(value);
-  if (text == "unknown") return nullptr;
+  std::string text = text_of(value);
+  if (!value || text == "unknown") return nullptr;
   if (const auto* rate = std::get_if<ranging_frequency>(&*value)) return samples_per_second(*rate);
   if (const auto* frequency = std::get_if<scan_frequency>(&*value)) return frequency->chz / 100.0;
   if (std::holds_alternative<motor_direction>(*value)) return text;

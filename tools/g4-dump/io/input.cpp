@@ -121,7 +121,8 @@ g4lidar::recording_reader read_items(
   while (interrupt() == 0) {
     const auto got = reader->next();
     if (!got) throw failure(got.error());
-    if (!*got || !take(**got)) break;
+    const auto& item = *got;
+    if (!item || !take(*item)) break;
     bar.show(reader->position());
   }
   return *std::move(reader);

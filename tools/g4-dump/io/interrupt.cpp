@@ -57,14 +57,14 @@ wake wait_for_input(int input, int output, std::chrono::steady_clock::time_point
   using namespace std::chrono_literals;
   while (interrupt() == 0) {
     std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {bell[0], POLLIN, 0}, {output, 0, 0}}};
-    const auto left = until == never ? 1h : until - std::chrono::steady_clock::now();
+    const auto left = until == no_deadline ? 1h : until - std::chrono::steady_clock::now();
     // Not in milliseconds: the end of a revolution is awaited from a moment before it on.
     const std::chrono::nanoseconds time = std::clamp<std::chrono::nanoseconds>(left, 0ns, 1h);
     const timespec longest{static_cast<std::time_t>(time / 1s),
                            static_cast<long>((time % 1s).count())};
     const int woken = ::ppoll(waiting.data(), waiting.size(), &longest, nullptr);
     if (woken == 0 && left > 1h) continue;
-    if (woken == 0 && until != never) return wake::timeout;
+    if (woken == 0 && until != no_deadline) return wake::timeout;
     if (woken < 0 && errno != EINTR) return wake::input;  // let read() say what is wrong
     if (woken <= 0) continue;
     if (waiting[1].revents != 0) break;

@@ -9,7 +9,7 @@
 namespace g4_dump {
 
 /// A moment that does not come.
-inline constexpr auto never = std::chrono::steady_clock::time_point::max();
+inline constexpr auto no_deadline = std::chrono::steady_clock::time_point::max();
 
 /// From now on the first such signal is only noted, a second one ends the program, and writing to a
 /// closed pipe or beyond the largest file is an error like any other. Descriptors 0 to 2 that are closed lead
@@ -33,8 +33,8 @@ enum class wake { input, interrupt, output_closed, timeout };
 
 /// Waits until `input` can be read, a signal comes, the reader of `output` has gone, or the time has
 /// come. A descriptor below 0 is not waited for.
-[[nodiscard]] wake wait_for_input(int input, int output,
-                                  std::chrono::steady_clock::time_point until = never) noexcept;
+[[nodiscard]] wake wait_for_input(
+    int input, int output, std::chrono::steady_clock::time_point until = no_deadline) noexcept;
 
 /// open(2), again after a signal that ends nothing; -1 with errno. Throws interrupted.
 [[nodiscard]] int open_file(const std::string& name, int flags);
@@ -52,8 +52,8 @@ class time_limits {
   void came() noexcept { last_ = clock::now(); }
   /// When it ends, if nothing comes until then.
   [[nodiscard]] clock::time_point end() const noexcept {
-    return std::min(duration_.count() > 0 ? begin_ + duration_ : never,
-                    idle_.count() > 0 ? last_ + idle_ : never);
+    return std::min(duration_.count() > 0 ? begin_ + duration_ : no_deadline,
+                    idle_.count() > 0 ? last_ + idle_ : no_deadline);
   }
   [[nodiscard]] bool is_over() const noexcept { return clock::now() >= end(); }
 

@@ -208,7 +208,7 @@ int run(const convert_options& options) {
   return to_points(options, from, to);
 }
 
-constexpr const char* details =
+constexpr const char* convert_details =
     R"(IN is a recording, csv or jsonl as g4-dump writes them for points, else raw bytes. If OUT is a
 directory or a name such as scan-%04d.pcd, each revolution gets a pcd file.
 
@@ -264,7 +264,7 @@ verb make_convert_verb() {
                     file_argument("OUT", "The file to write; - with --to-format: standard output",
                                   common.output)},
       .options = joined(form_rows(*options), point_rows(*options)),
-      .details = details,
+      .details = convert_details,
       .examples =
           {{"g4-dump convert walk.mcap walk.csv --from 10s --to 40s", "The points of 30 s as csv"},
            {"g4-dump convert walk.mcap scans/scan-%04d.pcd --frame robot",

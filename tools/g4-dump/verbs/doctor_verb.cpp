@@ -28,8 +28,6 @@
 namespace g4_dump {
 namespace {
 
-using g4lidar::describe;
-
 constexpr std::size_t text_indent = 15;
 
 std::string list_of(std::span<const diagnosis> all) {
@@ -46,7 +44,7 @@ std::string flag_of(stage_verdict how, bool colored) {
   return fmt::format("\033[{}m{:<4}\033[0m", colors[at], words[at]);
 }
 
-std::string text_of(const stage_report& report, bool colored) {
+std::string text_of_report(const stage_report& report, bool colored) {
   std::vector<std::string> lines;
   for (const diagnosis what : report.diagnoses) {
     const diagnosis_info& info = describe(what);
@@ -71,7 +69,7 @@ std::string text_of(const stage_report& report, bool colored) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const stage_report& report) {
+nlohmann::ordered_json json_of_report(const stage_report& report) {
   using nlohmann::ordered_json;
   ordered_json line{{"stage", name_of(report.stage)},
                     {"verdict", name_of(report.outcome)},
@@ -155,7 +153,8 @@ int examine(const common_options& options) {
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   how.on_stage = [&, colored = wants_color(out.descriptor())](const stage_report& report) {
-    options.json ? write_line(out, json_of(report)) : out.write(text_of(report, colored));
+    options.json ? write_line(out, json_of_report(report))
+                 : out.write(text_of_report(report, colored));
     out.flush();
   };
   how.on_activity = [&](diagnostic_activity what) {
@@ -169,7 +168,7 @@ int examine(const common_options& options) {
   return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code_of(stages));
 }
 
-constexpr const char* details =
+constexpr const char* doctor_details =
     R"(It examines port, permission, holder, baud rate, answers, identity, health, motor, stream, rate,
 loss and USB latency. It reports for each what was measured; where something is wrong also the
 likely cause and what to try. A healthy lidar takes about 8 seconds. No setting is changed, and
@@ -189,7 +188,7 @@ verb make_doctor_verb() {
           .summary = "What is wrong with a lidar, its port or a file, and what to try",
           .arguments = {source_argument(*options)},
           .options = joined(output_row(*options), json, time, baud_row(*options)),
-          .details = details,
+          .details = doctor_details,
           .examples = {{"g4-dump doctor", "Examine the only G4"},
                        {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
                         "Listen to one port for 30 s, as JSON"},

@@ -13,7 +13,7 @@
 namespace g4_dump {
 namespace {
 
-constexpr const char* forms =
+constexpr const char* formats_text =
     R"(--grid N writes N ranges at equal steps of 360/N degrees, from 0 degrees on, in the robot frame
 from -180. Columns of csv: scan, time_ns, partial, and range_mm_0 or range_m_0 to range_mm_N-1.
 inf: no return; nan: unknown, because the direction is left out, or the return is outside the
@@ -83,7 +83,7 @@ verb make_scan_verb() {
                      choices<pcd_data>{{"binary", pcd_data::binary}, {"ascii", pcd_data::ascii}}),
           sample_rate_row(job->source.bytes_rate_hz), ending_rows(common), filter_rows(common),
           shape_rows(common), device_rows(common)),
-      .details = fmt::format("{}\n\n{}\n\n{}\n\n{}", help_text::scan_columns, forms,
+      .details = fmt::format("{}\n\n{}\n\n{}\n\n{}", help_text::scan_columns, formats_text,
                              help_text::shape, help_text::ending),
       .examples = {{"g4-dump scan -n 5", "Print five revolutions"},
                    {"g4-dump scan 'sim:?seed=7' -d 3s -f csv",

@@ -124,7 +124,7 @@ int list(const list_options& options) {
   return static_cast<int>(verdict_on(ports, probed));
 }
 
-constexpr const char* details =
+constexpr const char* list_details =
     R"(A line for each serial port, sorted by PATH; unknown values are -:
 
   PATH, USB  the port, and its place on the USB bus; as SOURCE: usb:1-1.4
@@ -157,7 +157,7 @@ verb make_list_verb() {
           flag_row("--probe", "Ask for the device at each port with a G4's bridge", options->probe),
           flag_row("--all", "Ask at every port: sends two commands to any device", options->all),
           json_row(*options), output_row(*options), baud_row(*options)),
-      .details = details,
+      .details = list_details,
       .examples = {{"g4-dump list", "The serial ports"},
                    {"g4-dump list --probe", "The lidars that answer"}},
       .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},

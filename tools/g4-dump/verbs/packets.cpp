@@ -160,7 +160,7 @@ int run(packets_options options) {
   return exit_code_now();
 }
 
-constexpr const char* details =
+constexpr const char* packets_details =
     R"(A line has a time (in seconds; for raw bytes, which carry none, the place of the first byte), a
 mark and a description. Marks:
   >  sent to the lidar
@@ -186,7 +186,7 @@ verb make_packets_verb() {
           output_row(common), flag_row("--hex", "Show all bytes", style.hex),
           flag_row("--errors", "Show only skipped bytes and suspect packets", style.errors),
           ending_rows(common), in_group("Output form", {time_row(common)}), device_rows(common)),
-      .details = details,
+      .details = packets_details,
       .examples = {{"g4-dump packets -n 20", "The first 20 lines of the only G4"},
                    {"g4-dump packets sim: --hex -d 1s", "All bytes of a simulated G4"},
                    {"g4-dump packets walk.bin --errors", "What cannot be read in a file"}},

@@ -18,7 +18,7 @@
 namespace g4_dump {
 namespace {
 
-constexpr const char* details =
+constexpr const char* record_details =
     R"(OUT is an MCAP file: the raw bytes both ways with their times, and each revolution as a
 sensor_msgs/msg/LaserScan message, which Foxglove and ros2 bag show. It can be read while it
 grows; after a crash or on a full disk at most the last second is missing. A single argument that
@@ -121,7 +121,7 @@ verb make_record_verb() {
           .arguments = {source, out},
           .options = joined(file_rows(*options), scan_rows(*options), ending_rows(common),
                             device_rows(common)),
-          .details = details,
+          .details = record_details,
           .examples = {{"g4-dump record walk.mcap", "Record the only G4 until ^C"},
                        {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
                         "Record one port for ten minutes"},

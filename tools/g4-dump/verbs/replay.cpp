@@ -17,7 +17,7 @@
 namespace g4_dump {
 namespace {
 
-constexpr const char* details =
+constexpr const char* replay_details =
     R"(The recording passes through the same code as the data of a lidar, to the same points with the
 same times. The output is that of g4-dump dump and scan; see there for the columns. With --loop,
 times and revolution numbers go on.
@@ -126,7 +126,7 @@ verb make_replay_verb() {
           moment_row("--from", "Leave out what was recorded before: 10s", played.range.from_ns),
           moment_row("--to", "Leave out what was recorded from then on: 40s", played.range.to_ns),
           verification, ending_rows(common), filter_rows(common), shape_rows(common)),
-      .details = details,
+      .details = replay_details,
       .examples = {{"g4-dump replay walk.mcap", "Print the points at the speed of the recording"},
                    {"g4-dump replay walk.mcap --playback-speed max -f csv -o walk.csv",
                     "Write all points to a csv file"},

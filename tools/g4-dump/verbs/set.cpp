@@ -82,7 +82,7 @@ int set(const set_options& options) {
   return static_cast<int>(exit_code::ok);
 }
 
-constexpr const char* details =
+constexpr const char* set_details =
     R"(Settings:
   rate=4k|8k|9k       samples per second (also 4000, 8000, 9000)
   freq=5..12          revolutions per second, in steps of 0.1
@@ -113,7 +113,7 @@ verb make_set_verb() {
                     {"NAME=VALUE", "", "The settings to change", take_wish, completion::setting,
                      true}},
       .options = joined(json_row(*options), device_rows(*options)),
-      .details = details,
+      .details = set_details,
       .examples = {{"g4-dump set rate=9k freq=10", "9000 samples and 10 revolutions per second"},
                    {"g4-dump set /dev/ttyUSB0 protection=on", "Turn on power-down protection"},
                    {"g4-dump set sim: rate=4k freq=7.5 direction=ccw --json",

@@ -187,7 +187,7 @@ int run(const sim_options& options) {
   return static_cast<int>(exit_code::ok);
 }
 
-constexpr const char* details =
+constexpr const char* sim_details =
     R"(The same options give the same bytes on every computer: the response to the start command, and
 all packets that were complete before N seconds. Columns of --truth: index, time_ns, scan,
 first_level_deg, bearing_deg (direction of the target), range_mm (its distance, exact; 0: no
@@ -312,7 +312,7 @@ verb make_sim_verb() {
       .summary = "Simulate a G4: write its bytes, or serve a device",
       .options = joined(file_rows(*options), scanner_rows(options->setup.device.scanner),
                         served_rows(*options)),
-      .details = details,
+      .details = sim_details,
       .examples =
           {{"g4-dump sim --seconds 60 --seed 7 -o room.bin --truth room.csv",
             "A minute of raw bytes, and their exact values"},

@@ -167,7 +167,7 @@ int stats(const stats_options& options) {
   return exit_code_now();
 }
 
-constexpr const char* details =
+constexpr const char* stats_details =
     R"(The lidar is started, read and stopped. The counts are printed once at the end (after 5 s, or at
 the end of a file), or with --watch in a line each TIME until ^C (then -n counts lines, else
 revolutions). They are since the beginning; points_per_second and scans_per_second are since the
@@ -195,7 +195,7 @@ verb make_stats_verb() {
       .options =
           joined(duration_row("--watch", "Print a line each TIME: 1s", options->interval),
                  json_row(common), output_row(common), ending_rows(common), device_rows(common)),
-      .details = details,
+      .details = stats_details,
       .examples = {{"g4-dump stats", "The counts of 5 s of the only G4"},
                    {"g4-dump stats --watch 1s", "A line each second"},
                    {"g4-dump stats sim: --watch 500ms -d 2s --json", "A simulated G4, as JSON"}},

@@ -131,7 +131,7 @@ int watch(const common_options& options) {
   return exit_code_now();
 }
 
-constexpr const char* details =
+constexpr const char* watch_details =
     R"(A line for each serial port that is plugged or unplugged from now on: TIME (UTC), EVENT
 (plugged, unplugged), and PATH, USB, ID, DRIVER, BRIDGE, OPEN and BY-ID as in list. With --json
 an object for each event, with time, event, and the keys that list --json has for a port. No port
@@ -144,7 +144,7 @@ verb make_watch_verb() {
   return {.name = "watch",
           .summary = "Report ports as they are plugged and unplugged",
           .options = joined(json_row(*options), output_row(*options), ending_rows(*options, false)),
-          .details = details,
+          .details = watch_details,
           .examples = {{"g4-dump watch", "Report until ^C"},
                        {"g4-dump watch -n 1 --json", "Wait for one event"}},
           .exits = {0, 2, 10, 11, 130},
