@@ -16,7 +16,7 @@ function is_known(language, mark) {
   if (mark ~ /^file [A-Za-z0-9_.\/-]+$/) return language != "sh"
   if (language == "cpp" && mark == "until ^C") return 1
   if (language == "cpp" || language == "cmake") return mark ~ /^(|in [a-z_]+)$/
-  if (language == "sh") return mark ~ /^(|until \^C|the only G4|two of three|exit [0-9]+)$/
+  if (language == "sh") return mark ~ /^(|until \^C|the only G4|three of four|exit [0-9]+)$/
   if (language == "text") return mark ~ /^output(, but for numbers)?$/
   return 0
 }

@@ -66,7 +66,7 @@ void expect_nothing_lost(const lidar& device) {
 
 // 40 scans at 12 Hz; the nightly reads 1,000 of them (scripts/ci/thousand-scans).
 TEST(RealTime, ReadsScansWithoutLoss) {
-  test::expect_most(3, [] {
+  test::expect_three_of_four([] {
     auto options = quick_g4();
     options.truth_capacity = 1'000'000;
     twin_on_pty twin(options);
@@ -95,7 +95,7 @@ TEST(RealTime, ReadsScansWithoutLoss) {
 
 // A pty holds about 16 KiB for a reader that pauses, 0.8 s of the bytes of a G4.
 TEST(RealTime, ReaderThatPauses_LosesNothing) {
-  test::expect_most(3, [] {
+  test::expect_three_of_four([] {
     twin_on_pty twin;
     auto device = started(twin);
     EXPECT_TRUE(device) << device.error().message();
@@ -153,10 +153,10 @@ double turns_not_told() {
 
 // The angles show how much of a turn is missing. The number of whole turns follows from the times
 // only, and the arrival times of bytes that were read late are not known: if another program takes
-// the processor while a backlog is read, too many may be counted. So two of three runs must be
+// the processor while a backlog is read, too many may be counted. So three of four runs must be
 // right.
 TEST(RealTime, SlowReader_GetsTheNumberOfLostScans) {
-  test::expect_most(3, [] {
+  test::expect_three_of_four([] {
     const double turns = turns_not_told();
     return turns > -0.1 && std::abs(turns - std::round(turns)) < 0.1;
   });
@@ -192,7 +192,7 @@ TEST(RealTime, ManySignals_LoseNothing) {
       std::this_thread::sleep_for(200us);
     }
   });
-  test::expect_most(3, [&] {
+  test::expect_three_of_four([&] {
     twin_on_pty twin;
     const int before = sent_signals;
     auto device = started(twin);
@@ -234,7 +234,7 @@ std::size_t read_foreign(twin_on_pty& twin, char last_digit) {
 }
 
 TEST(RealTime, TwoLidars_AreNeverMixed) {
-  test::expect_most(3, [] {
+  test::expect_three_of_four([] {
     auto other = quick_g4(2);
     other.info.serial_digits.back() = '4';
     twin_on_pty one_twin;

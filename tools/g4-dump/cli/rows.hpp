@@ -17,7 +17,7 @@ template <class Target, class Parse>
 [[nodiscard]] option_row value_row(const char* names, std::string value, const char* help,
                                    Target& into, Parse parse) {
   return {names, std::move(value), help,
-          [&into, parse = std::move(parse)](const std::string& word) { into = parse(word); }};
+          [&into, convert = std::move(parse)](const std::string& word) { into = convert(word); }};
 }
 
 /// Becomes true.
