@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
 # docs/scan.svg, which README.md shows, is what g4-dump draws of the simulated G4.
-# Into a changed drawing: ./picture.sh with G4_DUMP and G4LIDAR_SOURCE_DIR set, then copy scan.svg to docs.
+# After an intended change of the drawing, copy scan.svg from the scratch directory of this test to docs.
 set -euo pipefail
 
 rm -f walk.bin scan.svg
