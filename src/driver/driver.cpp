@@ -39,7 +39,7 @@ result<void> lidar::driver::close() {
 void lidar::driver::release() noexcept {
   feeder_->release();
   while (true) {
-    const ring_read left = reader_.read(points_);
+    const ring_read left = reader_.read(points_.all());
     if (hands_points_over_) points_missed_ += left.missed + left.points;
     if (left.points == 0) return;
   }
@@ -67,9 +67,9 @@ result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_n
   const std::int64_t deadline_ns = feeder_->deadline_after_ns(timeout_ns);
   bool last = false;
   while (true) {
-    const ring_read read = reader_.read(points_);
+    const ring_read read = reader_.read(points_.all());
     points_missed_ += read.missed;
-    if (read.points > 0) return std::span<const point>(points_).first(read.points);
+    if (read.points > 0) return points_.all().first(read.points);
     if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
     if (last) return failure(task::reading, problem::timeout, name());
     parts_.pipeline.drop_scan();

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "feeder.hpp"
 #include "g4lidar/lidar.hpp"
+#include "point_storage.hpp"
 
 namespace g4lidar {
 
@@ -63,7 +63,7 @@ class G4LIDAR_HIDDEN lidar::driver {
   feeder::parts parts_;
   std::unique_ptr<feeder> feeder_;
   lidar_ring::reader reader_;
-  std::vector<point> points_;
+  point_storage points_;
   bool hands_points_over_ = false;  // by next_points()
   std::uint64_t points_missed_ = 0;
 };

@@ -7,13 +7,13 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/lidar.hpp"
+#include "point_storage.hpp"
 #include "timed_decoder.hpp"
 
 namespace g4lidar {
@@ -31,7 +31,7 @@ class point_pipeline {
       : partial_scans_(partial_scans),
         decoder_(transport_delay_ns),
         storage_(largest_scan),
-        assembler_(storage_) {}
+        assembler_(storage_.all()) {}
 
   // ---- bytes ----
 
@@ -122,7 +122,7 @@ class point_pipeline {
   std::uint32_t events_of_reading_ = 0;
   timed_decoder decoder_;
   std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
-  std::vector<point> storage_;
+  point_storage storage_;
   scan_assembler assembler_;
   std::array<point, max_samples> spare_{};  // used where the storage ends
   decoded open_{};

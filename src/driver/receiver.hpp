@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <vector>
+#include <memory>
+#include <span>
 
 #include "g4lidar/transport/transport.hpp"
 #include "read_schedule.hpp"
@@ -23,7 +24,7 @@ enum class reading : std::uint8_t {
 /// *Single thread.* *Allocates on open.*
 class receiver {
  public:
-  explicit receiver(std::chrono::nanoseconds batch) : batch_ns_(batch.count()), buffer_(65536) {}
+  explicit receiver(std::chrono::nanoseconds batch) : batch_ns_(batch.count()) {}
 
   /// Another transport follows. `baud` 0: bytes take no time. See read_schedule.
   void reset(std::uint32_t baud, std::size_t kept, std::int64_t now_ns) noexcept {
@@ -37,7 +38,7 @@ class receiver {
                                          std::size_t missing, std::int64_t deadline_ns) noexcept {
     auto got = read(from, how, again_ns(how, held, missing), deadline_ns);
     // A program that is woken before each call must make progress, too: available bytes are read.
-    if (is_woken(got)) got = from.read(buffer_, at_once);
+    if (is_woken(got)) got = from.read({buffer_.get(), size}, at_once);
     if (is_woken(got)) return received{};
     if (!got) return got;
     read_until_ns_ = got->count == 0 ? from.now_ns() : got->arrival_ns;
@@ -48,7 +49,7 @@ class receiver {
   }
   /// The bytes of the last read.
   [[nodiscard]] bytes buffer(std::size_t count) const noexcept {
-    return bytes(buffer_).first(count);
+    return bytes(buffer_.get(), count);
   }
 
   /// A packet was complete; see read_schedule.
@@ -70,6 +71,7 @@ class receiver {
   }
 
  private:
+  static constexpr std::size_t size = 65536;
   static constexpr std::int64_t at_once = 0;  // a deadline that has passed
 
   [[nodiscard]] static bool is_woken(const result<received>& got) noexcept {
@@ -85,16 +87,17 @@ class receiver {
       const auto paused = from.pause(until);
       const bool woken = !paused && paused.error() == problem::cancelled;
       if (paused || woken) {  // a transport that broke is read to its end, like any other
-        const auto got = from.read(buffer_, at_once);
+        const auto got = from.read({buffer_.get(), size}, at_once);
         if (woken || is_batched || until == deadline_ns || !got || got->count > 0) return got;
         if (how == reading::paced) pace_.in_vain();
       }
     }
-    return from.read(buffer_, is_batched ? at_once : deadline_ns);
+    return from.read({buffer_.get(), size}, is_batched ? at_once : deadline_ns);
   }
 
   std::int64_t batch_ns_;
-  std::vector<std::uint8_t> buffer_;
+  /// Most reads need few pages of it.
+  std::unique_ptr<std::uint8_t[]> buffer_ = std::make_unique_for_overwrite<std::uint8_t[]>(size);
   read_schedule pace_;
   std::int64_t last_bytes_ns_ = 0;
   std::int64_t read_until_ns_ = 0;
