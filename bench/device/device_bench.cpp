@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The cost of the driver: on a pty in real time, on a pty without a rate limit, and per sample in
 // memory.
-//   device_bench delay SECONDS    from the end of a zero packet to the delivered scan, and the first scan
-//   device_bench stream SECONDS [BATCH_MS]  CPU time, context switches, memory, calls of operator new
+//   device_bench delay SECONDS [PACE]   from the end of a zero packet to the delivered scan, and the first scan
+//   device_bench stream SECONDS [PACE]  CPU time, context switches, memory, calls of operator new
 //                                 and delete while streaming
+// PACE is `packets`, `scans` (the default), or a batch in milliseconds.
 //   device_bench flood MEGABYTES  bytes per second, and those of a reader that only counts
 //   device_bench memory SCANS [BURST]  scans from memory, in bursts of so many bytes, for
 //                                 counting instructions
@@ -42,10 +43,14 @@ constexpr std::int64_t second = 1'000'000'000;
   std::exit(1);
 }
 
-lidar open_and_start(const std::string& path, int batch_ms = 0) {
+lidar open_and_start(const std::string& path, std::string_view pace = "scans") {
   lidar_options options;
   options.device = path;
-  options.batch = std::chrono::milliseconds(batch_ms);
+  if (pace == "packets") {
+    options.pace = read_pace::packets;
+  } else if (pace != "scans") {
+    options.batch = std::chrono::milliseconds(std::atoi(pace.data()));
+  }
   auto opened = lidar::open(options);
   if (!opened) fail(opened.error());
   if (auto started = opened->start(); !started) fail(started.error());
@@ -54,7 +59,7 @@ lidar open_and_start(const std::string& path, int batch_ms = 0) {
 
 double ms_of(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
 
-int delay(int seconds) {
+int delay(int seconds, std::string_view pace) {
   const bench::pty line;
   std::vector<std::int64_t> written;
   const std::int64_t end = steady_ns() + seconds * second;
@@ -64,7 +69,7 @@ int delay(int seconds) {
   std::int64_t first = 0;
   std::vector<std::pair<std::uint32_t, std::int64_t>> taken;  // revolution, when
   {
-    lidar device = open_and_start(line.path());
+    lidar device = open_and_start(line.path(), pace);
     opened = steady_ns();
     while (steady_ns() < end) {
       const auto scan = device.next_scan(500ms);
@@ -90,7 +95,19 @@ int delay(int seconds) {
   return 0;
 }
 
-int stream(int seconds, int batch_ms) {
+/// What it holds now, of status in /proc: the peak that getrusage() gives is that of the shell before, too.
+long resident_kib() {
+  std::FILE* const status = std::fopen("/proc/self/status", "r");
+  long found = 0;
+  std::array<char, 256> text{};
+  while (status != nullptr && std::fgets(text.data(), text.size(), status) != nullptr) {
+    if (std::sscanf(text.data(), "VmRSS: %ld", &found) == 1) break;
+  }
+  if (status != nullptr) std::fclose(status);
+  return found;
+}
+
+int stream(int seconds, std::string_view pace) {
   const bench::pty line;
   const std::int64_t end = steady_ns() + (seconds + 3) * second;
   const pid_t feeder = fork();
@@ -100,7 +117,7 @@ int stream(int seconds, int batch_ms) {
     _exit(0);
   }
   {
-    lidar device = open_and_start(line.path(), batch_ms);
+    lidar device = open_and_start(line.path(), pace);
     const auto until = [&](std::int64_t time) {
       while (steady_ns() < time) static_cast<void>(device.next_scan(500ms));
     };
@@ -122,12 +139,12 @@ int stream(int seconds, int batch_ms) {
     const double cpu = seconds_of(after.ru_utime) + seconds_of(after.ru_stime) -
                        seconds_of(before.ru_utime) - seconds_of(before.ru_stime);
     std::printf(
-        "cpu_s_per_minute %.3f\nswitches_per_s %.0f\npeak_memory_kib %ld\nscans %llu\n"
+        "cpu_s_per_minute %.3f\nswitches_per_s %.0f\nresident_kib %ld\nscans %llu\n"
         "samples_lost %llu\nheap_calls %zu\n",
         cpu * 60 / seconds,
         static_cast<double>(after.ru_nvcsw + after.ru_nivcsw - before.ru_nvcsw - before.ru_nivcsw) /
             seconds,
-        after.ru_maxrss, static_cast<unsigned long long>(device.counts().scans - counts.scans),
+        resident_kib(), static_cast<unsigned long long>(device.counts().scans - counts.scans),
         static_cast<unsigned long long>(device.counts().samples_lost), allocated);
   }
   waitpid(feeder, nullptr, 0);
@@ -306,8 +323,9 @@ int memory(int scans, int burst) {
 int main(int argc, char** argv) {
   const std::string_view mode = argc > 1 ? argv[1] : "";
   const int amount = argc > 2 ? std::atoi(argv[2]) : 10;
-  if (mode == "delay") return delay(amount);
-  if (mode == "stream") return stream(amount, argc > 3 ? std::atoi(argv[3]) : 0);
+  const std::string_view pace = argc > 3 ? argv[3] : "scans";
+  if (mode == "delay") return delay(amount, pace);
+  if (mode == "stream") return stream(amount, pace);
   if (mode == "flood") return flood(amount);
   if (mode == "memory") return memory(amount, argc > 3 ? std::atoi(argv[3]) : 256);
   std::fprintf(stderr, "device_bench delay|stream|flood|memory AMOUNT: see the source\n");

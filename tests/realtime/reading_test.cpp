@@ -64,6 +64,26 @@ void expect_nothing_lost(const lidar& device) {
   EXPECT_EQ(counts.stream.suspect, 0U);
 }
 
+// The longest revolution: the driver sleeps as long as half of what a tty keeps can come, and the bytes of two such
+// sleeps wait for it.
+TEST(RealTime, SlowestRevolutions_AreKeptByTheSystem) {
+  test::expect_most(3, [] {
+    twin_on_pty twin;
+    auto wanted = test::patient_options(twin.path());
+    wanted.ranging = ranging_frequency::khz_9;
+    wanted.frequency = scan_frequency{500};
+    auto device = started(wanted);
+    EXPECT_TRUE(device) << device.error().message();
+    const auto scans = device ? whole_scans(*device, 25) : std::vector<readings>{};
+    if (twin.bytes_lost() > 0) return false;
+    if (device) expect_nothing_lost(*device);
+    const auto sent = test::revolutions_of(twin.take_truth());
+    EXPECT_GE(scans.size(), 24U);
+    EXPECT_EQ(test::found_in_order(scans, sent), scans.size());
+    return true;
+  });
+}
+
 // 40 scans at 12 Hz; the nightly reads 1,000 of them (scripts/ci/thousand-scans).
 TEST(RealTime, ReadsScansWithoutLoss) {
   test::expect_three_of_four([] {
