@@ -140,6 +140,8 @@ bool link_monitor::stop() {
            }});
     if (state == channel_state::going_on) state = channel.look(now_ns());
   }
+  // The channel counts events only: the beginning of a last packet may have arrived later.
+  if (now_ns() < heard_ns_ + quiet_ns) listen_for_quiet(quiet_ns, now_ns() + stop_ns);
   const bool is_quiet = now_ns() >= heard_ns_ + quiet_ns;  // also without noise
   if (is_quiet) splitter_.finish({});
   return state == channel_state::quiet && is_quiet;

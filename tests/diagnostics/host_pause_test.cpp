@@ -69,6 +69,13 @@ TEST(HostPause, IsNotAStall) {
   EXPECT_EQ(examine({}, faults_of({"stall@4s+300ms"})).diagnoses(), "stalls");
 }
 
+TEST(LateRest, OfAPacketIsNotAScanThatContinues) {
+  sim::device twin(sim::built_in_world(), {});
+  sim::virtual_clock clock;
+  const examined done = examine(twin, clock, {}, wrap_in<link_with_a_late_rest>());
+  EXPECT_EQ(done.diagnoses(), "") << done;
+}
+
 TEST(SpinningUp, IsWaitedForAndReported) {
   for (const std::int64_t silence_ms : {100, 1'500, 2'500, 9'000}) {
     sim::device_options options;

@@ -91,6 +91,31 @@ class link_that_stops final : public forwarding_transport {
   std::int64_t stop_ns_ = never_ns;
 };
 
+/// The beginning of a packet arrives 40 ms after each stop, as from a bridge that holds bytes back.
+class link_with_a_late_rest final : public forwarding_transport {
+ public:
+  using forwarding_transport::forwarding_transport;
+  [[nodiscard]] result<void> write(bytes data, std::int64_t deadline_ns) noexcept override {
+    const auto stop = encode(command::stop);
+    if (std::search(data.begin(), data.end(), stop.begin(), stop.end()) != data.end()) {
+      rest_ns_ = now_ns() + 40'000'000;
+    }
+    return inner().write(data, deadline_ns);
+  }
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override {
+    const auto got = inner().read(out, std::min(deadline_ns, rest_ns_));
+    if (!got || got->count > 0 || now_ns() < rest_ns_) return got;
+    rest_ns_ = never_ns;
+    const std::array<std::uint8_t, 4> begin{0xAA, 0x55, 0x00, 0x28};
+    std::copy(begin.begin(), begin.end(), out.begin());
+    return received{begin.size(), now_ns()};
+  }
+
+ private:
+  std::int64_t rest_ns_ = never_ns;
+};
+
 /// Some bytes precede the begin of each revolution.
 class noisy_link final : public forwarding_transport {
  public:
