@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # Fewer and larger translation units. With G4LIDAR_UNITE=OFF each source is compiled alone, as in the
 # nightly: only this shows that it includes what it uses.
-# - g4lidar_unite_directories: library and tool, with the unity build of CMake. Sources of the same
-#   directory have no conflicting names.
+# - g4lidar_unite_directories: library and tool. Sources of the same directory have no conflicting
+#   names.
 # - g4lidar_unite: tests. Each source gets an unnamed namespace of its own, so that names may
 #   conflict.
 
@@ -27,7 +27,8 @@ if(CMAKE_SCRIPT_MODE_FILE AND TO)
 endif()
 
 # g4lidar_unite_directories(<target> <maximum> <source>...): if G4LIDAR_UNITE is on, combines the
-# sources of a directory that the target has, except the named ones.
+# sources of a directory that the target has, except the named ones. The combined sources of all
+# build directories are in build/united, so that ccache finds their objects again.
 function(g4lidar_unite_directories target most)
   if(NOT G4LIDAR_UNITE)
     return()
@@ -36,6 +37,8 @@ function(g4lidar_unite_directories target most)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")
   list(REMOVE_ITEM sources ${ARGN})
   foreach(source IN LISTS sources)
+    cmake_path(ABSOLUTE_PATH source)
+    set_source_files_properties("${source}" PROPERTIES HEADER_FILE_ONLY ON)
     cmake_path(GET source PARENT_PATH directory)
     cmake_path(GET directory FILENAME group)
     list(APPEND in_${group} "${source}")
@@ -47,14 +50,16 @@ function(g4lidar_unite_directories target most)
     list(LENGTH in_${group} count)
     math(EXPR batches "(${count} + ${most} - 1) / ${most}")
     math(EXPR size "(${count} + ${batches} - 1) / ${batches}")
-    set(index 0)
-    foreach(source IN LISTS in_${group})
-      math(EXPR batch "${index} / ${size} + 1")
-      math(EXPR index "${index} + 1")
-      set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}_${batch}")
+    foreach(batch RANGE 1 ${batches})
+      math(EXPR first "(${batch} - 1) * ${size}")
+      list(SUBLIST in_${group} ${first} ${size} text)
+      list(TRANSFORM text REPLACE "(.+)" "#include \"\\1\"\n")
+      string(CONCAT text ${text})
+      set(united "${PROJECT_SOURCE_DIR}/build/united/${target}_${group}_${batch}.cpp")
+      file(CONFIGURE OUTPUT "${united}" CONTENT "${text}" @ONLY)
+      target_sources(${target} PRIVATE "${united}")
     endforeach()
   endforeach()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
 set(G4LIDAR_UNITE_SCRIPT "${CMAKE_CURRENT_LIST_FILE}")
