@@ -36,8 +36,6 @@ class listener {
 
   [[nodiscard]] std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 
-  /// This end of the accepted connection.
-  [[nodiscard]] int peer() const noexcept { return peer_; }
   void accept() { peer_ = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC); }
   /// Closes the listening port: further connections are refused.
   void close() {

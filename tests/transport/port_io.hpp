@@ -2,11 +2,8 @@
 // Reads and writes text on a transport, for the tests of ports.
 #pragma once
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
@@ -44,24 +41,6 @@ inline result<void> write_text(transport& port, std::string_view text) {
   const std::string copy(text);
   const bytes data(reinterpret_cast<const std::uint8_t*>(copy.data()), copy.size());
   return port.write(data, in(port, std::chrono::seconds(10)));
-}
-
-/// Whether the system keeps kept_bytes() bytes, written in pieces like packets to the other end `fd` before the first read.
-inline testing::AssertionResult keeps_its_bytes(transport& port, int fd) {
-  std::string sent(port.kept_bytes(), '\0');
-  for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = static_cast<char>('A' + i * 7 % 61);
-  std::size_t taken = 0;
-  ::fcntl(fd, F_SETFL, ::fcntl(fd, F_GETFL) | O_NONBLOCK);
-  while (taken < sent.size()) {
-    const ssize_t wrote =
-        ::write(fd, sent.data() + taken, std::min<std::size_t>(sent.size() - taken, 90));
-    if (wrote <= 0) return testing::AssertionFailure() << "full after " << taken << " bytes";
-    taken += static_cast<std::size_t>(wrote);
-  }
-  const auto read = read_text(port, sent.size());
-  if (!read) return testing::AssertionFailure() << read.error().message();
-  if (*read != sent) return testing::AssertionFailure() << "other bytes than those sent";
-  return testing::AssertionSuccess();
 }
 
 }  // namespace g4lidar::test

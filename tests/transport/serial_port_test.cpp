@@ -83,13 +83,6 @@ TEST(SerialPort, AllBytes_PassUnchangedBothWays) {
   EXPECT_EQ(device.receive(all.size()), all);
 }
 
-TEST(SerialPort, NoReader_KeptBytesAreKept) {
-  pty device;
-  const auto port = opened(device);
-  EXPECT_EQ(port->kept_bytes(), 4095U);
-  EXPECT_TRUE(keeps_its_bytes(*port, device.master()));
-}
-
 TEST(SerialPort, OtherRates_AreSet) {
   for (const std::uint32_t baud : {9600U, 115200U, 128000U, 153600U, 512000U, 921600U}) {
     const pty device;

@@ -30,15 +30,6 @@ TEST(TcpPort, BytesGoBothWays) {
   EXPECT_EQ(read_text(**port, 8), "and back");
 }
 
-TEST(TcpPort, NoReader_KeptBytesAreKept) {
-  listener bridge;
-  auto port = tcp_port::open("tcp:" + bridge.address());
-  ASSERT_TRUE(port) << port.error().message();
-  bridge.accept();
-  EXPECT_EQ((*port)->kept_bytes(), 4095U);
-  EXPECT_TRUE(keeps_its_bytes(**port, bridge.peer()));
-}
-
 TEST(TcpPort, Addresses_OfOtherForms) {
   listener bridge;
   const std::string address = bridge.address();
