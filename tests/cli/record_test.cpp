@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <memory>
 #include <regex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -70,6 +71,21 @@ TEST_F(Record, WhatIsRecordedIsPlayedToTheSamePoints) {
   const auto played = points_of(file);
   EXPECT_GT(played.size(), 4000U);
   EXPECT_EQ(played, points_of(file)) << "and again";
+}
+
+// Packets that were read together have one time.
+TEST_F(Record, ReadsAtThePaceOfRevolutions) {
+  const std::string file = path("long.mcap");
+  ASSERT_EQ(record_scans(file, 15).code, 0);
+  std::set<std::string> times;
+  std::size_t packets = 0;
+  for (const std::string& line : cli::lines_of(run({"packets", file}).out)) {
+    if (line.find("< packet ") == std::string::npos) continue;
+    ++packets;
+    times.insert(line.substr(0, line.find(' ')));
+  }
+  EXPECT_GT(packets, 400U);
+  EXPECT_LT(times.size(), packets / 2);
 }
 
 TEST_F(Record, ARecordingOfARecordingHasTheSameDigests) {
