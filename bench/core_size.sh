@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Prints the size of parser, decode and ring on a Cortex-M4: code, and state without the frame of
+# Prints the size of parser, decode and ring on a Cortex-M4: code, and state without the packet of
 # carry; fails if they are larger than promised, 6 KiB and 256 bytes. Needs gcc-arm-none-eabi and
 # libstdc++-arm-none-eabi-newlib of Debian.
 set -euo pipefail
@@ -30,8 +30,8 @@ state=$((parser - carry))
 
 printf '%-52s %6d bytes (promised: below %d)\n' "code of parser, decode and ring, Cortex-M4, -Os" "$code" "$code_bound"
 printf '%-52s %6d bytes\n' "constants" "$constants"
-printf '%-52s %6d bytes (promised: below %d)\n' "state of the parser without its frame of carry" "$state" "$state_bound"
-printf '%-52s %6d bytes\n' "the frame of carry" "$carry"
+printf '%-52s %6d bytes (promised: below %d)\n' "state of the parser without its carry" "$state" "$state_bound"
+printf '%-52s %6d bytes\n' "the carry" "$carry"
 printf '%-52s %6d bytes\n' "a ring of 512 points" "$ring"
 
 if ((code + constants >= code_bound || state >= state_bound)); then

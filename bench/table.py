@@ -19,8 +19,8 @@ RATIOS = [
     ("points, core with the compact form", "points_compact", "points_libm", None, []),
 ]
 LIMITS = [  # bytes per second
-    ("framing and checksum", "frame_whole", "20480", 5e9),
-    ("the same, a byte at a time", "frame_by_byte", "20480", 100e6),
+    ("framing and checksum", "parse_whole", "20480", 5e9),
+    ("the same, a byte at a time", "parse_by_byte", "20480", 100e6),
 ]
 
 

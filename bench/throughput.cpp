@@ -79,7 +79,7 @@ void copy(benchmark::State& state) {
   count_bytes(state, points * sizeof(Element));
 }
 
-void frame_in_pieces(benchmark::State& state, std::size_t piece) {
+void parse_in_pieces(benchmark::State& state, std::size_t piece) {
   const recording input = make_recording(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
     stream_parser parser;
@@ -93,8 +93,8 @@ void frame_in_pieces(benchmark::State& state, std::size_t piece) {
   }
   count_bytes(state, input.data.size());
 }
-void frame_whole(benchmark::State& state) { frame_in_pieces(state, SIZE_MAX); }
-void frame_by_byte(benchmark::State& state) { frame_in_pieces(state, 1); }
+void parse_whole(benchmark::State& state) { parse_in_pieces(state, SIZE_MAX); }
+void parse_by_byte(benchmark::State& state) { parse_in_pieces(state, 1); }
 
 /// Bytes to points by the header-only core, with the correction `Form`.
 template <class Form>
@@ -147,8 +147,8 @@ void sizes(benchmark::internal::Benchmark* each) {
   for (const std::int64_t points : {scan_points, cache_points, memory_points}) each->Arg(points);
 }
 
-BENCHMARK(frame_whole)->Apply(sizes);
-BENCHMARK(frame_by_byte)->Arg(cache_points);
+BENCHMARK(parse_whole)->Apply(sizes);
+BENCHMARK(parse_by_byte)->Arg(cache_points);
 BENCHMARK(copy<point>)->Name("copy_points")->Apply(sizes);
 BENCHMARK(copy<xy_point>)->Name("copy_places")->Apply(sizes);
 BENCHMARK(points_by_core<libm_correction>)->Name("points_libm")->Apply(sizes);

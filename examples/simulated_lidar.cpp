@@ -36,9 +36,9 @@ int main() {
   const std::array faults{
       g4lidar::sim::make_fault(g4lidar::sim::fault_kind::unplug, 5 * second, 2 * second),
       std::get<g4lidar::sim::fault>(g4lidar::sim::parse_fault("flip*0.01%"))};
-  g4lidar::sim::device twin(g4lidar::sim::built_in_world(), {}, faults);
+  g4lidar::sim::device simulated(g4lidar::sim::built_in_world(), {}, faults);
   g4lidar::sim::virtual_clock clock;
-  g4lidar::sim::virtual_connector finder(twin, clock);
+  g4lidar::sim::virtual_connector finder(simulated, clock);
 
   std::size_t packets = 0;
   while (clock.now_ns() < 10 * second) {
@@ -48,13 +48,13 @@ int main() {
       continue;
     }
     // A device that has just been plugged in is still booting: send until it answers.
-    while (!twin.is_scanning() && (*port)->write(start, 10 * second)) {
+    while (!simulated.is_scanning() && (*port)->write(start, 10 * second)) {
       if (!(*port)->pause(clock.now_ns() + second / 10)) break;
     }
     packets += packets_until(**port, 10 * second);
   }
   std::printf("%zu packets in %.1f s, connected %llu times\n", packets,
               static_cast<double>(clock.now_ns()) / 1e9,
-              static_cast<unsigned long long>(twin.replugs() + 1));
-  return packets > 1'500 && twin.replugs() == 1 ? 0 : 1;
+              static_cast<unsigned long long>(simulated.replugs() + 1));
+  return packets > 1'500 && simulated.replugs() == 1 ? 0 : 1;
 }

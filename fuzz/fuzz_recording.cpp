@@ -65,7 +65,7 @@ std::vector<std::uint8_t> made_recording() {
     chunk.put_channels("/scan");
     for (int k = 0; k < 3; ++k, ++number) {
       chunk.begin_message(topic::from_device, sequence++, number);
-      put_line_bytes(chunk.text(), reading(number), number);
+      put_recorded_bytes(chunk.text(), reading(number), number);
       chunk.end_message();
     }
     const std::size_t record = file.begin(opcode::chunk);

@@ -25,7 +25,7 @@ using buffer = std::vector<std::uint8_t>;
 std::string current;  // the running input, for messages
 buffer current_bytes;
 
-extern "C" void say_what_failed(int) {
+extern "C" void print_what_failed(int) {
   std::fprintf(stderr, "failed: %s; its bytes:\n", current.c_str());
   for (const unsigned byte : current_bytes) std::fprintf(stderr, "%02x", byte);
   std::fprintf(stderr, "\n");
@@ -107,7 +107,7 @@ class generator {
 }  // namespace
 
 int main(int count, char** arguments) {
-  std::signal(SIGABRT, say_what_failed);
+  std::signal(SIGABRT, print_what_failed);
   std::vector<buffer> seeds;
   bool generate = false;
   for (int i = 1; i < count; ++i) {

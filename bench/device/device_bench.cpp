@@ -60,16 +60,16 @@ lidar open_and_start(const std::string& path, std::string_view pace = "scans") {
 double ms_of(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
 
 int delay(int seconds, std::string_view pace) {
-  const bench::pty line;
+  const bench::pty pty;
   std::vector<std::int64_t> written;
   const std::int64_t end = steady_ns() + seconds * second;
-  std::thread feeder([&] { bench::feed_in_real_time(line.master(), end + 2 * second, written); });
+  std::thread feeder([&] { bench::feed_in_real_time(pty.master(), end + 2 * second, written); });
   const std::int64_t begin = steady_ns();
   std::int64_t opened = 0;
   std::int64_t first = 0;
   std::vector<std::pair<std::uint32_t, std::int64_t>> taken;  // revolution, when
   {
-    lidar device = open_and_start(line.path(), pace);
+    lidar device = open_and_start(pty.path(), pace);
     opened = steady_ns();
     while (steady_ns() < end) {
       const auto scan = device.next_scan(500ms);
@@ -108,16 +108,16 @@ long resident_kib() {
 }
 
 int stream(int seconds, std::string_view pace) {
-  const bench::pty line;
+  const bench::pty pty;
   const std::int64_t end = steady_ns() + (seconds + 3) * second;
   const pid_t feeder = fork();
   if (feeder == 0) {
     std::vector<std::int64_t> ignored;
-    bench::feed_in_real_time(line.master(), end + second, ignored);
+    bench::feed_in_real_time(pty.master(), end + second, ignored);
     _exit(0);
   }
   {
-    lidar device = open_and_start(line.path(), pace);
+    lidar device = open_and_start(pty.path(), pace);
     const auto until = [&](std::int64_t time) {
       while (steady_ns() < time) static_cast<void>(device.next_scan(500ms));
     };
@@ -153,14 +153,14 @@ int stream(int seconds, std::string_view pace) {
 
 /// Bytes per second of a reader that polls, reads, and counts.
 double counting_rate(std::size_t bytes_wanted) {
-  const bench::pty line;
+  const bench::pty pty;
   const bench::recording revolutions = bench::record(20);
   std::atomic<bool> done = false;
   std::thread feeder([&] {
-    bench::flood(line.master(), revolutions.data, bytes_wanted);
+    bench::flood(pty.master(), revolutions.data, bytes_wanted);
     done = true;
   });
-  const int port = ::open(line.path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  const int port = ::open(pty.path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   const auto start = encode(command::start);
   static_cast<void>(::write(port, start.data(), start.size()));
   std::vector<std::uint8_t> buffer(65536);
@@ -182,15 +182,15 @@ double counting_rate(std::size_t bytes_wanted) {
 
 /// Bytes per second of the driver, and its lost scans.
 double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
-  const bench::pty line;
+  const bench::pty pty;
   const bench::recording revolutions = bench::record(20);
   const std::size_t rounds = (bytes_wanted + revolutions.data.size() - 1) / revolutions.data.size();
   std::atomic<bool> done = false;
   std::thread feeder([&] {
-    bench::flood(line.master(), revolutions.data, bytes_wanted);
+    bench::flood(pty.master(), revolutions.data, bytes_wanted);
     done = true;
   });
-  lidar device = open_and_start(line.path());
+  lidar device = open_and_start(pty.path());
   const auto expected = static_cast<std::int64_t>(rounds * 20 - 1);  // the last one has no end
   std::int64_t scans = 0;
   std::int64_t begin = 0;
@@ -231,15 +231,16 @@ int flood(int megabytes) {
 
 /// A transport that returns a recording in bursts, at the rate of a real connection, and answers
 /// the commands of a start.
-class memory_line final : public transport {
+class memory_transport final : public transport {
  public:
-  memory_line(const bench::recording& from, std::size_t scans, std::size_t burst, std::int64_t& now)
+  memory_transport(const bench::recording& from, std::size_t scans, std::size_t burst,
+                   std::int64_t& now)
       : from_(from), left_(scans / 20), burst_(burst), now_(now) {}
 
   result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
     if (!scanning_) {
       now_ += 100'000;
-      const std::size_t count = twin_.read(out, now_);
+      const std::size_t count = device_.read(out, now_);
       if (count == 0 && now_ < deadline_ns) now_ = std::min(deadline_ns, now_ + 10'000'000);
       return received{count, now_};
     }
@@ -258,7 +259,7 @@ class memory_line final : public transport {
   }
   result<void> write(bytes data, std::int64_t /*deadline_ns*/) noexcept override {
     if (scanning_) return {};  // from now on it returns the recording only
-    twin_.write(data, now_);
+    device_.write(data, now_);
     scanning_ = data.size() == 2 && data[1] == static_cast<std::uint8_t>(command::start);
     last_ns_ = now_;
     return {};
@@ -280,13 +281,13 @@ class memory_line final : public transport {
   std::int64_t last_ns_ = 0;  // the time of the last burst
   std::int64_t& now_;
   bool scanning_ = false;
-  sim::device twin_{sim::built_in_world()};
+  sim::device device_{sim::built_in_world()};
 };
 
 class memory_connector final : public connector {
  public:
   memory_connector(const bench::recording& from, std::size_t scans, std::size_t burst)
-      : next_(std::make_unique<memory_line>(from, scans, burst, now_)) {}
+      : next_(std::make_unique<memory_transport>(from, scans, burst, now_)) {}
   result<std::unique_ptr<transport>> connect() noexcept override { return std::move(next_); }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
   bool pause(std::int64_t /*deadline_ns*/) noexcept override { return true; }

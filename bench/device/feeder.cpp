@@ -51,20 +51,20 @@ class player {
   bytes exchange() {
     const std::int64_t now = steady_ns() - begin_ns_;
     const ssize_t asked = ::read(master_, buffer_.data(), buffer_.size());
-    if (asked > 0) twin_.write(bytes(buffer_).first(static_cast<std::size_t>(asked)), now);
-    return bytes(buffer_).first(twin_.read(buffer_, now));
+    if (asked > 0) device_.write(bytes(buffer_).first(static_cast<std::size_t>(asked)), now);
+    return bytes(buffer_).first(device_.read(buffer_, now));
   }
   void wait(std::int64_t end_ns) {
-    const std::int64_t next = twin_.next_ns(steady_ns() - begin_ns_);
+    const std::int64_t next = device_.next_ns(steady_ns() - begin_ns_);
     const bool never = next == sim::forever_ns;
     wait_for(master_, POLLIN, never ? end_ns : std::min(end_ns, begin_ns_ + next));
   }
-  [[nodiscard]] bool is_scanning() const noexcept { return twin_.is_scanning(); }
+  [[nodiscard]] bool is_scanning() const noexcept { return device_.is_scanning(); }
 
  private:
   int master_;
   std::int64_t begin_ns_;
-  sim::device twin_{sim::built_in_world()};
+  sim::device device_{sim::built_in_world()};
   std::array<std::uint8_t, 4096> buffer_{};
 };
 

@@ -159,7 +159,7 @@ class mutator {
 
   /// An input derived from one of `known`, or rarely from a single byte.
   buffer make(const std::vector<buffer>& known) {
-    buffer made = below(20) == 0 ? buffer{telling_byte()} : one_of(known);
+    buffer made = below(20) == 0 ? buffer{structural_byte()} : one_of(known);
     for (std::size_t changes = 1 + below(4); changes > 0; --changes) change(made, known);
     return made;
   }
@@ -170,13 +170,13 @@ class mutator {
     const auto at = made.begin() + place;
     switch (below(5)) {
       case 0:
-        made.insert(at, telling_byte());
+        made.insert(at, structural_byte());
         break;
       case 1:
         if (made.size() > 1 && at != made.end()) made.erase(at);
         break;
       case 2:
-        if (at != made.end()) *at = telling_byte();
+        if (at != made.end()) *at = structural_byte();
         break;
       case 3:
         join(made, place, one_of(chunks));
@@ -191,12 +191,12 @@ class mutator {
   }
 
   std::size_t below(std::size_t n) { return std::size_t{random_() % n}; }
-  std::uint8_t telling_byte() { return telling[below(telling.size())]; }
+  std::uint8_t structural_byte() { return structural[below(structural.size())]; }
   const buffer& one_of(const std::vector<buffer>& all) { return all[below(all.size())]; }
 
-  static constexpr std::array<std::uint8_t, 20> telling{0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01, 0x03,
-                                                        0x04, 0x05, 0x06, 0x14, 0x40, 0x81, 0x50,
-                                                        0x4F, 0x28, 0x09, 0x0A, 0xB3, 0x11};
+  static constexpr std::array<std::uint8_t, 20> structural{0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01, 0x03,
+                                                           0x04, 0x05, 0x06, 0x14, 0x40, 0x81, 0x50,
+                                                           0x4F, 0x28, 0x09, 0x0A, 0xB3, 0x11};
   const std::vector<buffer> chunks{
       {0xAA, 0x55, 0x00, 0x50, 0x01}, {0xAA, 0x55, 0x00, 0x4F, 0x01, 0x10, 0x01, 0x12},
       {0xA5, 0x5A, 0x14, 0, 0, 0, 4}, {0xA5, 0x5A, 0x04, 0, 0, 0, 4, 0},

@@ -32,7 +32,7 @@ volatile std::uint32_t& device_register(std::uintptr_t address) {
 }
 
 /// A serial port of the CMSDK: a buffer of one byte in each direction.
-struct serial_line {
+struct uart {
   std::uintptr_t base;
 
   static constexpr std::uint32_t transmitter_full = 1U << 0;
@@ -55,8 +55,8 @@ struct serial_line {
   }
 };
 
-constexpr serial_line lidar{0x40004000};
-constexpr serial_line console{0x40005000};
+constexpr uart lidar{0x40004000};
+constexpr uart console{0x40005000};
 constexpr std::uint32_t lidar_receives = 0;  // the number of its interrupt
 
 // ---- interrupts --------------------------------------------------------------------------------
@@ -67,12 +67,12 @@ void on_tick() { ticks = ticks + 1; }
 
 void on_lidar_received() {
   lidar.interrupts() =
-      serial_line::receive;  // acknowledge first; then read the byte, so that none is missed
-  if ((lidar.state() & serial_line::receiver_overrun) != 0) {
-    lidar.state() = serial_line::receiver_overrun;
+      uart::receive;  // acknowledge first; then read the byte, so that none is missed
+  if ((lidar.state() & uart::receiver_overrun) != 0) {
+    lidar.state() = uart::receiver_overrun;
     overruns = overruns + 1;
   }
-  if ((lidar.state() & serial_line::receiver_full) != 0) {
+  if ((lidar.state() & uart::receiver_full) != 0) {
     on_lidar_byte(static_cast<std::uint8_t>(lidar.data()));
   }
 }
@@ -123,12 +123,12 @@ void begin() {
   // tolerance of a byte.
   lidar.divisor() = (clock_hz + lidar_baud - 1) / lidar_baud;
   console.divisor() = clock_hz / 115'200;
-  console.control() = serial_line::transmit;
+  console.control() = uart::transmit;
   device_register(0xE000E014) = clock_hz / 1000 - 1;  // SysTick: every millisecond
   device_register(0xE000E018) = 0;
   device_register(0xE000E010) = 7;  // on, with an interrupt, by the processor's clock
   device_register(0xE000E100) = 1U << lidar_receives;  // NVIC: enabled
-  lidar.control() = serial_line::transmit | serial_line::receive | serial_line::receive_interrupt;
+  lidar.control() = uart::transmit | uart::receive | uart::receive_interrupt;
 }
 
 std::int64_t now_ns() {

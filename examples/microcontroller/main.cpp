@@ -15,7 +15,7 @@
 namespace {
 
 constexpr int revolutions_to_measure = 20;
-constexpr std::int64_t frame_pause_ns = 20'000'000;  // no device continues a frame after this
+constexpr std::int64_t cut_off_after_ns = 20'000'000;  // no device continues a packet after this
 
 byte_ring<1024> received;  // 44 ms of a G4
 
@@ -33,7 +33,7 @@ class obstacle_watch {
 
   void say_counts() const {
     line text;
-    text << counts_.frame_bytes + counts_.skipped_bytes() + parser_.held() << " bytes, "
+    text << counts_.parsed_bytes + counts_.skipped_bytes() + parser_.held() << " bytes, "
          << counts_.packets << " packets, " << counts_.skipped_bytes() << " bytes skipped, "
          << received.overruns() << " lost in the ring, " << board::receiver_overruns()
          << " in the receiver\n";
@@ -75,7 +75,7 @@ class obstacle_watch {
       heard_ns_ = now_ns;
       while (const auto found = parser_.next(input)) take(*found, now_ns);
     } else {
-      if (session_.is_busy() && now_ns - heard_ns_ >= frame_pause_ns) {
+      if (session_.is_busy() && now_ns - heard_ns_ >= cut_off_after_ns) {
         while (const auto found = parser_.finish()) take(*found, now_ns);
       }
       if (session_.next_look_ns() <= now_ns) session_.look(now_ns);

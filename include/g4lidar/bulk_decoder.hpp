@@ -61,7 +61,8 @@ class G4LIDAR_API bulk_decoder {
   /// The same for positions in frame `to`.
   [[nodiscard]] std::span<xy_point> finish_xy(frame to, std::span<xy_point> out) noexcept;
 
-  /// Counts of everything found so far. Bytes given = bytes of frames + bytes skipped + held().
+  /// Counts of everything found so far. Bytes given = bytes of packets and responses + bytes skipped +
+  /// held().
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   /// Bytes of an unfinished packet or response.
   [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }

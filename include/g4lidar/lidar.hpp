@@ -101,7 +101,7 @@ struct lidar_event {
 /// The name of the event in tools and documents. Valid forever.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(lidar_event::kind what) noexcept;
 
-/// Counts since open(), over all reconnects. At every moment bytes == stream.frame_bytes +
+/// Counts since open(), over all reconnects. At every moment bytes == stream.parsed_bytes +
 /// stream.skipped_bytes() + held.
 struct lidar_counts {
   std::uint64_t bytes = 0;          ///< Parsed.

@@ -58,7 +58,7 @@ def digest(pieces):
     return f"{value:016x}"
 
 
-def line_bytes(message):
+def recorded_bytes(message):
     count = struct.unpack_from("<I", message, 12)[0]
     assert len(message) == 16 + count
     return message[16:]
@@ -88,7 +88,7 @@ def by_mcap(path, wanted):
         assert metadata["g4lidar.digest"]["payload"] == wanted["payload"][0]
         # In the order of the file, which is that of the transport.
         messages = list(reader.iter_messages(topics=RAW, log_time_order=False))
-        pieces = [(channel.topic, line_bytes(message.data)) for _, channel, message in messages]
+        pieces = [(channel.topic, recorded_bytes(message.data)) for _, channel, message in messages]
         assert digest(pieces) == wanted["payload"][0]
         # Also by the indexes.
         middle = (statistics.message_start_time + statistics.message_end_time) // 2

@@ -13,7 +13,7 @@ namespace {
 struct words {
   problem what;
   std::string_view name;
-  std::string_view says;    // "<task> <subject>: <says>."
+  std::string_view cause;   // "<task> <subject>: <cause>."
   std::string_view advice;  // A sentence.
 };
 
@@ -128,13 +128,13 @@ std::string_view error::advice() const noexcept { return words_of(code_).advice;
 std::string error::message() const {
   std::string text(name_of(doing_));
   if (size_ > 0) text.append(" ").append(subject());
-  text.append(": ").append(words_of(code_).says);
+  text.append(": ").append(words_of(code_).cause);
   if (errno_ != 0) {
     // Of glibc; thread-safe and independent of the locale, unlike strerror.
     const char* name = strerrorname_np(errno_);
-    const char* says = strerrordesc_np(errno_);
-    if (name != nullptr && says != nullptr) {
-      text.append(" (").append(name).append(", ").append(says).append(")");
+    const char* description = strerrordesc_np(errno_);
+    if (name != nullptr && description != nullptr) {
+      text.append(" (").append(name).append(", ").append(description).append(")");
     }
   }
   return text.append(". ").append(words_of(code_).advice);
@@ -142,7 +142,7 @@ std::string error::message() const {
 
 std::string_view name_of(problem code) noexcept { return words_of(code).name; }
 
-std::string_view description_of(problem code) noexcept { return words_of(code).says; }
+std::string_view description_of(problem code) noexcept { return words_of(code).cause; }
 
 std::string_view name_of(task doing) noexcept {
   return task_names[static_cast<std::size_t>(doing)];

@@ -19,7 +19,7 @@ constexpr std::int64_t unasked_ns = 300 * ms;
 /// The wait for the first reply, for each attempt: a device may be booting, and a reply may be
 /// late.
 constexpr std::array<std::int64_t, 3> first_patience_ns{800 * ms, 800 * ms, 3'000 * ms};
-/// The number of further attempts if the bytes contained no frames: they may have been noise.
+/// The number of further attempts if the bytes contained no packets or responses: they may have been noise.
 constexpr std::size_t more_times = 5;
 constexpr std::int64_t more_patience_ns = 300 * ms;
 constexpr std::array<std::uint32_t, 5> other_rates{115200, 512000, 128000, 153600, 256000};
@@ -151,7 +151,7 @@ bool live_run::scans_when_started() {
 }
 
 void live_run::look_for_baud_rate(stage_report& baud) {
-  if (garbage_ > 0) baud.add("bytes_without_a_frame", garbage_);
+  if (garbage_ > 0) baud.add("bytes_of_no_packet", garbage_);
   std::uint32_t found = 0;
   std::string tried;
   for (const std::uint32_t rate : other_rates) {

@@ -95,9 +95,9 @@ class file_run {
       case recorded_item::kind::to_device:
         if (is_stop(item.data)) await_speed();
         return;
-      case recorded_item::kind::note:
-        if (item.note.what == recorded_event::kind::gap) measured_.part();
-        if (item.note.what == recorded_event::kind::closed) await_speed();
+      case recorded_item::kind::other:
+        if (item.other.what == recorded_event::kind::gap) measured_.part();
+        if (item.other.what == recorded_event::kind::closed) await_speed();
         return;
     }
   }

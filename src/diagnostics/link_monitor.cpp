@@ -98,7 +98,7 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
     }
     has_backlog_ = false;
     silence_ns_ += std::min(took_ns, slice_ns);
-    if (splitter_.held() > 0 && read_ns_ >= heard_ns_ + frame_pause_ns_) splitter_.finish(to);
+    if (splitter_.held() > 0 && read_ns_ >= heard_ns_ + cut_off_after_ns_) splitter_.finish(to);
   }
 }
 

@@ -77,7 +77,7 @@ struct exchange {
   unsigned copies = 0;  ///< Of the same reply, after the first.
   unsigned wrong = 0;   ///< Replies that cannot belong to this command.
   std::uint64_t packets = 0;
-  std::uint64_t skipped = 0;  ///< Bytes in no frame.
+  std::uint64_t skipped = 0;  ///< Bytes outside packets and responses.
   bool is_disturbed = false;  ///< By a boot or a pause of the host: its times have no meaning.
 
   [[nodiscard]] bool is_answered() const noexcept { return answered_ns >= 0; }
@@ -98,8 +98,8 @@ class link_monitor {
   void listen_for(std::int64_t time_ns) { listen(now_ns() + time_ns, {}); }
   /// Observes until nothing has arrived for `quiet_ns`, at most until `until_ns`.
   void listen_for_quiet(std::int64_t quiet_ns, std::int64_t until_ns);
-  /// A frame that does not continue for this time has ended. On a link that stalls it takes longer.
-  void set_frame_pause(std::int64_t pause_ns) noexcept { frame_pause_ns_ = pause_ns; }
+  /// A packet or response that does not continue for this time has ended. On a link that stalls it takes longer.
+  void set_cut_off_after(std::int64_t pause_ns) noexcept { cut_off_after_ns_ = pause_ns; }
 
   void send(command code) { write(encode(code)); }
   /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.
@@ -146,7 +146,7 @@ class link_monitor {
   event_splitter splitter_;
   std::array<std::uint8_t, 4096> buffer_{};
   std::int64_t heard_ns_ = 0;
-  std::int64_t frame_pause_ns_ = 60'000'000;
+  std::int64_t cut_off_after_ns_ = 60'000'000;
   std::int64_t silence_ns_ = 0;
   std::uint64_t host_pauses_ = 0;
 };

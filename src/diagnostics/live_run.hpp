@@ -52,7 +52,7 @@ class live_run {
   void report_stream();
 
   /// Observes bytes without a query, and stops a scan. False if it does not stop, or there are no
-  /// frames.
+  /// packets.
   bool make_quiet();
   bool first_contact();
   void ask_the_rest(exchange last, std::int64_t begin_ns);
@@ -83,7 +83,7 @@ class live_run {
   bool is_deaf_ = false;      // it scans and ignores commands
   bool keeps_alive_ = false;  // with keep-alives, because the protection is on
   std::uint32_t baud_ = 0;
-  std::uint64_t garbage_ = 0;  // bytes without a frame, before the first query
+  std::uint64_t garbage_ = 0;  // bytes outside packets and responses, before the first query
   std::int64_t measured_ns_ = 0;
   unsigned restarts_ = 0;
 };

@@ -18,7 +18,7 @@ constexpr std::array questions{command::device_info,          command::health,
 /// A single reply with this delay is caused by a stall of the link.
 constexpr std::int64_t very_late_ns = 400 * ms;
 /// The number of commands without a reply at the end of a series that means a dead link.
-constexpr unsigned dead_line = 6;
+constexpr unsigned unanswered_of_dead_link = 6;
 
 bool may_be_unknown(command code) noexcept {
   return code == command::health || code == command::health_vendor ||
@@ -85,12 +85,12 @@ reply_statistics::tally reply_statistics::count() const {
 
 bool reply_statistics::is_clear() const {
   const tally sum = count();
-  return sum.late >= 4 || sum.wrong >= 6 || sum.missing_at_end >= dead_line;
+  return sum.late >= 4 || sum.wrong >= 6 || sum.missing_at_end >= unanswered_of_dead_link;
 }
 
 bool reply_statistics::has_died() const {
   const tally sum = count();
-  return answered() > 0 && sum.missing_at_end >= dead_line && sum.missing_before <= 1;
+  return answered() > 0 && sum.missing_at_end >= unanswered_of_dead_link && sum.missing_before <= 1;
 }
 
 void reply_statistics::judge(stage_report& report) const {

@@ -15,7 +15,7 @@ constexpr std::int64_t observed_ns = 50 * ms;
 /// A scan without bytes for this time has become silent.
 constexpr std::int64_t silence_ns = 500 * ms;
 /// The pause caused by an answer.
-constexpr std::int64_t frame_pause_ns = 60 * ms;
+constexpr std::int64_t cut_off_after_ns = 60 * ms;
 /// The time by which the head has its speed.
 constexpr std::int64_t spin_up_ns = 6'000 * ms;
 /// Between two checks of the speed.
@@ -66,9 +66,9 @@ live_run::scan_state live_run::listen_once(stream_statistics& measured) {
     started_.kept_alive_ns = link_.now_ns();
   }
   const std::int64_t until_ns = link_.now_ns() + observed_ns;
-  link_.set_frame_pause(signs_ns);
+  link_.set_cut_off_after(signs_ns);
   link_.listen(until_ns, to);
-  link_.set_frame_pause(frame_pause_ns);
+  link_.set_cut_off_after(cut_off_after_ns);
   if (link_.is_over()) return scan_state::over;
   const std::int64_t patience = patience_ns();
   const std::int64_t since_ns = std::max(link_.heard_ns(), started_.sent_ns);

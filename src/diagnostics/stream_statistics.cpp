@@ -222,8 +222,8 @@ void stream_statistics::judge_bytes(std::size_t lost_packets) {
     ++damage_.changed;
     damage_.changed_packets += lost_packets;
     if (lost_packets == 1 && between_.raw.size() == expected) {
-      const bytes frame = between_.raw;
-      const auto wrong = static_cast<std::uint16_t>(packet_checksum(frame) ^ load_u16(frame, 8));
+      const bytes packet = between_.raw;
+      const auto wrong = static_cast<std::uint16_t>(packet_checksum(packet) ^ load_u16(packet, 8));
       ++damage_.one_packet;
       damage_.wrong_bits += static_cast<std::uint64_t>(std::popcount(wrong));
     }
@@ -283,10 +283,10 @@ std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {
   std::sort(kinds.begin(), kinds.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first > b.first : a.second < b.second;
   });
-  const std::uint64_t told = damage.all() - damage.unclear;
+  const std::uint64_t explained = damage.all() - damage.unclear;
   std::vector<diagnosis> found;
   for (const auto& [count, what] : kinds) {
-    if (count == 0 || (!found.empty() && 4 * count < told)) continue;
+    if (count == 0 || (!found.empty() && 4 * count < explained)) continue;
     found.push_back(what);
   }
   if (found.empty() && damage.unclear > 0) found.push_back(diagnosis::line_noise);

@@ -11,10 +11,11 @@ namespace g4lidar {
 namespace {
 
 result<device_information> probe_of(const port_info& port, const find_options& options) {
-  auto line = serial_port::open(port.path, {.baud = options.baud});
-  if (!line) return tl::unexpected(line.error());
-  transport& opened = **line;
-  return probe(opened, opened.now_ns() + std::chrono::nanoseconds(options.probe_timeout).count());
+  auto opened = serial_port::open(port.path, {.baud = options.baud});
+  if (!opened) return tl::unexpected(opened.error());
+  transport& to_device = **opened;
+  return probe(to_device,
+               to_device.now_ns() + std::chrono::nanoseconds(options.probe_timeout).count());
 }
 
 /// The ports that the library may write to: only this function decides that.

@@ -14,7 +14,7 @@ namespace {
 
 /// The source of device events: udevd if it runs, because then it has processed them; else the
 /// kernel.
-const char* teller() noexcept {
+const char* udev_source() noexcept {
   return ::access("/run/udev/control", F_OK) == 0 ? "udev" : "kernel";
 }
 
@@ -55,7 +55,7 @@ result<port_monitor> port_monitor::open() {
   auto made = std::make_unique<state>();
   made->context.reset(udev_new());
   if (!made->context) return failure(task::finding, problem::system, "udev", errno);
-  made->monitor.reset(udev_monitor_new_from_netlink(made->context.get(), teller()));
+  made->monitor.reset(udev_monitor_new_from_netlink(made->context.get(), udev_source()));
   if (!made->monitor) return failure(task::finding, problem::system, "udev monitor", errno);
   udev_monitor_filter_add_match_subsystem_devtype(made->monitor.get(), "tty", nullptr);
   const int enabled = udev_monitor_enable_receiving(made->monitor.get());

@@ -12,8 +12,8 @@
 namespace g4lidar {
 namespace {
 
-/// A frame that does not continue for this time is not continued: 700 bytes at the baud rate.
-constexpr std::int64_t frame_pause_ns = 30'000'000;
+/// A response that does not continue for this time is not continued: 700 bytes at the baud rate.
+constexpr std::int64_t cut_off_after_ns = 30'000'000;
 
 /// One query to an unknown device.
 class inquiry {
@@ -40,7 +40,7 @@ class inquiry {
 
   [[nodiscard]] result<void> receive(std::int64_t deadline_ns) {
     std::int64_t until_ns = std::min(session_.next_look_ns(), deadline_ns);
-    if (parser_.held() > 0) until_ns = std::min(until_ns, heard_ns_ + frame_pause_ns);
+    if (parser_.held() > 0) until_ns = std::min(until_ns, heard_ns_ + cut_off_after_ns);
     const auto got = port_.read(buffer_, until_ns);
     if (!got) return tl::unexpected(got.error());
     if (got->count > 0) {
@@ -48,7 +48,7 @@ class inquiry {
       parser_.feed(bytes(buffer_).first(got->count), [&](const event& found) { take(found); });
     }
     const std::int64_t now_ns = port_.now_ns();
-    if (got->count == 0 && now_ns >= heard_ns_ + frame_pause_ns) {
+    if (got->count == 0 && now_ns >= heard_ns_ + cut_off_after_ns) {
       while (const auto found = parser_.finish()) take(*found);
     }
     if (now_ns >= session_.next_look_ns()) session_.look(now_ns);

@@ -61,7 +61,7 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
 /// A reconnect must not end the program if there is no memory.
 result<std::unique_ptr<transport>> system_connector::connect() noexcept {
   try {
-    return open_line();
+    return open_transport();
   } catch (const std::bad_alloc&) {
     return failure(task::opening, problem::system, device_, ENOMEM);
   }
@@ -69,7 +69,7 @@ result<std::unique_ptr<transport>> system_connector::connect() noexcept {
 
 bool system_connector::answers() const noexcept { return !device_.starts_with(file_prefix); }
 
-result<std::unique_ptr<transport>> system_connector::open_line() {
+result<std::unique_ptr<transport>> system_connector::open_transport() {
   const std::string_view device = device_;
   if (device.starts_with(tcp_prefix)) {
     tcp_options how;

@@ -48,7 +48,7 @@ class system_connector final : public connector {
 
   system_connector(std::string_view device, std::uint32_t baud);
 
-  [[nodiscard]] result<std::unique_ptr<transport>> open_line();
+  [[nodiscard]] result<std::unique_ptr<transport>> open_transport();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
   [[nodiscard]] bool may_be_ours(const port_info& port) const noexcept;

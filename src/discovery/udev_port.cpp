@@ -66,14 +66,14 @@ std::optional<port_info> port_of(udev_device* device) {
   if (usb == nullptr) return port;
   // From sysfs, which has it with and without udevd.
   port.bus_path = text_or_empty(udev_device_get_sysname(usb));
-  const auto says = [&](const char* attribute) {
+  const auto attribute_of = [&](const char* attribute) {
     return text_or_empty(udev_device_get_sysattr_value(usb, attribute));
   };
-  port.vendor_id = hexadecimal(says("idVendor"));
-  port.product_id = hexadecimal(says("idProduct"));
-  port.usb_serial = says("serial");
-  port.manufacturer = says("manufacturer");
-  port.product = says("product");
+  port.vendor_id = hexadecimal(attribute_of("idVendor"));
+  port.product_id = hexadecimal(attribute_of("idProduct"));
+  port.usb_serial = attribute_of("serial");
+  port.manufacturer = attribute_of("manufacturer");
+  port.product = attribute_of("product");
   return port;
 }
 

@@ -41,7 +41,7 @@ struct G4LIDAR_HIDDEN background_reader::state {
   void publish() {
     const std::lock_guard lock(mutex);
     counts = device.counts();
-    while (const auto told = device.next_event()) events.put(*told);
+    while (const auto found = device.next_event()) events.put(*found);
   }
 
   void stop() noexcept {

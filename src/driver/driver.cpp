@@ -10,7 +10,7 @@ namespace g4lidar {
 namespace {
 
 std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& options) {
-  if (parts.line.from().answers()) return std::make_unique<live_driver>(parts, options);
+  if (parts.link.from().answers()) return std::make_unique<live_driver>(parts, options);
   return std::make_unique<replay_player>(parts, options);
 }
 
@@ -80,7 +80,7 @@ result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_n
 
 result<void> lidar::driver::process() {
   parts_.pipeline.drop_scan();
-  return feeder_->step(parts_.line.now_ns());
+  return feeder_->step(parts_.link.now_ns());
 }
 
 lidar_counts lidar::driver::counts() const noexcept {

@@ -32,21 +32,21 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<scan> next_scan(std::int64_t timeout_ns);
   result<std::span<const point>> next_points(std::int64_t timeout_ns);
   result<void> process();
-  void wake() noexcept { parts_.line.wake(); }
+  void wake() noexcept { parts_.link.wake(); }
 
-  [[nodiscard]] int native_handle() const noexcept { return parts_.line.native_handle(); }
+  [[nodiscard]] int native_handle() const noexcept { return parts_.link.native_handle(); }
   /// Whoever asks this waits for no bytes while none are needed.
   [[nodiscard]] std::int64_t next_deadline_ns() noexcept {
     const std::int64_t due_ns = feeder_->next_deadline_ns();
     const std::int64_t rest_ns = feeder_->rest_until_ns();
-    const bool rests = rest_ns > parts_.line.now_ns();
-    parts_.line.rest(rests);
+    const bool rests = rest_ns > parts_.link.now_ns();
+    parts_.link.rest(rests);
     return rests ? std::min(due_ns, rest_ns) : due_ns;
   }
   [[nodiscard]] const device_information& information() const noexcept {
     return feeder_->information();
   }
-  [[nodiscard]] std::string_view name() const noexcept { return parts_.line.name(); }
+  [[nodiscard]] std::string_view name() const noexcept { return parts_.link.name(); }
   [[nodiscard]] bool is_scanning() const noexcept { return feeder_->is_scanning(); }
   [[nodiscard]] lidar_counts counts() const noexcept;
   [[nodiscard]] std::optional<lidar_event> next_event() noexcept { return parts_.events.take(); }
@@ -57,7 +57,7 @@ class G4LIDAR_HIDDEN lidar::driver {
 
  private:
   [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
-    return parts_.line.now_ns() >= deadline_ns && parts_.pipeline.is_empty();
+    return parts_.link.now_ns() >= deadline_ns && parts_.pipeline.is_empty();
   }
 
   feeder::parts parts_;

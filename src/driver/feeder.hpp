@@ -21,13 +21,13 @@ class feeder {
  public:
   /// The parts that it works on.
   struct parts {
-    connection line;
+    connection link;
     point_pipeline pipeline;
     event_queue events;
   };
 
   feeder(parts& of, const lidar_options& options) noexcept
-      : connection_(of.line),
+      : connection_(of.link),
         pipeline_(of.pipeline),
         events_(of.events),
         receiver_(options.batch) {}
@@ -73,7 +73,7 @@ class feeder {
   [[nodiscard]] virtual result<void> advance(std::int64_t deadline_ns) = 0;
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return connection_.now_ns(); }
-  void tell(lidar_event::kind what, problem reason = problem::timeout) noexcept {
+  void report(lidar_event::kind what, problem reason = problem::timeout) noexcept {
     events_.put({what, reason, now_ns()});
   }
 

@@ -69,9 +69,9 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
 }
 
 result<lidar> lidar::open(const lidar_options& options) {
-  auto line = connector_for(options);
-  if (!line) return tl::unexpected(line.error());
-  return open(std::move(*line), options);
+  auto from = connector_for(options);
+  if (!from) return tl::unexpected(from.error());
+  return open(std::move(*from), options);
 }
 
 result<lidar> lidar::open(std::string_view device) {
@@ -80,9 +80,9 @@ result<lidar> lidar::open(std::string_view device) {
   return open(options);
 }
 
-result<lidar> lidar::open(std::unique_ptr<connector> line, const lidar_options& options) {
+result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
   if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
-  auto made = std::make_unique<driver>(std::move(line), options);
+  auto made = std::make_unique<driver>(std::move(from), options);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
   return lidar(std::move(made));
 }

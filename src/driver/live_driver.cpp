@@ -13,9 +13,9 @@
 namespace g4lidar {
 namespace {
 
-/// A device that has been silent for this time will not continue an unfinished frame. Bridges hold
+/// A device that has been silent for this time will not continue an unfinished packet. Bridges hold
 /// bytes back for up to 16 ms.
-constexpr std::int64_t frame_pause_ns = 30'000'000;
+constexpr std::int64_t cut_off_after_ns = 30'000'000;
 
 session_times times_for(const lidar_options& options) noexcept {
   session_times times;
@@ -62,7 +62,7 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   const bool hurry = std::exchange(has_outcome_, false);
   const std::int64_t until = hurry ? now_ns() : std::min(deadline_ns, next_deadline_ns());
   if (auto got = receive(until); !got) return got;
-  if (pipeline_.unparsed().empty() && is_frame_silent()) cut();
+  if (pipeline_.unparsed().empty() && is_cut_off()) cut();
   if (digest()) return {};
   // An event loop may not call again before bytes arrive: everything must be sent now.
   auto served = serve();
@@ -73,7 +73,7 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
 /// Handles the results of events: session events, the next step of the setup, commands.
 result<void> live_driver::serve() {
   if (session_.has_nothing() && setup_.is_done()) return {};  // the usual case
-  if (auto told = take_notice(); !told) return told;
+  if (auto done = take_notice(); !done) return done;
   if (auto gone_on = go_on_with_setup(); !gone_on) return gone_on;
   return send_commands();
 }
@@ -94,7 +94,7 @@ result<void> live_driver::look_if_due() {
     if (auto got = receive(now_ns()); !got) return got;
     if (!pipeline_.unparsed().empty()) return {};
   }
-  if (is_frame_silent()) {
+  if (is_cut_off()) {
     pipeline_.drop_scan();
     cut();
     if (digest()) return {};  // look() follows in the next round
@@ -103,11 +103,11 @@ result<void> live_driver::look_if_due() {
   return {};
 }
 
-/// The device does not continue a frame after such a pause. The held bytes are parsed again, before
-/// the next answer is taken for the rest of the frame.
-bool live_driver::is_frame_silent() const noexcept {
+/// The device does not continue a packet after such a pause. The held bytes are parsed again, before
+/// the next answer is taken for the rest of the packet.
+bool live_driver::is_cut_off() const noexcept {
   return is_waiting_for_answer() && pipeline_.held() > 0 &&
-         now_ns() - receiver_.last_bytes_ns() >= frame_pause_ns;
+         now_ns() - receiver_.last_bytes_ns() >= cut_off_after_ns;
 }
 
 result<void> live_driver::receive(std::int64_t deadline_ns) {
@@ -174,13 +174,13 @@ void live_driver::cut() {
 void live_driver::record(recorded_event::kind what) {
   recorded_event_sink* const recorder = connection_.from().recorder();
   if (recorder == nullptr || !connection_.is_open()) return;
-  recorded_event told{.what = what, .time_ns = now_ns()};
-  told.delivers = pipeline_.delivers();
-  told.baud = connection_.on().baud();
-  told.samples_per_second = samples_per_second_;
-  told.unparsed = static_cast<std::uint32_t>(pipeline_.unparsed().size());
-  told.events = pipeline_.events_of_reading();
-  recorder->note(told);
+  recorded_event made{.what = what, .time_ns = now_ns()};
+  made.delivers = pipeline_.delivers();
+  made.baud = connection_.on().baud();
+  made.samples_per_second = samples_per_second_;
+  made.unparsed = static_cast<std::uint32_t>(pipeline_.unparsed().size());
+  made.events = pipeline_.events_of_reading();
+  recorder->event(made);
 }
 
 result<void> live_driver::take_notice() {
@@ -189,20 +189,20 @@ result<void> live_driver::take_notice() {
     case notice::none:
       return {};
     case notice::found_scanning:
-      tell(lidar_event::kind::found_scanning);
+      report(lidar_event::kind::found_scanning);
       return {};
     case notice::protection_starved:
-      tell(lidar_event::kind::protection_starved);
+      report(lidar_event::kind::protection_starved);
       break;
     case notice::protection_found_on:
-      tell(lidar_event::kind::protection_found_on);
+      report(lidar_event::kind::protection_found_on);
       if (!set_up_again()) return tl::unexpected(fallen_silent());
       break;
     case notice::spinning_up:
-      tell(lidar_event::kind::spinning_up);
+      report(lidar_event::kind::spinning_up);
       return {};
     case notice::restarted:
-      tell(lidar_event::kind::restarted);
+      report(lidar_event::kind::restarted);
       if (!set_up_again()) return tl::unexpected(fallen_silent());
       break;
     case notice::stalled:
@@ -219,7 +219,7 @@ std::int64_t live_driver::next_deadline_ns() const noexcept {
     return now_ns();
   std::int64_t next = session_.next_look_ns();
   if (is_waiting_for_answer() && pipeline_.held() > 0) {
-    next = std::min(next, receiver_.last_bytes_ns() + frame_pause_ns);
+    next = std::min(next, receiver_.last_bytes_ns() + cut_off_after_ns);
   }
   return next;
 }

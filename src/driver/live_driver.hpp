@@ -105,7 +105,7 @@ class live_driver final : public feeder {
   void cut();
   void record(recorded_event::kind what);
   [[nodiscard]] reading how_to_read() const noexcept;
-  [[nodiscard]] bool is_frame_silent() const noexcept;
+  [[nodiscard]] bool is_cut_off() const noexcept;
   [[nodiscard]] bool is_waiting_for_answer() const noexcept {
     return session_.is_busy() || !session_.is_scanning();
   }

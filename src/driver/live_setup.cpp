@@ -135,14 +135,14 @@ result<void> live_driver::finish_step(const outcome& done) {
     if (!is_needed(finished, options_) && !done.heard_nothing()) return {};
     return give_up(error_of(done));
   }
-  if (const auto* said = std::get_if<health>(&done.value)) {
-    if (said->status == health_status::error) {
+  if (const auto* reply = std::get_if<health>(&done.value)) {
+    if (reply->status == health_status::error) {
       const error_context code = error_context(connection_.name())
                                      .add(", error code ")
-                                     .add(std::uint32_t{said->error_code});
+                                     .add(std::uint32_t{reply->error_code});
       return give_up(error(task::starting, problem::unhealthy, code));
     }
-    if (said->status == health_status::warning) tell(lidar_event::kind::health_warning);
+    if (reply->status == health_status::warning) report(lidar_event::kind::health_warning);
   }
   if (const auto* who = std::get_if<device_information>(&done.value)) return identified(*who);
   const bool is_start = finished == setup_step::start;
@@ -175,7 +175,7 @@ result<void> live_driver::identified(const device_information& who) {
   }
   if (is_known_ && who.serial_digits != information_.serial_digits) {
     connection_.from().refuse();  // the wanted lidar may be behind another port
-    if (reconnection_.refused_lidar != who.serial_digits) tell(lidar_event::kind::other_lidar);
+    if (reconnection_.refused_lidar != who.serial_digits) report(lidar_event::kind::other_lidar);
     reconnection_.refused_lidar = who.serial_digits;
     return failure(task::finding, problem::no_port, connection_.name());
   }
@@ -201,7 +201,7 @@ void live_driver::back_again() {
   reconnection_.is_under_way = false;
   reconnection_.backoff_ns = 0;
   ++reconnection_.count;
-  tell(lidar_event::kind::reconnected);
+  report(lidar_event::kind::reconnected);
 }
 
 /// A device that has ended a scan and does not continue.

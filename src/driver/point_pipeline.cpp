@@ -6,9 +6,9 @@
 namespace g4lidar {
 
 const event* point_pipeline::next() noexcept {
-  if (is_ending_frame_) {
+  if (is_cutting_) {
     event_ = parser_.finish();
-    is_ending_frame_ = event_.has_value();
+    is_cutting_ = event_.has_value();
   } else {
     const std::size_t before = input_.size();
     event_ = parser_.next(input_);

@@ -42,14 +42,14 @@ class point_pipeline {
     events_of_reading_ = 0;
   }
   /// No more bytes follow: the unparsed bytes are discarded, and the next calls of next() parse the
-  /// held frame again.
+  /// held bytes again.
   void cut() noexcept {
     input_ = {};
-    is_ending_frame_ = true;
+    is_cutting_ = true;
   }
   /// Whether everything that was fed has been processed.
   [[nodiscard]] bool is_empty() const noexcept {
-    return input_.empty() && !is_ending_frame_ && !event_ && !has_scans();
+    return input_.empty() && !is_cutting_ && !event_ && !has_scans();
   }
 
   // ---- events ----
@@ -113,7 +113,7 @@ class point_pipeline {
 
   bool partial_scans_;
   bool delivers_ = false;
-  bool is_ending_frame_ = false;
+  bool is_cutting_ = false;
   bool is_open_ = false;  // the last packet may complete more scans
   stream_parser parser_;
   bytes input_;

@@ -24,20 +24,20 @@ bool can_come_of_a_port_conflict(problem what) noexcept {
 }
 
 /// No permission is needed for this, so it also detects processes of root.
-bool has_other_settings(const transport& line) noexcept {
+bool has_other_settings(const transport& port) noexcept {
   termios now{};
-  if (line.native_handle() < 0 || ::tcgetattr(line.native_handle(), &now) != 0) return false;
+  if (port.native_handle() < 0 || ::tcgetattr(port.native_handle(), &now) != 0) return false;
   if ((now.c_lflag & (ICANON | ECHO)) != 0 || (now.c_iflag & IXON) != 0) return true;
-  const std::uint32_t baud = custom_baud(real_system_calls().ioctl, line.native_handle());
-  return baud != 0 && !is_near(baud, line.baud());
+  const std::uint32_t baud = custom_baud(real_system_calls().ioctl, port.native_handle());
+  return baud != 0 && !is_near(baud, port.baud());
 }
 
-error looked_into(const error& why, const transport& line) {
-  const std::string path(line.name());
+error looked_into(const error& why, const transport& port) {
+  const std::string path(port.name());
   if (const std::string program = port_conflict(path); !program.empty()) {
     return {why.doing(), problem::interference, path + ", also used by " + program};
   }
-  if (has_other_settings(line)) {
+  if (has_other_settings(port)) {
     return {why.doing(), problem::interference, path + ", whose settings were changed"};
   }
   return why;
@@ -45,10 +45,10 @@ error looked_into(const error& why, const transport& line) {
 
 }  // namespace
 
-error with_port_conflict(const error& why, const transport& line) noexcept {
-  if (!can_come_of_a_port_conflict(why.code()) || !line.name().starts_with('/')) return why;
+error with_port_conflict(const error& why, const transport& port) noexcept {
+  if (!can_come_of_a_port_conflict(why.code()) || !port.name().starts_with('/')) return why;
   try {
-    return looked_into(why, line);
+    return looked_into(why, port);
   } catch (const std::bad_alloc&) {
     return why;
   }

@@ -9,6 +9,6 @@ namespace g4lidar {
 
 /// `why`; or interference instead, if another process has the port open or has changed its
 /// settings, and `why` can be a result of that. Examines all processes; allocates.
-[[nodiscard]] error with_port_conflict(const error& why, const transport& line) noexcept;
+[[nodiscard]] error with_port_conflict(const error& why, const transport& port) noexcept;
 
 }  // namespace g4lidar

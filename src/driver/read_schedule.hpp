@@ -36,13 +36,14 @@ class read_schedule {
   void reset(std::uint32_t baud, std::size_t kept) noexcept {
     *this = read_schedule();
     byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
-    if (baud != 0) line_ns_ = byte_ns_;
-    longest_rest_ns_ = static_cast<std::int64_t>(std::min<std::size_t>(kept / 2, 2048)) * line_ns_;
+    if (baud != 0) serial_byte_ns_ = byte_ns_;
+    longest_rest_ns_ =
+        static_cast<std::int64_t>(std::min<std::size_t>(kept / 2, 2048)) * serial_byte_ns_;
   }
 
   /// `count` bytes were read.
   void came(std::size_t count, std::int64_t read_ns) noexcept {
-    const std::int64_t took_ns = static_cast<std::int64_t>(count) * line_ns_;
+    const std::int64_t took_ns = static_cast<std::int64_t>(count) * serial_byte_ns_;
     ahead_ns_ = std::max(ahead_ns_ + took_ns - (read_ns - read_ns_), -longest_stall_ns);
     ahead_ns_ = std::min(ahead_ns_, 10 * most_ahead_ns);
     read_ns_ = read_ns;
@@ -68,7 +69,7 @@ class read_schedule {
     const bool as_expected = readings_ == 1 && due_ns_ != 0;
     readings_ = 0;
     std::int64_t came_ns = read_ns_ - static_cast<std::int64_t>(behind) * byte_ns_;
-    forecast_.packet(found, measured_ns, came_ns, period_ns, line_ns_);
+    forecast_.packet(found, measured_ns, came_ns, period_ns, serial_byte_ns_);
     const std::size_t samples = forecast_.next_samples();
     if (samples == 0) {
       due_ns_ = 0;
@@ -127,11 +128,11 @@ class read_schedule {
     return readings_ > 0 ? worth_ns : std::clamp(due_ns_, worth_ns, read_ns_ + longest_ns);
   }
 
-  std::int64_t byte_ns_ = 0;       // that a byte takes
-  std::int64_t line_ns_ = 43'402;  // the same on the serial line behind a bridge
+  std::int64_t byte_ns_ = 0;              // that a byte takes
+  std::int64_t serial_byte_ns_ = 43'402;  // the same on the serial line behind a bridge
   std::int64_t longest_rest_ns_ = 0;
   std::int64_t read_ns_ = 0;   // of the last reading
-  std::int64_t ahead_ns_ = 0;  // how much sooner bytes came than the line could have brought them
+  std::int64_t ahead_ns_ = 0;  // how much sooner bytes came than the baud rate allows
   std::int64_t due_ns_ = 0;    // when the next packet is expected to be complete; 0: at any time
   std::size_t readings_ = 0;   // since the last packet
   revolution_forecast forecast_;

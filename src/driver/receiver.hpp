@@ -33,7 +33,7 @@ class receiver {
   }
 
   /// One read, which waits until bytes arrive or the deadline. The result is valid until the next
-  /// read. `held` bytes of a frame have arrived, and at least `missing` have not.
+  /// read. `held` bytes of a packet have arrived, and at least `missing` have not.
   [[nodiscard]] result<received> receive(transport& from, reading how, std::size_t held,
                                          std::size_t missing, std::int64_t deadline_ns) noexcept {
     auto got = read(from, how, again_ns(how, held, missing), deadline_ns);

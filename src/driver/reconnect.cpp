@@ -71,7 +71,7 @@ result<void> live_driver::hang_up() {
   setup_.clear();
   cause_ = setup_cause::caller;
   if (was_up) {
-    tell(lidar_event::kind::lost, lost_.code());
+    report(lidar_event::kind::lost, lost_.code());
     reconnection_.backoff_ns = 0;
   }
   if (!options_.reconnect || !is_known_) {

@@ -69,7 +69,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
       if (pipeline_.has_scan()) return {};
       connection_.close();
       stage_ = stage::closed;
-      tell(lidar_event::kind::lost, why_.code());
+      report(lidar_event::kind::lost, why_.code());
       return tl::unexpected(why_);
     default:
       break;
@@ -81,7 +81,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
     stage_ = stage::ended;
     return {};
   }
-  tell_long_pause();
+  report_long_pause();
   const reading how = receiver_.is_batched() && is_scanning() ? reading::batched : reading::at_once;
   const auto got =
       receiver_.receive(connection_.on(), how, pipeline_.held(), pipeline_.missing(), deadline_ns);
@@ -92,18 +92,19 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
     return {};
   }
   if (got->count == 0) return {};
-  is_pause_told_ = false;
+  is_pause_reported_ = false;
   pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
   static_cast<void>(digest());
   return {};
 }
 
 /// Once per pause.
-void replay_player::tell_long_pause() {
+void replay_player::report_long_pause() {
   constexpr std::int64_t long_pause_ns = 60'000'000'000;
-  if (source_ == nullptr || is_pause_told_ || source_->wait_for_next_ns() < long_pause_ns) return;
-  is_pause_told_ = true;
-  tell(lidar_event::kind::long_pause);
+  if (source_ == nullptr || is_pause_reported_ || source_->wait_for_next_ns() < long_pause_ns)
+    return;
+  is_pause_reported_ = true;
+  report(lidar_event::kind::long_pause);
 }
 
 /// Parses until there is a scan (true), or until nothing is left and all recorded actions before
@@ -148,8 +149,8 @@ bool replay_player::is_here(const recorded_event& what) const noexcept {
   return false;  // after the complete read
 }
 
-/// Repeats the recorded action of this place, or all actions before the next read. Where a frame
-/// was cut, the resulting events come first. Returns whether anything was done.
+/// Repeats the recorded action of this place, or all actions before the next read. Where an
+/// unfinished packet was cut, the resulting events come first. Returns whether anything was done.
 bool replay_player::play_events(bool all) {
   bool any = false;
   while (source_ != nullptr) {
@@ -182,12 +183,12 @@ void replay_player::play(const recorded_event& what) {
       delivers_ = true;  // the driver's first event corrects this
       if (!std::exchange(is_lost_, false)) return;
       ++reconnects_;
-      return tell(lidar_event::kind::reconnected);
+      return report(lidar_event::kind::reconnected);
     case recorded_event::kind::closed:
       delivers_ = false;
       if (what.reason == problem::cancelled) return;
       is_lost_ = true;
-      return tell(lidar_event::kind::lost, what.reason);
+      return report(lidar_event::kind::lost, what.reason);
     case recorded_event::kind::begun:
       delivers_ = what.delivers;
       samples_per_second_ = what.samples_per_second;

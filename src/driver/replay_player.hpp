@@ -40,7 +40,7 @@ class replay_player final : public feeder {
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
   [[nodiscard]] bool digest();
   void follow_delivery();
-  void tell_long_pause();
+  void report_long_pause();
   [[nodiscard]] bool play_events(bool all);
   [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
@@ -52,7 +52,7 @@ class replay_player final : public feeder {
   std::optional<recorded_event> event_;      // the next one, whose place has not been reached yet
   bool is_cut_ = false;                      // for this event; the rest of it follows
   bool delivers_ = true;                     // whether packets produced points in the recording
-  bool is_pause_told_ = false;               // the event long_pause was reported
+  bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
   std::uint64_t reconnects_ = 0;
 };

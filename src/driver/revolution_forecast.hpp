@@ -13,12 +13,12 @@ namespace g4lidar {
 
 /// *Single thread, never allocates.* The end follows from the angle of the last packet, the angle of the
 /// last zero packet and the speed of the motor, which the angles of a packet give. What the device and
-/// the line add is learned from the revolutions before: the least of it, because a bridge may hold
+/// the transport add is learned from the revolutions before: the least of it, because a bridge may hold
 /// bytes back.
 class revolution_forecast {
  public:
   /// A packet whose last sample was measured at `measured_ns`, and whose last byte came at `complete_ns`.
-  /// `period_ns` is that of the samples, `byte_ns` that of the bytes on the line.
+  /// `period_ns` is that of the samples, `byte_ns` that of the bytes on the serial line.
   void packet(packet_view found, std::int64_t measured_ns, std::int64_t complete_ns,
               double period_ns, std::int64_t byte_ns) noexcept {
     if (found.is_zero()) {
@@ -71,7 +71,7 @@ class revolution_forecast {
     double period_ns = 0.0;
   };
 
-  /// Full packets, one that is cut off, and the zero packet: each when it is measured and the line is
+  /// Full packets, one that is cut off, and the zero packet: each when it is measured and the serial line is
   /// free.
   [[nodiscard]] std::int64_t forecast_ns() const noexcept {
     const auto sent_ns = [&](std::size_t samples) {

@@ -56,7 +56,7 @@ class timed_decoder {
   void gone(skipped what) noexcept {
     if (what.reason != skip_reason::noise) clock_.lost(what.count);
   }
-  /// So many bytes of an unfinished frame have arrived. See sensor_clock::seen().
+  /// So many bytes of an unfinished packet have arrived. See sensor_clock::seen().
   void seen(std::size_t held, std::int64_t arrival_ns) noexcept { clock_.seen(held, arrival_ns); }
 
   /// The time from one sample to the next, as far as it is known.
@@ -75,12 +75,12 @@ class timed_decoder {
   /// Later the clock itself detects a suspended program, because packets become less and less late,
   /// but not if all packets appear to be nearly in time.
   [[nodiscard]] std::int64_t gathered_for_ns(packet_view first, std::size_t behind) const noexcept {
-    const auto line_ns = static_cast<std::int64_t>(behind) * byte_ns_;
-    if (last_packet_ns_ != 0) return line_ns > longest_batch_ns ? line_ns / 2 : line_ns;
+    const auto wire_ns = static_cast<std::int64_t>(behind) * byte_ns_;
+    if (last_packet_ns_ != 0) return wire_ns > longest_batch_ns ? wire_ns / 2 : wire_ns;
     const std::size_t count = std::min<std::size_t>(first.sample_count(), 40);
     const auto samples =
         static_cast<double>(behind * count) / static_cast<double>(packet_size(count));
-    return std::max(line_ns, static_cast<std::int64_t>(0.95 * samples * period_ns()));
+    return std::max(wire_ns, static_cast<std::int64_t>(0.95 * samples * period_ns()));
   }
 
   std::int64_t transport_delay_ns_;

@@ -156,8 +156,8 @@ void recording_reader::file_reader::take_metadata(field_reader record) {
 
 void recording_reader::file_reader::seek(std::int64_t from_ns) {
   from_ns_ = from_ns;
-  is_line_told_ = false;
-  line_ = {};
+  is_state_reported_ = false;
+  transport_ = {};
   const std::optional<std::uint64_t> offset = chunk_before(from_ns);
   chunks_ = std::make_unique<chunk_source>(file_);
   records_ = {};
@@ -216,20 +216,20 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
       is_over_ = true;
       return std::nullopt;
     }
-    const bool is_note = item->what == recorded_item::kind::note;
+    const bool is_event = item->what == recorded_item::kind::other;
     if (item->time_ns < from_ns_) {
-      if (is_note) line_.take(item->note);
+      if (is_event) transport_.take(item->other);
       continue;
     }
-    if (!std::exchange(is_line_told_, true) && line_.is_known) {
+    if (!std::exchange(is_state_reported_, true) && transport_.is_known) {
       if (!waiting_)
         waiting_ =
             item;  // otherwise this item is a gap, which does not matter for a reader that begins here
-      item->what = recorded_item::kind::note;
+      item->what = recorded_item::kind::other;
       item->data = {};
-      item->note = line_.as_note(item->time_ns);
-    } else if (is_note) {
-      line_.take(item->note);
+      item->other = transport_.as_event(item->time_ns);
+    } else if (is_event) {
+      transport_.take(item->other);
     }
     return item;
   }
@@ -267,9 +267,9 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
       last_ns_ = std::max(last_ns_, item->time_ns);
       if (!std::exchange(is_gap_, false)) return item;
       waiting_ = item;
-      item->what = recorded_item::kind::note;
+      item->what = recorded_item::kind::other;
       item->data = {};
-      item->note = {.what = recorded_event::kind::gap, .time_ns = item->time_ns};
+      item->other = {.what = recorded_event::kind::gap, .time_ns = item->time_ns};
       return item;
     }
     records_ = chunks_->next().records;
@@ -286,17 +286,17 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   const auto is = [&](topic which) { return channels_[static_cast<std::size_t>(which) - 1] == id; };
   const bool is_from_device = is(topic::from_device);
   if (is_from_device || is(topic::to_device)) {
-    const auto found = mcap::line_bytes_from(record.rest());
+    const auto found = mcap::recorded_bytes_from(record.rest());
     if (!found || !is_a_time(found->time_ns)) return std::nullopt;
     if (is_from_device && skips(sequence)) is_gap_ = true;
     const auto what =
         is_from_device ? recorded_item::kind::from_device : recorded_item::kind::to_device;
     return recorded_item{what, found->time_ns, wall_ns, found->data, {}};
   }
-  if (!is(topic::notes)) return std::nullopt;
-  const auto note = mcap::note_from(record.rest());
-  if (!note || !is_a_time(note->time_ns)) return std::nullopt;
-  return recorded_item{recorded_item::kind::note, note->time_ns, wall_ns, {}, *note};
+  if (!is(topic::events)) return std::nullopt;
+  const auto event = mcap::event_from(record.rest());
+  if (!event || !is_a_time(event->time_ns)) return std::nullopt;
+  return recorded_item{recorded_item::kind::other, event->time_ns, wall_ns, {}, *event};
 }
 
 /// Whether reads are missing before this one. Files of other programs may not count: then all are

@@ -30,7 +30,7 @@ class recording_reader::file_reader {
   [[nodiscard]] const recording_damage& damage() const noexcept;
   [[nodiscard]] std::uint64_t position() const noexcept { return chunks_->position(); }
   [[nodiscard]] std::uint64_t size() const noexcept { return chunks_->size(); }
-  [[nodiscard]] const mcap::line_state& line() const noexcept { return line_; }
+  [[nodiscard]] const mcap::transport_state& transport() const noexcept { return transport_; }
 
  private:
   file_reader(std::shared_ptr<mcap::byte_source> file, std::string_view path);
@@ -67,8 +67,8 @@ class recording_reader::file_reader {
   bool is_gap_ = false;
   bool is_over_ = false;
   std::optional<recorded_item> waiting_;  // the item behind a generated event
-  mcap::line_state line_;                 // the state after the returned items
-  bool is_line_told_ = true;              // otherwise the skipped state is returned first
+  mcap::transport_state transport_;       // the state after the returned items
+  bool is_state_reported_ = true;         // otherwise the skipped state is returned first
 };
 
 /// Opens a recording in any kind of byte source.

@@ -34,7 +34,7 @@ payload_digest payload_of(bytes records) noexcept {
     static_cast<void>(record.take(mcap::message_header_size - sizeof(std::uint16_t)));
     if (id != mcap::topic::from_device && id != mcap::topic::to_device) continue;
     const auto way = id == mcap::topic::from_device ? direction::from_device : direction::to_device;
-    if (const auto found = mcap::line_bytes_from(record.rest())) sum.add(way, found->data);
+    if (const auto found = mcap::recorded_bytes_from(record.rest())) sum.add(way, found->data);
   }
   return sum;
 }
@@ -70,17 +70,17 @@ result<void> recording_writer::file_writer::guarded(Work work) noexcept {
   if (is_closed_) return {};
   try {
     auto done = work();
-    tell(done);
+    keep_trouble(done);
     return done;
   } catch (const std::bad_alloc&) {
     result<void> failed = failure(task::writing, problem::system, path(), ENOMEM);
     lose_chunk();
-    tell(failed);
+    keep_trouble(failed);
     return failed;
   }
 }
 
-void recording_writer::file_writer::tell(const result<void>& done) noexcept {
+void recording_writer::file_writer::keep_trouble(const result<void>& done) noexcept {
   if (!done && !std::exchange(is_in_trouble_, true)) trouble_ = done.error();
 }
 
@@ -112,8 +112,8 @@ bool recording_writer::file_writer::is_due(std::int64_t time_ns) const noexcept 
   return saturating_sub(time_ns, chunk_ns_) >= ns_of(options_.chunk_time);
 }
 
-void recording_writer::file_writer::line_bytes(direction way, bytes data,
-                                               std::int64_t time_ns) noexcept {
+void recording_writer::file_writer::put_bytes(direction way, bytes data,
+                                              std::int64_t time_ns) noexcept {
   if (is_closed_) return;
   payload_.add(way, data);
   const bool is_from_device = way == direction::from_device;
@@ -124,23 +124,23 @@ void recording_writer::file_writer::line_bytes(direction way, bytes data,
     if (is_from_device) ++counts_.readings;
     put(is_from_device ? topic::from_device : topic::to_device, time_ns, piece.size(),
         [&](mcap::record_text& out) {
-          mcap::put_line_bytes(out, piece, time_ns);
+          mcap::put_recorded_bytes(out, piece, time_ns);
           chunk_payload_.add(way, piece);
           chunk_bytes_ += piece.size();
         });
   }
 }
 
-void recording_writer::file_writer::note(const recorded_event& what) noexcept {
+void recording_writer::file_writer::event(const recorded_event& what) noexcept {
   if (what.what == recorded_event::kind::sent) {
-    return line_bytes(direction::to_device, what.data, what.time_ns);
+    return put_bytes(direction::to_device, what.data, what.time_ns);
   }
   if (what.what !=
       recorded_event::kind::state) {  // each chunk begins with one, of the state before
-    put(topic::notes, what.time_ns, 0,
-        [&](mcap::record_text& out) { mcap::put_note(out, what, ahead_ns_); });
+    put(topic::events, what.time_ns, 0,
+        [&](mcap::record_text& out) { mcap::put_event(out, what, ahead_ns_); });
   }
-  line_.take(what);
+  transport_.take(what);
 }
 
 void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexcept {
@@ -179,10 +179,10 @@ void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
   chunk_ns_ = chunk_last_ns_ = time_ns;
   chunk_bytes_ = 0;
   chunk_.put_channels(options_.topic);
-  if (!line_.is_known) return;
-  chunk_.begin_message(topic::notes, sequences_[mcap::open_chunk::index_of(topic::notes)]++,
+  if (!transport_.is_known) return;
+  chunk_.begin_message(topic::events, sequences_[mcap::open_chunk::index_of(topic::events)]++,
                        saturating_add(time_ns, ahead_ns_));
-  mcap::put_note(chunk_.text(), line_.as_note(time_ns), ahead_ns_);
+  mcap::put_event(chunk_.text(), transport_.as_event(time_ns), ahead_ns_);
   chunk_.end_message();
 }
 

@@ -22,8 +22,8 @@ class recording_writer::file_writer {
  public:
   file_writer(mcap::mcap_file first, std::string_view path, const recording_options& options);
 
-  void line_bytes(direction way, bytes data, std::int64_t time_ns) noexcept;
-  void note(const recorded_event& what) noexcept;
+  void put_bytes(direction way, bytes data, std::int64_t time_ns) noexcept;
+  void event(const recorded_event& what) noexcept;
   void scan(const g4lidar::scan& revolution) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
@@ -50,7 +50,7 @@ class recording_writer::file_writer {
   [[nodiscard]] bool is_due(std::int64_t time_ns) const noexcept;
   [[nodiscard]] std::string next_path() const;
   void lose_chunk() noexcept;
-  void tell(const result<void>& done) noexcept;
+  void keep_trouble(const result<void>& done) noexcept;
 
   recording_options options_;
   std::string first_path_;
@@ -61,7 +61,7 @@ class recording_writer::file_writer {
   std::vector<float> ranges_;
   bool is_closed_ = false;
 
-  mcap::line_state line_;
+  mcap::transport_state transport_;
   std::optional<recorded_device> device_;
   std::array<std::uint32_t, mcap::topic_count> sequences_{};
   std::int64_t ahead_ns_ = 0;  // of the wall clock

@@ -12,26 +12,26 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::array<std::string_view, 8> note_names{"opened", "closed", "sent", "begun",
-                                                     "held",   "cut",    "gap",  "state"};
+constexpr std::array<std::string_view, 8> event_names{"opened", "closed", "sent", "begun",
+                                                      "held",   "cut",    "gap",  "state"};
 
 }  // namespace
 
 std::string_view name_of(recorded_event::kind what) noexcept {
-  return note_names[static_cast<std::size_t>(what)];
+  return event_names[static_cast<std::size_t>(what)];
 }
 
 namespace mcap {
 namespace {
 
-constexpr std::string_view line_bytes_schema =
+constexpr std::string_view recorded_bytes_schema =
     R"(# Bytes that were read from, or sent to, a lidar together.
 int64 monotonic_ns  # when, by the steady clock of the computer; the wall clock is the message's time
 uint8[] data
 )";
 
-constexpr std::string_view line_note_schema =
-    R"(# What happened on the line to a lidar beside the bytes.
+constexpr std::string_view recorded_event_schema =
+    R"(# What happened on the transport to a lidar beside the bytes.
 int64 monotonic_ns
 int64 wall_ahead_ns  # wall clock - monotonic clock
 uint32 baud
@@ -41,13 +41,13 @@ uint32 events    # of the parser since the last reading
 bool delivers    # whether packets make points from here on
 string what      # opened, closed, begun, held, cut, gap, state
 string reason
-string line
+string name
 )";
 
 constexpr std::array<topic_words, topic_count> topics{{
     {topic::from_device, "/g4lidar/from_device", 1},
     {topic::to_device, "/g4lidar/to_device", 1},
-    {topic::notes, "/g4lidar/notes", 2},
+    {topic::events, "/g4lidar/events", 2},
     {topic::scan, "/scan", 3},
 }};
 
@@ -105,21 +105,21 @@ void take_firmware(device_information& who, std::string_view text) noexcept {
 
 std::span<const schema_words> all_schemas() noexcept {
   static const std::array<schema_words, 3> schemas{{
-      {1, "g4lidar_msgs/msg/LineBytes", line_bytes_schema},
-      {2, "g4lidar_msgs/msg/LineNote", line_note_schema},
+      {1, "g4lidar_msgs/msg/RecordedBytes", recorded_bytes_schema},
+      {2, "g4lidar_msgs/msg/RecordedEvent", recorded_event_schema},
       {3, laser_scan_schema().name, laser_scan_schema().text},
   }};
   return schemas;
 }
 std::span<const topic_words> all_topics() noexcept { return topics; }
 
-void put_line_bytes(record_text& out, bytes data, std::int64_t time_ns) {
+void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns) {
   cdr_writer message(out.memory());
   message.put(time_ns);
   message.put(data);
 }
 
-void put_note(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns) {
+void put_event(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns) {
   cdr_writer message(out.memory());
   message.put(what.time_ns);
   message.put(wall_ahead_ns);
@@ -130,41 +130,42 @@ void put_note(record_text& out, const recorded_event& what, std::int64_t wall_ah
   message.put(std::uint8_t{what.delivers});
   message.put(name_of(what.what));
   message.put(name_of(what.reason));
-  message.put(what.line.substr(0, 255));
+  message.put(what.name.substr(0, 255));
 }
 
-std::optional<line_bytes> line_bytes_from(bytes message) noexcept {
-  if (message.size() < line_bytes_header_size || message[1] != 1) return std::nullopt;
+std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept {
+  if (message.size() < recorded_bytes_header_size || message[1] != 1) return std::nullopt;
   const std::uint32_t count = load_u32(message, 12);
-  if (count > message.size() - line_bytes_header_size) return std::nullopt;
-  return line_bytes{static_cast<std::int64_t>(load_u64(message, 4)),
-                    message.subspan(line_bytes_header_size, count)};
+  if (count > message.size() - recorded_bytes_header_size) return std::nullopt;
+  return recorded_bytes{static_cast<std::int64_t>(load_u64(message, 4)),
+                        message.subspan(recorded_bytes_header_size, count)};
 }
 
 /// A G4 has 9000; much larger values are never written by this library, and no clock could use
 /// them.
 constexpr std::uint32_t most_samples_per_second = 1'000'000;
 
-std::optional<recorded_event> note_from(bytes message) noexcept {
+std::optional<recorded_event> event_from(bytes message) noexcept {
   if (message.size() < 4 || message[1] != 1) return std::nullopt;
   field_reader fields(message.subspan(4));
-  recorded_event note{};
-  note.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
+  recorded_event event{};
+  event.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
   static_cast<void>(fields.take<std::uint64_t>());  // the wall clock is that of the message
-  note.baud = fields.take<std::uint32_t>();
-  note.samples_per_second = fields.take<std::uint32_t>();
-  note.unparsed = fields.take<std::uint32_t>();
-  note.events = fields.take<std::uint32_t>();
-  note.delivers = fields.take<std::uint8_t>() != 0;
+  event.baud = fields.take<std::uint32_t>();
+  event.samples_per_second = fields.take<std::uint32_t>();
+  event.unparsed = fields.take<std::uint32_t>();
+  event.events = fields.take<std::uint32_t>();
+  event.delivers = fields.take<std::uint8_t>() != 0;
   const std::string_view what = fields.take_cdr_text();
-  note.reason = problem_named(fields.take_cdr_text()).value_or(problem::system);
-  note.line = fields.take_cdr_text();
-  const auto* const named = std::ranges::find(note_names, what);
-  if (!fields.is_good() || named == note_names.end()) return std::nullopt;
-  note.what = static_cast<recorded_event::kind>(named - note_names.begin());
-  if (note.samples_per_second > most_samples_per_second) return std::nullopt;
-  if (note.what == recorded_event::kind::begun && note.samples_per_second == 0) return std::nullopt;
-  return note.what == recorded_event::kind::sent ? std::nullopt : std::optional(note);
+  event.reason = problem_named(fields.take_cdr_text()).value_or(problem::system);
+  event.name = fields.take_cdr_text();
+  const auto* const named = std::ranges::find(event_names, what);
+  if (!fields.is_good() || named == event_names.end()) return std::nullopt;
+  event.what = static_cast<recorded_event::kind>(named - event_names.begin());
+  if (event.samples_per_second > most_samples_per_second) return std::nullopt;
+  if (event.what == recorded_event::kind::begun && event.samples_per_second == 0)
+    return std::nullopt;
+  return event.what == recorded_event::kind::sent ? std::nullopt : std::optional(event);
 }
 
 void put_map(record_text& out, const word_map& words) {
@@ -227,15 +228,15 @@ recorded_digest digest_of(field_reader& map, std::int64_t& last_ns) {
   return found;
 }
 
-// ---- line_state --------------------------------------------------------------------------------
+// ---- transport_state --------------------------------------------------------------------------------
 
-void line_state::take(const recorded_event& what) noexcept {
+void transport_state::take(const recorded_event& what) noexcept {
   using enum recorded_event::kind;
   is_known = true;
   if (what.what == opened || what.what == state) {
     baud = what.baud;
-    name_size = static_cast<std::uint8_t>(std::min(what.line.size(), name.size()));
-    std::copy_n(what.line.begin(), name_size, name.begin());
+    name_size = static_cast<std::uint8_t>(std::min(what.name.size(), name.size()));
+    std::copy_n(what.name.begin(), name_size, name.begin());
   }
   switch (what.what) {
     case opened:
@@ -263,14 +264,14 @@ void line_state::take(const recorded_event& what) noexcept {
   }
 }
 
-recorded_event line_state::as_note(std::int64_t time_ns) const noexcept {
-  recorded_event note{.what = recorded_event::kind::state, .time_ns = time_ns};
-  note.reason = is_open ? problem::cancelled : problem::gone;
-  note.delivers = delivers;
-  note.baud = baud;
-  note.samples_per_second = samples_per_second;
-  note.line = line();
-  return note;
+recorded_event transport_state::as_event(std::int64_t time_ns) const noexcept {
+  recorded_event event{.what = recorded_event::kind::state, .time_ns = time_ns};
+  event.reason = is_open ? problem::cancelled : problem::gone;
+  event.delivers = delivers;
+  event.baud = baud;
+  event.samples_per_second = samples_per_second;
+  event.name = transport_name();
+  return event;
 }
 
 }  // namespace mcap

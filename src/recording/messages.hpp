@@ -21,7 +21,7 @@
 namespace g4lidar::mcap {
 
 /// The channels of a recording, with their numbers in a file.
-enum class topic : std::uint16_t { from_device = 1, to_device = 2, notes = 3, scan = 4 };
+enum class topic : std::uint16_t { from_device = 1, to_device = 2, events = 3, scan = 4 };
 inline constexpr std::size_t topic_count = 4;
 
 struct schema_words {
@@ -38,19 +38,19 @@ struct topic_words {
 [[nodiscard]] std::span<const topic_words> all_topics() noexcept;
 
 /// The number of bytes before the recorded bytes in a message.
-inline constexpr std::size_t line_bytes_header_size = 4 + 8 + 4;
+inline constexpr std::size_t recorded_bytes_header_size = 4 + 8 + 4;
 
-void put_line_bytes(record_text& out, bytes data, std::int64_t time_ns);
-void put_note(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns);
+void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns);
+void put_event(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns);
 
 /// A message of bytes: their time, and the bytes, a view of `message`.
-struct line_bytes {
+struct recorded_bytes {
   std::int64_t time_ns;
   bytes data;
 };
-[[nodiscard]] std::optional<line_bytes> line_bytes_from(bytes message) noexcept;
+[[nodiscard]] std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept;
 /// A view of `message`; nothing if it is invalid, or of an unknown kind.
-[[nodiscard]] std::optional<recorded_event> note_from(bytes message) noexcept;
+[[nodiscard]] std::optional<recorded_event> event_from(bytes message) noexcept;
 
 /// A map of strings to strings, as in metadata.
 using word_map = std::vector<std::pair<std::string, std::string>>;
@@ -69,7 +69,7 @@ inline constexpr std::string_view points_version = "2";
 [[nodiscard]] recorded_digest digest_of(field_reader& map, std::int64_t& last_ns);
 
 /// The state of a transport, from its recorded events.
-struct line_state {
+struct transport_state {
   bool is_known = false;  ///< Whether there was an event.
   bool is_open = false;
   bool delivers = true;
@@ -79,8 +79,10 @@ struct line_state {
   std::uint8_t name_size = 0;
 
   void take(const recorded_event& what) noexcept;
-  [[nodiscard]] recorded_event as_note(std::int64_t time_ns) const noexcept;
-  [[nodiscard]] std::string_view line() const noexcept { return {name.data(), name_size}; }
+  [[nodiscard]] recorded_event as_event(std::int64_t time_ns) const noexcept;
+  [[nodiscard]] std::string_view transport_name() const noexcept {
+    return {name.data(), name_size};
+  }
 };
 
 }  // namespace g4lidar::mcap

@@ -31,9 +31,9 @@ constexpr std::int64_t file_begin_ns = second_ns;
 constexpr std::size_t longest_piece = 16'384;
 
 /// The common part of both kinds: a descriptor, and no device that answers.
-class byte_line : public transport {
+class byte_transport : public transport {
  public:
-  byte_line(owned_fd fd, std::string name) : fd_(std::move(fd)), name_(std::move(name)) {}
+  byte_transport(owned_fd fd, std::string name) : fd_(std::move(fd)), name_(std::move(name)) {}
 
   [[nodiscard]] result<void> write(bytes, std::int64_t) noexcept override { return {}; }
   void wake() noexcept override { woken_.store(true); }
@@ -62,9 +62,9 @@ class byte_line : public transport {
 };
 
 /// A pipe: bytes arrive when they can be read.
-class piped_line final : public byte_line {
+class pipe_transport final : public byte_transport {
  public:
-  using byte_line::byte_line;
+  using byte_transport::byte_transport;
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
@@ -99,11 +99,13 @@ class piped_line final : public byte_line {
 };
 
 /// A file: its times are counted from samples.
-class counted_line final : public byte_line {
+class counted_transport final : public byte_transport {
  public:
-  counted_line(owned_fd fd, std::string name, std::uint32_t rate_hz,
-               std::shared_ptr<std::int64_t> now_ns)
-      : byte_line(std::move(fd), std::move(name)), rate_hz_(rate_hz), now_ns_(std::move(now_ns)) {}
+  counted_transport(owned_fd fd, std::string name, std::uint32_t rate_hz,
+                    std::shared_ptr<std::int64_t> now_ns)
+      : byte_transport(std::move(fd), std::move(name)),
+        rate_hz_(rate_hz),
+        now_ns_(std::move(now_ns)) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out, std::int64_t) noexcept override {
     if (is_woken()) return failure(task::reading, problem::cancelled, name());
@@ -169,13 +171,14 @@ class counted_line final : public byte_line {
 /// this.
 class byte_connector final : public connector {
  public:
-  byte_connector(std::unique_ptr<byte_line> line, std::shared_ptr<const std::int64_t> counted_ns,
+  byte_connector(std::unique_ptr<byte_transport> port,
+                 std::shared_ptr<const std::int64_t> counted_ns,
                  std::optional<std::int64_t> wall_ahead_ns)
-      : line_(std::move(line)), counted_ns_(std::move(counted_ns)), wall_ahead_ns_(wall_ahead_ns) {}
+      : port_(std::move(port)), counted_ns_(std::move(counted_ns)), wall_ahead_ns_(wall_ahead_ns) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    if (line_ == nullptr) return failure(task::opening, problem::end_of_input);
-    return std::move(line_);
+    if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
+    return std::move(port_);
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override {
     return counted_ns_ != nullptr ? *counted_ns_ : steady_now_ns();
@@ -188,7 +191,7 @@ class byte_connector final : public connector {
   }
 
  private:
-  std::unique_ptr<byte_line> line_;
+  std::unique_ptr<byte_transport> port_;
   std::shared_ptr<const std::int64_t> counted_ns_;
   std::optional<std::int64_t> wall_ahead_ns_;
 };
@@ -208,17 +211,17 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
     return failure(task::opening, problem::system, name, EISDIR);
   }
   std::string title = is_standard ? "standard input" : name;
-  std::unique_ptr<byte_line> line;
+  std::unique_ptr<byte_transport> port;
   if (is_known && S_ISREG(file.st_mode)) {
     const std::int64_t wall_ns = file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec;
     auto now_ns = std::make_shared<std::int64_t>(file_begin_ns);
-    line =
-        std::make_unique<counted_line>(std::move(fd), std::move(title), samples_per_second, now_ns);
-    return std::make_unique<byte_connector>(std::move(line), std::move(now_ns),
+    port = std::make_unique<counted_transport>(std::move(fd), std::move(title), samples_per_second,
+                                               now_ns);
+    return std::make_unique<byte_connector>(std::move(port), std::move(now_ns),
                                             wall_ns - file_begin_ns);
   }
-  line = std::make_unique<piped_line>(std::move(fd), std::move(title));
-  return std::make_unique<byte_connector>(std::move(line), nullptr, std::nullopt);
+  port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
+  return std::make_unique<byte_connector>(std::move(port), nullptr, std::nullopt);
 }
 
 }  // namespace g4lidar

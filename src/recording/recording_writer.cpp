@@ -84,13 +84,13 @@ result<recording_writer> recording_writer::create(std::string_view path,
 }
 
 void recording_writer::from_device(bytes data, std::int64_t time_ns) noexcept {
-  if (made_) made_->line_bytes(direction::from_device, data, time_ns);
+  if (made_) made_->put_bytes(direction::from_device, data, time_ns);
 }
 void recording_writer::to_device(bytes data, std::int64_t time_ns) noexcept {
-  if (made_) made_->line_bytes(direction::to_device, data, time_ns);
+  if (made_) made_->put_bytes(direction::to_device, data, time_ns);
 }
-void recording_writer::note(const recorded_event& what) noexcept {
-  if (made_) made_->note(what);
+void recording_writer::event(const recorded_event& what) noexcept {
+  if (made_) made_->event(what);
 }
 void recording_writer::scan(const g4lidar::scan& revolution) noexcept {
   if (made_) made_->scan(revolution);

@@ -92,7 +92,7 @@ class player final : public recorded_event_source {
     }
     follow_wall_clock(item);
     is_shown_ = true;
-    recorded_event what = item.note;
+    recorded_event what = item.other;
     what.time_ns = item.time_ns;
     if (item.what == recorded_item::kind::to_device) {
       what.what = recorded_event::kind::sent;
@@ -204,8 +204,8 @@ class player final : public recorded_event_source {
     has_read_ = false;
     const std::int64_t begin = begin_ns();
     moved_ns_ = saturating_sub(saturating_add(last_ns_, loop_pause_ns), begin);
-    recorded_item seam{recorded_item::kind::note, begin, begin, {}, {}};
-    seam.note.what = recorded_event::kind::gap;
+    recorded_item seam{recorded_item::kind::other, begin, begin, {}, {}};
+    seam.other.what = recorded_event::kind::gap;
     return seam;
   }
 
@@ -228,9 +228,9 @@ class player final : public recorded_event_source {
   error why_over_;
 };
 
-class replay_line final : public transport {
+class replay_transport final : public transport {
  public:
-  explicit replay_line(std::shared_ptr<player> of) noexcept : of_(std::move(of)) {}
+  explicit replay_transport(std::shared_ptr<player> of) noexcept : of_(std::move(of)) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
@@ -283,7 +283,7 @@ class replay_connector final : public connector {
     if (std::exchange(is_connected_, true)) {
       return failure(task::reading, problem::end_of_input, of_->path());
     }
-    auto* const made = new (std::nothrow) replay_line(of_);
+    auto* const made = new (std::nothrow) replay_transport(of_);
     if (made == nullptr) return failure(task::opening, problem::system, of_->path(), ENOMEM);
     return std::unique_ptr<transport>(made);
   }
@@ -306,8 +306,8 @@ class replay_connector final : public connector {
 
 }  // namespace
 
-const recording_reader* replay::reader_of(const connector& line) noexcept {
-  const auto* const played = dynamic_cast<const replay_connector*>(&line);
+const recording_reader* replay::reader_of(const connector& from) noexcept {
+  const auto* const played = dynamic_cast<const replay_connector*>(&from);
   return played == nullptr ? nullptr : &played->reader();
 }
 

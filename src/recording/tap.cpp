@@ -14,8 +14,8 @@ namespace {
 template <class Writer>
 class recorded_transport final : public forwarding_transport {
  public:
-  recorded_transport(std::unique_ptr<transport> line, connector& from, Writer& into) noexcept
-      : forwarding_transport(std::move(line)), from_(&from), into_(&into) {
+  recorded_transport(std::unique_ptr<transport> port, connector& from, Writer& into) noexcept
+      : forwarding_transport(std::move(port)), from_(&from), into_(&into) {
     follow_wall_clock();
     if (const auto* const played = from.recorded_events()) {
       into.device(played->device());
@@ -23,14 +23,14 @@ class recorded_transport final : public forwarding_transport {
     }
     recorded_event opened{.what = recorded_event::kind::opened, .time_ns = now_ns()};
     opened.baud = baud();
-    opened.line = name();
-    into.note(opened);
+    opened.name = name();
+    into.event(opened);
   }
   recorded_transport(const recorded_transport&) = delete;
   recorded_transport& operator=(const recorded_transport&) = delete;
   ~recorded_transport() override {
     if (from_->recorded_events() != nullptr) return;  // a recording reports its own events
-    into_->note({.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
+    into_->event({.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
   }
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
@@ -40,7 +40,7 @@ class recorded_transport final : public forwarding_transport {
       remember(got.error());
     } else if (got->count > 0) {
       follow_wall_clock();
-      into_->line_bytes(direction::from_device, bytes(out).first(got->count), got->arrival_ns);
+      into_->put_bytes(direction::from_device, bytes(out).first(got->count), got->arrival_ns);
     }
     return got;
   }
@@ -50,7 +50,7 @@ class recorded_transport final : public forwarding_transport {
     if (!sent) {
       remember(sent.error());
     } else if (from_->answers()) {
-      into_->line_bytes(direction::to_device, data, begun_ns);
+      into_->put_bytes(direction::to_device, data, begun_ns);
     }
     return sent;
   }
@@ -79,14 +79,14 @@ class recorded_connector final : public forwarding_connector,
                                  public recorded_event_sink,
                                  public recorded_event_source {
  public:
-  recorded_connector(std::unique_ptr<connector> lines, Writer& into) noexcept
-      : forwarding_connector(std::move(lines)), into_(&into) {}
+  recorded_connector(std::unique_ptr<connector> from, Writer& into) noexcept
+      : forwarding_connector(std::move(from)), into_(&into) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    auto line = inner().connect();
-    if (!line) return line;
+    auto port = inner().connect();
+    if (!port) return port;
     auto* const made =
-        new (std::nothrow) recorded_transport<Writer>(std::move(*line), inner(), *into_);
+        new (std::nothrow) recorded_transport<Writer>(std::move(*port), inner(), *into_);
     if (made == nullptr) return failure(task::opening, problem::system, {}, ENOMEM);
     return std::unique_ptr<transport>(made);
   }
@@ -96,16 +96,16 @@ class recorded_connector final : public forwarding_connector,
     return played_ == nullptr ? nullptr : this;
   }
 
-  void note(const recorded_event& what) noexcept override {
-    if (recorded_event_sink* const other = inner().recorder()) other->note(what);
-    into_->note(what);
+  void event(const recorded_event& what) noexcept override {
+    if (recorded_event_sink* const other = inner().recorder()) other->event(what);
+    into_->event(what);
   }
 
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
     const auto what = played_->next_event();
     if (what) {
       if (const auto ahead_ns = wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
-      into_->note(*what);
+      into_->event(*what);
     }
     return what;
   }
@@ -126,11 +126,11 @@ class recorded_connector final : public forwarding_connector,
 
 }  // namespace
 
-result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> line,
+result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
                                             recording_writer& into) {
   using writer = recording_writer::file_writer;
-  if (!into.made_) return line;  // a moved-from writer records nothing
-  return std::make_unique<recorded_connector<writer>>(std::move(line), *into.made_);
+  if (!into.made_) return from;  // a moved-from writer records nothing
+  return std::make_unique<recorded_connector<writer>>(std::move(from), *into.made_);
 }
 
 }  // namespace g4lidar

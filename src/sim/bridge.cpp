@@ -15,7 +15,7 @@ bridge::bridge(const device_options& options) noexcept
       range_ns_(options.batch_max_ns - options.batch_min_ns),
       random_(stream_for(options.scanner.seed, purpose::batches)) {}
 
-std::int64_t bridge::wait_ns(fault_line& faults) noexcept {
+std::int64_t bridge::wait_ns(fault_injector& faults) noexcept {
   // Always drawn, so that a fault does not change later random numbers.
   const std::uint64_t drawn = random_.next() >> 32;
   if (const fault* batch = faults.find(fault_kind::batch)) {
@@ -25,12 +25,12 @@ std::int64_t bridge::wait_ns(fault_line& faults) noexcept {
   return min_ns_ + static_cast<std::int64_t>(drawn * static_cast<std::uint64_t>(range_ns_) >> 32);
 }
 
-bool bridge::take(std::uint8_t byte, fault_line& faults, std::int64_t now_ns) noexcept {
+bool bridge::take(std::uint8_t byte, fault_injector& faults, std::int64_t now_ns) noexcept {
   if (next_ns_ == forever_ns) next_ns_ = now_ns + wait_ns(faults);
   return waiting_.push(byte);
 }
 
-void bridge::flush(const fault_line& faults) noexcept {
+void bridge::flush(const fault_injector& faults) noexcept {
   if (faults.find(fault_kind::stall) != nullptr) {
     next_ns_ = faults.end_of(fault_kind::stall);
     if (next_ns_ != forever_ns) return;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "fault_line.hpp"
+#include "fault_injector.hpp"
 #include "g4lidar/detail/sim/random.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "ring.hpp"
@@ -18,11 +18,11 @@ class bridge {
   explicit bridge(const device_options& options) noexcept;
 
   /// Adds a byte from the connection; false if it is lost because the buffer is full.
-  bool take(std::uint8_t byte, fault_line& faults, std::int64_t now_ns) noexcept;
+  bool take(std::uint8_t byte, fault_injector& faults, std::int64_t now_ns) noexcept;
   /// When the waiting bytes reach the host.
   [[nodiscard]] std::int64_t next_ns() const noexcept { return next_ns_; }
   /// The time has come; during a stall the bytes continue to wait.
-  void flush(const fault_line& faults) noexcept;
+  void flush(const fault_injector& faults) noexcept;
   /// Unplugged.
   void reset() noexcept;
 
@@ -34,7 +34,7 @@ class bridge {
   [[nodiscard]] std::uint64_t overflowed() const noexcept { return overflowed_; }
 
  private:
-  [[nodiscard]] std::int64_t wait_ns(fault_line& faults) noexcept;
+  [[nodiscard]] std::int64_t wait_ns(fault_injector& faults) noexcept;
 
   std::int64_t min_ns_;
   std::int64_t range_ns_;

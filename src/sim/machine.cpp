@@ -172,7 +172,7 @@ void device::machine::power_on(bool keep_settings) noexcept {
 void device::machine::booted() noexcept {
   booted_ns_ = forever_ns;
   state_ = state::idle;
-  if (options_.boot_text) wire_.say(text_bytes(boot_words), now_ns_);
+  if (options_.boot_text) wire_.send(text_bytes(boot_words), now_ns_);
   if (options_.boot_information) send(answer_with(options_.info));
   keep_motor();
 }

@@ -10,7 +10,7 @@
 #include "bridge.hpp"
 #include "command_log.hpp"
 #include "command_receiver.hpp"
-#include "fault_line.hpp"
+#include "fault_injector.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "motor.hpp"
 #include "sampler.hpp"
@@ -106,7 +106,7 @@ class G4LIDAR_HIDDEN device::machine {
   void byte_sent() noexcept;
 
   device_options options_;
-  fault_line faults_;
+  fault_injector faults_;
   command_receiver from_host_;
   answer_queue answers_;
   sampler sampler_;

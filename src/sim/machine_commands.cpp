@@ -139,7 +139,7 @@ void device::machine::forget_header() noexcept {
 
 void device::machine::send(const answer_bytes& what) noexcept {
   if (!is_scanning() || options_.while_scanning == disturbance::between) {
-    return wire_.say(what.view(), now_ns_);
+    return wire_.send(what.view(), now_ns_);
   }
   if (options_.while_scanning == disturbance::drops) wire_.cut_front();
   wire_.interject(what, now_ns_);

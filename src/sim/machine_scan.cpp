@@ -53,7 +53,7 @@ void device::machine::packet_measured() noexcept {
     packet->size = static_cast<std::uint8_t>(packet->begin + stays);
     packet->damaged = true;
   }
-  wire_.say(*packet, now_ns_);
+  wire_.send(*packet, now_ns_);
   measure();
 }
 

@@ -30,13 +30,13 @@ void transmission::assign(const sent_packet& sent, std::optional<std::uint8_t> s
   std::copy(sent.samples.begin(), sent.samples.end(), truths.begin());
 }
 
-void wire::say(bytes content, std::int64_t now_ns) noexcept {
+void wire::send(bytes content, std::int64_t now_ns) noexcept {
   if (queue_.full()) return;
   queue_.push().assign(content);
   if (!busy_) begin(now_ns);
 }
 
-void wire::say(const transmission& what, std::int64_t now_ns) noexcept {
+void wire::send(const transmission& what, std::int64_t now_ns) noexcept {
   if (queue_.full()) return;
   transmission& to = queue_.push();
   to.data = what.data;

@@ -38,8 +38,8 @@ class wire {
   explicit wire(std::uint32_t baud) noexcept : baud_(baud) {}
 
   /// To be sent after everything else.
-  void say(bytes content, std::int64_t now_ns) noexcept;
-  void say(const transmission& what, std::int64_t now_ns) noexcept;
+  void send(bytes content, std::int64_t now_ns) noexcept;
+  void send(const transmission& what, std::int64_t now_ns) noexcept;
   /// To be sent immediately, within the current output.
   void interject(const answer_bytes& what, std::int64_t now_ns) noexcept;
   /// Discards output that has not begun; with `at_once`, also the rest of the current output.

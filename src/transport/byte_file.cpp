@@ -18,10 +18,10 @@ namespace {
 /// The interval of bursts: a USB bridge delivers bytes in such bursts.
 constexpr std::int64_t burst_ns = 1'000'000;
 
-class file_line final : public transport {
+class file_transport final : public transport {
  public:
-  file_line(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits, std::string name,
-            std::uint32_t bytes_per_second) noexcept
+  file_transport(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
+                 std::string name, std::uint32_t bytes_per_second) noexcept
       : calls_(&calls),
         fd_(std::move(fd)),
         waker_(std::move(waits)),
@@ -108,9 +108,9 @@ class file_line final : public transport {
 
 }  // namespace
 
-result<std::unique_ptr<transport>> open_file_line(std::string_view path,
-                                                  const byte_file_options& options,
-                                                  const system_calls& calls) {
+result<std::unique_ptr<transport>> open_file_transport(std::string_view path,
+                                                       const byte_file_options& options,
+                                                       const system_calls& calls) {
   std::string name(path);
   constexpr int flags = O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;  // it may be a pipe
   owned_fd fd(calls, uninterrupted([&] { return calls.open(name.c_str(), flags); }));
@@ -124,13 +124,13 @@ result<std::unique_ptr<transport>> open_file_line(std::string_view path,
   }
   auto waits = std::make_unique<waker>(calls);
   if (!waits->is_open()) return failure(task::opening, problem::system, "eventfd", errno);
-  return std::make_unique<file_line>(calls, std::move(fd), std::move(waits), std::move(name),
-                                     options.bytes_per_second);
+  return std::make_unique<file_transport>(calls, std::move(fd), std::move(waits), std::move(name),
+                                          options.bytes_per_second);
 }
 
 result<std::unique_ptr<transport>> byte_file::open(std::string_view path,
                                                    const byte_file_options& options) {
-  return open_file_line(path, options, real_system_calls());
+  return open_file_transport(path, options, real_system_calls());
 }
 
 }  // namespace g4lidar

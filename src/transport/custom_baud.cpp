@@ -25,20 +25,20 @@ bool succeeds(Call call) noexcept {
 }  // namespace
 
 bool set_custom_baud(ioctl_call ioctl, int fd, std::uint32_t baud) noexcept {
-  termios2 line{};
-  if (!succeeds([&] { return ioctl(fd, TCGETS2, &line); })) return false;
+  termios2 settings{};
+  if (!succeeds([&] { return ioctl(fd, TCGETS2, &settings); })) return false;
   constexpr tcflag_t both_rates = CBAUD | (CBAUD << IBSHIFT);
-  line.c_cflag =
-      (line.c_cflag & ~both_rates) | BOTHER;  // no separate input rate: the same as the output
-  line.c_ispeed = baud;
-  line.c_ospeed = baud;
-  return succeeds([&] { return ioctl(fd, TCSETS2, &line); });
+  settings.c_cflag =
+      (settings.c_cflag & ~both_rates) | BOTHER;  // no separate input rate: the same as the output
+  settings.c_ispeed = baud;
+  settings.c_ospeed = baud;
+  return succeeds([&] { return ioctl(fd, TCSETS2, &settings); });
 }
 
 std::uint32_t custom_baud(ioctl_call ioctl, int fd) noexcept {
-  termios2 line{};
-  if (!succeeds([&] { return ioctl(fd, TCGETS2, &line); })) return 0;
-  return line.c_ospeed;
+  termios2 settings{};
+  if (!succeeds([&] { return ioctl(fd, TCGETS2, &settings); })) return 0;
+  return settings.c_ospeed;
 }
 
 #else

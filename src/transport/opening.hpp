@@ -12,12 +12,10 @@
 
 namespace g4lidar {
 
-[[nodiscard]] result<std::unique_ptr<transport>> open_serial_line(std::string_view path,
-                                                                  const serial_options& options,
-                                                                  const system_calls& calls);
-[[nodiscard]] result<std::unique_ptr<transport>> open_file_line(std::string_view path,
-                                                                const byte_file_options& options,
-                                                                const system_calls& calls);
+[[nodiscard]] result<std::unique_ptr<transport>> open_serial_transport(
+    std::string_view path, const serial_options& options, const system_calls& calls);
+[[nodiscard]] result<std::unique_ptr<transport>> open_file_transport(
+    std::string_view path, const byte_file_options& options, const system_calls& calls);
 [[nodiscard]] result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                                  const tcp_options& options,
                                                                  const system_calls& calls);

@@ -111,14 +111,14 @@ result<owned_fd> open_path(const std::string& path, const system_calls& calls) {
   return fd;
 }
 
-// ---- serial_line -------------------------------------------------------------------------------
+// ---- serial_transport -------------------------------------------------------------------------------
 
 /// An open serial port, and the settings that are restored when it is closed.
-class serial_line final : public fd_port {
+class serial_transport final : public fd_port {
  public:
-  serial_line(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
-              std::string path, std::uint32_t baud) noexcept;
-  ~serial_line() override;
+  serial_transport(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
+                   std::string path, std::uint32_t baud) noexcept;
+  ~serial_transport() override;
 
   // In this order, each once. The destructor reverts incomplete steps.
   [[nodiscard]] result<void>
@@ -147,19 +147,20 @@ class serial_line final : public fd_port {
   bool is_hastened_ = false;
 };
 
-serial_line::serial_line(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
-                         std::string path, std::uint32_t baud) noexcept
+serial_transport::serial_transport(const system_calls& calls, owned_fd fd,
+                                   std::unique_ptr<waker> waits, std::string path,
+                                   std::uint32_t baud) noexcept
     : fd_port(calls, std::move(fd), std::move(waits), std::move(path), baud, problem::gone) {}
 
-serial_line::~serial_line() {
+serial_transport::~serial_transport() {
   if (!is_gone()) restore();
 }
 
-int serial_line::control(unsigned long request, void* argument) const noexcept {
+int serial_transport::control(unsigned long request, void* argument) const noexcept {
   return uninterrupted([&] { return calls().ioctl(fd(), request, argument); });
 }
 
-tl::unexpected<error> serial_line::refused(int system_errno) const noexcept {
+tl::unexpected<error> serial_transport::refused(int system_errno) const noexcept {
   switch (system_errno) {
     case EIO:
     case ENXIO:
@@ -172,7 +173,7 @@ tl::unexpected<error> serial_line::refused(int system_errno) const noexcept {
   }
 }
 
-result<void> serial_line::look() noexcept {
+result<void> serial_transport::look() noexcept {
   if (uninterrupted([&] { return calls().tcgetattr(fd(), &found_); }) != 0) {
     return refused(errno == EINVAL ? ENOTTY : errno);  // some devices report it this way
   }
@@ -180,7 +181,7 @@ result<void> serial_line::look() noexcept {
   return {};
 }
 
-tl::unexpected<error> serial_line::held() const {
+tl::unexpected<error> serial_transport::held() const {
   const std::string path(name());
   const std::string holder = port_holder(path);
   return failure(task::opening, problem::busy,
@@ -189,7 +190,7 @@ tl::unexpected<error> serial_line::held() const {
 
 // flock() is the guarantee, because the system releases it however its holder ends. TIOCEXCL also
 // excludes programs that do not use locks.
-result<void> serial_line::hold() {
+result<void> serial_transport::hold() {
   if (uninterrupted([&] { return calls().flock(fd(), LOCK_EX | LOCK_NB); }) != 0) {
     if (errno == EWOULDBLOCK) return held();
     return failure(task::opening, problem::system, name(), errno);
@@ -202,11 +203,11 @@ result<void> serial_line::hold() {
   return {};
 }
 
-bool serial_line::set(int when, const termios& wanted) const noexcept {
+bool serial_transport::set(int when, const termios& wanted) const noexcept {
   return uninterrupted([&] { return calls().tcsetattr(fd(), when, &wanted); }) == 0;
 }
 
-tl::unexpected<error> serial_line::refused_baud(int system_errno) const noexcept {
+tl::unexpected<error> serial_transport::refused_baud(int system_errno) const noexcept {
   std::array<char, 95> subject{};
   const int size = std::snprintf(subject.data(), subject.size(), "%.*s at %u baud",
                                  static_cast<int>(name().size()), name().data(), baud());
@@ -215,7 +216,7 @@ tl::unexpected<error> serial_line::refused_baud(int system_errno) const noexcept
   return failure(task::configuring, problem::bad_baud_rate, {subject.data(), length}, system_errno);
 }
 
-result<void> serial_line::configure() noexcept {
+result<void> serial_transport::configure() noexcept {
   const auto speed = speed_of(baud());
   termios wanted = found_;
   cfmakeraw(&wanted);
@@ -241,7 +242,7 @@ result<void> serial_line::configure() noexcept {
   return {};
 }
 
-void serial_line::hasten() noexcept {
+void serial_transport::hasten() noexcept {
   serial_struct serial{};
   if (control(TIOCGSERIAL, &serial) != 0) return;
   constexpr int low_latency = static_cast<int>(ASYNC_LOW_LATENCY);
@@ -251,17 +252,17 @@ void serial_line::hasten() noexcept {
   is_hastened_ = control(TIOCSSERIAL, &serial) == 0;
 }
 
-result<void> serial_line::discard_input() noexcept {
+result<void> serial_transport::discard_input() noexcept {
   if (uninterrupted([&] { return calls().tcflush(fd(), TCIFLUSH); }) != 0) return refused(errno);
   return {};
 }
 
-ssize_t serial_line::write_some(bytes data) noexcept {
+ssize_t serial_transport::write_some(bytes data) noexcept {
   return calls().write(fd(), data.data(), data.size());
 }
 
 /// Waits until the output has been sent, at most 50 ms: more than any command of the library needs.
-bool serial_line::drained() const noexcept {
+bool serial_transport::drained() const noexcept {
   for (int tries = 0; tries < 50; ++tries) {
     int waiting = 0;
     if (control(TIOCOUTQ, &waiting) != 0 || waiting == 0) return true;
@@ -271,7 +272,7 @@ bool serial_line::drained() const noexcept {
   return false;
 }
 
-void serial_line::restore() noexcept {
+void serial_transport::restore() noexcept {
   if (is_changed_) {
     // A last command must not be sent at another rate; and pending output would delay close() for
     // half a minute.
@@ -298,9 +299,9 @@ void serial_line::restore() noexcept {
 
 }  // namespace
 
-result<std::unique_ptr<transport>> open_serial_line(std::string_view path,
-                                                    const serial_options& options,
-                                                    const system_calls& calls) {
+result<std::unique_ptr<transport>> open_serial_transport(std::string_view path,
+                                                         const serial_options& options,
+                                                         const system_calls& calls) {
   if (path.empty()) return failure(task::opening, problem::bad_option, "an empty path");
   if (options.baud == 0) return failure(task::opening, problem::bad_option, "baud 0");
   std::string name(path);
@@ -308,21 +309,21 @@ result<std::unique_ptr<transport>> open_serial_line(std::string_view path,
   if (!fd) return tl::unexpected(fd.error());
   auto waits = std::make_unique<waker>(calls);
   if (!waits->is_open()) return failure(task::opening, problem::system, "eventfd", errno);
-  auto line = std::make_unique<serial_line>(calls, std::move(*fd), std::move(waits),
-                                            std::move(name), options.baud);
-  if (const auto done = line->look(); !done) return tl::unexpected(done.error());
+  auto port = std::make_unique<serial_transport>(calls, std::move(*fd), std::move(waits),
+                                                 std::move(name), options.baud);
+  if (const auto done = port->look(); !done) return tl::unexpected(done.error());
   if (options.exclusive) {
-    if (const auto done = line->hold(); !done) return tl::unexpected(done.error());
+    if (const auto done = port->hold(); !done) return tl::unexpected(done.error());
   }
-  if (const auto done = line->configure(); !done) return tl::unexpected(done.error());
-  if (options.low_latency) line->hasten();
-  if (const auto done = line->discard_input(); !done) return tl::unexpected(done.error());
-  return line;
+  if (const auto done = port->configure(); !done) return tl::unexpected(done.error());
+  if (options.low_latency) port->hasten();
+  if (const auto done = port->discard_input(); !done) return tl::unexpected(done.error());
+  return port;
 }
 
 result<std::unique_ptr<transport>> serial_port::open(std::string_view path,
                                                      const serial_options& options) {
-  return open_serial_line(path, options, real_system_calls());
+  return open_serial_transport(path, options, real_system_calls());
 }
 
 }  // namespace g4lidar

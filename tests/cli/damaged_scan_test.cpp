@@ -75,17 +75,17 @@ class DamagedScan : public cli::scratch, public testing::WithParamInterface<dama
     sim::device_options options;
     options.truth_capacity = 300'000;
     options.scanner.noise_mm = 8.0;
-    sim::device twin(sim::built_in_world(), options, std::span(fault, 1));
+    sim::device simulated(sim::built_in_world(), options, std::span(fault, 1));
     std::string bytes;
     std::array<std::uint8_t, 4096> memory{};
-    twin.write(g4lidar::encode(g4lidar::command::start), second);
+    simulated.write(g4lidar::encode(g4lidar::command::start), second);
     for (std::int64_t now = second; now < 31 * second; now += 10'000'000) {
-      while (const std::size_t count = twin.read(memory, now)) {
+      while (const std::size_t count = simulated.read(memory, now)) {
         bytes.append(memory.begin(), memory.begin() + static_cast<std::ptrdiff_t>(count));
       }
     }
     cli::write_file(path("raw.bin"), bytes);
-    truth_ = measured_truth::of(twin, options.truth_capacity);
+    truth_ = measured_truth::of(simulated, options.truth_capacity);
     ASSERT_GT(truth_.samples().size(), 250'000U);
   }
 

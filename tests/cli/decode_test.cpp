@@ -325,7 +325,8 @@ TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {
                                 cli::zero(0) + cli::packet(1, 2, {4000}).substr(0, 11);
   const outcome done = run({"decode", "--stats", "json"}, recording);
   EXPECT_EQ(done.code, 0);
-  const std::size_t cut_off = 12;  // of small_recording(): a frame follows, so it is a bad checksum
+  const std::size_t cut_off =
+      12;  // of small_recording(): a packet follows, so it is a bad checksum
   nlohmann::ordered_json expected;
   expected["bytes"] = recording.size();
   expected["packets"] = 7;
@@ -350,9 +351,9 @@ TEST(Decode, StatsInWords) {
 
 TEST(Decode, AnInputThatIsMostlyNoiseIsRemarkedOn) {
   const std::string noise(1000, 'x');
-  const outcome said = run({"decode"}, noise + cli::zero(0));
-  EXPECT_EQ(said.code, 0);
-  EXPECT_NE(said.err.find("wrong baud rate"), std::string::npos);
+  const outcome output = run({"decode"}, noise + cli::zero(0));
+  EXPECT_EQ(output.code, 0);
+  EXPECT_NE(output.err.find("wrong baud rate"), std::string::npos);
   EXPECT_EQ(run({"decode"}, noise + cli::turn() + cli::turn()).err.find("baud"), std::string::npos);
   const outcome as_json = run({"decode", "--stats", "json"}, noise + cli::zero(0));
   EXPECT_EQ(json::parse(as_json.err).at("skipped").at("noise"), 1000);

@@ -12,8 +12,8 @@
 #include "program.hpp"
 #include "recorded.hpp"
 #include "recording.hpp"
+#include "simulator.hpp"
 #include "stubborn_device.hpp"
-#include "twin.hpp"
 
 namespace {
 
@@ -147,7 +147,7 @@ TEST_F(Escaping, TheBootTextOfADevice) {
 
 TEST_F(Escaping, TheNameOfAPort) {
   const std::string port = path("g4" + evil);
-  cli::twin twin(port);
+  cli::simulator simulator(port);
   for (const words& arguments : {words{"info", port},
                                  {"info", port, "--json"},
                                  {"health", port, "-v"},
@@ -169,7 +169,7 @@ TEST_F(Escaping, TheNameOfAPort) {
   EXPECT_EQ(expect_plain({"info", port, "--json-errors"}).code, 5);
   expect_plain({"doctor", port, "--json"});
   expect_plain({"sim", "--link", port});
-  EXPECT_EQ(cli::unescaped_in(twin.log()), "") << "what the simulator says";
+  EXPECT_EQ(cli::unescaped_in(simulator.log()), "") << "what the simulator says";
 }
 
 }  // namespace

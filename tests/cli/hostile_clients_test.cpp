@@ -76,14 +76,14 @@ class HostileClient : public cli::scratch {
   void SetUp() override {
     bridge_.emplace(std::vector<std::string>{"sim", "--tcp", "0"},
                     cli::streams{{}, {}, cli::stream::of_file(path("err"))});
-    std::string said;
-    for (int i = 0; i < 4'000 && !said.ends_with('\n'); ++i) {
-      if (fs::exists(path("err"))) said = cli::read_file(path("err"));
+    std::string output;
+    for (int i = 0; i < 4'000 && !output.ends_with('\n'); ++i) {
+      if (fs::exists(path("err"))) output = cli::read_file(path("err"));
       std::this_thread::sleep_for(5ms);
     }
-    const std::size_t colon = said.rfind(':');
-    ASSERT_NE(colon, std::string::npos) << said;
-    port_ = static_cast<std::uint16_t>(std::stoi(said.substr(colon + 1)));
+    const std::size_t colon = output.rfind(':');
+    ASSERT_NE(colon, std::string::npos) << output;
+    port_ = static_cast<std::uint16_t>(std::stoi(output.substr(colon + 1)));
   }
 
   [[nodiscard]] std::string source() const { return "tcp:127.0.0.1:" + std::to_string(port_); }

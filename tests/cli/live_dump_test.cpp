@@ -127,7 +127,7 @@ TEST_F(Live, WithoutAPointAnOlderFileStays) {
 }
 
 TEST_F(Live, ALossEndsItWhereNothingElseIsSaid) {
-  program twin({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
+  program simulator({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
   const outcome done = run({"dump", path("lidar"), "-f", "csv", "-o", path("out.csv")});
   EXPECT_EQ(done.code, 9) << done.err;
@@ -139,7 +139,7 @@ TEST_F(Live, ALossEndsItWhereNothingElseIsSaid) {
 }
 
 TEST_F(Live, WithReconnectItGoesOn) {
-  program twin({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
+  program simulator({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
   const std::string out = path("out.csv");
   program started({"dump", path("lidar"), "-f", "csv", "--on-loss", "reconnect", "-o", out});
@@ -158,7 +158,7 @@ TEST_F(Live, WithReconnectItGoesOn) {
 TEST_F(Live, WithWaitItWaitsForADeviceThatIsNotThereYet) {
   program started({"dump", path("lidar"), "-n", "50", "-f", "csv", "--on-loss", "wait"});
   std::this_thread::sleep_for(300ms);
-  program twin({"sim", "--link", path("lidar")});
+  program simulator({"sim", "--link", path("lidar")});
   const outcome done = started.wait();
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(lines_of(done.out).size(), 51U);

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "program.hpp"
-#include "twin.hpp"
+#include "simulator.hpp"
 
 namespace {
 
@@ -72,15 +72,15 @@ class Serve : public cli::scratch {
 
 TEST_F(Serve, SeveralLidarsAtOnceUntilASignal) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    cli::program twins({"sim", "--link", path("one"), "--link", path("two"), "--serial",
-                        "1234567890123456", "--log", "--seed", "3"});
+    cli::program simulators({"sim", "--link", path("one"), "--link", path("two"), "--serial",
+                             "1234567890123456", "--log", "--seed", "3"});
     ASSERT_TRUE(appears(path("one")));
     ASSERT_TRUE(appears(path("two")));
     EXPECT_EQ(serial_at(path("one")), "1234567890123456");
     EXPECT_EQ(serial_at(path("two")), "2021101000070073");
     EXPECT_EQ(ask(path("two"), 0x60, 8).substr(0, 3), "\xA5\x5A\x05");
-    twins.send(signal);
-    const outcome done = twins.wait();
+    simulators.send(signal);
+    const outcome done = simulators.wait();
     EXPECT_EQ(done.code, 128 + signal);
     EXPECT_EQ(listing(), "") << "the links are gone";
     EXPECT_EQ(done.out, "");
@@ -91,26 +91,26 @@ TEST_F(Serve, SeveralLidarsAtOnceUntilASignal) {
 }
 
 TEST_F(Serve, ItIsSilentAboutCommandsWithoutLog) {
-  cli::program twin({"sim", "--link", path("lidar")});
+  cli::program simulator({"sim", "--link", path("lidar")});
   ASSERT_TRUE(appears(path("lidar")));
   EXPECT_EQ(serial_at(path("lidar")), "2021101000070073");
-  twin.send(SIGTERM);
-  EXPECT_EQ(twin.wait().err, "G4 2021101000070073 at " + path("lidar") + "\n");
+  simulator.send(SIGTERM);
+  EXPECT_EQ(simulator.wait().err, "G4 2021101000070073 at " + path("lidar") + "\n");
 }
 
 TEST_F(Serve, FaultsAreAtWork) {
-  cli::program twin({"sim", "--link", path("lidar"), "--fault", "mute@0+60s", "--fault",
-                     "scanning@100ms", "--fault", "unplug@2s+1s"});
+  cli::program simulator({"sim", "--link", path("lidar"), "--fault", "mute@0+60s", "--fault",
+                          "scanning@100ms", "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
   EXPECT_GT(ask(path("lidar"), 0x0D, 100).size(), 50U) << "it scans";
   EXPECT_TRUE(vanishes(path("lidar")));
   EXPECT_TRUE(appears(path("lidar")));
-  twin.send(SIGTERM);
-  EXPECT_EQ(twin.wait().code, 128 + SIGTERM);
+  simulator.send(SIGTERM);
+  EXPECT_EQ(simulator.wait().code, 128 + SIGTERM);
 }
 
 TEST_F(Serve, OptionsOfTheDeviceAreAtWork) {
-  const cli::twin twin(path("old"), {"--device", "answers_direction=false"});
+  const cli::simulator simulator(path("old"), {"--device", "answers_direction=false"});
   EXPECT_THAT(run({"info", path("old")}).out, HasSubstr("direction   unknown"));
   EXPECT_THAT(run({"info", "sim:?answers_direction=false&reaction_ns=2ms"}).out,
               HasSubstr("direction   unknown"));
@@ -175,13 +175,14 @@ TEST_F(Serve, TheLinkOfALivingDeviceIsNotTaken) {
 
 TEST_F(Serve, ANetworkBridge) {
   cli::program bridge({"sim", "--tcp", "0"}, {{}, {}, cli::stream::of_file(path("err"))});
-  std::string said;
-  for (int i = 0; i < 2'000 && !said.ends_with('\n'); ++i) {
-    if (fs::exists(path("err"))) said = cli::read_file(path("err"));
+  std::string output;
+  for (int i = 0; i < 2'000 && !output.ends_with('\n'); ++i) {
+    if (fs::exists(path("err"))) output = cli::read_file(path("err"));
     std::this_thread::sleep_for(5ms);
   }
-  ASSERT_THAT(said, StartsWith("G4 2021101000070073 at tcp:127.0.0.1:"));
-  const std::string source = said.substr(said.find("tcp:"), said.size() - said.find("tcp:") - 1);
+  ASSERT_THAT(output, StartsWith("G4 2021101000070073 at tcp:127.0.0.1:"));
+  const std::string source =
+      output.substr(output.find("tcp:"), output.size() - output.find("tcp:") - 1);
   const outcome info = run({"info", source});
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("serial      2021101000070073\n"));
@@ -196,7 +197,7 @@ TEST_F(Serve, ARegisteredDeviceIsDiscovered) {
   refused({"sim", "--register"}, "G4LIDAR_SIM_DIR");
   EXPECT_EQ(run({"list"}).out.find("sim"), std::string::npos) << "off unless asked for";
   ::setenv("G4LIDAR_SIM_DIR", path("ports").c_str(), 1);
-  cli::program twin({"sim", "--register", "--serial", "1234567890123456"});
+  cli::program simulator({"sim", "--register", "--serial", "1234567890123456"});
   EXPECT_TRUE(appears(path("ports/g4-1234567890123456")));
   const outcome list = run({"list", "--probe", "--json"});
   EXPECT_EQ(list.code, 0) << list.err;
@@ -205,8 +206,8 @@ TEST_F(Serve, ARegisteredDeviceIsDiscovered) {
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("serial      1234567890123456\n"));
   EXPECT_NE(run({"info", "serial:1234567890123457"}).code, 0);
-  twin.send(SIGTERM);
-  EXPECT_EQ(twin.wait().code, 128 + SIGTERM);
+  simulator.send(SIGTERM);
+  EXPECT_EQ(simulator.wait().code, 128 + SIGTERM);
   EXPECT_FALSE(fs::exists(path("ports/g4-1234567890123456")));
   ::unsetenv("G4LIDAR_SIM_DIR");
 }

@@ -136,7 +136,7 @@ TEST_F(ServiceUnit, ItsCommandRecordsAndSaysThatItLives) {
   EXPECT_NE(options, "");
   ::setenv("OPTIONS", (options + " -q").c_str(), 1);
 
-  cli::program twin({"sim", "--link", path("lidar")});
+  cli::program simulator({"sim", "--link", path("lidar")});
   for (int i = 0; i < 2'000 && !fs::exists(path("lidar")); ++i) std::this_thread::sleep_for(10ms);
   const cli::manager systemd(path("notify"));
   service recorder(shell_words(only(unit, "ExecStart"), "serial:2021101000070073"));

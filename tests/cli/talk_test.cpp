@@ -9,8 +9,8 @@
 
 #include "program.hpp"
 #include "recording.hpp"
+#include "simulator.hpp"
 #include "stubborn_device.hpp"
-#include "twin.hpp"
 
 namespace {
 
@@ -37,7 +37,7 @@ class Talk : public cli::scratch {
 // ---- info and health ---------------------------------------------------------------------------
 
 TEST_F(Talk, Info_TellsWhoItIsAndItsSettings) {
-  const cli::twin twin(port(), {"--serial", "2023000000000017", "--sample-rate", "8000"});
+  const cli::simulator simulator(port(), {"--serial", "2023000000000017", "--sample-rate", "8000"});
   const outcome done = run({"info", port()});
   EXPECT_EQ(done.code, 0);
   EXPECT_EQ(done.err, "");
@@ -49,7 +49,7 @@ TEST_F(Talk, Info_TellsWhoItIsAndItsSettings) {
 }
 
 TEST_F(Talk, Info_AsJson) {
-  const cli::twin twin(port());
+  const cli::simulator simulator(port());
   EXPECT_EQ(ask("info"), (json{{"source", port()},
                                {"model", 5},
                                {"serial", "2021101000070073"},
@@ -64,7 +64,7 @@ TEST_F(Talk, Info_AsJson) {
 }
 
 TEST_F(Talk, AskingVerbs_SetNothing) {
-  cli::twin twin(port());
+  cli::simulator simulator(port());
   for (const char* const verb : {"info", "health", "stop", "start", "stats"}) {
     std::vector<std::string> words{verb, port()};
     if (words[0] == "stats") words.insert(words.end(), {"-n", "1"});
@@ -73,7 +73,7 @@ TEST_F(Talk, AskingVerbs_SetNothing) {
   EXPECT_EQ(run({"dump", port(), "-n", "1"}).code, 0);
   EXPECT_EQ(run({"scan", port(), "-n", "1"}).code, 0);
   // Nothing but stop, start, and what only asks: 90, 91, 92, 05, 08, 0D, D1.
-  const std::string log = twin.log();
+  const std::string log = simulator.log();
   EXPECT_THAT(log, HasSubstr(" A5 0D"));
   EXPECT_THAT(log, Not(ContainsRegex(" A5 (01|02|06|07|09|0A|0B|0C|0E|0F|40|80|D0|D9)")));
 }
@@ -93,7 +93,7 @@ TEST_F(Talk, Health_SaysHowItIs) {
 // ---- set ---------------------------------------------------------------------------------------
 
 TEST_F(Talk, Set_ShowsEachBeforeAndAfter) {
-  const cli::twin twin(port());
+  const cli::simulator simulator(port());
   const outcome done = run({"set", port(), "rate=4k", "freq=9.5", "direction=ccw", "constant=off",
                             "low-power=off", "protection=on"});
   EXPECT_EQ(done.code, 0) << done.err;
@@ -112,7 +112,7 @@ TEST_F(Talk, Set_ShowsEachBeforeAndAfter) {
 }
 
 TEST_F(Talk, Set_AsJson) {
-  const cli::twin twin(port());
+  const cli::simulator simulator(port());
   const outcome done = run({"set", port(), "--json", "-q", "rate=8000", "protection=off"});
   EXPECT_EQ(done.code, 0);
   EXPECT_EQ(done.err, "");
@@ -126,7 +126,7 @@ TEST_F(Talk, Set_AsJson) {
 }
 
 TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
-  cli::twin twin(port());
+  cli::simulator simulator(port());
   for (const char* const word :
        {"rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=7.55", "freq=", "direction=left",
         "constant=1", "speed=3", "rate=9k", "/dev/ttyUSB0"}) {
@@ -137,7 +137,7 @@ TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
   }
   EXPECT_EQ(run({"set", port()}).code, 2);
   EXPECT_EQ(run({"set"}).code, 2);
-  EXPECT_THAT(twin.log(), Not(HasSubstr(" A5 ")));
+  EXPECT_THAT(simulator.log(), Not(HasSubstr(" A5 ")));
 }
 
 TEST_F(Talk, Set_WhatIsRefusedIsShownAsItIsAndEndsIt) {
@@ -169,7 +169,7 @@ TEST_F(Talk, Info_WhatIsNotAnsweredIsUnknown) {
 // ---- start, stop, restart ----------------------------------------------------------------------
 
 TEST_F(Talk, Start_LeavesItScanningAndStopStopsIt) {
-  cli::twin twin(port());
+  cli::simulator simulator(port());
   EXPECT_THAT(run({"start", port()}).err, HasSubstr(": scanning\n"));
   const outcome stopped = run({"stop", port()});
   EXPECT_EQ(stopped.code, 0);
@@ -179,7 +179,7 @@ TEST_F(Talk, Start_LeavesItScanningAndStopStopsIt) {
 }
 
 TEST_F(Talk, WhatIsFoundScanning_IsStoppedAndThatIsTold) {
-  const cli::twin twin(port());
+  const cli::simulator simulator(port());
   for (const char* const verb : {"info", "health", "start", "restart"}) {
     EXPECT_EQ(run({"start", port()}).code, 0);
     const outcome done = run({verb, port()});
@@ -204,7 +204,7 @@ TEST_F(Talk, Start_ADeviceThatIsDefectiveIsNotStarted) {
 }
 
 TEST_F(Talk, Restart_WaitsUntilItAnswersAgain) {
-  const cli::twin twin(port());
+  const cli::simulator simulator(port());
   EXPECT_EQ(run({"set", port(), "rate=4k"}).code, 0);
   const outcome done = run({"restart", port()});
   EXPECT_EQ(done.code, 0);
@@ -240,7 +240,7 @@ TEST_F(Talk, ExitCodes) {
 }
 
 TEST_F(Talk, AnotherProgramHasIt) {
-  const cli::twin twin(port());
+  const cli::simulator simulator(port());
   cli::program dump({"dump", port()});
   dump.read_until("\n");
   const outcome done = run({"info", port()});

@@ -91,8 +91,8 @@ TEST(Allocation, NoneInReadingRepliesAndAngles) {
                     1,    1,    0,    1, 0, 0, 0, 0, 7, 0, 0, 7, 3};
   std::size_t digits = 0;
   EXPECT_EQ(allocations_in([&] {
-              const auto said = response_view::from(info)->as_device_info();
-              digits = said->serial_number().size();
+              const auto found = response_view::from(info)->as_device_info();
+              digits = found->serial_number().size();
               const auto traits = traits_of(command::protection_toggle);
               digits += encode(traits->code).size();
               digits += angle::from_degrees(1e9F) == angle{} ? 1U : 0U;

@@ -60,7 +60,7 @@ static_assert(bearing_deg(0.0F, frame::robot) == 180.0F);
 static_assert(bearing_deg(270.0F, frame::robot) == 270.0F);
 static_assert(bearing_deg(123.0F, frame::vendor) == 123.0F);
 
-TEST(Frames, PolarBearingsByHand) {
+TEST(CoordinateFrames, PolarBearingsByHand) {
   constexpr float pi = std::numbers::pi_v<float>;
   const auto bearing = [](float angle_deg, frame to) {
     return to_polar(at(angle_deg, 1500), to).bearing_rad;
@@ -77,7 +77,7 @@ TEST(Frames, PolarBearingsByHand) {
   EXPECT_FLOAT_EQ(to_polar(at(10, 1500), frame::robot).range_m, 1.5F);
 }
 
-TEST(Frames, PolarOfManyPointsIsThatOfEach) {
+TEST(CoordinateFrames, PolarOfManyPointsIsThatOfEach) {
   const std::array<point, 3> points{at(10, 1500), at(350, 0), at(180, 16000)};
   std::array<polar, 4> out{};
   const std::span<polar> got = to_polar(points, frame::robot, out);
@@ -88,12 +88,12 @@ TEST(Frames, PolarOfManyPointsIsThatOfEach) {
   }
 }
 
-TEST(Frames, Time_IsOfTheMonotonicClock) {
+TEST(CoordinateFrames, Time_IsOfTheMonotonicClock) {
   EXPECT_EQ(at(0, 0).time().time_since_epoch(), std::chrono::nanoseconds(77));
   EXPECT_EQ(point().time(), std::chrono::steady_clock::time_point());
 }
 
-TEST(Frames, NoReturn_HasTheDirectionOfAFarTarget) {
+TEST(CoordinateFrames, NoReturn_HasTheDirectionOfAFarTarget) {
   const point none = at(100.0F - 7.9905963F, 0);
   const polar seen = to_polar(none, frame::vendor);
   EXPECT_EQ(seen.range_m, 0.0F);
@@ -127,7 +127,7 @@ std::vector<float> angles() {
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-TEST(Frames, Bearings_AreInTheHalfOpenRange) {
+TEST(CoordinateFrames, Bearings_AreInTheHalfOpenRange) {
   constexpr float pi = std::numbers::pi_v<float>;
   for (const float angle_deg : angles()) {
     for (const float range_mm : {0.0F, 1000.0F}) {

@@ -104,7 +104,7 @@ void expect_all_forms_like_reference(const made::packet& packet) {
 }
 
 // Samples with every size of correction, from +89 to -8 degrees.
-std::vector<std::uint16_t> telling_samples(std::size_t count) {
+std::vector<std::uint16_t> distinct_samples(std::size_t count) {
   std::vector<std::uint16_t> raw(count);
   for (std::size_t i = 0; i < count; ++i) {
     raw[i] = static_cast<std::uint16_t>(i * i * i * 65535 / (79 * 79 * 79));
@@ -117,7 +117,7 @@ TEST(Decode, AgreesWithReferenceAroundTheCircle) {
     for (const int span : {0, 1, 79, 1260, 5000}) {
       const int last = first + span;
       if (last >= 23040 && !(first > 270 * 64 && last - 23040 < 90 * 64)) continue;
-      const std::vector<std::uint16_t> raw = telling_samples(80);
+      const std::vector<std::uint16_t> raw = distinct_samples(80);
       expect_all_forms_like_reference(made::packet(0, first, last % 23040, raw));
       if (HasFatalFailure()) return;
     }
@@ -126,19 +126,19 @@ TEST(Decode, AgreesWithReferenceAroundTheCircle) {
 
 TEST(Decode, WrapsOnBothSidesOfZero) {
   for (int angle = 0; angle < 100 * 64; angle += 7) {
-    const made::packet above = made::packet(0, angle, angle, telling_samples(40));
-    const made::packet below = made::packet(0, 23039 - angle, 23039 - angle, telling_samples(40));
+    const made::packet above = made::packet(0, angle, angle, distinct_samples(40));
+    const made::packet below = made::packet(0, 23039 - angle, 23039 - angle, distinct_samples(40));
     expect_all_forms_like_reference(above);
     expect_all_forms_like_reference(below);
     if (HasFatalFailure()) return;
   }
   // A wrap within the packet, like a real one directly after a zero packet.
-  expect_all_forms_like_reference(made::packet(0, 23000, 40, telling_samples(80)));
-  expect_all_forms_like_reference(made::packet(0, 270 * 64 + 1, 90 * 64 - 1, telling_samples(80)));
+  expect_all_forms_like_reference(made::packet(0, 23000, 40, distinct_samples(80)));
+  expect_all_forms_like_reference(made::packet(0, 270 * 64 + 1, 90 * 64 - 1, distinct_samples(80)));
 }
 
 TEST(Decode, PacketAcrossTheCircle_IsDecodedCompletely) {
-  expect_all_forms_like_reference(made::packet(0, 0, 23039, telling_samples(80)));
+  expect_all_forms_like_reference(made::packet(0, 0, 23039, distinct_samples(80)));
 }
 
 TEST(Decode, OneSampleHasTheFirstAngle) {
@@ -170,7 +170,7 @@ TEST(Decode, WritesExactlyTheSamplesOfThePacket) {
     storage out;
     const point untouched{-1.0F, -1.0F, -1, 99, point_flags::too_near, {}};
     out.fill(untouched);
-    const made::packet packet(0, 100, 1360, telling_samples(count));
+    const made::packet packet(0, 100, 1360, distinct_samples(count));
     const decoded got = decode(packet.view(), table(), 3, out);
     ASSERT_EQ(got.points.size(), count);
     ASSERT_EQ(got.sample_count, count);
@@ -223,7 +223,7 @@ TEST(Decode, RoundingNearZero_IsNever360) {
 
 TEST(Decode, SuspectPacket_GivesNoPoints) {
   for (const unsigned ct : {0U, 1U}) {
-    const made::packet packet(ct | 70U << 1, 6400, 6390, telling_samples(40));
+    const made::packet packet(ct | 70U << 1, 6400, 6390, distinct_samples(40));
     ASSERT_TRUE(packet.view().is_suspect());
     storage out;
     const point untouched{-1.0F, -1.0F, -1, 99, point_flags::too_near, {}};
@@ -269,7 +269,7 @@ TEST(Decode, FlagsByRange) {
 }
 
 TEST(Decode, FirstSampleOfAZeroPacketStartsTheRevolution) {
-  const made::packet zero(1, 100, 200, telling_samples(3));
+  const made::packet zero(1, 100, 200, distinct_samples(3));
   storage out;
   const decoded got = decode(zero.view(), table(), 0, out);
   EXPECT_TRUE(got.starts_revolution);
@@ -277,7 +277,7 @@ TEST(Decode, FirstSampleOfAZeroPacketStartsTheRevolution) {
   EXPECT_TRUE(got.points[0].is_no_return());  // one flag does not hide the other
   EXPECT_FALSE(got.points[1].is_revolution_start());
   EXPECT_FALSE(got.points[2].is_revolution_start());
-  const made::packet other(0x86, 100, 200, telling_samples(3));
+  const made::packet other(0x86, 100, 200, distinct_samples(3));
   EXPECT_FALSE(decode(other.view(), table(), 0, out).points[0].is_revolution_start());
 }
 

@@ -32,10 +32,10 @@ constexpr std::array<std::uint8_t, 12> zero_packet{0xAA, 0x55, 0x01, 0x01, 0x53,
 constexpr std::array<std::uint8_t, 14> two_samples{0xAA, 0x55, 0x00, 0x02, 0xE5, 0x6F, 0xBD,
                                                    0x79, 0xB7, 0x21, 0xE5, 0x6F, 0xA0, 0x0F};
 
-constexpr frame_check valid(std::size_t size) { return {frame_state::valid, size}; }
-constexpr frame_check incomplete(std::size_t size) { return {frame_state::incomplete, size}; }
-constexpr frame_check bad_header(std::size_t size) { return {frame_state::bad_header, size}; }
-constexpr frame_check bad_checksum(std::size_t size) { return {frame_state::bad_checksum, size}; }
+constexpr wire_check valid(std::size_t size) { return {wire_state::valid, size}; }
+constexpr wire_check incomplete(std::size_t size) { return {wire_state::incomplete, size}; }
+constexpr wire_check bad_header(std::size_t size) { return {wire_state::bad_header, size}; }
+constexpr wire_check bad_checksum(std::size_t size) { return {wire_state::bad_checksum, size}; }
 
 static_assert(max_packet_size == 170);
 static_assert(std::is_trivially_copyable_v<packet_view>);
@@ -152,7 +152,7 @@ TEST(Packet, AnyCtIsPossible) {
 TEST(Packet, SampleCountsFrom1To80ArePossible) {
   for (unsigned n = 0; n < 256; ++n) {
     const buffer data = packet_bytes(0, wire_angle(640), wire_angle(960), some_samples(n));
-    const frame_check wanted = n >= 1 && n <= 80 ? valid(10 + 2 * n) : bad_header(4);
+    const wire_check wanted = n >= 1 && n <= 80 ? valid(10 + 2 * n) : bad_header(4);
     EXPECT_EQ(check_packet(data), wanted) << n;
     EXPECT_EQ(packet_view::from(data).has_value(), n >= 1 && n <= 80) << n;
   }
@@ -163,8 +163,8 @@ TEST(Packet, Angles_NeedTheCheckBitAndAreBelow360) {
     const bool possible = raw % 2 == 1 && raw / 2 < 23040;
     const buffer as_first = packet_bytes(0, raw, 0x0101, {4000});
     const buffer as_last = packet_bytes(0, 0x0101, raw, {4000});
-    const frame_check first = check_packet(as_first);
-    const frame_check last = check_packet(as_last);
+    const wire_check first = check_packet(as_first);
+    const wire_check last = check_packet(as_last);
     const std::size_t seen_at = raw % 2 == 1 ? 1 : 0;  // the first impossible byte
     ASSERT_EQ(first, possible ? valid(12) : bad_header(5 + seen_at)) << raw;
     ASSERT_EQ(last, possible ? valid(12) : bad_header(7 + seen_at)) << raw;
@@ -247,7 +247,7 @@ TEST(Packet, Refused_AtTheFirstImpossibleByte) {
     buffer data = good;
     data[at] = bad[at];
     for (std::size_t have = 0; have <= data.size(); ++have) {
-      const frame_check check = check_packet(bytes(data).first(have));
+      const wire_check check = check_packet(bytes(data).first(have));
       EXPECT_EQ(check, have <= at ? incomplete(have + 1) : bad_header(at + 1)) << at << " " << have;
     }
   }
@@ -274,19 +274,18 @@ std::size_t survivors_of_single_bit_errors(const buffer& stream) {
   for (std::size_t bit = 0; bit < 8 * size; ++bit) {
     buffer damaged = stream;
     damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ 1U << bit % 8);
-    const frame_check check = check_packet(damaged);
+    const wire_check check = check_packet(damaged);
     const bool in_lsn = bit / 8 == 3;
     const std::size_t n = damaged[3];
     const bool may_survive =
         in_lsn && std::find(agreeing.begin(), agreeing.end(), n) != agreeing.end();
-    EXPECT_EQ(check.state == frame_state::valid, may_survive) << "bit " << bit << " of " << size;
+    EXPECT_EQ(check.state == wire_state::valid, may_survive) << "bit " << bit << " of " << size;
     if (may_survive) {
       EXPECT_EQ(check.size, 10 + 2 * n);
       ++survivors;
     }
     if (!in_lsn) {
-      EXPECT_TRUE(check.state == frame_state::bad_checksum ||
-                  check.state == frame_state::bad_header);
+      EXPECT_TRUE(check.state == wire_state::bad_checksum || check.state == wire_state::bad_header);
     }
   }
   return survivors;

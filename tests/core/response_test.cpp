@@ -31,9 +31,9 @@ constexpr std::array<std::uint8_t, 8> one_byte{0xA5, 0x5A, 0x01, 0x00, 0x00, 0x0
 constexpr std::array<std::uint8_t, 11> seven_hz{0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00,
                                                 0x04, 0xBC, 0x02, 0x00, 0x00};
 
-constexpr frame_check valid(std::size_t size) { return {frame_state::valid, size}; }
-constexpr frame_check incomplete(std::size_t size) { return {frame_state::incomplete, size}; }
-constexpr frame_check bad_header(std::size_t size) { return {frame_state::bad_header, size}; }
+constexpr wire_check valid(std::size_t size) { return {wire_state::valid, size}; }
+constexpr wire_check incomplete(std::size_t size) { return {wire_state::incomplete, size}; }
+constexpr wire_check bad_header(std::size_t size) { return {wire_state::bad_header, size}; }
 
 static_assert(std::is_trivially_copyable_v<response_view>);
 
@@ -124,14 +124,14 @@ TEST(Response, TheManualsHeaders) {
 TEST(Response, TheDeviceInformationOfTheProtocol) {
   const auto reply = response_view::from(device_info);
   ASSERT_TRUE(reply);
-  const auto said = reply->as_device_info();
-  ASSERT_TRUE(said);
-  EXPECT_EQ(said->model, 5);
-  EXPECT_EQ(said->firmware_major, 3) << "the third byte on the wire, not the second";
-  EXPECT_EQ(said->firmware_minor, 2);
-  EXPECT_EQ(said->hardware, 3);
-  EXPECT_EQ(said->serial_number(), "2021101000070073");
-  EXPECT_EQ(*said, info);
+  const auto found = reply->as_device_info();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->model, 5);
+  EXPECT_EQ(found->firmware_major, 3) << "the third byte on the wire, not the second";
+  EXPECT_EQ(found->firmware_minor, 2);
+  EXPECT_EQ(found->hardware, 3);
+  EXPECT_EQ(found->serial_number(), "2021101000070073");
+  EXPECT_EQ(*found, info);
 }
 
 TEST(Response, EveryPrefix_IsIncomplete) {
@@ -162,8 +162,8 @@ TEST(Response, EachByteOfAHeader_IsChecked) {
         for (const bytes other : replies) {
           exists = exists || std::equal(header.begin(), header.end(), other.begin());
         }
-        const frame_check check = check_response(header);
-        EXPECT_EQ(check.state != frame_state::bad_header, exists) << at << " " << value;
+        const wire_check check = check_response(header);
+        EXPECT_EQ(check.state != wire_state::bad_header, exists) << at << " " << value;
         if (!exists) {
           EXPECT_EQ(check_response(data), check);
           EXPECT_FALSE(response_view::from(data));

@@ -37,7 +37,7 @@ TEST(StreamCounts, AreConsistentAtEveryMoment) {
   stream_counter counts;
   for (std::size_t i = 0; i < stream.size(); ++i) {
     parser.feed(bytes(stream).subspan(i, 1), [&](const event& found) { counts.add(found); });
-    ASSERT_EQ(counts.frame_bytes + counts.skipped_bytes() + parser.held(), i + 1);
+    ASSERT_EQ(counts.parsed_bytes + counts.skipped_bytes() + parser.held(), i + 1);
   }
   while (const auto found = parser.finish()) counts.add(*found);
 
@@ -45,12 +45,12 @@ TEST(StreamCounts, AreConsistentAtEveryMoment) {
   EXPECT_EQ(counts.suspect, 1U);
   EXPECT_EQ(counts.points, 80U);
   EXPECT_EQ(counts.responses, 1U);
-  EXPECT_EQ(counts.frame_bytes, 7U + 90U + 24U + 90U);
+  EXPECT_EQ(counts.parsed_bytes, 7U + 90U + 24U + 90U);
   EXPECT_EQ(counts.skipped(skip_reason::noise), 4U);
   EXPECT_EQ(counts.skipped(skip_reason::bad_checksum), 20U);
   EXPECT_EQ(counts.skipped(skip_reason::bad_header), 4U);
   EXPECT_EQ(counts.skipped(skip_reason::truncated), 33U);
-  EXPECT_EQ(counts.frame_bytes + counts.skipped_bytes(), stream.size());
+  EXPECT_EQ(counts.parsed_bytes + counts.skipped_bytes(), stream.size());
   EXPECT_NE(counts, stream_counts{});
 }
 

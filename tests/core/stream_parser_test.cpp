@@ -86,7 +86,7 @@ buffer busy_stream() {
   return stream;
 }
 
-TEST(StreamParser, CompleteFrame_IsViewedInPlace) {
+TEST(StreamParser, CompletePacket_IsViewedInPlace) {
   const buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(20));
   stream_parser parser;
   bytes input(stream);
@@ -98,7 +98,7 @@ TEST(StreamParser, CompleteFrame_IsViewedInPlace) {
   EXPECT_EQ(parser.held(), 0U);
 }
 
-TEST(StreamParser, FrameBehindACarriedOne_IsViewedInPlace) {
+TEST(StreamParser, PacketBehindACarriedOne_IsViewedInPlace) {
   buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(20));
   const std::size_t size = stream.size();
   append(stream, stream);
@@ -109,7 +109,7 @@ TEST(StreamParser, FrameBehindACarriedOne_IsViewedInPlace) {
   bytes rest = bytes(stream).subspan(size - 3);
   const auto carried = parser.next(rest);
   ASSERT_TRUE(carried && std::holds_alternative<packet_view>(*carried));
-  EXPECT_EQ(rest.size(), size) << "no more is taken into the carry than the frame needs";
+  EXPECT_EQ(rest.size(), size) << "no more is taken into the carry than the packet needs";
   const auto in_place = parser.next(rest);
   ASSERT_TRUE(in_place && std::holds_alternative<packet_view>(*in_place));
   EXPECT_EQ(std::get<packet_view>(*in_place).data().data(), stream.data() + size);

@@ -68,26 +68,26 @@ inline std::ostream& operator<<(std::ostream& out, const examined& done) {
   return out << '\n' << done.seconds << " s, motor " << (done.motor_turns ? "turns" : "stands");
 }
 
-/// A run with `twin`, on a transport that `wrap` may wrap.
-inline examined examine(sim::device& twin, sim::virtual_clock& clock, diagnostic_options how = {},
-                        const wrapper& wrap = {}) {
-  std::unique_ptr<transport> port = std::make_unique<sim::virtual_port>(twin, clock);
+/// A run with `simulated`, on a transport that `wrap` may wrap.
+inline examined examine(sim::device& simulated, sim::virtual_clock& clock,
+                        diagnostic_options how = {}, const wrapper& wrap = {}) {
+  std::unique_ptr<transport> port = std::make_unique<sim::virtual_port>(simulated, clock);
   if (wrap) port = wrap(std::move(port));
   examined done;
   how.on_activity = [&](diagnostic_activity what) { done.activities.push_back(what); };
   done.stages = diagnose(std::move(port), how);
   done.seconds = static_cast<double>(clock.now_ns()) / 1e9;
-  static_cast<void>(twin.is_plugged(clock.now_ns() + 10'000'000));
-  done.motor_turns = twin.motor_turns();
-  done.settings = twin.settings();
+  static_cast<void>(simulated.is_plugged(clock.now_ns() + 10'000'000));
+  done.motor_turns = simulated.motor_turns();
+  done.settings = simulated.settings();
   return done;
 }
 
 inline examined examine(const sim::device_options& options, std::span<const sim::fault> faults = {},
                         diagnostic_options how = {}) {
-  sim::device twin(sim::built_in_world(), options, faults);
+  sim::device simulated(sim::built_in_world(), options, faults);
   sim::virtual_clock clock;
-  return examine(twin, clock, std::move(how));
+  return examine(simulated, clock, std::move(how));
 }
 
 /// The names of all diagnoses in the table of faults.

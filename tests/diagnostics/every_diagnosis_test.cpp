@@ -48,9 +48,9 @@ examined with_failing(problem what) {
 }
 
 examined on_link(const wrapper& wrap, const sim::device_options& options = {}) {
-  sim::device twin(sim::built_in_world(), options);
+  sim::device simulated(sim::built_in_world(), options);
   sim::virtual_clock clock;
-  return examine(twin, clock, {}, wrap);
+  return examine(simulated, clock, {}, wrap);
 }
 
 /// The process may not open further files.
@@ -120,9 +120,10 @@ const std::vector<scenario> scenarios{
      [] { return examine(with([](auto& options) { options.scanner.samples_per_packet = 10; })); }},
     {"host_busy", "host_busy",
      [] {
-       sim::device twin(sim::built_in_world(), {});
+       sim::device simulated(sim::built_in_world(), {});
        sim::virtual_clock clock;
-       return examine(twin, clock, {}, wrap_in<paused_host>(&clock, 4'000'000'000, 300'000'000));
+       return examine(simulated, clock, {},
+                      wrap_in<paused_host>(&clock, 4'000'000'000, 300'000'000));
      }},
 };
 

@@ -20,13 +20,14 @@ constexpr std::int64_t second = 1'000'000'000;
 /// What a device sends in so many seconds that is asked who it is, and started.
 std::string bytes_of(std::initializer_list<std::string_view> faults, std::int64_t seconds,
                      const sim::device_options& options = {}) {
-  sim::device twin(sim::built_in_world(), options, faults_of(faults));
+  sim::device simulated(sim::built_in_world(), options, faults_of(faults));
   std::string all;
   std::array<std::uint8_t, 4096> buffer{};
-  twin.write(encode(command::device_info), 1);
+  simulated.write(encode(command::device_info), 1);
   for (std::int64_t now = 1; now < seconds * second; now += 10'000'000) {
-    if (now > second / 2 && now <= second / 2 + 10'000'000) twin.write(encode(command::start), now);
-    while (const std::size_t count = twin.read(buffer, now)) {
+    if (now > second / 2 && now <= second / 2 + 10'000'000)
+      simulated.write(encode(command::start), now);
+    while (const std::size_t count = simulated.read(buffer, now)) {
       all.append(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(count));
     }
   }

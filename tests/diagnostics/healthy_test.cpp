@@ -145,14 +145,15 @@ TEST(Settings, UnsteadyMotor_IsFound) {
     options.scanner.seed = seed;
     options.motor_drift_ppm = 100'000;
     options.motor_drift_period_ns = 1'000'000'000'000;
-    sim::device twin(sim::built_in_world(), options);
+    sim::device simulated(sim::built_in_world(), options);
     sim::virtual_clock clock;
     diagnostic_options how;
     double true_hz = 0.0;
     how.on_stage = [&](const stage_report& report) {
-      if (report.stage == diagnostic_stage::motor) true_hz = twin.motor_mhz(clock.now_ns()) / 1e3;
+      if (report.stage == diagnostic_stage::motor)
+        true_hz = simulated.motor_mhz(clock.now_ns()) / 1e3;
     };
-    const examined done = examine(twin, clock, how);
+    const examined done = examine(simulated, clock, how);
     const double off_ratio = std::abs(true_hz / 7.0 - 1.0);
     if (off_ratio > 0.055 && off_ratio < 0.065) continue;  // both results are possible
     EXPECT_EQ(done.diagnoses(), off_ratio > 0.06 ? "frequency_off" : "") << true_hz << done;
@@ -169,7 +170,7 @@ TEST(Settings, DefectiveDeviceThatDoesNotStart) {
   EXPECT_EQ(examine(options).diagnoses(), "health_error");
 }
 
-// If there are no frames at the first baud rate, others are tried.
+// If there are no packets at the first baud rate, others are tried.
 TEST(Settings, OtherBaudRate_IsFound) {
   sim::virtual_clock clock;
   const auto garbled = faults_of({"baud", "scanning"});
@@ -193,11 +194,11 @@ TEST(Settings, OtherBaudRate_IsFound) {
 }
 
 TEST(Settings, Cancellation_StopsTheMotor) {
-  sim::device twin(sim::built_in_world(), {});
+  sim::device simulated(sim::built_in_world(), {});
   sim::virtual_clock clock;
   diagnostic_options how;
   how.is_cancelled = [&] { return clock.now_ns() > 4'000'000'000; };
-  const examined done = examine(twin, clock, how);
+  const examined done = examine(simulated, clock, how);
   EXPECT_LT(clock.now_ns(), 5'000'000'000);
   EXPECT_FALSE(done.motor_turns);
 }

@@ -33,10 +33,10 @@ double number_of(const examined& done, diagnostic_stage where, std::string_view 
 TEST(HostPause, IsNotAFaultOfTheLidar) {
   for (const std::int64_t pause_ms : {50, 300, 1000}) {
     for (std::int64_t at_ms = 350; at_ms < 9'000; at_ms += 331) {
-      sim::device twin(sim::built_in_world(), {});
+      sim::device simulated(sim::built_in_world(), {});
       sim::virtual_clock clock;
       const examined done =
-          examine(twin, clock, {}, wrap_in<paused_host>(&clock, at_ms * ms, pause_ms * ms));
+          examine(simulated, clock, {}, wrap_in<paused_host>(&clock, at_ms * ms, pause_ms * ms));
       const std::string found = done.diagnoses();
       if (pause_ms == 50) {
         EXPECT_EQ(found, "") << at_ms << done;
@@ -52,10 +52,10 @@ TEST(HostPause, IsNotAFaultOfTheLidar) {
 
 TEST(HostPause, LongPauseDuringTheScan_IsReported) {
   for (const std::int64_t pause_ms : {300, 1000}) {
-    sim::device twin(sim::built_in_world(), {});
+    sim::device simulated(sim::built_in_world(), {});
     sim::virtual_clock clock;
     const examined done =
-        examine(twin, clock, {}, wrap_in<paused_host>(&clock, 5'000 * ms, pause_ms * ms));
+        examine(simulated, clock, {}, wrap_in<paused_host>(&clock, 5'000 * ms, pause_ms * ms));
     EXPECT_EQ(done.diagnoses(), "host_busy");
     EXPECT_FALSE(done.fails());
     const double told = number_of(done, diagnostic_stage::stream, "longest_host_pause_ms");

@@ -9,7 +9,7 @@
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/transport/serial_port.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 #include "transport/port_io.hpp"
 #include "transport/pty.hpp"
 
@@ -29,8 +29,8 @@ result<device_information> probe_at(const std::string& path, std::chrono::millis
 result<device_information> probe_device(const sim::device_options& options,
                                         const std::vector<sim::fault>& faults = {}) {
   virtual_bench bench(options, faults);
-  virtual_line line(bench);
-  return probe(line, in(line, 20s));
+  virtual_transport to_device(bench);
+  return probe(to_device, in(to_device, 20s));
 }
 
 /// A device that sends the same text again and again, in virtual time.
@@ -76,16 +76,16 @@ TEST(Probe, G4_IsLeftIdle) {
   const auto found = probe_at(served->path());
   ASSERT_TRUE(found) << found.error().message();
   EXPECT_EQ(found->serial_number(), "2021101000070073");
-  served->with([](sim::device& twin, std::int64_t) { EXPECT_FALSE(twin.is_scanning()); });
+  served->with([](sim::device& simulated, std::int64_t) { EXPECT_FALSE(simulated.is_scanning()); });
 }
 
 TEST(Probe, SendsOnlyStopsAndQueries) {
   auto served = sim::background_pty::open(sim::device(sim::built_in_world()));
   ASSERT_TRUE(served);
   ASSERT_TRUE(probe_at(served->path()));
-  served->with([](sim::device& twin, std::int64_t) {
-    EXPECT_FALSE(twin.log().empty());
-    for (const sim::asked& one : twin.log()) {
+  served->with([](sim::device& simulated, std::int64_t) {
+    EXPECT_FALSE(simulated.log().empty());
+    for (const sim::asked& one : simulated.log()) {
       EXPECT_TRUE(one.code == 0x00 || one.code == 0x65 || one.code == 0x90) << int{one.code};
     }
   });

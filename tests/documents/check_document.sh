@@ -53,7 +53,7 @@ await() {
 # A simulated G4 at $g4, started at its first use.
 need_g4() {
   if [[ -e $g4 ]]; then return 0; fi
-  "$G4_DUMP" sim --link "$g4" >/dev/null 2>"$scratch/twin" &
+  "$G4_DUMP" sim --link "$g4" >/dev/null 2>"$scratch/simulator" &
   await "$g4" || { echo "g4-dump sim created no device" >&2; exit 1; }
 }
 

@@ -17,7 +17,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "support/measured_truth.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "g4lidar/lidar.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

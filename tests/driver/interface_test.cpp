@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "g4lidar/g4lidar.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {
@@ -42,7 +42,7 @@ TEST(Lidar, GivesWholeScans) {
   }
   const auto counts = lidar->counts();
   EXPECT_EQ(counts.scans, 100U);
-  EXPECT_EQ(counts.bytes, counts.stream.frame_bytes + counts.stream.skipped_bytes() + counts.held);
+  EXPECT_EQ(counts.bytes, counts.stream.parsed_bytes + counts.stream.skipped_bytes() + counts.held);
   EXPECT_TRUE(lidar->stop());
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }

@@ -9,7 +9,7 @@
 #include "core/saturating.hpp"
 #include "driver/setup_sequence.hpp"
 #include "g4lidar/lidar.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {
@@ -100,11 +100,11 @@ TEST(Losses, FileOfBytes_IsDeliveredCompletely) {
   std::vector<std::uint8_t> stream;
   {
     const std::string path = testing::TempDir() + "g4lidar-losses.bin";
-    sim::device twin(sim::built_in_world());
-    twin.write(encode(command::start), 0);
+    sim::device simulated(sim::built_in_world());
+    simulated.write(encode(command::start), 0);
     std::vector<std::uint8_t> buffer(4096);
     for (std::int64_t now_ns = 0; now_ns < 3 * second; now_ns += ms) {
-      const std::size_t count = twin.read(buffer, now_ns);
+      const std::size_t count = simulated.read(buffer, now_ns);
       stream.insert(stream.end(), buffer.begin(), buffer.begin() + static_cast<long>(count));
     }
     std::FILE* const file = std::fopen(path.c_str(), "wb");

@@ -7,7 +7,7 @@
 
 #include "g4lidar/lidar.hpp"
 #include "support/allocation_count.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

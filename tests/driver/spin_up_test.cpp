@@ -21,8 +21,8 @@ using kind = lidar_event::kind;
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t second = 1'000 * ms;
 
-std::int64_t starts_in(const sim::device& twin) {
-  return std::ranges::count(twin.log(), 0x60, [](const sim::asked& a) { return int{a.code}; });
+std::int64_t starts_in(const sim::device& simulated) {
+  return std::ranges::count(simulated.log(), 0x60, [](const sim::asked& a) { return int{a.code}; });
 }
 
 /// The times at which a device was open, and its scan was started.
@@ -31,17 +31,17 @@ struct begun {
   std::int64_t started_ns = 0;
 };
 begun begin_on(const sim::device_options& options) {
-  sim::device twin(sim::built_in_world(), options);
+  sim::device simulated(sim::built_in_world(), options);
   sim::virtual_clock clock;
   begun times;
-  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock));
+  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock));
   EXPECT_TRUE(lidar);
   if (!lidar) return times;
   times.opened_ns = clock.now_ns();
   const auto started = lidar->start();
   EXPECT_TRUE(started);
   times.started_ns = clock.now_ns() - times.opened_ns;
-  EXPECT_EQ(starts_in(twin), 1);
+  EXPECT_EQ(starts_in(simulated), 1);
   EXPECT_EQ(lidar->counts().command_retries, 0U);
   return times;
 }
@@ -71,9 +71,9 @@ class spin_up : public testing::TestWithParam<std::int64_t> {};
 TEST_P(spin_up, IsWaitedForWithOneStartCommand) {
   sim::device_options device;
   device.silence_ns = GetParam() * ms;
-  sim::device twin(sim::built_in_world(), device);
+  sim::device simulated(sim::built_in_world(), device);
   sim::virtual_clock clock;
-  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock));
+  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock));
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   const std::int64_t started_ns = clock.now_ns();
@@ -82,7 +82,7 @@ TEST_P(spin_up, IsWaitedForWithOneStartCommand) {
   ASSERT_TRUE(first);
   // At 7 Hz the first whole revolution ends at most two turns after the first packet.
   EXPECT_LE(clock.now_ns() - started_ns, std::max(GetParam() * ms, 600 * ms) + 300 * ms);
-  EXPECT_EQ(starts_in(twin), 1);
+  EXPECT_EQ(starts_in(simulated), 1);
   std::vector<kind> events;
   while (const auto event = lidar->next_event()) events.push_back(event->what);
   const bool is_reported = GetParam() > 500;
@@ -95,9 +95,9 @@ INSTANTIATE_TEST_SUITE_P(OfMilliseconds, spin_up, testing::Values(0, 300, 1500, 
 std::int64_t given_up_ns(const sim::fault& fault, std::int64_t silence_ns) {
   sim::device_options device;
   device.silence_ns = silence_ns;
-  sim::device twin(sim::built_in_world(), device, {&fault, 1});
+  sim::device simulated(sim::built_in_world(), device, {&fault, 1});
   sim::virtual_clock clock;
-  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock));
+  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock));
   if (!lidar || !lidar->start()) return 0;
   const std::int64_t started_ns = clock.now_ns();
   while (clock.now_ns() < started_ns + 100 * second) {
@@ -128,11 +128,11 @@ TEST(SpinUp, SlowDeviceUnderUnknownProtection_StartsAfterEachReconnect) {
   options.silence_ns = 1900 * ms;
   options.initial.protection = power_down_protection::on;
   const sim::fault unplug = sim::make_fault(sim::fault_kind::unplug, 20 * second, 500 * ms);
-  sim::device twin(sim::built_in_world(), options, {&unplug, 1});
+  sim::device simulated(sim::built_in_world(), options, {&unplug, 1});
   sim::virtual_clock clock;
   lidar_options wanted;
   wanted.reconnect = true;
-  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock), wanted);
+  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock), wanted);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   std::int64_t last_ns = 0;

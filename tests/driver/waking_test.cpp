@@ -6,7 +6,7 @@
 #include <chrono>
 #include <vector>
 
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

@@ -86,7 +86,7 @@ void test_never_360() {
   }
 }
 
-void test_frames() {
+void test_coordinate_frames() {
   point p;
   p.angle_deg = unknown(30.0F);
   p.range_mm = unknown(2000.0F);
@@ -116,7 +116,7 @@ void test_points() {
   test_suspect();
   test_longest_packet();
   test_never_360();
-  test_frames();
+  test_coordinate_frames();
 }
 
 }  // namespace self_test

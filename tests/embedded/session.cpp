@@ -29,14 +29,14 @@ class dialogue {
     return sent && *sent == std::array<std::uint8_t, 2>{0xA5, code};
   }
   [[nodiscard]] bool sends_nothing() { return !channel_.to_send(); }
-  void hears(bytes frame) {
+  void hears(bytes response) {
     now_ns_ += ms;
-    if (const auto reply = response_view::from(unknown(frame)))
+    if (const auto reply = response_view::from(unknown(response)))
       channel_.take(event(*reply), now_ns_);
   }
   void hears_byte(std::uint8_t value) {
-    const std::array<std::uint8_t, 8> frame{0xA5, 0x5A, 1, 0, 0, 0, 4, value};
-    hears(frame);
+    const std::array<std::uint8_t, 8> response{0xA5, 0x5A, 1, 0, 0, 0, 4, value};
+    hears(response);
   }
   void waits() {
     now_ns_ = channel_.next_look_ns();

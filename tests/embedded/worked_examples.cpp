@@ -22,10 +22,10 @@ constexpr std::array<std::uint8_t, 12> zero_packet{0xAA, 0x55, 0x01, 0x01, 0x53,
                                                    0x53, 0xAE, 0xAB, 0x54, 0x00, 0x00};
 
 void test_zero_packet() {
-  const bytes frame = unknown(bytes(zero_packet));
-  check(check_packet(frame) == frame_check{frame_state::valid, 12});
-  check(packet_checksum(frame) == 0x54AB);
-  const auto packet = packet_view::from(frame);
+  const bytes data = unknown(bytes(zero_packet));
+  check(check_packet(data) == wire_check{wire_state::valid, 12});
+  check(packet_checksum(data) == 0x54AB);
+  const auto packet = packet_view::from(data);
   if (!check(packet.has_value())) return;
   check(packet->is_zero());
   check(packet->reported_frequency_dhz() == 0);
@@ -99,8 +99,8 @@ void test_frequency() {
 }
 
 template <std::size_t Size>
-std::optional<response_view> reply(const std::array<std::uint8_t, Size>& frame) {
-  return response_view::from(unknown(bytes(frame)));
+std::optional<response_view> reply(const std::array<std::uint8_t, Size>& data) {
+  return response_view::from(unknown(bytes(data)));
 }
 
 void test_replies() {
@@ -109,28 +109,28 @@ void test_replies() {
   check(started && started->kind() == response_kind::scan_started);
   check(started && started->mode() == response_mode::continuous);
 
-  constexpr std::array<std::uint8_t, 27> info_frame{
+  constexpr std::array<std::uint8_t, 27> info_data{
       0xA5, 0x5A, 0x14, 0, 0, 0, 4, 5, 2, 3, 3, 2, 0, 2, 1, 1, 0, 1, 0, 0, 0, 0, 7, 0, 0, 7, 3};
-  const auto info_reply = reply(info_frame);
+  const auto info_reply = reply(info_data);
   const auto info = info_reply ? info_reply->as_device_info() : std::nullopt;
   check(info && info->model == model_g4);
   check(info && info->firmware_major == 3 && info->firmware_minor == 2 && info->hardware == 3);
   check(info && info->serial_number() == std::string_view("2021101000070073"));
   check(info_reply && info_reply->mode() == response_mode::single);
 
-  constexpr std::array<std::uint8_t, 10> health_frame{0xA5, 0x5A, 3, 0, 0, 0, 6, 2, 0x34, 0x12};
-  const auto health_reply = reply(health_frame);
+  constexpr std::array<std::uint8_t, 10> health_data{0xA5, 0x5A, 3, 0, 0, 0, 6, 2, 0x34, 0x12};
+  const auto health_reply = reply(health_data);
   const auto state = health_reply ? health_reply->as_health() : std::nullopt;
   check(state == health{health_status::error, 0x1234});
 
-  constexpr std::array<std::uint8_t, 8> byte_frame{0xA5, 0x5A, 1, 0, 0, 0, 4, 2};
-  const auto byte_reply = reply(byte_frame);
+  constexpr std::array<std::uint8_t, 8> byte_data{0xA5, 0x5A, 1, 0, 0, 0, 4, 2};
+  const auto byte_reply = reply(byte_data);
   check(byte_reply && byte_reply->as_byte() == 2);
   check(reply_byte<ranging_frequency>(unknown(std::uint8_t{2})) == ranging_frequency::khz_9);
 
-  constexpr std::array<std::uint8_t, 11> frequency_frame{0xA5, 0x5A, 4, 0,    0, 0,
-                                                         4,    0xBC, 2, 0x00, 0};
-  const auto frequency_reply = reply(frequency_frame);
+  constexpr std::array<std::uint8_t, 11> frequency_data{0xA5, 0x5A, 4, 0,    0, 0,
+                                                        4,    0xBC, 2, 0x00, 0};
+  const auto frequency_reply = reply(frequency_data);
   check(frequency_reply && frequency_reply->as_frequency_chz() == 700);
 }
 

@@ -25,13 +25,13 @@ constexpr std::int64_t second = 1'000'000'000;
 
 struct bench {
   explicit bench(const faults& wrong = {}, const sim::device_options& options = {})
-      : twin(sim::built_in_world(), options, wrong) {}
+      : device(sim::built_in_world(), options, wrong) {}
 
   [[nodiscard]] result<lidar> open(const lidar_options& options = {}) {
-    return lidar::open(std::make_unique<sim::virtual_connector>(twin, clock), options);
+    return lidar::open(std::make_unique<sim::virtual_connector>(device, clock), options);
   }
 
-  sim::device twin;
+  sim::device device;
   sim::virtual_clock clock;
 };
 
@@ -145,9 +145,9 @@ trouble frequency_too_high() {
 trouble refused(const request& wanted) {
   bench on;
   return once_open(on, [&](lidar& device) {
-    const auto sent = on.twin.log().size();
+    const auto sent = on.device.log().size();
     auto why = error_in(device.ask(wanted));
-    EXPECT_EQ(on.twin.log().size(), sent);
+    EXPECT_EQ(on.device.log().size(), sent);
     EXPECT_TRUE(device.start());
     return why;
   });
@@ -186,14 +186,14 @@ trouble unplugged_with_reconnecting(Call call) {
 trouble unplugged_when_idle() {
   bench on;
   return once_open(on, [&](lidar& device) {
-    on.twin.unplug(on.clock.now_ns());
+    on.device.unplug(on.clock.now_ns());
     return error_in(device.ask(requests::health()));
   });
 }
 
 trouble not_plugged() {
   bench on;
-  on.twin.unplug(0);
+  on.device.unplug(0);
   return error_in(on.open());
 }
 

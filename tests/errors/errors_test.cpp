@@ -28,16 +28,16 @@ class Trouble : public testing::TestWithParam<scenario> {};
 
 TEST_P(Trouble, HasTheExpectedContents) {
   const scenario& of = GetParam();
-  const auto told = of.bring_about();
-  ASSERT_TRUE(told) << "nothing went wrong";
-  const std::string message = told->message();
+  const auto reported = of.bring_about();
+  ASSERT_TRUE(reported) << "nothing went wrong";
+  const std::string message = reported->message();
   SCOPED_TRACE(message);
-  EXPECT_EQ(name_of(told->code()), name_of(of.what));
-  EXPECT_EQ(name_of(told->doing()), name_of(of.doing));
-  EXPECT_EQ(told->is_fatal(), of.fatal);
-  EXPECT_NE(told->subject().find(of.subject), std::string_view::npos) << told->subject();
-  EXPECT_NE(message.find(told->subject()), std::string::npos);
-  EXPECT_TRUE(message.ends_with(told->advice()));
+  EXPECT_EQ(name_of(reported->code()), name_of(of.what));
+  EXPECT_EQ(name_of(reported->doing()), name_of(of.doing));
+  EXPECT_EQ(reported->is_fatal(), of.fatal);
+  EXPECT_NE(reported->subject().find(of.subject), std::string_view::npos) << reported->subject();
+  EXPECT_NE(message.find(reported->subject()), std::string::npos);
+  EXPECT_TRUE(message.ends_with(reported->advice()));
   EXPECT_TRUE(message.starts_with(name_of(of.doing)));
   RecordProperty("message", message);
 }

@@ -43,13 +43,13 @@ sim::device device_of(const story& of) {
 }
 
 std::vector<lidar_event> lived(const story& of) {
-  sim::device twin = device_of(of);
+  sim::device simulated = device_of(of);
   sim::virtual_clock clock;
   clock.advance_to(second);  // by then a scanning device has reached its speed
   lidar_options options;
   options.reconnect = true;
   if (of.asleep_ns > 0) options.protection = power_down_protection::on;
-  auto device = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock), options);
+  auto device = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock), options);
   EXPECT_TRUE(device);
   if (!device) return {};
   static_cast<void>(device->start());
@@ -108,25 +108,25 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& of) { return of.param.name; });
 
 TEST(Events, OldestAreDroppedAndThatIsReported) {
-  sim::device twin(sim::built_in_world());
+  sim::device simulated(sim::built_in_world());
   sim::virtual_clock clock;
   lidar_options options;
   options.reconnect = true;
-  auto device = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock), options);
+  auto device = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock), options);
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
   for (int replug = 0; replug < 20; ++replug) {
-    twin.unplug(clock.now_ns());
+    simulated.unplug(clock.now_ns());
     static_cast<void>(device->next_scan(100ms));
-    twin.replug(clock.now_ns());
+    simulated.replug(clock.now_ns());
     for (int tries = 0; tries < 10 && !device->next_scan(500ms); ++tries) {
     }
   }
-  std::vector<kind> told;
-  while (const auto event = device->next_event()) told.push_back(event->what);
-  ASSERT_EQ(told.size(), 33U);
-  EXPECT_EQ(told.front(), kind::overflow);
-  EXPECT_EQ(std::ranges::count(told, kind::overflow), 1);
+  std::vector<kind> reported;
+  while (const auto event = device->next_event()) reported.push_back(event->what);
+  ASSERT_EQ(reported.size(), 33U);
+  EXPECT_EQ(reported.front(), kind::overflow);
+  EXPECT_EQ(std::ranges::count(reported, kind::overflow), 1);
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ TEST(GivenUp, GetsAStopCommand) {
   constexpr std::int64_t second = 1'000'000'000;
   // The connection from the device is broken; the one to the device is not.
   const std::array faults{sim::make_fault(sim::fault_kind::stall, 4 * second)};
-  sim::device twin(sim::built_in_world(), {}, faults);
+  sim::device simulated(sim::built_in_world(), {}, faults);
   sim::virtual_clock clock;
-  auto device = lidar::open(std::make_unique<sim::virtual_connector>(twin, clock));
+  auto device = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock));
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
   result<scan> got = device->next_scan(500ms);
@@ -30,9 +30,9 @@ TEST(GivenUp, GetsAStopCommand) {
   }
   ASSERT_FALSE(got);
   EXPECT_EQ(got.error().code(), problem::stalled);
-  static_cast<void>(twin.available(clock.now_ns() + second));
-  EXPECT_FALSE(twin.is_scanning());
-  EXPECT_FALSE(twin.motor_turns());
+  static_cast<void>(simulated.available(clock.now_ns() + second));
+  EXPECT_FALSE(simulated.is_scanning());
+  EXPECT_FALSE(simulated.motor_turns());
 }
 
 }  // namespace

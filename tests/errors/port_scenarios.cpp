@@ -50,17 +50,17 @@ trouble as_nobody(Fails fails) {
   if (child == 0) {
     constexpr uid_t nobody = 65534;
     const bool dropped = ::setgid(nobody) == 0 && ::setuid(nobody) == 0;
-    if (const trouble told = dropped ? fails() : std::nullopt) {
-      static_cast<void>(!::write(pipe[1], &*told, sizeof *told));
+    if (const trouble reported = dropped ? fails() : std::nullopt) {
+      static_cast<void>(!::write(pipe[1], &*reported, sizeof *reported));
     }
     ::_exit(0);
   }
   ::close(pipe[1]);
-  error told(task::finding, problem::system, "no word from the other user");
-  const bool has_told = ::read(pipe[0], &told, sizeof told) == sizeof told;
+  error reported(task::finding, problem::system, "no word from the other user");
+  const bool has_told = ::read(pipe[0], &reported, sizeof reported) == sizeof reported;
   ::close(pipe[0]);
   ::waitpid(child, nullptr, 0);
-  return has_told ? trouble(told) : std::nullopt;
+  return has_told ? trouble(reported) : std::nullopt;
 }
 static_assert(std::is_trivially_copyable_v<error>);
 
@@ -133,12 +133,12 @@ trouble bytes_stolen() {
     errno = EAGAIN;
     return -1;
   };
-  const auto line = open_serial_line(port.path(), {}, calls);
-  if (!line) return line.error();
+  const auto opened = open_serial_transport(port.path(), {}, calls);
+  if (!opened) return opened.error();
   std::array<std::uint8_t, 64> buffer{};
   for (int burst = 0; burst < 10; ++burst) {
     port.send("a burst");
-    const auto got = (*line)->read(buffer, (*line)->now_ns() + 1'000'000);
+    const auto got = (*opened)->read(buffer, (*opened)->now_ns() + 1'000'000);
     if (!got) return got.error();
   }
   return std::nullopt;
@@ -150,10 +150,10 @@ trouble settings_changed() {
   auto device = lidar::open(port->path());
   if (!device) return device.error();
   const int other = ::open(port->path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-  termios line{};
-  ::tcgetattr(other, &line);
-  line.c_lflag |= ICANON;
-  ::tcsetattr(other, TCSANOW, &line);
+  termios settings{};
+  ::tcgetattr(other, &settings);
+  settings.c_lflag |= ICANON;
+  ::tcsetattr(other, TCSANOW, &settings);
   ::close(other);
   return error_in(device->ask(requests::health()));
 }
@@ -165,7 +165,7 @@ trouble a_file_as_port() {
   return opening(file.path());
 }
 
-/// A bridge that takes another rate than it is told.
+/// A bridge that takes another rate than it is reported.
 trouble slower_bridge() {
   const pty port;
   system_calls calls = real_system_calls();
@@ -174,7 +174,7 @@ trouble slower_bridge() {
     ::cfsetspeed(out, B115200);
     return got;
   };
-  return error_in(open_serial_line(port.path(), {}, calls));
+  return error_in(open_serial_transport(port.path(), {}, calls));
 }
 
 trouble too_many_open_files() {
@@ -184,16 +184,16 @@ trouble too_many_open_files() {
     errno = EMFILE;
     return -1;
   };
-  return error_in(open_serial_line(port.path(), {}, calls));
+  return error_in(open_serial_transport(port.path(), {}, calls));
 }
 
 trouble pulled_out() {
   pty port;
-  const auto line = serial_port::open(port.path());
-  if (!line) return line.error();
+  const auto opened = serial_port::open(port.path());
+  if (!opened) return opened.error();
   port.unplug();
   std::array<std::uint8_t, 64> buffer{};
-  return error_in((*line)->read(buffer, (*line)->now_ns() + 10'000'000'000));
+  return error_in((*opened)->read(buffer, (*opened)->now_ns() + 10'000'000'000));
 }
 
 // ---- connections and files ----------------------------------------------------------------------
@@ -206,12 +206,12 @@ trouble nobody_listens() {
 
 trouble bridge_closes() {
   listener bridge;
-  const auto line = tcp_port::open(bridge.address());
-  if (!line) return line.error();
+  const auto opened = tcp_port::open(bridge.address());
+  if (!opened) return opened.error();
   bridge.accept();
   bridge.hang_up();
   std::array<std::uint8_t, 64> buffer{};
-  return error_in((*line)->read(buffer, (*line)->now_ns() + 10'000'000'000));
+  return error_in((*opened)->read(buffer, (*opened)->now_ns() + 10'000'000'000));
 }
 
 trouble recording_ends() {

@@ -16,16 +16,16 @@ foreach(header IN LISTS headers)
   file(WRITE "${SCRATCH}/source.cpp" "#include \"${header}\"\n")
   execute_process(
     COMMAND "${COMPILER}" -std=c++17 -fsyntax-only "-I${INCLUDE}" -isystem "${EIGEN}" "${SCRATCH}/source.cpp"
-    RESULT_VARIABLE result ERROR_VARIABLE said
+    RESULT_VARIABLE result ERROR_VARIABLE output
   )
-  string(REPLACE ";" " " lines "${said}")
+  string(REPLACE ";" " " lines "${output}")
   string(REPLACE "\n" ";" lines "${lines}")
   list(FILTER lines INCLUDE REGEX "error: ")
   list(LENGTH lines errors)
   if(result EQUAL 0 OR NOT errors EQUAL 2
      OR NOT lines MATCHES "^[^;]*libg4lidar needs C\\+\\+20: compile with[^;]*;[^;]*libg4lidar-needs-c\\+\\+20"
   )
-    message(FATAL_ERROR "${header} as C++17: expected the sentence and no further error, but:\n${said}")
+    message(FATAL_ERROR "${header} as C++17: expected the sentence and no further error, but:\n${output}")
   endif()
 endforeach()
 message("${count} headers, each with the sentence")

@@ -101,27 +101,27 @@ TEST(ParserProperty, DeliversUndamagedPackets) {
     log.feed(parser, data.size());
     log.finish(parser);
     RC_ASSERT(test::difference(log, wanted) == "");
-    for (const test::intact_frame& frame : stream.intact_frames()) {
+    for (const test::intact_unit& unit : stream.intact_units()) {
       ++intact;
-      // The stretch that contains the frame's first byte: the frame itself, or an earlier valid
+      // The stretch that contains the unit's first byte: the unit itself, or an earlier valid
       // one.
       const auto holder = std::find_if(
           log.stretches().begin(), log.stretches().end(),
-          [&](const reference::stretch& s) { return s.offset + s.size > frame.offset; });
+          [&](const reference::stretch& s) { return s.offset + s.size > unit.offset; });
       RC_ASSERT(holder != log.stretches().end());
       RC_ASSERT(holder->what == reference::kind::packet ||
                 holder->what == reference::kind::response);
-      if (holder->offset == frame.offset) {
-        RC_ASSERT(holder->size == frame.size);
+      if (holder->offset == unit.offset) {
+        RC_ASSERT(holder->size == unit.size);
       } else {
-        RC_ASSERT(reference::start_at(data, holder->offset).state == reference::start::frame);
+        RC_ASSERT(reference::start_at(data, holder->offset).state == reference::start::valid);
         ++overlapped;
       }
     }
   });
   RecordProperty("intact", std::to_string(intact));
   RecordProperty("overlapped", std::to_string(overlapped));
-  std::cout << intact << " untouched frames, " << overlapped
+  std::cout << intact << " untouched units, " << overlapped
             << " of them overlapped by an earlier valid one\n";
   EXPECT_GT(intact, 1000U);
   EXPECT_GT(overlapped, 0U) << "the generator makes none: the exception is not tested";

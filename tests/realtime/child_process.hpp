@@ -23,13 +23,13 @@ namespace g4lidar::test {
 
 class child_process {
  public:
-  /// Its standard output and error go to the file `said`.
-  child_process(std::vector<std::string> words, std::string said) : said_(std::move(said)) {
+  /// Its standard output and error go to the file `output`.
+  child_process(std::vector<std::string> words, std::string output) : output_(std::move(output)) {
     posix_spawn_file_actions_t files;
     ::posix_spawn_file_actions_init(&files);
     constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
     ::posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&files, 1, said_.c_str(), flags, 0600);
+    ::posix_spawn_file_actions_addopen(&files, 1, output_.c_str(), flags, 0600);
     ::posix_spawn_file_actions_adddup2(&files, 1, 2);
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
@@ -65,14 +65,14 @@ class child_process {
   }
 
   /// Its output so far.
-  [[nodiscard]] std::string said() const {
-    std::ifstream file(said_);
+  [[nodiscard]] std::string output() const {
+    std::ifstream file(output_);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
   /// Whether its output contains this within 30 s.
-  [[nodiscard]] bool says(const std::string& text) const {
+  [[nodiscard]] bool prints(const std::string& text) const {
     for (int i = 0; i < 3000; ++i) {
-      if (said().find(text) != std::string::npos) return true;
+      if (output().find(text) != std::string::npos) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return false;
@@ -80,7 +80,7 @@ class child_process {
 
  private:
   pid_t pid_ = -1;
-  std::string said_;
+  std::string output_;
 };
 
 }  // namespace g4lidar::test

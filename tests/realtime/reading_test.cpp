@@ -13,16 +13,16 @@
 #include <utility>
 #include <vector>
 
-#include "realtime/twin_on_pty.hpp"
+#include "realtime/device_on_pty.hpp"
 #include "support/test_scale.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
+using test::device_on_pty;
 using test::quick_g4;
 using test::readings;
-using test::twin_on_pty;
 using clock = std::chrono::steady_clock;
 
 /// Opened and started.
@@ -33,8 +33,8 @@ result<lidar> started(const lidar_options& options) {
   return device;
 }
 
-result<lidar> started(const twin_on_pty& twin) {
-  return started(test::patient_options(twin.path()));
+result<lidar> started(const device_on_pty& simulated) {
+  return started(test::patient_options(simulated.path()));
 }
 
 /// The whole scans among the next `count` scans; calls `between` after each.
@@ -68,16 +68,16 @@ void expect_nothing_lost(const lidar& device) {
 // sleeps wait for it.
 TEST(RealTime, SlowestRevolutions_AreKeptByTheSystem) {
   test::expect_three_of_four([] {
-    twin_on_pty twin;
-    auto wanted = test::patient_options(twin.path());
+    device_on_pty simulated;
+    auto wanted = test::patient_options(simulated.path());
     wanted.ranging = ranging_frequency::khz_9;
     wanted.frequency = scan_frequency{500};
     auto device = started(wanted);
     EXPECT_TRUE(device) << device.error().message();
     const auto scans = device ? whole_scans(*device, 25) : std::vector<readings>{};
-    if (twin.bytes_lost() > 0) return false;
+    if (simulated.bytes_lost() > 0) return false;
     if (device) expect_nothing_lost(*device);
-    const auto sent = test::revolutions_of(twin.take_truth());
+    const auto sent = test::revolutions_of(simulated.take_truth());
     EXPECT_GE(scans.size(), 24U);
     EXPECT_EQ(test::found_in_order(scans, sent), scans.size());
     return true;
@@ -89,26 +89,26 @@ TEST(RealTime, ReadsScansWithoutLoss) {
   test::expect_three_of_four([] {
     auto options = quick_g4();
     options.truth_capacity = 1'000'000;
-    twin_on_pty twin(options);
-    auto wanted = test::patient_options(twin.path());
+    device_on_pty simulated(options);
+    auto wanted = test::patient_options(simulated.path());
     wanted.ranging = ranging_frequency::khz_4;
     wanted.frequency = scan_frequency{1200};
     auto device = started(wanted);
     EXPECT_TRUE(device) << device.error().message();
     const int count = std::min(test::scaled(40), 1000);
     const auto scans = device ? whole_scans(*device, count) : std::vector<readings>{};
-    if (twin.bytes_lost() > 0) return false;
+    if (simulated.bytes_lost() > 0) return false;
     EXPECT_EQ(scans.size(), static_cast<std::size_t>(count));
     if (scans.empty()) return true;
     expect_nothing_lost(*device);
     EXPECT_EQ(device->counts().scans, static_cast<std::uint64_t>(count));
     // In order, without a gap.
-    const auto sent = test::revolutions_of(twin.take_truth());
+    const auto sent = test::revolutions_of(simulated.take_truth());
     const auto first = std::find(sent.begin(), sent.end(), scans.front());
     EXPECT_GE(sent.end() - first, static_cast<std::ptrdiff_t>(scans.size()));
     EXPECT_EQ(std::search(first, sent.end(), scans.begin(), scans.end()), first);
     EXPECT_TRUE(device->stop());
-    EXPECT_TRUE(twin.becomes_idle_and_silent());
+    EXPECT_TRUE(simulated.becomes_idle_and_silent());
     return true;
   });
 }
@@ -116,8 +116,8 @@ TEST(RealTime, ReadsScansWithoutLoss) {
 // A pty holds about 16 KiB for a reader that pauses, 0.8 s of the bytes of a G4.
 TEST(RealTime, ReaderThatPauses_LosesNothing) {
   test::expect_three_of_four([] {
-    twin_on_pty twin;
-    auto device = started(twin);
+    device_on_pty simulated;
+    auto device = started(simulated);
     EXPECT_TRUE(device) << device.error().message();
     if (!device) return true;
     for (int i = 0; i < 2; ++i) {
@@ -125,7 +125,7 @@ TEST(RealTime, ReaderThatPauses_LosesNothing) {
       std::this_thread::sleep_for(400ms);
     }
     const auto scans = whole_scans(*device, 7);
-    if (twin.bytes_lost() > 0) return false;
+    if (simulated.bytes_lost() > 0) return false;
     EXPECT_EQ(scans.size(), 7U);
     expect_nothing_lost(*device);
     return true;
@@ -146,14 +146,14 @@ std::size_t samples_until(const readings& last, const std::vector<sim::sent_samp
 /// The number of sent samples that are neither points nor counted as lost, in turns, after a reader
 /// paused for longer than the buffer lasts.
 double turns_not_told() {
-  twin_on_pty twin;
-  auto device = started(twin);
+  device_on_pty simulated;
+  auto device = started(simulated);
   EXPECT_TRUE(device) << device.error().message();
   if (!device) return 0.0;
   std::vector<readings> scans;
   for (int i = 0; i < 3; ++i) {
-    const std::uint64_t before = twin.bytes_lost();
-    while (i > 0 && twin.bytes_lost() < before + 3'000) std::this_thread::sleep_for(1ms);
+    const std::uint64_t before = simulated.bytes_lost();
+    while (i > 0 && simulated.bytes_lost() < before + 3'000) std::this_thread::sleep_for(1ms);
     const auto more = whole_scans(*device, 10);
     scans.insert(scans.end(), more.begin(), more.end());
   }
@@ -164,7 +164,7 @@ double turns_not_told() {
   EXPECT_FALSE(scans.empty());
   if (scans.empty()) return 0.0;
 
-  const auto truth = twin.take_truth();
+  const auto truth = simulated.take_truth();
   EXPECT_EQ(test::found_in_order(scans, test::revolutions_of(truth)), scans.size());
   const double told = static_cast<double>(counts.stream.points + counts.samples_lost);
   const double missing = static_cast<double>(samples_until(scans.back(), truth)) - told;
@@ -183,14 +183,14 @@ TEST(RealTime, SlowReader_GetsTheNumberOfLostScans) {
 }
 
 TEST(RealTime, ReaderSlowerThanTheConnection_GetsNoWrongScan) {
-  twin_on_pty twin;
-  auto device = started(twin);
+  device_on_pty simulated;
+  auto device = started(simulated);
   ASSERT_TRUE(device) << device.error().message();
   const auto scans = whole_scans(*device, 8, [] { std::this_thread::sleep_for(600ms); });
-  EXPECT_GT(twin.bytes_lost(), 0U) << "or it was none";
+  EXPECT_GT(simulated.bytes_lost(), 0U) << "or it was none";
   EXPECT_GE(scans.size(), 3U);
   ASSERT_TRUE(device->stop());
-  const auto sent = test::revolutions_of(twin.take_truth());
+  const auto sent = test::revolutions_of(simulated.take_truth());
   EXPECT_EQ(test::found_in_order(scans, sent), scans.size());
   test::expect_identity(device->counts());
 }
@@ -213,9 +213,9 @@ TEST(RealTime, ManySignals_LoseNothing) {
     }
   });
   test::expect_three_of_four([&] {
-    twin_on_pty twin;
+    device_on_pty simulated;
     const int before = sent_signals;
-    auto device = started(twin);
+    auto device = started(simulated);
     EXPECT_TRUE(device) << device.error().message();
     if (!device) return true;
     std::vector<readings> scans;
@@ -224,11 +224,11 @@ TEST(RealTime, ManySignals_LoseNothing) {
       for (auto& scan : whole_scans(*device, 1)) scans.push_back(std::move(scan));
       ++wanted;
     }
-    if (twin.bytes_lost() > 0) return false;
+    if (simulated.bytes_lost() > 0) return false;
     EXPECT_EQ(scans.size(), wanted);
     expect_nothing_lost(*device);
     EXPECT_EQ(device->counts().command_retries, 0U);
-    const auto sent = test::revolutions_of(twin.take_truth());
+    const auto sent = test::revolutions_of(simulated.take_truth());
     EXPECT_EQ(test::found_in_order(scans, sent), scans.size());
     EXPECT_TRUE(device->stop());
     return true;
@@ -240,39 +240,39 @@ TEST(RealTime, ManySignals_LoseNothing) {
 
 /// The number of scans that differ from those of the simulator: 0 if every scan was sent by it, in
 /// order.
-std::size_t read_foreign(twin_on_pty& twin, char last_digit) {
-  auto device = started(twin);
+std::size_t read_foreign(device_on_pty& simulated, char last_digit) {
+  auto device = started(simulated);
   EXPECT_TRUE(device) << device.error().message();
   if (!device) return 0;
   EXPECT_EQ(device->information().serial_number().back(), last_digit);
   const auto scans = whole_scans(*device, 15);
-  if (twin.bytes_lost() == 0) {
+  if (simulated.bytes_lost() == 0) {
     EXPECT_EQ(scans.size(), 15U);
     expect_nothing_lost(*device);
   }
-  return scans.size() - test::found_in_order(scans, test::revolutions_of(twin.take_truth()));
+  return scans.size() - test::found_in_order(scans, test::revolutions_of(simulated.take_truth()));
 }
 
 TEST(RealTime, TwoLidars_AreNeverMixed) {
   test::expect_three_of_four([] {
     auto other = quick_g4(2);
     other.info.serial_digits.back() = '4';
-    twin_on_pty one_twin;
-    twin_on_pty other_twin(other);
-    std::thread in_another([&] { EXPECT_EQ(read_foreign(other_twin, '4'), 0U); });
-    EXPECT_EQ(read_foreign(one_twin, '3'), 0U);
+    device_on_pty one_device;
+    device_on_pty other_device(other);
+    std::thread in_another([&] { EXPECT_EQ(read_foreign(other_device, '4'), 0U); });
+    EXPECT_EQ(read_foreign(one_device, '3'), 0U);
     in_another.join();
-    EXPECT_TRUE(one_twin.becomes_idle_and_silent());
-    EXPECT_TRUE(other_twin.becomes_idle_and_silent());
-    return one_twin.bytes_lost() + other_twin.bytes_lost() == 0;
+    EXPECT_TRUE(one_device.becomes_idle_and_silent());
+    EXPECT_TRUE(other_device.becomes_idle_and_silent());
+    return one_device.bytes_lost() + other_device.bytes_lost() == 0;
   });
 }
 
 TEST(RealTime, Port_IsNotOpenedTwice) {
-  twin_on_pty twin;
-  auto device = started(twin);
+  device_on_pty simulated;
+  auto device = started(simulated);
   ASSERT_TRUE(device) << device.error().message();
-  const auto second = lidar::open(twin.path());
+  const auto second = lidar::open(simulated.path());
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code(), problem::busy) << second.error().message();
   EXPECT_TRUE(device->next_scan(30s));
@@ -280,12 +280,12 @@ TEST(RealTime, Port_IsNotOpenedTwice) {
 
 /// For each scan, the time from the transmission of the zero packet that ends it to its delivery.
 std::vector<std::chrono::nanoseconds> delays_of(int count) {
-  twin_on_pty twin;
+  device_on_pty simulated;
   std::int64_t offset_ns = 0;
-  twin.with([&](const sim::device&, std::int64_t now_ns) {
+  simulated.with([&](const sim::device&, std::int64_t now_ns) {
     offset_ns = clock::now().time_since_epoch().count() - now_ns;
   });
-  auto device = started(twin);
+  auto device = started(simulated);
   EXPECT_TRUE(device) << device.error().message();
   std::vector<std::int64_t> handed_ns;
   std::vector<readings> scans;
@@ -296,7 +296,7 @@ std::vector<std::chrono::nanoseconds> delays_of(int count) {
     if (!scan) break;
     scans.push_back(test::readings_of(*scan));
   }
-  const auto truth = twin.take_truth();
+  const auto truth = simulated.take_truth();
   const auto sent = test::revolutions_of(truth);
   std::vector<std::int64_t> zero_sent_ns;
   for (const sim::sent_sample& sample : truth) {
@@ -329,9 +329,9 @@ TEST(RealTime, DeliversScansImmediately) {
 // first whole one as long. The vendor's SDK needs 2.5 s. The median of 3 runs.
 TEST(RealTime, FirstScan_ArrivesSoon) {
   const auto time = test::percentile(50, 3, [] {
-    twin_on_pty twin{sim::device_options{}};
+    device_on_pty simulated{sim::device_options{}};
     const auto begin = clock::now();
-    auto device = started(twin);
+    auto device = started(simulated);
     EXPECT_TRUE(device) << device.error().message();
     EXPECT_TRUE(device && device->next_scan(30s));
     return clock::now() - begin;

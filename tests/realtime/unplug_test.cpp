@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "realtime/twin_on_pty.hpp"
+#include "realtime/device_on_pty.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
+using test::device_on_pty;
 using test::quick_g4;
-using test::twin_on_pty;
 using clock = std::chrono::steady_clock;
 
 /// Calls `work` until it fails fatally; nothing if it does not within half a minute.
@@ -66,8 +66,8 @@ class Unplug : public testing::TestWithParam<activity> {};
 
 /// The time from the unplug to the error, if the unplug comes `before` after the begin of the work.
 clock::duration time_to_know(const activity& doing, std::chrono::milliseconds before) {
-  twin_on_pty twin;
-  auto device = lidar::open(test::patient_options(twin.path()));
+  device_on_pty simulated;
+  auto device = lidar::open(test::patient_options(simulated.path()));
   EXPECT_TRUE(device) << device.error().message();
   if (!device) return clock::duration(0);
   if (doing.scans) {
@@ -76,7 +76,7 @@ clock::duration time_to_know(const activity& doing, std::chrono::milliseconds be
   clock::time_point pulled;
   std::thread hand([&] {
     std::this_thread::sleep_for(before);
-    pulled = twin.unplug();
+    pulled = simulated.unplug();
   });
   const auto fate = fate_of([&] { return doing.work(*device); });
   const auto known = clock::now();
@@ -102,9 +102,9 @@ TEST_P(Unplug, IsReportedWithin100ms) {
 
 // The program does nothing: the driver sets and starts the lidar as before.
 TEST_P(Unplug, Reconnect_RestoresTheState) {
-  twin_on_pty twin;
+  device_on_pty simulated;
   lidar_options options;
-  options.device = twin.path();
+  options.device = simulated.path();
   options.reconnect = true;
   options.frequency = scan_frequency{1000};
   auto device = lidar::open(options);
@@ -114,9 +114,9 @@ TEST_P(Unplug, Reconnect_RestoresTheState) {
   }
   std::thread hand([&] {
     std::this_thread::sleep_for(20ms);
-    twin.unplug();
+    simulated.unplug();
     std::this_thread::sleep_for(150ms);
-    twin.replug();
+    simulated.replug();
   });
   const auto end = clock::now() + 60s;
   while (device->counts().reconnects == 0 && clock::now() < end) {
@@ -124,19 +124,19 @@ TEST_P(Unplug, Reconnect_RestoresTheState) {
   }
   hand.join();
   ASSERT_EQ(device->counts().reconnects, 1U);
-  std::vector<lidar_event::kind> told;
-  while (const auto event = device->next_event()) told.push_back(event->what);
-  ASSERT_GE(told.size(), 2U);
-  EXPECT_EQ(told[0], lidar_event::kind::lost);
-  EXPECT_EQ(told[1], lidar_event::kind::reconnected);
+  std::vector<lidar_event::kind> reported;
+  while (const auto event = device->next_event()) reported.push_back(event->what);
+  ASSERT_GE(reported.size(), 2U);
+  EXPECT_EQ(reported[0], lidar_event::kind::lost);
+  EXPECT_EQ(reported[1], lidar_event::kind::reconnected);
 
   ASSERT_TRUE(device->start());
   EXPECT_EQ(device->information().serial_number(), "2021101000070073");
   const auto scan = device->next_scan(30s);
   ASSERT_TRUE(scan) << scan.error().message();
-  EXPECT_EQ(twin.settings().scan_frequency_chz, 1000);
+  EXPECT_EQ(simulated.settings().scan_frequency_chz, 1000);
   ASSERT_TRUE(device->stop());
-  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  EXPECT_TRUE(simulated.becomes_idle_and_silent());
   test::expect_identity(device->counts());
 }
 
@@ -151,13 +151,13 @@ TEST(Unplug, DuringOpening_IsReportedWithin100ms) {
   constexpr std::array waits{0ms, 1ms, 2ms, 5ms, 10ms, 20ms, 40ms, 55ms};
   std::size_t run = 0;
   const auto measure = [&] {
-    twin_on_pty twin;
+    device_on_pty simulated;
     clock::time_point pulled;
     std::thread hand([&, before = waits.at(run++ % waits.size())] {
       std::this_thread::sleep_for(before);
-      pulled = twin.unplug();
+      pulled = simulated.unplug();
     });
-    auto device = lidar::open(test::patient_options(twin.path()));
+    auto device = lidar::open(test::patient_options(simulated.path()));
     std::optional<error> fate;
     if (device) {  // it was quicker: the next call returns the error
       fate = fate_of([&] { return device->process(); });
@@ -174,9 +174,9 @@ TEST(Unplug, DuringOpening_IsReportedWithin100ms) {
 
 // During a reconnect: lost again while identifying, preparing, spinning up, scanning.
 TEST(Unplug, RepeatedDuringReconnects) {
-  twin_on_pty twin;
+  device_on_pty simulated;
   lidar_options options;
-  options.device = twin.path();
+  options.device = simulated.path();
   options.reconnect = true;
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
@@ -190,9 +190,9 @@ TEST(Unplug, RepeatedDuringReconnects) {
   };
   for (const auto in : {300ms, 0ms, 5ms, 15ms, 30ms, 50ms, 70ms, 90ms, 120ms, 180ms, 300ms}) {
     read_for(in);
-    twin.unplug();
+    simulated.unplug();
     read_for(30ms);
-    twin.replug();
+    simulated.replug();
   }
   const std::uint64_t before = device->counts().reconnects;
   const auto end = clock::now() + 60s;
@@ -210,7 +210,7 @@ TEST(Unplug, RepeatedDuringReconnects) {
   }
   EXPECT_FALSE(is_lost);
   EXPECT_TRUE(device->stop());
-  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  EXPECT_TRUE(simulated.becomes_idle_and_silent());
   test::expect_identity(device->counts());
 }
 
@@ -254,7 +254,7 @@ TEST(Unplug, OtherDevice_IsNotUsed) {
   lidar_options options;
   options.device = path;
   options.reconnect = true;
-  std::optional<sim::background_pty> twin = std::move(*plugged('3'));
+  std::optional<sim::background_pty> simulated = std::move(*plugged('3'));
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
@@ -265,13 +265,13 @@ TEST(Unplug, OtherDevice_IsNotUsed) {
     while (clock::now() < end) scans += device->next_scan(50ms) ? 1U : 0U;
     return scans;
   };
-  twin.reset();
-  twin = std::move(*plugged('4'));
+  simulated.reset();
+  simulated = std::move(*plugged('4'));
   read_for(300ms);  // earlier bytes may still be delivered
   EXPECT_EQ(read_for(1s), 0U);
   EXPECT_EQ(device->counts().reconnects, 0U);
-  twin.reset();
-  twin = std::move(*plugged('3'));
+  simulated.reset();
+  simulated = std::move(*plugged('3'));
   const auto end = clock::now() + 60s;
   while (device->counts().reconnects == 0 && clock::now() < end) read_for(100ms);
   EXPECT_EQ(device->counts().reconnects, 1U);

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "g4lidar/background_reader.hpp"
-#include "realtime/twin_on_pty.hpp"
+#include "realtime/device_on_pty.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
-using test::twin_on_pty;
+using test::device_on_pty;
 using clock = std::chrono::steady_clock;
 
 /// The outcome of a long wait for a revolution that does not arrive.
@@ -37,8 +37,8 @@ sim::device_options lazy_g4() {
 }
 
 TEST(Wake, EndsAWaitFromAnotherThread) {
-  twin_on_pty twin(lazy_g4());
-  auto device = lidar::open(test::patient_options(twin.path()));
+  device_on_pty simulated(lazy_g4());
+  auto device = lidar::open(test::patient_options(simulated.path()));
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
   const auto begin = clock::now();
@@ -64,8 +64,8 @@ TEST(Wake, EndsAWaitFromASignalHandler) {
   action.sa_handler = wake_it;
   struct sigaction before{};
   ASSERT_EQ(::sigaction(SIGUSR2, &action, &before), 0);
-  twin_on_pty twin;
-  auto device = lidar::open(test::patient_options(twin.path()));
+  device_on_pty simulated;
+  auto device = lidar::open(test::patient_options(simulated.path()));
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
   to_wake = &*device;
@@ -89,9 +89,9 @@ TEST(Wake, ManyFromASignalHandler_DelayNothing) {
   action.sa_handler = wake_it;
   struct sigaction before{};
   ASSERT_EQ(::sigaction(SIGUSR2, &action, &before), 0);
-  twin_on_pty twin;
+  device_on_pty simulated;
   lidar_options options;
-  options.device = twin.path();
+  options.device = simulated.path();
   options.reconnect = true;
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
@@ -113,9 +113,9 @@ TEST(Wake, ManyFromASignalHandler_DelayNothing) {
   };
   EXPECT_TRUE(does([&] { return device->start().has_value(); }));
   for (std::uint64_t plugs = 1; plugs <= 3; ++plugs) {
-    twin.unplug();
+    simulated.unplug();
     std::this_thread::sleep_for(20ms);
-    twin.replug();
+    simulated.replug();
     EXPECT_TRUE(does([&] {
       static_cast<void>(device->next_scan(100ms));
       return device->counts().reconnects >= plugs;
@@ -128,7 +128,7 @@ TEST(Wake, ManyFromASignalHandler_DelayNothing) {
   EXPECT_TRUE(does([&] { return device->stop().has_value(); }));
   EXPECT_TRUE(does([&] { return device->start().has_value(); }));
   static_cast<void>(device->close());
-  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  EXPECT_TRUE(simulated.becomes_idle_and_silent());
   over = true;
   storm.join();
   to_wake = nullptr;
@@ -136,8 +136,8 @@ TEST(Wake, ManyFromASignalHandler_DelayNothing) {
 }
 
 TEST(Wake, StartAndStop_AreCompleted) {
-  twin_on_pty twin;
-  auto device = lidar::open(test::patient_options(twin.path()));
+  device_on_pty simulated;
+  auto device = lidar::open(test::patient_options(simulated.path()));
   ASSERT_TRUE(device) << device.error().message();
   for (int i = 0; i < 3; ++i) {
     device->wake();
@@ -148,7 +148,7 @@ TEST(Wake, StartAndStop_AreCompleted) {
     ASSERT_TRUE(device->stop());
   }
   EXPECT_EQ(device->counts().command_retries, 0U);
-  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  EXPECT_TRUE(simulated.becomes_idle_and_silent());
 }
 
 /// Waits for an event in another thread; false if it does not occur within a minute.
@@ -163,8 +163,8 @@ bool comes_true(Condition&& condition) {
 }
 
 TEST(BackgroundReaderOnPty, ServesReadersInOtherThreads) {
-  twin_on_pty twin;
-  auto device = lidar::open(test::patient_options(twin.path()));
+  device_on_pty simulated;
+  auto device = lidar::open(test::patient_options(simulated.path()));
   ASSERT_TRUE(device) << device.error().message();
   auto reader = background_reader::start(std::move(*device));
   ASSERT_TRUE(reader) << reader.error().message();
@@ -186,7 +186,7 @@ TEST(BackgroundReaderOnPty, ServesReadersInOtherThreads) {
   other.join();
   reader->stop();
   // The motor is stopped while the reader still exists.
-  EXPECT_TRUE(twin.becomes_idle_and_silent());
+  EXPECT_TRUE(simulated.becomes_idle_and_silent());
   EXPECT_FALSE(reader->failed());
   test::expect_identity(reader->counts());
 }
@@ -194,12 +194,12 @@ TEST(BackgroundReaderOnPty, ServesReadersInOtherThreads) {
 // The 90th percentile of 20 runs: other programs may delay a few of them.
 TEST(BackgroundReaderOnPty, Unplug_IsReportedImmediately) {
   const auto time = test::percentile(90, 20, [] {
-    twin_on_pty twin;
-    auto device = lidar::open(test::patient_options(twin.path()));
+    device_on_pty simulated;
+    auto device = lidar::open(test::patient_options(simulated.path()));
     EXPECT_TRUE(device) << device.error().message();
     auto reader = background_reader::start(std::move(*device));
     EXPECT_TRUE(reader) << reader.error().message();
-    const auto pulled = twin.unplug();
+    const auto pulled = simulated.unplug();
     EXPECT_TRUE(comes_true([&] { return reader->failed().has_value(); }));
     const auto known = clock::now();
     EXPECT_EQ(reader->failed()->code(), problem::gone);
@@ -210,8 +210,8 @@ TEST(BackgroundReaderOnPty, Unplug_IsReportedImmediately) {
 
 TEST(BackgroundReaderOnPty, EndsInAnyOrder) {
   for (int i = 0; i < 12; ++i) {
-    auto twin = std::make_unique<twin_on_pty>();
-    auto device = lidar::open(twin->path());
+    auto simulated = std::make_unique<device_on_pty>();
+    auto device = lidar::open(simulated->path());
     ASSERT_TRUE(device) << device.error().message();
     auto begun = background_reader::start(std::move(*device));
     ASSERT_TRUE(begun) << begun.error().message();
@@ -223,19 +223,19 @@ TEST(BackgroundReaderOnPty, EndsInAnyOrder) {
         std::thread other([&] { reader->stop(); });
         reader->stop();
         other.join();
-        EXPECT_TRUE(twin->becomes_idle_and_silent()) << i;
+        EXPECT_TRUE(simulated->becomes_idle_and_silent()) << i;
         break;
       }
       case 1:  // destroyed
         reader.reset();
-        EXPECT_TRUE(twin->becomes_idle_and_silent()) << i;
+        EXPECT_TRUE(simulated->becomes_idle_and_silent()) << i;
         break;
       case 2:  // the device is unplugged first
-        twin.reset();
+        simulated.reset();
         break;
       default:  // both at once
       {
-        std::thread other([&] { twin.reset(); });
+        std::thread other([&] { simulated.reset(); });
         reader.reset();
         other.join();
       }
@@ -244,15 +244,15 @@ TEST(BackgroundReaderOnPty, EndsInAnyOrder) {
 }
 
 TEST(BackgroundReaderOnPty, EndsWhileItReconnects) {
-  twin_on_pty twin;
+  device_on_pty simulated;
   lidar_options options;
-  options.device = twin.path();
+  options.device = simulated.path();
   options.reconnect = true;
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   auto reader = background_reader::start(std::move(*device));
   ASSERT_TRUE(reader) << reader.error().message();
-  twin.unplug();
+  simulated.unplug();
   ASSERT_TRUE(comes_true([&] {
     const auto event = reader->next_event();
     return event && event->what == lidar_event::kind::lost;

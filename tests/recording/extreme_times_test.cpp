@@ -29,7 +29,7 @@ TEST(ExtremeTimes, Writer_AcceptsAnyTime_ReaderContinues) {
     writer->set_wall_clock(ahead_ns);
     for (const std::int64_t time_ns : {std::int64_t{5}, most, least, std::int64_t{-1}}) {
       writer->from_device(reading(0), time_ns);
-      writer->note({.what = recorded_event::kind::cut, .time_ns = time_ns});
+      writer->event({.what = recorded_event::kind::cut, .time_ns = time_ns});
       writer->scan({});
     }
     EXPECT_TRUE(writer->close());
@@ -113,7 +113,7 @@ TEST(MovedFrom, Writer_BehavesAsClosed) {
   recording_writer second = std::move(first);
   first.from_device(reading(0), 1);  // NOLINT(bugprone-use-after-move): this is tested
   first.to_device(reading(0), 1);
-  first.note({.what = recorded_event::kind::cut});
+  first.event({.what = recorded_event::kind::cut});
   first.scan({});
   first.points({});
   first.device({});
@@ -125,9 +125,9 @@ TEST(MovedFrom, Writer_BehavesAsClosed) {
   EXPECT_EQ(first.digest().point_count, 0U);
   EXPECT_EQ(first.path(), "");
   virtual_bench bench;
-  auto line = recorded(std::make_unique<virtual_connector>(bench), first);
-  ASSERT_TRUE(line);
-  EXPECT_TRUE(lidar::open(std::move(*line)));
+  auto from = recorded(std::make_unique<virtual_connector>(bench), first);
+  ASSERT_TRUE(from);
+  EXPECT_TRUE(lidar::open(std::move(*from)));
   first = std::move(second);
   EXPECT_EQ(first.path(), path.text());
 }

@@ -98,8 +98,8 @@ contents contents_of(Reader& reader) {
     }
     EXPECT_EQ((*item)->wall_ns - (*item)->time_ns, wall_ahead_ns);
     if ((*item)->what == recorded_item::kind::to_device) ++found.commands;
-    if ((*item)->what == recorded_item::kind::note) {
-      found.gaps += (*item)->note.what == recorded_event::kind::gap ? 1U : 0U;
+    if ((*item)->what == recorded_item::kind::other) {
+      found.gaps += (*item)->other.what == recorded_event::kind::gap ? 1U : 0U;
     }
     if ((*item)->what != recorded_item::kind::from_device) continue;
     const auto number = static_cast<std::uint32_t>(((*item)->time_ns - begin_ns) / (10 * ms));

@@ -7,21 +7,21 @@
 namespace g4lidar::test {
 namespace {
 
-bytes message_of(const recorded_event& note, mcap::record_text& memory) {
-  mcap::put_note(memory, note, 0);
+bytes message_of(const recorded_event& event, mcap::record_text& memory) {
+  mcap::put_event(memory, event, 0);
   return memory.all();
 }
 
 TEST(Messages, Event_IsReadAsWritten) {
   mcap::record_text memory;
-  const auto read = mcap::note_from(message_of({.what = recorded_event::kind::begun,
-                                                .delivers = true,
-                                                .baud = 230400,
-                                                .samples_per_second = 8000,
-                                                .unparsed = 7,
-                                                .events = 3,
-                                                .time_ns = 123'456'789},
-                                               memory));
+  const auto read = mcap::event_from(message_of({.what = recorded_event::kind::begun,
+                                                 .delivers = true,
+                                                 .baud = 230400,
+                                                 .samples_per_second = 8000,
+                                                 .unparsed = 7,
+                                                 .events = 3,
+                                                 .time_ns = 123'456'789},
+                                                memory));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->what, recorded_event::kind::begun);
   EXPECT_EQ(read->samples_per_second, 8000U);
@@ -33,19 +33,19 @@ TEST(Messages, Event_IsReadAsWritten) {
 TEST(Messages, ExtremeSampleRate_IsRefused) {
   for (const std::uint32_t rate : {0U, 1'000'001U, UINT32_MAX}) {
     mcap::record_text memory;
-    const recorded_event note{.what = recorded_event::kind::begun, .samples_per_second = rate};
-    EXPECT_FALSE(mcap::note_from(message_of(note, memory))) << rate;
+    const recorded_event event{.what = recorded_event::kind::begun, .samples_per_second = rate};
+    EXPECT_FALSE(mcap::event_from(message_of(event, memory))) << rate;
   }
   mcap::record_text memory;  // a stream that has not begun has no rate
-  EXPECT_TRUE(mcap::note_from(message_of({.what = recorded_event::kind::held}, memory)));
+  EXPECT_TRUE(mcap::event_from(message_of({.what = recorded_event::kind::held}, memory)));
 }
 
 TEST(Messages, TruncatedEvent_IsRefused) {
   mcap::record_text memory;
   const bytes whole =
-      message_of({.what = recorded_event::kind::opened, .line = "/dev/ttyUSB0"}, memory);
+      message_of({.what = recorded_event::kind::opened, .name = "/dev/ttyUSB0"}, memory);
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    EXPECT_FALSE(mcap::note_from(whole.first(size))) << size;
+    EXPECT_FALSE(mcap::event_from(whole.first(size))) << size;
   }
 }
 

@@ -52,15 +52,15 @@ struct reading {
 TEST_F(RawBytes, OfAFile_ArriveAtTheTimeOfTheirSamples) {
   const std::string all =
       packet_of(9) + packet_of(18) + std::string("\0\x13\0", 3) + packet_of(9).substr(0, 20);
-  const auto lines = opened(all, 9000);
-  const std::int64_t begin_ns = lines->now_ns();
-  auto line = lines->connect();
-  ASSERT_TRUE(line);
+  const auto from = opened(all, 9000);
+  const std::int64_t begin_ns = from->now_ns();
+  auto port = from->connect();
+  ASSERT_TRUE(port);
   std::vector<reading> readings;
   std::string bytes;
   std::array<std::uint8_t, 1000> memory{};
   while (true) {
-    const auto got = (*line)->read(memory, 0);  // in the past: it does not wait
+    const auto got = (*port)->read(memory, 0);  // in the past: it does not wait
     if (!got) {
       EXPECT_EQ(got.error(), problem::end_of_input);
       break;
@@ -71,20 +71,20 @@ TEST_F(RawBytes, OfAFile_ArriveAtTheTimeOfTheirSamples) {
   EXPECT_EQ(bytes, all);
   const std::vector<reading> expected{{28, 1'000'000}, {46, 3'000'000}, {23, 3'000'000}};
   EXPECT_EQ(readings, expected);
-  EXPECT_EQ(lines->now_ns() - begin_ns, 3'000'000);
+  EXPECT_EQ(from->now_ns() - begin_ns, 3'000'000);
 }
 
 TEST_F(RawBytes, TimesDoNotDrift) {
   std::string all;
   for (int i = 0; i < 700; ++i) all += packet_of(10);
-  const auto lines = opened(all, 7);  // 1000 s
-  auto line = lines->connect();
-  ASSERT_TRUE(line);
-  const std::int64_t begin_ns = lines->now_ns();
+  const auto from = opened(all, 7);  // 1000 s
+  auto port = from->connect();
+  ASSERT_TRUE(port);
+  const std::int64_t begin_ns = from->now_ns();
   std::array<std::uint8_t, 7> small{};  // less than a packet at a time
   std::int64_t samples = 0;
   std::size_t bytes = 0;
-  while (const auto got = (*line)->read(small, 0)) {
+  while (const auto got = (*port)->read(small, 0)) {
     bytes += got->count;
     if (bytes % 30 != 0) continue;
     samples += 10;
@@ -94,16 +94,16 @@ TEST_F(RawBytes, TimesDoNotDrift) {
 }
 
 TEST_F(RawBytes, ReturnTheirTransportOnceAndDiscardWrites) {
-  const auto lines = opened(packet_of(9), 9000);
-  auto line = lines->connect();
-  ASSERT_TRUE(line);
-  EXPECT_TRUE((*line)->write(std::array<std::uint8_t, 2>{0xA5, 0x60}, 0));
-  EXPECT_EQ(std::string((*line)->name()), path_);
-  (*line)->wake();
+  const auto from = opened(packet_of(9), 9000);
+  auto port = from->connect();
+  ASSERT_TRUE(port);
+  EXPECT_TRUE((*port)->write(std::array<std::uint8_t, 2>{0xA5, 0x60}, 0));
+  EXPECT_EQ(std::string((*port)->name()), path_);
+  (*port)->wake();
   std::array<std::uint8_t, 10> memory{};
-  EXPECT_EQ((*line)->read(memory, 0).error(), problem::cancelled);
-  EXPECT_TRUE((*line)->read(memory, 0));
-  const auto second = lines->connect();
+  EXPECT_EQ((*port)->read(memory, 0).error(), problem::cancelled);
+  EXPECT_TRUE((*port)->read(memory, 0));
+  const auto second = from->connect();
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error(), problem::end_of_input);
 }

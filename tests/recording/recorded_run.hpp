@@ -16,7 +16,7 @@
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/sim/fault.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar::test {
 
@@ -86,10 +86,10 @@ inline std::vector<sim::fault> faults_of(const std::vector<std::string_view>& te
 }
 
 /// Everything that a recording gives, from its beginning to its end.
-inline run_result replayed(std::unique_ptr<connector> line, bool by_scans = true) {
+inline run_result replayed(std::unique_ptr<connector> from, bool by_scans = true) {
   using namespace std::chrono_literals;
   run_result run;
-  auto opened = lidar::open(std::move(line));
+  auto opened = lidar::open(std::move(from));
   if (!opened) {
     ADD_FAILURE() << opened.error().message();
     return run;

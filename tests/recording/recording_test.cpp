@@ -192,23 +192,24 @@ TEST(Recording, UnreadableFile_IsAnErrorAndNoDamage) {
 TEST(Recording, BeginInTheMiddle_ReturnsTheStateFirst) {
   const temporary_path path;
   auto writer = made_writer(path.text());
-  recorded_event note{.what = recorded_event::kind::opened, .baud = 230'400, .time_ns = time_of(0)};
-  note.line = "/dev/ttyUSB7";
-  writer.note(note);
-  note = {.what = recorded_event::kind::begun, .samples_per_second = 8000, .time_ns = time_of(1)};
-  writer.note(note);
+  recorded_event event{
+      .what = recorded_event::kind::opened, .baud = 230'400, .time_ns = time_of(0)};
+  event.name = "/dev/ttyUSB7";
+  writer.event(event);
+  event = {.what = recorded_event::kind::begun, .samples_per_second = 8000, .time_ns = time_of(1)};
+  writer.event(event);
   record_readings(writer, 2, 1000);
   ASSERT_TRUE(writer.close());
   auto reader = recording_reader::open(path.text(), {.from_ns = 5 * second});
   ASSERT_TRUE(reader);
   const auto first = reader->next();
   ASSERT_TRUE(first && *first);
-  ASSERT_EQ((*first)->what, recorded_item::kind::note);
-  EXPECT_EQ((*first)->note.what, recorded_event::kind::state);
-  EXPECT_EQ((*first)->note.samples_per_second, 8000U);
-  EXPECT_EQ((*first)->note.baud, 230'400U);
-  EXPECT_EQ((*first)->note.line, "/dev/ttyUSB7");
-  EXPECT_TRUE((*first)->note.delivers);
+  ASSERT_EQ((*first)->what, recorded_item::kind::other);
+  EXPECT_EQ((*first)->other.what, recorded_event::kind::state);
+  EXPECT_EQ((*first)->other.samples_per_second, 8000U);
+  EXPECT_EQ((*first)->other.baud, 230'400U);
+  EXPECT_EQ((*first)->other.name, "/dev/ttyUSB7");
+  EXPECT_TRUE((*first)->other.delivers);
 }
 
 TEST(Recording, ContainsItsDevice) {
@@ -316,10 +317,10 @@ TEST(Recording, FullDisk_IsReportedOnceAndLosesOnlyThatTime) {
   {
     const full_disk disk(writer.counts().file_bytes + 5000);
     record_readings(writer, 400, 400);
-    const auto told = writer.take_error();
-    ASSERT_TRUE(told);
-    EXPECT_EQ(told->code(), problem::system);
-    EXPECT_EQ(told->system_errno(), EFBIG);
+    const auto reported = writer.take_error();
+    ASSERT_TRUE(reported);
+    EXPECT_EQ(reported->code(), problem::system);
+    EXPECT_EQ(reported->system_errno(), EFBIG);
     EXPECT_FALSE(writer.take_error());
   }
   record_readings(writer, 800, 200);
@@ -375,7 +376,7 @@ TEST(Recording, InvalidOptions_AreRefused) {
   EXPECT_TRUE(refused({.frame_id = std::string(256, 'x')}));
   for (const std::string topic :
        {"", "scan", "/", "/scan/", "/a//b", "/1st", "/a/1st", "/a__b", "/a b", "/a-b", "~/scan",
-        "/{node}", "/sc\xC3\xA4n", "/g4lidar/notes", "/g4lidar/to_device"}) {
+        "/{node}", "/sc\xC3\xA4n", "/g4lidar/events", "/g4lidar/to_device"}) {
     EXPECT_TRUE(refused({.topic = topic})) << topic;
   }
   EXPECT_TRUE(refused({.topic = "/" + std::string(255, 'x')}));

@@ -67,8 +67,8 @@ run_result live(const run_case& of, std::uint64_t seed, recording_writer& into) 
   if (seed % 3 == 1) options.protection = power_down_protection::on;
   into.set_wall_clock(1'700'000'000 * second);
   run_result run;
-  auto line = recorded(std::make_unique<virtual_connector>(bench), into);
-  auto device = lidar::open(std::move(*line), options);
+  auto from = recorded(std::make_unique<virtual_connector>(bench), into);
+  auto device = lidar::open(std::move(*from), options);
   if (!device) {
     ADD_FAILURE() << device.error().message();
     return run;
@@ -99,7 +99,7 @@ run_result live(const run_case& of, std::uint64_t seed, recording_writer& into) 
   return run;
 }
 
-/// Everything that a file gives, but for how the line stands now and then, as a text.
+/// Everything that a file gives, but for how the transport stands now and then, as a text.
 std::vector<std::string> items_of(const std::string& path) {
   std::vector<std::string> all;
   auto reader = recording_reader::open(path);
@@ -113,14 +113,14 @@ std::vector<std::string> items_of(const std::string& path) {
       EXPECT_TRUE(item);
       break;
     }
-    const recorded_event& note = (*item)->note;
-    if ((*item)->what == recorded_item::kind::note && note.what == recorded_event::kind::state)
+    const recorded_event& other = (*item)->other;
+    if ((*item)->what == recorded_item::kind::other && other.what == recorded_event::kind::state)
       continue;
     std::ostringstream text;
     text << static_cast<int>((*item)->what) << ' ' << (*item)->time_ns << ' ' << (*item)->wall_ns
-         << ' ' << name_of(note.what) << ' ' << name_of(note.reason) << ' ' << note.delivers << ' '
-         << note.baud << ' ' << note.samples_per_second << ' ' << note.unparsed << ' '
-         << note.events << ' ' << note.line << ' ';
+         << ' ' << name_of(other.what) << ' ' << name_of(other.reason) << ' ' << other.delivers
+         << ' ' << other.baud << ' ' << other.samples_per_second << ' ' << other.unparsed << ' '
+         << other.events << ' ' << other.name << ' ';
     for (const std::uint8_t byte : (*item)->data) text << static_cast<int>(byte) << ',';
     all.push_back(text.str());
   }
@@ -151,13 +151,13 @@ TEST_P(Replay, GivesTheSamePoints) {
     EXPECT_GT(before.points.size(), 10'000U);
     EXPECT_EQ(before.counts.stream.points, before.points.size()) << "what is counted is delivered";
 
-    auto line = replay::open(path.text());
-    ASSERT_TRUE(line) << line.error().message();
+    auto from = replay::open(path.text());
+    ASSERT_TRUE(from) << from.error().message();
     const temporary_path copy;
     auto again = recording_writer::create(copy.text());
     ASSERT_TRUE(again) << again.error().message();
-    line = recorded(std::move(*line), *again);
-    const run_result after = replayed(std::move(*line), seed % 2 == 0);
+    from = recorded(std::move(*from), *again);
+    const run_result after = replayed(std::move(*from), seed % 2 == 0);
     expect_same_points(before.points, after.points);
     EXPECT_TRUE(again->close());
     EXPECT_EQ(again->digest().payload, writer->digest().payload);
@@ -215,12 +215,12 @@ TEST(ReplayScans, AreTheRevolutionsThatTheDeviceSent) {
   ASSERT_TRUE(writer) << writer.error().message();
   const run_result before = live({"Scans", {}, 0ms, true}, 2, *writer);
   ASSERT_TRUE(writer->close());
-  auto line = replay::open(path.text());
-  ASSERT_TRUE(line) << line.error().message();
+  auto from = replay::open(path.text());
+  ASSERT_TRUE(from) << from.error().message();
   const ranges sent = revolutions_of(before.sent);
   ASSERT_GE(sent.size(), 80U);
   EXPECT_EQ(ranges_of(before.scans), sent);
-  EXPECT_EQ(ranges_of(replayed(std::move(*line)).scans), sent);
+  EXPECT_EQ(ranges_of(replayed(std::move(*from)).scans), sent);
 }
 
 TEST(ReplayScans, OfADamagedStreamAreThoseThatWereCounted) {
@@ -229,9 +229,9 @@ TEST(ReplayScans, OfADamagedStreamAreThoseThatWereCounted) {
   ASSERT_TRUE(writer) << writer.error().message();
   const run_result before = live({"Scans", {"flip*0.001"}, 0ms, true}, 2, *writer);
   ASSERT_TRUE(writer->close());
-  auto line = replay::open(path.text());
-  ASSERT_TRUE(line) << line.error().message();
-  const run_result after = replayed(std::move(*line));
+  auto from = replay::open(path.text());
+  ASSERT_TRUE(from) << from.error().message();
+  const run_result after = replayed(std::move(*from));
   ASSERT_GE(before.scans.size(), 80U);
   // The program did not take a scan that ended while it closed.
   EXPECT_EQ(after.scans.size(), before.scans.size() + before.counts.scans_missed);

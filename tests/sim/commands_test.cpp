@@ -57,7 +57,7 @@ TEST(SimCommands, DeviceInformationAndHealth) {
 // Bytes that do not fit into its buffer are lost: the next program gets an answer at once.
 TEST(SimCommands, Flood_DelaysTheAnswersByTheBufferOnly) {
   host_side host;
-  host.twin.write(byte_vector(1'000'000, 'x'), host.now_ns);
+  host.device.write(byte_vector(1'000'000, 'x'), host.now_ns);
   EXPECT_THAT(host.listen(100 * ms), IsEmpty());
   EXPECT_EQ(host.ask(0x90), information);
 }
@@ -65,13 +65,13 @@ TEST(SimCommands, Flood_DelaysTheAnswersByTheBufferOnly) {
 TEST(SimCommands, LowPower_ControlsTheIdleMotor) {
   host_side host;
   EXPECT_EQ(host.ask(0x05), byte_answer(1));
-  EXPECT_FALSE(host.twin.motor_turns());
+  EXPECT_FALSE(host.device.motor_turns());
   EXPECT_EQ(host.ask(0x02), byte_answer(0));
   EXPECT_EQ(host.ask(0x05), byte_answer(0));
-  EXPECT_TRUE(host.twin.motor_turns());
-  EXPECT_TRUE(host.twin.is_idle_and_silent(host.now_ns));
+  EXPECT_TRUE(host.device.motor_turns());
+  EXPECT_TRUE(host.device.is_idle_and_silent(host.now_ns));
   EXPECT_EQ(host.ask(0x01), byte_answer(1));
-  EXPECT_FALSE(host.twin.motor_turns());
+  EXPECT_FALSE(host.device.motor_turns());
 }
 
 TEST(SimCommands, Direction) {
@@ -110,9 +110,9 @@ TEST(SimCommands, ScanFrequency_HasLimits) {
 TEST(SimCommands, ConstantFrequency) {
   host_side host;
   EXPECT_EQ(host.ask(0x0F), byte_answer(0));
-  EXPECT_EQ(host.twin.settings().constancy, constant_frequency::off);
+  EXPECT_EQ(host.device.settings().constancy, constant_frequency::off);
   EXPECT_EQ(host.ask(0x0E), byte_answer(1));
-  EXPECT_EQ(host.twin.settings().constancy, constant_frequency::on);
+  EXPECT_EQ(host.device.settings().constancy, constant_frequency::on);
 }
 
 TEST(SimCommands, RangingFrequency_Cycles) {
@@ -127,7 +127,7 @@ TEST(SimCommands, RangingFrequency_Cycles) {
 TEST(SimCommands, Protection_TogglesAndAnswers) {
   host_side host;
   EXPECT_EQ(host.ask(0xD9), byte_answer(0));
-  EXPECT_EQ(host.twin.settings().protection, power_down_protection::on);
+  EXPECT_EQ(host.device.settings().protection, power_down_protection::on);
   EXPECT_EQ(host.ask(0xD9), byte_answer(1));
 }
 
@@ -146,7 +146,7 @@ TEST(SimCommands, OldFirmware_DoesNotAnswerEverything) {
   EXPECT_THAT(host.ask(0x91), IsEmpty());
   EXPECT_THAT(host.ask(0x92), IsEmpty());
   EXPECT_THAT(host.ask(0x80, second), IsEmpty());
-  for (const sim::asked& what : host.twin.log()) EXPECT_FALSE(what.obeyed);
+  for (const sim::asked& what : host.device.log()) EXPECT_FALSE(what.obeyed);
   EXPECT_FALSE(host.ask(0x40, second).empty());
 }
 
@@ -157,13 +157,13 @@ TEST(SimCommands, UnknownCommands_AreIgnored) {
     ASSERT_THAT(host.ask(static_cast<std::uint8_t>(code), 5 * ms), IsEmpty()) << code;
   }
   // Bytes without a start byte are no commands, and two start bytes count as one.
-  host.twin.write(byte_vector{0x90, 0x12, 0xA5, 0xA5, 0x90}, host.now_ns);
+  host.device.write(byte_vector{0x90, 0x12, 0xA5, 0xA5, 0x90}, host.now_ns);
   EXPECT_EQ(host.listen(50 * ms), information);
 }
 
 TEST(SimCommands, Answers_AreSentInSequence) {
   host_side host;
-  host.twin.write(byte_vector{0xA5, 0x90, 0xA5, 0x91}, host.now_ns);
+  host.device.write(byte_vector{0xA5, 0x90, 0xA5, 0x91}, host.now_ns);
   byte_vector both = information;
   both.insert(both.end(), healthy.begin(), healthy.end());
   EXPECT_EQ(host.listen(50 * ms), both);
@@ -176,17 +176,17 @@ TEST(SimCommands, AreLoggedWithTheirTimes) {
   host.listen(10 * ms);
   (void)host.ask(0x90);
   (void)host.ask(0x77);
-  ASSERT_EQ(host.twin.log().size(), 2U);
-  EXPECT_EQ(host.twin.log()[0].code, 0x90);
-  EXPECT_TRUE(host.twin.log()[0].obeyed);
-  EXPECT_NEAR(static_cast<double>(host.twin.log()[0].time_ns), 10e6 + 2 * 43403.0, 10.0);
-  EXPECT_FALSE(host.twin.log()[1].obeyed);
+  ASSERT_EQ(host.device.log().size(), 2U);
+  EXPECT_EQ(host.device.log()[0].code, 0x90);
+  EXPECT_TRUE(host.device.log()[0].obeyed);
+  EXPECT_NEAR(static_cast<double>(host.device.log()[0].time_ns), 10e6 + 2 * 43403.0, 10.0);
+  EXPECT_FALSE(host.device.log()[1].obeyed);
   (void)host.ask(0x90);
   (void)host.ask(0x90);
-  EXPECT_EQ(host.twin.log().size(), 3U);
-  EXPECT_EQ(host.twin.log_missed(), 1U);
-  host.twin.clear_log();
-  EXPECT_THAT(host.twin.log(), IsEmpty());
+  EXPECT_EQ(host.device.log().size(), 3U);
+  EXPECT_EQ(host.device.log_missed(), 1U);
+  host.device.clear_log();
+  EXPECT_THAT(host.device.log(), IsEmpty());
 }
 
 // The last section of the protocol page: the commands of the vendor's software for 9 kHz, 10 Hz,
@@ -226,7 +226,7 @@ TEST(SimCommands, VendorSoftware_Works) {
   (void)host.ask(0x00, ms);
   (void)host.ask(0x65, 100 * ms);
   EXPECT_THAT(host.listen(second), IsEmpty());
-  EXPECT_TRUE(host.twin.is_idle_and_silent(host.now_ns));
+  EXPECT_TRUE(host.device.is_idle_and_silent(host.now_ns));
 }
 
 }  // namespace

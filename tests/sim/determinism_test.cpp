@@ -41,7 +41,7 @@ sim::device_options device_with_seed(std::uint64_t seed) {
 }
 
 // Sends a command every 700 ms, the same each time, and reads at these intervals.
-byte_vector bytes_of_run(sim::device& twin, std::int64_t look_every_ns) {
+byte_vector bytes_of_run(sim::device& simulated, std::int64_t look_every_ns) {
   constexpr std::array<std::uint8_t, 10> says{0x60, 0x90, 0x0B, 0x65, 0xD0,
                                               0x60, 0xD9, 0x92, 0x60, 0x07};
   byte_vector all;
@@ -50,11 +50,11 @@ byte_vector bytes_of_run(sim::device& twin, std::int64_t look_every_ns) {
   std::int64_t look_ns = 0;
   for (constexpr std::int64_t end_ns = 22 * second; look_ns <= end_ns;) {
     while (say_ns <= look_ns) {
-      twin.write(std::array<std::uint8_t, 2>{0xA5, says[said++ % says.size()]}, say_ns);
+      simulated.write(std::array<std::uint8_t, 2>{0xA5, says[said++ % says.size()]}, say_ns);
       say_ns += 700 * ms;
     }
     std::array<std::uint8_t, 4096> part{};
-    for (std::size_t count = 0; (count = twin.read(part, look_ns)) > 0;) {
+    for (std::size_t count = 0; (count = simulated.read(part, look_ns)) > 0;) {
       all.insert(all.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count));
     }
     look_ns = look_ns < end_ns ? std::min(look_ns + look_every_ns, end_ns) : end_ns + 1;
@@ -63,8 +63,8 @@ byte_vector bytes_of_run(sim::device& twin, std::int64_t look_every_ns) {
 }
 
 byte_vector bytes_of_run(std::uint64_t seed, std::int64_t look_every_ns) {
-  sim::device twin(sim::built_in_world(), device_with_seed(seed), troubles());
-  return bytes_of_run(twin, look_every_ns);
+  sim::device simulated(sim::built_in_world(), device_with_seed(seed), troubles());
+  return bytes_of_run(simulated, look_every_ns);
 }
 
 std::uint64_t digest(bytes data) {
@@ -86,8 +86,8 @@ TEST(SimDevice, DoesNotDependOnTheNumberOfCalls) {
   std::vector<fault> faults = troubles();
   std::erase_if(faults, [](const fault& f) { return f.kind == fault_kind::unplug; });
   const auto bytes_when_looked_at = [&faults](std::int64_t every_ns) {
-    sim::device twin(sim::built_in_world(), device_with_seed(3), faults);
-    return bytes_of_run(twin, every_ns);
+    sim::device simulated(sim::built_in_world(), device_with_seed(3), faults);
+    return bytes_of_run(simulated, every_ns);
   };
   const byte_vector seldom = bytes_when_looked_at(140 * ms);
   EXPECT_GT(seldom.size(), 100'000U);
@@ -99,10 +99,10 @@ TEST(SimDevice, DoesNotDependOnTheNumberOfCalls) {
 TEST(SimDevice, SlowReader_LosesBytesAndTheyAreCounted) {
   test::host_side host;
   host.send(command::start);
-  (void)host.twin.available(10 * second);
-  EXPECT_EQ(host.twin.available(10 * second), 65'536U);
-  EXPECT_EQ(host.twin.bytes_delivered() - host.twin.bytes_overflowed(), 65'536U);
-  EXPECT_GT(host.twin.bytes_overflowed(), 130'000U);
+  (void)host.device.available(10 * second);
+  EXPECT_EQ(host.device.available(10 * second), 65'536U);
+  EXPECT_EQ(host.device.bytes_delivered() - host.device.bytes_overflowed(), 65'536U);
+  EXPECT_GT(host.device.bytes_overflowed(), 130'000U);
 }
 
 TEST(SimDevice, NextNs_NeverSkipsABatch) {
@@ -117,7 +117,7 @@ TEST(SimDevice, NextNs_NeverSkipsABatch) {
     for (int step = 0; step < 100; ++step) {
       by_step.now_ns += 10'000;
       std::array<std::uint8_t, 1024> part{};
-      const std::size_t count = by_step.twin.read(part, by_step.now_ns);
+      const std::size_t count = by_step.device.read(part, by_step.now_ns);
       stepped.insert(stepped.end(), part.begin(),
                      part.begin() + static_cast<std::ptrdiff_t>(count));
     }
@@ -127,26 +127,26 @@ TEST(SimDevice, NextNs_NeverSkipsABatch) {
 
 TEST(SimDevice, IdleDevice_HasNoNextEvent) {
   test::host_side host;
-  EXPECT_EQ(host.twin.next_ns(0), sim::forever_ns);
-  EXPECT_TRUE(host.twin.is_idle_and_silent(0));
+  EXPECT_EQ(host.device.next_ns(0), sim::forever_ns);
+  EXPECT_TRUE(host.device.is_idle_and_silent(0));
   host.send(command::device_info);
-  EXPECT_FALSE(host.twin.is_idle_and_silent(0));
-  EXPECT_LT(host.twin.next_ns(0), 2 * ms);
+  EXPECT_FALSE(host.device.is_idle_and_silent(0));
+  EXPECT_LT(host.device.next_ns(0), 2 * ms);
 }
 
 TEST(SimDevice, AllocatesOnConstructionOnly) {
-  sim::device twin(sim::built_in_world(), device_with_seed(4), troubles());
+  sim::device simulated(sim::built_in_world(), device_with_seed(4), troubles());
   std::array<std::uint8_t, 4096> part{};
   std::array<sim::sent_sample, 256> truth{};
   std::size_t heard = 0;
   EXPECT_EQ(test::allocations_in([&] {
               for (std::int64_t now = 0; now < 22 * second; now += 10 * ms) {
-                twin.write(std::array<std::uint8_t, 2>{0xA5, 0x60}, now);
-                twin.write(std::array<std::uint8_t, 2>{0xA5, 0x90}, now);
-                heard += twin.read(part, now);
-                (void)twin.take_truth(truth);
+                simulated.write(std::array<std::uint8_t, 2>{0xA5, 0x60}, now);
+                simulated.write(std::array<std::uint8_t, 2>{0xA5, 0x90}, now);
+                heard += simulated.read(part, now);
+                (void)simulated.take_truth(truth);
               }
-              twin.clear_log();
+              simulated.clear_log();
             }),
             0U);
   EXPECT_GT(heard, 50'000U);

@@ -111,8 +111,8 @@ TEST(SimFaults, Batch_DeliversBytesTogether) {
   std::size_t batches = 0;
   for (const std::int64_t begin = host.now_ns; host.now_ns < begin + 10 * second; ++batches) {
     const std::int64_t before = host.now_ns;
-    while (host.twin.available(host.now_ns) == 0) {
-      host.now_ns = std::max(host.twin.next_ns(host.now_ns), host.now_ns + 1);
+    while (host.device.available(host.now_ns) == 0) {
+      host.now_ns = std::max(host.device.next_ns(host.now_ns), host.now_ns + 1);
     }
     longest = std::max(longest, host.now_ns - before);
     (void)host.listen(1);
@@ -145,7 +145,7 @@ TEST(SimFaults, TwiceAndMute_RepeatOrOmitAnswers) {
   EXPECT_EQ(twice.ask(command::device_info), both);
   host_side never({}, {make_fault(fault_kind::mute, 0, second)});
   EXPECT_THAT(never.ask(command::frequency_up_1_hz), IsEmpty());
-  EXPECT_EQ(never.twin.settings().scan_frequency_chz, 800) << "it was carried out";
+  EXPECT_EQ(never.device.settings().scan_frequency_chz, 800) << "it was carried out";
   (void)never.listen(second);
   EXPECT_EQ(never.ask(command::device_info), information);
 }
@@ -160,9 +160,9 @@ TEST(SimFaults, Rate_IsOfAllAnswers) {
 TEST(SimFaults, Deaf_ReceivesNoCommands) {
   host_side host({}, {make_fault(fault_kind::scanning), make_fault(fault_kind::deaf)});
   (void)host.ask(command::stop);
-  EXPECT_TRUE(host.twin.is_scanning());
+  EXPECT_TRUE(host.device.is_scanning());
   EXPECT_GT(host.hear(second).packets, 200U);
-  EXPECT_THAT(host.twin.log(), IsEmpty());
+  EXPECT_THAT(host.device.log(), IsEmpty());
 }
 
 TEST(SimFaults, Scanning_BeginsAtFullSpeed) {
@@ -181,7 +181,7 @@ TEST(SimFaults, WrongBaudRate_IsGarbage) {
   EXPECT_GT(got.bytes.size(), 15'000U);
   EXPECT_EQ(got.packets, 0U);
   (void)host.ask(command::stop);
-  EXPECT_TRUE(host.twin.is_scanning());
+  EXPECT_TRUE(host.device.is_scanning());
 }
 
 TEST(SimFaults, BrownOut_SilencesTheDeviceUntilItEnds) {
@@ -190,7 +190,7 @@ TEST(SimFaults, BrownOut_SilencesTheDeviceUntilItEnds) {
   const heard got = test::taken_apart(host.ask(command::start, second));
   EXPECT_EQ(got.responses.size(), 1U);
   EXPECT_LT(got.bytes.size(), 800U) << "30 ms of packets";
-  EXPECT_TRUE(host.twin.is_plugged(host.now_ns));
+  EXPECT_TRUE(host.device.is_plugged(host.now_ns));
   EXPECT_THAT(host.ask(command::device_info, second), IsEmpty());
   EXPECT_EQ(host.hear(2 * second).responses.size(), 1U) << "it has booted";
   EXPECT_GT(test::taken_apart(host.ask(command::start, second)).packets, 100U);
@@ -206,8 +206,8 @@ TEST(SimFaults, MotorStoppedInTime_CausesNoBrownOut) {
 TEST(SimFaults, BytesNotSentBeforePowerLoss_AreNeverSent) {
   host_side host({}, {make_fault(fault_kind::late)});
   (void)host.ask(command::health, 100 * ms);
-  host.twin.unplug(host.now_ns);
-  host.twin.replug(host.now_ns);
+  host.device.unplug(host.now_ns);
+  host.device.replug(host.now_ns);
   EXPECT_EQ(host.hear(second).responses, std::vector{response_kind::device_info});
   EXPECT_EQ(host.ask(command::device_info, second), information);
 }
@@ -218,7 +218,7 @@ TEST(SimFaults, Reboot_BootsAgain) {
     const heard got = test::taken_apart(host.ask(command::start, 2 * second));
     EXPECT_THAT(got.responses,
                 ElementsAre(response_kind::scan_started, response_kind::device_info));
-    EXPECT_TRUE(host.twin.is_idle_and_silent(host.now_ns));
+    EXPECT_TRUE(host.device.is_idle_and_silent(host.now_ns));
   }
 }
 
@@ -229,29 +229,29 @@ TEST(SimFaults, UnplugAndReplug) {
     host_side host(options, {make_fault(fault_kind::unplug, second, second)});
     (void)host.ask(command::frequency_up_1_hz);
     (void)host.ask(command::start, 940 * ms);
-    EXPECT_TRUE(host.twin.is_plugged(second - 1));
-    EXPECT_EQ(host.twin.next_plug_ns(), second);
+    EXPECT_TRUE(host.device.is_plugged(second - 1));
+    EXPECT_EQ(host.device.next_plug_ns(), second);
     host.now_ns = second;
-    EXPECT_FALSE(host.twin.is_plugged(second));
+    EXPECT_FALSE(host.device.is_plugged(second));
     EXPECT_THAT(host.ask(command::device_info, second - 1 - 1), IsEmpty());
-    EXPECT_EQ(host.twin.replugs(), 0U);
+    EXPECT_EQ(host.device.replugs(), 0U);
     host.now_ns = 2 * second;
-    EXPECT_TRUE(host.twin.is_plugged(host.now_ns));
-    EXPECT_EQ(host.twin.replugs(), 1U);
-    EXPECT_FALSE(host.twin.is_up());
+    EXPECT_TRUE(host.device.is_plugged(host.now_ns));
+    EXPECT_EQ(host.device.replugs(), 1U);
+    EXPECT_FALSE(host.device.is_up());
     EXPECT_THAT(host.hear(second).responses, ElementsAre(response_kind::device_info));
-    EXPECT_EQ(host.twin.settings().scan_frequency_chz, outlives ? 800 : 700);
+    EXPECT_EQ(host.device.settings().scan_frequency_chz, outlives ? 800 : 700);
   }
 }
 
 TEST(SimFaults, UnplugByCall) {
   host_side host;
   (void)host.ask(command::start, second);
-  host.twin.unplug(host.now_ns);
-  EXPECT_FALSE(host.twin.is_plugged(host.now_ns));
-  EXPECT_EQ(host.twin.next_ns(host.now_ns), forever_ns);
+  host.device.unplug(host.now_ns);
+  EXPECT_FALSE(host.device.is_plugged(host.now_ns));
+  EXPECT_EQ(host.device.next_ns(host.now_ns), forever_ns);
   EXPECT_THAT(host.listen(second), IsEmpty());
-  host.twin.replug(host.now_ns);
+  host.device.replug(host.now_ns);
   (void)host.listen(second);
   EXPECT_EQ(host.ask(command::device_info), information);
 }
@@ -296,7 +296,7 @@ TEST(SimFaults, Fault_EndsAfterItsDuration) {
 // cannot detect, which do not occur with these seeds).
 void expect_whole_packets_and_no_others(host_side& host, const heard& got) {
   std::vector<sim::sent_sample> truth(16'384);
-  truth.resize(host.twin.take_truth(truth));
+  truth.resize(host.device.take_truth(truth));
   std::vector<std::uint16_t> whole;
   for (const sim::sent_sample& s : truth) {
     if (s.whole) whole.push_back(s.truth.raw);

@@ -35,9 +35,9 @@ TEST(SimScanning, Motor_SpinsUp) {
   const auto front = packet_view::from(first.packet_bytes.front());
   EXPECT_EQ(front->sample_count(), 40U);
   EXPECT_EQ(front->first_angle_64ths(), front->last_angle_64ths()) << "it stands";
-  EXPECT_EQ(host.twin.motor_mhz(60 * ms), 0U);
-  EXPECT_GT(host.twin.motor_mhz(80 * ms), 0U);
-  EXPECT_LT(host.twin.motor_mhz(host.now_ns), 2'000U);
+  EXPECT_EQ(host.device.motor_mhz(60 * ms), 0U);
+  EXPECT_GT(host.device.motor_mhz(80 * ms), 0U);
+  EXPECT_LT(host.device.motor_mhz(host.now_ns), 2'000U);
   const heard rising = host.hear(600 * ms);
   int last_span = 0;
   for (const byte_vector& bytes : rising.packet_bytes) {
@@ -48,7 +48,7 @@ TEST(SimScanning, Motor_SpinsUp) {
     last_span = packet->span_64ths();
   }
   EXPECT_NEAR(last_span / 64.0, 39 * 360.0 * 7 / 9000, 0.1);
-  EXPECT_NEAR(host.twin.motor_mhz(host.now_ns), 7'000.0, 20.0);
+  EXPECT_NEAR(host.device.motor_mhz(host.now_ns), 7'000.0, 20.0);
 }
 
 TEST(SimScanning, SampleRateAndFrequency_AreAsSet) {
@@ -87,8 +87,8 @@ TEST(SimScanning, NoConstantFrequency_MotorDriftsMore) {
     std::uint32_t most = 0;
     for (int i = 0; i < 40; ++i) {
       (void)host.hear(second / 2);
-      least = std::min(least, host.twin.motor_mhz(host.now_ns));
-      most = std::max(most, host.twin.motor_mhz(host.now_ns));
+      least = std::min(least, host.device.motor_mhz(host.now_ns));
+      most = std::max(most, host.device.motor_mhz(host.now_ns));
     }
     return most - least;
   };
@@ -139,7 +139,7 @@ TEST(SimScanning, Stop_TruncatesTheLastPacket) {
     } else {
       EXPECT_EQ(whole.skipped_bytes, strays);
     }
-    EXPECT_TRUE(host.twin.is_idle_and_silent(host.now_ns));
+    EXPECT_TRUE(host.device.is_idle_and_silent(host.now_ns));
     EXPECT_THAT(host.listen(second), IsEmpty());
   }
 }
@@ -148,25 +148,25 @@ TEST(SimScanning, ForcedStop_MayBeUnknown) {
   host_side host;
   (void)started(host, second);
   (void)host.ask(0x00);
-  EXPECT_FALSE(host.twin.is_scanning());
+  EXPECT_FALSE(host.device.is_scanning());
   sim::device_options options;
   options.obeys_forced_stop = false;
   host_side other(options);
   (void)started(other, second);
   (void)other.ask(0x00);
-  EXPECT_TRUE(other.twin.is_scanning());
+  EXPECT_TRUE(other.device.is_scanning());
 }
 
 TEST(SimScanning, ProtectionStopsAfterThreeSeconds) {
   host_side host;
   (void)host.ask(command::protection_toggle);
   (void)started(host, 2'900 * ms);
-  EXPECT_TRUE(host.twin.is_scanning());
+  EXPECT_TRUE(host.device.is_scanning());
   (void)host.ask(command::start, 2'900 * ms);
-  EXPECT_TRUE(host.twin.is_scanning()) << "it got keep-alives";
+  EXPECT_TRUE(host.device.is_scanning()) << "it got keep-alives";
   (void)host.listen(200 * ms);
-  EXPECT_FALSE(host.twin.is_scanning());
-  EXPECT_FALSE(host.twin.motor_turns());
+  EXPECT_FALSE(host.device.is_scanning());
+  EXPECT_FALSE(host.device.motor_turns());
   EXPECT_THAT(host.listen(second), IsEmpty());
 }
 
@@ -174,9 +174,9 @@ TEST(SimScanning, ProtectionTurnedOnDuringAScan_CountsFromThen) {
   host_side host;
   (void)started(host, 10 * second);
   (void)host.ask(command::protection_toggle, 2'900 * ms);
-  EXPECT_TRUE(host.twin.is_scanning());
+  EXPECT_TRUE(host.device.is_scanning());
   (void)host.listen(200 * ms);
-  EXPECT_FALSE(host.twin.is_scanning());
+  EXPECT_FALSE(host.device.is_scanning());
 }
 
 TEST(SimScanning, StartAfterTheProtection_MaySendNoHeader) {
@@ -187,7 +187,7 @@ TEST(SimScanning, StartAfterTheProtection_MaySendNoHeader) {
     (void)host.ask(command::protection_toggle);
     (void)started(host, 4 * second);
     EXPECT_EQ(started(host, second).responses.size(), header ? 1U : 0U);
-    EXPECT_TRUE(host.twin.is_scanning());
+    EXPECT_TRUE(host.device.is_scanning());
   }
 }
 
@@ -237,7 +237,7 @@ TEST(SimScanning, CounterClockwise_MirrorsTheRoomOrReversesTheAngles) {
   room.lidar.heading_deg = -room.lidar.heading_deg;
   const sim::ray_caster caster(room);
   std::vector<sim::sent_sample> truth(5'000);
-  truth.resize(mirrored.twin.take_truth(truth));
+  truth.resize(mirrored.device.take_truth(truth));
   ASSERT_FALSE(truth.empty());
   for (const sim::sent_sample& s : truth) {
     const auto target = caster.cast(s.truth.first_level_deg);
@@ -254,14 +254,14 @@ TEST(SimScanning, Restart_BootsAndResetsSettings) {
     (void)started(host, second);
     host.send(command::restart);
     (void)host.listen(5 * ms);  // bytes in transit
-    EXPECT_FALSE(host.twin.is_up());
+    EXPECT_FALSE(host.device.is_up());
     (void)host.ask(command::device_info, 300 * ms);
     const heard boot = host.hear(second);
     EXPECT_EQ(boot.responses, std::vector{response_kind::device_info}) << "unasked, and once";
     const std::string text(boot.bytes.begin(), boot.bytes.end());
     EXPECT_THAT(text, ::testing::StartsWith("G4 "));
-    EXPECT_TRUE(host.twin.is_idle_and_silent(host.now_ns));
-    EXPECT_EQ(host.twin.settings().scan_frequency_chz, keeps ? 800 : 700);
+    EXPECT_TRUE(host.device.is_idle_and_silent(host.now_ns));
+    EXPECT_EQ(host.device.settings().scan_frequency_chz, keeps ? 800 : 700);
   }
 }
 
@@ -292,7 +292,7 @@ TEST(SimScanning, Truth_AgreesWithTheSentBytes) {
   host_side host(options);
   std::vector<sim::sent_sample> truth(16'384);
   const heard got = started(host, 1'500 * ms);
-  truth.resize(host.twin.take_truth(truth));
+  truth.resize(host.device.take_truth(truth));
   std::size_t at = 0;
   for (const byte_vector& bytes : got.packet_bytes) {
     const auto packet = packet_view::from(bytes);
@@ -310,7 +310,7 @@ TEST(SimScanning, Truth_AgreesWithTheSentBytes) {
   }
   // The truth includes samples that the bridge has not delivered yet.
   EXPECT_LE(truth.size() - at, 40U);
-  EXPECT_EQ(host.twin.truth_missed(), 0U);
+  EXPECT_EQ(host.device.truth_missed(), 0U);
 }
 
 TEST(SimScanning, TruthNotTaken_IsCounted) {
@@ -319,8 +319,8 @@ TEST(SimScanning, TruthNotTaken_IsCounted) {
   host_side host(options);
   const heard got = started(host, second);
   std::vector<sim::sent_sample> truth(1'000);
-  EXPECT_EQ(host.twin.take_truth(truth), 100U);
-  EXPECT_NEAR(static_cast<double>(host.twin.truth_missed()),
+  EXPECT_EQ(host.device.take_truth(truth), 100U);
+  EXPECT_NEAR(static_cast<double>(host.device.truth_missed()),
               static_cast<double>(got.samples) - 100.0, 40.0);
 }
 

@@ -78,8 +78,8 @@ std::int64_t application::within(std::int64_t limit_ns, const char* name, Call&&
          std::to_string(limit_ns / ms));
   }
   if (!is_well() && report_.failed_ns == 0) report_.failed_ns = now();
-  tell_events();
-  tell_state();
+  print_events();
+  print_state();
   return took_ns;
 }
 
@@ -90,11 +90,11 @@ void application::check_progress() {
   if (acts_ > 3000) fail("the application gets nowhere");
 }
 
-void application::tell_events() {
+void application::print_events() {
   if (!lidar_) return;
   while (const auto event = lidar_->next_event()) {
     ++report_.events[static_cast<std::size_t>(event->what)];
-    say(text_of("event %s, %s at %.6f", name_of(event->what).data(), name_of(event->reason).data(),
+    log(text_of("event %s, %s at %.6f", name_of(event->what).data(), name_of(event->reason).data(),
                 in_seconds(event->time_ns)));
     checker_.breaks();
     if (event->what == lidar_event::kind::spinning_up) continue;  // nothing is wrong with that
@@ -104,15 +104,15 @@ void application::tell_events() {
 }
 
 /// Once a second.
-void application::tell_state() {
-  if (!verbose_ || now() / second == told_s_) return;
-  told_s_ = now() / second;
+void application::print_state() {
+  if (!verbose_ || now() / second == printed_s_) return;
+  printed_s_ = now() / second;
   const auto log = environment_.device.log();
   std::string codes;
   for (const sim::asked& a : log)
     codes += text_of(" %s%02x", a.obeyed ? "" : "!", unsigned{a.code});
   environment_.device.clear_log();
-  say(text_of("  device %s%s; lidar %s, %llu revolutions; asked%s",
+  log(text_of("  device %s%s; lidar %s, %llu revolutions; asked%s",
               environment_.device.is_up() ? "up" : "down",
               environment_.device.is_scanning() ? ", scanning" : "",
               lidar_ && lidar_->is_scanning() ? "scanning" : "idle",
@@ -121,7 +121,7 @@ void application::tell_state() {
 
 void application::wake() {
   if (!lidar_) return;
-  say(text_of("wake"));
+  log(text_of("wake"));
   lidar_->wake();
 }
 
@@ -139,11 +139,11 @@ void application::open() {
     made = lidar::open(std::make_unique<observed_connector>(environment_), parameters_.options);
   });
   if (!made) {
-    say(text_of("open: %s", made.error().message().c_str()));
+    log(text_of("open: %s", made.error().message().c_str()));
     if (parameters_.healthy) fail("a healthy device does not open: " + made.error().message());
     return sleep_until(now() + 200 * ms);
   }
-  say(text_of("open"));
+  log(text_of("open"));
   ++report_.opens;
   lidar_ = std::make_unique<lidar>(std::move(*made));
   taken_ = 0;
@@ -153,14 +153,14 @@ void application::open() {
 
 void application::close(bool politely) {
   if (!lidar_) return;
-  say(politely ? "close" : "destroy");
+  log(politely ? "close" : "destroy");
   report_.reconnects += lidar_->counts().reconnects;
   environment_.wake_ns = never_ns;
   report_.longest_stop_ns =
       std::max(report_.longest_stop_ns, within(request_ns, "close()", [&] {
                  if (politely) {
                    const auto closed = lidar_->close();
-                   if (!closed) say(text_of("close: %s", closed.error().message().c_str()));
+                   if (!closed) log(text_of("close: %s", closed.error().message().c_str()));
                    if (!closed && now() > parameters_.end_ns)
                      fail("close() failed: " + closed.error().message());
                    checker_.look();
@@ -177,8 +177,8 @@ void application::start() {
   if (done) checker_.is_breaking(false);
   report_.longest_start_ns = std::max(report_.longest_start_ns, took_ns);
   wants_scan_ = done.has_value();
-  if (done) return say(text_of("start took %.3f s", in_seconds(took_ns)));
-  say(text_of("start: %s", done.error().message().c_str()));
+  if (done) return log(text_of("start took %.3f s", in_seconds(took_ns)));
+  log(text_of("start: %s", done.error().message().c_str()));
   if (parameters_.healthy && done.error() != problem::cancelled) {
     fail("a healthy device does not start: " + done.error().message());
   }
@@ -191,7 +191,7 @@ void application::stop() {
   checker_.is_breaking(true);
   const std::int64_t took_ns = within(request_ns, "stop()", [&] { done = lidar_->stop(); });
   report_.longest_stop_ns = std::max(report_.longest_stop_ns, took_ns);
-  say(text_of("stop: %s", done ? "done" : done.error().message().c_str()));
+  log(text_of("stop: %s", done ? "done" : done.error().message().c_str()));
   wants_scan_ = false;
   if (!done) return judge(done.error());
   if (dice_.chance(0.5))
@@ -211,7 +211,7 @@ void application::ask() {
   report_.longest_ask_ns = std::max(report_.longest_ask_ns, took_ns);
   // One that was woken goes on, until the next call has brought it to its end.
   if (got || got.error() != problem::cancelled) checker_.is_breaking(false);
-  say(text_of("ask %d: %s after %.3f s", static_cast<int>(wanted.what),
+  log(text_of("ask %d: %s after %.3f s", static_cast<int>(wanted.what),
               got ? "answered" : got.error().message().c_str(), in_seconds(took_ns)));
   if (!got) return judge(got.error());
 }
@@ -221,7 +221,7 @@ void application::judge(const error& what) {
   const bool is_nothing =
       what == problem::timeout || what == problem::cancelled || what == problem::scanning;
   if (is_nothing) return;
-  say(text_of("error: %s", what.message().c_str()));
+  log(text_of("error: %s", what.message().c_str()));
   if (what == problem::not_scanning) {
     wants_scan_ = false;
   } else if (what.is_fatal()) {
@@ -285,7 +285,7 @@ void application::act_once() {
   }
   if (dice_.chance(m.sleep) && now() - awake_ns_ >= awake_between_ns) {
     const std::int64_t slept_ns = dice_.between(0, m.longest_sleep_ns);
-    say(text_of("sleep %.3f s", in_seconds(slept_ns)));
+    log(text_of("sleep %.3f s", in_seconds(slept_ns)));
     sleep_until(std::min(now() + slept_ns, parameters_.calm_ns));
     awake_ns_ = now();
     return;
@@ -310,7 +310,7 @@ void application::act() {
 }
 
 void application::calm_down() {
-  say("calm");
+  log("calm");
   environment_.wake_ns = never_ns;
 }
 
@@ -336,7 +336,7 @@ run_report application::report() {
   report_.holes = checker_.holes();
   report_.scans = checker_.scans();
   report_.simulated_ns = now();
-  if (!report_.failure.empty()) say(text_of("FAILED: %s", report_.failure.c_str()));
+  if (!report_.failure.empty()) log(text_of("FAILED: %s", report_.failure.c_str()));
   return report_;
 }
 

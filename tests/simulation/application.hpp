@@ -29,7 +29,7 @@ class application {
   /// Revolutions over all lidars of this run.
   [[nodiscard]] std::uint64_t scans() const { return checker_.scans(); }
 
-  void say(const std::string& what) const {
+  void log(const std::string& what) const {
     if (verbose_) std::printf("%11.6f  %s\n", in_seconds(now()), what.c_str());
   }
   void fail(const std::string& what);
@@ -49,8 +49,8 @@ class application {
   template <class Call>
   std::int64_t within(std::int64_t limit_ns, const char* name, Call&& call);
   void check_progress();
-  void tell_events();
-  void tell_state();
+  void print_events();
+  void print_state();
   void wake();
   void sleep_until(std::int64_t until_ns);
   void act_once();
@@ -73,7 +73,7 @@ class application {
   std::unique_ptr<lidar> lidar_;
   bool wants_scan_ = false;
   std::uint64_t taken_ = 0;  // by next_points()
-  std::int64_t told_s_ = 0;
+  std::int64_t printed_s_ = 0;
   std::int64_t awake_ns_ = 0;  // since it slept
   std::int64_t acted_ns_ = 0;
   int acts_ = 0;

@@ -42,33 +42,33 @@ struct environment {
 /// A transport that reports each call, and during which the driver may be woken.
 class observed_transport final : public transport {
  public:
-  explicit observed_transport(environment& on, std::unique_ptr<transport> line)
-      : environment_(&on), line_(std::move(line)) {}
+  explicit observed_transport(environment& on, std::unique_ptr<transport> port)
+      : environment_(&on), port_(std::move(port)) {}
 
   result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
     environment_->on_call();
-    auto got = line_->read(out, until(deadline_ns));
-    if (got && got->count == 0 && wakes()) got = line_->read(out, deadline_ns);
+    auto got = port_->read(out, until(deadline_ns));
+    if (got && got->count == 0 && wakes()) got = port_->read(out, deadline_ns);
     ++(got && got->count > 0 ? environment_->calls.reads : environment_->calls.empty);
     return got;
   }
   result<void> write(bytes data, std::int64_t deadline_ns) noexcept override {
     environment_->on_call();
     ++environment_->calls.writes;
-    return line_->write(data, deadline_ns);
+    return port_->write(data, deadline_ns);
   }
   result<void> pause(std::int64_t deadline_ns) noexcept override {
     environment_->on_call();
     ++environment_->calls.pauses;
-    auto done = line_->pause(until(deadline_ns));
-    if (done && wakes()) done = line_->pause(deadline_ns);
+    auto done = port_->pause(until(deadline_ns));
+    if (done && wakes()) done = port_->pause(deadline_ns);
     return done;
   }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return line_->now_ns(); }
-  void wake() noexcept override { line_->wake(); }
-  [[nodiscard]] std::string_view name() const noexcept override { return line_->name(); }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return line_->baud(); }
-  [[nodiscard]] std::size_t kept_bytes() const noexcept override { return line_->kept_bytes(); }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return port_->now_ns(); }
+  void wake() noexcept override { port_->wake(); }
+  [[nodiscard]] std::string_view name() const noexcept override { return port_->name(); }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return port_->baud(); }
+  [[nodiscard]] std::size_t kept_bytes() const noexcept override { return port_->kept_bytes(); }
 
  private:
   [[nodiscard]] std::int64_t until(std::int64_t deadline_ns) const noexcept {
@@ -82,7 +82,7 @@ class observed_transport final : public transport {
   }
 
   environment* environment_;
-  std::unique_ptr<transport> line_;
+  std::unique_ptr<transport> port_;
 };
 
 class observed_connector final : public connector {
@@ -93,9 +93,9 @@ class observed_connector final : public connector {
   result<std::unique_ptr<transport>> connect() noexcept override {
     environment_->on_call();
     ++environment_->calls.connects;
-    auto line = connector_.connect();
-    if (!line) return line;
-    return std::make_unique<observed_transport>(*environment_, std::move(*line));
+    auto port = connector_.connect();
+    if (!port) return port;
+    return std::make_unique<observed_transport>(*environment_, std::move(*port));
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return connector_.now_ns(); }
   bool pause(std::int64_t deadline_ns) noexcept override {

@@ -127,8 +127,8 @@ void invariant_checker::check_time(const known_point& found) {
 
 void invariant_checker::check_counts() {
   const lidar_counts now = lidar_->counts();
-  if (now.bytes != now.stream.frame_bytes + now.stream.skipped_bytes() + now.held) {
-    fail("bytes are not those of frames, skipped and held");
+  if (now.bytes != now.stream.parsed_bytes + now.stream.skipped_bytes() + now.held) {
+    fail("bytes are not those of packets and responses, skipped and held");
   }
   const auto fell = [&](auto member) { return now.*member < last_.*member; };
   bool falls = fell(&lidar_counts::bytes) || fell(&lidar_counts::samples_lost) ||
@@ -136,7 +136,7 @@ void invariant_checker::check_counts() {
                fell(&lidar_counts::scans_missed) || fell(&lidar_counts::points_missed) ||
                fell(&lidar_counts::command_retries) || fell(&lidar_counts::reconnects) ||
                fell(&lidar_counts::largest_gap_ns);
-  falls = falls || now.stream.frame_bytes < last_.stream.frame_bytes ||
+  falls = falls || now.stream.parsed_bytes < last_.stream.parsed_bytes ||
           now.stream.packets < last_.stream.packets ||
           now.stream.responses < last_.stream.responses ||
           now.stream.points < last_.stream.points || now.stream.suspect < last_.stream.suspect;

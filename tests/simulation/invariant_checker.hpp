@@ -47,7 +47,7 @@ class invariant_checker {
     breaks();
   }
 
-  /// Before each call of a line, and after each call of the driver.
+  /// Before each call of a transport, and after each call of the driver.
   void look();
   /// The application calls.
   void app_call() { ++app_calls_; }

@@ -27,7 +27,7 @@ void draw_scanner(dice& d, std::uint64_t seed, sim::scanner_options& scanner) {
   scanner.seed = seed;
   scanner.scan_frequency_chz = static_cast<std::uint16_t>(d.between(500, 1200));
   scanner.ranging = d.chance(0.6) ? ranging_frequency::khz_9 : some_ranging(d);
-  // More would not go down the line: 9.3 kHz with a header for each 30 samples are 21.6 kB/s.
+  // More exceeds the baud rate: 9.3 kHz with a header for each 30 samples are 21.6 kB/s.
   scanner.samples_per_packet = static_cast<std::size_t>(d.chance(0.5) ? 40 : d.between(30, 80));
   scanner.index_deg = d.chance(0.5) ? 0.0 : d.real(0.0, 359.9);
   scanner.reports_frequency = d.chance(0.5);

@@ -27,7 +27,7 @@ class recovery {
     }
     if (took_ns_ < 0 && seen_ >= at_calm_ + 2) {
       took_ns_ = of_->now() - calm_ns_;
-      of_->say(text_of("recovered after %.3f s", in_seconds(took_ns_)));
+      of_->log(text_of("recovered after %.3f s", in_seconds(took_ns_)));
     }
     const bool is_over = took_ns_ >= 0;
     if (of_->now() - (is_over ? seen_ns_ : calm_ns_) > allowed_ns_) {

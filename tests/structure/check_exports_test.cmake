@@ -21,11 +21,11 @@ function(expect message)
   execute_process(
     COMMAND "${CMAKE_COMMAND}" "-DNM=${SCRATCH}/nm" "-DLIBRARY=${SCRATCH}/library"
             "-DLIST=${SCRATCH}/list.txt" -P "${SCRIPT}"
-    OUTPUT_VARIABLE said ERROR_VARIABLE said
+    OUTPUT_VARIABLE output ERROR_VARIABLE output
   )
-  string(REGEX REPLACE "[ \n]+" " " said "${said}")
-  if(NOT said MATCHES "${message}")
-    message(FATAL_ERROR "${ARGN}: expected '${message}', but:\n${said}")
+  string(REGEX REPLACE "[ \n]+" " " output "${output}")
+  if(NOT output MATCHES "${message}")
+    message(FATAL_ERROR "${ARGN}: expected '${message}', but:\n${output}")
   endif()
 endfunction()
 

@@ -25,7 +25,7 @@
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/detail/frame_check.hpp"
+#include "g4lidar/detail/wire_check.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/point.hpp"
@@ -43,8 +43,8 @@ angle add(angle a, angle b) { return -(a + b - angle::from_radians(a.radians()))
 float apart(angle a, angle b) { return a.apart_from(b) + a.forward_to(b) + b.signed_degrees(); }
 double wrap(double degrees) { return wrap_deg(degrees); }
 
-frame_check check(bytes data) { return check_packet(data); }
-frame_check check_reply(bytes data) { return check_response(data); }
+wire_check check(bytes data) { return check_packet(data); }
+wire_check check_reply(bytes data) { return check_response(data); }
 std::optional<packet_view> view_packet(bytes data) { return packet_view::from(data); }
 std::optional<response_view> view_reply(bytes data) { return response_view::from(data); }
 std::uint32_t load(bytes data) {
@@ -178,8 +178,8 @@ std::optional<std::array<std::uint8_t, 2>> wait(session& talk, std::int64_t& now
   talk.look(now_ns);
   return talk.to_send();
 }
-std::uint64_t watch(session& talk, notice& told) {
-  told = talk.noticed();
+std::uint64_t watch(session& talk, notice& reported) {
+  reported = talk.noticed();
   return talk.retries() + (talk.is_busy() ? 1 : 0) + (talk.is_scanning() ? 1 : 0) +
          (talk.protection() ? 1 : 0);
 }

@@ -136,10 +136,10 @@ class model {
   void send(delivery& d) {
     const std::size_t size = packet_size(d.packet.sample_count);
     const double byte_ns = o_.baud > 0.0 ? 10e9 / o_.baud : 0.0;
-    const double begin = std::max(line_free_ns_, d.measured_ns[d.packet.sample_count - 1U]);
-    line_free_ns_ = begin + static_cast<double>(size) * byte_ns;
+    const double begin = std::max(wire_free_ns_, d.measured_ns[d.packet.sample_count - 1U]);
+    wire_free_ns_ = begin + static_cast<double>(size) * byte_ns;
     double before = 0.0;
-    const double handed = handed_over(line_free_ns_, before);
+    const double handed = handed_over(wire_free_ns_, before);
     if (byte_ns > 0.0 && before > begin) {
       d.seen_bytes = static_cast<std::size_t>((before - begin) / byte_ns);
       d.seen_ns = read(before);
@@ -205,7 +205,7 @@ class model {
   double phase_ns_ = 0.0;
   double drift_phase_ = 0.0;
   double motor_phase_ = 0.0;
-  double line_free_ns_ = 0.0;
+  double wire_free_ns_ = 0.0;
   double flush_ns_ = 0.0;
   double last_flush_ns_ = 0.0;
   double read_ns_ = 0.0;

@@ -89,8 +89,8 @@ constexpr void write_angle(line& out, int sixty_fourths) {
   return out;
 }
 
-/// The bytes of a frame; none for skipped ones.
-[[nodiscard]] constexpr bytes frame_of(const event& found) {
+/// The bytes of a packet or response; none for skipped ones.
+[[nodiscard]] constexpr bytes data_of(const event& found) {
   if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data();
   if (const auto* reply = std::get_if<response_view>(&found)) return reply->data();
   return {};

@@ -60,9 +60,9 @@ class host_side {
  public:
   explicit host_side(const sim::device_options& options = {},
                      std::initializer_list<sim::fault> faults = {})
-      : twin(sim::built_in_world(), options, std::span(faults.begin(), faults.size())) {}
+      : device(sim::built_in_world(), options, std::span(faults.begin(), faults.size())) {}
 
-  void send(std::uint8_t code) { twin.write(std::array<std::uint8_t, 2>{0xA5, code}, now_ns); }
+  void send(std::uint8_t code) { device.write(std::array<std::uint8_t, 2>{0xA5, code}, now_ns); }
   void send(command code) { send(static_cast<std::uint8_t>(code)); }
 
   /// All bytes that arrive within this time.
@@ -71,10 +71,10 @@ class host_side {
     byte_vector all;
     for (;;) {
       std::array<std::uint8_t, 1024> part{};
-      const std::size_t count = twin.read(part, now_ns);
+      const std::size_t count = device.read(part, now_ns);
       all.insert(all.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(count));
       if (count > 0) continue;
-      const std::int64_t next = twin.next_ns(now_ns);
+      const std::int64_t next = device.next_ns(now_ns);
       if (next > end_ns) break;
       now_ns = next > now_ns ? next : now_ns + 1;
     }
@@ -91,7 +91,7 @@ class host_side {
     return ask(static_cast<std::uint8_t>(code), for_ns);
   }
 
-  sim::device twin;
+  sim::device device;
   std::int64_t now_ns = 0;
 };
 

@@ -45,9 +45,9 @@ class measured_truth {
   }
 
   /// All that the device has sent since it was asked last.
-  static measured_truth of(sim::device& twin, std::size_t capacity) {
+  static measured_truth of(sim::device& simulated, std::size_t capacity) {
     std::vector<sim::sent_sample> samples(capacity);
-    samples.resize(twin.take_truth(samples));
+    samples.resize(simulated.take_truth(samples));
     return measured_truth(std::move(samples));
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Builds streams of packets, responses, noise and false starts, damages them, and remembers the
-// undamaged frames.
+// undamaged units: packets and responses.
 #pragma once
 
 #include <algorithm>
@@ -30,10 +30,11 @@ class dice {
   std::size_t below(std::size_t n) { return static_cast<std::uint32_t>(next() % n); }
   std::uint8_t byte() { return static_cast<std::uint8_t>(next() & 0xFFU); }
   /// A byte that usually has a meaning for the parser.
-  std::uint8_t telling_byte() {
-    constexpr std::array<std::uint8_t, 16> telling{0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A, 0x00, 0x01,
-                                                   0x02, 0x03, 0x04, 0x05, 0x14, 0x40, 0x50, 0x81};
-    return below(8) == 0 ? byte() : telling[below(telling.size())];
+  std::uint8_t structural_byte() {
+    constexpr std::array<std::uint8_t, 16> structural{0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A,
+                                                      0x00, 0x01, 0x02, 0x03, 0x04, 0x05,
+                                                      0x14, 0x40, 0x50, 0x81};
+    return below(8) == 0 ? byte() : structural[below(structural.size())];
   }
 
  private:
@@ -46,8 +47,8 @@ using recipe = std::pair<std::uint8_t, std::uint64_t>;
 inline constexpr std::uint8_t part_kinds = 13;
 inline constexpr std::uint8_t damage_kinds = 6;
 
-/// A stretch of the damaged stream that is an unchanged frame.
-struct intact_frame {
+/// A stretch of the damaged stream that is an unchanged unit.
+struct intact_unit {
   std::size_t offset;
   std::size_t size;
 };
@@ -60,39 +61,39 @@ class random_stream {
 
   /// The bytes. The checksums of false headers that must match are written here, last.
   [[nodiscard]] buffer data() const;
-  /// The undamaged frames, by their offsets in data().
-  [[nodiscard]] std::vector<intact_frame> intact_frames() const;
+  /// The undamaged units, by their offsets in data().
+  [[nodiscard]] std::vector<intact_unit> intact_units() const;
 
  private:
   struct cell {
     std::uint8_t value;
-    int frame;          // the frame that it belongs to; -1: none, or damaged
-    std::size_t index;  // its index in the frame
+    int unit;           // the unit that it belongs to; -1: none, or damaged
+    std::size_t index;  // its index in the unit
     bool seal;          // first byte of a header whose checksum must match
   };
 
   void add_bytes(const buffer& more) {
     for (const std::uint8_t byte : more) cells_.push_back({byte, -1, 0, false});
   }
-  void add_frame(const buffer& frame) {
+  void add_unit(const buffer& unit) {
     const int id = static_cast<int>(sizes_.size());
-    for (std::size_t i = 0; i < frame.size(); ++i) cells_.push_back({frame[i], id, i, false});
-    sizes_.push_back(frame.size());
+    for (std::size_t i = 0; i < unit.size(); ++i) cells_.push_back({unit[i], id, i, false});
+    sizes_.push_back(unit.size());
   }
   [[nodiscard]] static buffer packet(dice& random, std::size_t samples, unsigned ct);
   [[nodiscard]] static buffer response(dice& random);
   [[nodiscard]] static buffer false_header(dice& random, std::size_t size);
 
   std::vector<cell> cells_;
-  std::vector<std::size_t> sizes_;  // of the frames
+  std::vector<std::size_t> sizes_;  // of the units
 };
 
 inline buffer random_stream::packet(dice& random, std::size_t samples, unsigned ct) {
-  const bool telling = random.below(3) == 0;
+  const bool structural = random.below(3) == 0;
   std::vector<std::uint16_t> values;
   for (std::size_t i = 0; i < samples; ++i) {
-    const unsigned low = telling ? random.telling_byte() : random.byte();
-    const unsigned high = telling ? random.telling_byte() : random.byte();
+    const unsigned low = structural ? random.structural_byte() : random.byte();
+    const unsigned high = structural ? random.structural_byte() : random.byte();
     values.push_back(static_cast<std::uint16_t>(low | high << 8));
   }
   const auto first = static_cast<unsigned>(random.below(23040));
@@ -105,14 +106,15 @@ inline buffer random_stream::response(dice& random) {
     case 0:
       return response_bytes(5, 0x40, 0x81, {});
     case 1: {
-      buffer content{random.telling_byte(), random.telling_byte(), random.byte(), random.byte()};
+      buffer content{random.structural_byte(), random.structural_byte(), random.byte(),
+                     random.byte()};
       for (int i = 0; i < 16; ++i) content.push_back(static_cast<std::uint8_t>(random.below(10)));
       return response_bytes(20, 0, 4, content);
     }
     case 2:
       return response_bytes(
           3, 0, 6,
-          {static_cast<std::uint8_t>(random.below(3)), random.telling_byte(), random.byte()});
+          {static_cast<std::uint8_t>(random.below(3)), random.structural_byte(), random.byte()});
     case 3:
       return response_bytes(1, 0, 4, {static_cast<std::uint8_t>(random.below(3))});
     default: {
@@ -124,7 +126,7 @@ inline buffer random_stream::response(dice& random) {
   }
 }
 
-/// The first bytes of a possible header, without a frame behind it.
+/// The first bytes of a possible header, without a unit behind it.
 inline buffer random_stream::false_header(dice& random, std::size_t size) {
   buffer out{0xAA, 0x55, random.byte(), static_cast<std::uint8_t>(1 + random.below(80))};
   append_u16(out, wire_angle(static_cast<unsigned>(random.below(23040))));
@@ -139,13 +141,13 @@ inline void random_stream::add(const recipe& part) {
   switch (part.first % part_kinds) {
     case 0:
     case 1:
-      return add_frame(packet(random, 1 + random.below(80), 2U * random.byte() & 0xFFU));
+      return add_unit(packet(random, 1 + random.below(80), 2U * random.byte() & 0xFFU));
     case 2:
-      return add_frame(packet(random, 1, 1U | 2U * random.byte() % 256));
+      return add_unit(packet(random, 1, 1U | 2U * random.byte() % 256));
     case 3:
-      return add_frame(packet(random, 1 + random.below(5), random.byte()));
+      return add_unit(packet(random, 1 + random.below(5), random.byte()));
     case 4:
-      return add_frame(response(random));
+      return add_unit(response(random));
     case 5: {
       buffer noise(1 + random.below(40));
       for (std::uint8_t& byte : noise) byte = random.byte();
@@ -153,7 +155,7 @@ inline void random_stream::add(const recipe& part) {
     }
     case 6: {
       buffer noise(1 + random.below(20));
-      for (std::uint8_t& byte : noise) byte = random.telling_byte();
+      for (std::uint8_t& byte : noise) byte = random.structural_byte();
       return add_bytes(noise);
     }
     case 7:
@@ -196,7 +198,7 @@ inline void random_stream::damage(const recipe& harm) {
   switch (harm.first % damage_kinds) {
     case 0:  // a flipped bit
       place->value = static_cast<std::uint8_t>(place->value ^ 1U << random.below(8));
-      place->frame = -1;
+      place->unit = -1;
       return;
     case 1:  // one byte lost
       cells_.erase(place);
@@ -207,7 +209,7 @@ inline void random_stream::damage(const recipe& harm) {
     case 3: {  // some additional bytes
       std::vector<cell> more;
       for (std::size_t i = 0; i < length; ++i)
-        more.push_back({random.telling_byte(), -1, 0, false});
+        more.push_back({random.structural_byte(), -1, 0, false});
       cells_.insert(place, more.begin(), more.end());
       return;
     }
@@ -226,8 +228,8 @@ inline buffer random_stream::data() const {
   for (std::size_t at = cells_.size(); at-- > 0;) {
     const std::size_t left = cells_.size() - at;
     if (!cells_[at].seal || left < 10 || left < 10 + 2 * std::size_t{out[at + 3]}) continue;
-    // The two bytes of a checksum that damage has moved onto a frame are not changed.
-    if (cells_[at + 8].frame >= 0 || cells_[at + 9].frame >= 0) continue;
+    // The two bytes of a checksum that damage has moved onto a unit are not changed.
+    if (cells_[at + 8].unit >= 0 || cells_[at + 9].unit >= 0) continue;
     const int sum = reference::checksum_of(reference::window(out, at));
     out[at + 8] = static_cast<std::uint8_t>(sum & 0xFF);
     out[at + 9] = static_cast<std::uint8_t>(sum >> 8);
@@ -235,16 +237,16 @@ inline buffer random_stream::data() const {
   return out;
 }
 
-inline std::vector<intact_frame> random_stream::intact_frames() const {
-  std::vector<intact_frame> intact;
+inline std::vector<intact_unit> random_stream::intact_units() const {
+  std::vector<intact_unit> intact;
   for (std::size_t at = 0; at < cells_.size(); ++at) {
-    const int frame = cells_[at].frame;
-    if (frame < 0 || cells_[at].index != 0) continue;
-    const std::size_t size = sizes_[static_cast<std::size_t>(frame)];
+    const int unit = cells_[at].unit;
+    if (unit < 0 || cells_[at].index != 0) continue;
+    const std::size_t size = sizes_[static_cast<std::size_t>(unit)];
     if (size > cells_.size() - at) continue;
     bool whole = true;
     for (std::size_t i = 0; i < size; ++i) {
-      whole = whole && cells_[at + i].frame == frame && cells_[at + i].index == i;
+      whole = whole && cells_[at + i].unit == unit && cells_[at + i].index == i;
     }
     if (whole) intact.push_back({at, size});
   }

@@ -16,7 +16,7 @@ namespace reference {
 /// The kind of a stretch of the input.
 enum class kind { packet, response, noise, bad_header, bad_checksum, truncated };
 
-/// A stretch of the input: a frame, or neighbouring skipped bytes of one reason.
+/// A stretch of the input: a packet, a response, or neighbouring skipped bytes of one reason.
 struct stretch {
   std::size_t offset;
   std::size_t size;
@@ -123,9 +123,10 @@ class window {
 
 /// What begins at one offset of the input, without its context.
 struct start {
-  enum { no_start, refused, unfinished, frame } state;
-  kind what;         ///< Of a frame: packet or response. Refused: the reason.
-  std::size_t size;  ///< Of a frame; refused: the bytes from the start to the first impossible one.
+  enum { no_start, refused, unfinished, valid } state;
+  kind what;  ///< Of a valid one: packet or response. Refused: the reason.
+  std::size_t
+      size;  ///< Of a valid one; refused: the bytes from the start to the first impossible one.
 };
 
 [[nodiscard]] inline start packet_start_at(const window& in) {
@@ -139,7 +140,7 @@ struct start {
   const std::size_t size = 10 + 2 * static_cast<std::size_t>(in[3]);
   if (size > in.left()) return {start::unfinished, kind::truncated, 0};
   if (checksum_of(in) != in[8] + 256 * in[9]) return {start::refused, kind::bad_checksum, size};
-  return {start::frame, kind::packet, size};
+  return {start::valid, kind::packet, size};
 }
 
 [[nodiscard]] inline start response_start_at(const window& in) {
@@ -148,7 +149,7 @@ struct start {
     // A response is complete when nothing can follow: no response is the beginning of another.
     const int length = k >= 7 ? (in[2] == 5 ? 0 : in[2]) : -1;
     if (length >= 0 && k == 7 + static_cast<std::size_t>(length)) {
-      return {start::frame, kind::response, k};
+      return {start::valid, kind::response, k};
     }
     ++k;
   }
@@ -171,8 +172,8 @@ struct reading {
 };
 
 /// Parses `input` from its first byte to its last, with finish() at the end. Each byte is part of a
-/// frame or has a reason. A refused start gives its reason to all bytes that it claimed, unless an
-/// earlier one claimed them before, and until a frame begins.
+/// packet or response, or has a reason. A refused start gives its reason to all bytes that it
+/// claimed, unless an earlier one claimed them before, and until a valid one begins.
 [[nodiscard]] inline reading read(const std::vector<std::uint8_t>& input) {
   reading result{{}, input.size()};
   bool ended = false;  // the input is not sufficient to decide: from here on finish() decides
@@ -191,7 +192,7 @@ struct reading {
       ended = true;
       result.held_from = at;
     }
-    if (s.state == start::frame) {
+    if (s.state == start::valid) {
       add(at, s.size, s.what, false);
       at += s.size;
       claimed_up_to = at;

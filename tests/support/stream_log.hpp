@@ -54,10 +54,10 @@ class stream_log {
     bytes rest(piece);
     while (const auto found = parser.next(rest)) {
       take(*found);
-      expect(told_ + parser.held() + rest.size() == fed_, "bytes went astray after an event");
+      expect(reported_ + parser.held() + rest.size() == fed_, "bytes went astray after an event");
     }
     expect(rest.empty(), "input is left though there is no event");
-    expect(told_ + parser.held() == fed_, "bytes went astray");
+    expect(reported_ + parser.held() == fed_, "bytes went astray");
     expect(parser.held() < max_packet_size, "too many bytes are held");
   }
 
@@ -66,9 +66,9 @@ class stream_log {
     held_from_ = fed_ - parser.held();
     while (const auto found = parser.finish()) {
       take(*found);
-      expect(told_ + parser.held() == fed_, "bytes went astray in finish()");
+      expect(reported_ + parser.held() == fed_, "bytes went astray in finish()");
     }
-    expect(told_ == fed_ && parser.held() == 0, "finish() leaves bytes behind");
+    expect(reported_ == fed_ && parser.held() == 0, "finish() leaves bytes behind");
   }
 
   [[nodiscard]] const std::vector<reference::stretch>& stretches() const { return stretches_; }
@@ -86,28 +86,28 @@ class stream_log {
       if (!stretches_.empty() && stretches_.back().what == what) {
         stretches_.back().size += size;
       } else {
-        stretches_.push_back({told_, size, what});
+        stretches_.push_back({reported_, size, what});
       }
     } else {
-      const bytes frame = what == reference::kind::packet ? std::get<packet_view>(found).data()
-                                                          : std::get<response_view>(found).data();
-      const auto place = whole_.begin() + static_cast<std::ptrdiff_t>(told_);
-      expect(told_ + size <= fed_ && std::equal(frame.begin(), frame.end(), place),
+      const bytes data = what == reference::kind::packet ? std::get<packet_view>(found).data()
+                                                         : std::get<response_view>(found).data();
+      const auto place = whole_.begin() + static_cast<std::ptrdiff_t>(reported_);
+      expect(reported_ + size <= fed_ && std::equal(data.begin(), data.end(), place),
              "a view of other bytes than those of the input");
-      stretches_.push_back({told_, size, what});
+      stretches_.push_back({reported_, size, what});
     }
-    told_ += size;
+    reported_ += size;
   }
 
   void expect(bool holds, const char* otherwise) {
     if (!holds && complaint_.empty()) {
-      complaint_ = std::string(otherwise) + " at byte " + std::to_string(told_);
+      complaint_ = std::string(otherwise) + " at byte " + std::to_string(reported_);
     }
   }
 
   const buffer& whole_;
   std::size_t fed_ = 0;
-  std::size_t told_ = 0;  // bytes covered by the events so far
+  std::size_t reported_ = 0;  // bytes covered by the events so far
   std::size_t held_from_ = 0;
   std::vector<reference::stretch> stretches_;
   std::string complaint_;

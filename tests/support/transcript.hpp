@@ -79,12 +79,12 @@ class reader {
 
 /// Feeds `input` to `parser`, cut by `cut(from) -> bytes of the next piece`, then ends it, and
 /// passes each line of the log to `emit`; adjacent skips with one reason are one line. Returns
-/// false, after a line with the error, if a frame differs from the bytes of the input or if bytes
+/// false, after a line with the error, if an event differs from the bytes of the input or if bytes
 /// are missing.
 template <class Cut, class Emit>
 [[nodiscard]] constexpr bool log_section(stream_parser& parser, bytes input, Cut&& cut,
                                          Emit&& emit) {
-  std::size_t told = 0;  // bytes of the input covered by the events so far
+  std::size_t reported = 0;  // bytes of the input covered by the events so far
   bool sound = true;
   skipped pending{0, skip_reason::noise};
   const auto show = [&](const line& text) { emit(text.view()); };
@@ -96,16 +96,16 @@ template <class Cut, class Emit>
     if (const auto* gone = std::get_if<skipped>(&found)) {
       if (gone->reason != pending.reason) flush();
       pending = {pending.count + gone->count, gone->reason};
-      told += gone->count;
+      reported += gone->count;
       return;
     }
     flush();
-    const bytes frame = frame_of(found);
+    const bytes data = data_of(found);
     if (const auto* packet = std::get_if<packet_view>(&found)) show(text_of(*packet));
     if (const auto* reply = std::get_if<response_view>(&found)) show(text_of(*reply));
-    sound = sound && told + frame.size() <= input.size() &&
-            std::equal(frame.begin(), frame.end(), input.subspan(told).begin());
-    told += frame.size();
+    sound = sound && reported + data.size() <= input.size() &&
+            std::equal(data.begin(), data.end(), input.subspan(reported).begin());
+    reported += data.size();
   };
   for (std::size_t from = 0; from < input.size();) {
     const std::size_t count = std::min<std::size_t>(cut(from), input.size() - from);
@@ -113,16 +113,16 @@ template <class Cut, class Emit>
     from += count;
     while (const auto found = parser.next(piece)) {
       take(*found);
-      sound = sound && told + parser.held() + piece.size() == from;
+      sound = sound && reported + parser.held() + piece.size() == from;
     }
-    sound = sound && piece.empty() && told + parser.held() == from;
+    sound = sound && piece.empty() && reported + parser.held() == from;
   }
   flush();
   emit(std::string_view("finish"));
   while (const auto found = parser.finish()) take(*found);
   flush();
-  sound = sound && told == input.size() && parser.held() == 0;
-  if (!sound) emit(std::string_view("(the frames and counts above are not those of the input)"));
+  sound = sound && reported == input.size() && parser.held() == 0;
+  if (!sound) emit(std::string_view("(the events and counts above are not those of the input)"));
   return sound;
 }
 

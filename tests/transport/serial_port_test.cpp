@@ -331,13 +331,13 @@ TEST(SerialPort, UnpluggedDuringAWait_IsGoneImmediately) {
       device.unplug();
     });
     const auto waited = wait(*port);
-    const std::int64_t told_ns = port->now_ns();
+    const std::int64_t reported_ns = port->now_ns();
     hand.join();
     ASSERT_FALSE(waited);
     EXPECT_EQ(waited.error().code(), problem::gone);
     EXPECT_TRUE(waited.error().is_fatal());
     // The promise is 0.1 s; a loaded machine may need time to run this thread.
-    EXPECT_LT(told_ns - unplugged_ns, std::chrono::nanoseconds(5s).count());
+    EXPECT_LT(reported_ns - unplugged_ns, std::chrono::nanoseconds(5s).count());
   }
 }
 

@@ -35,7 +35,7 @@ struct serial_use {
                                    call::write};
 
   result<void> use(const serial_options& options = {}) const {
-    auto port = open_serial_line(device.path(), options, faulty_calls());
+    auto port = open_serial_transport(device.path(), options, faulty_calls());
     if (!port) return tl::unexpected(port.error());
     return talk(**port, device);
   }
@@ -62,7 +62,7 @@ struct file_use {
                                    call::eventfd, call::ppoll, call::read};
 
   result<void> use() const {
-    auto port = open_file_line(file.path(), {.bytes_per_second = 20'000}, faulty_calls());
+    auto port = open_file_transport(file.path(), {.bytes_per_second = 20'000}, faulty_calls());
     if (!port) return tl::unexpected(port.error());
     const auto got = read_text(**port, 6);
     if (!got) return tl::unexpected(got.error());
@@ -127,7 +127,7 @@ TYPED_TEST(SystemCalls, CloseFails_IsNotCalledAgain) {
 
 // ---- hard errors ---------------------------------------------------------------------------------
 
-struct told {
+struct reported {
   call which;
   int system_errno;
   task doing;
@@ -135,8 +135,8 @@ struct told {
 };
 
 template <class Use>
-void expect_reported(const std::vector<told>& cases) {
-  for (const told& one : cases) {
+void expect_reported(const std::vector<reported>& cases) {
+  for (const reported& one : cases) {
     SCOPED_TRACE(std::string(name_of(one.which)) + " " + strerrorname_np(one.system_errno));
     const auto used =
         use_with<Use>({.which = one.which, .system_errno = one.system_errno, .times = 1});
@@ -190,7 +190,8 @@ TEST(SerialCalls, OptionalCallsFail_StillOpens) {
 TEST(SerialCalls, NotACharacterDevice_IsNotOpened) {
   const temporary_file file("bytes");
   set_fault({});
-  EXPECT_EQ(open_serial_line(file.path(), {}, faulty_calls()).error().code(), problem::not_serial);
+  EXPECT_EQ(open_serial_transport(file.path(), {}, faulty_calls()).error().code(),
+            problem::not_serial);
   EXPECT_EQ(made(call::stat), 1);
   EXPECT_EQ(made(call::open), 0);
 }
@@ -220,7 +221,7 @@ TEST(SerialCalls, OpenFailsLate_RestoresTheSettings) {
 
 TEST(SerialCalls, FullOutput_TimesOut) {
   const pty device;
-  auto port = open_serial_line(device.path(), {}, faulty_calls());
+  auto port = open_serial_transport(device.path(), {}, faulty_calls());
   ASSERT_TRUE(port);
   ASSERT_EQ(::tcflow(device.keep(), TCOOFF), 0);  // the output of the slave is suspended
   const auto sent = (*port)->write(std::array<std::uint8_t, 2>{0xA5, 0x65}, in(**port, 20ms));
@@ -259,7 +260,7 @@ TEST(FileCalls, Failing_IsReported) {
 
 TEST(SerialCalls, Burst_TakesTwo) {
   const pty device;
-  auto port = open_serial_line(device.path(), {}, faulty_calls());
+  auto port = open_serial_transport(device.path(), {}, faulty_calls());
   ASSERT_TRUE(port);
   std::array<std::uint8_t, 512> buffer{};
   for (int burst = 0; burst < 20; ++burst) {
@@ -274,7 +275,7 @@ TEST(SerialCalls, Burst_TakesTwo) {
 
 TEST(SerialCalls, NoTimeToWait_TakesOne) {
   const pty device;
-  auto port = open_serial_line(device.path(), {}, faulty_calls());
+  auto port = open_serial_transport(device.path(), {}, faulty_calls());
   ASSERT_TRUE(port);
   std::array<std::uint8_t, 512> buffer{};
   set_fault({});
@@ -285,7 +286,7 @@ TEST(SerialCalls, NoTimeToWait_TakesOne) {
 
 TEST(SerialCalls, FilledBuffer_ReadsAgainWithoutPoll) {
   const pty device;
-  auto port = open_serial_line(device.path(), {}, faulty_calls());
+  auto port = open_serial_transport(device.path(), {}, faulty_calls());
   ASSERT_TRUE(port);
   device.send("0123456789");
   std::array<std::uint8_t, 4> buffer{};
@@ -303,7 +304,7 @@ TEST(SerialCalls, FilledBuffer_ReadsAgainWithoutPoll) {
 
 TEST(SerialCalls, Waiting_IsOneCall) {
   const pty device;
-  auto port = open_serial_line(device.path(), {}, faulty_calls());
+  auto port = open_serial_transport(device.path(), {}, faulty_calls());
   ASSERT_TRUE(port);
   std::array<std::uint8_t, 512> buffer{};
   set_fault({});

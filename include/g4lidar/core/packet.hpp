@@ -12,7 +12,7 @@
 #include <type_traits>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/detail/frame_check.hpp"
+#include "g4lidar/detail/wire_check.hpp"
 
 namespace g4lidar {
 
@@ -32,16 +32,16 @@ inline constexpr std::uint16_t turn_64ths = 360 * 64;
   return packet_header_size + 2 * samples;
 }
 
-/// The expected checksum of the packet in `frame`: the exclusive or of all its 16-bit words except
-/// the checksum itself. `frame` is a complete packet by its header. *Pure.*
+/// The expected checksum of `packet`: the exclusive or of all its 16-bit words except the checksum
+/// itself. `packet` is complete by its header. *Pure.*
 /// (protocol: Point packets, CS)
-[[nodiscard]] constexpr std::uint16_t packet_checksum(bytes frame) noexcept {
-  const std::size_t end = frame.size();
+[[nodiscard]] constexpr std::uint16_t packet_checksum(bytes packet) noexcept {
+  const std::size_t end = packet.size();
   // The header is one 8-byte word: PH, CT | LSN << 8, FSA, LSA.
-  std::uint64_t folded = load_u64(frame, 0);
+  std::uint64_t folded = load_u64(packet, 0);
   std::size_t at = packet_header_size;
-  for (; at + 8 <= end; at += 8) folded ^= load_u64(frame, at);
-  for (; at + 2 <= end; at += 2) folded ^= load_u16(frame, at);
+  for (; at + 8 <= end; at += 8) folded ^= load_u64(packet, at);
+  for (; at + 2 <= end; at += 2) folded ^= load_u16(packet, at);
   folded ^= folded >> 32;
   folded ^= folded >> 16;
   return static_cast<std::uint16_t>(folded & 0xFFFFU);
@@ -49,11 +49,9 @@ inline constexpr std::uint16_t turn_64ths = 360 * 64;
 
 /// Whether `data` begins with a packet. Each byte is checked against the protocol as soon as it is
 /// available. *Pure.* (protocol: Point packets)
-[[nodiscard]] constexpr frame_check check_packet(bytes data) noexcept {
+[[nodiscard]] constexpr wire_check check_packet(bytes data) noexcept {
   const std::size_t have = data.size();
-  const auto refused_at = [](std::size_t at) {
-    return frame_check{frame_state::bad_header, at + 1};
-  };
+  const auto refused_at = [](std::size_t at) { return wire_check{wire_state::bad_header, at + 1}; };
   if (have > 0 && data[0] != packet_start[0]) return refused_at(0);
   if (have > 1 && data[1] != packet_start[1]) return refused_at(1);
   if (have > 3 && (data[3] < 1 || data[3] > max_samples)) return refused_at(3);
@@ -61,32 +59,32 @@ inline constexpr std::uint16_t turn_64ths = 360 * 64;
     if (have > low && (data[low] & 1U) == 0) return refused_at(low);
     if (have > low + 1 && load_u16(data, low) >> 1 >= turn_64ths) return refused_at(low + 1);
   }
-  if (have < 8) return {frame_state::incomplete, have + 1};
+  if (have < 8) return {wire_state::incomplete, have + 1};
   const std::size_t size = packet_size(data[3]);
-  if (have < size) return {frame_state::incomplete, size};
+  if (have < size) return {wire_state::incomplete, size};
   const bool agrees = packet_checksum(data.first(size)) == load_u16(data, 8);
-  return {agrees ? frame_state::valid : frame_state::bad_checksum, size};
+  return {agrees ? wire_state::valid : wire_state::bad_checksum, size};
 }
 
 /// A view of a valid packet. A `packet_view` can only be created from bytes that passed
 /// check_packet(); it is valid as long as these bytes do not change.
 class packet_view {
  public:
-  /// The packet that `frame` contains from its first to its last byte, or nothing.
-  [[nodiscard]] static constexpr std::optional<packet_view> from(bytes frame) noexcept {
-    const frame_check check = check_packet(frame);
-    if (check.state != frame_state::valid || check.size != frame.size()) return std::nullopt;
-    return packet_view(frame);
+  /// A view of `packet` if it is one valid packet from its first to its last byte, or nothing.
+  [[nodiscard]] static constexpr std::optional<packet_view> from(bytes packet) noexcept {
+    const wire_check check = check_packet(packet);
+    if (check.state != wire_state::valid || check.size != packet.size()) return std::nullopt;
+    return packet_view(packet);
   }
   /// Deleted: the bytes are destroyed at the end of the call.
   template <dying_owner Owner>
   static constexpr std::optional<packet_view> from(Owner&&) = delete;
 
   /// All bytes of the packet.
-  [[nodiscard]] constexpr bytes data() const noexcept { return frame_; }
+  [[nodiscard]] constexpr bytes data() const noexcept { return packet_; }
 
   /// The raw byte CT. Its bits 7:1 have a meaning in a zero packet only.
-  [[nodiscard]] constexpr std::uint8_t ct() const noexcept { return frame_[2]; }
+  [[nodiscard]] constexpr std::uint8_t ct() const noexcept { return packet_[2]; }
   /// Whether a new revolution starts with the first sample of this packet. (protocol: CT)
   [[nodiscard]] constexpr bool is_zero() const noexcept { return (ct() & 1U) != 0; }
   /// The scan frequency that a zero packet reports, in 0.1 Hz; 0 if none is reported.
@@ -95,11 +93,11 @@ class packet_view {
   }
 
   /// LSN, 1 to 80.
-  [[nodiscard]] constexpr std::size_t sample_count() const noexcept { return frame_[3]; }
+  [[nodiscard]] constexpr std::size_t sample_count() const noexcept { return packet_[3]; }
   /// Sample `i`, 0 <= i < sample_count(): the raw range in quarters of a millimetre, 0 for no
   /// return.
   [[nodiscard]] constexpr std::uint16_t sample(std::size_t i) const noexcept {
-    return load_u16(frame_, packet_size(i));
+    return load_u16(packet_, packet_size(i));
   }
   /// Writes all samples to the front of `out`, and zeros behind them.
   constexpr void copy_samples(std::span<std::uint16_t, max_samples> out) const noexcept {
@@ -107,17 +105,19 @@ class packet_view {
     if (std::is_constant_evaluated() || std::endian::native != std::endian::little) {
       for (std::size_t i = 0; i < count; ++i) out[i] = sample(i);
     } else {
-      std::memcpy(out.data(), frame_.data() + packet_header_size, 2 * count);
+      std::memcpy(out.data(), packet_.data() + packet_header_size, 2 * count);
     }
     for (std::size_t i = count; i < max_samples; ++i) out[i] = 0;
   }
 
   /// The first sample's first-level angle, clockwise, in 1/64 of a degree, below 23040.
   [[nodiscard]] constexpr int first_angle_64ths() const noexcept {
-    return load_u16(frame_, 4) >> 1;
+    return load_u16(packet_, 4) >> 1;
   }
   /// The last sample's first-level angle, clockwise, in 1/64 of a degree, below 23040.
-  [[nodiscard]] constexpr int last_angle_64ths() const noexcept { return load_u16(frame_, 6) >> 1; }
+  [[nodiscard]] constexpr int last_angle_64ths() const noexcept {
+    return load_u16(packet_, 6) >> 1;
+  }
   /// The clockwise turn from the first angle to the last, in 1/64 of a degree. Negative only in a
   /// suspect packet: then it is the small turn back.
   [[nodiscard]] constexpr int span_64ths() const noexcept {
@@ -130,15 +130,15 @@ class packet_view {
   [[nodiscard]] constexpr bool is_suspect() const noexcept { return span_64ths() < 0; }
 
  private:
-  friend class stream_parser;  // creates views of frames that it has checked
+  friend class stream_parser;  // creates views of packets that it has checked
 
-  explicit constexpr packet_view(bytes frame) noexcept : frame_(frame) {}
+  explicit constexpr packet_view(bytes packet) noexcept : packet_(packet) {}
 
   [[nodiscard]] constexpr bool wraps_through_zero() const noexcept {
     return first_angle_64ths() > 270 * 64 && last_angle_64ths() < 90 * 64;
   }
 
-  bytes frame_;
+  bytes packet_;
 };
 
 }  // namespace g4lidar

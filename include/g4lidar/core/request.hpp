@@ -124,7 +124,7 @@ enum class verdict : std::uint8_t {
 
 /// What arrived from the device during a request.
 struct heard_from_device {
-  std::uint32_t skipped_bytes = 0;  ///< Bytes that belong to no frame.
+  std::uint32_t skipped_bytes = 0;  ///< Bytes outside packets and responses.
   std::uint32_t responses = 0;
   std::uint32_t packets = 0;
   friend constexpr bool operator==(const heard_from_device&,
@@ -152,7 +152,7 @@ struct outcome {
   [[nodiscard]] constexpr bool heard_nothing() const noexcept {
     return heard == heard_from_device{};
   }
-  /// Whether bytes arrived, but no frame: most likely the wrong baud rate.
+  /// Whether bytes arrived, but no packet or response: most likely the wrong baud rate.
   [[nodiscard]] constexpr bool heard_noise_only() const noexcept {
     return heard.skipped_bytes > 0 && heard.responses == 0 && heard.packets == 0;
   }

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/detail/frame_check.hpp"
+#include "g4lidar/detail/wire_check.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/settings.hpp"
 
@@ -85,14 +85,12 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
 
 /// Whether `data` begins with a response: one of the headers above and a possible content. Each
 /// byte is checked as soon as it is available. *Pure.*
-[[nodiscard]] constexpr frame_check check_response(bytes data) noexcept {
+[[nodiscard]] constexpr wire_check check_response(bytes data) noexcept {
   const std::size_t have = data.size();
-  const auto refused_at = [](std::size_t at) {
-    return frame_check{frame_state::bad_header, at + 1};
-  };
+  const auto refused_at = [](std::size_t at) { return wire_check{wire_state::bad_header, at + 1}; };
   if (have > 0 && data[0] != response_start[0]) return refused_at(0);
   if (have > 1 && data[1] != response_start[1]) return refused_at(1);
-  if (have < 3) return {frame_state::incomplete, have + 1};
+  if (have < 3) return {wire_state::incomplete, have + 1};
   const std::size_t which = layout_of_length(data[2]);
   if (which == response_layouts.size()) return refused_at(2);
   const response_layout& layout = response_layouts[which];
@@ -106,8 +104,8 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
       return refused_at(at);
     }
   }
-  if (have < size) return {frame_state::incomplete, have + 1};
-  return {frame_state::valid, size};
+  if (have < size) return {wire_state::incomplete, have + 1};
+  return {wire_state::valid, size};
 }
 
 /// A one-byte answer as `Setting`, an enumeration of settings.hpp; nothing if the byte is not one
@@ -121,33 +119,33 @@ template <class Setting>
 /// A view of a valid response; valid as long as its bytes do not change.
 class response_view {
  public:
-  /// The response that `frame` contains from its first to its last byte, or nothing.
-  [[nodiscard]] static constexpr std::optional<response_view> from(bytes frame) noexcept {
-    const frame_check check = check_response(frame);
-    if (check.state != frame_state::valid || check.size != frame.size()) return std::nullopt;
-    return response_view(frame);
+  /// A view of `response` if it is one valid response from its first to its last byte, or nothing.
+  [[nodiscard]] static constexpr std::optional<response_view> from(bytes response) noexcept {
+    const wire_check check = check_response(response);
+    if (check.state != wire_state::valid || check.size != response.size()) return std::nullopt;
+    return response_view(response);
   }
   /// Deleted: the bytes are destroyed at the end of the call.
   template <dying_owner Owner>
   static constexpr std::optional<response_view> from(Owner&&) = delete;
 
   /// All bytes of the response; valid as long as the bytes of the view.
-  [[nodiscard]] constexpr bytes data() const noexcept { return frame_; }
+  [[nodiscard]] constexpr bytes data() const noexcept { return response_; }
   /// The bytes behind the header, 0 to 20; valid as long as data().
   [[nodiscard]] constexpr bytes content() const noexcept {
-    return frame_.subspan(response_header_size);
+    return response_.subspan(response_header_size);
   }
   /// Whether this is a single answer or the begin of an endless stream. (protocol: Commands, reply
   /// header)
   [[nodiscard]] constexpr response_mode mode() const noexcept {
-    return static_cast<response_mode>(frame_[5] >> 6);
+    return static_cast<response_mode>(response_[5] >> 6);
   }
   /// The seventh byte: 04h, 06h or 81h. Several kinds have the same code; kind() distinguishes
   /// them.
-  [[nodiscard]] constexpr std::uint8_t type_code() const noexcept { return frame_[6]; }
+  [[nodiscard]] constexpr std::uint8_t type_code() const noexcept { return response_[6]; }
   /// The kind of the response, by its length byte.
   [[nodiscard]] constexpr response_kind kind() const noexcept {
-    return response_layouts[layout_of_length(frame_[2])].kind;  // always found: it was checked
+    return response_layouts[layout_of_length(response_[2])].kind;  // always found: it was checked
   }
 
   /// The device information, if the response contains it.
@@ -177,11 +175,11 @@ class response_view {
   }
 
  private:
-  friend class stream_parser;  // creates views of frames that it has checked
+  friend class stream_parser;  // creates views of responses that it has checked
 
-  explicit constexpr response_view(bytes frame) noexcept : frame_(frame) {}
+  explicit constexpr response_view(bytes response) noexcept : response_(response) {}
 
-  bytes frame_;
+  bytes response_;
 };
 
 }  // namespace g4lidar

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes of a stream that belong to no frame: how many, and why.
+// Bytes of a stream outside packets and responses: how many, and why.
 #pragma once
 
 #include <cstddef>
@@ -11,15 +11,15 @@ namespace g4lidar {
 
 /// Why bytes were skipped.
 enum class skip_reason : std::uint8_t {
-  noise,       ///< No frame begins here: boot text, and the stray bytes that healthy devices send.
-  bad_header,  ///< The start of a frame whose header or content is impossible.
+  noise,         ///< Nothing begins here: boot text, and the stray bytes that healthy devices send.
+  bad_header,    ///< The start of a packet or response that is impossible.
   bad_checksum,  ///< A complete packet by its header; a byte of it is damaged or missing.
-  truncated,     ///< A frame that was not complete at the end of the input.
+  truncated,     ///< A packet or response that was incomplete at the end.
 };
 /// The number of reasons for a skip.
 inline constexpr std::size_t skip_reasons = 4;
 
-/// Bytes of the stream that belong to no frame.
+/// Bytes of the stream outside packets and responses.
 struct skipped {
   std::size_t count;
   skip_reason reason;

@@ -16,7 +16,7 @@ namespace g4lidar {
 struct stream_counter : stream_counts {
   /// Counts what was found in a stream, each item once: a valid packet, suspect or not,
   constexpr void add(packet_view packet) noexcept {
-    frame_bytes += packet.data().size();
+    parsed_bytes += packet.data().size();
     ++packets;
     if (packet.is_suspect()) {
       ++suspect;
@@ -26,7 +26,7 @@ struct stream_counter : stream_counts {
   }
   /// a valid response,
   constexpr void add(response_view response) noexcept {
-    frame_bytes += response.data().size();
+    parsed_bytes += response.data().size();
     ++responses;
   }
   /// skipped bytes,

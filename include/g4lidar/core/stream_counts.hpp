@@ -11,9 +11,9 @@
 namespace g4lidar {
 
 /// Counts over a stream. At every moment the bytes given to the parser are
-/// frame_bytes + skipped_bytes() + the parser's held(). A stream_counter counts them.
+/// parsed_bytes + skipped_bytes() + the parser's held(). A stream_counter counts them.
 struct stream_counts {
-  std::uint64_t frame_bytes = 0;
+  std::uint64_t parsed_bytes = 0;
   std::uint64_t packets = 0;    ///< Valid packets, including suspect ones.
   std::uint64_t responses = 0;  ///< Valid responses.
   std::uint64_t points = 0;     ///< Samples of packets that are not suspect.

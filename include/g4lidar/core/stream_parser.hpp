@@ -16,7 +16,7 @@
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/skipped.hpp"
-#include "g4lidar/detail/frame_check.hpp"
+#include "g4lidar/detail/wire_check.hpp"
 
 namespace g4lidar {
 
@@ -31,17 +31,17 @@ enum class front_kind : std::uint8_t { packet, response, incomplete, skip };
 struct front {
   front_kind kind;
   skip_reason reason;  ///< For a skip; else noise.
-  /// packet, response: the size of the frame. incomplete: the number of bytes needed to decide.
-  /// skip: how many bytes to skip; `claimed` has the size of a refused frame.
+  /// packet, response: its size. incomplete: the number of bytes needed to decide.
+  /// skip: how many bytes to skip; `claimed` has the size by the refused header.
   std::size_t size;
   std::size_t claimed;
 
   friend constexpr bool operator==(const front&, const front&) = default;
 };
 
-/// Whether `data[at]`, with the next byte if it is available, is the start of a frame. Other bytes
+/// Whether `data[at]`, with the next byte if it is available, may start a packet or response. Others
 /// are noise. *Pure.*
-[[nodiscard]] constexpr bool may_begin_frame(bytes data, std::size_t at) noexcept {
+[[nodiscard]] constexpr bool may_be_start(bytes data, std::size_t at) noexcept {
   const std::uint8_t first = data[at];
   if (first != packet_start[0] && first != response_start[0]) return false;
   const std::uint8_t second = first == packet_start[0] ? packet_start[1] : response_start[1];
@@ -50,40 +50,40 @@ struct front {
 
 /// The specification of the parser: what `data`, which is not empty, begins with. *Pure.*
 ///
-/// Applied to a complete input from its first byte, with a step behind each frame and by `size` at
+/// Applied to a complete input from its first byte, with a step behind each packet and response and by `size` at
 /// each skip, it gives the same events as stream_parser for that input, divided in any way. At a
-/// refused start the step is one byte, so that a frame hidden behind the start is found. A skipped
-/// byte that a refused frame had claimed has the reason of that frame, until a frame begins.
+/// refused start the step is one byte, so that a packet hidden behind the start is found. A skipped
+/// byte that a refused start had claimed has the reason of that start, until a valid one begins.
 [[nodiscard]] constexpr front what_stands_at_front(bytes data) noexcept {
   const bool maybe_packet = data[0] == packet_start[0];
   if (maybe_packet || data[0] == response_start[0]) {
-    const frame_check check = maybe_packet ? check_packet(data) : check_response(data);
+    const wire_check check = maybe_packet ? check_packet(data) : check_response(data);
     switch (check.state) {
-      case frame_state::valid:
+      case wire_state::valid:
         return {maybe_packet ? front_kind::packet : front_kind::response, skip_reason::noise,
                 check.size, check.size};
-      case frame_state::incomplete:
+      case wire_state::incomplete:
         return {front_kind::incomplete, skip_reason::noise, check.size, check.size};
-      case frame_state::bad_checksum:
+      case wire_state::bad_checksum:
         return {front_kind::skip, skip_reason::bad_checksum, 1, check.size};
-      case frame_state::bad_header:
+      case wire_state::bad_header:
         if (check.size <= 2) break;  // one byte that looks like a start is no header
         return {front_kind::skip, skip_reason::bad_header, 1, check.size};
     }
   }
   std::size_t noise = 1;
-  while (noise < data.size() && !may_begin_frame(data, noise)) ++noise;
+  while (noise < data.size() && !may_be_start(data, noise)) ++noise;
   return {front_kind::skip, skip_reason::noise, noise, noise};
 }
 
 /// The resynchronising parser. *Single thread, never allocates.* Constant memory: a carry of one
-/// frame; a frame that is complete in the caller's bytes is viewed there.
+/// packet or response; one that is complete in the caller's bytes is viewed there.
 ///
-/// At every moment: bytes in = bytes of frames + bytes skipped + held().
+/// At every moment: bytes in = bytes of packets and responses + bytes skipped + held().
 class stream_parser {
  public:
   /// The next event in `input`. Removes the taken bytes from the front of `input`. Returns nothing
-  /// when all of it is taken; then at most one unfinished frame is held for the next call. The
+  /// when all of it is taken; then at most one unfinished packet or response is held for the next call. The
   /// views in an event are valid until the next call of any function, and at most as long as the
   /// bytes of the input.
   [[nodiscard]] constexpr std::optional<event> next(bytes& input) & noexcept {
@@ -118,7 +118,7 @@ class stream_parser {
 
   /// Call this until it returns nothing when no more bytes follow: at the end of a file, after a
   /// stop, an unplug, or when bytes have stopped arriving. The held bytes are parsed again from one
-  /// byte behind their false start, so that a valid frame among them is not lost. After that the
+  /// byte behind their false start, so that a valid packet among them is not lost. After that the
   /// parser is as after construction.
   [[nodiscard]] constexpr std::optional<event> finish() & noexcept {
     if (held_ == 0) {
@@ -136,7 +136,7 @@ class stream_parser {
   }
   std::optional<event> finish() && = delete;
 
-  /// The number of held bytes of an unfinished frame, below max_packet_size.
+  /// The number of held bytes of an unfinished packet or response, below max_packet_size.
   [[nodiscard]] constexpr std::size_t held() const noexcept { return held_; }
 
   /// The least number of further bytes until there can be another event.
@@ -145,7 +145,7 @@ class stream_parser {
   }
 
  private:
-  /// The bytes claimed by a refused frame that have not been processed yet.
+  /// The bytes claimed by a refused start that have not been processed yet.
   struct claim {
     std::size_t left = 0;
     skip_reason reason = skip_reason::noise;
@@ -155,7 +155,7 @@ class stream_parser {
     return bytes(carry_).subspan(begin_, held_);
   }
 
-  /// Fills the carry up to the size that its frame needs; false if the input is not sufficient.
+  /// Fills the carry up to the size that it needs; false if the input is not sufficient.
   constexpr bool top_up(bytes& input) noexcept {
     if (held_ >= needed_) return true;
     if (begin_ + needed_ > carry_.size()) {
@@ -169,7 +169,7 @@ class stream_parser {
     return held_ >= needed_;
   }
 
-  /// Moves all of `input`, an unfinished frame, to the empty carry.
+  /// Moves all of `input`, an unfinished packet or response, to the empty carry.
   constexpr void hold(bytes& input) noexcept {
     begin_ = 0;
     held_ = input.size();
@@ -184,7 +184,7 @@ class stream_parser {
   }
 
   /// How many bytes the event for a front that is not `incomplete` takes. Keeps the claims of
-  /// refused frames: a skip ends with the claim that contains it.
+  /// refused starts: a skip ends with the claim that contains it.
   [[nodiscard]] constexpr std::size_t settle(const front& found) noexcept {
     if (found.kind != front_kind::skip) {
       claim_ = {};
@@ -202,9 +202,9 @@ class stream_parser {
   [[nodiscard]] constexpr std::optional<event> make_event(const front& found, std::size_t taken,
                                                           bytes data) const noexcept {
     using made = std::optional<event>;
-    const bytes frame = data.first(taken);
-    if (found.kind == front_kind::packet) return made(std::in_place, packet_view(frame));
-    if (found.kind == front_kind::response) return made(std::in_place, response_view(frame));
+    const bytes whole = data.first(taken);
+    if (found.kind == front_kind::packet) return made(std::in_place, packet_view(whole));
+    if (found.kind == front_kind::response) return made(std::in_place, response_view(whole));
     return made(std::in_place, skipped{taken, claim_.reason});
   }
 

@@ -43,12 +43,12 @@ class command_channel {
   /// Stops the device and waits for silence.
   constexpr void drain(std::int64_t now_ns) noexcept {
     drains_ = 0;
-    tell_to_stop(now_ns);
+    send_stop(now_ns);
   }
   /// Sends a query; see pending_command. After a disturbance, when the device is silent again,
   /// clear() continues the same query; also after an answer that the caller does not accept.
-  constexpr void ask(command code, bool is_foretold, std::int64_t now_ns) noexcept {
-    question_.ask(code, is_foretold);
+  constexpr void ask(command code, bool has_one_answer, std::int64_t now_ns) noexcept {
+    question_.ask(code, has_one_answer);
     send_question(now_ns);
   }
   /// Clears the link, and sends the same query again.
@@ -99,7 +99,7 @@ class command_channel {
         if (now_ns >= heard_ns_ + times_.quiet_ns) return channel_state::quiet;
         if (drains_ == max_drains)
           return has_packets_ ? channel_state::streaming : channel_state::quiet;
-        tell_to_stop(now_ns);
+        send_stop(now_ns);
         break;
       case act::asking:
         return on_question(question_.late(), now_ns);
@@ -158,7 +158,7 @@ class command_channel {
     act_ = next;
     deadline_ns_ = deadline_ns;
   }
-  constexpr void tell_to_stop(std::int64_t now_ns) noexcept {
+  constexpr void send_stop(std::int64_t now_ns) noexcept {
     ++drains_;
     has_packets_ = false;
     heard_ns_ = now_ns;

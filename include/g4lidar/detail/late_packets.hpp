@@ -14,7 +14,7 @@ class late_packets {
   /// A packet that is later than this was delayed by more than batching.
   static constexpr double late_ns = 25e6;
 
-  /// Bytes were skipped: a loss nearly always damages a frame.
+  /// Bytes were skipped: a loss nearly always damages a packet.
   constexpr void skipped() noexcept { is_torn_ = true; }
   constexpr void reset() noexcept { is_late_ = is_torn_ = false; }
 

@@ -54,12 +54,12 @@ enum class question_state : std::uint8_t {
 /// command, the link is cleared before the command is sent. (protocol: Commands, late replies)
 class pending_command {
  public:
-  /// Sends `code`. A foretold command has one possible answer, known to the caller; it needs no
+  /// Sends `code`. A has_one_answer command has one possible answer, known to the caller; it needs no
   /// clear link.
-  constexpr void ask(command code, bool is_foretold) noexcept {
+  constexpr void ask(command code, bool has_one_answer) noexcept {
     code_ = code;
     clears_ = 0;
-    is_early_ = !is_foretold && is_doubtful(code);
+    is_early_ = !has_one_answer && is_doubtful(code);
     is_early_ ? ask_known() : ask_itself();
   }
 

@@ -24,12 +24,12 @@ struct recorded_device;
 struct recorded_event {
   /// The kinds of event.
   enum class kind : std::uint8_t {
-    opened,  ///< The transport was opened, the first time or again: `line`, `baud`.
+    opened,  ///< The transport was opened, the first time or again: `name`, `baud`.
     closed,  ///< The transport was closed, or the connection broke: `reason`.
     sent,    ///< `data` was sent to the device.
     begun,   ///< The following points begin a new stream: `samples_per_second`, `delivers`.
     held,    ///< From here on packets produce no points, until the next `begun`.
-    cut,  ///< The unparsed bytes were discarded, and a held frame was parsed again from its second byte.
+    cut,  ///< The unparsed bytes were discarded, and a held packet was parsed again from its second byte.
     gap,    ///< Bytes are missing from the recording at this place.
     state,  ///< The current state, repeated for readers that begin here: all of the above.
   };
@@ -41,7 +41,7 @@ struct recorded_event {
   std::uint32_t unparsed = 0;            ///< Bytes of the last read.
   std::uint32_t events = 0;              ///< Of the parser, since the last read.
   std::int64_t time_ns = 0;              ///< By the clock of the transport.
-  std::string_view line{};               ///< transport::name(), of `opened` and `state`.
+  std::string_view name{};               ///< transport::name(), of `opened` and `state`.
   bytes data{};                          ///< Of `sent`.
 };
 
@@ -79,7 +79,7 @@ class G4LIDAR_API recorded_event_sink {
   recorded_event_sink& operator=(const recorded_event_sink&) = delete;
 
   /// This event happened after the last read and before the next one.
-  virtual void note(const recorded_event& what) noexcept = 0;
+  virtual void event(const recorded_event& what) noexcept = 0;
 
  protected:
   recorded_event_sink() = default;

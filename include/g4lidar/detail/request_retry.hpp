@@ -44,7 +44,7 @@ struct request_step {
   action what = action::give_up;
   command code = command::device_info;
   /// For ask: the one possible answer is known, so that no copy of another answer is taken for it.
-  bool foretold = false;
+  bool has_one_answer = false;
   verdict how = verdict::answered;
   answer value{};
 };
@@ -101,8 +101,9 @@ class request_retry {
   static constexpr int coarse_chz = 100;
   static constexpr int fine_chz = 10;
 
-  [[nodiscard]] static constexpr request_step ask(command code, bool foretold = false) noexcept {
-    return {request_step::action::ask, code, foretold, verdict::answered, {}};
+  [[nodiscard]] static constexpr request_step ask(command code,
+                                                  bool has_one_answer = false) noexcept {
+    return {request_step::action::ask, code, has_one_answer, verdict::answered, {}};
   }
   [[nodiscard]] static constexpr request_step end(const answer& value,
                                                   verdict how = verdict::answered) noexcept {

@@ -133,7 +133,7 @@ class session_machine {
   constexpr void follow(const request_step& next, std::int64_t now_ns) noexcept {
     switch (next.what) {
       case request_step::action::ask:
-        return channel_.ask(next.code, next.foretold, now_ns);
+        return channel_.ask(next.code, next.has_one_answer, now_ns);
       case request_step::action::doubt:
         count_wrong();
         return channel_.clear(now_ns);

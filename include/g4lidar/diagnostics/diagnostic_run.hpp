@@ -36,7 +36,7 @@ struct diagnostic_options {
   std::function<void(const stage_report&)> on_stage{};
   /// Called when the run begins to wait for something.
   std::function<void(diagnostic_activity)> on_activity{};
-  /// Opens the same port with another baud rate, for a device whose bytes contain no frames;
+  /// Opens the same port with another baud rate, for a device whose bytes contain no packets;
   /// returns null if that fails. Called after the earlier transport was closed.
   std::function<std::unique_ptr<transport>(std::uint32_t)> reopen{};
 };

@@ -26,13 +26,13 @@ struct recorded_item {
   enum class kind : std::uint8_t {
     from_device,  ///< `data` was read in one call.
     to_device,    ///< `data` was sent.
-    note,         ///< The event `note` happened.
+    other,        ///< The event `other`.
   };
   kind what;
   std::int64_t time_ns;  ///< By the clock of the transport, when `data` had arrived or was sent.
   std::int64_t wall_ns;  ///< The same by the wall clock, nanoseconds since 1970.
   bytes data;
-  recorded_event note;
+  recorded_event other;
 };
 
 /// What is damaged in a file. All intact parts are read nevertheless.

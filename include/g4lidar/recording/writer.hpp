@@ -90,7 +90,7 @@ class G4LIDAR_API recording_writer {
   /// The same for bytes that were sent.
   void to_device(bytes data, std::int64_t time_ns) noexcept;
   /// Records any other event; for `sent` use to_device().
-  void note(const recorded_event& what) noexcept;
+  void event(const recorded_event& what) noexcept;
   /// Records a revolution, as a LaserScan with its points in the robot's frame.
   void scan(const g4lidar::scan& revolution) noexcept;
   /// Adds delivered points, in order, to their digest; the points are not stored.

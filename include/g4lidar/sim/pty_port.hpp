@@ -25,10 +25,10 @@ class G4LIDAR_API pty_port {
   /// the destructor. A link that a terminated program left is replaced. Fails with busy if another
   /// device is running at `link` (system_errno() is EADDRINUSE) or something else exists there
   /// (EEXIST), or with system.
-  [[nodiscard]] static result<pty_port> open(device twin, const std::string& link = {});
+  [[nodiscard]] static result<pty_port> open(device simulated, const std::string& link = {});
   /// Behind a network bridge instead: listens at a numeric IPv4 address and a port (0: any), for
   /// one client at a time; further clients are refused. Fails with bad_option or system.
-  [[nodiscard]] static result<pty_port> listen(device twin, const std::string& address,
+  [[nodiscard]] static result<pty_port> listen(device simulated, const std::string& address,
                                                std::uint16_t port);
   pty_port(pty_port&&) noexcept;
   pty_port& operator=(pty_port&&) noexcept;
@@ -40,7 +40,7 @@ class G4LIDAR_API pty_port {
   /// The time of the device.
   [[nodiscard]] std::int64_t now_ns() const noexcept;
   /// The device; valid as long as this.
-  [[nodiscard]] device& twin() noexcept;
+  [[nodiscard]] device& simulated() noexcept;
   /// The number of bytes that were lost because no program had read the bytes before them: a
   /// pseudo-terminal holds at least 4 KiB, usually about 16 KiB.
   [[nodiscard]] std::uint64_t bytes_lost() const noexcept;
@@ -50,7 +50,7 @@ class G4LIDAR_API pty_port {
   [[nodiscard]] result<std::int64_t> process();
   /// For poll(): call process() when one of them is readable. -1: none.
   struct handles {
-    int line;
+    int client;
     int visitors;
   };
   /// The current ones; a replug replaces them.
@@ -72,7 +72,7 @@ class G4LIDAR_API pty_port {
 class G4LIDAR_API background_pty {
  public:
   /// Like pty_port::open(), and starts the thread. Fails with busy or system.
-  [[nodiscard]] static result<background_pty> open(device twin, const std::string& link = {});
+  [[nodiscard]] static result<background_pty> open(device simulated, const std::string& link = {});
   background_pty(background_pty&&) noexcept;
   background_pty& operator=(background_pty&&) noexcept;
   /// Removes the port, like an unplug.
@@ -81,7 +81,7 @@ class G4LIDAR_API background_pty {
   /// See pty_port; with faults or unplug() it stays valid only if there is a link.
   [[nodiscard]] const std::string& path() const noexcept;
   /// Calls a function with the device, or unplugs it, between two steps of the thread.
-  void with(const std::function<void(device& twin, std::int64_t now_ns)>& look);
+  void with(const std::function<void(device& simulated, std::int64_t now_ns)>& look);
   /// See pty_port.
   [[nodiscard]] std::uint64_t bytes_lost() const;
 

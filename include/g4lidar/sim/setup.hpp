@@ -60,6 +60,6 @@ struct setup_error {
 
 /// A device with a thread of its own, at a link in a new directory (in TMPDIR, or /tmp): its path()
 /// stays valid whatever faults there are. Destroying it removes both. Fails with system.
-[[nodiscard]] G4LIDAR_API result<std::shared_ptr<background_pty>> serve_alone(device twin);
+[[nodiscard]] G4LIDAR_API result<std::shared_ptr<background_pty>> serve_alone(device simulated);
 
 }  // namespace g4lidar::sim

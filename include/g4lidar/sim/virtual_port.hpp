@@ -48,7 +48,8 @@ class virtual_clock {
 class G4LIDAR_API virtual_port final : public transport {
  public:
   /// `name` must outlive the port.
-  virtual_port(device& twin, virtual_clock& clock, std::string_view name = "virtual:g4") noexcept;
+  virtual_port(device& simulated, virtual_clock& clock,
+               std::string_view name = "virtual:g4") noexcept;
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override;
@@ -64,7 +65,7 @@ class G4LIDAR_API virtual_port final : public transport {
  private:
   [[nodiscard]] result<void> look(task doing) noexcept;
 
-  device* twin_;
+  device* device_;
   virtual_clock* clock_;
   std::string_view name_;
   std::uint64_t replugs_;
@@ -75,11 +76,11 @@ class G4LIDAR_API virtual_port final : public transport {
 class G4LIDAR_API virtual_connector final : public connector {
  public:
   /// The caller owns devices and clock, which must outlive this.
-  virtual_connector(std::vector<device*> twins, virtual_clock& clock)
-      : twins_(std::move(twins)), clock_(&clock) {}
+  virtual_connector(std::vector<device*> devices, virtual_clock& clock)
+      : devices_(std::move(devices)), clock_(&clock) {}
   /// The same for one device.
-  virtual_connector(device& twin, virtual_clock& clock)
-      : virtual_connector(std::vector<device*>{&twin}, clock) {}
+  virtual_connector(device& simulated, virtual_clock& clock)
+      : virtual_connector(std::vector<device*>{&simulated}, clock) {}
 
   /// Fails with no_port if none is plugged in.
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
@@ -88,7 +89,7 @@ class G4LIDAR_API virtual_connector final : public connector {
   void wake() noexcept override { woken_.store(true, std::memory_order_relaxed); }
 
  private:
-  std::vector<device*> twins_;
+  std::vector<device*> devices_;
   std::size_t next_ = 0;
   virtual_clock* clock_;
   std::atomic<bool> woken_{false};

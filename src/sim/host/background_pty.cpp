@@ -36,7 +36,7 @@ class G4LIDAR_HIDDEN background_pty::state {
 
   void with(const std::function<void(device&, std::int64_t)>& look) {
     const std::lock_guard lock(mutex_);
-    look(port_.twin(), port_.now_ns());
+    look(port_.simulated(), port_.now_ns());
     ring();
   }
   [[nodiscard]] std::uint64_t bytes_lost() {
@@ -59,7 +59,7 @@ class G4LIDAR_HIDDEN background_pty::state {
         if (!next) return;
         if (*next != forever_ns) sleep_ns = *next - port_.now_ns();
         const pty_port::handles handles = port_.native_handles();
-        waiting[1] = {handles.line, POLLIN, 0};
+        waiting[1] = {handles.client, POLLIN, 0};
         waiting[2] = {handles.visitors, POLLIN, 0};
       }
       constexpr std::int64_t longest_ns = 3'600'000'000'000;
@@ -87,10 +87,10 @@ background_pty::background_pty(background_pty&&) noexcept = default;
 background_pty& background_pty::operator=(background_pty&&) noexcept = default;
 background_pty::~background_pty() = default;
 
-result<background_pty> background_pty::open(device twin, const std::string& link) {
+result<background_pty> background_pty::open(device simulated, const std::string& link) {
   file_handle bell(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!bell) return failure(task::opening, problem::system, "an eventfd", errno);
-  result<pty_port> port = pty_port::open(std::move(twin), link);
+  result<pty_port> port = pty_port::open(std::move(simulated), link);
   if (!port) return tl::unexpected<error>(port.error());
   return background_pty(std::make_unique<state>(std::move(*port), std::move(bell)));
 }

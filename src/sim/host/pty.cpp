@@ -19,7 +19,7 @@
 
 namespace g4lidar::sim {
 
-result<std::unique_ptr<served_line>> pty::open() {
+result<std::unique_ptr<served_port>> pty::open() {
   const auto failed = [](const char* what) {
     return failure(task::opening, problem::system, what, errno);
   };
@@ -47,35 +47,35 @@ result<std::unique_ptr<served_line>> pty::open() {
 // The first event was our own opening.
 void pty::find_out_whether_watching_works() noexcept {
   if (!watch_) return;
-  look_for_visitors();
-  if (visitors_ != 1) watch_.close();
-  visitors_ = 0;
+  look_for_clients();
+  if (clients_ != 1) watch_.close();
+  clients_ = 0;
 }
 
 bool pty::make_raw() const noexcept {
-  termios line{};
-  if (::tcgetattr(slave_.number(), &line) != 0) return false;
-  ::cfmakeraw(&line);
-  ::cfsetspeed(&line, B230400);
-  return ::tcsetattr(slave_.number(), TCSANOW, &line) == 0;
+  termios settings{};
+  if (::tcgetattr(slave_.number(), &settings) != 0) return false;
+  ::cfmakeraw(&settings);
+  ::cfsetspeed(&settings, B230400);
+  return ::tcsetattr(slave_.number(), TCSANOW, &settings) == 0;
 }
 
-void pty::look_for_visitors() noexcept {
+void pty::look_for_clients() noexcept {
   if (!watch_) return;
-  const int before = visitors_;
-  alignas(inotify_event) std::array<char, 4096> told;
+  const int before = clients_;
+  alignas(inotify_event) std::array<char, 4096> events;
   for (;;) {
-    const ssize_t size = ::read(watch(), told.data(), told.size());
+    const ssize_t size = ::read(watch(), events.data(), events.size());
     if (size <= 0) break;
     for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
       inotify_event event{};
-      std::memcpy(&event, told.data() + at, sizeof event);
-      if ((event.mask & IN_OPEN) != 0) ++visitors_;
-      if ((event.mask & IN_CLOSE) != 0) --visitors_;
+      std::memcpy(&event, events.data() + at, sizeof event);
+      if ((event.mask & IN_OPEN) != 0) ++clients_;
+      if ((event.mask & IN_CLOSE) != 0) --clients_;
       at += sizeof event + event.len;
     }
   }
-  if (before > 0 && visitors_ == 0) {
+  if (before > 0 && clients_ == 0) {
     ::ioctl(slave_.number(), TIOCNXCL);
     ::tcflush(slave_.number(), TCIFLUSH);
     [[maybe_unused]] const bool raw = make_raw();
@@ -88,7 +88,7 @@ std::size_t pty::read(std::span<std::uint8_t> out) noexcept {
 }
 
 std::size_t pty::write(bytes data) noexcept {
-  if (watch_ && visitors_ <= 0) return 0;
+  if (watch_ && clients_ <= 0) return 0;
   while (!data.empty()) {
     const ssize_t count = ::write(handle(), data.data(), data.size());
     if (count < 0 && errno == EINTR) continue;

@@ -11,13 +11,13 @@
 #include "file_handle.hpp"
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/error.hpp"
-#include "served_line.hpp"
+#include "served_port.hpp"
 
 namespace g4lidar::sim {
 
-class pty final : public served_line {
+class pty final : public served_port {
  public:
-  [[nodiscard]] static result<std::unique_ptr<served_line>> open();
+  [[nodiscard]] static result<std::unique_ptr<served_port>> open();
 
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
   [[nodiscard]] int handle() const noexcept override { return master_.number(); }
@@ -25,7 +25,7 @@ class pty final : public served_line {
 
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
   std::size_t write(bytes data) noexcept override;
-  void look_for_visitors() noexcept override;
+  void look_for_clients() noexcept override;
 
  private:
   [[nodiscard]] bool make_raw() const noexcept;
@@ -34,9 +34,9 @@ class pty final : public served_line {
   file_handle master_;
   file_handle slave_;  // kept open, so that the master never hangs up
   file_handle watch_;
-  file_handle claim_;  // tells discovery that a simulated device is behind it
+  file_handle claim_;  // shows discovery that a simulated device is behind it
   std::string name_;
-  int visitors_ = 0;
+  int clients_ = 0;
 };
 
 }  // namespace g4lidar::sim

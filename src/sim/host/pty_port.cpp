@@ -19,7 +19,7 @@
 
 #include "claim.hpp"
 #include "pty.hpp"
-#include "tcp_line.hpp"
+#include "tcp_server.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -83,9 +83,9 @@ void unpoint(const fs::path& link, const std::string& target) {
 class G4LIDAR_HIDDEN pty_port::state {
  public:
   /// At a link, without a link, or at a TCP address.
-  state(device of, const std::string& link) : twin(std::move(of)), link_(link) {}
+  state(device of, const std::string& link) : simulated(std::move(of)), link_(link) {}
   state(device of, std::string address, std::uint16_t port)
-      : twin(std::move(of)), address_(std::move(address)), port_(port) {}
+      : simulated(std::move(of)), address_(std::move(address)), port_(port) {}
   ~state() { unplug(); }
   state(const state&) = delete;
   state& operator=(const state&) = delete;
@@ -96,62 +96,62 @@ class G4LIDAR_HIDDEN pty_port::state {
       if (!held) return tl::unexpected<error>(held.error());
       claim_ = std::move(*held);
     }
-    return twin.is_plugged(0) ? plug() : result<void>();
+    return simulated.is_plugged(0) ? plug() : result<void>();
   }
 
   result<void> plug() {
-    auto opened = address_.empty() ? pty::open() : tcp_line::open(address_, port_);
+    auto opened = address_.empty() ? pty::open() : tcp_server::open(address_, port_);
     if (!opened) return tl::unexpected<error>(opened.error());
-    line_ = std::move(*opened);
+    served_ = std::move(*opened);
     if (!link_.empty()) {
-      if (result<void> linked = point(link_, line_->name()); !linked) {
-        line_.reset();
+      if (result<void> linked = point(link_, served_->name()); !linked) {
+        served_.reset();
         return linked;
       }
     }
-    path_ = link_.empty() ? line_->name() : link_;
+    path_ = link_.empty() ? served_->name() : link_;
     return {};
   }
 
   void unplug() {
-    if (!line_) return;
-    unpoint(link_, line_->name());
-    line_.reset();
+    if (!served_) return;
+    unpoint(link_, served_->name());
+    served_.reset();
   }
 
   result<std::int64_t> process() {
     const std::int64_t now = now_ns();
-    const bool plugged = twin.is_plugged(now);
-    if (line_ && (!plugged || twin.replugs() != replugs_)) unplug();
-    replugs_ = twin.replugs();
-    if (plugged && !line_) {
+    const bool plugged = simulated.is_plugged(now);
+    if (served_ && (!plugged || simulated.replugs() != replugs_)) unplug();
+    replugs_ = simulated.replugs();
+    if (plugged && !served_) {
       if (const result<void> back = plug(); !back) return tl::unexpected<error>(back.error());
     }
-    if (line_) carry(*line_, now);
-    return std::max(twin.next_ns(now), now + shortest_sleep_ns);
+    if (served_) carry(*served_, now);
+    return std::max(simulated.next_ns(now), now + shortest_sleep_ns);
   }
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return steady_ns() - begin_ns_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t bytes_lost() const noexcept { return bytes_lost_; }
   [[nodiscard]] handles native_handles() const noexcept {
-    return line_ ? handles{line_->handle(), line_->watch()} : handles{-1, -1};
+    return served_ ? handles{served_->handle(), served_->watch()} : handles{-1, -1};
   }
 
-  device twin;
+  device simulated;
 
  private:
-  void carry(served_line& line, std::int64_t now) noexcept {
-    line.look_for_visitors();
+  void carry(served_port& to, std::int64_t now) noexcept {
+    to.look_for_clients();
     std::array<std::uint8_t, 4096> data;
     // A program that sends without end does not block the device.
     for (int turn = 0; turn < 4; ++turn) {
-      const std::size_t count = line.read(data);
+      const std::size_t count = to.read(data);
       if (count == 0) break;
-      twin.write(bytes(data).first(count), now);
+      simulated.write(bytes(data).first(count), now);
     }
-    while (const std::size_t count = twin.read(data, now)) {
-      bytes_lost_ += line.write(bytes(data).first(count));
+    while (const std::size_t count = simulated.read(data, now)) {
+      bytes_lost_ += to.write(bytes(data).first(count));
     }
   }
 
@@ -160,7 +160,7 @@ class G4LIDAR_HIDDEN pty_port::state {
   std::string path_;
   std::string address_;  // empty: a pseudo-terminal
   std::uint16_t port_ = 0;
-  std::unique_ptr<served_line> line_;
+  std::unique_ptr<served_port> served_;
   std::uint64_t replugs_ = 0;
   std::uint64_t bytes_lost_ = 0;
   std::int64_t begin_ns_ = steady_ns();
@@ -171,12 +171,13 @@ pty_port::pty_port(pty_port&&) noexcept = default;
 pty_port& pty_port::operator=(pty_port&&) noexcept = default;
 pty_port::~pty_port() = default;
 
-result<pty_port> pty_port::open(device twin, const std::string& link) {
-  return opened(std::make_unique<state>(std::move(twin), link));
+result<pty_port> pty_port::open(device simulated, const std::string& link) {
+  return opened(std::make_unique<state>(std::move(simulated), link));
 }
 
-result<pty_port> pty_port::listen(device twin, const std::string& address, std::uint16_t port) {
-  return opened(std::make_unique<state>(std::move(twin), address, port));
+result<pty_port> pty_port::listen(device simulated, const std::string& address,
+                                  std::uint16_t port) {
+  return opened(std::make_unique<state>(std::move(simulated), address, port));
 }
 
 result<pty_port> pty_port::opened(std::unique_ptr<state> made) {
@@ -188,7 +189,7 @@ result<pty_port> pty_port::opened(std::unique_ptr<state> made) {
 
 const std::string& pty_port::path() const noexcept { return state_->path(); }
 std::int64_t pty_port::now_ns() const noexcept { return state_->now_ns(); }
-device& pty_port::twin() noexcept { return state_->twin; }
+device& pty_port::simulated() noexcept { return state_->simulated; }
 std::uint64_t pty_port::bytes_lost() const noexcept { return state_->bytes_lost(); }
 result<std::int64_t> pty_port::process() { return state_->process(); }
 pty_port::handles pty_port::native_handles() const noexcept { return state_->native_handles(); }
@@ -205,7 +206,7 @@ result<void> serve(std::span<pty_port> ports, int stop, const std::function<void
         sleep_ns = std::min(sleep_ns, std::max<std::int64_t>(*next - port.now_ns(), 0));
       }
       const pty_port::handles handles = port.native_handles();
-      waiting.push_back({handles.line, POLLIN, 0});
+      waiting.push_back({handles.client, POLLIN, 0});
       waiting.push_back({handles.visitors, POLLIN, 0});
     }
     if (after_each) after_each();

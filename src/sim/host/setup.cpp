@@ -269,13 +269,13 @@ std::string registered_link(std::string_view serial) {
   return directory + "/g4-" + std::string(serial);
 }
 
-result<std::shared_ptr<background_pty>> serve_alone(device twin) {
+result<std::shared_ptr<background_pty>> serve_alone(device simulated) {
   std::error_code none;
   std::string directory = (fs::temp_directory_path(none) / "g4-sim-XXXXXX").native();
   if (none || ::mkdtemp(directory.data()) == nullptr) {
     return failure(task::opening, problem::system, directory, none ? none.value() : errno);
   }
-  result<background_pty> port = background_pty::open(std::move(twin), directory + "/g4");
+  result<background_pty> port = background_pty::open(std::move(simulated), directory + "/g4");
   if (!port) {
     fs::remove(directory, none);
     return tl::unexpected<error>(port.error());

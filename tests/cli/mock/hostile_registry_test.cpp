@@ -18,8 +18,8 @@
 #include "escapes.hpp"
 #include "program.hpp"
 #include "pty.hpp"
+#include "simulator.hpp"
 #include "testbed.hpp"
-#include "twin.hpp"
 
 namespace {
 
@@ -99,7 +99,7 @@ TEST_F(Registry, TheTerminalOfAnotherProgramIsNotWrittenTo) {
 TEST_F(Registry, ALinkThatNoLongerLeadsToItsDeviceIsIgnored) {
   const pty terminal;
   const std::string link = in_registry("g4-2021101000070073");
-  const cli::twin twin(link);
+  const cli::simulator simulator(link);
   EXPECT_EQ(listed(), std::vector<std::string>{link});
   fs::remove(link);
   fs::create_symlink(terminal.path(), link);
@@ -133,7 +133,7 @@ TEST_F(Registry, TenThousandFilesAreLookedThrough) {
     fs::create_symlink("/dev/pts/4294967295", in_registry("link-" + std::to_string(i)));
   }
   const std::string link = in_registry("g4-2021101000070073");
-  const cli::twin twin(link);
+  const cli::simulator simulator(link);
   EXPECT_EQ(listed({"--probe"}), std::vector<std::string>{link});
   const outcome info = run({"info", "serial:2021101000070073"});
   EXPECT_EQ(info.code, 0) << info.err;
@@ -157,7 +157,7 @@ TEST_F(Registry, ADirectoryThatIsNoneHasNoDevices) {
 
 TEST_F(Registry, ANameWithEscapesIsShownWithoutThem) {
   const std::string link = in_registry("g4-\x1B[31m\x9Bq\n\xC2\x9B \xFF");
-  const cli::twin twin(link);
+  const cli::simulator simulator(link);
   for (const std::vector<std::string>& words : {std::vector<std::string>{"list", "--probe"},
                                                 {"list", "--json"},
                                                 {"info"},
@@ -176,7 +176,7 @@ TEST_F(Registry, WatchReportsThoseThatComeAndGo) {
   cli::program watch({"watch"});
   watch.read_until("BY-ID\n");
   {
-    const cli::twin twin(in_registry("g4-\x1B[31m"));
+    const cli::simulator simulator(in_registry("g4-\x1B[31m"));
     watch.read_until("g4-\\x1B[31m");
   }
   watch.read_until("unplugged");
@@ -188,8 +188,8 @@ TEST_F(Registry, WatchReportsThoseThatComeAndGo) {
 }
 
 TEST_F(Registry, TheDoctorNamesSeveralPorts) {
-  const cli::twin first(in_registry("g4-2021101000070073"));
-  const cli::twin second(in_registry("g4-2021101000070074"), {"--serial", "2021101000070074"});
+  const cli::simulator first(in_registry("g4-2021101000070073"));
+  const cli::simulator second(in_registry("g4-2021101000070074"), {"--serial", "2021101000070074"});
   const outcome done = run({"doctor", "--json", "-d", "500ms"});
   EXPECT_EQ(done.code, 3) << done.out << done.err;
   std::vector<std::string> found;

@@ -193,7 +193,9 @@ TEST_F(PortVerbs, Probe_WritesToOtherPortsOnlyWhenAsked) {
   auto lidar = serve(other, '3');
   EXPECT_EQ(run({"list", "--probe"}).code, 3);
   bool is_untouched = false;
-  lidar.with([&](g4lidar::sim::device& twin, std::int64_t) { is_untouched = twin.log().empty(); });
+  lidar.with([&](g4lidar::sim::device& simulated, std::int64_t) {
+    is_untouched = simulated.log().empty();
+  });
   EXPECT_TRUE(is_untouched);
   const outcome all = run({"list", "--all"});
   EXPECT_EQ(all.code, 0) << all.err;

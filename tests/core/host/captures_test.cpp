@@ -133,7 +133,7 @@ stream_counter counts_of(const std::string& name, test::scan_cutter& cutter) {
   };
   parser.feed(data, take);
   while (const auto found = parser.finish()) take(*found);
-  EXPECT_EQ(counts.frame_bytes + counts.skipped_bytes(), data.size());
+  EXPECT_EQ(counts.parsed_bytes + counts.skipped_bytes(), data.size());
   cutter.finish();
   return counts;
 }

@@ -26,9 +26,9 @@ inline constexpr std::int64_t ms = 1'000'000;
 inline constexpr std::array<std::uint8_t, 12> one_packet{0xAA, 0x55, 0x01, 0x01, 0x53, 0xAE,
                                                          0x53, 0xAE, 0xAB, 0x54, 0x00, 0x00};
 
-/// Passes `frame`, a complete response, to `to`.
-constexpr void take_reply(auto& to, bytes frame, std::int64_t now_ns) {
-  to.take(event(*response_view::from(frame)), now_ns);
+/// Passes `response`, a complete response, to `to`.
+constexpr void take_reply(auto& to, bytes response, std::int64_t now_ns) {
+  to.take(event(*response_view::from(response)), now_ns);
 }
 constexpr void take_packet(auto& to, std::int64_t now_ns) {
   to.take(event(*packet_view::from(one_packet)), now_ns);
@@ -215,7 +215,8 @@ class played {
       std::snprintf(text.data(), text.size(), ">%02X", static_cast<unsigned>((*sent)[1]));
       add(text.data());
     }
-    if (const notice told = talk.noticed(); told != notice::none) add("!" + word_for(told));
+    if (const notice reported = talk.noticed(); reported != notice::none)
+      add("!" + word_for(reported));
     if (const auto done = talk.finished()) {
       last = *done;
       add("=" + word_for(done->how) + word_for(done->value));

@@ -108,18 +108,18 @@ struct watched {
       move_out = command::stop;
     }
     take_reply(talk, reply, now);
-    look_at_line();
+    observe_transport();
   }
   void show_packet() {
     silence = 0;
     streamed = true;
     take_packet(talk, now);
-    look_at_line();
+    observe_transport();
   }
   void look(std::int64_t time) {
     pass(time);
     talk.look(now);
-    look_at_line();
+    observe_transport();
   }
   bool begin(const request& wanted, while_scanning how) {
     const bool was_scanning = talk.is_scanning();
@@ -131,11 +131,11 @@ struct watched {
       return false;
     }
     asked = true;
-    look_at_line();
+    observe_transport();
     return true;
   }
 
-  void look_at_line() {
+  void observe_transport() {
     while (const auto sent = talk.to_send()) saw(static_cast<command>((*sent)[1]));
     static_cast<void>(talk.noticed());
     if (talk.finished()) {
@@ -267,7 +267,7 @@ class explorer {
     after(from, "<packet", [](watched& next) { next.show_packet(); });
     after(from, "<noise", [](watched& next) {
       take_noise(next.talk, next.now);
-      next.look_at_line();
+      next.observe_transport();
     });
     after(from, "+1", [](watched& next) { next.look(1); });
     after(from, "+20", [](watched& next) { next.look(20); });  // the caller was suspended

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "support/allocation_count.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "realtime/child_process.hpp"
-#include "realtime/twin_on_pty.hpp"
+#include "realtime/device_on_pty.hpp"
 
 namespace g4lidar {
 namespace {
@@ -17,13 +17,13 @@ namespace {
 using namespace std::chrono_literals;
 using clock = std::chrono::steady_clock;
 
-class TwinProgram : public testing::Test {
+class SimulatorProgram : public testing::Test {
  protected:
   void begin() {
     program_.reset();  // its link is free for the next one
     program_ = std::make_unique<test::child_process>(
-        std::vector<std::string>{G4_DUMP, "sim", "--link", path_}, directory_.file("said"));
-    ASSERT_TRUE(program_->says(" at " + path_)) << program_->said();
+        std::vector<std::string>{G4_DUMP, "sim", "--link", path_}, directory_.file("output"));
+    ASSERT_TRUE(program_->prints(" at " + path_)) << program_->output();
   }
 
   test::scratch_directory directory_;
@@ -48,7 +48,7 @@ clock::duration time_to_know_the_end(lidar& device, const test::child_process& p
 }
 
 // The 75th percentile of 8 runs.
-TEST_F(TwinProgram, Killed_IsGone) {
+TEST_F(SimulatorProgram, Killed_IsGone) {
   const auto time_to_know = test::percentile(75, 8, [&] {
     begin();
     auto device = lidar::open(test::patient_options(path_));
@@ -60,7 +60,7 @@ TEST_F(TwinProgram, Killed_IsGone) {
   EXPECT_LT(time_to_know, 100ms);
 }
 
-TEST_F(TwinProgram, KilledAndRestarted_IsTheSameDevice) {
+TEST_F(SimulatorProgram, KilledAndRestarted_IsTheSameDevice) {
   begin();
   lidar_options options;
   options.device = path_;
@@ -84,7 +84,7 @@ TEST_F(TwinProgram, KilledAndRestarted_IsTheSameDevice) {
 }
 
 // Like a short suspension of a laptop, or a debugger: afterwards everything continues as before.
-TEST_F(TwinProgram, PausedForASecond_Continues) {
+TEST_F(SimulatorProgram, PausedForASecond_Continues) {
   begin();
   lidar_options options;
   options.device = path_;
@@ -115,7 +115,7 @@ TEST_F(TwinProgram, PausedForASecond_Continues) {
 
 // Without reconnecting, a short silence is not an error either. The delayed bytes are sent at once,
 // and a pseudo-terminal holds no more than 0.8 s of them.
-TEST_F(TwinProgram, PausedBriefly_IsNoEvent) {
+TEST_F(SimulatorProgram, PausedBriefly_IsNoEvent) {
   test::expect_three_of_four([&] {
     begin();
     auto device = lidar::open(test::patient_options(path_));

@@ -10,7 +10,7 @@
 #include "g4lidar/grid.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace {
 
@@ -44,9 +44,9 @@ int run(const std::string& path, bool packed) {
   if (!writer) return fail(writer.error());
   writer->set_wall_clock(wall_ahead_ns);
   test::virtual_bench bench;
-  auto line = recorded(std::make_unique<test::virtual_connector>(bench), *writer);
-  if (!line) return fail(line.error());
-  auto device = lidar::open(std::move(*line));
+  auto from = recorded(std::make_unique<test::virtual_connector>(bench), *writer);
+  if (!from) return fail(from.error());
+  auto device = lidar::open(std::move(*from));
   if (!device) return fail(device.error());
   recorded_device known;
   known.information = device->information();

@@ -36,7 +36,7 @@ class SimPty : public testing::Test {
   ~SimPty() override { fs::remove_all(directory_); }
 
   [[nodiscard]] std::string link() const { return directory_ / "lidar"; }
-  static sim::device twin(const sim::device_options& options = {}) {
+  static sim::device simulated(const sim::device_options& options = {}) {
     return sim::device(sim::built_in_world(), options);
   }
 
@@ -93,7 +93,7 @@ bool soon(Condition condition) {
 }
 
 TEST_F(SimPty, AnswersAndScansThroughItsLink) {
-  const auto port = sim::background_pty::open(twin(), link());
+  const auto port = sim::background_pty::open(simulated(), link());
   ASSERT_TRUE(port) << port.error().message();
   EXPECT_EQ(port->path(), link());
   const visitor program(link());
@@ -106,23 +106,23 @@ TEST_F(SimPty, AnswersAndScansThroughItsLink) {
   const test::heard got = test::taken_apart(program.read(30'000));
   EXPECT_GT(got.packets, 300U);
   EXPECT_LT(got.skipped_bytes, 2 * max_packet_size);
-  EXPECT_GT(std::chrono::steady_clock::now() - begin, 1200ms) << "at the true rate of the line";
+  EXPECT_GT(std::chrono::steady_clock::now() - begin, 1200ms) << "at the true baud rate";
 }
 
 TEST_F(SimPty, Pty_IsRaw) {
-  const auto port = sim::background_pty::open(twin());
+  const auto port = sim::background_pty::open(simulated());
   ASSERT_TRUE(port);
   const visitor program(port->path());
-  termios line{};
-  ASSERT_EQ(::tcgetattr(program.fd(), &line), 0);
-  EXPECT_EQ(line.c_lflag & static_cast<tcflag_t>(ICANON | ECHO | ISIG), 0U);
-  EXPECT_EQ(line.c_oflag & static_cast<tcflag_t>(OPOST), 0U);
-  EXPECT_EQ(::cfgetospeed(&line), static_cast<speed_t>(B230400));
+  termios settings{};
+  ASSERT_EQ(::tcgetattr(program.fd(), &settings), 0);
+  EXPECT_EQ(settings.c_lflag & static_cast<tcflag_t>(ICANON | ECHO | ISIG), 0U);
+  EXPECT_EQ(settings.c_oflag & static_cast<tcflag_t>(OPOST), 0U);
+  EXPECT_EQ(::cfgetospeed(&settings), static_cast<speed_t>(B230400));
 }
 
 TEST_F(SimPty, Link_IsRemovedWithThePort) {
   {
-    const auto port = sim::background_pty::open(twin(), link());
+    const auto port = sim::background_pty::open(simulated(), link());
     ASSERT_TRUE(port);
     EXPECT_TRUE(fs::is_symlink(link()));
   }
@@ -132,21 +132,21 @@ TEST_F(SimPty, Link_IsRemovedWithThePort) {
 
 TEST_F(SimPty, StaleLink_IsReplacedAndNothingElse) {
   fs::create_symlink("/dev/pts/999999", link());  // of a simulator that was killed
-  EXPECT_TRUE(sim::background_pty::open(twin(), link()));
+  EXPECT_TRUE(sim::background_pty::open(simulated(), link()));
   EXPECT_FALSE(fs::exists(fs::symlink_status(link())));
   std::ofstream(link()) << "a letter";
-  const auto refused = sim::background_pty::open(twin(), link());
+  const auto refused = sim::background_pty::open(simulated(), link());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code(), problem::busy);
   EXPECT_TRUE(fs::is_regular_file(link()));
   fs::remove(link());
-  const auto nowhere = sim::background_pty::open(twin(), directory_ / "none" / "lidar");
+  const auto nowhere = sim::background_pty::open(simulated(), directory_ / "none" / "lidar");
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(nowhere.error().code(), problem::system);
 }
 
 TEST_F(SimPty, Unplug_HangsUp_ReplugMovesTheLink) {
-  auto made = sim::background_pty::open(twin(), link());
+  auto made = sim::background_pty::open(simulated(), link());
   ASSERT_TRUE(made);
   sim::background_pty& port = *made;
   const visitor before(link());
@@ -165,7 +165,7 @@ TEST_F(SimPty, Unplug_HangsUp_ReplugMovesTheLink) {
 }
 
 TEST_F(SimPty, SlowReader_LosesBytesAndDelaysNothing) {
-  auto made = sim::background_pty::open(twin(), link());
+  auto made = sim::background_pty::open(simulated(), link());
   ASSERT_TRUE(made);
   sim::background_pty& port = *made;
   const visitor program(link());
@@ -184,14 +184,14 @@ TEST_F(SimPty, SlowReader_LosesBytesAndDelaysNothing) {
 // Like a serial port: the next program gets neither the exclusive access nor the bytes of the
 // previous one.
 TEST_F(SimPty, IsResetForEachProgram) {
-  const auto port = sim::background_pty::open(twin());
+  const auto port = sim::background_pty::open(simulated());
   ASSERT_TRUE(port);
   {
     const visitor program(port->path());
-    termios line{};
-    ASSERT_EQ(::tcgetattr(program.fd(), &line), 0);
-    line.c_lflag |= ECHO | ICANON;
-    ASSERT_EQ(::tcsetattr(program.fd(), TCSANOW, &line), 0);
+    termios settings{};
+    ASSERT_EQ(::tcgetattr(program.fd(), &settings), 0);
+    settings.c_lflag |= ECHO | ICANON;
+    ASSERT_EQ(::tcsetattr(program.fd(), TCSANOW, &settings), 0);
     ASSERT_EQ(::ioctl(program.fd(), TIOCEXCL), 0);
     ASSERT_TRUE(program.send(0x60));
     std::this_thread::sleep_for(300ms);
@@ -202,9 +202,9 @@ TEST_F(SimPty, IsResetForEachProgram) {
   int exclusive = 1;
   ASSERT_EQ(::ioctl(program.fd(), TIOCGEXCL, &exclusive), 0);
   EXPECT_EQ(exclusive, 0);
-  termios line{};
-  ASSERT_EQ(::tcgetattr(program.fd(), &line), 0);
-  EXPECT_EQ(line.c_lflag & static_cast<tcflag_t>(ICANON | ECHO), 0U);
+  termios settings{};
+  ASSERT_EQ(::tcgetattr(program.fd(), &settings), 0);
+  EXPECT_EQ(settings.c_lflag & static_cast<tcflag_t>(ICANON | ECHO), 0U);
   const test::heard got = test::taken_apart(program.read(2'000));
   EXPECT_TRUE(got.responses.empty()) << "the header was the last program's";
   EXPECT_GT(got.packets, 15U) << "it goes on scanning";
@@ -214,7 +214,7 @@ TEST_F(SimPty, Idle_DoesNotSpin) {
   std::array<int, 2> bell{};
   ASSERT_EQ(::pipe2(bell.data(), O_CLOEXEC), 0);
   std::vector<sim::pty_port> ports;
-  for (int i = 0; i < 2; ++i) ports.push_back(std::move(*sim::pty_port::open(twin())));
+  for (int i = 0; i < 2; ++i) ports.push_back(std::move(*sim::pty_port::open(simulated())));
   int steps = 0;
   std::thread stopper([&] {
     std::this_thread::sleep_for(500ms);

@@ -209,9 +209,9 @@ TEST_F(SimSetup, ADeviceServedAlone_KeepsItsPath) {
     return fs::exists(path);
   };
   EXPECT_TRUE(is_there(true));
-  (*served)->with([](sim::device& twin, std::int64_t now_ns) { twin.unplug(now_ns); });
+  (*served)->with([](sim::device& simulated, std::int64_t now_ns) { simulated.unplug(now_ns); });
   EXPECT_FALSE(is_there(false));
-  (*served)->with([](sim::device& twin, std::int64_t now_ns) { twin.replug(now_ns); });
+  (*served)->with([](sim::device& simulated, std::int64_t now_ns) { simulated.replug(now_ns); });
   EXPECT_TRUE(is_there(true));
   EXPECT_EQ((*served)->path(), path);
   served->reset();

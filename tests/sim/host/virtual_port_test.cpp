@@ -31,8 +31,8 @@ class SimVirtualPort : public testing::Test {
 };
 
 TEST_F(SimVirtualPort, Read_EndsAtTheDeadline) {
-  sim::device twin = with({});
-  sim::virtual_port port(twin, clock_);
+  sim::device simulated = with({});
+  sim::virtual_port port(simulated, clock_);
   const auto nothing = port.read(buffer_, 30 * ms);
   ASSERT_TRUE(nothing);
   EXPECT_EQ(nothing->count, 0U);
@@ -47,14 +47,14 @@ TEST_F(SimVirtualPort, Read_EndsAtTheDeadline) {
     count += got->count;
   }
   // 2 bytes to the device, 1 ms of reaction, 27 bytes back, and at most 1 ms in the bridge.
-  const std::int64_t line_ns = 29 * 10 * second / 230'400;
-  EXPECT_GE(port.now_ns(), 31 * ms + line_ns);
-  EXPECT_LE(port.now_ns(), 32 * ms + line_ns + ms / 100);
+  const std::int64_t wire_ns = 29 * 10 * second / 230'400;
+  EXPECT_GE(port.now_ns(), 31 * ms + wire_ns);
+  EXPECT_LE(port.now_ns(), 32 * ms + wire_ns + ms / 100);
 }
 
 TEST_F(SimVirtualPort, Pause_IsNotEndedByBytes) {
-  sim::device twin = with({});
-  sim::virtual_port port(twin, clock_);
+  sim::device simulated = with({});
+  sim::virtual_port port(simulated, clock_);
   ASSERT_TRUE(port.write(start, second));
   ASSERT_TRUE(port.pause(100 * ms));
   EXPECT_EQ(port.now_ns(), 100 * ms);
@@ -64,8 +64,8 @@ TEST_F(SimVirtualPort, Pause_IsNotEndedByBytes) {
 }
 
 TEST_F(SimVirtualPort, Unplugged_IsGoneForEver) {
-  sim::device twin = with({make_fault(fault_kind::unplug, second, second)});
-  sim::virtual_port port(twin, clock_);
+  sim::device simulated = with({make_fault(fault_kind::unplug, second, second)});
+  sim::virtual_port port(simulated, clock_);
   const auto read = port.read(buffer_, 10 * second);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code(), problem::gone);
@@ -79,8 +79,8 @@ TEST_F(SimVirtualPort, Unplugged_IsGoneForEver) {
 }
 
 TEST_F(SimVirtualPort, Unplug_EndsAPause) {
-  sim::device twin = with({make_fault(fault_kind::unplug, second)});
-  sim::virtual_port port(twin, clock_);
+  sim::device simulated = with({make_fault(fault_kind::unplug, second)});
+  sim::virtual_port port(simulated, clock_);
   const auto paused = port.pause(10 * second);
   ASSERT_FALSE(paused);
   EXPECT_EQ(paused.error().code(), problem::gone);
@@ -88,8 +88,8 @@ TEST_F(SimVirtualPort, Unplug_EndsAPause) {
 }
 
 TEST_F(SimVirtualPort, WakesOnce) {
-  sim::device twin = with({});
-  sim::virtual_port port(twin, clock_);
+  sim::device simulated = with({});
+  sim::virtual_port port(simulated, clock_);
   port.wake();
   const auto woken = port.read(buffer_, second);
   ASSERT_FALSE(woken);
@@ -99,16 +99,16 @@ TEST_F(SimVirtualPort, WakesOnce) {
 }
 
 TEST_F(SimVirtualPort, BusyLoop_Ends) {
-  sim::device twin = with({});
+  sim::device simulated = with({});
   sim::virtual_clock ticking;
-  sim::virtual_port port(twin, ticking);
+  sim::virtual_port port(simulated, ticking);
   while (ticking.now_ns() < 10 * ms) (void)port.read(buffer_, 0);
   EXPECT_EQ(ticking.calls(), 10'000U);
 }
 
 TEST_F(SimVirtualPort, Connector_FindsPluggedDevices) {
-  sim::device twin = with({make_fault(fault_kind::unplug, second, second)});
-  sim::virtual_connector finder(twin, clock_);
+  sim::device simulated = with({make_fault(fault_kind::unplug, second, second)});
+  sim::virtual_connector finder(simulated, clock_);
   const auto first = finder.connect();
   ASSERT_TRUE(first);
   clock_.advance_to(second);

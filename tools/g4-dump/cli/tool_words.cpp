@@ -26,13 +26,13 @@ std::span<const tool_word> tool_words() noexcept {
 }
 
 std::string in_tool_words(std::string_view text) {
-  std::string said(text);
+  std::string all(text);
   for (const tool_word& each : tool_words()) {
-    if (const std::size_t at = said.find(each.library); at != std::string::npos) {
-      said.replace(at, each.library.size(), each.tool);
+    if (const std::size_t at = all.find(each.library); at != std::string::npos) {
+      all.replace(at, each.library.size(), each.tool);
     }
   }
-  return said;
+  return all;
 }
 
 }  // namespace g4_dump

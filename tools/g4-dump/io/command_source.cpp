@@ -28,12 +28,12 @@ void refuse_files(const common_options& options, task doing) {
 constexpr std::int64_t listen_ns = 60'000'000;
 
 /// Whether a packet comes. The driver reports what goes wrong.
-bool hears_packet(transport& line, std::int64_t deadline_ns) {
+bool hears_packet(transport& port, std::int64_t deadline_ns) {
   stream_parser parser;
   std::array<std::uint8_t, 1024> buffer;
   bool found = false;
-  while (!found && line.now_ns() < deadline_ns) {
-    const auto got = line.read(buffer, deadline_ns);
+  while (!found && port.now_ns() < deadline_ns) {
+    const auto got = port.read(buffer, deadline_ns);
     if (!got || got->count == 0) return false;
     parser.feed(bytes(buffer).first(got->count), [&found](const event& what) {
       found = found || std::holds_alternative<packet_view>(what);
@@ -46,9 +46,9 @@ bool hears_packet(transport& line, std::int64_t deadline_ns) {
 /// packet before its own stop is obeyed.
 opening listening(bool& heard) {
   opening how;
-  how.each = [&heard](std::unique_ptr<transport> line) {
-    if (hears_packet(*line, line->now_ns() + listen_ns)) heard = true;
-    return line;
+  how.each = [&heard](std::unique_ptr<transport> port) {
+    if (hears_packet(*port, port->now_ns() + listen_ns)) heard = true;
+    return port;
   };
   return how;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A handler notes the signal and writes to a pipe, which poll() watches beside the input.
+// A handler stores the signal and writes to a pipe, which poll() watches beside the input.
 #include "interrupt.hpp"
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@ namespace {
 volatile std::sig_atomic_t caught = 0;
 std::array<int, 2> bell{-1, -1};
 
-void note(int number) {
+void keep_signal(int number) {
   const int error = errno;
   caught = number;
   const char byte = 0;
@@ -38,7 +38,7 @@ void prepare_process() {
   std::signal(SIGXFSZ, SIG_IGN);
   if (::pipe2(bell.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
   struct sigaction action{};
-  action.sa_handler = note;
+  action.sa_handler = keep_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before{};

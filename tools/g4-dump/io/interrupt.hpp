@@ -11,7 +11,7 @@ namespace g4_dump {
 /// A moment that does not come.
 inline constexpr auto no_deadline = std::chrono::steady_clock::time_point::max();
 
-/// From now on the first such signal is only noted, a second one ends the program, and writing to a
+/// From now on the first such signal is only stored, a second one ends the program, and writing to a
 /// closed pipe or beyond the largest file is an error like any other. Descriptors 0 to 2 that are closed lead
 /// nowhere, so that no file takes their place.
 void prepare_process();

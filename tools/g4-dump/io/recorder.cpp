@@ -64,14 +64,14 @@ class recorder {
     how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
     // The ring holds the points of many readings; nobody waits for the single packet.
     how.how.pace = g4lidar::read_pace::revolutions;
-    how.tap = [this](std::unique_ptr<g4lidar::connector> line)
+    how.tap = [this](std::unique_ptr<g4lidar::connector> from)
         -> g4lidar::result<std::unique_ptr<g4lidar::connector>> {
       if (!writer_) {
         auto made = g4lidar::recording_writer::create(job_.path, job_.made);
         if (!made) throw file_failure(made.error(), title_);
         writer_ = std::make_unique<g4lidar::recording_writer>(std::move(*made));
       }
-      return g4lidar::recorded(std::move(line), *writer_);
+      return g4lidar::recorded(std::move(from), *writer_);
     };
     source_ = std::make_unique<opened_source>(job_.common, how);
     points_ =

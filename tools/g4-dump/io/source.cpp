@@ -33,9 +33,9 @@ class tapped_connector final : public forwarding_connector {
       : forwarding_connector(std::move(inner)), tap_(tap) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    auto line = inner().connect();
-    if (line) line = tap_(std::move(*line));
-    return line;
+    auto port = inner().connect();
+    if (port) port = tap_(std::move(*port));
+    return port;
   }
 
  private:
@@ -115,13 +115,13 @@ opened_source::opened_source(const common_options& options, const opening& wish)
   }
   while (true) {
     const std::string path = path_of(how.device);
-    auto line = kind == source_kind::recording ? g4lidar::replay::open(path, wish.played)
+    auto from = kind == source_kind::recording ? g4lidar::replay::open(path, wish.played)
                 : kind == source_kind::bytes   ? open_raw_bytes(path, wish.bytes_rate_hz)
                                                : g4lidar::connector_for(how);
-    if (line) played_ = g4lidar::replay::reader_of(**line);
-    if (line && wish.tap) line = wish.tap(std::move(*line));
-    if (line && wish.each) line = std::make_unique<tapped_connector>(std::move(*line), wish.each);
-    auto opened = line ? g4lidar::lidar::open(std::move(*line), how) : tl::unexpected(line.error());
+    if (from) played_ = g4lidar::replay::reader_of(**from);
+    if (from && wish.tap) from = wish.tap(std::move(*from));
+    if (from && wish.each) from = std::make_unique<tapped_connector>(std::move(*from), wish.each);
+    auto opened = from ? g4lidar::lidar::open(std::move(*from), how) : tl::unexpected(from.error());
     if (opened) {
       lidar_.emplace(std::move(*opened));
       logger::verbose(fmt::format("opened {}\n", lidar_->name()));

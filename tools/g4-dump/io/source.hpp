@@ -40,14 +40,14 @@ using simulated_port = std::shared_ptr<const sim::background_pty>;
 [[nodiscard]] simulated_port serve_simulated(const std::string& source);
 
 /// Puts something between the driver and the connections, such as one that records.
-using line_tap = std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>;
+using connector_tap = std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>;
 /// The same for each connection.
 using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<transport>)>;
 
 /// How a source is opened.
 struct opening {
   lidar_options how{};                 ///< But for device, baud and reconnect.
-  line_tap tap{};                      ///< Called at each attempt, where it is set.
+  connector_tap tap{};                 ///< Called at each attempt, where it is set.
   transport_tap each{};                ///< Called for each connection, where it is set.
   replay_options played{};             ///< Of a recording.
   std::uint32_t bytes_rate_hz = 9000;  ///< Samples a second of raw bytes in a file.

@@ -143,10 +143,10 @@ void copy_recording(const convert_options& options, output& out) {
 
 /// A part of raw bytes, by times that are counted.
 void copy_bytes(const convert_options& options, output& out) {
-  auto line = open_raw_bytes(path_of(options.in()), options.points.source.bytes_rate_hz);
-  if (!line) throw failure(line.error());
-  const std::int64_t begin_ns = (*line)->now_ns();
-  auto opened = (*line)->connect();
+  auto from = open_raw_bytes(path_of(options.in()), options.points.source.bytes_rate_hz);
+  if (!from) throw failure(from.error());
+  const std::int64_t begin_ns = (*from)->now_ns();
+  auto opened = (*from)->connect();
   if (!opened) throw failure(opened.error());
   std::array<std::uint8_t, 32'768> memory;
   while (interrupt() == 0 && !out.is_closed()) {

@@ -39,10 +39,10 @@ result<device_information> ask_at(const port_info& port, std::uint32_t baud) {
   if (!port.holder.empty()) {
     return g4lidar::failure(task::opening, busy, port.path + ", held by " + port.holder);
   }
-  auto line = serial_port::open(port.path, {.baud = baud});
-  if (!line) return tl::unexpected(line.error());
+  auto opened = serial_port::open(port.path, {.baud = baud});
+  if (!opened) return tl::unexpected(opened.error());
   const auto longest = find_options{}.probe_timeout;
-  return probe(**line, (*line)->now_ns() + std::chrono::nanoseconds(longest).count());
+  return probe(**opened, (*opened)->now_ns() + std::chrono::nanoseconds(longest).count());
 }
 
 void probe(std::vector<listed_port>& ports, const list_options& options) {

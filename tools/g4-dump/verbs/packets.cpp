@@ -52,13 +52,13 @@ void list_bytes(const packets_options& options) {
 }
 
 /// An event of the transport in a recording.
-void log_event(const g4lidar::recorded_event& note, protocol_log& log) {
+void log_event(const g4lidar::recorded_event& event, protocol_log& log) {
   using enum g4lidar::recorded_event::kind;
-  if (note.what == opened) return log.remark(fmt::format("opened {}", note.line), note.time_ns);
-  if (note.what != closed && note.what != gap) return;
+  if (event.what == opened) return log.remark(fmt::format("opened {}", event.name), event.time_ns);
+  if (event.what != closed && event.what != gap) return;
   log.finish();
-  log.remark(note.what == closed ? "closed" : "bytes are missing from the recording here",
-             note.time_ns);
+  log.remark(event.what == closed ? "closed" : "bytes are missing from the recording here",
+             event.time_ns);
 }
 
 void list_recording(const packets_options& options) {
@@ -80,7 +80,7 @@ void list_recording(const packets_options& options) {
     } else if (item.what == g4lidar::recorded_item::kind::to_device) {
       log->to_device(item.data, item.time_ns);
     } else {
-      log_event(item.note, *log);
+      log_event(item.other, *log);
     }
     return !out.is_closed() && !log->is_done();
   });
@@ -137,7 +137,7 @@ void list_lidar(const packets_options& options) {
   sink.is_done = [&] { return log.is_done(); };
   try {
     opening how;
-    how.each = [&](auto line) { return std::make_unique<logged_transport>(std::move(line), log); };
+    how.each = [&](auto port) { return std::make_unique<logged_transport>(std::move(port), log); };
     opened_source source(common, how);
     read_source(source, common, sink, out);
   } catch (const failure&) {  // the bytes so far show why

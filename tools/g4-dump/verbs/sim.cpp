@@ -115,12 +115,12 @@ std::vector<sim::pty_port> open_ports(const sim_options& options,
   }
   std::vector<sim::pty_port> ports;
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    sim::device twin(scene, devices[i], options.setup.faults);
+    sim::device simulated(scene, devices[i], options.setup.faults);
     const bool has_link = i < links.size();
     const auto& [address, port] =
         has_link ? std::pair(links[i], std::uint16_t{0}) : options.bridges[i - links.size()];
-    ports.push_back(opened(has_link ? sim::pty_port::open(std::move(twin), address)
-                                    : sim::pty_port::listen(std::move(twin), address, port),
+    ports.push_back(opened(has_link ? sim::pty_port::open(std::move(simulated), address)
+                                    : sim::pty_port::listen(std::move(simulated), address, port),
                            address));
     const std::string& path = ports.back().path();
     logger::write(fmt::format("G4 {} at {}\n", devices[i].info.serial_number(),
@@ -135,14 +135,14 @@ int serve(const sim_options& options) {
   std::vector<sim::pty_port> ports = open_ports(options, devices);
   const auto log = [&] {
     for (std::size_t i = 0; i < ports.size(); ++i) {
-      for (const sim::asked& what : ports[i].twin().log()) {
+      for (const sim::asked& what : ports[i].simulated().log()) {
         if (!options.log) break;
         logger::write(fmt::format(
             "{:.3f} {} A5 {:02X} {}{}{}\n", static_cast<double>(what.time_ns) / 1e9,
             devices[i].info.serial_number(), what.code, g4lidar::word_for_command(what.code),
             what.scanning ? ", while scanning" : "", what.obeyed ? "" : ", not obeyed"));
       }
-      ports[i].twin().clear_log();
+      ports[i].simulated().clear_log();
     }
   };
   const auto served = sim::serve(ports, interrupt_handle(), log);

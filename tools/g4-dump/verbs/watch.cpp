@@ -75,7 +75,7 @@ class watcher {
   }
 
  private:
-  [[nodiscard]] bool has_enough() const { return options_.count > 0 && told_ >= options_.count; }
+  [[nodiscard]] bool has_enough() const { return options_.count > 0 && printed_ >= options_.count; }
 
   /// Compares the ports with those known.
   void look() {
@@ -93,7 +93,7 @@ class watcher {
     if (known_.contains(port.path) == plugged || has_enough()) return;
     if (!plugged) port.may_open = false;
     write(plugged ? "plugged" : "unplugged", port);
-    ++told_;
+    ++printed_;
     if (plugged) {
       known_[port.path] = port;
     } else {
@@ -119,7 +119,7 @@ class watcher {
   std::optional<port_monitor> monitor_;
   bool looks_ = false;  // since udevd may not report
   known_ports known_;
-  std::uint64_t told_ = 0;
+  std::uint64_t printed_ = 0;
   time_limits limits_{options_.duration, std::chrono::nanoseconds(0)};
   clock::time_point next_look_ = clock::now();
 };

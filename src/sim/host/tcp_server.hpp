@@ -8,14 +8,14 @@
 
 #include "file_handle.hpp"
 #include "g4lidar/error.hpp"
-#include "served_line.hpp"
+#include "served_port.hpp"
 
 namespace g4lidar::sim {
 
-class tcp_line final : public served_line {
+class tcp_server final : public served_port {
  public:
   /// Listens at a numeric IPv4 address; port 0: any. Fails with bad_option or system.
-  [[nodiscard]] static result<std::unique_ptr<served_line>> open(const std::string& address,
+  [[nodiscard]] static result<std::unique_ptr<served_port>> open(const std::string& address,
                                                                  std::uint16_t port);
 
   /// "tcp:127.0.0.1:4000"
@@ -25,7 +25,7 @@ class tcp_line final : public served_line {
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
   std::size_t write(bytes data) noexcept override;
   /// Accepts a client; further ones are refused.
-  void look_for_visitors() noexcept override;
+  void look_for_clients() noexcept override;
 
  private:
   file_handle listener_;

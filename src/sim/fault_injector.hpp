@@ -21,9 +21,9 @@ struct passed_byte {
   bool damaged = false;   ///< It was changed or lost.
 };
 
-class fault_line {
+class fault_injector {
  public:
-  fault_line(std::span<const fault> faults, std::uint64_t seed);
+  fault_injector(std::span<const fault> faults, std::uint64_t seed);
 
   /// When a fault next begins or ends, after the time that was set last.
   [[nodiscard]] std::int64_t next_edge_ns() const noexcept { return edge_ns_; }

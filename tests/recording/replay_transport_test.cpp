@@ -19,8 +19,8 @@ using namespace std::chrono_literals;
 /// Records a healthy device for this time.
 void record_device(recording_writer& into, std::int64_t until_ns, bool with_metadata = true) {
   virtual_bench bench;
-  auto line = recorded(std::make_unique<virtual_connector>(bench), into);
-  auto device = lidar::open(std::move(*line));
+  auto from = recorded(std::make_unique<virtual_connector>(bench), into);
+  auto device = lidar::open(std::move(*from));
   ASSERT_TRUE(device) << device.error().message();
   recorded_device known;
   known.information = device->information();
@@ -32,16 +32,16 @@ void record_device(recording_writer& into, std::int64_t until_ns, bool with_meta
   }
 }
 
-std::unique_ptr<transport> line_of(const std::string& path, const replay_options& how = {}) {
+std::unique_ptr<transport> port_of(const std::string& path, const replay_options& how = {}) {
   auto found = replay::open(path, how);
   if (!found) {
     ADD_FAILURE() << found.error().message();
     return nullptr;
   }
   // Its transport continues without it.
-  auto line = (*found)->connect();
-  EXPECT_TRUE(line);
-  return std::move(*line);
+  auto port = (*found)->connect();
+  EXPECT_TRUE(port);
+  return std::move(*port);
 }
 
 bool is_readable(int handle) {
@@ -49,7 +49,7 @@ bool is_readable(int handle) {
   return ::poll(&waits, 1, 0) == 1;
 }
 
-TEST(ReplayLine, OpensByItsPathLikeADevice) {
+TEST(ReplayTransport, OpensByItsPathLikeADevice) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
@@ -71,7 +71,7 @@ TEST(ReplayLine, OpensByItsPathLikeADevice) {
   }
 }
 
-TEST(ReplayLine, FindsTheDeviceInTheBytes) {
+TEST(ReplayTransport, FindsTheDeviceInTheBytes) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
@@ -82,7 +82,7 @@ TEST(ReplayLine, FindsTheDeviceInTheBytes) {
   EXPECT_EQ(device->information().serial_number(), "2021101000070073");
 }
 
-TEST(ReplayLine, End_IsFinalAlsoWithReconnecting) {
+TEST(ReplayTransport, End_IsFinalAlsoWithReconnecting) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
@@ -104,7 +104,7 @@ TEST(ReplayLine, End_IsFinalAlsoWithReconnecting) {
   EXPECT_GE(scans, 8);
 }
 
-TEST(ReplayLine, FileOfBytes_IsParsedCompletely) {
+TEST(ReplayTransport, FileOfBytes_IsParsedCompletely) {
   const temporary_path full;
   const temporary_path bare;
   {
@@ -127,16 +127,16 @@ TEST(ReplayLine, FileOfBytes_IsParsedCompletely) {
   EXPECT_GE(other.counts.scans, one.counts.scans);
 }
 
-TEST(ReplayLine, ReportsLossesAndReconnects) {
+TEST(ReplayTransport, ReportsLossesAndReconnects) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   const auto faults = faults_of({"unplug@3s+1s"});
   virtual_bench bench({}, faults);
   lidar_options options;
   options.reconnect = true;
-  auto line = recorded(std::make_unique<virtual_connector>(bench), writer);
+  auto from = recorded(std::make_unique<virtual_connector>(bench), writer);
   {
-    auto device = lidar::open(std::move(*line), options);
+    auto device = lidar::open(std::move(*from), options);
     ASSERT_TRUE(device) << device.error().message();
     ASSERT_TRUE(device->start());
     while (bench.now_ns < 8 * second) static_cast<void>(device->next_scan(100ms));
@@ -149,7 +149,7 @@ TEST(ReplayLine, ReportsLossesAndReconnects) {
   EXPECT_EQ(run.counts.reconnects, 1U);
 }
 
-TEST(ReplayLine, Gap_IsPassedOver) {
+TEST(ReplayTransport, Gap_IsPassedOver) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
@@ -171,81 +171,81 @@ TEST(ReplayLine, Gap_IsPassedOver) {
               static_cast<double>(whole.points.back().time_ns), 1e6);
 }
 
-TEST(ReplayLine, Repeated_BeginsLaterThanItEnded) {
+TEST(ReplayTransport, Repeated_BeginsLaterThanItEnded) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
     record_readings(writer, 0, 100);
   }
-  const auto line = line_of(path.text(), {.loop = true});
+  const auto port = port_of(path.text(), {.loop = true});
   std::array<std::uint8_t, 200> out{};
   std::int64_t last_ns = 0;
   for (std::uint32_t i = 0; i < 350; ++i) {
-    const auto got = line->read(out, never_ns);
+    const auto got = port->read(out, never_ns);
     ASSERT_TRUE(got) << got.error().message();
     EXPECT_TRUE(std::ranges::equal(bytes(out).first(got->count), reading(i % 100)));
     EXPECT_GT(got->arrival_ns, last_ns);
-    EXPECT_EQ(line->now_ns(), got->arrival_ns);
+    EXPECT_EQ(port->now_ns(), got->arrival_ns);
     last_ns = got->arrival_ns;
   }
 }
 
-TEST(ReplayLine, AsFastAsAsked_IsAlwaysReadable) {
+TEST(ReplayTransport, AsFastAsAsked_IsAlwaysReadable) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
     record_readings(writer, 0, 2);
   }
-  const auto line = line_of(path.text());
+  const auto port = port_of(path.text());
   std::array<std::uint8_t, 200> out{};
-  EXPECT_TRUE(is_readable(line->native_handle()));
-  EXPECT_TRUE(line->read(out, 0));
-  EXPECT_TRUE(is_readable(line->native_handle()));
-  EXPECT_TRUE(line->read(out, 0));
-  const auto end = line->read(out, 0);
+  EXPECT_TRUE(is_readable(port->native_handle()));
+  EXPECT_TRUE(port->read(out, 0));
+  EXPECT_TRUE(is_readable(port->native_handle()));
+  EXPECT_TRUE(port->read(out, 0));
+  const auto end = port->read(out, 0);
   ASSERT_FALSE(end);
   EXPECT_EQ(end.error().code(), problem::end_of_input);
 }
 
-TEST(ReplayLine, RecordedSpeed_BytesArriveWhenTheyAreDue) {
+TEST(ReplayTransport, RecordedSpeed_BytesArriveWhenTheyAreDue) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
     record_readings(writer, 1, 2);
   }
-  const auto line =
-      line_of(path.text(), {.rate = 1e-5});  // the second one is due in a quarter of an hour
+  const auto port =
+      port_of(path.text(), {.rate = 1e-5});  // the second one is due in a quarter of an hour
   std::array<std::uint8_t, 200> out{};
-  const auto first = line->read(out, never_ns);
+  const auto first = port->read(out, never_ns);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->arrival_ns, time_of(1));
-  EXPECT_FALSE(is_readable(line->native_handle()));
-  const auto none = line->read(out, line->now_ns() + 10);
+  EXPECT_FALSE(is_readable(port->native_handle()));
+  const auto none = port->read(out, port->now_ns() + 10);
   ASSERT_TRUE(none);
   EXPECT_EQ(none->count, 0U);
-  std::thread waker([&] { line->wake(); });
-  const auto woken = line->read(out, never_ns);
+  std::thread waker([&] { port->wake(); });
+  const auto woken = port->read(out, never_ns);
   waker.join();
   ASSERT_FALSE(woken);
   EXPECT_EQ(woken.error().code(), problem::cancelled);
 }
 
-TEST(ReplayLine, AtItsOwnRate_TakesItsTime) {
+TEST(ReplayTransport, AtItsOwnRate_TakesItsTime) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
     record_readings(writer, 0, 101);
   }
   const auto begin = std::chrono::steady_clock::now();
-  const auto line = line_of(path.text(), {.rate = 10});
+  const auto port = port_of(path.text(), {.rate = 10});
   std::array<std::uint8_t, 200> out{};
   int count = 0;
-  while (const auto got = line->read(out, never_ns)) count += got->count > 0 ? 1 : 0;
+  while (const auto got = port->read(out, never_ns)) count += got->count > 0 ? 1 : 0;
   EXPECT_EQ(count, 101);
   EXPECT_GE(std::chrono::steady_clock::now() - begin, 95ms);
 }
 
-TEST(ReplayLine, InvalidOptions_AreRefused) {
+TEST(ReplayTransport, InvalidOptions_AreRefused) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());

@@ -17,10 +17,10 @@
 namespace g4lidar::test {
 
 /// A session, a parser and a simulated device, and the loop of a driver between them.
-class on_twin {
+class on_simulator {
  public:
-  explicit on_twin(const sim::device_options& options = {}, std::span<const sim::fault> faults = {},
-                   const session_times& times = {})
+  explicit on_simulator(const sim::device_options& options = {},
+                        std::span<const sim::fault> faults = {}, const session_times& times = {})
       : device(sim::built_in_world(), options, faults), talk(times) {}
 
   /// Begins a request and runs until it has ended; nothing if it was refused or never ends.
@@ -44,14 +44,15 @@ class on_twin {
   session talk;
   std::int64_t now_ns = 10'000'000'000;
   std::uint64_t packets = 0;
-  std::vector<notice> told;
+  std::vector<notice> reported;
 
  private:
-  static constexpr std::int64_t pause_ns = 30'000'000;  // after this, half a frame is not continued
+  static constexpr std::int64_t pause_ns =
+      30'000'000;  // after this, half a packet is not continued
 
   void step(std::int64_t until) {
     while (const auto command = talk.to_send()) device.write(*command, now_ns);
-    if (const notice news = talk.noticed(); news != notice::none) told.push_back(news);
+    if (const notice news = talk.noticed(); news != notice::none) reported.push_back(news);
     std::int64_t next = std::min(until, talk.next_look_ns());
     if (parser_.held() > 0) next = std::min(next, heard_ns_ + pause_ns);
     next = std::min(next, device.next_ns(now_ns));

@@ -9,7 +9,7 @@
 #include "discovery/system_connector.hpp"
 #include "driver/port_conflict.hpp"
 #include "support/allocation_count.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {
@@ -29,20 +29,20 @@ std::int64_t age_of_first_packet_ns(std::uint32_t baud) {
   return points ? bench.now_ns - points->back().time_ns : -1;
 }
 
-TEST(Line, ByteTime_IsThatOfTheTransport) {
+TEST(Transport, ByteTime_IsThatOfTheTransport) {
   const std::int64_t none = age_of_first_packet_ns(0);
   ASSERT_GE(none, 0);
   EXPECT_GT(age_of_first_packet_ns(23'040), none + 5 * ms);  // 12 bytes at least
 }
 
-TEST(Line, NoMemoryAtReconnect_ProgramContinues) {
+TEST(Transport, NoMemoryAtReconnect_ProgramContinues) {
   for (const char* device : {"file:/dev/a-name-that-needs-memory", "tcp:a-name-that-needs-memory:1",
                              "/dev/a-name-that-needs-memory"}) {
     const auto connector = system_connector::make(device, 230'400);
     ASSERT_TRUE(connector);
     std::optional<error> refused;
     test::without_memory([&] {
-      if (const auto line = (*connector)->connect(); !line) refused = line.error();
+      if (const auto port = (*connector)->connect(); !port) refused = port.error();
     });
     ASSERT_TRUE(refused) << device;
     EXPECT_EQ(refused->code(), problem::system) << device;
@@ -51,7 +51,7 @@ TEST(Line, NoMemoryAtReconnect_ProgramContinues) {
 }
 
 /// A port with a name that needs memory, and without bytes.
-class silent_line final : public transport {
+class silent_transport final : public transport {
  public:
   result<received> read(std::span<std::uint8_t>, std::int64_t) noexcept override { return {}; }
   result<void> write(bytes, std::int64_t) noexcept override { return {}; }
@@ -63,13 +63,13 @@ class silent_line final : public transport {
   }
 };
 
-TEST(Line, NoMemoryForTheHolder_ErrorIsReported) {
+TEST(Transport, NoMemoryForTheHolder_ErrorIsReported) {
   const error why(task::asking, problem::timeout, "what was asked");
-  std::optional<error> told;
-  test::without_memory([&] { told = with_port_conflict(why, silent_line()); });
-  ASSERT_TRUE(told);
-  EXPECT_EQ(told->code(), problem::timeout);
-  EXPECT_EQ(told->subject(), "what was asked");
+  std::optional<error> reported;
+  test::without_memory([&] { reported = with_port_conflict(why, silent_transport()); });
+  ASSERT_TRUE(reported);
+  EXPECT_EQ(reported->code(), problem::timeout);
+  EXPECT_EQ(reported->subject(), "what was asked");
 }
 
 }  // namespace

@@ -87,10 +87,10 @@ std::chrono::nanoseconds percentile(std::size_t percent, std::size_t runs, Measu
   return times[(times.size() * percent + 99) / 100 - 1];
 }
 
-class twin_on_pty {
+class device_on_pty {
  public:
-  explicit twin_on_pty(const sim::device_options& options = quick_g4(),
-                       std::span<const sim::fault> faults = {})
+  explicit device_on_pty(const sim::device_options& options = quick_g4(),
+                         std::span<const sim::fault> faults = {})
       : path_(directory_.file("g4")) {
     auto opened =
         sim::background_pty::open(sim::device(sim::built_in_world(), options, faults), path_);
@@ -107,14 +107,14 @@ class twin_on_pty {
   /// The time, by the steady clock.
   std::chrono::steady_clock::time_point unplug() {
     std::chrono::steady_clock::time_point when;
-    with([&](sim::device& twin, std::int64_t now_ns) {
-      twin.unplug(now_ns);
+    with([&](sim::device& simulated, std::int64_t now_ns) {
+      simulated.unplug(now_ns);
       when = std::chrono::steady_clock::now();
     });
     return when;
   }
   void replug() {
-    with([](sim::device& twin, std::int64_t now_ns) { twin.replug(now_ns); });
+    with([](sim::device& simulated, std::int64_t now_ns) { simulated.replug(now_ns); });
   }
 
   /// Bytes that were lost because the test did not read: caused by the machine, or by the driver if
@@ -125,7 +125,9 @@ class twin_on_pty {
   [[nodiscard]] bool becomes_idle_and_silent() {
     for (int i = 0; i < 3000; ++i) {
       bool idle = false;
-      with([&](sim::device& twin, std::int64_t now_ns) { idle = twin.is_idle_and_silent(now_ns); });
+      with([&](sim::device& simulated, std::int64_t now_ns) {
+        idle = simulated.is_idle_and_silent(now_ns);
+      });
       if (idle) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
@@ -134,17 +136,17 @@ class twin_on_pty {
 
   [[nodiscard]] sim::device_settings settings() {
     sim::device_settings found;
-    with([&](const sim::device& twin, std::int64_t) { found = twin.settings(); });
+    with([&](const sim::device& simulated, std::int64_t) { found = simulated.settings(); });
     return found;
   }
 
   /// All sent samples that were not taken yet.
   [[nodiscard]] std::vector<sim::sent_sample> take_truth() {
     std::vector<sim::sent_sample> all;
-    with([&](sim::device& twin, std::int64_t) {
-      EXPECT_EQ(twin.truth_missed(), 0U);
+    with([&](sim::device& simulated, std::int64_t) {
+      EXPECT_EQ(simulated.truth_missed(), 0U);
       std::array<sim::sent_sample, 256> some;
-      while (const std::size_t count = twin.take_truth(some)) {
+      while (const std::size_t count = simulated.take_truth(some)) {
         all.insert(all.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
       }
     });
@@ -192,7 +194,7 @@ void expect_three_of_four(Attempt&& attempt) {
 }
 
 inline void expect_identity(const lidar_counts& counts) {
-  EXPECT_EQ(counts.bytes, counts.stream.frame_bytes + counts.stream.skipped_bytes() + counts.held);
+  EXPECT_EQ(counts.bytes, counts.stream.parsed_bytes + counts.stream.skipped_bytes() + counts.held);
 }
 
 }  // namespace g4lidar::test

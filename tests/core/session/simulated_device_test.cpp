@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/session/on_twin.hpp"
+#include "core/session/on_simulator.hpp"
 #include "core/session/played.hpp"
 #include "g4lidar/core/session.hpp"
 
@@ -64,7 +64,7 @@ const std::array<request, 8> others{requests::device_info(),   requests::health(
                                     requests::restart(),       requests::start()};
 
 /// Only start and stop may reach a scanning device.
-void expect_undisturbed(const on_twin& bench) {
+void expect_undisturbed(const on_simulator& bench) {
   for (const sim::asked& asked : bench.device.log()) {
     if (!asked.scanning) continue;
     const auto traits = traits_of(static_cast<command>(asked.code));
@@ -72,14 +72,14 @@ void expect_undisturbed(const on_twin& bench) {
   }
 }
 
-void expect_idle_after_stop(on_twin& bench) {
+void expect_idle_after_stop(on_simulator& bench) {
   const auto stopped = bench.ask(requests::stop());
   ASSERT_TRUE(stopped);
   EXPECT_EQ(stopped->how, verdict::answered);
   EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
 }
 
-TEST(session_on_twin, ReachesEverySetting) {
+TEST(session_on_simulator, ReachesEverySetting) {
   for (const device_options& options : {device_options{}, [] {
                                           device_options worn;
                                           worn.batch_max_ns = 16 * ms;
@@ -87,7 +87,7 @@ TEST(session_on_twin, ReachesEverySetting) {
                                           worn.frequency_at_limit = sim::at_limit::refuse;
                                           return worn;
                                         }()}) {
-    on_twin bench(options);
+    on_simulator bench(options);
     for (const auto& [name, wanted, holds] : settings()) {
       const auto done = bench.ask(wanted);
       ASSERT_TRUE(done) << name;
@@ -102,7 +102,7 @@ TEST(session_on_twin, ReachesEverySetting) {
     }
     bench.run_for(1 * s);
     EXPECT_GT(bench.packets, 50U);
-    EXPECT_TRUE(bench.told.empty());
+    EXPECT_TRUE(bench.reported.empty());
     expect_undisturbed(bench);
     expect_idle_after_stop(bench);
   }
@@ -111,7 +111,7 @@ TEST(session_on_twin, ReachesEverySetting) {
 /// Under a fault every request ends, and a setting reported as set is set.
 void test_with(const fault& bad, bool must_be_answered, bool in_order = true) {
   SCOPED_TRACE(std::string(name_of(bad.kind)) + " rate " + std::to_string(bad.rate));
-  on_twin bench({}, std::array{bad});
+  on_simulator bench({}, std::array{bad});
   for (const auto& [name, wanted, holds] : settings()) {
     SCOPED_TRACE(name);
     const auto done = bench.ask(wanted);
@@ -140,41 +140,41 @@ fault always(fault_kind kind, double rate = 1.0, std::int64_t amount = 0) {
   return made;
 }
 
-TEST(session_on_twin, ToleratesDuplicatedAnswers) {
+TEST(session_on_simulator, ToleratesDuplicatedAnswers) {
   test_with(always(fault_kind::twice), true);
   test_with(always(fault_kind::twice, 0.5), true);
 }
-TEST(session_on_twin, ToleratesLateAnswers) {
+TEST(session_on_simulator, ToleratesLateAnswers) {
   test_with(always(fault_kind::late), true);
   for (const std::int64_t late_ms : {5, 40, 60, 299, 310, 450}) {
     test_with(always(fault_kind::late, 1.0, late_ms * ms), late_ms < 450);
     test_with(always(fault_kind::late, 0.3, late_ms * ms), true, late_ms < 300);
   }
 }
-TEST(session_on_twin, ToleratesMissingAnswers) {
+TEST(session_on_simulator, ToleratesMissingAnswers) {
   test_with(always(fault_kind::mute), false);
   test_with(always(fault_kind::mute, 0.2), false);
   test_with(always(fault_kind::mute, 0.5), false);
 }
-TEST(session_on_twin, ToleratesWrongAnswers) {
+TEST(session_on_simulator, ToleratesWrongAnswers) {
   test_with(always(fault_kind::wrong), false);
   test_with(always(fault_kind::wrong, 0.2), false);
   test_with(always(fault_kind::wrong, 0.5), false);
 }
-TEST(session_on_twin, ToleratesDamage) {
+TEST(session_on_simulator, ToleratesDamage) {
   for (const fault_kind kind : {fault_kind::drop, fault_kind::insert, fault_kind::burst}) {
     test_with(always(kind, 0.01), false);
   }
   test_with(always(fault_kind::batch), true);
 }
 
-TEST(session_on_twin, LostAnswer_CostsOnlyTime) {
+TEST(session_on_simulator, LostAnswer_CostsOnlyTime) {
   for (const fault_kind kind : {fault_kind::mute, fault_kind::wrong, fault_kind::twice}) {
     for (const auto& [name, wanted, holds] : settings()) {
       for (std::int64_t at = 0; at < 100 * ms; at += 2 * ms) {
         fault once = sim::make_fault(kind, 10 * s + 50 * ms + at, 2 * ms);
         once.rate = 1.0;
-        on_twin bench({}, std::array{once});
+        on_simulator bench({}, std::array{once});
         const auto done = bench.ask(wanted);
         ASSERT_TRUE(done);
         EXPECT_EQ(done->how, verdict::answered) << name;
@@ -184,91 +184,91 @@ TEST(session_on_twin, LostAnswer_CostsOnlyTime) {
   }
 }
 
-TEST(session_on_twin, DiagnosesTheConnection) {
-  on_twin dead({}, std::array{always(fault_kind::deaf)});
+TEST(session_on_simulator, DiagnosesTheConnection) {
+  on_simulator dead({}, std::array{always(fault_kind::deaf)});
   auto done = dead.ask(requests::device_info());
   ASSERT_TRUE(done);
   EXPECT_EQ(done->how, verdict::timed_out);
   EXPECT_TRUE(done->heard_nothing());
 
   const std::array streaming{always(fault_kind::deaf), sim::make_fault(fault_kind::scanning)};
-  on_twin runaway({}, streaming);
+  on_simulator runaway({}, streaming);
   done = runaway.ask(requests::device_info());
   ASSERT_TRUE(done);
   EXPECT_EQ(done->how, verdict::still_scanning);
-  EXPECT_EQ(runaway.told, std::vector{notice::found_scanning});
+  EXPECT_EQ(runaway.reported, std::vector{notice::found_scanning});
 
   const std::array strange{always(fault_kind::baud), sim::make_fault(fault_kind::scanning)};
-  on_twin garbled({}, strange);
+  on_simulator garbled({}, strange);
   done = garbled.ask(requests::device_info());
   ASSERT_TRUE(done);
   EXPECT_EQ(done->how, verdict::timed_out);
   EXPECT_TRUE(done->heard_noise_only());
 }
 
-TEST(session_on_twin, StopsAScanThatWasRunning) {
+TEST(session_on_simulator, StopsAScanThatWasRunning) {
   for (const auto& [name, wanted, holds] : settings()) {
-    on_twin bench({}, std::array{sim::make_fault(fault_kind::scanning, 9 * s)});
+    on_simulator bench({}, std::array{sim::make_fault(fault_kind::scanning, 9 * s)});
     bench.run_for(1);
     const auto done = bench.ask(wanted);
     ASSERT_TRUE(done);
     EXPECT_EQ(done->how, verdict::answered) << name;
     EXPECT_TRUE(holds(bench.device.settings())) << name;
-    EXPECT_EQ(bench.told, std::vector{notice::found_scanning});
+    EXPECT_EQ(bench.reported, std::vector{notice::found_scanning});
     expect_undisturbed(bench);
   }
 }
 
-TEST(session_on_twin, KeepsAProtectedScanAlive) {
-  on_twin bench;
+TEST(session_on_simulator, KeepsAProtectedScanAlive) {
+  on_simulator bench;
   ASSERT_TRUE(bench.ask(requests::set(power_down_protection::on)));
   ASSERT_TRUE(bench.ask(requests::start()));
   bench.run_for(30 * s);
   EXPECT_TRUE(bench.device.is_scanning());
-  EXPECT_TRUE(bench.told.empty());
+  EXPECT_TRUE(bench.reported.empty());
   expect_undisturbed(bench);
   bench.now_ns += 5 * s;  // the caller is suspended
   bench.run_for(1 * s);
-  EXPECT_EQ(bench.told, std::vector{notice::protection_starved});
+  EXPECT_EQ(bench.reported, std::vector{notice::protection_starved});
   EXPECT_TRUE(bench.device.is_scanning());
   expect_idle_after_stop(bench);
 }
 
-TEST(session_on_twin, DetectsThatTheProtectionIsOn) {
+TEST(session_on_simulator, DetectsThatTheProtectionIsOn) {
   device_options options;
   options.initial.protection = power_down_protection::on;
   for (const bool header : {true, false}) {
     options.header_after_protection = header;
-    on_twin bench(options);
+    on_simulator bench(options);
     ASSERT_TRUE(bench.ask(requests::start()));
     bench.run_for(30 * s);
-    EXPECT_EQ(bench.told, std::vector{notice::protection_found_on});
+    EXPECT_EQ(bench.reported, std::vector{notice::protection_found_on});
     EXPECT_TRUE(bench.device.is_scanning());
   }
 }
 
-TEST(session_on_twin, RestartsTheScanAfterAReboot) {
+TEST(session_on_simulator, RestartsTheScanAfterAReboot) {
   fault reboot = sim::make_fault(fault_kind::reboot, 20 * s, 1);
-  on_twin bench({}, std::array{reboot});
+  on_simulator bench({}, std::array{reboot});
   ASSERT_TRUE(bench.ask(requests::start()));
   bench.run_for(20 * s);
   EXPECT_TRUE(bench.talk.is_scanning());
   EXPECT_TRUE(bench.device.is_scanning());
 }
 
-TEST(session_on_twin, GivesUpAScanThatBrownsOut) {
-  on_twin bench({}, std::array{sim::make_fault(fault_kind::brown_out)});
+TEST(session_on_simulator, GivesUpAScanThatBrownsOut) {
+  on_simulator bench({}, std::array{sim::make_fault(fault_kind::brown_out)});
   const auto done = bench.ask(requests::start());
   ASSERT_TRUE(done);
   EXPECT_EQ(done->how, verdict::answered);
   bench.run_for(10 * s);
   EXPECT_FALSE(bench.talk.is_scanning());
-  ASSERT_FALSE(bench.told.empty());
-  EXPECT_EQ(bench.told.back(), notice::stalled);
+  ASSERT_FALSE(bench.reported.empty());
+  EXPECT_EQ(bench.reported.back(), notice::stalled);
 }
 
-TEST(session_on_twin, StopsAsksAndResumes) {
-  on_twin bench;
+TEST(session_on_simulator, StopsAsksAndResumes) {
+  on_simulator bench;
   ASSERT_TRUE(bench.ask(requests::start()));
   for (const auto& [name, wanted, holds] : settings()) {
     bench.run_for(100 * ms);
@@ -280,7 +280,7 @@ TEST(session_on_twin, StopsAsksAndResumes) {
   }
   bench.run_for(1 * s);
   EXPECT_TRUE(bench.device.is_scanning());
-  EXPECT_TRUE(bench.told.empty());
+  EXPECT_TRUE(bench.reported.empty());
   expect_undisturbed(bench);
   expect_idle_after_stop(bench);
 }

@@ -62,9 +62,9 @@ struct errors {
 };
 
 /// The device, its connection, and the program that reads it.
-class twin_run {
+class simulated_run {
  public:
-  twin_run(std::uint64_t seed, double ratio)
+  simulated_run(std::uint64_t seed, double ratio)
       : dice_(seed, 1),
         device_(sim::built_in_world(),
                 {.seed = seed, .sample_rate_ratio = ratio, .sample_rate_drift_ppm = 200.0}) {}
@@ -72,8 +72,8 @@ class twin_run {
   errors run(double seconds) {
     while (now_ns_ < seconds * 1e9) {
       // A bridge that has delivered waits for a byte, then for up to 16 ms, and delivers again.
-      while (line_.empty()) send_packet();
-      now_ns_ = std::max(now_ns_, line_.front().time_ns) + 16e6 * dice_.uniform();
+      while (sent_.empty()) send_packet();
+      now_ns_ = std::max(now_ns_, sent_.front().time_ns) + 16e6 * dice_.uniform();
       while (sent_ns_ < now_ns_) send_packet();
       deliver();
     }
@@ -95,7 +95,7 @@ class twin_run {
       at_ns += 10e9 / 230400.0;
       const auto flipped = static_cast<std::uint8_t>(damaged && i == 8 ? 0x10U : 0U);
       const auto value = static_cast<std::uint8_t>(sent.data[i] ^ flipped);
-      if (!dropped) line_.push_back({value, at_ns});
+      if (!dropped) sent_.push_back({value, at_ns});
     }
     sent_ns_ = at_ns;
     if (damaged || dropped) {
@@ -109,9 +109,9 @@ class twin_run {
 
   void deliver() {
     std::vector<std::uint8_t> chunk;
-    while (!line_.empty() && line_.front().time_ns <= now_ns_) {
-      chunk.push_back(line_.front().value);
-      line_.pop_front();
+    while (!sent_.empty() && sent_.front().time_ns <= now_ns_) {
+      chunk.push_back(sent_.front().value);
+      sent_.pop_front();
     }
     const double late_ns = -30e3 * std::log(1.0 - dice_.uniform());  // until the program runs
     const std::int64_t arrival_ns = start_ns + static_cast<std::int64_t>(now_ns_ + late_ns);
@@ -138,7 +138,7 @@ class twin_run {
   sim::scanner device_;
   double sent_ns_ = 0.0;
   double now_ns_ = 0.0;
-  std::deque<timed_byte> line_;
+  std::deque<timed_byte> sent_;
   std::deque<std::vector<std::int64_t>> truths_;
   stream_parser parser_;
   sensor_clock clock_;
@@ -148,12 +148,12 @@ class twin_run {
   std::int64_t counted_ = 0;
 };
 
-TEST(SensorClockTwin, KeepsItsPromiseAgainstTheTruth) {
+TEST(SensorClockSimulated, KeepsItsPromiseAgainstTheTruth) {
   constexpr std::array<double, 3> ratios{0.97, 1.03, 1.0};
   for (const int seed : test::seeds(6)) {
     const double ratio = ratios[static_cast<std::size_t>(seed % 3)];
     SCOPED_TRACE(testing::Message() << "seed " << seed << ", rate times " << ratio);
-    twin_run one(static_cast<std::uint64_t>(seed), ratio);
+    simulated_run one(static_cast<std::uint64_t>(seed), ratio);
     errors found = one.run(30.0);
     ASSERT_GT(found.points, 200'000.0);
     const double rms_us = std::sqrt(found.square_sum / found.points) / 1e3;

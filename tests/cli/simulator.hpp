@@ -16,9 +16,9 @@
 namespace cli {
 
 /// Served at `link` until the end, with more options of `g4-dump sim`.
-class twin {
+class simulator {
  public:
-  explicit twin(const std::string& link, const std::vector<std::string>& options = {})
+  explicit simulator(const std::string& link, const std::vector<std::string>& options = {})
       : served_(arguments(link, options)) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (!std::filesystem::exists(link)) {

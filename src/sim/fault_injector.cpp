@@ -3,7 +3,7 @@
 // not change the effects of another one.
 #include "exact.hpp"
 
-#include "fault_line.hpp"
+#include "fault_injector.hpp"
 
 #include <algorithm>
 
@@ -23,7 +23,7 @@ constexpr bool looks_at_bytes(fault_kind kind) noexcept {
 
 }  // namespace
 
-fault_line::fault_line(std::span<const fault> faults, std::uint64_t seed) {
+fault_injector::fault_injector(std::span<const fault> faults, std::uint64_t seed) {
   entries_.reserve(faults.size());
   for (const fault& f : faults) {
     const bool for_ever = f.duration_ns >= forever_ns - f.begin_ns;
@@ -33,7 +33,7 @@ fault_line::fault_line(std::span<const fault> faults, std::uint64_t seed) {
   edge_ns_ = entries_.empty() ? forever_ns : 0;
 }
 
-void fault_line::set_time(std::int64_t now_ns) noexcept {
+void fault_injector::set_time(std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
   edge_ns_ = forever_ns;
   on_the_wire_ = false;
@@ -46,14 +46,14 @@ void fault_line::set_time(std::int64_t now_ns) noexcept {
   }
 }
 
-const fault* fault_line::find(fault_kind kind) const noexcept {
+const fault* fault_injector::find(fault_kind kind) const noexcept {
   for (const entry& e : entries_) {
     if (e.at_work && e.what.kind == kind) return &e.what;
   }
   return nullptr;
 }
 
-std::int64_t fault_line::end_of(fault_kind kind) const noexcept {
+std::int64_t fault_injector::end_of(fault_kind kind) const noexcept {
   std::int64_t end_ns = 0;
   for (const entry& e : entries_) {
     if (e.at_work && e.what.kind == kind) end_ns = std::max(end_ns, e.end_ns);
@@ -61,13 +61,13 @@ std::int64_t fault_line::end_of(fault_kind kind) const noexcept {
   return end_ns;
 }
 
-bool fault_line::begins(fault_kind kind) const noexcept {
+bool fault_injector::begins(fault_kind kind) const noexcept {
   return std::any_of(entries_.begin(), entries_.end(), [&](const entry& e) {
     return e.what.kind == kind && e.what.begin_ns == now_ns_;
   });
 }
 
-const fault* fault_line::strike(fault_kind kind) noexcept {
+const fault* fault_injector::strike(fault_kind kind) noexcept {
   const fault* struck = nullptr;
   for (entry& e : entries_) {
     if (!e.at_work || e.what.kind != kind) continue;
@@ -76,14 +76,14 @@ const fault* fault_line::strike(fault_kind kind) noexcept {
   return struck;
 }
 
-std::uint64_t fault_line::draw(fault_kind kind, std::uint64_t count) noexcept {
+std::uint64_t fault_injector::draw(fault_kind kind, std::uint64_t count) noexcept {
   for (entry& e : entries_) {
     if (e.at_work && e.what.kind == kind) return (e.random.next() >> 32) * count >> 32;
   }
   return 0;
 }
 
-void fault_line::damage(entry& by, passed_byte& passing) noexcept {
+void fault_injector::damage(entry& by, passed_byte& passing) noexcept {
   std::uint8_t& last = passing.bytes[passing.count == 2 ? 1 : 0];
   switch (by.what.kind) {
     case fault_kind::flip:
@@ -115,7 +115,7 @@ void fault_line::damage(entry& by, passed_byte& passing) noexcept {
   }
 }
 
-passed_byte fault_line::pass(std::uint8_t byte) noexcept {
+passed_byte fault_injector::pass(std::uint8_t byte) noexcept {
   passed_byte passing{{byte, 0}, 1};
   if (!on_the_wire_) return passing;
   for (entry& e : entries_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tcp_line.hpp"
+#include "tcp_server.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -11,15 +11,15 @@
 
 namespace g4lidar::sim {
 
-result<std::unique_ptr<served_line>> tcp_line::open(const std::string& address,
-                                                    std::uint16_t port) {
+result<std::unique_ptr<served_port>> tcp_server::open(const std::string& address,
+                                                      std::uint16_t port) {
   sockaddr_in place{};
   place.sin_family = AF_INET;
   place.sin_port = htons(port);
   if (::inet_pton(AF_INET, address.c_str(), &place.sin_addr) != 1) {
     return failure(task::opening, problem::bad_option, address);
   }
-  auto made = std::make_unique<tcp_line>();
+  auto made = std::make_unique<tcp_server>();
   made->listener_ = file_handle(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const int listener = made->listener_.number();
   const int on = 1;
@@ -35,7 +35,7 @@ result<std::unique_ptr<served_line>> tcp_line::open(const std::string& address,
   return made;
 }
 
-void tcp_line::look_for_visitors() noexcept {
+void tcp_server::look_for_clients() noexcept {
   // At most so many at a time, even if programs connect continuously.
   for (int turn = 0; turn < 16; ++turn) {
     // The bytes of a program that has disconnected are read first: the next program waits for that.
@@ -50,7 +50,7 @@ void tcp_line::look_for_visitors() noexcept {
   }
 }
 
-std::size_t tcp_line::read(std::span<std::uint8_t> out) noexcept {
+std::size_t tcp_server::read(std::span<std::uint8_t> out) noexcept {
   if (!client_) return 0;
   const ssize_t count = ::recv(client_.number(), out.data(), out.size(), 0);
   if (count > 0) return static_cast<std::size_t>(count);
@@ -58,7 +58,7 @@ std::size_t tcp_line::read(std::span<std::uint8_t> out) noexcept {
   return 0;
 }
 
-std::size_t tcp_line::write(bytes data) noexcept {
+std::size_t tcp_server::write(bytes data) noexcept {
   if (!client_) return 0;
   while (!data.empty()) {
     const ssize_t count = ::send(client_.number(), data.data(), data.size(), MSG_NOSIGNAL);

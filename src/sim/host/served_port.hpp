@@ -11,18 +11,18 @@
 
 namespace g4lidar::sim {
 
-class served_line {
+class served_port {
  public:
-  served_line() = default;
-  served_line(const served_line&) = delete;
-  served_line& operator=(const served_line&) = delete;
-  virtual ~served_line() = default;
+  served_port() = default;
+  served_port(const served_port&) = delete;
+  served_port& operator=(const served_port&) = delete;
+  virtual ~served_port() = default;
 
   /// The path or address for programs.
   [[nodiscard]] virtual const std::string& name() const noexcept = 0;
   /// For poll(): readable when programs have written. -1: none.
   [[nodiscard]] virtual int handle() const noexcept = 0;
-  /// For poll(): readable when look_for_visitors() is due. -1: none.
+  /// For poll(): readable when look_for_clients() is due. -1: none.
   [[nodiscard]] virtual int watch() const noexcept = 0;
   /// The bytes that programs have written; 0: none.
   [[nodiscard]] virtual std::size_t read(std::span<std::uint8_t> out) noexcept = 0;
@@ -30,7 +30,7 @@ class served_line {
   /// Returns the number of bytes that a program that has it open has lost.
   virtual std::size_t write(bytes data) noexcept = 0;
   /// Checks which programs have opened and closed it. After the last close it is reset.
-  virtual void look_for_visitors() noexcept = 0;
+  virtual void look_for_clients() noexcept = 0;
 };
 
 }  // namespace g4lidar::sim

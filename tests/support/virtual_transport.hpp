@@ -36,9 +36,10 @@ struct virtual_bench {
   [[nodiscard]] bool woken() noexcept { return wake.exchange(false); }
 };
 
-class virtual_line final : public transport {
+class virtual_transport final : public transport {
  public:
-  explicit virtual_line(virtual_bench& bench) : bench_(&bench), replugs_(bench.device.replugs()) {}
+  explicit virtual_transport(virtual_bench& bench)
+      : bench_(&bench), replugs_(bench.device.replugs()) {}
 
   result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
     ++bench_->reads;
@@ -100,7 +101,7 @@ class virtual_connector final : public connector {
     if (!bench_->device.is_plugged(bench_->now_ns)) {
       return failure(task::finding, problem::no_port, "virtual");
     }
-    return std::make_unique<virtual_line>(*bench_);
+    return std::make_unique<virtual_transport>(*bench_);
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return bench_->now_ns; }
   bool pause(std::int64_t deadline_ns) noexcept override {
