@@ -78,7 +78,7 @@ void on_lidar_received() {
 }
 
 void fault() {
-  board::say("fault: the processor refused an instruction or an access\n");
+  board::print("fault: the processor refused an instruction or an access\n");
   board::end(3);
 }
 
@@ -144,7 +144,7 @@ void send(std::span<const std::uint8_t> bytes) {
   for (const std::uint8_t byte : bytes) lidar.put(byte);
 }
 
-void say(std::string_view text) {
+void print(std::string_view text) {
   for (const char letter : text) console.put(static_cast<std::uint8_t>(letter));
 }
 

@@ -19,7 +19,7 @@ void begin();
 void send(std::span<const std::uint8_t> bytes);
 
 /// Writes to the console, in the same way.
-void say(std::string_view text);
+void print(std::string_view text);
 
 /// Sleeps until the next interrupt, at most a millisecond.
 void sleep();

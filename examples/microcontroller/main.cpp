@@ -37,7 +37,7 @@ class obstacle_watch {
          << counts_.packets << " packets, " << counts_.skipped_bytes() << " bytes skipped, "
          << received.overruns() << " lost in the ring, " << board::receiver_overruns()
          << " in the receiver\n";
-    board::say(text.text());
+    board::print(text.text());
   }
 
  private:
@@ -47,9 +47,9 @@ class obstacle_watch {
     while (true) {
       if (const auto outcome = session_.finished()) {
         if (outcome->how == g4lidar::verdict::answered) return true;
-        board::say(outcome->heard_nothing() ? "nothing is heard of the lidar: " : "no answer to: ");
-        board::say(name);
-        board::say("\n");
+        board::print(outcome->heard_nothing() ? "nothing was received after: " : "no answer to: ");
+        board::print(name);
+        board::print("\n");
         return false;
       }
       step();
@@ -60,7 +60,7 @@ class obstacle_watch {
     while (whole_revolutions_ < revolutions_to_measure) {
       step();
       if (session_.noticed() == g4lidar::notice::stalled) {
-        board::say("the lidar has stopped, and does not start again\n");
+        board::print("the lidar has stopped, and does not start again\n");
         return false;
       }
     }
@@ -115,7 +115,7 @@ class obstacle_watch {
            << fixed{nearest->angle_deg} << " degrees";
     }
     text << "\n";
-    board::say(text.text());
+    board::print(text.text());
   }
 
   g4lidar::stream_parser parser_;

@@ -34,6 +34,13 @@ inline constexpr std::uint8_t model_g4 = 5;
 /// The status that the device reports.
 enum class health_status : std::uint8_t { ok = 0, warning = 1, error = 2 };
 
+/// The name in tools and documents: "ok", "warning", "error". Valid forever. *Pure.*
+[[nodiscard]] constexpr std::string_view name_of(health_status status) noexcept {
+  return status == health_status::ok        ? "ok"
+         : status == health_status::warning ? "warning"
+                                            : "error";
+}
+
 /// The health that the device reports. The meaning of the bits of `error_code` is not known.
 struct health {
   health_status status;

@@ -60,7 +60,7 @@ struct lidar_options {
   std::chrono::milliseconds stall_time{1000};  ///< A scan without a packet; 100 ms to 1 min.
   /// See read_pace. A transport that does not know how many bytes the system keeps is read by packets.
   read_pace pace = read_pace::automatic;
-  /// Bytes are read no more often than this, whatever `pace` says: fewer wake-ups, more latency. 0 to
+  /// Bytes are read no more often than this, for every `pace`: fewer wake-ups, more latency. 0 to
   /// 100 ms.
   std::chrono::milliseconds batch{0};
   /// The least delay between measurement and arrival, that of the baud rate excluded; see sensor_clock.
@@ -81,7 +81,7 @@ struct lidar_options {
 struct lidar_event {
   /// The kinds of event; docs/errors.md describes what to do about each.
   enum class kind : std::uint8_t {
-    lost,            ///< The connection was lost; `reason` says why.
+    lost,            ///< The connection was lost; `reason` has the cause.
     reconnected,     ///< The same device is back, with the same settings and state as before.
     found_scanning,  ///< It was scanning although it had not been started; it was stopped.
     protection_starved,  ///< The keep-alive was sent too late and the protection stopped the scan; started again.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Completion of g4-dump for bash. g4-dump says what can follow; a line / stands for names of files.
+# Completion of g4-dump for bash. g4-dump lists what can follow; a line / stands for names of files.
 # shellcheck shell=bash
 
 _g4_dump() {

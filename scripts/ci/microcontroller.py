@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A recording as a lidar on a microcontroller's serial line: microcontroller.py RECORDING SENT QEMU...
 
-Runs QEMU with the lidar's line on a socket. Sends the recording from its beginning when it is told to
-start, as fast as it is taken, and nothing more when it is told to stop. What it has sent is then in the
+Runs QEMU with the lidar's serial line on a socket. Sends the recording from its beginning at a start
+command, as fast as it is taken, and nothing more after a stop command. What it has sent is then in the
 file SENT. Prints what the program prints, and ends with its exit code.
 """
 import select

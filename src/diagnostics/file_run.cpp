@@ -80,7 +80,7 @@ class file_run {
   }
 
   bool fail(const error& why) {
-    port_.remark = why.message();
+    port_.remark = cause_of(why);
     return false;
   }
   [[nodiscard]] bool is_cancelled() const {
@@ -151,6 +151,8 @@ class file_run {
     if (counts.packets <= few_packets) {
       motor.outcome = stage_verdict::skipped;
       motor.remark = "There are too few packets.";
+    } else if (motor.diagnoses.empty()) {
+      motor.remark = "The angles in the packets show a constant speed.";
     }
     log_.report(std::move(motor));
     if (counts.packets == 0)

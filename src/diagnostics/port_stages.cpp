@@ -143,11 +143,17 @@ class port_stages {
 
 }  // namespace
 
+std::string cause_of(const error& why) {
+  std::string text = why.message();
+  text.resize(text.size() - why.advice().size() - 1);
+  return text;
+}
+
 void report_unopened(stage_log& log, stage_report current, const error& why) {
   const diagnosis what = diagnosis_of(why.code());
   while (current.stage < stage_of(what)) pass(log, current);
   current.find(what);
-  current.remark = why.message();
+  current.remark = cause_of(why);
   pass(log, current);
   log.skip_from(current.stage, "Not reached.");
 }

@@ -44,9 +44,7 @@ bool report_health(stage_log& log, const std::optional<health>& known) {
     return true;
   }
   stage_report report{.stage = diagnostic_stage::health};
-  constexpr std::array<std::string_view, 3> names{"ok", "warning", "error"};
-  const auto status = static_cast<std::size_t>(known->status);
-  report.add("status", names[std::min<std::size_t>(status, 2)]);
+  report.add("status", name_of(known->status));
   report.add("error_code", known->error_code);
   if (known->status == health_status::warning) report.find(diagnosis::health_warning);
   if (known->status == health_status::error) report.find(diagnosis::health_error);

@@ -50,6 +50,8 @@ class stage_log {
 [[nodiscard]] std::unique_ptr<transport> open_port(const std::string& source, stage_log& log);
 /// Reports the stage with the reason, all stages before it as passed and all after it as skipped.
 void report_unopened(stage_log& log, stage_report current, const error& why);
+/// The message of an error without its advice, which the diagnosis has.
+[[nodiscard]] std::string cause_of(const error& why);
 /// Whether other baud rates can make a difference: not on a pseudo-terminal.
 [[nodiscard]] bool has_baud_rates(const std::string& path);
 

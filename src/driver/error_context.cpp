@@ -4,7 +4,7 @@
 namespace g4lidar {
 namespace {
 
-// In the order of the enumeration; start and stop are what the task says already.
+// In the order of the enumeration; start and stop are in the task already.
 constexpr std::array<std::string_view, 16> request_words{"device information",
                                                          "health",
                                                          "low power",

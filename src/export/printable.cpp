@@ -24,9 +24,9 @@ std::size_t character_size(std::string_view text) noexcept {
   return is_too_long || is_surrogate || is_beyond ? 0 : size;
 }
 
-void put_hex(std::string& to, std::string_view before, char byte) {
+void put_hex(std::string& to, char byte) {
   constexpr std::string_view digits = "0123456789ABCDEF";
-  to += before;
+  to += "\\x";
   to += digits[static_cast<std::uint8_t>(byte) >> 4U];
   to += digits[static_cast<std::uint8_t>(byte) & 0x0FU];
 }
@@ -48,32 +48,13 @@ std::string printable(std::string_view text) {
     if (character == "\\") {
       shown += "\\\\";
     } else if (size == 0 || is_control(character)) {
-      for (const char byte : character) put_hex(shown, "\\x", byte);
+      for (const char byte : character) put_hex(shown, byte);
     } else {
       shown += character;
     }
     text.remove_prefix(character.size());
   }
   return shown;
-}
-
-std::string json_string(std::string_view text) {
-  std::string quoted = "\"";
-  while (!text.empty()) {
-    const std::size_t size = character_size(text);
-    const std::string_view character = text.substr(0, size == 0 ? 1 : size);
-    if (size == 0) {
-      quoted += "\xEF\xBF\xBD";
-    } else if (character == "\"" || character == "\\") {
-      (quoted += '\\') += character;
-    } else if (is_control(character)) {
-      put_hex(quoted, "\\u00", character.back());
-    } else {
-      quoted += character;
-    }
-    text.remove_prefix(character.size());
-  }
-  return quoted += '"';
 }
 
 }  // namespace g4lidar

@@ -205,9 +205,8 @@ std::string protocol_log::meaning_of(response_view response) const {
       break;
     case response_kind::health:
       if (const auto reply = response.as_health()) {
-        constexpr std::array<const char*, 3> words{"ok", "warning", "error"};
-        return std::string("health: ") + words[static_cast<std::size_t>(reply->status)] +
-               ", code " + std::to_string(reply->error_code);
+        return std::string("health: ").append(name_of(reply->status)) + ", code " +
+               std::to_string(reply->error_code);
       }
       break;
     case response_kind::byte:

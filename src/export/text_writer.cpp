@@ -63,7 +63,7 @@ class scan_columns final : public point_writer {
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
 
   void begin(text_sink& out) override {
-    out.write("  scan  points  returns  turned_deg  reported_hz  measured_hz  partial\n");
+    out.write("  scan  points  returns  turned_deg  reported_hz  measured_hz  state\n");
   }
 
   void write_scan(const scan_record& record, text_sink& out) override {

@@ -9,7 +9,7 @@
 
 static_assert(std::numeric_limits<double>::is_iec559 && std::numeric_limits<double>::digits == 53);
 
-// 0: as the type says; 1: float as double, which leaves double alone; 2 would be the x87.
+// 0: as the type requires; 1: float as double, which leaves double alone; 2 would be the x87.
 static_assert(FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1,
               "g4lidar::sim needs doubles without excess precision (x86: -msse2 -mfpmath=sse)");
 

@@ -92,7 +92,7 @@ TEST(Decode, CsvOfASmallRecording) {
   }
 }
 
-TEST(Decode, CsvIsTheFormatAndStandardInputTheInput_IfNothingIsSaid) {
+TEST(Decode, Default_IsCsvOfStandardInput) {
   const std::string all = run({"decode", "-", "--format", "csv"}, small_recording()).out;
   EXPECT_EQ(run({"decode"}, small_recording()).out, all);
   EXPECT_EQ(run({"decode", "--format=csv", "-o", "-"}, small_recording()).out, all);
@@ -268,7 +268,7 @@ TEST(Decode, ScansAsText) {
   const outcome done = run({"decode", "--scans", "--format", "text"}, two_and_a_half_turns());
   EXPECT_EQ(
       done.out,
-      "  scan  points  returns  turned_deg  reported_hz  measured_hz  partial\n"
+      "  scan  points  returns  turned_deg  reported_hz  measured_hz  state\n"
       "     0     361      361      360.00          7.1        24.93  whole\n"
       "     1     361      361      360.00          7.1        24.93  whole\n"
       "     2     121      120       59.50          7.1            -  partial: end_missing\n");

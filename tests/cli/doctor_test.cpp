@@ -55,7 +55,7 @@ class Doctor : public cli::scratch {
   std::optional<program> served_;
 };
 
-// How evenly bytes arrive there depends on the computer: usb_latency may warn, and stream may say that
+// How evenly bytes arrive there depends on the computer: usb_latency may warn, and stream may report that
 // the computer was busy. Everything else is healthy.
 TEST_F(Doctor, GoesThroughAllStages) {
   const outcome done = examine("sim:");
@@ -112,7 +112,7 @@ TEST_F(Doctor, ExaminesRawBytes) {
   EXPECT_THAT(diagnoses_of(stages_of(none)), Contains("bad_file")) << none.out;
 }
 
-TEST_F(Doctor, SaysWhatIsWrongAndWhatToTry) {
+TEST_F(Doctor, PrintsWhatIsWrongAndWhatToTry) {
   const outcome done = run({"doctor", "-d", "500ms", "sim:?fault=health=error"});
   EXPECT_EQ(done.code, 8) << done.err;
   EXPECT_THAT(done.out, HasSubstr("health       FAIL health_error: "));
@@ -120,13 +120,13 @@ TEST_F(Doctor, SaysWhatIsWrongAndWhatToTry) {
   EXPECT_THAT(done.out, HasSubstr("found: health_error\n"));
 }
 
-TEST_F(Doctor, TellsDamage) {
+TEST_F(Doctor, ReportsDamage) {
   const outcome done = examine("sim:?fault=insert*0.01");
   EXPECT_EQ(done.code, 8);
   EXPECT_THAT(diagnoses_of(stages_of(done)), Contains("bytes_inserted")) << done.out;
 }
 
-TEST_F(Doctor, TellsAnUnplug) {
+TEST_F(Doctor, ReportsAnUnplug) {
   const outcome done = examine("sim:?fault=unplug@1s");
   EXPECT_EQ(done.code, 9) << done.out;
   EXPECT_THAT(diagnoses_of(stages_of(done)), Contains("unplugged")) << done.out;
@@ -136,6 +136,8 @@ TEST_F(Doctor, ReportsAPortThatIsNone) {
   const outcome missing = examine(path("nothing"));
   EXPECT_EQ(missing.code, 3);
   EXPECT_THAT(diagnoses_of(stages_of(missing)), Contains("no_port")) << missing.out;
+  const std::string words = run({"doctor", path("nothing")}).out;
+  EXPECT_EQ(words.find("Connect the lidar"), words.rfind("Connect the lidar")) << words;
   const outcome other = examine("/dev/null");
   EXPECT_EQ(other.code, 3);
   EXPECT_THAT(diagnoses_of(stages_of(other)), Contains("not_serial")) << other.out;

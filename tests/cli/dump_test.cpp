@@ -42,7 +42,7 @@ bool is_within(double angle, double from, double to) {
   return way <= end + 1e-9 || way >= 360.0 - 1e-9;
 }
 
-// Whether it is too near to a border for the angles of floats to tell.
+// Whether it is too near to a border for the angles of floats to decide.
 bool is_doubtful(double angle, double border) {
   return std::abs(std::remainder(angle - border, 360.0)) < 1e-4;
 }

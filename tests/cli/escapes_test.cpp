@@ -169,7 +169,7 @@ TEST_F(Escaping, TheNameOfAPort) {
   EXPECT_EQ(expect_plain({"info", port, "--json-errors"}).code, 5);
   expect_plain({"doctor", port, "--json"});
   expect_plain({"sim", "--link", port});
-  EXPECT_EQ(cli::unescaped_in(simulator.log()), "") << "what the simulator says";
+  EXPECT_EQ(cli::unescaped_in(simulator.log()), "") << "what the simulator prints";
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ using ::testing::StartsWith;
 
 class Failure : public cli::scratch {
  protected:
-  // One line that begins with the program's name and tells both what is wrong and what to do.
+  // One line that begins with the name of the program and states what is wrong and what to do.
   static void expect_sentence(const outcome& done, int code, const std::string& what) {
     EXPECT_EQ(done.code, code);
     EXPECT_EQ(done.out, "");
@@ -120,6 +120,7 @@ TEST_F(Failure, WrongCommandLine) {
     expect_usage({"decode", "--sample-rate", rate}, "--sample-rate");
   }
   expect_usage({"decode", "--sample-rate"}, "--sample-rate needs one value");
+  expect_usage({"decode", "-n", "5", "-n", "6"}, "--count is given twice");
   for (const char* const seconds : {"-1", "long", "1e10", "nan", "inf"}) {
     expect_usage({"sim", "--seconds", seconds}, "--seconds");
   }
@@ -130,6 +131,10 @@ TEST_F(Failure, WrongCommandLine) {
   expect_usage({"sim", "--frequency", "4"}, "--frequency");
   expect_usage({"sim", "--frequency", "nan"}, "--frequency");
   expect_usage({"sim", "--samples", "81"}, "1 to 80");
+}
+
+TEST_F(Failure, SourceThatIsNone) {
+  expect_sentence(run({"info", "serial:111"}), 2, "SOURCE or an option cannot have this value. ");
 }
 
 TEST_F(Failure, WrongCommandLineTouchesNoFile) {
@@ -159,7 +164,7 @@ TEST_F(Failure, ADeviceThatIsFull) {
   EXPECT_EQ(run({"decode", good(), "-o", "/dev/null"}).code, 0);
 }
 
-// While it lives, no file may grow beyond so many bytes.
+// While it exists, no file may grow beyond so many bytes.
 class file_size_limit {
  public:
   explicit file_size_limit(rlim_t bytes) {

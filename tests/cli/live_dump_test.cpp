@@ -50,7 +50,7 @@ TEST_F(Live, SoManyPoints) {
   EXPECT_THAT(done.err, HasSubstr("samples lost"));
 }
 
-TEST_F(Live, TimesAreOfTheWallClockWhereNothingIsSaid) {
+TEST_F(Live, TimesAreOfTheWallClockByDefault) {
   const std::time_t before = std::time(nullptr);
   const outcome done = run({"sim:", "-n", "100", "-f", "csv", "-q"});
   EXPECT_EQ(done.err, "");
@@ -94,7 +94,7 @@ TEST_F(Live, SoLong) {
   EXPECT_NEAR(static_cast<double>(lines.size() - 2), span_ns * 9e-6, span_ns * 9e-6 * 0.01);
 }
 
-TEST_F(Live, InterruptedItTellsTheCounts) {
+TEST_F(Live, InterruptedItPrintsTheCounts) {
   program started({"dump", "sim:", "-f", "csv"});
   started.read_until("\n0,");
   started.send(SIGINT);
@@ -126,7 +126,7 @@ TEST_F(Live, WithoutAPointAnOlderFileStays) {
   EXPECT_EQ(listing(), "out.csv\n");
 }
 
-TEST_F(Live, ALossEndsItWhereNothingElseIsSaid) {
+TEST_F(Live, ALossEndsItByDefault) {
   program simulator({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
   const outcome done = run({"dump", path("lidar"), "-f", "csv", "-o", path("out.csv")});

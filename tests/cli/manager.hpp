@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A test that plays systemd: the socket on which services say how they are.
+// A test in the role of systemd: the socket on which services report their state.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 # shellcheck shell=bash
 # The man page and the completions: the programs that read them find nothing to complain of, and a
 # shell that has loaded them offers the verbs, their options and the words of a choice.
-# Looks where those programs are installed, and says where it did not.
+# Looks where those programs are installed, and reports where it did not.
 set -euo pipefail
 
 "$G4_DUMP" --generate man >g4-dump.1
@@ -59,10 +59,10 @@ expect bash --quiet "$(offered_by_bash scan -)"
 expect bash sim: "$(offered_by_bash scan s)"
 expect bash csv "$(offered_by_bash scan --format=c)"
 # bash splits at = and :, and replaces only what follows.
-expect bash 8k "$(offered_by_bash set rate=)"
-expect bash 8k "$(offered_by_bash set rate=8)"
+expect bash 8k "$(offered_by_bash set sample_rate=)"
+expect bash 8k "$(offered_by_bash set sample_rate=8)"
 expect bash on "$(offered_by_bash set protection=)"
-refuse bash cw "$(offered_by_bash set rate=)"
+refuse bash cw "$(offered_by_bash set sample_rate=)"
 expect bash unplug "$(offered_by_bash sim --link x --fault un)"
 expect bash serial: "$(offered_by_bash info ser)"
 expect bash jsonl "$(offered_by_bash --format j)"
@@ -96,7 +96,7 @@ if has fish; then
   expect fish scan "$(offered_by_fish 'g4-dump sc')"
   expect fish --format "$(offered_by_fish 'g4-dump scan --fo')"
   expect fish jsonl "$(offered_by_fish 'g4-dump scan --format j')"
-  expect fish rate=8k "$(offered_by_fish 'g4-dump set rate=')"
+  expect fish sample_rate=8k "$(offered_by_fish 'g4-dump set sample_rate=')"
   expect fish seen.bin "$(offered_by_fish 'g4-dump decode se')"
 fi
 exit "$failed"

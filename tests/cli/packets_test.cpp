@@ -84,7 +84,7 @@ TEST(Packets, BothWaysOfALidar) {
   }
 }
 
-TEST(Packets, WhatWasSaidBeforeAFailureIsThere) {
+TEST(Packets, WhatWasExchangedBeforeAFailureIsWritten) {
   const outcome done = run({"packets", "sim:?fault=mute@0"});
   EXPECT_EQ(done.code, 6);
   EXPECT_THAT(done.out, HasSubstr("> device information?  A5 90\n"));

@@ -32,7 +32,7 @@ struct streams {
   stream err;
 };
 
-/// How the program ended, and what it said.
+/// How the program ended, and what it wrote.
 struct outcome {
   int code = -1;   ///< The exit code; -1 if a signal ended it.
   int signal = 0;  ///< That signal.

@@ -82,7 +82,7 @@ TEST_F(RecordingSource, NothingAnswers) {
 }
 
 // What is whole is used, the rest is counted, whatever reads it.
-TEST_F(RecordingSource, CutOffItIsTold) {
+TEST_F(RecordingSource, TruncationIsReported) {
   const std::string cut = cut_off();
   const std::vector<std::vector<std::string>> commands{
       {"dump", cut},    {"scan", cut},
@@ -126,13 +126,13 @@ TEST(NoSource, ANameThatLeadsNowhere) {
   EXPECT_THAT(run({"dump", "/dev/ttyNONE"}).err, HasSubstr("no serial port with a lidar"));
 }
 
-// A program that reads the object is told of it as of every other missing port.
+// A program that reads the object gets the same error as for every other missing port.
 TEST(NoSource, IsAProblemWithAName) {
   EXPECT_THAT(run({"dump", "nowhere/at-all", "--json-errors"}).err,
               HasSubstr("\"problem\":\"no_port\""));
 }
 
-TEST(LostSource, WhatWasCountedIsTold) {
+TEST(LostSource, WhatWasCountedIsReported) {
   const outcome packets = run({"packets", "sim:?fault=unplug@500ms"});
   EXPECT_EQ(packets.code, 9);
   EXPECT_THAT(packets.err, HasSubstr(" bytes skipped: "));
@@ -141,7 +141,7 @@ TEST(LostSource, WhatWasCountedIsTold) {
   EXPECT_THAT(stats.out, HasSubstr("\"reconnects\":0"));
 }
 
-// A scan all of whose revolutions are damaged writes none; that is told.
+// A scan all of whose revolutions are damaged writes none, and reports that.
 TEST(DamagedScans, AreCountedWhereTheyAreLeftOut) {
   const outcome done = run({"scan", "sim:?fault=flip*0.2%&seed=3", "-d", "1500ms"});
   EXPECT_EQ(done.code, 0) << done.err;

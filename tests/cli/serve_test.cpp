@@ -22,6 +22,7 @@ namespace {
 
 using cli::outcome;
 using cli::run;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using namespace std::chrono_literals;
@@ -206,6 +207,9 @@ TEST_F(Serve, ARegisteredDeviceIsDiscovered) {
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("serial      1234567890123456\n"));
   EXPECT_NE(run({"info", "serial:1234567890123457"}).code, 0);
+  const outcome second = run({"sim", "--register", "--serial", "1234567890123456"});
+  EXPECT_EQ(second.code, 5);
+  EXPECT_THAT(second.err, EndsWith("Give another --serial, or another G4LIDAR_SIM_DIR.\n"));
   simulator.send(SIGTERM);
   EXPECT_EQ(simulator.wait().code, 128 + SIGTERM);
   EXPECT_FALSE(fs::exists(path("ports/g4-1234567890123456")));

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# systemd has nothing to say against the unit, for any form of source behind the @.
+# systemd accepts the unit, for any form of source behind the @.
 set -euo pipefail
 
 if ! command -v systemd-analyze >/dev/null; then

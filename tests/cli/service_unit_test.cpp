@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The unit's own command line, run as systemd would run it, on a simulated lidar: it says that it is
-// ready and that it lives, and ends in good order with a recording that can be read.
+// The unit's own command line, run as systemd would run it, on a simulated lidar: it reports that it
+// is ready and that it runs, and ends in good order with a recording that can be read.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -121,7 +121,7 @@ class ServiceUnit : public cli::scratch {
   }
 };
 
-TEST_F(ServiceUnit, ItsCommandRecordsAndSaysThatItLives) {
+TEST_F(ServiceUnit, ItsCommandRecordsAndReportsThatItRuns) {
   const settings unit = read_unit();
   EXPECT_EQ(only(unit, "Type"), "notify");
   const auto [first, last] = unit.equal_range("Environment");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a service tells its manager, heard by a test that plays systemd with a datagram socket.
+// What a service reports to its manager; the test receives it in the role of systemd.
 #include "io/service_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -101,13 +101,13 @@ TEST_F(ServiceWatch, AFullSocketHoldsNothingUpAndWhatWasLostIsSentAgain) {
   service_watch watch;
   std::int64_t now_ns = 0;
   for (int i = 0; i < 10'000; ++i) watch.alive(now_ns += 1000);  // more than a socket holds
-  watch.status("told late");
+  watch.status("reported late");
   const std::size_t held = systemd.heard().size();
   EXPECT_GT(held, 0U);
   EXPECT_LT(held, 10'000U);
-  watch.status("told late");
+  watch.status("reported late");
   watch.alive(now_ns);
-  EXPECT_EQ(systemd.heard(), (words{"STATUS=told late", "WATCHDOG=1"}));
+  EXPECT_EQ(systemd.heard(), (words{"STATUS=reported late", "WATCHDOG=1"}));
 }
 
 TEST_F(ServiceWatch, AManagerThatIsNotThereIsNoTrouble) {
@@ -132,7 +132,7 @@ TEST_F(ServiceWatch, AManagerThatIsNotThereIsNoTrouble) {
   {
     auto systemd = std::make_unique<manager>(path("notify"));
     service_watch watch;
-    systemd.reset();  // it has been restarted, say
+    systemd.reset();  // it may have been restarted
     watch.ready();
     watch.status("fine");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verbs that ask and tell a device: info, health, set, start, stop, restart.
+// The verbs that query and command a device: info, health, set, start, stop, restart.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using ::testing::Not;
 class Talk : public cli::scratch {
  protected:
   [[nodiscard]] std::string port() const { return path("g4"); }
-  /// What a verb with --json says in its only line.
+  /// What a verb with --json writes in its only line.
   [[nodiscard]] json ask(const std::string& verb) const {
     const outcome done = run({verb, port(), "--json"});
     EXPECT_EQ(done.code, 0) << done.err;
@@ -36,14 +36,14 @@ class Talk : public cli::scratch {
 
 // ---- info and health ---------------------------------------------------------------------------
 
-TEST_F(Talk, Info_TellsWhoItIsAndItsSettings) {
+TEST_F(Talk, Info_PrintsIdentityAndSettings) {
   const cli::simulator simulator(port(), {"--serial", "2023000000000017", "--sample-rate", "8000"});
   const outcome done = run({"info", port()});
   EXPECT_EQ(done.code, 0);
   EXPECT_EQ(done.err, "");
   EXPECT_THAT(lines_of(done.out),
               ElementsAre("source      " + port(), "model       G4", "serial      2023000000000017",
-                          "firmware    3.2", "hardware    3", "rate        8k", "freq        7.0",
+                          "firmware    3.2", "hardware    3", "sample_rate 8k", "freq        7.0",
                           "direction   cw", "constant    unknown", "idle        on",
                           "protection  unknown"));
 }
@@ -55,7 +55,7 @@ TEST_F(Talk, Info_AsJson) {
                                {"serial", "2021101000070073"},
                                {"firmware", "3.2"},
                                {"hardware", 3},
-                               {"rate", 9000},
+                               {"sample_rate", 9000},
                                {"freq", 7.0},
                                {"direction", "cw"},
                                {"constant", nullptr},
@@ -78,7 +78,7 @@ TEST_F(Talk, AskingVerbs_SetNothing) {
   EXPECT_THAT(log, Not(ContainsRegex(" A5 (01|02|06|07|09|0A|0B|0C|0E|0F|40|80|D0|D9)")));
 }
 
-TEST_F(Talk, Health_SaysHowItIs) {
+TEST_F(Talk, Health_PrintsTheStatus) {
   const outcome well = run({"health", "sim:"});
   EXPECT_EQ(well.code, 0);
   EXPECT_EQ(well.out, "status      ok\nerror_code  0\n");
@@ -94,18 +94,18 @@ TEST_F(Talk, Health_SaysHowItIs) {
 
 TEST_F(Talk, Set_ShowsEachBeforeAndAfter) {
   const cli::simulator simulator(port());
-  const outcome done = run({"set", port(), "rate=4k", "freq=9.5", "direction=ccw", "constant=off",
-                            "low-power=off", "protection=on"});
+  const outcome done = run({"set", port(), "sample_rate=4k", "freq=9.5", "direction=ccw",
+                            "constant=off", "low-power=off", "protection=on"});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(lines_of(done.out),
-              ElementsAre("NAME        BEFORE   AFTER", "rate        9k       4k",
+              ElementsAre("NAME        BEFORE   AFTER", "sample_rate 9k       4k",
                           "freq        7.0      9.5", "direction   cw       ccw",
                           "constant    unknown  off", "idle        on       off",
                           "protection  unknown  on"));
   EXPECT_THAT(done.err, HasSubstr("may be lost when"));
   EXPECT_THAT(done.err, HasSubstr("stops 3 s after"));
   const json after = ask("info");
-  EXPECT_EQ(after.at("rate"), 4000);
+  EXPECT_EQ(after.at("sample_rate"), 4000);
   EXPECT_EQ(after.at("freq"), 9.5);
   EXPECT_EQ(after.at("direction"), "ccw");
   EXPECT_EQ(after.at("idle"), false);
@@ -113,7 +113,7 @@ TEST_F(Talk, Set_ShowsEachBeforeAndAfter) {
 
 TEST_F(Talk, Set_AsJson) {
   const cli::simulator simulator(port());
-  const outcome done = run({"set", port(), "--json", "-q", "rate=8000", "protection=off"});
+  const outcome done = run({"set", port(), "--json", "-q", "sample_rate=8000", "protection=off"});
   EXPECT_EQ(done.code, 0);
   EXPECT_EQ(done.err, "");
   const std::vector<std::string> lines = lines_of(done.out);
@@ -128,9 +128,9 @@ TEST_F(Talk, Set_AsJson) {
 TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
   cli::simulator simulator(port());
   for (const char* const word :
-       {"rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=7.55", "freq=", "direction=left",
-        "constant=1", "speed=3", "rate=9k", "/dev/ttyUSB0"}) {
-    const outcome done = run({"set", port(), "rate=8k", word});
+       {"sample_rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=7.55",
+        "freq=", "direction=left", "constant=1", "speed=3", "sample_rate=9k", "/dev/ttyUSB0"}) {
+    const outcome done = run({"set", port(), "sample_rate=8k", word});
     EXPECT_EQ(done.code, 2) << word;
     EXPECT_EQ(done.out, "");
     EXPECT_THAT(done.err, HasSubstr("See: g4-dump set --help"));
@@ -142,12 +142,12 @@ TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
 
 TEST_F(Talk, Set_WhatIsRefusedIsShownAsItIsAndEndsIt) {
   const cli::stubborn_device device;
-  const outcome done = run({"set", device.path(), "rate=9k", "freq=9", "rate=9k"});
+  const outcome done = run({"set", device.path(), "sample_rate=9k", "freq=9", "sample_rate=9k"});
   EXPECT_EQ(done.code, 2) << "given twice";
-  const outcome refused = run({"set", device.path(), "rate=9k", "freq=9", "direction=cw"});
+  const outcome refused = run({"set", device.path(), "sample_rate=9k", "freq=9", "direction=cw"});
   EXPECT_EQ(refused.code, 8) << refused.err;
   EXPECT_THAT(lines_of(refused.out),
-              ElementsAre("NAME        BEFORE   AFTER", "rate        9k       9k",
+              ElementsAre("NAME        BEFORE   AFTER", "sample_rate 9k       9k",
                           "freq        7.0      7.0"));
   EXPECT_THAT(refused.err, HasSubstr("does not accept this value"));
   const outcome json_error = run({"set", device.path(), "freq=9", "--json", "--json-errors"});
@@ -161,7 +161,7 @@ TEST_F(Talk, Info_WhatIsNotAnsweredIsUnknown) {
   const cli::stubborn_device device;
   const outcome done = run({"info", device.path()});
   EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("rate        9k\n"));
+  EXPECT_THAT(done.out, HasSubstr("sample_rate 9k\n"));
   EXPECT_THAT(done.out, HasSubstr("direction   unknown\n"));
   EXPECT_THAT(done.out, HasSubstr("idle        unknown\n"));
 }
@@ -178,7 +178,7 @@ TEST_F(Talk, Start_LeavesItScanningAndStopStopsIt) {
   EXPECT_THAT(run({"stop", port()}).err, HasSubstr("it was not scanning"));
 }
 
-TEST_F(Talk, WhatIsFoundScanning_IsStoppedAndThatIsTold) {
+TEST_F(Talk, WhatIsFoundScanning_IsStoppedAndThatIsReported) {
   const cli::simulator simulator(port());
   for (const char* const verb : {"info", "health", "start", "restart"}) {
     EXPECT_EQ(run({"start", port()}).code, 0);
@@ -187,7 +187,7 @@ TEST_F(Talk, WhatIsFoundScanning_IsStoppedAndThatIsTold) {
     EXPECT_THAT(done.err, HasSubstr(": was scanning and has been stopped\n")) << verb;
   }
   EXPECT_EQ(run({"start", port()}).code, 0);
-  EXPECT_THAT(run({"set", port(), "rate=8k"}).err,
+  EXPECT_THAT(run({"set", port(), "sample_rate=8k"}).err,
               HasSubstr(": was scanning and has been stopped\n"));
 }
 
@@ -205,11 +205,11 @@ TEST_F(Talk, Start_ADeviceThatIsDefectiveIsNotStarted) {
 
 TEST_F(Talk, Restart_WaitsUntilItAnswersAgain) {
   const cli::simulator simulator(port());
-  EXPECT_EQ(run({"set", port(), "rate=4k"}).code, 0);
+  EXPECT_EQ(run({"set", port(), "sample_rate=4k"}).code, 0);
   const outcome done = run({"restart", port()});
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.err, HasSubstr("restarted; it answered after"));
-  EXPECT_EQ(ask("info").at("rate"), 9000) << "this one forgets";
+  EXPECT_EQ(ask("info").at("sample_rate"), 9000) << "this one forgets";
 }
 
 // ---- what can go wrong with all of them ---------------------------------------------------------
@@ -218,7 +218,7 @@ TEST_F(Talk, ExitCodes) {
   cli::write_file(path("bytes.bin"), cli::zero(0) + cli::turn());
   for (const std::vector<std::string>& verb : {std::vector<std::string>{"info"},
                                                {"health"},
-                                               {"set", "rate=9k"},
+                                               {"set", "sample_rate=9k"},
                                                {"start"},
                                                {"stop"},
                                                {"restart"}}) {
@@ -314,7 +314,7 @@ TEST(TalkHelp, FitsAndNamesWhatIsWritten) {
   }
   const std::string set = run({"set", "--help"}).out;
   for (const char* const name :
-       {"rate=", "freq=", "direction=", "constant=", "idle=", "protection="}) {
+       {"sample_rate=", "freq=", "direction=", "constant=", "idle=", "protection="}) {
     EXPECT_THAT(set, HasSubstr(name));
   }
   const std::string stats = run({"stats", "--help"}).out;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tool says what its user can do: no word of the library's interface reaches them.
+// The tool names what its user can do: no word of the library's interface reaches them.
 #include "cli/tool_words.hpp"
 
 #include <gmock/gmock.h>
@@ -30,15 +30,15 @@ std::vector<std::string> all_advice() {
 
 TEST(ToolWords, HaveNothingOfTheLibrarysInterface) {
   for (const std::string& advice : all_advice()) {
-    const std::string said = g4_dump::in_tool_words(advice);
+    const std::string words = g4_dump::in_tool_words(advice);
     for (const char* const word : {"()", "::", "_options", "reconnecting on", "open it again",
                                    "all again", "a default", "to be interrupted"}) {
-      EXPECT_THAT(said, Not(HasSubstr(word)));
+      EXPECT_THAT(words, Not(HasSubstr(word)));
     }
   }
 }
 
-TEST(ToolWords, StandForWordsThatTheLibrarySays) {
+TEST(ToolWords, StandForWordsOfTheLibrary) {
   for (const g4_dump::tool_word& each : g4_dump::tool_words()) {
     EXPECT_THAT(all_advice(), testing::Contains(HasSubstr(std::string(each.library))));
   }

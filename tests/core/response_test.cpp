@@ -38,7 +38,7 @@ constexpr wire_check bad_header(std::size_t size) { return {wire_state::bad_head
 static_assert(std::is_trivially_copyable_v<response_view>);
 
 // ---- The protocol's examples at compile time ---------------------------------------------------
-static_assert(check_response(scan_header) == valid(7), "its length field says 5: to be ignored");
+static_assert(check_response(scan_header) == valid(7), "its length field is 5: to be ignored");
 static_assert(response_view::from(scan_header)->kind() == response_kind::scan_started);
 static_assert(response_view::from(scan_header)->mode() == response_mode::continuous);
 static_assert(response_view::from(scan_header)->type_code() == 0x81);

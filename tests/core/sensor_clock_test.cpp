@@ -80,9 +80,9 @@ struct errors {
   }
 };
 
-packet_times stamp(sensor_clock& clock, const delivery& d, const hints& tell) {
-  if (tell.lost && d.lost_bytes > 0) clock.lost(d.lost_bytes);
-  if (tell.seen && d.seen_bytes > 0) clock.seen(d.seen_bytes, d.seen_ns);
+packet_times stamp(sensor_clock& clock, const delivery& d, const hints& given) {
+  if (given.lost && d.lost_bytes > 0) clock.lost(d.lost_bytes);
+  if (given.seen && d.seen_bytes > 0) clock.seen(d.seen_bytes, d.seen_ns);
   return clock.stamp(d.packet, d.arrival_ns);
 }
 
@@ -95,13 +95,13 @@ arrivals::options drawn(arrivals::options o, std::uint64_t seed) {
   return o;
 }
 
-errors simulate(const arrivals::options& o, const hints& tell, double seconds) {
+errors simulate(const arrivals::options& o, const hints& given, double seconds) {
   model device(o);
   sensor_clock clock({.sample_rate_hz = o.nominal_hz, .baud = static_cast<std::uint32_t>(o.baud)});
   errors found;
   while (device.now_s() < seconds) {
     const delivery d = device.next();
-    found.add(d, stamp(clock, d, tell), o.start_ns);
+    found.add(d, stamp(clock, d, given), o.start_ns);
   }
   return found;
 }
@@ -498,15 +498,15 @@ TEST(SensorClock, AcceptsAnotherNominalRate) {
 
 TEST(SensorClock, SubtractsTheTransportDelay) {
   const arrivals::options o{.mode = batching::poll, .delay_ns = 7e6};
-  for (const std::int64_t told : {0, 7'000'000}) {
+  for (const std::int64_t delay_ns : {0, 7'000'000}) {
     model device(o);
-    sensor_clock clock({.transport_delay_ns = told});
+    sensor_clock clock({.transport_delay_ns = delay_ns});
     errors found;
     while (device.now_s() < 8.0) {
       const delivery d = device.next();
       found.add(d, stamp(clock, d, {}), o.start_ns);
     }
-    EXPECT_NEAR(found.rms_us(), told == 0 ? 7000.0 : 0.0, 150.0);
+    EXPECT_NEAR(found.rms_us(), delay_ns == 0 ? 7000.0 : 0.0, 150.0);
   }
 }
 
@@ -551,9 +551,9 @@ TEST(SensorClock, ForgetsAPartOfALostPacket) {
   delivery gone = device.next();
   while (gone.packet.sample_count < 40) gone = device.next();
   const delivery after = device.next();
-  sensor_clock told = clock;
-  told.seen(20, gone.arrival_ns - 100'000'000);
-  EXPECT_EQ(told.stamp(after.packet, after.arrival_ns).first_ns,
+  sensor_clock hinted = clock;
+  hinted.seen(20, gone.arrival_ns - 100'000'000);
+  EXPECT_EQ(hinted.stamp(after.packet, after.arrival_ns).first_ns,
             clock.stamp(after.packet, after.arrival_ns).first_ns);
 }
 

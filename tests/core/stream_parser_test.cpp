@@ -119,19 +119,19 @@ TEST(StreamParser, EventIsValidUntilTheNextCall) {
   const buffer stream = busy_stream();
   for (std::size_t piece = 1; piece < 200; ++piece) {
     stream_parser parser;
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (std::size_t from = 0; from < stream.size(); from += piece) {
       bytes input = bytes(stream).subspan(from, std::min(piece, stream.size() - from));
       while (const auto found = parser.next(input)) {
         if (const auto* packet = std::get_if<packet_view>(&*found)) {
           ASSERT_TRUE(packet_view::from(packet->data())) << "a view is of a valid packet";
           ASSERT_TRUE(std::equal(packet->data().begin(), packet->data().end(),
-                                 stream.begin() + static_cast<std::ptrdiff_t>(told)));
+                                 stream.begin() + static_cast<std::ptrdiff_t>(reported)));
         }
-        told += test::size_of(*found);
+        reported += test::size_of(*found);
       }
     }
-    EXPECT_EQ(told, stream.size());
+    EXPECT_EQ(reported, stream.size());
   }
 }
 
@@ -212,20 +212,20 @@ TEST(StreamParser, IncompleteFinish_Continues) {
   buffer stream = packet_bytes(0, wire_angle(64), wire_angle(128), some_samples(80));
   stream.resize(30);
   stream_parser parser;
-  std::size_t told = 0;
+  std::size_t reported = 0;
   bytes input(stream);
   EXPECT_FALSE(parser.next(input));
   const auto first = parser.finish();
   ASSERT_TRUE(first);
-  told += test::size_of(*first);
+  reported += test::size_of(*first);
   input = zero_packet;
   std::size_t packets = 0;
   while (const auto found = parser.next(input)) {
-    told += test::size_of(*found);
+    reported += test::size_of(*found);
     packets += std::holds_alternative<packet_view>(*found) ? 1U : 0U;
   }
   EXPECT_EQ(packets, 1U);
-  EXPECT_EQ(told + parser.held(), 30 + zero_packet.size());
+  EXPECT_EQ(reported + parser.held(), 30 + zero_packet.size());
 }
 
 TEST(StreamParser, Copy_IsIndependent) {

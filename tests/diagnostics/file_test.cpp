@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of raw bytes, examined as far as bytes tell.
+// Files of raw bytes, examined as far as bytes allow.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -53,13 +53,15 @@ TEST(Bytes, OfAHealthyDeviceGetNoDiagnosis) {
   ASSERT_EQ(identity.size(), 4U) << done;
   EXPECT_EQ(identity[3].name, "serial_number");
   EXPECT_EQ(std::get<std::string>(identity[3].value), "2021101000070073");
+  EXPECT_EQ(done.at(diagnostic_stage::motor).remark,
+            "The angles in the packets show a constant speed.");
   // 9000 samples a second at 7 Hz.
   const auto& rate = done.at(diagnostic_stage::rate).measurements;
   ASSERT_EQ(rate.back().name, "samples_per_revolution") << done;
   EXPECT_NEAR(std::get<double>(rate.back().value), 9000.0 / 7.0, 4.0);
 }
 
-TEST(Bytes, TellDamage) {
+TEST(Bytes, ShowDamage) {
   EXPECT_EQ(in_file(bytes_of({"flip"}, 6)).diagnoses(), "bits_flipped");
   EXPECT_EQ(in_file(bytes_of({"drop"}, 6)).diagnoses(), "bytes_dropped");
   EXPECT_EQ(in_file(bytes_of({"insert"}, 6)).diagnoses(), "bytes_inserted");

@@ -58,9 +58,9 @@ TEST(HostPause, LongPauseDuringTheScan_IsReported) {
         examine(simulated, clock, {}, wrap_in<paused_host>(&clock, 5'000 * ms, pause_ms * ms));
     EXPECT_EQ(done.diagnoses(), "host_busy");
     EXPECT_FALSE(done.fails());
-    const double told = number_of(done, diagnostic_stage::stream, "longest_host_pause_ms");
-    EXPECT_GE(told, static_cast<double>(pause_ms));
-    EXPECT_LE(told, static_cast<double>(pause_ms + 50));
+    const double longest_ms = number_of(done, diagnostic_stage::stream, "longest_host_pause_ms");
+    EXPECT_GE(longest_ms, static_cast<double>(pause_ms));
+    EXPECT_LE(longest_ms, static_cast<double>(pause_ms + 50));
   }
 }
 

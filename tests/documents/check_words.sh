@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # The two programs of the README are equal to the examples; the files and commands that the
 # documents name exist; links and the documents that the sources name exist; a command line within a
-# sentence is also in a block, and so is executed.
+# sentence is also in a block, and so is executed; no figures of speech stand in documents and sources.
 # Needs G4_DUMP and G4LIDAR_SOURCE_DIR.
 set -euo pipefail
 cd "$G4LIDAR_SOURCE_DIR"
@@ -73,4 +73,11 @@ while read -r path; do
     missing=1
   fi
 done < <(grep -rhoE 'docs/[A-Za-z0-9_./-]+\.md' include src tools | sort --unique)
+
+# Figures of speech, in documents, names, comments and messages alike (CONTRIBUTING.md, Style).
+figures='tell|tells|telling|told|say|says|said|lives|twins?|ear|exam|rival|errand|manners|portrait|noted'
+if grep -rnwiE "$figures" "${documents[@]}" include src tools examples >&2; then
+  echo "These lines contain figures of speech: write the term of the field" >&2
+  missing=1
+fi
 exit "$missing"

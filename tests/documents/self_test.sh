@@ -25,10 +25,10 @@ passes() {
 # expect <right
 # wrong> <name>: checks the document on standard input.
 expect() {
-  local said verdict=right
-  said=$(passes 2>&1) || verdict=wrong
+  local output verdict=right
+  output=$(passes 2>&1) || verdict=wrong
   if [[ $verdict != "$1" ]]; then
-    printf '%s should be %s, and is %s:\n%s\n' "$2" "$1" "$verdict" "$said" >&2
+    printf '%s should be %s, and is %s:\n%s\n' "$2" "$1" "$verdict" "$output" >&2
     failed=1
   fi
 }

@@ -75,9 +75,9 @@ TEST(TypedRequests, ReturnTheTypeOfTheirAnswer) {
   virtual_bench bench(options);
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
-  const result<health> said = lidar->ask(requests::health());
-  ASSERT_TRUE(said);
-  EXPECT_EQ(*said, (health{health_status::warning, 0x1234}));
+  const result<health> reply = lidar->ask(requests::health());
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(*reply, (health{health_status::warning, 0x1234}));
   const result<device_information> who = lidar->ask(requests::device_info());
   ASSERT_TRUE(who);
   EXPECT_EQ(*who, lidar->information());

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "g4lidar/lidar.hpp"
-#include "support/virtual_line.hpp"
+#include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {

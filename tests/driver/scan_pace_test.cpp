@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(AtAllRates, ScanPace,
                                          setup{ranging_frequency::khz_4, scan_frequency{500}},
                                          setup{ranging_frequency::khz_8, scan_frequency{1000}}));
 
-TEST(ScanPaceOfADriver, ReadsAtMostFourteenTimesInARevolution) {
+TEST(ScanPaceOfADriver, ReadsAtMostFifteenTimesInARevolution) {
   test::virtual_bench bench;
   lidar device = start_with(bench, {});
   static_cast<void>(read_scans(device, bench, 4 * second));

@@ -40,7 +40,7 @@ sim::device a_lidar(std::optional<sim::fault_kind> wrong = std::nullopt) {
 
 // ---- permission ---------------------------------------------------------------------------------
 
-/// What `fails` says as somebody who is not root.
+/// The error of `fails` for a user who is not root.
 template <class Fails>
 trouble as_nobody(Fails fails) {
   if (::geteuid() != 0) return fails();

@@ -206,7 +206,7 @@ TEST(Text, OfPoints) {
 TEST(Text, OfRevolutions) {
   const text_style style{.format = text_format::text, .scans = true};
   EXPECT_EQ(scan_as(style, whole_scan()),
-            "  scan  points  returns  turned_deg  reported_hz  measured_hz  partial\n"
+            "  scan  points  returns  turned_deg  reported_hz  measured_hz  state\n"
             "    12       3        2      359.99          7.0         7.00  whole\n");
   scan_record piece = whole_scan();
   piece.scan.flags = scan_flags::start_missing | scan_flags::end_missing;

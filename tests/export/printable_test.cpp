@@ -66,29 +66,5 @@ TEST(Printable, AnyBytes_LeaveNoControlCharacter) {
   }
 }
 
-TEST(JsonString, IsParsedToTheSameText) {
-  for (const std::string text : {"", "plain", "\"quoted\" \\ back", "\x1B[31m\r\n\t\x01\x7F",
-                                 "K\xC3\xBC"
-                                 "che \xF0\x9F\x98\x80",
-                                 "\xC2\x9B"}) {
-    EXPECT_EQ(nlohmann::json::parse(json_string(text)).get<std::string>(), text);
-  }
-  std::string all;
-  for (int byte = 0; byte < 0x80; ++byte) all += static_cast<char>(byte);
-  EXPECT_EQ(nlohmann::json::parse(json_string(all)).get<std::string>(), all);
-}
-
-TEST(JsonString, HasNoRawControlCharacter) {
-  EXPECT_EQ(json_string("\x1B[0m\n"), "\"\\u001B[0m\\u000A\"");
-  EXPECT_EQ(json_string("\x7F\xC2\x9B"), "\"\\u007F\\u009B\"");
-}
-
-TEST(JsonString, ReplacesInvalidUtf8) {
-  EXPECT_EQ(json_string("a\xFF"
-                        "b"),
-            "\"a\xEF\xBF\xBD"
-            "b\"");
-}
-
 }  // namespace
 }  // namespace g4lidar::test

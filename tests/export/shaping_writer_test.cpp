@@ -114,7 +114,7 @@ TEST_F(ShapingWriter, WritesARangeOfTime) {
   EXPECT_THAT(heard_, IsEmpty());
 }
 
-TEST_F(ShapingWriter, LeavesOutPiecesIfItIsTold) {
+TEST_F(ShapingWriter, LeavesOutPiecesIfRequested) {
   times heard;
   shaping_writer writer(std::make_unique<listener>(heard, true), {.partial_scans = false});
   callback_sink sink([](std::string_view) {});

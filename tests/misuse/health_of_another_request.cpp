@@ -6,9 +6,9 @@
 
 bool misuse(g4lidar::lidar& lidar) {
 #ifdef MISUSE
-  const g4lidar::result<g4lidar::health> said = lidar.ask(g4lidar::requests::device_info());
+  const g4lidar::result<g4lidar::health> reply = lidar.ask(g4lidar::requests::device_info());
 #else
-  const g4lidar::result<g4lidar::health> said = lidar.ask(g4lidar::requests::health());
+  const g4lidar::result<g4lidar::health> reply = lidar.ask(g4lidar::requests::health());
 #endif
-  return said.has_value();
+  return reply.has_value();
 }

@@ -166,8 +166,8 @@ double turns_not_told() {
 
   const auto truth = simulated.take_truth();
   EXPECT_EQ(test::found_in_order(scans, test::revolutions_of(truth)), scans.size());
-  const double told = static_cast<double>(counts.stream.points + counts.samples_lost);
-  const double missing = static_cast<double>(samples_until(scans.back(), truth)) - told;
+  const double counted = static_cast<double>(counts.stream.points + counts.samples_lost);
+  const double missing = static_cast<double>(samples_until(scans.back(), truth)) - counted;
   return missing / static_cast<double>(scans.back().size());
 }
 

@@ -214,7 +214,7 @@ TEST(Unplug, RepeatedDuringReconnects) {
   test::expect_identity(device->counts());
 }
 
-// The driver is told of the new port: after a long outage it is no slower than after a short one. The 75th
+// The driver detects the new port: after a long outage it is no slower than after a short one. The 75th
 // percentile of 4 runs, with a motor that is at speed at once: 100 ms until it scans, and two revolutions.
 TEST(Unplug, Return_IsNoticedAtOnce) {
   auto options = quick_g4();
@@ -223,16 +223,16 @@ TEST(Unplug, Return_IsNoticedAtOnce) {
   options.acceleration_mhz_per_s = 100'000'000;
   for (const auto outage : {300ms, 3000ms}) {
     const auto measure = [&] {
-      twin_on_pty twin(options);
+      device_on_pty simulated(options);
       lidar_options how;
-      how.device = twin.path();
+      how.device = simulated.path();
       how.reconnect = true;
       auto device = lidar::open(how);
       EXPECT_TRUE(device && device->start() && device->next_scan(30s));
-      twin.unplug();
+      simulated.unplug();
       const auto back = clock::now() + outage;
       while (clock::now() < back) static_cast<void>(device->next_scan(10ms));
-      twin.replug();
+      simulated.replug();
       const auto begin = clock::now();
       while (!device->next_scan(100ms) && clock::now() < begin + 30s) {
       }

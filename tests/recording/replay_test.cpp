@@ -16,7 +16,7 @@ namespace {
 using namespace std::chrono_literals;
 constexpr std::int64_t second = 1'000'000'000;
 
-/// Does what a program may do, in an order that the seed says.
+/// Does what a program may do, in an order that the seed determines.
 class program {
  public:
   program(lidar& device, std::uint64_t seed) : device_(device), dice_(seed) {}

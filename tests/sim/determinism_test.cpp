@@ -42,16 +42,16 @@ sim::device_options device_with_seed(std::uint64_t seed) {
 
 // Sends a command every 700 ms, the same each time, and reads at these intervals.
 byte_vector bytes_of_run(sim::device& simulated, std::int64_t look_every_ns) {
-  constexpr std::array<std::uint8_t, 10> says{0x60, 0x90, 0x0B, 0x65, 0xD0,
-                                              0x60, 0xD9, 0x92, 0x60, 0x07};
+  constexpr std::array<std::uint8_t, 10> codes{0x60, 0x90, 0x0B, 0x65, 0xD0,
+                                               0x60, 0xD9, 0x92, 0x60, 0x07};
   byte_vector all;
-  std::size_t said = 0;
-  std::int64_t say_ns = 10 * ms;
+  std::size_t sent = 0;
+  std::int64_t send_ns = 10 * ms;
   std::int64_t look_ns = 0;
   for (constexpr std::int64_t end_ns = 22 * second; look_ns <= end_ns;) {
-    while (say_ns <= look_ns) {
-      simulated.write(std::array<std::uint8_t, 2>{0xA5, says[said++ % says.size()]}, say_ns);
-      say_ns += 700 * ms;
+    while (send_ns <= look_ns) {
+      simulated.write(std::array<std::uint8_t, 2>{0xA5, codes[sent++ % codes.size()]}, send_ns);
+      send_ns += 700 * ms;
     }
     std::array<std::uint8_t, 4096> part{};
     for (std::size_t count = 0; (count = simulated.read(part, look_ns)) > 0;) {

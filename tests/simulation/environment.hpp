@@ -36,7 +36,7 @@ struct environment {
   std::function<void()> on_call;    ///< Before each call: all that was read before is digested.
   std::int64_t wake_ns = never_ns;  ///< Then somebody wakes the driver, once.
   std::function<void()> wake;
-  bool watches = true;  ///< Whether the system tells when the device is plugged in.
+  bool watches = true;  ///< Whether the system reports when the device is plugged in.
 };
 
 /// A transport that reports each call, and during which the driver may be woken.

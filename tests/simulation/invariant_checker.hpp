@@ -18,9 +18,9 @@ namespace g4lidar::simulation {
 
 /// How far the times of points were from the truth, 5 s and more after the last break and the last sleep.
 struct time_counts {
-  std::uint64_t settled = 0;    ///< Points.
-  std::uint64_t ahead = 0;      ///< Of all points: told before they were measured, as it seems.
-  std::uint64_t late = 0;       ///< More than 1 ms off.
+  std::uint64_t settled = 0;  ///< Points.
+  std::uint64_t ahead = 0;    ///< Of all points: delivered before they were measured, as it seems.
+  std::uint64_t late = 0;     ///< More than 1 ms off.
   double sum_of_squares = 0.0;  ///< In ns^2.
   std::int64_t worst_ns = 0;
 };

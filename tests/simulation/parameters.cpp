@@ -31,7 +31,7 @@ void draw_scanner(dice& d, std::uint64_t seed, sim::scanner_options& scanner) {
   scanner.samples_per_packet = static_cast<std::size_t>(d.chance(0.5) ? 40 : d.between(30, 80));
   scanner.index_deg = d.chance(0.5) ? 0.0 : d.real(0.0, 359.9);
   scanner.reports_frequency = d.chance(0.5);
-  // Noise makes samples tell apart from those of other turns.
+  // Noise makes samples differ from those of other turns.
   scanner.noise_mm = d.real(5.0, 20.0);
   scanner.dropout_ratio = d.chance(0.3) ? d.real(0.0, 0.05) : 0.0;
   scanner.sample_rate_ratio = d.chance(0.3) ? 1.0 : d.real(0.97, 1.03);

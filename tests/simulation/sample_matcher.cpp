@@ -22,7 +22,7 @@ double apart_deg(double a, double b) { return std::abs(std::remainder(a - b, 360
 
 /// First and last angle of a packet are rounded to 1/64 degree.
 constexpr double angle_slack_deg = 1.0 / 64 + 0.001;
-/// A packet's points must be told apart from those of others within so many.
+/// A packet's points must differ from those of others within so many.
 constexpr std::size_t most_open = 400;
 
 }  // namespace

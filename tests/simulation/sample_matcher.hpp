@@ -68,7 +68,7 @@ class sample_matcher {
     std::size_t known;  ///< That have come of them.
     double first_deg;   ///< The first-level angle of the first one.
     bool zero;
-    bool whole;  ///< As it was sent, and its angles tell how the head turned.
+    bool whole;  ///< As it was sent, and its angles show how the head turned.
   };
 
   [[nodiscard]] bool fits(const packet& sent, std::size_t at) const;

@@ -15,7 +15,7 @@
 namespace g4lidar::test {
 
 /// Checks `property` on `cases` cases, times test_scale(). The cases are the same ones each time,
-/// unless RC_PARAMS says otherwise ("seed=...").
+/// unless RC_PARAMS sets another ("seed=...").
 template <class Property>
 void check_cases(int cases, Property property) {
   const auto* const info = testing::UnitTest::GetInstance()->current_test_info();

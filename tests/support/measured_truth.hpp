@@ -51,7 +51,7 @@ class measured_truth {
     return measured_truth(std::move(samples));
   }
 
-  /// The next intact sample, of at most `most`, that the test says it is; the search goes on behind it.
+  /// The next intact sample, of at most `most`, for which the test is true; the search goes on behind it.
   /// Null where there is none.
   template <class IsIt>
   const sim::sample_truth* next(std::size_t most, const IsIt& is_it) {

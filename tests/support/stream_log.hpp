@@ -120,14 +120,14 @@ class stream_log {
   const auto& got = log.stretches();
   const auto [a, b] =
       std::mismatch(got.begin(), got.end(), wanted.stretches.begin(), wanted.stretches.end());
-  const auto say = [](auto at, auto end) {
+  const auto text = [](auto at, auto end) {
     if (at == end) return std::string("the end");
     return reference::name_of(at->what) + " of " + std::to_string(at->size) + " at byte " +
            std::to_string(at->offset);
   };
   if (a != got.end() || b != wanted.stretches.end()) {
-    return "the parser says " + say(a, got.end()) + ", the reference " +
-           say(b, wanted.stretches.end());
+    return "the parser has " + text(a, got.end()) + ", the reference " +
+           text(b, wanted.stretches.end());
   }
   if (log.held_from() != wanted.held_from) {
     return "held from byte " + std::to_string(log.held_from()) + ", not " +

@@ -21,7 +21,7 @@ namespace g4lidar {
 ///
 /// With 32-bit words, the count is a low word between two copies of the high word. They are written
 /// from the last copy to the first and read from the first to the last. If a reader finds equal
-/// copies, there was no carry during its load; otherwise the low word tells the reader on which
+/// copies, there was no carry during its load; otherwise the low word shows the reader on which
 /// side of the carry it was read. No thread waits, not even a reader that interrupted the producer
 /// in the middle of a carry. The value is exact as long as the count increases by less than
 /// 2,147,483,648 during one load: 66 hours of a G4.

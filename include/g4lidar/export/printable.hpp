@@ -15,8 +15,4 @@ namespace g4lidar {
 /// result.
 [[nodiscard]] G4LIDAR_API std::string printable(std::string_view text);
 
-/// `text` as a JSON string with its quotes; bytes that are not valid UTF-8 become U+FFFD. *Pure*,
-/// allocates the result. (RFC 8259, section 7)
-[[nodiscard]] G4LIDAR_API std::string json_string(std::string_view text);
-
 }  // namespace g4lidar

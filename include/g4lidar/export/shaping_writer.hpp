@@ -33,7 +33,7 @@ struct shaping_options {
   std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  ///< The most records.
 };
 
-/// Passes points or revolutions on to another writer, as `shaping_options` say. *Single thread,
+/// Passes points or revolutions on to another writer, as `shaping_options` specify. *Single thread,
 /// allocates.* Exceptions of the sink pass through.
 class G4LIDAR_API shaping_writer final : public point_writer {
  public:

@@ -18,7 +18,7 @@
 
 namespace g4lidar::sim {
 
-/// All that a text says about a device.
+/// All that a text contains about a device.
 struct setup {
   std::string world_file;  ///< For load_world().
   device_options device;
@@ -30,7 +30,7 @@ struct setup_error {
   std::string message;
 };
 
-/// Sets what "NAME=VALUE" says: `world`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
+/// Sets what "NAME=VALUE" names: `world`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
 /// the member of device_options of that name (docs/sim.md lists them). Returns what is wrong, a sentence
 /// without a full stop; empty if nothing is. Does not check the values against each other: see
 /// problem_with(). Throws only std::bad_alloc.

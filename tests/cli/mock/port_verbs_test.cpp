@@ -141,7 +141,7 @@ TEST_F(PortVerbs, List_Json) {
 
 // ---- list --probe ------------------------------------------------------------------------------
 
-TEST_F(PortVerbs, Probe_SaysWhoAnswersAndWhatFailed) {
+TEST_F(PortVerbs, Probe_ReportsWhichLidarAnswersAndWhatFailed) {
   bed.plug(first);
   bed.plug(second);
   bed.plug(other);
@@ -217,7 +217,7 @@ TEST_F(PortVerbs, Probe_NobodyIsDisturbed) {
 
 // ---- watch -------------------------------------------------------------------------------------
 
-TEST_F(PortVerbs, Watch_TellsWhatComesAndGoes) {
+TEST_F(PortVerbs, Watch_ReportsPortsThatAppearAndDisappear) {
   bed.plug(first);
   cli::program watch({"watch"});
   watch.read_until("BY-ID\n");

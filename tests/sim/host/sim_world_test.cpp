@@ -27,7 +27,7 @@ struct refusal {
   const char* name;
   std::string_view text;
   std::size_t line;
-  std::string_view says;
+  std::string_view message;
 };
 
 void PrintTo(const refusal& r, std::ostream* out) { *out << r.name; }
@@ -39,7 +39,7 @@ TEST_P(SimWorldRefuses, WithTheLineAndAReason) {
   const auto* error = std::get_if<sim::world_error>(&read);
   ASSERT_NE(error, nullptr);
   EXPECT_EQ(error->line, GetParam().line);
-  EXPECT_NE(error->message.find(GetParam().says), std::string::npos) << error->message;
+  EXPECT_NE(error->message.find(GetParam().message), std::string::npos) << error->message;
 }
 
 using namespace std::string_view_literals;

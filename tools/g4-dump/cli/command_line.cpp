@@ -33,7 +33,7 @@ void add(CLI::App& app, const option_row& row) {
     try {
       for (const std::string& word : words) inner(word);
     } catch (const bad_value& reason) {
-      throw CLI::ValidationError(name, reason.what());  // which says the name, too
+      throw CLI::ValidationError(name, reason.what());  // which contains the name, too
     }
   };
   CLI::Option* option = nullptr;
@@ -105,7 +105,9 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   }
   std::string words = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    words = words.substr(0, words.find(':')) + " needs one value";
+    const bool is_repeated = words.find("At Most") != std::string::npos;
+    words =
+        words.substr(0, words.find(':')) + (is_repeated ? " is given twice" : " needs one value");
   }
   if (!words.empty() && words.back() == '.') words.pop_back();
   return words;

@@ -39,7 +39,7 @@ struct common_options {
   std::vector<sector> ignored;
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
-  std::optional<time_style> time;  ///< Where nothing is said, what suits the source.
+  std::optional<time_style> time;  ///< If not given, what suits the source.
   loss_rule on_loss = loss_rule::exit;
   bool json = false;  ///< JSON instead of text.
 };

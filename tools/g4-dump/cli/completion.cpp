@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Completion: g4-dump itself says what can follow the words of a command line. The scripts for bash,
+// Completion: g4-dump itself lists what can follow the words of a command line. The scripts for bash,
 // zsh and fish in packaging/completions ask it.
 #include <fmt/format.h>
 

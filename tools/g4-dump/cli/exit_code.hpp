@@ -31,13 +31,13 @@ enum class exit_code : int {
 /// The exit code for a problem that has ended a command. `was_running`: points had come before.
 [[nodiscard]] exit_code exit_code_for(const g4lidar::error& why, bool was_running = false) noexcept;
 
-/// Ends a command: whole sentences that say what is wrong and what to try.
+/// Ends a command: whole sentences: what is wrong, and what to try.
 class failure : public std::runtime_error {
  public:
   /// `problem`: as the library calls it, where it is one of its own.
   failure(exit_code code, const std::string& sentences, std::string_view problem = {})
       : std::runtime_error(sentences), code_(code), problem_(problem) {}
-  /// As the library says it, in the words of the tool.
+  /// The message of the library, in the words of the tool.
   explicit failure(const g4lidar::error& why, bool was_running = false)
       : std::runtime_error(in_tool_words(why.message())),
         code_(exit_code_for(why, was_running)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes rows of the table of options. Each writes into a value that lives as long as the table.
+// Makes rows of the table of options. Each writes into a value that exists as long as the table.
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,7 @@ const std::vector<setting>& all_settings() {
   using enum ranging_frequency;
   using enum motor_direction;
   static const std::vector<setting> all{
-      {"rate",
+      {"sample_rate",
        requests::get_ranging(),
        {{"4k", khz_4},
         {"8k", khz_8},
@@ -70,7 +70,7 @@ std::vector<std::string> example_wishes() {
 
 bool is_wish(std::string_view word) noexcept {
   const std::size_t end =
-      word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-");
+      word.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_");
   return end != std::string_view::npos && end > 0 && word[end] == '=';
 }
 

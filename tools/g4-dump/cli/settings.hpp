@@ -36,18 +36,18 @@ struct wish {
   g4lidar::answer value;  ///< As the device answers when it is so.
 };
 
-/// "rate=4k", "freq=5": examples for completion.
+/// "sample_rate=4k", "freq=5": examples for completion.
 [[nodiscard]] std::vector<std::string> example_wishes();
 
-/// Whether `word` has the form NAME=VALUE: what stands before the first `=` is made of letters. A
-/// source has not.
+/// Whether `word` has the form NAME=VALUE: only letters, `-` and `_` before the first `=`. A source
+/// does not.
 [[nodiscard]] bool is_wish(std::string_view word) noexcept;
 
-/// "rate=9k". Throws bad_value, with what is possible.
+/// "sample_rate=9k". Throws bad_value, with what is possible.
 [[nodiscard]] wish wish_of(const std::string& word);
 
-/// What the device says; nothing where it cannot be asked, or does not answer that. Throws a failure
-/// where there is no device any more.
+/// What the device answers; nothing if it cannot be asked for this, or does not answer. Throws a
+/// failure if the device is lost.
 [[nodiscard]] maybe_answer read_setting(g4lidar::lidar& lidar, const setting& which);
 
 /// "9k", "7.0", "cw", "on"; "unknown" where there is nothing.

@@ -6,7 +6,7 @@
 namespace g4_dump {
 
 std::span<const tool_word> tool_words() noexcept {
-  static constexpr std::array<tool_word, 9> words{{
+  static constexpr std::array<tool_word, 10> words{{
       {"plug it in and open it again",
        "plug it in and run the command again; --on-loss reconnect "
        "waits for it"},
@@ -18,6 +18,7 @@ std::span<const tool_word> tool_words() noexcept {
       {"Start the scan first", "Start the scan first: g4-dump start"},
       {"the program called wake()", "the command was interrupted"},
       {"open the lidar itself for that", "give the lidar as SOURCE"},
+      {"the option cannot have this value", "SOURCE or an option cannot have this value"},
       {"Correct the value or omit the option; every option has a default",
        "Correct it, or leave it out"},
       {", or give lidar_options::answer_time a larger value", ""},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the library says to a program, in the words of the tool's commands and options.
+// Messages of the library to a program, in the words of the tool's commands and options.
 #pragma once
 
 #include <span>

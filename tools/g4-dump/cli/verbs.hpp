@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every verb of g4-dump, made in verbs/, what the help says beside them, and the command line, the man
+// Every verb of g4-dump, made in verbs/, what the help contains beside them, and the command line, the man
 // page and the completions, which are made from that.
 #pragma once
 
@@ -77,8 +77,8 @@ inline constexpr std::array<source_form, 7> source_forms{{
     {"sim:", "a simulated G4; sim:?world=FILE&seed=N&fault=FAULT"},
 }};
 
-/// Reads the command line; what is to be run then, which returns the exit code. Where everything has
-/// been said already (--help, --version, a wrong command line), it only does that.
+/// Reads the command line. Returns the function to run, which returns the exit code; after --help,
+/// --version and a wrong command line nothing is left to do, and it only returns that.
 [[nodiscard]] std::function<int()> read_command_line(int argc, const char* const* argv);
 
 /// `g4-dump --generate man`, which the build runs: prints g4-dump(1). Returns the exit code.

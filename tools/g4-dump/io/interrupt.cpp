@@ -65,7 +65,7 @@ wake wait_for_input(int input, int output, std::chrono::steady_clock::time_point
     const int woken = ::ppoll(waiting.data(), waiting.size(), &longest, nullptr);
     if (woken == 0 && left > 1h) continue;
     if (woken == 0 && until != no_deadline) return wake::timeout;
-    if (woken < 0 && errno != EINTR) return wake::input;  // let read() say what is wrong
+    if (woken < 0 && errno != EINTR) return wake::input;  // read() reports what is wrong
     if (woken <= 0) continue;
     if (waiting[1].revents != 0) break;
     if ((waiting[2].revents & (POLLERR | POLLHUP)) != 0) return wake::output_closed;

@@ -115,7 +115,7 @@ void read_source(opened_source& source, const common_options& options, const rea
   g4lidar::lidar& lidar = source.lidar();
   if (const auto started = lidar.start(); !started) throw failure(started.error());
   read_loop(source, options, sink, out).run();
-  static_cast<void>(lidar.stop());  // what has come is good, whatever the device says to that
+  static_cast<void>(lidar.stop());  // what was received is good, whatever the device answers
   report_events(lidar);
 }
 

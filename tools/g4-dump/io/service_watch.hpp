@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a service tells systemd: that it is ready, that it lives, what it does, that it ends.
+// What a service reports to systemd: that it is ready, that it runs, what it does, that it ends.
 #pragma once
 
 #include <cstdint>

@@ -133,7 +133,7 @@ std::string summary_of(std::span<const stage_report> stages) {
   return found.empty() ? "healthy: nothing is wrong\n" : "found: " + list_of(found) + "\n";
 }
 
-/// The source as the library names it; a simulated device is served as long as `served` lives.
+/// The source as the library names it; a simulated device is served as long as `served` exists.
 std::string device_of(const std::string& source, simulated_port& served) {
   if (source == "-") throw bad_value("doctor examines a device or a file, not standard input");
   const source_kind kind = kind_of(source);
@@ -173,7 +173,7 @@ constexpr const char* doctor_details =
 loss and USB latency. It reports for each what was measured; where something is wrong also the
 likely cause and what to try. A healthy lidar takes about 8 seconds. No setting is changed, and
 the motor stands at the end. A recording or a file of raw bytes is examined as far as its bytes
-tell; stages that need a device are skipped. The exit code is that of the first stage that
+allow; stages that need a device are skipped. The exit code is that of the first stage that
 failed; a stage that only warns leaves it at 0.)";
 
 }  // namespace

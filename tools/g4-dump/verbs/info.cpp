@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The verbs info and health: what a device, or a recording of one, reports about itself and its
 // settings; the health status that a device reports.
-#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -71,16 +70,11 @@ int info(const common_options& options) {
 
 constexpr const char* info_details =
     R"(A line for each of: source, model, serial, firmware, hardware, and the settings by the names
-that set takes: rate, freq, direction, constant, idle, protection. A G4 cannot be asked for
+that set takes: sample_rate, freq, direction, constant, idle, protection. A G4 cannot be asked for
 constant and protection, and old firmware does not answer for direction: these are unknown. With
---json, model is a number (a G4 is 5), rate is in Hz, on is true, unknown is null.
+--json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.
 
 No setting is changed, but a device that is scanning is stopped first; that is reported.)";
-
-const char* word_for(health_status status) noexcept {
-  constexpr std::array<const char*, 3> words{"ok", "warning", "error"};
-  return words[static_cast<std::size_t>(status)];
-}
 
 int health(const common_options& options) {
   output out(options.output);
@@ -88,7 +82,7 @@ int health(const common_options& options) {
   const auto given = source.lidar().ask(requests::health());
   if (!given) throw failure(given.error());
   ordered_json all{{"source", source.lidar().name()},
-                   {"status", word_for(given->status)},
+                   {"status", g4lidar::name_of(given->status)},
                    {"error_code", given->error_code}};
   if (!options.json) all.erase("source");
   options.json ? write_line(out, all) : write_words(out, all, 12);

@@ -38,7 +38,7 @@ void end(protocol_log& log, output& out) {
 void list_bytes(const packets_options& options) {
   const common_options& common = *options.common;
   if (common.time)
-    throw bad_value("--time: raw bytes carry no times; lines begin with the place of the bytes");
+    throw bad_value("--time: raw bytes carry no times; lines begin with the offset of the bytes");
   input in(path_of(common.source),
            "Give a file of raw bytes from the lidar's port, or pipe them in.");
   output out(common.output, in.id() ? output::appears::whole : output::appears::growing);
@@ -161,8 +161,8 @@ int run(packets_options options) {
 }
 
 constexpr const char* packets_details =
-    R"(A line has a time (in seconds; for raw bytes, which carry none, the place of the first byte), a
-mark and a description. Marks:
+    R"(A line has a time in seconds (raw bytes have none: the offset of the first byte), a symbol and
+a description. Symbols:
   >  sent to the lidar
   <  sent by the lidar
   !  not readable or suspect, with the reason: noise (healthy lidars send single bytes, too),

@@ -23,7 +23,8 @@ struct set_options : common_options {
 };
 
 void add_wish(set_options& options, const std::string& word) {
-  if (!is_wish(word)) throw bad_value(fmt::format("'{}' is not NAME=VALUE such as rate=9k", word));
+  if (!is_wish(word))
+    throw bad_value(fmt::format("'{}' is not NAME=VALUE such as sample_rate=9k", word));
   const wish added = wish_of(word);
   for (const wish& earlier : options.wishes) {
     if (earlier.which == added.which)
@@ -55,8 +56,8 @@ void carry_out(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json
   if (!given) throw failure(given.error());
 }
 
-/// What to know about these settings.
-void report_notes(const std::vector<wish>& wishes) {
+/// What the user should know about these settings.
+void report_consequences(const std::vector<wish>& wishes) {
   logger::info("The settings may be lost when the lidar restarts or has no power.\n");
   const bool is_protected = std::any_of(wishes.begin(), wishes.end(), [](const wish& each) {
     return each.value == answer(power_down_protection::on);
@@ -69,7 +70,8 @@ void report_notes(const std::vector<wish>& wishes) {
 }
 
 int set(const set_options& options) {
-  if (options.wishes.empty()) throw bad_value("nothing to set; give NAME=VALUE such as rate=9k");
+  if (options.wishes.empty())
+    throw bad_value("nothing to set; give NAME=VALUE such as sample_rate=9k");
   output out("-");
   command_source source(options, task::configuring);
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
@@ -78,18 +80,18 @@ int set(const set_options& options) {
     carry_out(source.lidar(), each, out, options.json);
   }
   out.commit();
-  report_notes(options.wishes);
+  report_consequences(options.wishes);
   return static_cast<int>(exit_code::ok);
 }
 
 constexpr const char* set_details =
     R"(Settings:
-  rate=4k|8k|9k       samples per second (also 4000, 8000, 9000)
-  freq=5..12          revolutions per second, in steps of 0.1
-  direction=cw|ccw    direction of rotation, seen from above
-  constant=on|off     constant scan frequency
-  idle=on|off         stop the motor while not scanning (also low-power=)
-  protection=on|off   stop 3 s after the last keep-alive of the host
+  sample_rate=4k|8k|9k  samples per second (also 4000, 8000, 9000)
+  freq=5..12            revolutions per second, in steps of 0.1
+  direction=cw|ccw      direction of rotation, seen from above
+  constant=on|off       constant scan frequency
+  idle=on|off           stop the motor while not scanning (also low-power=)
+  protection=on|off     stop 3 s after the last keep-alive of the host
 
 Nothing is changed if one of them is not valid. Each is read, set and read back: a line with
 NAME, BEFORE and AFTER; with --json an object with name, before, wanted, after. A G4 cannot be
@@ -106,19 +108,19 @@ verb make_set_verb() {
   source.take = [take_wish, as_source = source.take](const std::string& word) {
     is_wish(word) ? take_wish(word) : as_source(word);
   };
-  return {
-      .name = "set",
-      .summary = "Change settings; prints them before and after",
-      .arguments = {source,
-                    {"NAME=VALUE", "", "The settings to change", take_wish, completion::setting,
-                     true}},
-      .options = joined(json_row(*options), device_rows(*options)),
-      .details = set_details,
-      .examples = {{"g4-dump set rate=9k freq=10", "9000 samples and 10 revolutions per second"},
-                   {"g4-dump set /dev/ttyUSB0 protection=on", "Turn on power-down protection"},
-                   {"g4-dump set sim: rate=4k freq=7.5 direction=ccw --json",
-                    "Three settings of a simulated G4"}},
-      .run = [options] { return set(*options); }};
+  return {.name = "set",
+          .summary = "Change settings; prints them before and after",
+          .arguments = {source,
+                        {"NAME=VALUE", "", "The settings to change", take_wish, completion::setting,
+                         true}},
+          .options = joined(json_row(*options), device_rows(*options)),
+          .details = set_details,
+          .examples = {{"g4-dump set sample_rate=9k freq=10",
+                        "9000 samples and 10 revolutions per second"},
+                       {"g4-dump set /dev/ttyUSB0 protection=on", "Turn on power-down protection"},
+                       {"g4-dump set sim: sample_rate=4k freq=7.5 direction=ccw --json",
+                        "Three settings of a simulated G4"}},
+          .run = [options] { return set(*options); }};
 }
 
 }  // namespace g4_dump

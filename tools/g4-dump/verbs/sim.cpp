@@ -87,17 +87,19 @@ void check(const sim_options& options) {
   }
 }
 
-/// Throws a failure for a port that could not be opened.
-sim::pty_port opened(g4lidar::result<sim::pty_port> port, const std::string& place) {
+/// Throws a failure for a port that could not be opened. `advice` is for a place that is taken.
+sim::pty_port opened(g4lidar::result<sim::pty_port> port, const std::string& place,
+                     std::string_view advice) {
   if (port) return *std::move(port);
   if (port.error().code() != g4lidar::problem::busy) {
     throw failure(exit_code::bad_file, in_tool_words(port.error().message()));
   }
   const bool is_served = port.error().system_errno() == EADDRINUSE;
   throw failure(is_served ? exit_code::busy : exit_code::bad_file,
-                fmt::format("{} {}. Give another path for --link.", place,
+                fmt::format("{} {}. {}", place,
                             is_served ? "leads to a device that another program simulates"
-                                      : "exists and is not a link to a pseudo-terminal"));
+                                      : "exists and is not a link to a pseudo-terminal",
+                            advice));
 }
 
 /// At the links, then the registered one, then the bridges.
@@ -119,9 +121,12 @@ std::vector<sim::pty_port> open_ports(const sim_options& options,
     const bool has_link = i < links.size();
     const auto& [address, port] =
         has_link ? std::pair(links[i], std::uint16_t{0}) : options.bridges[i - links.size()];
+    const char* const advice = i < options.links.size()
+                                   ? "Give another path for --link."
+                                   : "Give another --serial, or another G4LIDAR_SIM_DIR.";
     ports.push_back(opened(has_link ? sim::pty_port::open(std::move(simulated), address)
                                     : sim::pty_port::listen(std::move(simulated), address, port),
-                           address));
+                           address, advice));
     const std::string& path = ports.back().path();
     logger::write(fmt::format("G4 {} at {}\n", devices[i].info.serial_number(),
                               printable(path.empty() ? address : path)));
