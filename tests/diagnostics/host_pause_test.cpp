@@ -70,9 +70,9 @@ TEST(HostPause, IsNotAStall) {
 }
 
 TEST(LateRest, OfAPacketIsNotAScanThatContinues) {
-  sim::device twin(sim::built_in_world(), {});
+  sim::device simulated(sim::built_in_world(), {});
   sim::virtual_clock clock;
-  const examined done = examine(twin, clock, {}, wrap_in<link_with_a_late_rest>());
+  const examined done = examine(simulated, clock, {}, wrap_in<link_with_a_late_rest>());
   EXPECT_EQ(done.diagnoses(), "") << done;
 }
 
@@ -82,9 +82,9 @@ TEST(SpinningUp, IsWaitedForAndReported) {
     options.silence_ns = silence_ms * ms;
     const examined done = examine(options);
     EXPECT_EQ(done.diagnoses(), "") << silence_ms << done;
-    const bool is_told = std::count(done.activities.begin(), done.activities.end(),
+    const bool is_reported = std::count(done.activities.begin(), done.activities.end(),
                                     diagnostic_activity::spinning_up) == 1;
-    EXPECT_EQ(is_told, silence_ms > 500) << silence_ms;
+    EXPECT_EQ(is_reported, silence_ms > 500) << silence_ms;
     const double first_ms = number_of(done, diagnostic_stage::motor, "first_packet_ms");
     EXPECT_GE(first_ms, static_cast<double>(silence_ms));
     EXPECT_LT(first_ms, static_cast<double>(silence_ms + 300));

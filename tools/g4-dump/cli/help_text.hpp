@@ -12,10 +12,10 @@ inline constexpr const char* shape =
   --frame robot    Angles grow counter-clockwise, 0 ahead (opposite the cable), in [-180, 180).
   --time abs       Since 1970, by the clock of the computer (default).
   --time mono      Time of the monotonic clock.
-  --time zero      Since the first record that came.
+  --time zero      Since the first record.
   --time delta     Since the previous record that was written.
 
-Raw bytes carry no times: times are counted from the first sample with --sample-rate; abs and
+Raw bytes have no times: times are counted from the first sample with --sample-rate; abs and
 mono are refused.)";
 
 inline constexpr const char* ending =
@@ -36,7 +36,7 @@ More columns may follow in later versions. jsonl has the same names, and no_retu
 (below 100 mm: not reliable). text is for people.)";
 
 inline constexpr const char* scan_columns =
-    R"(A record is a revolution, flagged where data are missing; with --partial also a piece of one.
+    R"(A record is a revolution, with flags if data is missing; with --partial also a piece of one.
 
 Columns of csv:
   scan         number of the revolution

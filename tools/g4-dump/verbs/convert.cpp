@@ -213,13 +213,13 @@ constexpr const char* convert_details =
 directory or a name such as scan-%04d.pcd, each revolution gets a pcd file.
 
 Points of a recording are those of the driver that was recorded, with their times. Raw bytes
-carry no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
+have no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
 are. From a recording to a recording, all bytes both ways are kept, and the LaserScan messages
-are made anew.
+are computed again.
 
 --from and --to count from the beginning of IN. Of a damaged IN the undamaged part is converted,
 and the rest is counted on standard error. OUT appears, or is replaced, when everything is
-written. ^C ends the command with what came so far.)";
+written. ^C ends the command; what was converted so far is written.)";
 
 option_rows form_rows(convert_options& options) {
   const choices<file_form> inputs(forms().begin(), forms().begin() + 4);

@@ -171,9 +171,9 @@ int examine(const common_options& options) {
 constexpr const char* doctor_details =
     R"(It examines port, permission, holder, baud rate, answers, identity, health, motor, stream, rate,
 loss and USB latency. It reports for each what was measured; where something is wrong also the
-likely cause and what to try. A healthy lidar takes about 8 seconds. No setting is changed, and
-the motor stands at the end. A recording or a file of raw bytes is examined as far as its bytes
-allow; stages that need a device are skipped. The exit code is that of the first stage that
+likely cause and what to try. For a healthy lidar it takes about 8 seconds. No setting is changed,
+and the motor is stopped at the end. A recording or a file of raw bytes is examined as far as its
+bytes allow; stages that need a device are skipped. The exit code is that of the first stage that
 failed; a stage that only warns leaves it at 0.)";
 
 }  // namespace

@@ -32,8 +32,8 @@ default format is csv, a device file such as /dev/ttyUSB0 is read as raw bytes, 
 when everything is written.
 
 time_ns is counted from the first point with --sample-rate. Samples of suspect packets count,
-lost samples do not. jsonl adds partial to each point: its revolution was not seen whole. It is
-therefore written revolution by revolution.)";
+lost samples do not. jsonl adds partial to each point: its revolution is not whole. So the points
+are written revolution by revolution.)";
 
 }  // namespace
 
@@ -44,7 +44,7 @@ verb make_dump_verb() {
     if (word == "pcd") throw bad_value("'pcd' holds revolutions; see the verb scan");
   };
   return {.name = "dump",
-          .summary = "Print points (the default verb)",
+          .summary = "Print points (the default command)",
           .arguments = {source_argument(common)},
           .options = joined(output_row(common), checked(format_row(job->style.format), refuse_pcd),
                             sample_rate_row(job->source.bytes_rate_hz), ending_rows(common),

@@ -70,9 +70,9 @@ int info(const common_options& options) {
 
 constexpr const char* info_details =
     R"(A line for each of: source, model, serial, firmware, hardware, and the settings by the names
-that set takes: sample_rate, freq, direction, constant, idle, protection. A G4 cannot be asked for
-constant and protection, and old firmware does not answer for direction: these are unknown. With
---json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.
+that set takes: sample_rate, freq, direction, constant, idle, protection. A G4 cannot be asked
+for constant and protection, and old firmware does not answer for direction: these are unknown.
+With --json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.
 
 No setting is changed, but a device that is scanning is stopped first; that is reported.)";
 

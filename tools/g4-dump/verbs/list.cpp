@@ -152,10 +152,10 @@ verb make_list_verb() {
   const auto options = std::make_shared<list_options>();
   return {
       .name = "list",
-      .summary = "List serial ports and the lidars behind them",
+      .summary = "List serial ports and the lidars attached to them",
       .options = joined(
-          flag_row("--probe", "Ask for the device at each port with a G4's bridge", options->probe),
-          flag_row("--all", "Ask at every port: sends two commands to any device", options->all),
+          flag_row("--probe", "Query the device at each port with a bridge of a G4", options->probe),
+          flag_row("--all", "Query every port: sends two commands to any device", options->all),
           json_row(*options), output_row(*options), baud_row(*options)),
       .details = list_details,
       .examples = {{"g4-dump list", "The serial ports"},

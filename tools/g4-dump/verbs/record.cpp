@@ -126,7 +126,7 @@ verb make_record_verb() {
                        {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
                         "Record one port for ten minutes"},
                        {"g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",
-                        "Record for days, a file each hour, through unplugs"},
+                        "Record for days, a file each hour, also after unplugs"},
                        {"g4-dump record 'sim:?seed=7' -n 20 room.mcap",
                         "Record 20 scans of a simulated G4"}},
           .run = [options] { return run(*options); }};

@@ -18,12 +18,12 @@ namespace g4_dump {
 namespace {
 
 constexpr const char* replay_details =
-    R"(The recording passes through the same code as the data of a lidar, to the same points with the
-same times. The output is that of g4-dump dump and scan; see there for the columns. With --loop,
-times and revolution numbers go on.
+    R"(The recording passes through the same code as the data of a lidar, so the points and their
+times are the same. The output is that of g4-dump dump and scan; see there for the columns. With
+--loop, times and revolution numbers continue.
 
 --verify writes no points. It checks that the bytes and points of the file are those that were
-recorded: exit code 0, or 10 where they differ, or where the file was cut off and has no digest.
+recorded: exit code 0, or 10 if they differ or the file was cut off and has no digest.
 The points of another kind of processor may differ in their last digits: then only their number
 is compared. Points that another version of g4-dump computed are not compared. Of a recording in
 several files, the bytes of each can be verified.)";

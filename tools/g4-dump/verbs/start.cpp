@@ -69,7 +69,7 @@ verb make_start_verb() {
       {.name = "start",
        .summary = "Start scanning",
        .details =
-           R"(The command ends when a whole revolution has come; the device continues to scan. With power-down
+           R"(The command ends when a whole revolution has arrived; the device continues to scan. With power-down
 protection the device stops 3 s later, because no program sends keep-alives. No setting is
 changed.)",
        .examples = {{"g4-dump start", "Start the only G4"},

@@ -170,8 +170,8 @@ int stats(const stats_options& options) {
 constexpr const char* stats_details =
     R"(The lidar is started, read and stopped. The counts are printed once at the end (after 5 s, or at
 the end of a file), or with --watch in a line each TIME until ^C (then -n counts lines, else
-revolutions). They are since the beginning; points_per_second and scans_per_second are since the
-line before.
+revolutions). They are totals since the start; points_per_second and scans_per_second are for the
+time since the previous line.
 
   seconds             since the start; of a file the time in which it was recorded
   bytes, packets      received; responses are answers to commands
