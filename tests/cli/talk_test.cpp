@@ -119,7 +119,7 @@ TEST_F(Talk, Set_AsJson) {
   const std::vector<std::string> lines = lines_of(done.out);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(json::parse(lines[0]),
-            (json{{"name", "rate"}, {"before", 9000}, {"wanted", 8000}, {"after", 8000}}));
+            (json{{"name", "sample_rate"}, {"before", 9000}, {"wanted", 8000}, {"after", 8000}}));
   EXPECT_EQ(
       json::parse(lines[1]),
       (json{{"name", "protection"}, {"before", nullptr}, {"wanted", false}, {"after", false}}));

@@ -107,9 +107,9 @@ void application::print_events() {
 void application::print_state() {
   if (!verbose_ || now() / second == printed_s_) return;
   printed_s_ = now() / second;
-  const auto log = environment_.device.log();
+  const auto asked = environment_.device.log();
   std::string codes;
-  for (const sim::asked& a : log)
+  for (const sim::asked& a : asked)
     codes += text_of(" %s%02x", a.obeyed ? "" : "!", unsigned{a.code});
   environment_.device.clear_log();
   log(text_of("  device %s%s; lidar %s, %llu revolutions; asked%s",

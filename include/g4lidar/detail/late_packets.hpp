@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "g4lidar/detail/cpp20.hpp"
+
 namespace g4lidar {
 
 /// The run of packets that are too late for the count of samples. *Single thread, never allocates.*
