@@ -294,9 +294,9 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
     return recorded_item{what, found->time_ns, wall_ns, found->data, {}};
   }
   if (!is(topic::events)) return std::nullopt;
-  const auto event = mcap::event_from(record.rest());
-  if (!event || !is_a_time(event->time_ns)) return std::nullopt;
-  return recorded_item{recorded_item::kind::other, event->time_ns, wall_ns, {}, *event};
+  const auto found = mcap::event_from(record.rest());
+  if (!found || !is_a_time(found->time_ns)) return std::nullopt;
+  return recorded_item{recorded_item::kind::other, found->time_ns, wall_ns, {}, *found};
 }
 
 /// Whether reads are missing before this one. Files of other programs may not count: then all are

@@ -148,24 +148,23 @@ constexpr std::uint32_t most_samples_per_second = 1'000'000;
 std::optional<recorded_event> event_from(bytes message) noexcept {
   if (message.size() < 4 || message[1] != 1) return std::nullopt;
   field_reader fields(message.subspan(4));
-  recorded_event event{};
-  event.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
+  recorded_event made{};
+  made.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
   static_cast<void>(fields.take<std::uint64_t>());  // the wall clock is that of the message
-  event.baud = fields.take<std::uint32_t>();
-  event.samples_per_second = fields.take<std::uint32_t>();
-  event.unparsed = fields.take<std::uint32_t>();
-  event.events = fields.take<std::uint32_t>();
-  event.delivers = fields.take<std::uint8_t>() != 0;
+  made.baud = fields.take<std::uint32_t>();
+  made.samples_per_second = fields.take<std::uint32_t>();
+  made.unparsed = fields.take<std::uint32_t>();
+  made.events = fields.take<std::uint32_t>();
+  made.delivers = fields.take<std::uint8_t>() != 0;
   const std::string_view what = fields.take_cdr_text();
-  event.reason = problem_named(fields.take_cdr_text()).value_or(problem::system);
-  event.name = fields.take_cdr_text();
+  made.reason = problem_named(fields.take_cdr_text()).value_or(problem::system);
+  made.name = fields.take_cdr_text();
   const auto* const named = std::ranges::find(event_names, what);
   if (!fields.is_good() || named == event_names.end()) return std::nullopt;
-  event.what = static_cast<recorded_event::kind>(named - event_names.begin());
-  if (event.samples_per_second > most_samples_per_second) return std::nullopt;
-  if (event.what == recorded_event::kind::begun && event.samples_per_second == 0)
-    return std::nullopt;
-  return event.what == recorded_event::kind::sent ? std::nullopt : std::optional(event);
+  made.what = static_cast<recorded_event::kind>(named - event_names.begin());
+  if (made.samples_per_second > most_samples_per_second) return std::nullopt;
+  if (made.what == recorded_event::kind::begun && made.samples_per_second == 0) return std::nullopt;
+  return made.what == recorded_event::kind::sent ? std::nullopt : std::optional(made);
 }
 
 void put_map(record_text& out, const word_map& words) {
@@ -265,13 +264,13 @@ void transport_state::take(const recorded_event& what) noexcept {
 }
 
 recorded_event transport_state::as_event(std::int64_t time_ns) const noexcept {
-  recorded_event event{.what = recorded_event::kind::state, .time_ns = time_ns};
-  event.reason = is_open ? problem::cancelled : problem::gone;
-  event.delivers = delivers;
-  event.baud = baud;
-  event.samples_per_second = samples_per_second;
-  event.name = transport_name();
-  return event;
+  recorded_event made{.what = recorded_event::kind::state, .time_ns = time_ns};
+  made.reason = is_open ? problem::cancelled : problem::gone;
+  made.delivers = delivers;
+  made.baud = baud;
+  made.samples_per_second = samples_per_second;
+  made.name = transport_name();
+  return made;
 }
 
 }  // namespace mcap
