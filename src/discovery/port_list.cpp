@@ -3,8 +3,8 @@
 #include <cerrno>
 
 #include "g4lidar/discovery.hpp"
-#include "port_holder.hpp"
 #include "simulated_ports.hpp"
+#include "transport/port_holder.hpp"
 #include "udev_port.hpp"
 
 namespace g4lidar {

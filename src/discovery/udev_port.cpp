@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "directory.hpp"
+#include "transport/directory.hpp"
 
 namespace g4lidar {
 namespace {

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "core/one_of.hpp"
-#include "discovery/port_holder.hpp"
 #include "transport/custom_baud.hpp"
+#include "transport/port_holder.hpp"
 #include "transport/system_calls.hpp"
 
 namespace g4lidar {

@@ -17,9 +17,9 @@
 #include <utility>
 
 #include "custom_baud.hpp"
-#include "discovery/port_holder.hpp"
 #include "fd_port.hpp"
 #include "opening.hpp"
+#include "port_holder.hpp"
 
 namespace g4lidar {
 namespace {

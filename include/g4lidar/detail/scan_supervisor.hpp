@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/core/request.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "g4lidar/settings.hpp"
 
@@ -23,6 +24,26 @@ enum class scan_need : std::uint8_t {
   restart,  ///< Stop and start: it ended for another reason.
   give_up,  ///< Like restart, but beyond the limit.
 };
+
+/// What a session reports then.
+[[nodiscard]] constexpr notice notice_of(scan_need need) noexcept {
+  switch (need) {
+    case scan_need::spinning_up:
+      return notice::spinning_up;
+    case scan_need::starved:
+      return notice::protection_starved;
+    case scan_need::found_protected:
+      return notice::protection_found_on;
+    case scan_need::restart:
+      return notice::restarted;
+    case scan_need::give_up:
+      return notice::stalled;
+    case scan_need::nothing:
+    case scan_need::keep_alive:
+      break;
+  }
+  return notice::none;
+}
 
 /// Supervises a scan. *Single thread.* (protocol: The stream, power-down protection)
 class scan_supervisor {

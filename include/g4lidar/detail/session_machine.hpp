@@ -286,31 +286,16 @@ class session_machine {
   }
 
   constexpr void on_need(scan_need need, std::int64_t now_ns) noexcept {
-    switch (need) {
-      case scan_need::nothing:
-        return;
-      case scan_need::spinning_up:
-        notice_ = notice::spinning_up;
-        return;
-      case scan_need::keep_alive:
-        watch_.start_sent(now_ns);
-        return channel_.send(command::start);
-      case scan_need::starved:
-        notice_ = notice::protection_starved;
-        starts_ = 0;
-        return start(now_ns);
-      case scan_need::found_protected:
-        notice_ = notice::protection_found_on;
-        break;
-      case scan_need::restart:
-        notice_ = notice::restarted;
-        break;
-      case scan_need::give_up:
-        notice_ = notice::stalled;
-        scanning_ = false;
-        break;
+    if (need == scan_need::nothing) return;
+    if (need == scan_need::keep_alive) {
+      watch_.start_sent(now_ns);
+      return channel_.send(command::start);
     }
+    notice_ = notice_of(need);
+    if (need == scan_need::spinning_up) return;
     starts_ = 0;
+    if (need == scan_need::starved) return start(now_ns);
+    if (need == scan_need::give_up) scanning_ = false;
     surprise_ = false;
     drain(now_ns);
   }
