@@ -2,7 +2,8 @@
 # cmake -DROOT=<project> -P check_interface.cmake
 #
 # The rules for public headers: lidar.hpp includes few headers; files for users (README, docs,
-# examples, tests/install) do not name anything in detail/; no public header has a test as friend.
+# examples, tests/install) do not name anything in detail/, and those for developers (docs/design,
+# CONTRIBUTING) do not include it; no public header has a test as friend.
 
 cmake_minimum_required(VERSION 3.22)
 set(include "${ROOT}/include")
@@ -29,16 +30,20 @@ if(count GREATER most_of_lidar)
   list(APPEND faults "lidar.hpp stands for ${count} headers, at most ${most_of_lidar}: ${text}")
 endif()
 
-# ---- files for users ---------------------------------------------------------------------------
-file(
-  GLOB_RECURSE seen
-  "${ROOT}/examples/*.[ch]pp" "${ROOT}/tests/install/*" "${ROOT}/tests/documents/wrappers/*"
-)
+# ---- files for users and developers ------------------------------------------------------------
+file(GLOB_RECURSE seen "${ROOT}/examples/*" "${ROOT}/tests/install/*" "${ROOT}/tests/documents/wrappers/*")
 file(GLOB pages "${ROOT}/README.md" "${ROOT}/docs/*.md")
 foreach(file IN LISTS seen pages)
-  file(STRINGS "${file}" lines REGEX "g4lidar/detail/|detail::")
+  file(STRINGS "${file}" lines REGEX "(^|[^a-z_])detail(/[a-z_/]+\\.hpp|::)")
   if(lines)
     list(APPEND faults "${file} names something of detail/: ${lines}")
+  endif()
+endforeach()
+file(GLOB pages "${ROOT}/docs/design/*.md" "${ROOT}/CONTRIBUTING.md")
+foreach(file IN LISTS pages)
+  file(STRINGS "${file}" lines REGEX "include *[<\"].*detail/")
+  if(lines)
+    list(APPEND faults "${file} includes something of detail/: ${lines}")
   endif()
 endforeach()
 
