@@ -7,10 +7,8 @@
 #include <new>
 #include <utility>
 
-#include "core/saturating.hpp"
 #include "g4lidar/export/ros_messages.hpp"
 #include "g4lidar/grid.hpp"
-#include "g4lidar/wall_clock.hpp"
 
 namespace g4lidar {
 namespace {
@@ -54,12 +52,8 @@ recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_vi
     : options_(options),
       first_path_(path),
       file_(std::make_unique<mcap::mcap_file>(std::move(first))),
-      ranges_(options.scan_bins),
-      ahead_ns_(wall_clock().ahead().count()) {
-  if (options.packed == packing::zstd) {
-    packer_.emplace();
-    packed_.resize(mcap::packed_bound(std::size_t{1} << 20U));
-  }
+      ranges_(options.scan_bins) {
+  if (options.packed == packing::zstd) packer_.emplace(std::size_t{1} << 20U);
   counts_.files = 1;
 }
 
@@ -70,22 +64,14 @@ result<void> recording_writer::file_writer::guarded(Work work) noexcept {
   if (is_closed_) return {};
   try {
     auto done = work();
-    keep_trouble(done);
+    trouble_.add(done);
     return done;
   } catch (const std::bad_alloc&) {
     result<void> failed = failure(task::writing, problem::system, path(), ENOMEM);
     lose_chunk();
-    keep_trouble(failed);
+    trouble_.add(failed);
     return failed;
   }
-}
-
-void recording_writer::file_writer::keep_trouble(const result<void>& done) noexcept {
-  if (!done && !std::exchange(is_in_trouble_, true)) trouble_ = done.error();
-}
-
-std::optional<error> recording_writer::file_writer::take_error() noexcept {
-  return std::exchange(trouble_, std::nullopt);
 }
 
 /// One message of about `size` bytes, which `put` writes.
@@ -95,21 +81,18 @@ void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::siz
   last_ns_ = std::max(last_ns_, time_ns);
   static_cast<void>(guarded([&]() -> result<void> {
     result<void> ended;
-    if (!chunk_.is_empty() && (is_due(time_ns) || !chunk_.has_room_for(size + message_room))) {
+    const bool is_due = covered_.chunk_age_ns(time_ns) >= ns_of(options_.chunk_time);
+    if (!chunk_.is_empty() && (is_due || !chunk_.has_room_for(size + message_room))) {
       ended = end_chunk();
     }
     if (chunk_.is_empty()) begin_chunk(time_ns);
     std::uint32_t& sequence = sequences_[mcap::open_chunk::index_of(id)];
-    chunk_last_ns_ = std::max(chunk_last_ns_, time_ns);
-    chunk_.begin_message(id, sequence++, saturating_add(time_ns, ahead_ns_));
+    covered_.add(time_ns);
+    chunk_.begin_message(id, sequence++, wall_.at(time_ns));
     put(chunk_.text());
     chunk_.end_message();
     return ended;
   }));
-}
-
-bool recording_writer::file_writer::is_due(std::int64_t time_ns) const noexcept {
-  return saturating_sub(time_ns, chunk_ns_) >= ns_of(options_.chunk_time);
 }
 
 void recording_writer::file_writer::put_bytes(direction way, bytes data,
@@ -125,8 +108,7 @@ void recording_writer::file_writer::put_bytes(direction way, bytes data,
     put(is_from_device ? topic::from_device : topic::to_device, time_ns, piece.size(),
         [&](mcap::record_text& out) {
           mcap::put_recorded_bytes(out, piece, time_ns);
-          chunk_payload_.add(way, piece);
-          chunk_bytes_ += piece.size();
+          covered_.add(way, piece);
         });
   }
 }
@@ -138,7 +120,7 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
   if (what.what !=
       recorded_event::kind::state) {  // each chunk begins with one, of the state before
     put(topic::events, what.time_ns, 0,
-        [&](mcap::record_text& out) { mcap::put_event(out, what, ahead_ns_); });
+        [&](mcap::record_text& out) { mcap::put_event(out, what, wall_.ahead_ns()); });
   }
   transport_.take(what);
 }
@@ -149,8 +131,7 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   fill_grid(revolution.points, ranges_, {.to = frame::robot});
   const std::int64_t first_ns = revolution.points.front().time_ns;
   put(topic::scan, last_ns_, ranges_.size() * sizeof(float), [&](mcap::record_text& out) {
-    put_laser_scan(ranges_,
-                   {saturating_add(first_ns, ahead_ns_), options_.frame_id, revolution.duration_ns},
+    put_laser_scan(ranges_, {wall_.at(first_ns), options_.frame_id, revolution.duration_ns},
                    out.memory());
   });
 }
@@ -165,34 +146,25 @@ void recording_writer::file_writer::device(const recorded_device& known) noexcep
   }));
 }
 
-void recording_writer::file_writer::set_wall_clock(std::int64_t ahead_ns) noexcept {
-  is_ahead_given_ = true;
-  ahead_ns_ = ahead_ns;
-}
-
 // ---- chunks and files ---------------------------------------------------------------------------
 
 /// Each begins with everything that a reader needs without the earlier ones.
 void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
-  if (!is_ahead_given_) ahead_ns_ = wall_clock().ahead().count();
-  if (!file_->has_chunks()) file_ns_ = time_ns;
-  chunk_ns_ = chunk_last_ns_ = time_ns;
-  chunk_bytes_ = 0;
+  wall_.update();
+  covered_.begin_chunk(time_ns, !file_->has_chunks());
   chunk_.put_channels(options_.topic);
   if (!transport_.is_known) return;
   chunk_.begin_message(topic::events, sequences_[mcap::open_chunk::index_of(topic::events)]++,
-                       saturating_add(time_ns, ahead_ns_));
-  mcap::put_event(chunk_.text(), transport_.as_event(time_ns), ahead_ns_);
+                       wall_.at(time_ns));
+  mcap::put_event(chunk_.text(), transport_.as_event(time_ns), wall_.ahead_ns());
   chunk_.end_message();
 }
 
 result<bytes> recording_writer::file_writer::pack() {
   if (!packer_) return bytes{};
-  const bytes records = chunk_.records();
-  packed_.resize(std::max(packed_.size(), mcap::packed_bound(records.size())));
-  const std::size_t size = packer_->pack(records, packed_);
-  if (size == 0) return failure(task::writing, problem::system, path(), ENOMEM);
-  return bytes(packed_).first(size);
+  const bytes packed = packer_->pack(chunk_.records());
+  if (packed.empty()) return failure(task::writing, problem::system, path(), ENOMEM);
+  return packed;
 }
 
 /// Writes the chunk to the file, or counts it as lost; empties it in any case.
@@ -204,7 +176,7 @@ result<void> recording_writer::file_writer::end_chunk() {
     const std::uint64_t after = file_->closed_size() + 2 * chunk_.records().size();
     const bool is_full = options_.rotate_bytes != 0 && after > options_.rotate_bytes;
     const std::int64_t rotate_ns = ns_of(options_.rotate_time);
-    const bool is_old = rotate_ns != 0 && saturating_sub(chunk_last_ns_, file_ns_) >= rotate_ns;
+    const bool is_old = rotate_ns != 0 && covered_.length_ns() >= rotate_ns;
     if (file_->has_chunks() && (is_full || is_old)) rotated = rotate();
   }
   result<void> added = packed ? file_->add(chunk_, *packed) : tl::unexpected(packed.error());
@@ -214,17 +186,15 @@ result<void> recording_writer::file_writer::end_chunk() {
   }
   chunk_.clear();
   ++counts_.chunks;
-  file_payload_ = chunk_payload_;
-  file_last_ns_ = chunk_last_ns_;
-  if (rotated) is_in_trouble_ = false;
+  covered_.keep_chunk();
+  if (rotated) trouble_.end();
   return rotated;
 }
 
 void recording_writer::file_writer::lose_chunk() noexcept {
   chunk_.clear();
   ++counts_.chunks_lost;
-  counts_.bytes_lost += std::exchange(chunk_bytes_, 0);
-  chunk_payload_ = file_payload_;  // it covers what is in the file
+  counts_.bytes_lost += covered_.lose_chunk();
 }
 
 /// The new file is created first: if that fails, the old one is continued.
@@ -235,8 +205,7 @@ result<void> recording_writer::file_writer::rotate() {
   ++counts_.files;
   closed_bytes_ += file_->size();
   file_ = std::make_unique<mcap::mcap_file>(std::move(*next));
-  file_ns_ = chunk_ns_;
-  chunk_payload_ = payload_of(chunk_.records());
+  covered_.begin_file(payload_of(chunk_.records()));
   if (ended && device_)
     ended = file_->add_metadata(mcap::device_metadata, mcap::words_of(*device_));
   return ended;
@@ -254,9 +223,9 @@ std::string recording_writer::file_writer::next_path() const {
 }
 
 result<void> recording_writer::file_writer::end_file(bool is_only_one) {
-  mcap::word_map words{{"payload", hexadecimal(file_payload_.value())},
-                       {"first_ns", std::to_string(file_ns_)},
-                       {"last_ns", std::to_string(file_last_ns_)}};
+  mcap::word_map words{{"payload", hexadecimal(covered_.payload().value())},
+                       {"first_ns", std::to_string(covered_.first_ns())},
+                       {"last_ns", std::to_string(covered_.last_ns())}};
   if (is_only_one && points_.count() > 0) {  // they continue from file to file
     words.emplace_back("points", hexadecimal(points_.value()));
     words.emplace_back("point_count", std::to_string(points_.count()));

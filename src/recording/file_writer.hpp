@@ -8,14 +8,56 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/saturating.hpp"
+#include "coverage.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/wall_clock.hpp"
 #include "mcap_file.hpp"
 #include "messages.hpp"
 #include "packer.hpp"
 
 namespace g4lidar {
+
+/// The wall clock minus the clock of the transport.
+class wall_offset {
+ public:
+  /// It is given: the transport has a time of its own.
+  void set(std::int64_t ahead_ns) noexcept {
+    is_given_ = true;
+    ahead_ns_ = ahead_ns;
+  }
+  /// Measures it, unless it is given.
+  void update() noexcept {
+    if (!is_given_) ahead_ns_ = wall_clock().ahead().count();
+  }
+  [[nodiscard]] std::int64_t ahead_ns() const noexcept { return ahead_ns_; }
+  /// The wall clock at this time of the transport.
+  [[nodiscard]] std::int64_t at(std::int64_t time_ns) const noexcept {
+    return saturating_add(time_ns, ahead_ns_);
+  }
+
+ private:
+  std::int64_t ahead_ns_ = wall_clock().ahead().count();
+  bool is_given_ = false;
+};
+
+/// The first failure of a series, until the caller takes it.
+class trouble_report {
+ public:
+  void add(const result<void>& done) noexcept {
+    if (!done && !std::exchange(is_in_series_, true)) first_ = done.error();
+  }
+  /// The next failure is a new one.
+  void end() noexcept { is_in_series_ = false; }
+  [[nodiscard]] std::optional<error> take() noexcept { return std::exchange(first_, std::nullopt); }
+
+ private:
+  std::optional<error> first_;
+  bool is_in_series_ = false;
+};
 
 /// *Single thread.*
 class recording_writer::file_writer {
@@ -27,11 +69,11 @@ class recording_writer::file_writer {
   void scan(const g4lidar::scan& revolution) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
-  void set_wall_clock(std::int64_t ahead_ns) noexcept;
+  void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
   result<void> flush() noexcept;
   result<void> close() noexcept;
 
-  [[nodiscard]] std::optional<error> take_error() noexcept;
+  [[nodiscard]] std::optional<error> take_error() noexcept { return trouble_.take(); }
   [[nodiscard]] recording_counts counts() const noexcept;
   [[nodiscard]] recorded_digest digest() const noexcept;
   [[nodiscard]] std::string_view path() const noexcept { return file_->path(); }
@@ -47,40 +89,29 @@ class recording_writer::file_writer {
   [[nodiscard]] result<bytes> pack();
   [[nodiscard]] result<void> rotate();
   [[nodiscard]] result<void> end_file(bool is_only_one);
-  [[nodiscard]] bool is_due(std::int64_t time_ns) const noexcept;
   [[nodiscard]] std::string next_path() const;
   void lose_chunk() noexcept;
-  void keep_trouble(const result<void>& done) noexcept;
 
   recording_options options_;
   std::string first_path_;
   std::unique_ptr<mcap::mcap_file> file_;
   mcap::open_chunk chunk_;
   std::optional<mcap::packer> packer_;
-  std::vector<std::uint8_t> packed_;
   std::vector<float> ranges_;
   bool is_closed_ = false;
 
   mcap::transport_state transport_;
   std::optional<recorded_device> device_;
   std::array<std::uint32_t, mcap::topic_count> sequences_{};
-  std::int64_t ahead_ns_ = 0;  // of the wall clock
-  bool is_ahead_given_ = false;
-  std::int64_t chunk_ns_ = 0;       // when the chunk was begun
-  std::int64_t file_ns_ = 0;        // when the first chunk of the file was
-  std::int64_t chunk_last_ns_ = 0;  // the latest time in it
-  std::int64_t file_last_ns_ = 0;   // and in the chunks before it
-  std::int64_t last_ns_ = 0;        // of all
-  std::uint64_t chunk_bytes_ = 0;   // from and to the device
+  wall_offset wall_;
+  coverage covered_;
+  std::int64_t last_ns_ = 0;  // of all items
 
   recording_counts counts_;
   std::uint64_t closed_bytes_ = 0;  // of the files before this one
-  payload_digest payload_;
-  payload_digest file_payload_;   // of this file
-  payload_digest chunk_payload_;  // and of the open chunk
+  payload_digest payload_;          // of all files
   point_digest points_;
-  std::optional<error> trouble_;
-  bool is_in_trouble_ = false;
+  trouble_report trouble_;
 };
 
 }  // namespace g4lidar

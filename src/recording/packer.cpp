@@ -26,17 +26,17 @@ constexpr std::size_t first_piece = std::size_t{256} << 10U;
 
 }  // namespace
 
-std::size_t packed_bound(std::size_t size) noexcept { return ZSTD_compressBound(size); }
+packer::packer(std::size_t usual_size)
+    : context_(ZSTD_createCCtx(), [](void* of) { ZSTD_freeCCtx(static_cast<ZSTD_CCtx*>(of)); }),
+      packed_(ZSTD_compressBound(usual_size)) {}
 
-packer::packer()
-    : context_(ZSTD_createCCtx(), [](void* of) { ZSTD_freeCCtx(static_cast<ZSTD_CCtx*>(of)); }) {}
-
-std::size_t packer::pack(bytes data, std::span<std::uint8_t> out) noexcept {
+bytes packer::pack(bytes data) {
   auto* const context = static_cast<ZSTD_CCtx*>(context_.get());
-  if (context == nullptr) return 0;
+  if (context == nullptr) return {};
+  packed_.resize(std::max(packed_.size(), ZSTD_compressBound(data.size())));
   const std::size_t size =
-      ZSTD_compressCCtx(context, out.data(), out.size(), data.data(), data.size(), level);
-  return ZSTD_isError(size) != 0 ? 0 : size;
+      ZSTD_compressCCtx(context, packed_.data(), packed_.size(), data.data(), data.size(), level);
+  return ZSTD_isError(size) != 0 ? bytes() : bytes(packed_).first(size);
 }
 
 unpacker::unpacker()
@@ -75,9 +75,8 @@ bool has_zstd() noexcept { return false; }
 
 namespace mcap {
 
-std::size_t packed_bound(std::size_t size) noexcept { return size; }
-packer::packer() : context_(nullptr, [](void*) {}) {}
-std::size_t packer::pack(bytes, std::span<std::uint8_t>) noexcept { return 0; }
+packer::packer(std::size_t) : context_(nullptr, [](void*) {}) {}
+bytes packer::pack(bytes) { return {}; }
 unpacker::unpacker() : context_(nullptr, [](void*) {}) {}
 bool unpacker::unpack(bytes, std::size_t, std::vector<std::uint8_t>&) { return false; }
 

@@ -12,21 +12,20 @@
 
 namespace g4lidar::mcap {
 
-/// The maximum size of compressed bytes. *Pure.*
-[[nodiscard]] std::size_t packed_bound(std::size_t size) noexcept;
-
 /// The state of zstd; null without zstd.
 using zstd_context = std::unique_ptr<void, void (*)(void*)>;
 
 /// *Allocates on open.*
 class packer {
  public:
-  packer();
-  /// Compresses to `out`, which has room for packed_bound(); returns the size, 0 on failure.
-  [[nodiscard]] std::size_t pack(bytes data, std::span<std::uint8_t> out) noexcept;
+  /// For data of at most `usual_size` bytes it allocates only here.
+  explicit packer(std::size_t usual_size);
+  /// The compressed bytes, valid until the next call; empty on failure. Throws only std::bad_alloc.
+  [[nodiscard]] bytes pack(bytes data);
 
  private:
   zstd_context context_;
+  std::vector<std::uint8_t> packed_;
 };
 
 /// Grows with the actual output, and not with the claimed size.
