@@ -56,26 +56,28 @@ result<void> live_driver::advance(std::int64_t deadline_ns) {
 result<void> live_driver::round(std::int64_t deadline_ns) {
   follow_delivery();
   if (auto looked = look_if_due(); !looked) return looked;
-  if (auto served = serve(); !served) return served;
+  const auto has_outcome = serve();
+  if (!has_outcome) return tl::unexpected(has_outcome.error());
   if (digest()) return {};
   // A caller that waits for an outcome gets it first.
-  const bool hurry = std::exchange(has_outcome_, false);
-  const std::int64_t until = hurry ? now_ns() : std::min(deadline_ns, next_deadline_ns());
+  const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, next_deadline_ns());
   if (auto got = receive(until); !got) return got;
   if (pipeline_.unparsed().empty() && is_cut_off()) cut();
   if (digest()) return {};
   // An event loop may not call again before bytes arrive: everything must be sent now.
-  auto served = serve();
-  has_outcome_ = false;
-  return served;
+  if (auto served = serve(); !served) return tl::unexpected(served.error());
+  return {};
 }
 
-/// Handles the results of events: session events, the next step of the setup, commands.
-result<void> live_driver::serve() {
-  if (session_.has_nothing() && setup_.is_done()) return {};  // the usual case
-  if (auto done = take_notice(); !done) return done;
-  if (auto gone_on = go_on_with_setup(); !gone_on) return gone_on;
-  return send_commands();
+/// Handles the results of events: session events, the next step of the setup, commands. Returns
+/// whether there was an outcome.
+result<bool> live_driver::serve() {
+  if (session_.has_nothing() && setup_.is_done()) return false;  // the usual case
+  if (auto done = take_notice(); !done) return tl::unexpected(done.error());
+  const auto has_outcome = go_on_with_setup();
+  if (!has_outcome) return has_outcome;
+  if (auto sent = send_commands(); !sent) return tl::unexpected(sent.error());
+  return has_outcome;
 }
 
 result<void> live_driver::send_commands() {
@@ -149,7 +151,9 @@ bool live_driver::digest() {
 /// Packets of a device that is being stopped are discarded. A scan that continues after any
 /// interruption begins a new stream of points.
 void live_driver::follow_delivery() {
-  const bool wanted = stage_ >= stage::preparing && session_.is_scanning();
+  const bool may_begin = stage_ >= stage::preparing && stage_ != stage::stopping;
+  const bool wanted =
+      session_.is_scanning() && (may_begin || (stage_ == stage::stopping && pipeline_.delivers()));
   if (wanted == pipeline_.delivers()) return;
   pipeline_.deliver(wanted);
   if (wanted) {
@@ -184,7 +188,6 @@ void live_driver::record(recorded_event::kind what) {
 }
 
 result<void> live_driver::take_notice() {
-  has_streamed_ = has_streamed_ || pipeline_.has_begun();
   switch (session_.noticed()) {
     case notice::none:
       return {};
@@ -196,14 +199,14 @@ result<void> live_driver::take_notice() {
       break;
     case notice::protection_found_on:
       report(lidar_event::kind::protection_found_on);
-      if (!set_up_again()) return tl::unexpected(fallen_silent());
+      if (wants_scan_ && !set_up_again()) return tl::unexpected(fallen_silent());
       break;
     case notice::spinning_up:
       report(lidar_event::kind::spinning_up);
       return {};
     case notice::restarted:
       report(lidar_event::kind::restarted);
-      if (!set_up_again()) return tl::unexpected(fallen_silent());
+      if (wants_scan_ && !set_up_again()) return tl::unexpected(fallen_silent());
       break;
     case notice::stalled:
       return tl::unexpected(fallen_silent());
@@ -214,7 +217,7 @@ result<void> live_driver::take_notice() {
 
 std::int64_t live_driver::next_deadline_ns() const noexcept {
   if (stage_ == stage::closed) return never_ns;
-  if (stage_ == stage::lost) return reconnection_.next_attempt_ns;
+  if (stage_ == stage::lost) return reconnection_.next_attempt_ns();
   if (stage_ >= stage::breaking || !pipeline_.is_empty() || !session_.has_nothing())
     return now_ns();
   std::int64_t next = session_.next_look_ns();
@@ -246,26 +249,25 @@ result<void> live_driver::start() {
   if (is_scanning()) return {};
   if (auto ready = run_setup(); !ready) return ready;
   const bool goes_on = stage_ == stage::scanning && session_.is_scanning();
-  goal_ = goal::scanning;
+  wants_scan_ = true;
   if (goes_on) return {};  // a start that was woken, and is complete now
   pipeline_.drop_scan();
-  set_ups_ = 0;
+  setup_.forgive();
   add_start();
   const auto started = run_setup();
   // If it is woken, the next calls continue it, also next_scan().
-  if (!started && started.error() != problem::cancelled) goal_ = goal::idle;
+  if (!started && started.error() != problem::cancelled) wants_scan_ = false;
   return started;
 }
 
 result<void> live_driver::stop() {
-  if (goal_ == goal::scanning) goal_ = goal::idle;
+  wants_scan_ = false;
   if (stage_ == stage::lost) return {};  // it is stopped after the reconnect
   if (auto ready = run_setup(); !ready) return ready;
   pipeline_.drop_scan();
   // A stop that was woken has continued meanwhile.
-  if (std::exchange(goal_, goal::stopping) != goal::stopping) add_step(setup_step::stop);
+  if (std::exchange(stage_, stage::stopping) != stage::stopping) add_step(setup_step::stop);
   if (auto stopped = run_setup(); !stopped) return stopped;
-  goal_ = goal::idle;
   flush();
   pipeline_.end();
   stage_ = stage::idle;
@@ -282,24 +284,24 @@ void live_driver::release() noexcept {
 }
 
 result<answer> live_driver::ask(const request& wanted, while_scanning how) {
-  const bool goes_on = woken_question_ == wanted && session_.is_busy();
-  woken_question_.reset();
+  const bool goes_on = question_.was_woken(wanted) && session_.is_busy();
   if (!goes_on) {
+    question_.forget_woken();
     if (auto begun = begin_question(wanted, how); !begun) return tl::unexpected(begun.error());
   }
-  std::optional<outcome> found;
-  asked_ = &found;
+  question_.begin(wanted);
   auto done = result<void>();
-  while (done && !found) {
+  while (done && question_.is_waiting()) {
     pipeline_.drop_scan();
     done = step(never_ns);
   }
-  asked_ = nullptr;
   const bool is_woken = !done && done.error() == problem::cancelled;
-  if (!found || (!done && !is_woken)) {
-    if (is_woken) woken_question_ = wanted;
+  if (is_woken && question_.is_waiting()) {
+    question_.leave();
     return tl::unexpected(done.error());
   }
+  const auto found = question_.end();
+  if (!found || (!done && !is_woken)) return tl::unexpected(done.error());
   if (is_woken) connection_.wake_next_call();  // this call has its answer
   if (found->how != verdict::answered) return tl::unexpected(error_of(*found));
   if (!setup_.is_done()) {  // after a restart
@@ -323,14 +325,13 @@ result<void> live_driver::begin_question(const request& wanted, while_scanning h
 
 result<void> live_driver::can_read() const noexcept {
   if (stage_ == stage::closed) return tl::unexpected(lost_);
-  if (goal_ != goal::scanning)
-    return failure(task::reading, problem::not_scanning, connection_.name());
-  return {};
+  if (wants_scan_) return {};
+  return failure(task::reading, problem::not_scanning, connection_.name());
 }
 
 void live_driver::add_to(lidar_counts& counts) const noexcept {
   counts.command_retries = session_.retries();
-  counts.reconnects = reconnection_.count;
+  counts.reconnects = reconnection_.count();
 }
 
 }  // namespace g4lidar

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "feeder.hpp"
+#include "open_question.hpp"
+#include "reconnection.hpp"
 #include "setup_sequence.hpp"
 
 namespace g4lidar {
@@ -19,10 +21,11 @@ namespace g4lidar {
 ///     lost         connects again, with growing pauses   identifying
 ///     identifying  queries the identity                  idle; preparing, if it was scanning before;
 ///                                                        lost, if it is another device
-///     idle         the requests of the caller            preparing, by start()
-///     preparing    health, settings, start               scanning
-///     scanning     reads                                 idle, by stop(); preparing, if the device
+///     idle         the requests of the caller            preparing, by start(); stopping, by stop()
+///     preparing    health, settings, start               scanning; idle, if the device refuses
+///     scanning     reads                                 stopping, by stop(); preparing, if the device
 ///                                                        seems to have rebooted
+///     stopping     stop; it may be woken                 idle, by stop(); preparing, by start()
 ///     breaking     decodes the received bytes            broken
 ///     broken       waits until the last scan is taken    lost; closed, if reconnecting is off
 ///
@@ -39,10 +42,10 @@ class live_driver final : public feeder {
 
   [[nodiscard]] result<void> can_read() const noexcept override;
   [[nodiscard]] bool has_motor_on() const noexcept override {
-    return stage_ == stage::scanning || stage_ == stage::preparing;
+    return stage_ >= stage::preparing && stage_ <= stage::stopping;
   }
   [[nodiscard]] bool is_scanning() const noexcept override {
-    return stage_ == stage::scanning && goal_ == goal::scanning;  // otherwise a stop was woken
+    return stage_ == stage::scanning && wants_scan_;  // otherwise a stop was woken
   }
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept override;
   [[nodiscard]] std::int64_t rest_until_ns() const noexcept override;
@@ -57,28 +60,9 @@ class live_driver final : public feeder {
     idle,
     preparing,
     scanning,
+    stopping,
     breaking,
     broken
-  };
-  /// The state that the caller wants.
-  enum class goal : std::uint8_t {
-    idle,
-    stopping,  ///< A stop was added to the setup sequence, and may have been woken.
-    scanning,
-  };
-  /// Why the setup sequence runs.
-  enum class setup_cause : std::uint8_t {
-    caller,
-    restarted,  ///< The device may have lost its settings.
-  };
-  /// The search for a lost lidar.
-  struct reconnection {
-    std::int64_t next_attempt_ns = 0;
-    std::int64_t backoff_ns = 0;
-    std::uint64_t count = 0;
-    bool is_under_way = false;  ///< Connected again, but the previous state is not restored yet.
-    /// The number of another lidar that answered instead of the lost one: it is reported once.
-    std::optional<decltype(device_information::serial_digits)> refused_lidar{};
   };
 
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
@@ -94,7 +78,7 @@ class live_driver final : public feeder {
 
   // One round.
   [[nodiscard]] result<void> round(std::int64_t deadline_ns);
-  [[nodiscard]] result<void> serve();
+  [[nodiscard]] result<bool> serve();
   [[nodiscard]] result<void> send_commands();
   [[nodiscard]] result<void> look_if_due();
   [[nodiscard]] result<void> take_notice();
@@ -106,6 +90,7 @@ class live_driver final : public feeder {
   void record(recorded_event::kind what);
   [[nodiscard]] reading how_to_read() const noexcept;
   [[nodiscard]] bool is_cut_off() const noexcept;
+  [[nodiscard]] bool is_known() const noexcept { return information_.model == model_g4; }
   [[nodiscard]] bool is_waiting_for_answer() const noexcept {
     return session_.is_busy() || !session_.is_scanning();
   }
@@ -115,7 +100,7 @@ class live_driver final : public feeder {
   void add_start();
   [[nodiscard]] bool set_up_again();
   [[nodiscard]] result<void> run_setup();
-  [[nodiscard]] result<void> go_on_with_setup();
+  [[nodiscard]] result<bool> go_on_with_setup();
   [[nodiscard]] result<void> finish_step(const outcome& done);
   [[nodiscard]] result<void> identified(const device_information& who);
   [[nodiscard]] result<void> give_up(const error& why);
@@ -133,18 +118,12 @@ class live_driver final : public feeder {
   lidar_options options_;
   session session_;
   setup_sequence setup_;
-  stage stage_ = stage::closed;
-  goal goal_ = goal::idle;
-  setup_cause cause_ = setup_cause::caller;
-  bool is_known_ = false;      // its identity is known
-  bool has_streamed_ = false;  // a whole revolution was complete since the start
-  bool has_outcome_ = false;   // an outcome was taken in this round
+  open_question question_;
   reconnection reconnection_;
-  int set_ups_ = 0;                           // consecutive setups of scans that ended early
+  stage stage_ = stage::closed;
+  bool wants_scan_ = false;                   // the caller does, also while the lidar is lost
   error lost_{task::reading, problem::gone};  // why it is lost or closed
   std::optional<error> refused_;  // why a setup ended, although the connection works; see advance()
-  std::optional<outcome>* asked_ = nullptr;  // of the waiting ask()
-  std::optional<request> woken_question_;    // of an ask() that was woken and continues
 };
 
 }  // namespace g4lidar

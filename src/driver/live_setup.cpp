@@ -6,38 +6,25 @@
 #include "live_driver.hpp"
 
 namespace g4lidar {
-namespace {
-
-/// The limit of consecutive setups of a device whose scans are shorter than this, or that sends no
-/// packet.
-constexpr int max_set_ups = 3;
-constexpr int max_silent_set_ups = 1;
-constexpr std::int64_t long_scan_ns = 6'000'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 void live_driver::add_step(setup_step step) {
-  woken_question_.reset();
+  question_.forget_woken();
   setup_.add(step);
 }
 
 void live_driver::add_start() {
   stage_ = stage::preparing;
-  woken_question_.reset();
+  question_.forget_woken();
   setup_.add_start(options_);
 }
 
 /// The device ended a scan by itself. If it rebooted, it has lost its settings. Returns false if
 /// this happens repeatedly.
 bool live_driver::set_up_again() {
-  const std::int64_t length_ns = session_.scan_length_ns();
-  const bool is_short = length_ns < long_scan_ns;
-  if (is_short && set_ups_ >= (length_ns > 0 ? max_set_ups : max_silent_set_ups)) return false;
-  set_ups_ = is_short ? set_ups_ + 1 : 1;
-  setup_.clear();
-  cause_ = setup_cause::restarted;
-  add_step(setup_step::stop);
-  add_start();
+  if (!setup_.begin_again(options_, session_.scan_length_ns())) return false;
+  question_.forget_woken();
+  stage_ = stage::preparing;
   return true;
 }
 
@@ -57,33 +44,37 @@ result<void> live_driver::run_setup() {
   return {};
 }
 
-/// Takes the outcome of the last command, and sends the next.
-result<void> live_driver::go_on_with_setup() {
+/// Takes the outcome of the last command, and begins the next. Returns whether there was one.
+result<bool> live_driver::go_on_with_setup() {
+  bool has_outcome = false;
   while (true) {
     if (const auto done = session_.finished()) {
-      has_outcome_ = true;
+      has_outcome = true;
       learn_rate(*done);
-      if (!setup_.is_done() && asked_ == nullptr) {
-        if (auto good = finish_step(*done); !good) return good;
+      if (!setup_.is_done() && !question_.is_open()) {
+        if (auto good = finish_step(*done); !good) return tl::unexpected(good.error());
       } else {
         remember(*done);  // for every request, also if its caller no longer waits
         restore_settings(*done);
       }
-      if (asked_ != nullptr) *asked_ = done;
+      question_.answer(*done);
     }
-    if (asked_ != nullptr || setup_.is_done() || session_.is_busy()) return {};
+    if (question_.is_open() || setup_.is_done() || session_.is_busy()) return has_outcome;
     if (setup_.next() == setup_step::start) {
       begin_points();
-      has_streamed_ = has_streamed_ && cause_ == setup_cause::restarted;
+      if (!setup_.is_again()) pipeline_.begin_scans();
     }
     const request next = request_of(setup_.next(), options_);
     const auto refused = session_.begin(next, now_ns());
     if (refused == refusal::bad_setting) {
       const error_context about = error_context(connection_.name()).add(next);
-      return give_up({task::configuring, problem::bad_setting, about});
+      if (auto given = give_up({task::configuring, problem::bad_setting, about}); !given) {
+        return tl::unexpected(given.error());
+      }
+      return has_outcome;
     }
-    if (refused) return {};  // the session is busy with its own recovery
-    if (session_.is_busy()) return {};
+    if (refused) return has_outcome;  // the session is busy with its own recovery
+    if (session_.is_busy()) return has_outcome;
   }
 }
 
@@ -122,8 +113,8 @@ void live_driver::remember(const outcome& done) {
 /// The device was restarted by the caller, or perhaps by itself: its scan was not resumed at once.
 void live_driver::restore_settings(const outcome& done) {
   const bool is_wanted = done.asked.what == ask::restart;
-  if (goal_ != goal::scanning || (!is_wanted && done.starts <= 1)) return;
-  if (is_wanted) set_ups_ = 0;  // requests of the caller are not limited
+  if (!wants_scan_ || (!is_wanted && done.starts <= 1)) return;
+  if (is_wanted) setup_.forgive();  // requests of the caller are not limited
   static_cast<void>(set_up_again());
 }
 
@@ -153,16 +144,15 @@ result<void> live_driver::finish_step(const outcome& done) {
 
 /// A device that answers, but cannot be set up, is not lost: only the request fails.
 result<void> live_driver::give_up(const error& why) {
-  setup_.clear();
-  const bool is_again = cause_ == setup_cause::restarted;
+  const bool is_again = setup_.is_again();
   const bool is_silent = why == problem::silence || why == problem::timeout;
+  setup_.clear();
   if (is_again && is_silent) return tl::unexpected(fallen_silent());
   const bool of_use = stage_ == stage::preparing && why != problem::silence;
-  const bool goes_on = goal_ == goal::scanning && (reconnection_.is_under_way || is_again);
+  const bool goes_on = wants_scan_ && (reconnection_.is_under_way() || is_again);
   if (!of_use || goes_on) return tl::unexpected(why);
   stage_ = stage::idle;
-  goal_ = goal::idle;
-  cause_ = setup_cause::caller;
+  wants_scan_ = false;
   refused_ = why;
   return {};
 }
@@ -173,18 +163,17 @@ result<void> live_driver::identified(const device_information& who) {
         error_context(connection_.name()).add(", model ").add(std::uint32_t{who.model});
     return failure(task::opening, problem::other_device, model);
   }
-  if (is_known_ && who.serial_digits != information_.serial_digits) {
+  if (is_known() && who.serial_digits != information_.serial_digits) {
     connection_.from().refuse();  // the wanted lidar may be behind another port
-    if (reconnection_.refused_lidar != who.serial_digits) report(lidar_event::kind::other_lidar);
-    reconnection_.refused_lidar = who.serial_digits;
+    if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
     return failure(task::finding, problem::no_port, connection_.name());
   }
-  reconnection_.is_under_way = std::exchange(is_known_, true);
+  if (is_known()) reconnection_.found();
   information_ = who;
   stage_ = stage::idle;
-  if (goal_ == goal::scanning) {
+  if (wants_scan_) {
     add_start();
-  } else if (reconnection_.is_under_way) {
+  } else if (reconnection_.is_under_way()) {
     back_again();
   }
   return {};
@@ -192,21 +181,18 @@ result<void> live_driver::identified(const device_information& who) {
 
 void live_driver::started() {
   stage_ = stage::scanning;
-  cause_ = setup_cause::caller;
-  if (reconnection_.is_under_way) back_again();
+  setup_.clear();
+  if (reconnection_.is_under_way()) back_again();
 }
 
 void live_driver::back_again() {
-  reconnection_.refused_lidar.reset();
-  reconnection_.is_under_way = false;
-  reconnection_.backoff_ns = 0;
-  ++reconnection_.count;
+  reconnection_.end();
   report(lidar_event::kind::reconnected);
 }
 
 /// A device that has ended a scan and does not continue.
 error live_driver::fallen_silent() const {
-  if (has_streamed_) return {task::reading, problem::stalled, connection_.name()};
+  if (pipeline_.has_begun()) return {task::reading, problem::stalled, connection_.name()};
   return {task::starting, problem::brown_out, connection_.name()};
 }
 

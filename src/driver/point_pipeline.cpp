@@ -65,7 +65,6 @@ void point_pipeline::keep(const scan& found) noexcept {
 
 void point_pipeline::begin(std::uint32_t samples_per_second) noexcept {
   end();
-  scans_at_begin_ = counts_.scans;
   decoder_.begin(samples_per_second);
   assembler_.set_sample_rate(samples_per_second);
 }

@@ -93,7 +93,9 @@ class point_pipeline {
   [[nodiscard]] std::int64_t arrival_ns() const noexcept { return arrival_ns_; }
   [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
   [[nodiscard]] std::size_t missing() const noexcept { return parser_.missing(); }
-  /// Whether a whole revolution was complete since begin().
+  /// The scan begins that has_begun() is about.
+  void begin_scans() noexcept { scans_at_begin_ = counts_.scans; }
+  /// Whether a whole revolution was complete since begin_scans().
   [[nodiscard]] bool has_begun() const noexcept { return counts_.scans > scans_at_begin_; }
   /// The time from one sample to the next, as far as it is known.
   [[nodiscard]] double period_ns() const noexcept { return decoder_.period_ns(); }

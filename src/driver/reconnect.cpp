@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The connection of a live device: opened, lost, and opened again.
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "error_context.hpp"
@@ -8,22 +9,15 @@
 #include "port_conflict.hpp"
 
 namespace g4lidar {
-namespace {
-
-/// The first pause between attempts; the first attempt is immediate.
-constexpr std::int64_t first_pause_ns = 20'000'000;
-
-}  // namespace
 
 result<void> live_driver::connect() {
   if (auto opened = connection_.open(); !opened) return opened;
   session_.reset();
-  if (goal_ == goal::stopping) goal_ = goal::idle;
   const transport& on = connection_.on();
   receiver_.reset(on.baud(), on.kept_bytes(), now_ns());
   pipeline_.follow(connection_.on().baud());
   setup_.clear();
-  set_ups_ = 0;  // the session has forgotten the scans before, too
+  setup_.forgive();  // the session has forgotten the scans before, too
   stage_ = stage::identifying;
   record(recorded_event::kind::held);
   add_step(setup_step::identify);
@@ -31,17 +25,14 @@ result<void> live_driver::connect() {
 }
 
 result<void> live_driver::wait_for_return(std::int64_t deadline_ns) {
-  if (now_ns() < reconnection_.next_attempt_ns) {
-    connection_.pause(std::min(deadline_ns, reconnection_.next_attempt_ns));
-    if (connection_.from().may_be_back()) {
-      reconnection_.next_attempt_ns = now_ns();
-      reconnection_.backoff_ns = first_pause_ns;
-    }
-    if (now_ns() < reconnection_.next_attempt_ns) return {};
+  if (now_ns() < reconnection_.next_attempt_ns()) {
+    connection_.pause(std::min(deadline_ns, reconnection_.next_attempt_ns()));
+    if (connection_.from().may_be_back()) reconnection_.hurry(now_ns());
+    if (now_ns() < reconnection_.next_attempt_ns()) return {};
   }
-  auto connected = connect();
-  if (connected) connected = serve();
-  return connected ? connected : break_off(connected.error());
+  if (auto connected = connect(); !connected) return break_off(connected.error());
+  if (auto served = serve(); !served) return break_off(served.error());
+  return {};
 }
 
 /// The connection has broken, or is of no use. The bytes received so far are still processed.
@@ -69,21 +60,17 @@ result<void> live_driver::hang_up() {
   if (!was_up) flush();
   connection_.close();
   setup_.clear();
-  cause_ = setup_cause::caller;
   if (was_up) {
     report(lidar_event::kind::lost, lost_.code());
-    reconnection_.backoff_ns = 0;
+    reconnection_.begin();
   }
-  if (!options_.reconnect || !is_known_) {
+  if (!options_.reconnect || !is_known()) {
     stage_ = stage::closed;
     return tl::unexpected(lost_);
   }
   stage_ = stage::lost;
   connection_.watch();
-  std::int64_t& backoff_ns = reconnection_.backoff_ns;
-  reconnection_.next_attempt_ns = now_ns() + backoff_ns;
-  const auto longest = std::chrono::nanoseconds(options_.longest_backoff).count();
-  backoff_ns = std::min(std::max(2 * backoff_ns, first_pause_ns), longest);
+  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.longest_backoff).count());
   if (was_up) return tl::unexpected(unavailable());
   return {};
 }

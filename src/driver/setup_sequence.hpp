@@ -42,7 +42,26 @@ class setup_sequence {
     add_steps(options);
     return true;
   }
-  void clear() noexcept { left_ = 0; }
+  /// Everything again, because the device ended a scan of this length by itself and may have lost
+  /// its settings. False if this has happened too often in succession.
+  [[nodiscard]] bool begin_again(const lidar_options& options, std::int64_t length_ns) noexcept {
+    const bool is_short = length_ns < long_scan_ns;
+    if (is_short && short_scans_ >= (length_ns > 0 ? max_short : max_silent)) return false;
+    short_scans_ = is_short ? short_scans_ + 1 : 1;
+    clear();
+    is_again_ = true;
+    add(setup_step::stop);
+    add_start(options);
+    return true;
+  }
+  /// Whether begin_again() was called for the steps, until clear().
+  [[nodiscard]] bool is_again() const noexcept { return is_again_; }
+  /// The earlier calls of begin_again() do not count any more.
+  void forgive() noexcept { short_scans_ = 0; }
+  void clear() noexcept {
+    left_ = 0;
+    is_again_ = false;
+  }
 
   [[nodiscard]] bool is_done() const noexcept { return left_ == 0; }
   /// The first remaining step; only if not is_done().
@@ -53,6 +72,12 @@ class setup_sequence {
   void finish_next() noexcept { left_ &= left_ - 1U; }
 
  private:
+  /// The limit of consecutive setups of a device whose scans are shorter than this, or that sends no
+  /// packet.
+  static constexpr int max_short = 3;
+  static constexpr int max_silent = 1;
+  static constexpr std::int64_t long_scan_ns = 6'000'000'000;
+
   [[nodiscard]] static unsigned bit(setup_step step) noexcept {
     return 1U << static_cast<unsigned>(step);
   }
@@ -69,6 +94,8 @@ class setup_sequence {
 
   unsigned left_ = 0;
   bool is_repeated_ = false;
+  bool is_again_ = false;
+  int short_scans_ = 0;  // setups after them
 };
 
 /// The request of a step. An option that is not set any more has no request: nothing changes.
