@@ -47,4 +47,12 @@ inline std::string damaged(std::string data, std::size_t at) {
   return data;
 }
 
+/// A bit of everything: a beginning in mid-turn, samples of every kind, a stray byte, a suspect
+/// packet, a revolution that ends too early, a packet cut off.
+inline std::string small_recording() {
+  return scan_started() + packet(350, 359, {0, 621, 4000, 65535}) + std::string(1, '\0') +
+         zero(0, 1120, 70) + packet(1, 10, {4000, 0, 300}) + packet(20, 19, {4000, 4000}) +
+         zero(0, 0, 70) + packet(1, 2, {8000, 8000}).substr(0, 12);
+}
+
 }  // namespace cli

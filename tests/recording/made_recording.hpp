@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -124,6 +125,13 @@ inline contents contents_of_file(const std::string& path, const reading_options&
 inline contents contents_of_bytes(bytes file) {
   auto reader = recording_access::open(std::make_shared<memory_source>(file), "memory", {});
   return reader ? contents_of(*reader) : contents{};
+}
+
+/// Consecutive numbers.
+inline std::vector<std::uint32_t> numbers(std::uint32_t first, std::uint32_t count) {
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), first);
+  return all;
 }
 
 }  // namespace g4lidar::test

@@ -11,8 +11,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include "g4lidar/transport/serial_port.hpp"
 
 namespace g4lidar::test {
 
@@ -65,6 +69,13 @@ class pty {
   int keep_ = -1;
   std::string path_;
 };
+
+/// Its slave as a port.
+inline std::unique_ptr<transport> opened(const pty& device, const serial_options& options = {}) {
+  auto port = serial_port::open(device.path(), options);
+  EXPECT_TRUE(port) << port.error().message();
+  return *std::move(port);
+}
 
 inline std::size_t open_descriptors() {
   std::size_t count = 0;

@@ -23,12 +23,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::unique_ptr<transport> opened(const pty& device, const serial_options& options = {}) {
-  auto port = serial_port::open(device.path(), options);
-  EXPECT_TRUE(port) << port.error().message();
-  return *std::move(port);
-}
-
 problem why_not(std::string_view path, const serial_options& options = {}) {
   const auto port = serial_port::open(path, options);
   EXPECT_FALSE(port);
@@ -307,51 +301,6 @@ TEST(SerialPort, SignalsWithoutAWake_DoNotEndWaiting) {
   EXPECT_GE(port->now_ns(), until_ns);
   ::setitimer(ITIMER_REAL, &never, nullptr);
   ::sigaction(SIGALRM, &before, nullptr);
-}
-
-// ---- unplugging --------------------------------------------------------------------------------
-
-TEST(SerialPort, UnpluggedDuringAWait_IsGoneImmediately) {
-  using step = result<void> (*)(transport&);
-  const step waits[] = {
-      [](transport& port) -> result<void> {
-        std::array<std::uint8_t, 16> buffer{};
-        const auto got = port.read(buffer, in(port, 60s));
-        return got ? result<void>{} : tl::unexpected(got.error());
-      },
-      [](transport& port) -> result<void> { return port.pause(in(port, 60s)); },
-  };
-  for (const step wait : waits) {
-    pty device;
-    const auto port = opened(device);
-    std::atomic<std::int64_t> unplugged_ns = 0;
-    std::thread hand([&] {
-      std::this_thread::sleep_for(20ms);
-      unplugged_ns = port->now_ns();
-      device.unplug();
-    });
-    const auto waited = wait(*port);
-    const std::int64_t reported_ns = port->now_ns();
-    hand.join();
-    ASSERT_FALSE(waited);
-    EXPECT_EQ(waited.error().code(), problem::gone);
-    EXPECT_TRUE(waited.error().is_fatal());
-    // The promise is 0.1 s; a loaded machine may need time to run this thread.
-    EXPECT_LT(reported_ns - unplugged_ns, std::chrono::nanoseconds(5s).count());
-  }
-}
-
-TEST(SerialPort, Unplugged_EveryCallIsGone) {
-  pty device;
-  const auto port = opened(device);
-  device.unplug();
-  std::array<std::uint8_t, 16> buffer{};
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(port->read(buffer, in(*port, 10s)).error().code(), problem::gone);
-    EXPECT_EQ(port->read(buffer, port->now_ns()).error().code(), problem::gone);
-    EXPECT_EQ(write_text(*port, "x").error().code(), problem::gone);
-    EXPECT_EQ(port->pause(in(*port, 10s)).error().code(), problem::gone);
-  }
 }
 
 }  // namespace

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+# cmake -DROOT=<project> -DAWK=<awk> [-DMOST_MEMBERS=<number>] [-DMOST_LINES=<number>] -P check_sizes.cmake
+#
+# Fails if a class of include, src or tools has more than 20 data members, those of its base classes
+# included, or a source file has more than 350 lines.
+
+cmake_minimum_required(VERSION 3.22)
+if(NOT DEFINED MOST_MEMBERS)
+  set(MOST_MEMBERS 20)
+endif()
+if(NOT DEFINED MOST_LINES)
+  set(MOST_LINES 350)
+endif()
+
+# Classes that may be larger, and why.
+set(larger
+    device_options # of the simulator: one member for each property of a G4 that docs/sim.md lists
+)
+
+function(sources variable) # <directory>...
+  set(all)
+  foreach(directory IN LISTS ARGN)
+    file(GLOB_RECURSE found RELATIVE "${ROOT}" "${ROOT}/${directory}/*.[ch]pp")
+    list(APPEND all ${found})
+  endforeach()
+  if(NOT all)
+    message(FATAL_ERROR "No sources in ${ROOT}")
+  endif()
+  set(${variable} "${all}" PARENT_SCOPE)
+endfunction()
+
+function(awk_lines variable) # <argument of awk>...
+  execute_process(
+    COMMAND "${AWK}" ${ARGN} WORKING_DIRECTORY "${ROOT}" OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY
+  )
+  string(STRIP "${text}" text)
+  string(REPLACE "\n" ";" lines "${text}")
+  set(${variable} "${lines}" PARENT_SCOPE)
+endfunction()
+
+sources(library include src tools)
+sources(all include src tools tests bench examples)
+awk_lines(faults -v most=${MOST_MEMBERS} -f "${CMAKE_CURRENT_LIST_DIR}/count_members.awk" ${library})
+list(POP_BACK faults classes)
+foreach(name IN LISTS larger)
+  list(FILTER faults EXCLUDE REGEX ": ${name} has ")
+endforeach()
+awk_lines(long "FNR == ${MOST_LINES} + 1 { print FILENAME }" ${all})
+list(TRANSFORM long APPEND " has more than ${MOST_LINES} lines")
+
+if(faults OR long)
+  list(JOIN faults "\n  " classes)
+  list(JOIN long "\n  " files)
+  message(FATAL_ERROR "At most ${MOST_MEMBERS} data members and ${MOST_LINES} lines:\n  ${classes}\n  ${files}")
+endif()
+list(LENGTH all count)
+message("${classes}, each with at most ${MOST_MEMBERS} data members; ${count} files of at most ${MOST_LINES} lines")

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+# cmake -DSCRIPT=<check_sizes.cmake> -DAWK=<awk> -DSCRATCH=<directory> -P check_sizes_test.cmake
+#
+# Test of the check itself: classes whose members were counted by hand, and files of known length.
+
+cmake_minimum_required(VERSION 3.22)
+
+function(expect members lines message) # <file> <text>...
+  file(REMOVE_RECURSE "${SCRATCH}")
+  file(WRITE "${SCRATCH}/tests/test.cpp" "")
+  while(ARGN)
+    list(POP_FRONT ARGN file text)
+    string(REPLACE "|" ";" text "${text}")
+    string(REPLACE "^" "[" text "${text}")
+    string(REPLACE "~" "]" text "${text}")
+    file(WRITE "${SCRATCH}/${file}" "${text}\n")
+  endwhile()
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}" "-DAWK=${AWK}" -DMOST_MEMBERS=${members} -DMOST_LINES=${lines}
+            -P "${SCRIPT}"
+    OUTPUT_VARIABLE said ERROR_VARIABLE said
+  )
+  string(REGEX REPLACE "[ \n]+" " " said "${said}")
+  if(NOT said MATCHES "${message}")
+    message(FATAL_ERROR "expected '${message}', but:\n${said}")
+  endif()
+endfunction()
+
+# counts(<number> <class x>): in the text, | is a semicolon, and ^ ~ are brackets.
+function(counts number text)
+  expect(${number} 99 "classes, each with at most" src/x.hpp "${text}")
+  math(EXPR less "${number} - 1")
+  expect(${less} 99 "src/x.hpp: x has ${number} data members" src/x.hpp "${text}")
+endfunction()
+
+counts(1 "class x { int a| }|")
+counts(2 "struct x final {\n  int a = 3|  // int b|\n  /* int c|\n int d| */ int e{1}|\n}|")
+counts(5 "class x {\n public:\n  int a, b = 2, *c{nullptr}|\n private:\n  std::array<int, 3> d{}| std::map<int, int> e|\n}|")
+counts(3 "struct x { unsigned a : 3, b : 4| int c^2~^3~ = {{1, 2}, {3}}| }|")
+counts(2 "struct x { void (*a)(int, int)| std::function<void(int, int)> b = ^~(int, int) { int c| }| }|")
+counts(1 "template <class T, int N>\nclass x : public std::vector<T> {\n  alignas(64) std::atomic<T> a = T(1)|\n}|")
+counts(1 "class ^^nodiscard~~ API x {\n  static int b| static constexpr int c = 1| using d = int| friend class e|\n  class f| enum class g : int { h, i }| typedef int j| int a|\n}|")
+counts(2 "class x {\n  x() : a_(1), b_{2} {}\n  explicit x(int a) noexcept : b_{a}, a_{1} { int c| }\n  ~x()| x& operator=(const x&) = delete| bool operator()(int) const { return {}| }\n  auto f(int a = 1) -> std::pair<int, int> { struct y { int b, c| }| for (int i = 0| i < 3| ++i) {} }\n  virtual void g() = 0| operator bool() const { return a_ < b_| }\n  int a_| int b_{3}|\n}|")
+counts(2 "class x {\n  struct inner { int a, b| }|\n  inner first| const char* second = \"|}{ // \"|\n}|" )
+counts(3 "struct x {\n  struct { int a| int b| }|\n  union named { int d, e| } c|\n}|")
+counts(1 "struct x { const char* a = R\"(int b| int c| })\"| }|\n")
+counts(3 "struct base { int a| int b| }|\nnamespace n {\nclass x : private g4::base, public std::other { char c = '}'| }|\n}")
+expect(3 99 "include/y.hpp: y has 4 data members" include/b.hpp "class b { int a, b| }|" tools/z.hpp
+       "class z : b { int c| }|" include/y.hpp "class y final : public z { int d| }|"
+)
+expect(1 99 "src/x.cpp: inner has 2 data members" src/x.cpp "void f() {\n  struct inner { int a, b| }|\n}")
+expect(3 99 "3 classes" src/x.hpp "class device_options { int a, b, c, d| }| struct y {}| class z { int e = 1'000| }|")
+expect(3 3 "bench/long.cpp has more than 3 lines" src/x.hpp "1\n2\n3" bench/long.cpp "1\n2\n3\n4")
+expect(3 4 "3 files of at most 4 lines" src/x.hpp "1\n2\n3" bench/long.cpp "1\n2\n3\n4")
