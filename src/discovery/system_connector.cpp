@@ -67,7 +67,9 @@ result<std::unique_ptr<transport>> system_connector::connect() noexcept {
   }
 }
 
-bool system_connector::answers() const noexcept { return !device_.starts_with(file_prefix); }
+recording_hook* system_connector::recording() noexcept {
+  return device_.starts_with(file_prefix) ? this : nullptr;
+}
 
 result<std::unique_ptr<transport>> system_connector::open_transport() {
   const std::string_view device = device_;

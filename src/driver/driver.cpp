@@ -10,8 +10,9 @@ namespace g4lidar {
 namespace {
 
 std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& options) {
-  if (parts.link.from().answers()) return std::make_unique<live_driver>(parts, options);
-  return std::make_unique<replay_player>(parts, options);
+  const recording_hook* const hook = parts.link.from().recording();
+  if (hook != nullptr && !hook->answers()) return std::make_unique<replay_player>(parts, options);
+  return std::make_unique<live_driver>(parts, options);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ replay_player::replay_player(parts& of, const lidar_options& options) : feeder(o
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  source_ = connection_.from().recorded_events();
+  source_ = connection_.from().recording()->events();
   receiver_.reset(0, 0, now_ns());
   pipeline_.follow(connection_.on().baud());
   stage_ = stage::idle;

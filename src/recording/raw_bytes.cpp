@@ -19,6 +19,7 @@
 #include "format.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "transport/fd_port.hpp"
 
@@ -169,7 +170,7 @@ class counted_transport final : public byte_transport {
 
 /// Returns its transport once. The time is that of the transport, which may be destroyed before
 /// this.
-class byte_connector final : public connector {
+class byte_connector final : public connector, private recording_hook {
  public:
   byte_connector(std::unique_ptr<byte_transport> port,
                  std::shared_ptr<const std::int64_t> counted_ns,
@@ -185,7 +186,7 @@ class byte_connector final : public connector {
   }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
-  [[nodiscard]] bool answers() const noexcept override { return false; }
+  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
   [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
     return wall_ahead_ns_;
   }

@@ -275,7 +275,7 @@ class replay_transport final : public transport {
   std::shared_ptr<player> of_;
 };
 
-class replay_connector final : public connector {
+class replay_connector final : public connector, private recording_hook {
  public:
   explicit replay_connector(std::shared_ptr<player> of) noexcept : of_(std::move(of)) {}
 
@@ -292,8 +292,8 @@ class replay_connector final : public connector {
     return of_->wait(deadline_ns).has_value();
   }
   void wake() noexcept override { of_->wake(); }
-  [[nodiscard]] bool answers() const noexcept override { return false; }
-  [[nodiscard]] recorded_event_source* recorded_events() noexcept override { return of_.get(); }
+  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
+  [[nodiscard]] recorded_event_source* events() noexcept override { return of_.get(); }
   [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
     return of_->wall_ahead_ns();
   }

@@ -14,10 +14,10 @@ namespace {
 template <class Writer>
 class recorded_transport final : public forwarding_transport {
  public:
-  recorded_transport(std::unique_ptr<transport> port, connector& from, Writer& into) noexcept
+  recorded_transport(std::unique_ptr<transport> port, recording_hook& from, Writer& into) noexcept
       : forwarding_transport(std::move(port)), from_(&from), into_(&into) {
     follow_wall_clock();
-    if (const auto* const played = from.recorded_events()) {
+    if (const auto* const played = from.events()) {
       into.device(played->device());
       return;
     }
@@ -29,7 +29,7 @@ class recorded_transport final : public forwarding_transport {
   recorded_transport(const recorded_transport&) = delete;
   recorded_transport& operator=(const recorded_transport&) = delete;
   ~recorded_transport() override {
-    if (from_->recorded_events() != nullptr) return;  // a recording reports its own events
+    if (from_->events() != nullptr) return;  // a recording reports its own events
     into_->event({.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
   }
 
@@ -68,7 +68,7 @@ class recorded_transport final : public forwarding_transport {
     if (const auto ahead_ns = from_->wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
   }
 
-  connector* from_;
+  recording_hook* from_;
   Writer* into_;
   problem reason_ = problem::cancelled;  // it was closed
 };
@@ -76,28 +76,37 @@ class recorded_transport final : public forwarding_transport {
 /// Records the bytes of its transports, the events of the driver, and the events of a recording.
 template <class Writer>
 class recorded_connector final : public forwarding_connector,
-                                 public recorded_event_sink,
-                                 public recorded_event_source {
+                                 private recording_hook,
+                                 private recorded_event_source {
  public:
   recorded_connector(std::unique_ptr<connector> from, Writer& into) noexcept
-      : forwarding_connector(std::move(from)), into_(&into) {}
+      : forwarding_connector(std::move(from)),
+        into_(&into),
+        inner_hook_(inner().recording()),
+        played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     auto port = inner().connect();
     if (!port) return port;
     auto* const made =
-        new (std::nothrow) recorded_transport<Writer>(std::move(*port), inner(), *into_);
+        new (std::nothrow) recorded_transport<Writer>(std::move(*port), *this, *into_);
     if (made == nullptr) return failure(task::opening, problem::system, {}, ENOMEM);
     return std::unique_ptr<transport>(made);
   }
-  [[nodiscard]] recorded_event_sink* recorder() noexcept override { return this; }
-  [[nodiscard]] recorded_event_source* recorded_events() noexcept override {
-    played_ = inner().recorded_events();
-    return played_ == nullptr ? nullptr : this;
-  }
+  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
 
+ private:
+  [[nodiscard]] bool answers() const noexcept override {
+    return inner_hook_ == nullptr || inner_hook_->answers();
+  }
+  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
+    return inner_hook_ != nullptr ? inner_hook_->wall_ahead_ns() : std::nullopt;
+  }
+  [[nodiscard]] recorded_event_source* events() noexcept override {
+    return played_ != nullptr ? this : nullptr;
+  }
   void event(const recorded_event& what) noexcept override {
-    if (recorded_event_sink* const other = inner().recorder()) other->event(what);
+    if (inner_hook_ != nullptr) inner_hook_->event(what);
     into_->event(what);
   }
 
@@ -119,9 +128,9 @@ class recorded_connector final : public forwarding_connector,
     return played_->wait_for_next_ns();
   }
 
- private:
   Writer* into_;
-  recorded_event_source* played_ = nullptr;
+  recording_hook* inner_hook_;     // null: a device that nobody else records
+  recorded_event_source* played_;  // null: a device, or a file without events
 };
 
 }  // namespace

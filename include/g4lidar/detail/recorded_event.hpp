@@ -71,18 +71,27 @@ class G4LIDAR_API recorded_event_source {
   recorded_event_source() = default;
 };
 
-/// Receives events from a driver, to record them.
-class G4LIDAR_API recorded_event_sink {
+/// What a connector adds if it plays a recording or a file, or if its transports are recorded.
+class G4LIDAR_API recording_hook {
  public:
-  virtual ~recorded_event_sink() = default;
-  recorded_event_sink(const recorded_event_sink&) = delete;
-  recorded_event_sink& operator=(const recorded_event_sink&) = delete;
+  virtual ~recording_hook() = default;
+  recording_hook(const recording_hook&) = delete;
+  recording_hook& operator=(const recording_hook&) = delete;
 
-  /// This event happened after the last read and before the next one.
-  virtual void event(const recorded_event& what) noexcept = 0;
+  /// Whether a device answers on the transports. Nothing is written to files and recordings.
+  [[nodiscard]] virtual bool answers() const noexcept { return false; }
+  /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
+  /// of a file arrived when they were recorded.
+  [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
+    return std::nullopt;
+  }
+  /// The events that were recorded with the bytes of the transports; null if there are none.
+  [[nodiscard]] virtual recorded_event_source* events() noexcept { return nullptr; }
+  /// To be recorded: an event of the driver, after the last read and before the next one.
+  virtual void event(const recorded_event& /*what*/) noexcept {}
 
  protected:
-  recorded_event_sink() = default;
+  recording_hook() = default;
 };
 
 }  // namespace g4lidar

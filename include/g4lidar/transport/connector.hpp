@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
@@ -12,8 +11,7 @@
 
 namespace g4lidar {
 
-class recorded_event_source;
-class recorded_event_sink;
+class recording_hook;
 
 /// Opens the transport to a device, the first time and after each loss. *Single thread* except
 /// wake(). Simulations and tests provide their own.
@@ -51,19 +49,9 @@ class G4LIDAR_API connector {
   /// ends a pause() early. Without it the driver tries at growing intervals only.
   [[nodiscard]] virtual bool may_be_back() noexcept { return false; }
 
-  /// Whether a device answers on its transports. Nothing is written to files and recordings.
-  [[nodiscard]] virtual bool answers() const noexcept { return true; }
-  /// The events that were recorded with the bytes of its transports; null if this is no recording.
-  /// Valid as long as this.
-  [[nodiscard]] virtual recorded_event_source* recorded_events() noexcept { return nullptr; }
-  /// Wall clock minus now_ns(), if this connector knows it better than the system: the bytes of a
-  /// file arrived when they were recorded.
-  [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
-    return std::nullopt;
-  }
-  /// The receiver of recorded events of the driver; null if nothing is recorded. Valid as long as
-  /// this.
-  [[nodiscard]] virtual recorded_event_sink* recorder() noexcept { return nullptr; }
+  /// What this connector adds for recordings; null for an ordinary connector to a device. Valid as long
+  /// as this.
+  [[nodiscard]] virtual recording_hook* recording() noexcept { return nullptr; }
 
  protected:
   connector() = default;

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -68,14 +67,7 @@ class forwarding_connector : public connector {
   void refuse() noexcept override { inner_->refuse(); }
   [[nodiscard]] int watch() noexcept override { return inner_->watch(); }
   [[nodiscard]] bool may_be_back() noexcept override { return inner_->may_be_back(); }
-  [[nodiscard]] bool answers() const noexcept override { return inner_->answers(); }
-  [[nodiscard]] recorded_event_source* recorded_events() noexcept override {
-    return inner_->recorded_events();
-  }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return inner_->wall_ahead_ns();
-  }
-  [[nodiscard]] recorded_event_sink* recorder() noexcept override { return inner_->recorder(); }
+  [[nodiscard]] recording_hook* recording() noexcept override { return inner_->recording(); }
 
  protected:
   /// The wrapped connector.
