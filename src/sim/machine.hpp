@@ -3,23 +3,66 @@
 // behaviour does not depend on how often it is called.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
-#include "answer_queue.hpp"
 #include "bridge.hpp"
-#include "command_log.hpp"
-#include "command_receiver.hpp"
+#include "command_queues.hpp"
 #include "fault_injector.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "motor.hpp"
 #include "sampler.hpp"
 #include "settings.hpp"
 #include "truth_log.hpp"
-#include "usb_plug.hpp"
 #include "wire.hpp"
 
 namespace g4lidar::sim {
+
+/// The USB plug: pulled by a fault or by hand.
+class usb_plug {
+ public:
+  /// Somebody keeps it unplugged, or does not any more.
+  void hold_unplugged(bool held) noexcept { is_held_ = held; }
+  /// Returns whether the plug was pulled or put in.
+  [[nodiscard]] bool update(bool pulled_by_fault) noexcept {
+    const bool is_in = !is_held_ && !pulled_by_fault;
+    if (is_in == is_in_) return false;
+    is_in_ = is_in;
+    if (is_in) ++replugs_;
+    return true;
+  }
+  [[nodiscard]] bool is_in() const noexcept { return is_in_; }
+  [[nodiscard]] std::uint64_t replugs() const noexcept { return replugs_; }
+
+ private:
+  bool is_in_ = true;
+  bool is_held_ = false;
+  std::uint64_t replugs_ = 0;
+};
+
+/// The commands that were received.
+class command_log {
+ public:
+  explicit command_log(std::size_t capacity) : capacity_(capacity) { entries_.reserve(capacity); }
+
+  void add(const asked& entry) noexcept {
+    if (entries_.size() == capacity_) {
+      ++missed_;
+    } else {
+      entries_.push_back(entry);
+    }
+  }
+  void clear() noexcept { entries_.clear(); }
+  [[nodiscard]] std::span<const asked> entries() const noexcept { return entries_; }
+  [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
+
+ private:
+  std::size_t capacity_;
+  std::vector<asked> entries_;
+  std::uint64_t missed_ = 0;
+};
 
 class G4LIDAR_HIDDEN device::machine {
  public:
