@@ -79,8 +79,9 @@ build() {
   run_quietly "Building $directory" cmake --build "$directory" --parallel "$(nproc)" "${targets[@]}"
 }
 
-# run_tests <preset> <ctest argument>...: as many in parallel as there are processors. The time
-# limit of a test is that of the preset, multiplied for longer random tests (G4LIDAR_TEST_SCALE).
+# run_tests <preset> <ctest argument>...: one more in parallel than there are processors, because
+# many tests wait most of their time. The time limit of a test is that of the preset, multiplied for
+# longer random tests (G4LIDAR_TEST_SCALE).
 # ctest counts a skipped test as passed: the last line does not. Each skipped test has a line
 # "SKIPPED: name", each failed one a line "FAILED: name".
 run_tests() {
@@ -91,7 +92,7 @@ run_tests() {
   # The seed of rapidcheck: fixed by default.
   export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
   rm -f "$results"
-  ctest --preset "$preset" --parallel "$(nproc)" --output-junit "$results" "${longer[@]}" "$@" || code=$?
+  ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-junit "$results" "${longer[@]}" "$@" || code=$?
   if [[ -e $results ]]; then
     awk '/<testcase / {
         match($0, /name="[^"]*"/)
