@@ -38,6 +38,7 @@ class coverage {
   /// The open chunk, with these bytes, is the first of another file.
   void begin_file(const payload_digest& chunk) noexcept {
     file_ns_ = chunk_ns_;
+    file_payload_ = {};
     chunk_payload_ = chunk;
   }
 
