@@ -21,18 +21,14 @@ path_watch::path_watch(std::string_view path)
   follow();
 }
 
-path_watch::~path_watch() {
-  if (fd_ >= 0) ::close(fd_);
-}
-
 /// The directory of the path may be missing: udevd removes /dev/serial/by-id with its last link. Then the
 /// nearest one that exists is watched. To watch a directory again changes nothing.
 void path_watch::follow() noexcept {
-  if (fd_ < 0) return;
-  static_cast<void>(inotify_add_watch(fd_, "/dev", changes));
+  if (!fd_) return;
+  static_cast<void>(inotify_add_watch(fd_.get(), "/dev", changes));
   for (std::size_t end = path_.rfind('/'); end != std::string::npos;) {
     path_[end] = '\0';
-    const int watched = inotify_add_watch(fd_, end == 0 ? "/" : path_.c_str(), changes);
+    const int watched = inotify_add_watch(fd_.get(), end == 0 ? "/" : path_.c_str(), changes);
     path_[end] = '/';
     if (watched >= 0 || end == 0) return;
     end = path_.rfind('/', end - 1);
@@ -47,7 +43,7 @@ bool path_watch::concerns(std::string_view name) const noexcept {
 bool path_watch::take() noexcept {
   alignas(inotify_event) std::array<char, 4096> read{};
   bool changed = false;
-  for (ssize_t size = 0; (size = ::read(fd_, read.data(), read.size())) > 0;) {
+  for (ssize_t size = 0; (size = ::read(fd_.get(), read.data(), read.size())) > 0;) {
     const char* const end = read.data() + size;
     for (const char* at = read.data(); at < end;) {
       inotify_event event{};

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "transport/owned_fd.hpp"
+
 namespace g4lidar {
 
 /// Watches the directory of a path, and /dev, by inotify: the kernel and udevd create the node and its links
@@ -13,12 +15,9 @@ namespace g4lidar {
 class path_watch {
  public:
   explicit path_watch(std::string_view path);
-  path_watch(const path_watch&) = delete;
-  path_watch& operator=(const path_watch&) = delete;
-  ~path_watch();
 
   /// For poll(): readable when take() may be true. -1 if the system refuses a watch.
-  [[nodiscard]] int native_handle() const noexcept { return fd_; }
+  [[nodiscard]] int native_handle() const noexcept { return fd_.get(); }
   /// Whether the path, one of its directories, or a tty has appeared or changed since the last call.
   [[nodiscard]] bool take() noexcept;
 
@@ -27,7 +26,7 @@ class path_watch {
   [[nodiscard]] bool concerns(std::string_view name) const noexcept;
 
   std::string path_;  // with a slash
-  int fd_;
+  owned_fd fd_;
 };
 
 }  // namespace g4lidar

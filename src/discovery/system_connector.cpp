@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "system_connector.hpp"
 
-#include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <chrono>
-#include <ctime>
 #include <new>
 #include <utility>
 
@@ -44,11 +38,7 @@ std::uint64_t node_of(const std::string& path) noexcept {
 }  // namespace
 
 system_connector::system_connector(std::string_view device, std::uint32_t baud)
-    : device_(device), baud_(baud), wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
-
-system_connector::~system_connector() {
-  if (wake_ >= 0) ::close(wake_);
-}
+    : device_(device), baud_(baud) {}
 
 result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
                                                           std::uint32_t baud) {
@@ -160,26 +150,9 @@ bool system_connector::may_be_back() noexcept {
   return true;
 }
 
-std::int64_t system_connector::now_ns() const noexcept {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 bool system_connector::pause(std::int64_t deadline_ns) noexcept {
-  while (true) {
-    const std::int64_t left = std::max<std::int64_t>(deadline_ns - now_ns(), 0);
-    const timespec time{static_cast<std::time_t>(left / 1'000'000'000),
-                        static_cast<long>(left % 1'000'000'000)};
-    std::array<pollfd, 2> ends{{{wake_, POLLIN, 0}, {watch_handle(), POLLIN, 0}}};
-    const int ready = ppoll(ends.data(), ends.size(), &time, nullptr);
-    if (ends[0].revents != 0) {
-      eventfd_t count = 0;
-      static_cast<void>(eventfd_read(wake_, &count));
-      return false;
-    }
-    if (ready >= 0) return true;  // otherwise a signal arrived: continue waiting
-  }
+  short found = 0;
+  return waker_.wait(watch_handle(), POLLIN, deadline_ns, &found) != waker::ended::woken;
 }
-
-void system_connector::wake() noexcept { static_cast<void>(eventfd_write(wake_, 1)); }
 
 }  // namespace g4lidar

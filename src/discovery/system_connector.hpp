@@ -13,6 +13,7 @@
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "path_watch.hpp"
+#include "transport/fd_port.hpp"
 
 namespace g4lidar {
 
@@ -27,12 +28,11 @@ class system_connector final : public connector, private recording_hook {
   /// Fails with bad_option if `device` has no known form.
   [[nodiscard]] static result<std::unique_ptr<connector>> make(std::string_view device,
                                                                std::uint32_t baud);
-  ~system_connector() override;
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
-  [[nodiscard]] std::int64_t now_ns() const noexcept override;
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
   [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override;
-  void wake() noexcept override;
+  void wake() noexcept override { waker_.wake(); }
   void refuse() noexcept override;
   [[nodiscard]] int watch() noexcept override;
   [[nodiscard]] bool may_be_back() noexcept override;
@@ -65,7 +65,7 @@ class system_connector final : public connector, private recording_hook {
   std::string last_path_;              // of the last connection
   std::vector<refused_port> refused_;  // ports of other lidars
   std::optional<path_watch> watch_;    // from the first loss on
-  int wake_;
+  waker waker_{real_system_calls()};
 };
 
 }  // namespace g4lidar

@@ -6,7 +6,7 @@
 
 #include "error_context.hpp"
 #include "live_driver.hpp"
-#include "port_conflict.hpp"
+#include "transport/port_holder.hpp"
 
 namespace g4lidar {
 

@@ -11,6 +11,7 @@
 
 #include "crc32.hpp"
 #include "record_text.hpp"
+#include "transport/system_calls.hpp"
 
 namespace g4lidar::mcap {
 namespace {
@@ -56,7 +57,7 @@ class file_source final : public byte_source {
 result<std::shared_ptr<byte_source>> open_file_source(std::string_view path) {
   std::string name(path);
   constexpr int flags = O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;  // it may be a pipe
-  owned_fd fd(real_system_calls(), uninterrupted([&] { return ::open(name.c_str(), flags); }));
+  owned_fd fd(uninterrupted([&] { return ::open(name.c_str(), flags); }));
   if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
   struct stat file{};
   if (::fstat(fd.get(), &file) != 0) return failure(task::opening, problem::system, path, errno);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "g4lidar/version.hpp"
+#include "transport/system_calls.hpp"
 
 namespace g4lidar::mcap {
 namespace {
@@ -92,8 +93,7 @@ void open_chunk::clear() noexcept {
 result<mcap_file> mcap_file::create(const std::string& path, std::string scan_topic,
                                     bool overwrite) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | (overwrite ? O_TRUNC : O_EXCL);
-  owned_fd fd(real_system_calls(),
-              uninterrupted([&] { return ::open(path.c_str(), flags, 0666); }));
+  owned_fd fd(uninterrupted([&] { return ::open(path.c_str(), flags, 0666); }));
   if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
   mcap_file made(std::move(fd), path, std::move(scan_topic));
   record_text& text = made.text_;

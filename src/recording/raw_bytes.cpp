@@ -202,9 +202,8 @@ class byte_connector final : public connector, private recording_hook {
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::uint32_t samples_per_second) {
   const bool is_standard = name == "-";
-  owned_fd fd(real_system_calls(), is_standard
-                                       ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
-                                       : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+  owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
+                          : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
   if (fd.get() < 0) return failure(task::opening, problem::system, name, errno);
   struct stat file{};
   const bool is_known = ::fstat(fd.get(), &file) == 0;

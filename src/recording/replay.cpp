@@ -63,7 +63,7 @@ class player final : public recorded_event_source {
         options_(how),
         clock_(how.rate, begin_ns()),
         waits_(real_system_calls()),
-        due_(real_system_calls(), make_handle()),
+        due_(make_handle()),
         why_over_(task::reading, problem::end_of_input, name) {
     auto device = reader_.device();
     if (!device) device = device_in(name);

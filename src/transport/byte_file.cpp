@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "fd_port.hpp"
-#include "opening.hpp"
 
 namespace g4lidar {
 namespace {
@@ -18,49 +17,39 @@ namespace {
 /// The interval of bursts: a USB bridge delivers bytes in such bursts.
 constexpr std::int64_t burst_ns = 1'000'000;
 
-class file_transport final : public transport {
+class file_transport final : public fd_port {
  public:
   file_transport(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
                  std::string name, std::uint32_t bytes_per_second) noexcept
-      : calls_(&calls),
-        fd_(std::move(fd)),
-        waker_(std::move(waits)),
-        name_(std::move(name)),
+      : fd_port(calls, std::move(fd), std::move(waits), std::move(name), bytes_per_second * 10,
+                problem::end_of_input),
         rate_(bytes_per_second) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
     assert(!out.empty());
-    if (waker_->take()) return failure(task::reading, problem::cancelled, name_);
-    if (rate_ == 0) return read_now(out);
+    if (waits().take()) return failure(task::reading, problem::cancelled, name());
+    if (rate_ == 0) return take(out);
     if (begun_ns_ == never_ns) begun_ns_ = steady_now_ns();
     const std::int64_t burst_due_ns = due_ns(taken_ + burst());
     if (steady_now_ns() < burst_due_ns) {
-      const auto waited = wait(task::reading, std::min(burst_due_ns, deadline_ns));
+      const auto waited = pause(std::min(burst_due_ns, deadline_ns));
       if (!waited) return tl::unexpected(waited.error());
     }
     const std::int64_t come = come_by(steady_now_ns()) - taken_;
     if (come <= 0) return received{};
-    return read_now(out.first(std::min(out.size(), static_cast<std::size_t>(come))));
+    return take(out.first(std::min(out.size(), static_cast<std::size_t>(come))));
   }
 
-  [[nodiscard]] result<void> write(bytes, std::int64_t) noexcept override {
-    if (waker_->take()) return failure(task::writing, problem::cancelled, name_);
-    return {};
-  }
-
-  [[nodiscard]] result<void> pause(std::int64_t deadline_ns) noexcept override {
-    return wait(task::reading, deadline_ns);
-  }
-
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
-  void wake() noexcept override { waker_->wake(); }
   // For poll() a file is always readable; with a rate, only the time decides.
-  [[nodiscard]] int native_handle() const noexcept override { return rate_ == 0 ? fd_.get() : -1; }
-  [[nodiscard]] std::string_view name() const noexcept override { return name_; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return rate_ * 10; }
+  [[nodiscard]] int native_handle() const noexcept override { return rate_ == 0 ? fd() : -1; }
+  [[nodiscard]] std::size_t kept_bytes() const noexcept override { return 0; }
 
  private:
+  /// No device receives it.
+  [[nodiscard]] ssize_t write_some(bytes data) noexcept override {
+    return static_cast<ssize_t>(data.size());
+  }
   [[nodiscard]] std::int64_t burst() const noexcept {
     return std::max<std::int64_t>(rate_ * burst_ns / second_ns, 1);
   }
@@ -75,32 +64,15 @@ class file_transport final : public transport {
     return since_ns / second_ns * rate + since_ns % second_ns * rate / second_ns;
   }
 
-  [[nodiscard]] result<received> read_now(std::span<std::uint8_t> out) noexcept {
-    const ssize_t got =
-        uninterrupted([&] { return calls_->read(fd_.get(), out.data(), out.size()); });
-    if (got < 0) return failure(task::reading, problem::system, name_, errno);
-    if (got == 0) return failure(task::reading, problem::end_of_input, name_);
+  [[nodiscard]] result<received> take(std::span<std::uint8_t> out) noexcept {
+    const ssize_t got = uninterrupted([&] { return calls().read(fd(), out.data(), out.size()); });
+    if (got < 0) return failure(task::reading, problem::system, name(), errno);
+    if (got == 0) return failure(task::reading, problem::end_of_input, name());
     taken_ += got;
     const std::int64_t arrival_ns = rate_ == 0 ? steady_now_ns() : due_ns(taken_);
     return received{static_cast<std::size_t>(got), arrival_ns};
   }
 
-  [[nodiscard]] result<void> wait(task doing, std::int64_t deadline_ns) noexcept {
-    short polled = 0;
-    switch (waker_->wait(-1, 0, deadline_ns, &polled)) {
-      case waker::ended::woken:
-        return failure(doing, problem::cancelled, name_);
-      case waker::ended::failed:
-        return failure(doing, problem::system, name_, errno);
-      default:
-        return {};
-    }
-  }
-
-  const system_calls* calls_;
-  owned_fd fd_;
-  std::unique_ptr<waker> waker_;
-  std::string name_;
   std::uint32_t rate_;
   std::int64_t begun_ns_ = never_ns;  // the time of the first read()
   std::int64_t taken_ = 0;
@@ -113,7 +85,7 @@ result<std::unique_ptr<transport>> open_file_transport(std::string_view path,
                                                        const system_calls& calls) {
   std::string name(path);
   constexpr int flags = O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;  // it may be a pipe
-  owned_fd fd(calls, uninterrupted([&] { return calls.open(name.c_str(), flags); }));
+  owned_fd fd(uninterrupted([&] { return calls.open(name.c_str(), flags); }), calls.close);
   if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
   struct stat file{};
   if (uninterrupted([&] { return calls.fstat(fd.get(), &file); }) != 0) {

@@ -49,7 +49,8 @@ std::int64_t steady_now_ns() noexcept {
 
 waker::waker(const system_calls& calls) noexcept
     : calls_(&calls),
-      event_(calls, uninterrupted([&] { return calls.eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK); })) {}
+      event_(uninterrupted([&] { return calls.eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK); }),
+             calls.close) {}
 
 void waker::wake() noexcept {
   static_assert(std::atomic<bool>::is_always_lock_free);  // for the signal handler

@@ -7,6 +7,9 @@
 #include <map>
 #include <string>
 
+#include "g4lidar/error.hpp"
+#include "g4lidar/transport/transport.hpp"
+
 namespace g4lidar {
 
 /// The process that holds the lock on this file, "screen (1234)"; empty if the system does not show
@@ -23,5 +26,9 @@ namespace g4lidar {
 /// Which other process has the port at `path` open, "cat (1234)"; empty if none is visible. The
 /// simulator of a device, at the other end of a pseudo-terminal, is not counted.
 [[nodiscard]] std::string port_conflict(const std::string& path);
+
+/// `why`; or interference instead, if another process has the port open or has changed its
+/// settings, and `why` can be a result of that. Examines all processes; allocates.
+[[nodiscard]] error with_port_conflict(const error& why, const transport& port) noexcept;
 
 }  // namespace g4lidar

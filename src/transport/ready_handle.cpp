@@ -2,26 +2,21 @@
 #include "ready_handle.hpp"
 
 #include <sys/epoll.h>
-#include <unistd.h>
 
 namespace g4lidar {
 
 ready_handle::ready_handle() noexcept : set_(epoll_create1(EPOLL_CLOEXEC)) {}
 
-ready_handle::~ready_handle() {
-  if (set_ >= 0) ::close(set_);
-}
-
 void ready_handle::follow(int descriptor) noexcept {
-  if (set_ < 0) return;
+  if (!set_) return;
   // A closed descriptor has already left the set; then this call fails, which is correct.
-  if (followed_ >= 0) epoll_ctl(set_, EPOLL_CTL_DEL, followed_, nullptr);
+  if (followed_ >= 0) epoll_ctl(set_.get(), EPOLL_CTL_DEL, followed_, nullptr);
   followed_ = descriptor;
   rests_ = false;
   if (descriptor < 0) return;
   epoll_event wanted{};
   wanted.events = EPOLLIN;
-  if (epoll_ctl(set_, EPOLL_CTL_ADD, descriptor, &wanted) == 0) used_ = true;
+  if (epoll_ctl(set_.get(), EPOLL_CTL_ADD, descriptor, &wanted) == 0) used_ = true;
 }
 
 void ready_handle::rest(bool wanted) noexcept {
@@ -29,7 +24,7 @@ void ready_handle::rest(bool wanted) noexcept {
   rests_ = wanted;
   epoll_event looked_for{};
   if (!wanted) looked_for.events = EPOLLIN;
-  epoll_ctl(set_, EPOLL_CTL_MOD, followed_, &looked_for);
+  epoll_ctl(set_.get(), EPOLL_CTL_MOD, followed_, &looked_for);
 }
 
 }  // namespace g4lidar

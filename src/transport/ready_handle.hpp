@@ -2,25 +2,24 @@
 // A descriptor for event loops that does not change when the transport changes.
 #pragma once
 
+#include "owned_fd.hpp"
+
 namespace g4lidar {
 
 /// An epoll set with at most one descriptor in it. *Single thread.*
 class ready_handle {
  public:
   ready_handle() noexcept;
-  ready_handle(const ready_handle&) = delete;
-  ready_handle& operator=(const ready_handle&) = delete;
-  ~ready_handle();
 
   /// From now on readable when `descriptor` is; a negative one removes the last one.
   void follow(int descriptor) noexcept;
   /// While it rests, only a hang-up makes it readable.
   void rest(bool wanted) noexcept;
   /// -1 before the first call.
-  [[nodiscard]] int native_handle() const noexcept { return used_ ? set_ : -1; }
+  [[nodiscard]] int native_handle() const noexcept { return used_ ? set_.get() : -1; }
 
  private:
-  int set_;
+  owned_fd set_;
   int followed_ = -1;
   bool used_ = false;
   bool rests_ = false;

@@ -11,14 +11,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "custom_baud.hpp"
 #include "fd_port.hpp"
-#include "opening.hpp"
 #include "port_holder.hpp"
 
 namespace g4lidar {
@@ -63,6 +61,12 @@ std::string group_of(gid_t group) {
   return failed == 0 && found != nullptr ? found->gr_name : std::to_string(group);
 }
 
+tl::unexpected<error> busy(const std::string& path, int system_errno = 0) {
+  const std::string holder = port_holder(path);
+  return failure(task::opening, problem::busy, holder.empty() ? path : path + ", held by " + holder,
+                 system_errno);
+}
+
 tl::unexpected<error> not_opened(const std::string& path, int system_errno,
                                  const struct stat& file) {
   switch (system_errno) {
@@ -76,11 +80,8 @@ tl::unexpected<error> not_opened(const std::string& path, int system_errno,
     case EPERM:
       return failure(task::opening, problem::permission,
                      path + " of group " + group_of(file.st_gid), system_errno);
-    case EBUSY: {
-      const std::string holder = port_holder(path);
-      return failure(task::opening, problem::busy,
-                     holder.empty() ? path : path + ", held by " + holder, system_errno);
-    }
+    case EBUSY:
+      return busy(path, system_errno);
     case EISDIR:
     case ENOTTY:
       return failure(task::opening, problem::not_serial, path, system_errno);
@@ -106,7 +107,7 @@ result<owned_fd> open_path(const std::string& path, const system_calls& calls) {
     return failure(task::opening, problem::not_serial, path + hint);
   }
   constexpr int flags = O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;
-  owned_fd fd(calls, uninterrupted([&] { return calls.open(path.c_str(), flags); }));
+  owned_fd fd(uninterrupted([&] { return calls.open(path.c_str(), flags); }), calls.close);
   if (fd.get() < 0) return not_opened(path, errno, file);
   return fd;
 }
@@ -117,25 +118,32 @@ result<owned_fd> open_path(const std::string& path, const system_calls& calls) {
 class serial_transport final : public fd_port {
  public:
   serial_transport(const system_calls& calls, owned_fd fd, std::unique_ptr<waker> waits,
-                   std::string path, std::uint32_t baud) noexcept;
-  ~serial_transport() override;
+                   std::string path, std::uint32_t baud) noexcept
+      : fd_port(calls, std::move(fd), std::move(waits), std::move(path), baud, problem::gone) {}
+  ~serial_transport() override {
+    if (!is_gone()) restore();
+  }
 
   // In this order, each once. The destructor reverts incomplete steps.
   [[nodiscard]] result<void>
   look() noexcept;  ///< Reads the current settings; not_serial if there are none.
   [[nodiscard]] result<void> hold();
-  [[nodiscard]] result<void> configure() noexcept;
+  [[nodiscard]] result<void> configure();
   void hasten() noexcept;
   [[nodiscard]] result<void> discard_input() noexcept;
 
  private:
-  [[nodiscard]] ssize_t write_some(bytes data) noexcept override;
-
-  [[nodiscard]] int control(unsigned long request, void* argument) const noexcept;
+  [[nodiscard]] ssize_t write_some(bytes data) noexcept override {
+    return calls().write(fd(), data.data(), data.size());
+  }
+  [[nodiscard]] int control(unsigned long request, void* argument) const noexcept {
+    return uninterrupted([&] { return calls().ioctl(fd(), request, argument); });
+  }
   [[nodiscard]] tl::unexpected<error> refused(int system_errno) const noexcept;
-  [[nodiscard]] tl::unexpected<error> refused_baud(int system_errno) const noexcept;
-  [[nodiscard]] tl::unexpected<error> held() const;
-  [[nodiscard]] bool set(int when, const termios& wanted) const noexcept;
+  [[nodiscard]] tl::unexpected<error> refused_baud(int system_errno) const;
+  [[nodiscard]] bool set(int when, const termios& wanted) const noexcept {
+    return uninterrupted([&] { return calls().tcsetattr(fd(), when, &wanted); }) == 0;
+  }
   [[nodiscard]] bool drained() const noexcept;
   void restore() noexcept;
 
@@ -146,19 +154,6 @@ class serial_transport final : public fd_port {
   bool is_exclusive_ = false;
   bool is_hastened_ = false;
 };
-
-serial_transport::serial_transport(const system_calls& calls, owned_fd fd,
-                                   std::unique_ptr<waker> waits, std::string path,
-                                   std::uint32_t baud) noexcept
-    : fd_port(calls, std::move(fd), std::move(waits), std::move(path), baud, problem::gone) {}
-
-serial_transport::~serial_transport() {
-  if (!is_gone()) restore();
-}
-
-int serial_transport::control(unsigned long request, void* argument) const noexcept {
-  return uninterrupted([&] { return calls().ioctl(fd(), request, argument); });
-}
 
 tl::unexpected<error> serial_transport::refused(int system_errno) const noexcept {
   switch (system_errno) {
@@ -181,42 +176,27 @@ result<void> serial_transport::look() noexcept {
   return {};
 }
 
-tl::unexpected<error> serial_transport::held() const {
-  const std::string path(name());
-  const std::string holder = port_holder(path);
-  return failure(task::opening, problem::busy,
-                 holder.empty() ? path : path + ", held by " + holder);
-}
-
 // flock() is the guarantee, because the system releases it however its holder ends. TIOCEXCL also
 // excludes programs that do not use locks.
 result<void> serial_transport::hold() {
   if (uninterrupted([&] { return calls().flock(fd(), LOCK_EX | LOCK_NB); }) != 0) {
-    if (errno == EWOULDBLOCK) return held();
+    if (errno == EWOULDBLOCK) return busy(std::string(name()));
     return failure(task::opening, problem::system, name(), errno);
   }
   int exclusive = 0;  // open() by root succeeds despite it
-  if (control(TIOCGEXCL, &exclusive) == 0 && exclusive != 0) return held();
+  if (control(TIOCGEXCL, &exclusive) == 0 && exclusive != 0) return busy(std::string(name()));
   struct stat file{};
   const bool known = uninterrupted([&] { return calls().fstat(fd(), &file); }) == 0;
   if (known && !is_pty(file)) is_exclusive_ = control(TIOCEXCL, nullptr) == 0;
   return {};
 }
 
-bool serial_transport::set(int when, const termios& wanted) const noexcept {
-  return uninterrupted([&] { return calls().tcsetattr(fd(), when, &wanted); }) == 0;
+tl::unexpected<error> serial_transport::refused_baud(int system_errno) const {
+  return failure(task::configuring, problem::bad_baud_rate,
+                 std::string(name()) + " at " + std::to_string(baud()) + " baud", system_errno);
 }
 
-tl::unexpected<error> serial_transport::refused_baud(int system_errno) const noexcept {
-  std::array<char, 95> subject{};
-  const int size = std::snprintf(subject.data(), subject.size(), "%.*s at %u baud",
-                                 static_cast<int>(name().size()), name().data(), baud());
-  const auto length =
-      std::clamp<std::size_t>(static_cast<std::size_t>(size), 0, subject.size() - 1);
-  return failure(task::configuring, problem::bad_baud_rate, {subject.data(), length}, system_errno);
-}
-
-result<void> serial_transport::configure() noexcept {
+result<void> serial_transport::configure() {
   const auto speed = speed_of(baud());
   termios wanted = found_;
   cfmakeraw(&wanted);
@@ -255,10 +235,6 @@ void serial_transport::hasten() noexcept {
 result<void> serial_transport::discard_input() noexcept {
   if (uninterrupted([&] { return calls().tcflush(fd(), TCIFLUSH); }) != 0) return refused(errno);
   return {};
-}
-
-ssize_t serial_transport::write_some(bytes data) noexcept {
-  return calls().write(fd(), data.data(), data.size());
 }
 
 /// Waits until the output has been sent, at most 50 ms: more than any command of the library needs.

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "fd_port.hpp"
-#include "opening.hpp"
 
 namespace g4lidar {
 namespace {
@@ -125,10 +124,11 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
   if (!waits->is_open()) return failure(task::opening, problem::system, "eventfd", errno);
   int refused = 0;
   for (const addrinfo* to = list.get(); to != nullptr; to = to->ai_next) {
-    owned_fd fd(calls, uninterrupted([&] {
+    owned_fd fd(uninterrupted([&] {
                   return calls.socket(to->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC,
                                       to->ai_protocol);
-                }));
+                }),
+                calls.close);
     refused = fd.get() < 0 ? errno : connect(fd.get(), *to, deadline_ns, *waits, calls);
     if (refused != 0) continue;
     tune(fd.get(), calls);

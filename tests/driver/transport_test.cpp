@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "discovery/system_connector.hpp"
-#include "driver/port_conflict.hpp"
 #include "support/allocation_count.hpp"
 #include "support/virtual_transport.hpp"
+#include "transport/port_holder.hpp"
 
 namespace g4lidar {
 namespace {

@@ -18,8 +18,8 @@
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 #include "scenario.hpp"
+#include "transport/fd_port.hpp"
 #include "transport/listener.hpp"
-#include "transport/opening.hpp"
 #include "transport/pty.hpp"
 #include "transport/temporary_file.hpp"
 

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "discovery/system_connector.hpp"
-#include "driver/port_conflict.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "listener.hpp"
 #include "pty.hpp"
+#include "transport/port_holder.hpp"
 
 namespace g4lidar {
 namespace {

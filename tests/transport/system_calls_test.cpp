@@ -8,7 +8,7 @@
 #include "port_io.hpp"
 #include "pty.hpp"
 #include "temporary_file.hpp"
-#include "transport/opening.hpp"
+#include "transport/fd_port.hpp"
 
 namespace g4lidar::test {
 namespace {

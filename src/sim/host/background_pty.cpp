@@ -13,14 +13,14 @@
 #include <thread>
 #include <utility>
 
-#include "file_handle.hpp"
 #include "g4lidar/sim/pty_port.hpp"
+#include "transport/owned_fd.hpp"
 
 namespace g4lidar::sim {
 
 class G4LIDAR_HIDDEN background_pty::state {
  public:
-  state(pty_port port, file_handle bell)
+  state(pty_port port, owned_fd bell)
       : port_(std::move(port)), path_(port_.path()), bell_(std::move(bell)) {
     thread_ = std::thread([this] { run(); });
   }
@@ -46,12 +46,12 @@ class G4LIDAR_HIDDEN background_pty::state {
 
  private:
   void ring() const noexcept {
-    [[maybe_unused]] const int ignored = ::eventfd_write(bell_.number(), 1);
+    [[maybe_unused]] const int ignored = ::eventfd_write(bell_.get(), 1);
   }
 
   void run() {
     while (!ending_) {
-      std::array<pollfd, 3> waiting{{{bell_.number(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
+      std::array<pollfd, 3> waiting{{{bell_.get(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
       std::int64_t sleep_ns = forever_ns;
       {
         const std::lock_guard lock(mutex_);
@@ -69,14 +69,14 @@ class G4LIDAR_HIDDEN background_pty::state {
                            static_cast<long>(sleep_ns % second_ns)};
       if (::ppoll(waiting.data(), waiting.size(), &sleep, nullptr) > 0 && waiting[0].revents != 0) {
         eventfd_t rung = 0;
-        [[maybe_unused]] const int ignored = ::eventfd_read(bell_.number(), &rung);
+        [[maybe_unused]] const int ignored = ::eventfd_read(bell_.get(), &rung);
       }
     }
   }
 
   pty_port port_;
   std::string path_;
-  file_handle bell_;
+  owned_fd bell_;
   std::mutex mutex_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
@@ -88,7 +88,7 @@ background_pty& background_pty::operator=(background_pty&&) noexcept = default;
 background_pty::~background_pty() = default;
 
 result<background_pty> background_pty::open(device simulated, const std::string& link) {
-  file_handle bell(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  owned_fd bell(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!bell) return failure(task::opening, problem::system, "an eventfd", errno);
   result<pty_port> port = pty_port::open(std::move(simulated), link);
   if (!port) return tl::unexpected<error>(port.error());

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "file_handle.hpp"
+#include "transport/owned_fd.hpp"
 
 namespace g4lidar::sim {
 
@@ -37,19 +37,19 @@ class claim {
   }
 
   /// Holds the name as long as the handle is open. Empty where another process holds it: EADDRINUSE.
-  [[nodiscard]] file_handle hold() const noexcept {
-    file_handle held = socket();
-    if (!held || ::bind(held.number(), generic(), size_) != 0) return {};
+  [[nodiscard]] owned_fd hold() const noexcept {
+    owned_fd held = socket();
+    if (!held || ::bind(held.get(), generic(), size_) != 0) return {};
     return held;
   }
   [[nodiscard]] bool is_held() const noexcept {
-    const file_handle visitor = socket();
-    return visitor && ::connect(visitor.number(), generic(), size_) == 0;
+    const owned_fd visitor = socket();
+    return visitor && ::connect(visitor.get(), generic(), size_) == 0;
   }
 
  private:
-  static file_handle socket() noexcept {
-    return file_handle(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  static owned_fd socket() noexcept {
+    return owned_fd(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   }
   [[nodiscard]] const sockaddr* generic() const noexcept {
     return reinterpret_cast<const sockaddr*>(&address_);

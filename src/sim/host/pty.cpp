@@ -24,7 +24,7 @@ result<std::unique_ptr<served_port>> pty::open() {
     return failure(task::opening, problem::system, what, errno);
   };
   auto made = std::make_unique<pty>();
-  made->master_ = file_handle(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
+  made->master_ = owned_fd(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC));
   if (!made->master_) return failed("a pseudo-terminal");
   std::array<char, 64> name{};
   if (::grantpt(made->handle()) != 0 || ::unlockpt(made->handle()) != 0 ||
@@ -34,11 +34,11 @@ result<std::unique_ptr<served_port>> pty::open() {
   }
   made->name_ = name.data();
   made->claim_ = claim(made->name_).hold();
-  made->watch_ = file_handle(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
+  made->watch_ = owned_fd(::inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
   if (made->watch_ && ::inotify_add_watch(made->watch(), name.data(), IN_OPEN | IN_CLOSE) < 0) {
     made->watch_.close();
   }
-  made->slave_ = file_handle(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
+  made->slave_ = owned_fd(::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC));
   if (!made->slave_ || !made->make_raw()) return failed(name.data());
   made->find_out_whether_watching_works();
   return made;
@@ -54,10 +54,10 @@ void pty::find_out_whether_watching_works() noexcept {
 
 bool pty::make_raw() const noexcept {
   termios settings{};
-  if (::tcgetattr(slave_.number(), &settings) != 0) return false;
+  if (::tcgetattr(slave_.get(), &settings) != 0) return false;
   ::cfmakeraw(&settings);
   ::cfsetspeed(&settings, B230400);
-  return ::tcsetattr(slave_.number(), TCSANOW, &settings) == 0;
+  return ::tcsetattr(slave_.get(), TCSANOW, &settings) == 0;
 }
 
 void pty::look_for_clients() noexcept {
@@ -76,8 +76,8 @@ void pty::look_for_clients() noexcept {
     }
   }
   if (before > 0 && clients_ == 0) {
-    ::ioctl(slave_.number(), TIOCNXCL);
-    ::tcflush(slave_.number(), TCIFLUSH);
+    ::ioctl(slave_.get(), TIOCNXCL);
+    ::tcflush(slave_.get(), TCIFLUSH);
     [[maybe_unused]] const bool raw = make_raw();
   }
 }

@@ -8,10 +8,10 @@
 #include <span>
 #include <string>
 
-#include "file_handle.hpp"
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/error.hpp"
 #include "served_port.hpp"
+#include "transport/owned_fd.hpp"
 
 namespace g4lidar::sim {
 
@@ -20,8 +20,8 @@ class pty final : public served_port {
   [[nodiscard]] static result<std::unique_ptr<served_port>> open();
 
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
-  [[nodiscard]] int handle() const noexcept override { return master_.number(); }
-  [[nodiscard]] int watch() const noexcept override { return watch_.number(); }
+  [[nodiscard]] int handle() const noexcept override { return master_.get(); }
+  [[nodiscard]] int watch() const noexcept override { return watch_.get(); }
 
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
   std::size_t write(bytes data) noexcept override;
@@ -31,10 +31,10 @@ class pty final : public served_port {
   [[nodiscard]] bool make_raw() const noexcept;
   void find_out_whether_watching_works() noexcept;
 
-  file_handle master_;
-  file_handle slave_;  // kept open, so that the master never hangs up
-  file_handle watch_;
-  file_handle claim_;  // shows discovery that a simulated device is behind it
+  owned_fd master_;
+  owned_fd slave_;  // kept open, so that the master never hangs up
+  owned_fd watch_;
+  owned_fd claim_;  // shows discovery that a simulated device is behind it
   std::string name_;
   int clients_ = 0;
 };

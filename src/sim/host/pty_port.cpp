@@ -57,7 +57,7 @@ result<void> point(const fs::path& link, const std::string& target) {
 }
 
 // The claim of a link, kept as long as a device uses it, also while it is unplugged.
-result<file_handle> claim_link_at(const std::string& link) {
+result<owned_fd> claim_link_at(const std::string& link) {
   std::error_code none;
   const fs::path place = fs::absolute(link, none);
   const fs::path whole = fs::weakly_canonical(place.parent_path(), none) / place.filename();
@@ -67,7 +67,7 @@ result<file_handle> claim_link_at(const std::string& link) {
   }
   std::array<char, 17> name{};
   std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(digest));
-  file_handle held = claim(name.data()).hold();
+  owned_fd held = claim(name.data()).hold();
   if (held) return held;
   const bool is_served = errno == EADDRINUSE;
   return failure(task::opening, is_served ? problem::busy : problem::system, link, errno);
@@ -92,7 +92,7 @@ class G4LIDAR_HIDDEN pty_port::state {
 
   result<void> open() {
     if (!link_.empty()) {
-      result<file_handle> held = claim_link_at(link_);
+      result<owned_fd> held = claim_link_at(link_);
       if (!held) return tl::unexpected<error>(held.error());
       claim_ = std::move(*held);
     }
@@ -156,7 +156,7 @@ class G4LIDAR_HIDDEN pty_port::state {
   }
 
   std::string link_;
-  file_handle claim_;  // of the link
+  owned_fd claim_;  // of the link
   std::string path_;
   std::string address_;  // empty: a pseudo-terminal
   std::uint16_t port_ = 0;

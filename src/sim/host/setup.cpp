@@ -18,8 +18,8 @@
 #include <utility>
 
 #include "claim.hpp"
-#include "file_handle.hpp"
 #include "sim/read_time.hpp"
+#include "transport/owned_fd.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -226,12 +226,12 @@ std::variant<world, world_error> load_world(const std::string& file) {
   if (file.empty()) return built_in_world();
   std::error_code none;
   if (fs::is_directory(file, none)) return world_error{0, "it is a directory"};
-  const file_handle in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   std::string text;
   std::array<char, 16'384> part;
   ssize_t count = in ? 1 : -1;
   while (count > 0 && text.size() <= longest) {
-    count = ::read(in.number(), part.data(), part.size());
+    count = ::read(in.get(), part.data(), part.size());
     if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
   }
   if (count < 0) {

@@ -20,8 +20,8 @@ result<std::unique_ptr<served_port>> tcp_server::open(const std::string& address
     return failure(task::opening, problem::bad_option, address);
   }
   auto made = std::make_unique<tcp_server>();
-  made->listener_ = file_handle(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  const int listener = made->listener_.number();
+  made->listener_ = owned_fd(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const int listener = made->listener_.get();
   const int on = 1;
   socklen_t size = sizeof place;
   auto* const generic = reinterpret_cast<sockaddr*>(&place);
@@ -39,20 +39,20 @@ void tcp_server::look_for_clients() noexcept {
   // At most so many at a time, even if programs connect continuously.
   for (int turn = 0; turn < 16; ++turn) {
     // The bytes of a program that has disconnected are read first: the next program waits for that.
-    pollfd present{client_.number(), POLLRDHUP, 0};
+    pollfd present{client_.get(), POLLRDHUP, 0};
     if (client_ && ::poll(&present, 1, 0) > 0) return;
-    file_handle next(::accept4(listener_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    owned_fd next(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (!next) return;
     if (client_) continue;  // closed by this loop
     const int on = 1;
-    ::setsockopt(next.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    ::setsockopt(next.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     client_ = std::move(next);
   }
 }
 
 std::size_t tcp_server::read(std::span<std::uint8_t> out) noexcept {
   if (!client_) return 0;
-  const ssize_t count = ::recv(client_.number(), out.data(), out.size(), 0);
+  const ssize_t count = ::recv(client_.get(), out.data(), out.size(), 0);
   if (count > 0) return static_cast<std::size_t>(count);
   if (count == 0 || (errno != EAGAIN && errno != EINTR)) client_.close();
   return 0;
@@ -61,7 +61,7 @@ std::size_t tcp_server::read(std::span<std::uint8_t> out) noexcept {
 std::size_t tcp_server::write(bytes data) noexcept {
   if (!client_) return 0;
   while (!data.empty()) {
-    const ssize_t count = ::send(client_.number(), data.data(), data.size(), MSG_NOSIGNAL);
+    const ssize_t count = ::send(client_.get(), data.data(), data.size(), MSG_NOSIGNAL);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     data = data.subspan(static_cast<std::size_t>(count));

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "file_handle.hpp"
 #include "g4lidar/error.hpp"
 #include "served_port.hpp"
+#include "transport/owned_fd.hpp"
 
 namespace g4lidar::sim {
 
@@ -20,16 +20,16 @@ class tcp_server final : public served_port {
 
   /// "tcp:127.0.0.1:4000"
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
-  [[nodiscard]] int handle() const noexcept override { return client_.number(); }
-  [[nodiscard]] int watch() const noexcept override { return listener_.number(); }
+  [[nodiscard]] int handle() const noexcept override { return client_.get(); }
+  [[nodiscard]] int watch() const noexcept override { return listener_.get(); }
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> out) noexcept override;
   std::size_t write(bytes data) noexcept override;
   /// Accepts a client; further ones are refused.
   void look_for_clients() noexcept override;
 
  private:
-  file_handle listener_;
-  file_handle client_;
+  owned_fd listener_;
+  owned_fd client_;
   std::string name_;
 };
 
