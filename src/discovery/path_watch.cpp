@@ -9,11 +9,6 @@
 #include <cstring>
 
 namespace g4lidar {
-namespace {
-
-constexpr std::uint32_t changes = IN_CREATE | IN_MOVED_TO | IN_ATTRIB;
-
-}  // namespace
 
 path_watch::path_watch(std::string_view path)
     : path_((path.find('/') == std::string_view::npos ? "./" : "") + std::string(path)),
@@ -25,6 +20,7 @@ path_watch::path_watch(std::string_view path)
 /// nearest one that exists is watched. To watch a directory again changes nothing.
 void path_watch::follow() noexcept {
   if (!fd_) return;
+  constexpr std::uint32_t changes = IN_CREATE | IN_MOVED_TO | IN_ATTRIB;
   static_cast<void>(inotify_add_watch(fd_.get(), "/dev", changes));
   for (std::size_t end = path_.rfind('/'); end != std::string::npos;) {
     path_[end] = '\0';

@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "driver.hpp"
 #include "event_queue.hpp"
-#include "moved_from.hpp"
 #include "scan_queue.hpp"
 
 namespace g4lidar {

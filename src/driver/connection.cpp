@@ -4,12 +4,6 @@
 #include <utility>
 
 namespace g4lidar {
-namespace {
-
-/// A command of two bytes that is not sent within this time is never sent.
-constexpr std::int64_t write_time_ns = 100'000'000;
-
-}  // namespace
 
 result<void> connection::open() {
   auto made = connector_->connect();
@@ -25,6 +19,8 @@ void connection::close() noexcept {
 }
 
 result<void> connection::send(bytes command) noexcept {
+  // A command of two bytes that is not sent within this time is never sent.
+  constexpr std::int64_t write_time_ns = 100'000'000;
   while (true) {
     auto sent = transport_->write(command, now_ns() + write_time_ns);
     if (sent || sent.error() != problem::cancelled) return sent;

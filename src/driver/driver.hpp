@@ -9,7 +9,6 @@
 
 #include "feeder.hpp"
 #include "g4lidar/lidar.hpp"
-#include "point_storage.hpp"
 
 namespace g4lidar {
 
@@ -67,5 +66,16 @@ class G4LIDAR_HIDDEN lidar::driver {
   bool hands_points_over_ = false;  // by next_points()
   std::uint64_t points_missed_ = 0;
 };
+
+/// The results of a moved-from lidar or reader.
+[[nodiscard]] inline tl::unexpected<error> moved_from() noexcept {
+  return failure(task::reading, problem::gone, "this lidar, which was moved from");
+}
+
+/// A ring that is never written to. Not const: then it takes no space in the program file.
+[[nodiscard]] inline const lidar_ring& empty_ring() noexcept {
+  static constinit lidar_ring ring;
+  return ring;
+}
 
 }  // namespace g4lidar

@@ -9,7 +9,6 @@
 
 #include "discovery/system_connector.hpp"
 #include "driver.hpp"
-#include "moved_from.hpp"
 
 namespace g4lidar {
 namespace {

@@ -6,8 +6,6 @@
 #include "live_driver.hpp"
 
 namespace g4lidar {
-namespace {}  // namespace
-
 void live_driver::add_step(setup_step step) {
   question_.forget_woken();
   setup_.add(step);

@@ -75,8 +75,7 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
   return {};
 }
 
-// ---- metadata
-// ------------------------------------------------------------------------------------
+// ---- metadata ----------------------------------------------------------------------------------
 
 /// Channels and metadata, by the groups of the summary.
 void recording_reader::file_reader::read_summary() {
@@ -222,9 +221,8 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
       continue;
     }
     if (!std::exchange(is_state_reported_, true) && transport_.is_known) {
-      if (!waiting_)
-        waiting_ =
-            item;  // otherwise this item is a gap, which does not matter for a reader that begins here
+      // Otherwise this item is a gap, which does not matter for a reader that begins here.
+      if (!waiting_) waiting_ = item;
       item->what = recorded_item::kind::other;
       item->data = {};
       item->other = transport_.as_event(item->time_ns);

@@ -152,7 +152,7 @@ void recording_writer::file_writer::device(const recorded_device& known) noexcep
 void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
   wall_.update();
   covered_.begin_chunk(time_ns, !file_->has_chunks());
-  chunk_.put_channels(options_.topic);
+  put_channels(chunk_.text(), options_.topic);
   if (!transport_.is_known) return;
   chunk_.begin_message(topic::events, sequences_[mcap::open_chunk::index_of(topic::events)]++,
                        wall_.at(time_ns));

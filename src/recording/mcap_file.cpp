@@ -36,6 +36,8 @@ void put_schemas(record_text& out) {
   }
 }
 
+}  // namespace
+
 void put_channels(record_text& out, std::string_view scan_topic) {
   for (const topic_words& channel : all_topics()) {
     const std::size_t record = out.begin(opcode::channel);
@@ -48,21 +50,11 @@ void put_channels(record_text& out, std::string_view scan_topic) {
   }
 }
 
-}  // namespace
-
 // ---- open_chunk --------------------------------------------------------------------------------
 
 open_chunk::open_chunk() {
   text_.reserve(room + (std::size_t{64} << 10U));
   for (auto& places : places_) places.reserve(most_messages);
-}
-
-bool open_chunk::has_room_for(std::size_t size) const noexcept {
-  return count_ + 2 < most_messages && text_.size() + size <= room;
-}
-
-void open_chunk::put_channels(std::string_view scan_topic) {
-  mcap::put_channels(text_, scan_topic);
 }
 
 void open_chunk::begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns) {
@@ -77,8 +69,6 @@ void open_chunk::begin_message(topic id, std::uint32_t sequence, std::int64_t wa
   last_ns_ = std::max(last_ns_, time_ns);
   ++count_;
 }
-
-void open_chunk::end_message() { text_.end(begun_); }
 
 void open_chunk::clear() noexcept {
   text_.clear();

@@ -19,6 +19,9 @@
 
 namespace g4lidar::mcap {
 
+/// The records before the messages of a chunk. Scans are on `scan_topic`.
+void put_channels(record_text& out, std::string_view scan_topic);
+
 /// The messages of a chunk that is being filled. It is written to a file as a whole. *Allocates on
 /// open.*
 class open_chunk {
@@ -27,13 +30,13 @@ class open_chunk {
 
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
   /// Whether a message of so many bytes still fits.
-  [[nodiscard]] bool has_room_for(std::size_t size) const noexcept;
+  [[nodiscard]] bool has_room_for(std::size_t size) const noexcept {
+    return count_ + 2 < most_messages && text_.size() + size <= room;
+  }
 
-  /// The records before the messages. Scans are on `scan_topic`.
-  void put_channels(std::string_view scan_topic);
   /// Begins a message; write its data to text(), and then call end_message().
   void begin_message(topic id, std::uint32_t sequence, std::int64_t wall_ns);
-  void end_message();
+  void end_message() { text_.end(begun_); }
   [[nodiscard]] record_text& text() noexcept { return text_; }
   void clear() noexcept;
 

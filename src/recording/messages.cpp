@@ -5,9 +5,9 @@
 #include <charconv>
 
 #include "export/cdr.hpp"
-#include "g4lidar/export/ros_messages.hpp"
-
+#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/response.hpp"
+#include "g4lidar/export/ros_messages.hpp"
 
 namespace g4lidar {
 namespace {
@@ -19,6 +19,25 @@ constexpr std::array<std::string_view, 8> event_names{"opened", "closed", "sent"
 
 std::string_view name_of(recorded_event::kind what) noexcept {
   return event_names[static_cast<std::size_t>(what)];
+}
+
+std::string_view computed_with() noexcept {
+  [[maybe_unused]] const bool has_avx2 = best_instruction_set() == instruction_set::avx2;
+#if defined(__x86_64__)
+  return has_avx2 ? "x86_64 avx2" : "x86_64";
+#elif defined(__aarch64__)
+  return "aarch64";
+#elif defined(__arm__)
+  return "arm";
+#elif defined(__i386__)
+  return "i386";
+#elif defined(__riscv)
+  return "riscv";
+#elif defined(__s390x__)
+  return "s390x";
+#else
+  return has_avx2 ? "avx2" : "portable";
+#endif
 }
 
 namespace mcap {

@@ -9,9 +9,7 @@
 namespace g4lidar::sim {
 namespace {
 
-constexpr std::int64_t minute_ns = 60'000'000'000;
-
-bool is_duration(std::int64_t ns) noexcept { return ns >= 0 && ns <= minute_ns; }
+bool is_duration(std::int64_t ns) noexcept { return ns >= 0 && ns <= 60'000'000'000; }
 
 }  // namespace
 

@@ -18,8 +18,7 @@
 #include <filesystem>
 
 #include "claim.hpp"
-#include "pty.hpp"
-#include "tcp_server.hpp"
+#include "served_port.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -100,7 +99,7 @@ class G4LIDAR_HIDDEN pty_port::state {
   }
 
   result<void> plug() {
-    auto opened = address_.empty() ? pty::open() : tcp_server::open(address_, port_);
+    auto opened = address_.empty() ? open_pty() : listen_at(address_, port_);
     if (!opened) return tl::unexpected<error>(opened.error());
     served_ = std::move(*opened);
     if (!link_.empty()) {

@@ -2,12 +2,15 @@
 // The connection of a simulated device to programs, which open and close it.
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 
 #include "g4lidar/core/bytes.hpp"
+#include "g4lidar/error.hpp"
 
 namespace g4lidar::sim {
 
@@ -31,6 +34,27 @@ class served_port {
   virtual std::size_t write(bytes data) noexcept = 0;
   /// Checks which programs have opened and closed it. After the last close it is reset.
   virtual void look_for_clients() noexcept = 0;
+
+ protected:
+  /// Writes until nothing fits any more; returns the number of bytes that were not written.
+  template <class Write>
+  [[nodiscard]] static std::size_t unwritten(bytes data, Write write_some) noexcept {
+    while (!data.empty()) {
+      const auto count = write_some(data);
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) break;
+      data = data.subspan(static_cast<std::size_t>(count));
+    }
+    return data.size();
+  }
 };
+
+/// A pseudo-terminal that behaves like a serial port: raw, and reset for each program that opens it.
+[[nodiscard]] result<std::unique_ptr<served_port>> open_pty();
+
+/// A TCP socket that forwards raw bytes to one client at a time, as a network bridge does. Listens at
+/// a numeric IPv4 address; port 0: any. Fails with bad_option or system.
+[[nodiscard]] result<std::unique_ptr<served_port>> listen_at(const std::string& address,
+                                                             std::uint16_t port);
 
 }  // namespace g4lidar::sim
