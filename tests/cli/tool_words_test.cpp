@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tool names what its user can do: no word of the library's interface reaches them.
-#include "cli/tool_words.hpp"
+#include "cli/exit_code.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 #include <new>
 #include <string>
 
+#include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
-#include "cli/global_options.hpp"
 #include "cli/logger.hpp"
 #include "cli/verbs.hpp"
 #include "io/interrupt.hpp"

@@ -10,12 +10,10 @@
 #include <system_error>
 #include <vector>
 
+#include "common_options.hpp"
 #include "exit_code.hpp"
 #include "g4lidar/version.hpp"
-#include "global_options.hpp"
-#include "io/file_id.hpp"
 #include "logger.hpp"
-#include "verb.hpp"
 #include "verbs.hpp"
 
 namespace g4_dump {
@@ -168,6 +166,14 @@ std::string app_footer() {
 }
 
 }  // namespace
+
+std::vector<verb> all_verbs() {
+  return {make_list_verb(),    make_watch_verb(),  make_info_verb(),    make_health_verb(),
+          make_stats_verb(),   make_doctor_verb(), make_dump_verb(),    make_scan_verb(),
+          make_packets_verb(), make_decode_verb(), make_sim_verb(),     make_set_verb(),
+          make_start_verb(),   make_stop_verb(),   make_restart_verb(), make_record_verb(),
+          make_replay_verb(),  make_convert_verb()};
+}
 
 std::function<int()> read_command_line(int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given

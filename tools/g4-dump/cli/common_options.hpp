@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The options that the verbs share, and their rows in the table. A verb takes the rows that mean
-// something for it.
+// The global options, which every verb has, and the options that verbs share, with their rows in
+// the table. A verb takes the rows that mean something for it.
 #pragma once
 
 #include <chrono>
@@ -17,9 +17,29 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "rows.hpp"
-#include "verb.hpp"
+#include "verbs.hpp"
 
 namespace g4_dump {
+
+enum class color_choice : unsigned char { automatic, always, never };
+
+/// Set once, by the command line.
+struct global_options {
+  bool quiet = false;    ///< Only errors on standard error.
+  bool verbose = false;  ///< Messages about each step.
+  bool json_errors = false;
+  color_choice color = color_choice::automatic;
+};
+
+[[nodiscard]] global_options& our_global_options() noexcept;
+
+/// -q, -v, --color, --json-errors.
+[[nodiscard]] option_rows global_rows();
+/// --help and --version.
+[[nodiscard]] option_rows standard_rows();
+
+/// Whether what is written to `descriptor` is to be coloured: a terminal, no NO_COLOR, or --color.
+[[nodiscard]] bool wants_color(int descriptor) noexcept;
 
 /// What a command does when its device is not connected.
 enum class loss_rule : unsigned char {

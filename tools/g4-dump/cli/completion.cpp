@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "common_options.hpp"
 #include "exit_code.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/sim/fault.hpp"
-#include "global_options.hpp"
 #include "rows.hpp"
 #include "settings.hpp"
 #include "verbs.hpp"

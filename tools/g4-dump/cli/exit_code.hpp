@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The exit codes, and the one exception by which a command ends with an error.
+// The exit codes, and the exception by which a command ends with an error, in words of the tool.
 #pragma once
 
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "g4lidar/error.hpp"
-#include "tool_words.hpp"
 
 namespace g4_dump {
 
@@ -30,6 +31,17 @@ enum class exit_code : int {
 
 /// The exit code for a problem that has ended a command. `was_running`: points had come before.
 [[nodiscard]] exit_code exit_code_for(const g4lidar::error& why, bool was_running = false) noexcept;
+
+/// Words in errors and advice of the library that only a program can follow, and what a user of the
+/// tool does instead.
+struct tool_word {
+  std::string_view library;
+  std::string_view tool;
+};
+[[nodiscard]] std::span<const tool_word> tool_words() noexcept;
+
+/// `text` of the library with all of them replaced.
+[[nodiscard]] std::string in_tool_words(std::string_view text);
 
 /// Ends a command: whole sentences: what is wrong, and what to try.
 class failure : public std::runtime_error {

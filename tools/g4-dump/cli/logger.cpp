@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "global_options.hpp"
+#include "common_options.hpp"
 
 namespace g4_dump {
 namespace {

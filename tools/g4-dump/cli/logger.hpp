@@ -14,6 +14,9 @@ namespace g4_dump {
 
 using g4lidar::printable;
 
+/// `name` as it stands in sentences.
+[[nodiscard]] inline std::string in_quotes(const std::string& name) { return "'" + name + "'"; }
+
 /// How many there are of something: "1 packet", "0 packets", "2 packets".
 [[nodiscard]] std::string counted(unsigned long long number, std::string_view noun);
 

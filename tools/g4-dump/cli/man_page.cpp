@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "common_options.hpp"
 #include "exit_code.hpp"
 #include "g4lidar/version.hpp"
-#include "global_options.hpp"
 #include "rows.hpp"
 #include "verbs.hpp"
 

@@ -10,7 +10,7 @@
 
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/lidar.hpp"
-#include "values.hpp"
+#include "rows.hpp"
 
 namespace g4_dump {
 

@@ -73,9 +73,9 @@ verb device_verb(verb made, int (*run)(const common_options&), bool has_output) 
   return made;
 }
 
-void write_line(output& out, const nlohmann::ordered_json& value) { out.write(json_line(value)); }
-
-void write_words(output& out, const nlohmann::ordered_json& value, std::size_t width) {
+void write_object(output& out, const nlohmann::ordered_json& value, std::size_t width,
+                  bool as_json) {
+  if (as_json) return out.write(json_line(value));
   const nlohmann::ordered_json all = value.flatten();
   for (const auto& [path, each] : all.items()) {
     std::string name = path.substr(1);

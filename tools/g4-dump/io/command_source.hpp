@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/common_options.hpp"
-#include "cli/verb.hpp"
+#include "cli/verbs.hpp"
 #include "g4lidar/error.hpp"
 #include "io/source.hpp"
 
@@ -33,11 +33,9 @@ class command_source {
 [[nodiscard]] verb device_verb(verb made, int (*run)(const common_options&),
                                bool has_output = false);
 
-/// One line of JSON. Everything but ASCII is escaped, and what is not UTF-8 is replaced.
-void write_line(output& out, const nlohmann::ordered_json& value);
-
-/// An object for people: lines "name  value" with `width` columns for the name. Null is "unknown",
-/// and an object in it, such as "skipped", gives lines "skipped_noise".
-void write_words(output& out, const nlohmann::ordered_json& value, std::size_t width);
+/// An object as a line of JSON, or for people: lines "name  value" with `width` columns for the
+/// name. Null is "unknown", and an object in it, such as "skipped", gives lines "skipped_noise".
+void write_object(output& out, const nlohmann::ordered_json& value, std::size_t width,
+                  bool as_json);
 
 }  // namespace g4_dump

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
-// Bytes from a file, a pipe or standard input, as they come; the contents of a recording.
+// Bytes from a file, a pipe or standard input, as they come; the contents of a recording; the counts
+// of raw bytes as text or JSON, and what is wrong with an input that holds no packet.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "cli/common_options.hpp"
-#include "file_id.hpp"
+#include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "interrupt.hpp"
+#include "output.hpp"
 
 namespace g4_dump {
-
-class output;
 
 /// What becomes of the bytes.
 struct byte_sink {
@@ -66,5 +67,23 @@ g4lidar::recording_reader read_items(
 
 /// What is missing from a recording, as a text line; empty where nothing is.
 [[nodiscard]] std::string describe(const g4lidar::recording_damage& damage);
+
+/// Two lines for people.
+[[nodiscard]] std::string stats_in_words(const g4lidar::stream_counts& counts, std::uint64_t bytes);
+
+/// An object with the keys bytes, packets, responses, points, suspect and skipped, the latter an
+/// object of bytes by reason.
+[[nodiscard]] nlohmann::ordered_json counts_as_json(const g4lidar::stream_counts& counts,
+                                                    std::uint64_t bytes);
+
+/// Whether bytes look like text, which no recording is: only the first ones are looked at.
+[[nodiscard]] bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept;
+
+/// Why there is no packet in `bytes` bytes of `title`, and what to do: whole sentences.
+[[nodiscard]] std::string why_no_packet(const g4lidar::stream_counts& counts, std::uint64_t bytes,
+                                        bool has_text, const std::string& title);
+
+/// A warning about an input most of which is no packet; empty if there is nothing to warn of.
+[[nodiscard]] std::string warning_about(const g4lidar::stream_counts& counts, std::uint64_t bytes);
 
 }  // namespace g4_dump

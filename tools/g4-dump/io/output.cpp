@@ -15,7 +15,8 @@
 #include <utility>
 
 #include "cli/exit_code.hpp"
-#include "cli/values.hpp"
+#include "cli/logger.hpp"
+#include "cli/rows.hpp"
 #include "interrupt.hpp"
 
 namespace g4_dump {

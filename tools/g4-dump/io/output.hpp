@@ -2,16 +2,33 @@
 // A file that appears whole or not at all; or standard output, a pipe, a device, as it comes.
 #pragma once
 
+#include <sys/stat.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
-#include "file_id.hpp"
 #include "g4lidar/export/text_sink.hpp"
 
 namespace g4_dump {
+
+/// A regular file on disk, whatever name it has: its device and its number.
+using file_id = std::pair<dev_t, ino_t>;
+
+[[nodiscard]] inline std::optional<file_id> id_of(const struct stat& status) noexcept {
+  if (!S_ISREG(status.st_mode)) return std::nullopt;
+  return file_id{status.st_dev, status.st_ino};
+}
+
+/// The regular file of that name; nothing where there is none.
+[[nodiscard]] inline std::optional<file_id> id_of_name(const std::string& name) noexcept {
+  struct stat status{};
+  if (::stat(name.c_str(), &status) != 0) return std::nullopt;
+  return id_of(status);
+}
 
 /// Where data goes, through a buffer. A file on disk is written beside its place under another name
 /// and put there by commit(); without a commit() nothing is left of it and an older file of that

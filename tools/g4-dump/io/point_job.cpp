@@ -20,7 +20,6 @@
 #include "interrupt.hpp"
 #include "output.hpp"
 #include "read_loop.hpp"
-#include "stream_report.hpp"
 
 namespace g4_dump {
 namespace {

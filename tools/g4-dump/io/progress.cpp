@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cli/global_options.hpp"
+#include "cli/common_options.hpp"
 #include "cli/logger.hpp"
 
 namespace g4_dump {

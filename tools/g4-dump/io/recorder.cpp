@@ -13,7 +13,6 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "file_id.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "output.hpp"
 #include "progress.hpp"

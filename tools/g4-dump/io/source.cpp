@@ -10,7 +10,6 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "file_id.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "interrupt.hpp"

@@ -17,14 +17,12 @@
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/transport/transport.hpp"
-#include "io/file_id.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/point_job.hpp"
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
-#include "io/stream_report.hpp"
 
 namespace g4_dump {
 namespace {

@@ -15,7 +15,6 @@
 
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
-#include "cli/global_options.hpp"
 #include "cli/logger.hpp"
 #include "cli/verbs.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
@@ -153,8 +152,7 @@ int examine(const common_options& options) {
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   how.on_stage = [&, colored = wants_color(out.descriptor())](const stage_report& report) {
-    options.json ? write_line(out, json_of_report(report))
-                 : out.write(text_of_report(report, colored));
+    out.write(options.json ? json_line(json_of_report(report)) : text_of_report(report, colored));
     out.flush();
   };
   how.on_activity = [&](diagnostic_activity what) {

@@ -6,12 +6,60 @@
 #include <memory>
 #include <string>
 
-#include "cli/help_text.hpp"
 #include "cli/verbs.hpp"
 #include "io/point_job.hpp"
 
 namespace g4_dump {
 namespace {
+
+constexpr const char* shape_text =
+    R"(  --range FROM:TO  A point without a return has the range 0: it is left out unless FROM is 0.
+  --fov, --ignore  Directions in the frame of the output, both ends included: 350:10 is 20 degrees
+                   around 0; in the robot frame -90:90 is the half in front.
+  --frame vendor   Angles grow clockwise seen from above, 0 at the cable, in [0, 360).
+  --frame robot    Angles grow counter-clockwise, 0 ahead (opposite the cable), in [-180, 180).
+  --time abs       Since 1970, by the clock of the computer (default).
+  --time mono      Time of the monotonic clock.
+  --time zero      Since the first record.
+  --time delta     Since the previous record that was written.
+
+Raw bytes have no times: times are counted from the first sample with --sample-rate; abs and
+mono are refused.)";
+
+constexpr const char* ending_text =
+    R"(From a lidar or a pipe, OUT is created (or replaced) with the first record and grows. From a
+file, OUT appears when everything is written. ^C stops the lidar; the records so far are
+written. With --on-loss reconnect or wait the command waits for a lost lidar, until --idle ends
+it; with wait also for one that is not connected yet. For files, -d counts the times of the
+points.)";
+
+constexpr const char* point_columns =
+    R"(Columns of csv:
+  scan       number of the revolution
+  angle_deg  direction of the point
+  range_mm   distance (range_m with --unit m); 0: no return
+  time_ns    time of the point
+
+More columns may follow in later versions. jsonl has the same names, and no_return and too_near
+(below 100 mm: not reliable). text is for people.)";
+
+constexpr const char* scan_columns =
+    R"(A record is a revolution, with flags if data is missing; with --partial also a piece of one.
+
+Columns of csv:
+  scan         number of the revolution
+  time_ns      time of its first point
+  points       number of points
+  returns      number of points with a return
+  partial      true or false
+  why          why it is partial, joined by +: start_missing, end_missing, data_lost, turn_short,
+               and where a zero packet was lost start_by_angle, end_by_angle
+  turned_deg   angle between the first and the last point, about 360
+  reported_hz  scan frequency as the lidar reports it; empty if unknown
+  measured_hz  scan frequency as measured; empty if unknown
+
+More columns may follow in later versions. jsonl: an object with the same names, and all points
+in arrays: angle_deg, range_mm or range_m, time_ns.)";
 
 constexpr const char* formats_text =
     R"(--grid N writes N ranges at equal steps of 360/N degrees, from 0 degrees on, in the robot frame
@@ -49,8 +97,7 @@ verb make_dump_verb() {
           .options = joined(output_row(common), checked(format_row(job->style.format), refuse_pcd),
                             sample_rate_row(job->source.bytes_rate_hz), ending_rows(common),
                             filter_rows(common), shape_rows(common), device_rows(common)),
-          .details = fmt::format("{}\n\n{}\n\n{}", help_text::point_columns, help_text::shape,
-                                 help_text::ending),
+          .details = fmt::format("{}\n\n{}\n\n{}", point_columns, shape_text, ending_text),
           .examples = {{"g4-dump", "Print the points of the only G4"},
                        {"g4-dump -n 1000 -f csv -o points.csv", "Write 1000 points to a csv file"},
                        {"g4-dump --frame robot --fov -90:90 --range 0.28:16 --unit m",
@@ -83,8 +130,8 @@ verb make_scan_verb() {
                      choices<pcd_data>{{"binary", pcd_data::binary}, {"ascii", pcd_data::ascii}}),
           sample_rate_row(job->source.bytes_rate_hz), ending_rows(common), filter_rows(common),
           shape_rows(common), device_rows(common)),
-      .details = fmt::format("{}\n\n{}\n\n{}\n\n{}", help_text::scan_columns, formats_text,
-                             help_text::shape, help_text::ending),
+      .details =
+          fmt::format("{}\n\n{}\n\n{}\n\n{}", scan_columns, formats_text, shape_text, ending_text),
       .examples = {{"g4-dump scan -n 5", "Print five revolutions"},
                    {"g4-dump scan 'sim:?seed=7' -d 3s -f csv",
                     "Three seconds of a simulated G4 as csv"},
@@ -118,8 +165,8 @@ verb make_decode_verb() {
                      choice_row("--stats", "Form of the counts on standard error (words)",
                                 job->json_counts, choices<bool>{{"words", false}, {"json", true}}),
                      ending_rows(common), filter_rows(common), shape_rows(common)),
-          .details = fmt::format("{}\n\n{}\n\nWith --scans:\n\n{}", decoding,
-                                 help_text::point_columns, help_text::scan_columns),
+          .details =
+              fmt::format("{}\n\n{}\n\nWith --scans:\n\n{}", decoding, point_columns, scan_columns),
           .examples = {{"g4-dump decode walk.bin -o walk.csv", "Raw bytes to csv"},
                        {"g4-dump decode walk.bin --format jsonl --scans --valid",
                         "The returns of each revolution as JSON"},

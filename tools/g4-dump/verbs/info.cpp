@@ -55,7 +55,7 @@ void write(const device_facts& facts, bool as_json, output& out) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
     value = as_json ? json_of(facts.settings[i]) : ordered_json(text_of(facts.settings[i]));
   }
-  as_json ? write_line(out, all) : write_words(out, all, 12);
+  write_object(out, all, 12, as_json);
 }
 
 int info(const common_options& options) {
@@ -85,7 +85,7 @@ int health(const common_options& options) {
                    {"status", g4lidar::name_of(given->status)},
                    {"error_code", given->error_code}};
   if (!options.json) all.erase("source");
-  options.json ? write_line(out, all) : write_words(out, all, 12);
+  write_object(out, all, 12, options.json);
   out.commit();
   const bool is_ill = given->status == health_status::error;
   return static_cast<int>(is_ill ? exit_code::unhealthy : exit_code::ok);

@@ -116,7 +116,7 @@ int list(const list_options& options) {
   const bool probed = options.probe || options.all;
   if (probed) probe(ports, options);
   if (options.json) {
-    for (const listed_port& each : ports) write_line(out, object_of(each));
+    for (const listed_port& each : ports) out.write(json_line(object_of(each)));
   } else if (!ports.empty()) {
     write_table(ports, probed, out);
   }
@@ -150,18 +150,18 @@ no G4 answered, that of the problem at the first such port.)";
 
 verb make_list_verb() {
   const auto options = std::make_shared<list_options>();
-  return {
-      .name = "list",
-      .summary = "List serial ports and the lidars attached to them",
-      .options = joined(
-          flag_row("--probe", "Query the device at each port with a bridge of a G4", options->probe),
-          flag_row("--all", "Query every port: sends two commands to any device", options->all),
-          json_row(*options), output_row(*options), baud_row(*options)),
-      .details = list_details,
-      .examples = {{"g4-dump list", "The serial ports"},
-                   {"g4-dump list --probe", "The lidars that answer"}},
-      .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
-      .run = [options] { return list(*options); }};
+  return {.name = "list",
+          .summary = "List serial ports and the lidars attached to them",
+          .options = joined(
+              flag_row("--probe", "Query the device at each port with a bridge of a G4",
+                       options->probe),
+              flag_row("--all", "Query every port: sends two commands to any device", options->all),
+              json_row(*options), output_row(*options), baud_row(*options)),
+          .details = list_details,
+          .examples = {{"g4-dump list", "The serial ports"},
+                       {"g4-dump list --probe", "The lidars that answer"}},
+          .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
+          .run = [options] { return list(*options); }};
 }
 
 }  // namespace g4_dump

@@ -19,7 +19,6 @@
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
 #include "io/source.hpp"
-#include "io/stream_report.hpp"
 
 namespace g4_dump {
 namespace {
@@ -189,7 +188,8 @@ verb make_packets_verb() {
       .details = packets_details,
       .examples = {{"g4-dump packets -n 20", "The first 20 lines of the only G4"},
                    {"g4-dump packets sim: --hex -d 1s", "All bytes of a simulated G4"},
-                   {"g4-dump packets walk.bin --errors", "The bytes of a file that cannot be read"}},
+                   {"g4-dump packets walk.bin --errors",
+                    "The bytes of a file that cannot be read"}},
       .run = [options] { return run(*options); }};
 }
 

@@ -8,7 +8,6 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/verbs.hpp"
-#include "io/file_id.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/point_job.hpp"

@@ -45,10 +45,10 @@ void carry_out(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json
   if (!given && given.error().is_fatal()) throw failure(given.error());
   const maybe_answer after = given ? *given : read_setting(lidar, *wanted.which);
   if (json) {
-    write_line(out, {{"name", wanted.which->name},
-                     {"before", json_of(before)},
-                     {"wanted", json_of(wanted.value)},
-                     {"after", json_of(after)}});
+    out.write(json_line({{"name", wanted.which->name},
+                         {"before", json_of(before)},
+                         {"wanted", json_of(wanted.value)},
+                         {"after", json_of(after)}}));
   } else {
     write_row(out, wanted.which->name, text_of(before), text_of(after));
   }

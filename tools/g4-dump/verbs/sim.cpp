@@ -22,7 +22,6 @@
 #include "g4lidar/export/printable.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/sim/scanner.hpp"
-#include "io/file_id.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"

@@ -20,7 +20,6 @@
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
 #include "io/source.hpp"
-#include "io/stream_report.hpp"
 
 namespace g4_dump {
 namespace {
@@ -136,8 +135,8 @@ int stats(const stats_options& options) {
     next = clock::now() + options.interval;
     ++lines;
     last = following(last, time.seconds(), source.lidar().counts());
-    if (how.json) return write_line(out, as_json(last));
-    options.is_watch() ? out.write(as_row(last)) : write_words(out, as_json(last), 22);
+    if (options.is_watch() && !how.json) return out.write(as_row(last));
+    write_object(out, as_json(last), 22, how.json);
   };
   read_sink sink;
   sink.scan = [&](const scan& what) {

@@ -105,7 +105,7 @@ class watcher {
     if (!options_.json) return write_row(now_as_text(), what, port_cells(port));
     nlohmann::ordered_json all{{"time", now_as_text()}, {"event", what}};
     all.update(port_object(port));
-    write_line(out_, all);
+    out_.write(json_line(all));
   }
 
   /// In widths that suit most ports, since the lines are written one by one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "values.hpp"
+#include "rows.hpp"
 
 #include <algorithm>
 #include <cctype>
