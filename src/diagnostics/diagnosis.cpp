@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <initializer_list>
+
+#include "export/value_text.hpp"
 
 namespace g4lidar {
 namespace {
@@ -188,10 +189,7 @@ std::string evidence::text() const {
   const double number = std::get<double>(value);
   const double size = std::abs(number);
   const int decimals = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 1 ? 3 : 4;
-  std::array<char, 64> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number,
-                                 std::chars_format::fixed, decimals);
-  std::string text(digits.data(), end.ec == std::errc() ? end.ptr : digits.data());
+  std::string text = with_decimals(number, decimals);
   if (text.find('.') == std::string::npos) return text;
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();

@@ -12,14 +12,14 @@ namespace g4lidar {
 
 std::vector<stage_report> diagnose(std::string_view source, const diagnostic_options& options) {
   constexpr std::string_view file_prefix = "file:";
-  stage_log log(options);
+  diagnostic_options with_rates = options;
+  stage_log log(with_rates);
   if (source.starts_with(file_prefix)) {
     examine_file(std::string(source.substr(file_prefix.size())), log);
     return std::move(log.stages());
   }
   auto opened = open_port(std::string(source), log);
   if (!opened) return std::move(log.stages());
-  diagnostic_options with_rates = options;
   const std::string path(opened->name());
   if (!options.reopen && has_baud_rates(path)) {
     with_rates.reopen = [path](std::uint32_t rate) -> std::unique_ptr<transport> {
@@ -27,11 +27,8 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
       return again ? std::move(*again) : nullptr;
     };
   }
-  std::vector<stage_report> stages = std::move(log.stages());
-  for (stage_report& each : diagnose(std::move(opened), with_rates)) {
-    stages.push_back(std::move(each));
-  }
-  return stages;
+  live_run(std::move(opened), log).run();
+  return std::move(log.stages());
 }
 
 std::vector<stage_report> diagnose(std::unique_ptr<transport> opened,

@@ -15,6 +15,8 @@ constexpr std::array questions{command::device_info,          command::health,
                                command::health_vendor,        command::frequency_query,
                                command::ranging_query,        command::low_power_query,
                                command::motor_direction_query};
+/// A reply that takes longer is late.
+constexpr std::int64_t late_ns = 150 * ms;
 /// A single reply with this delay is caused by a stall of the link.
 constexpr std::int64_t very_late_ns = 400 * ms;
 /// The number of commands without a reply at the end of a series that means a dead link.

@@ -40,9 +40,6 @@ class reply_statistics {
   /// So many replies were wrong that further commands are useless.
   [[nodiscard]] bool is_clear() const;
 
-  /// A reply that takes longer is late.
-  static constexpr std::int64_t late_ns = 150'000'000;
-
  private:
   struct tally {
     unsigned late = 0;

@@ -42,6 +42,21 @@ double way_deg(double from, double to) noexcept {
   return way > nearly_round_deg ? way - 360.0 : way;
 }
 
+/// Whether changes are bursts, and not independent single bits.
+// If single bits are independent and damage a share f of the packets, the mean run of damaged
+// packets is 1 / (1 - f), with -log(1 - f) / f bits in each. Bursts exceed both values.
+bool comes_in_bursts(const damage_counts& damage, std::uint64_t good_packets) {
+  if (damage.changed == 0) return false;
+  const auto hit = static_cast<double>(damage.changed_packets);
+  const double share = hit / (hit + static_cast<double>(good_packets));
+  const double in_a_row = hit / static_cast<double>(damage.changed);
+  if (in_a_row > 1.5 / (1.0 - share) + 0.25) return true;
+  if (damage.one_packet == 0) return false;
+  const double bits =
+      static_cast<double>(damage.wrong_bits) / static_cast<double>(damage.one_packet);
+  return bits > 1.5 * -std::log1p(-share) / share + 1.5;
+}
+
 }  // namespace
 
 void arrival_statistics::take(const reading& came) {
@@ -255,20 +270,6 @@ std::size_t stream_statistics::packet_samples() const noexcept {
     if (sizes_[size] > sizes_[most] || (sizes_[size] > 0 && most == 1)) most = size;
   }
   return most;
-}
-
-// If single bits are independent and damage a share f of the packets, the mean run of damaged
-// packets is 1 / (1 - f), with -log(1 - f) / f bits in each. Bursts exceed both values.
-bool comes_in_bursts(const damage_counts& damage, std::uint64_t good_packets) {
-  if (damage.changed == 0) return false;
-  const auto hit = static_cast<double>(damage.changed_packets);
-  const double share = hit / (hit + static_cast<double>(good_packets));
-  const double in_a_row = hit / static_cast<double>(damage.changed);
-  if (in_a_row > 1.5 / (1.0 - share) + 0.25) return true;
-  if (damage.one_packet == 0) return false;
-  const double bits =
-      static_cast<double>(damage.wrong_bits) / static_cast<double>(damage.one_packet);
-  return bits > 1.5 * -std::log1p(-share) / share + 1.5;
 }
 
 std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {

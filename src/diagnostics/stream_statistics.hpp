@@ -187,9 +187,6 @@ class stream_statistics {
   std::uint64_t since_packet_ = 0;  // bytes
 };
 
-/// Whether changes are bursts, and not independent single bits.
-[[nodiscard]] bool comes_in_bursts(const damage_counts& damage, std::uint64_t good_packets);
-
 /// The diagnoses of a damaged stream, the one with most events first; others only with a
 /// significant share.
 [[nodiscard]] std::vector<diagnosis> diagnoses_of(const stream_statistics& measured);

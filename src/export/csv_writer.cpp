@@ -83,7 +83,7 @@ class csv_scans final : public point_writer {
     const scan& scan = record.scan;
     for (const std::string& cell :
          {std::to_string(scan.revolution), std::to_string(record.time_ns),
-          std::to_string(scan.points.size()), std::to_string(returns_in(scan)),
+          std::to_string(scan.points.size()), std::to_string(returns_in(scan.points)),
           std::string(scan.is_partial() ? "true" : "false"), names_of(scan.flags, "", "+", ""),
           with_decimals(static_cast<double>(scan.turned_deg), 2),
           if_known(reported_hz(scan), 1, "")}) {

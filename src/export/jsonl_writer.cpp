@@ -61,7 +61,7 @@ class jsonl_scans final : public point_writer {
               ",\"partial\":" + (scan.is_partial() ? "true" : "false") + ",\"why\":[" +
               names_of(scan.flags, "\"", ",", "\"") +
               "],\"points\":" + std::to_string(scan.points.size()) +
-              ",\"returns\":" + std::to_string(returns_in(scan)) +
+              ",\"returns\":" + std::to_string(returns_in(scan.points)) +
               ",\"suspect_samples\":" + std::to_string(scan.suspect_samples) +
               ",\"turned_deg\":" + with_decimals(static_cast<double>(scan.turned_deg), 2) +
               ",\"reported_hz\":" + if_known(reported_hz(scan), 1, "null") +

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "g4lidar/export/pcd.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <string>
 
@@ -29,21 +28,14 @@ cloud_point in_cloud(const point& p, frame to) noexcept {
           is_signed ? degrees - 360.0F : degrees, p.time_ns};
 }
 
-template <class Word>
-char* put_little(char* at, Word word) noexcept {
-  for (std::size_t i = 0; i < sizeof word; ++i) {
-    *at++ = static_cast<char>(static_cast<unsigned char>(word & 0xFFU));
-    word = static_cast<Word>(word >> 8U);
-  }
-  return at;
-}
-
 void write_binary(const cloud_point& p, text_sink& out) {
   char* at = out.room(sizeof(cloud_point) + sizeof(float));
   for (const float field : {p.x_m, p.y_m, 0.0F, p.range_m, p.angle_deg}) {
-    at = put_little(at, std::bit_cast<std::uint32_t>(field));
+    digits::put_word(at, std::bit_cast<std::uint32_t>(field));  // the next field overwrites half of it
+    at += sizeof field;
   }
-  out.wrote(put_little(at, static_cast<std::uint64_t>(p.time_ns)));
+  digits::put_word(at, static_cast<std::uint64_t>(p.time_ns));
+  out.wrote(at + sizeof p.time_ns);
 }
 
 void write_ascii(const cloud_point& p, text_sink& out) {
@@ -55,8 +47,7 @@ void write_ascii(const cloud_point& p, text_sink& out) {
 
 void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out) {
   const bool is_binary = data == pcd_data::binary;
-  const std::string count = std::to_string(std::count_if(
-      points.begin(), points.end(), [](const point& p) { return !p.is_no_return(); }));
+  const std::string count = std::to_string(returns_in(points));
   out.write(
       "# .PCD v0.7 - Point Cloud Data file format\n"
       "VERSION 0.7\n"

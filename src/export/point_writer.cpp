@@ -5,6 +5,17 @@
 
 namespace g4lidar {
 
+text_sink::text_sink() : buffer_(new char[capacity]) {}
+text_sink::~text_sink() = default;
+
+void text_sink::write(std::string_view text) {
+  while (!text.empty()) {
+    const std::string_view part = text.substr(0, max_room);
+    wrote(digits::put_text(room(part.size()), part));
+    text.remove_prefix(part.size());
+  }
+}
+
 point_writer::~point_writer() = default;
 void point_writer::begin(text_sink&) {}
 void point_writer::write_points(std::span<const point>, text_sink&) {}

@@ -70,7 +70,7 @@ class scan_columns final : public point_writer {
     const scan& scan = record.scan;
     out.write(in_column(6, std::to_string(scan.revolution)) + "  " +
               in_column(6, std::to_string(scan.points.size())) + "  " +
-              in_column(7, std::to_string(returns_in(scan))) + "  " +
+              in_column(7, std::to_string(returns_in(scan.points))) + "  " +
               in_column(10, with_decimals(static_cast<double>(scan.turned_deg), 2)) + "  " +
               in_column(11, if_known(reported_hz(scan), 1, "-")) + "  " +
               in_column(11, if_known(record.measured_hz, 2, "-")) + "  ");

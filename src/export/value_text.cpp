@@ -45,9 +45,9 @@ std::string in_column(std::size_t width, const std::string& text) {
   return std::string(width - std::min(width, text.size()), ' ') + text;
 }
 
-std::size_t returns_in(const scan& scan) noexcept {
-  return static_cast<std::size_t>(std::count_if(scan.points.begin(), scan.points.end(),
-                                                [](const point& p) { return !p.is_no_return(); }));
+std::size_t returns_in(std::span<const point> points) noexcept {
+  return points.size() -
+         static_cast<std::size_t>(std::ranges::count_if(points, &point::is_no_return));
 }
 
 std::string names_of(scan_flags flags, std::string_view before, std::string_view between,

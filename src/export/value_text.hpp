@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -59,7 +60,7 @@ char* put_seconds(char* at, std::int64_t time_ns) noexcept;
 /// `text`, right-aligned.
 [[nodiscard]] std::string in_column(std::size_t width, const std::string& text);
 
-[[nodiscard]] std::size_t returns_in(const scan& scan) noexcept;
+[[nodiscard]] std::size_t returns_in(std::span<const point> points) noexcept;
 /// 0 if the device did not report it.
 [[nodiscard]] inline double reported_hz(const scan& scan) noexcept {
   return scan.reported_frequency_dhz / 10.0;
