@@ -1,14 +1,168 @@
 // SPDX-License-Identifier: MIT
+// The way through the stages of a run; of them port, permission and holder: which port, which users
+// may open it, and which process has it open.
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 
+#include <grp.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/serial_port.hpp"
+#include "g4lidar/transport/tcp_port.hpp"
 #include "live_run.hpp"
 #include "stages.hpp"
 
 namespace g4lidar {
+namespace {
+
+std::string real_path(const std::string& path) {
+  std::array<char, PATH_MAX> real{};
+  return ::realpath(path.c_str(), real.data()) == nullptr ? path : std::string(real.data());
+}
+
+bool is_pty(const std::string& path) { return real_path(path).starts_with("/dev/pts/"); }
+
+/// The number with so many digits in this base.
+std::string digits_of(unsigned number, unsigned base, std::size_t count) {
+  std::string text(count, '0');
+  for (; number > 0 && count > 0; number /= base) text[--count] = "0123456789abcdef"[number % base];
+  return text;
+}
+
+/// The stage to which this error belongs.
+diagnostic_stage stage_of(diagnosis what) noexcept {
+  using enum diagnosis;
+  if (what == permission) return diagnostic_stage::permission;
+  if (what == busy || what == interference) return diagnostic_stage::holder;
+  return what == bad_baud_rate ? diagnostic_stage::baud_rate : diagnostic_stage::port;
+}
+
+/// Reports `current` and begins the next stage.
+void pass(stage_log& log, stage_report& current) {
+  const auto next = static_cast<diagnostic_stage>(static_cast<int>(current.stage) + 1);
+  log.report(current);
+  current = stage_report{.stage = next};
+}
+
+/// Reports the stage with the reason, all stages before it as passed and all after it as skipped.
+void report_unopened(stage_log& log, stage_report current, const error& why) {
+  const diagnosis what = diagnosis_of(why.code());
+  while (current.stage < stage_of(what)) pass(log, current);
+  current.find(what);
+  current.remark = cause_of(why);
+  pass(log, current);
+  log.skip_from(current.stage, "Not reached.");
+}
+
+/// Reports port, permission and holder, and opens the port. Returns null if that fails; then all
+/// further stages are reported as skipped, except the one with the reason.
+class port_stages {
+ public:
+  explicit port_stages(stage_log& log) : log_(log) {}
+
+  std::unique_ptr<transport> connect(const std::string& address) {
+    report_.add("address", address);
+    auto opened = tcp_port::open(address, {.baud = log_.options().baud});
+    if (!opened) return give_up(opened.error());
+    pass(log_, report_);
+    log_.skip(diagnostic_stage::permission, "A network bridge has none.");
+    log_.skip(diagnostic_stage::holder, "A network bridge does not report it.");
+    return std::move(*opened);
+  }
+
+  std::unique_ptr<transport> open(const std::string& source) {
+    auto found = select_port(source);
+    if (!found) return give_up(found.error());
+    port_info port = std::move(*found);
+    if (!look_at_port(port) || !look_at_permission(port.path)) return nullptr;
+    const std::string holder = find_holder(port);
+    auto opened = serial_port::open(port.path, {.baud = log_.options().baud});
+    if (!opened) return give_up(opened.error());
+    if (!holder.empty() && !is_pty(port.path)) {
+      report_.find(diagnosis::interference);
+      report_.remark = std::string("Also used by ").append(holder).append(".");
+    }
+    pass(log_, report_);
+    return std::move(*opened);
+  }
+
+ private:
+  std::unique_ptr<transport> give_up(const error& why) {
+    report_unopened(log_, report_, why);
+    return nullptr;
+  }
+  bool give_up(problem what, const std::string& path, int reason) {
+    return give_up(error(task::opening, what, path, reason)) != nullptr;
+  }
+
+  bool look_at_port(port_info& port) {
+    report_.add("path", port.path);
+    const std::string real = real_path(port.path);
+    if (real != port.path) report_.add("leads_to", real);
+    if (::access(port.path.c_str(), F_OK) != 0) return give_up(problem::no_port, port.path, ENOENT);
+    struct stat status{};
+    if (::stat(port.path.c_str(), &status) == 0 && !S_ISCHR(status.st_mode)) {
+      return give_up(problem::not_serial, port.path, ENOTTY);
+    }
+    if (const auto all = list_ports()) {
+      for (const port_info& each : *all) {
+        if (each.path == real) port = each;
+      }
+    }
+    if (!port.driver.empty()) report_.add("driver", port.driver);
+    if (port.vendor_id != 0) {
+      const std::string product = digits_of(port.product_id, 16, 4);
+      report_.add("usb", digits_of(port.vendor_id, 16, 4).append(":").append(product));
+      report_.add("bridge_of_a_g4", is_g4_bridge(port) ? "yes" : "no");
+    }
+    pass(log_, report_);
+    return true;
+  }
+
+  bool look_at_permission(const std::string& path) {
+    struct stat status{};
+    if (::stat(path.c_str(), &status) == 0) {
+      const passwd* const owner = ::getpwuid(status.st_uid);
+      report_.add("owner", owner == nullptr ? std::to_string(status.st_uid) : owner->pw_name);
+      const group* const its = ::getgrgid(status.st_gid);
+      report_.add("group", its == nullptr ? std::to_string(status.st_gid) : its->gr_name);
+      report_.add("mode", digits_of(static_cast<unsigned>(status.st_mode) & 07777U, 8, 4));
+    }
+    if (::access(path.c_str(), R_OK | W_OK) != 0) return give_up(problem::permission, path, errno);
+    pass(log_, report_);
+    return true;
+  }
+
+  // A process has the other end of a pseudo-terminal open, and usually also this one.
+  std::string find_holder(const port_info& port) {
+    port_info here = port;
+    here.path = real_path(port.path);
+    find_holders(std::span(&here, 1));
+    if (!here.holder.empty()) report_.add("held_by", here.holder);
+    return here.holder;
+  }
+
+  stage_log& log_;
+  stage_report report_{};
+};
+
+}  // namespace
+
+std::string cause_of(const error& why) {
+  std::string text = why.message();
+  text.resize(text.size() - why.advice().size() - 1);
+  return text;
+}
 
 std::vector<stage_report> diagnose(std::string_view source, const diagnostic_options& options) {
   constexpr std::string_view file_prefix = "file:";
@@ -18,10 +172,13 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
     examine_file(std::string(source.substr(file_prefix.size())), log);
     return std::move(log.stages());
   }
-  auto opened = open_port(std::string(source), log);
+  port_stages first(log);
+  auto opened = source.starts_with("tcp:") ? first.connect(std::string(source))
+                                           : first.open(std::string(source));
   if (!opened) return std::move(log.stages());
   const std::string path(opened->name());
-  if (!options.reopen && has_baud_rates(path)) {
+  // Other baud rates make no difference on a pseudo-terminal.
+  if (!options.reopen && path.starts_with('/') && !is_pty(path)) {
     with_rates.reopen = [path](std::uint32_t rate) -> std::unique_ptr<transport> {
       auto again = serial_port::open(path, {.baud = rate});
       return again ? std::move(*again) : nullptr;

@@ -2,7 +2,6 @@
 // The reports of a diagnostic run so far, and the stages without a class of their own.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,7 +9,6 @@
 
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
-#include "g4lidar/transport/transport.hpp"
 #include "reply_statistics.hpp"
 #include "stream_statistics.hpp"
 
@@ -45,16 +43,8 @@ class stage_log {
   std::vector<stage_report> stages_;
 };
 
-/// Reports port, permission and holder, and opens the port. Returns null if that fails; then all
-/// further stages are reported as skipped, except the one with the reason.
-[[nodiscard]] std::unique_ptr<transport> open_port(const std::string& source, stage_log& log);
-/// Reports the stage with the reason, all stages before it as passed and all after it as skipped.
-void report_unopened(stage_log& log, stage_report current, const error& why);
 /// The message of an error without its advice, which the diagnosis has.
 [[nodiscard]] std::string cause_of(const error& why);
-/// Whether other baud rates can make a difference: not on a pseudo-terminal.
-[[nodiscard]] bool has_baud_rates(const std::string& path);
-
 /// Reports all stages of a recording or of raw bytes; those that need a device as skipped.
 void examine_file(const std::string& path, stage_log& log);
 
