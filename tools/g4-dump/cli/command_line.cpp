@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <ranges>
 #include <span>
 #include <string>
 #include <system_error>
@@ -80,26 +81,23 @@ CLI::App* add(CLI::App& app, const verb& added) {
   return made;
 }
 
-std::string known_verbs(const CLI::App& app) {
-  std::string names;
-  for (const CLI::App* const each : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names += (names.empty() ? "" : ", ") + each->get_name();
-  }
-  return names;
+std::string known_verbs() {
+  const std::vector<verb> verbs = all_verbs();
+  return fmt::format("{}", fmt::join(verbs | std::views::transform(&verb::name), ", "));
 }
 
 /// What is wrong with the command line, without a full stop.
 std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   const bool has_verb = !app.get_subcommands().empty();
   const std::vector<std::string> rest = app.remaining(has_verb);
-  if (!has_verb && rest.empty()) return "no command; commands are: " + known_verbs(app);
+  if (!has_verb && rest.empty()) return "no command; commands are: " + known_verbs();
   if (!has_verb || (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())) {
     const bool is_option = rest.front().front() == '-';
     const char* const what = is_option  ? "unknown option"
                              : has_verb ? "unexpected argument"
                                         : "unknown command";
     return fmt::format("{} {}{}", what, in_quotes(rest.front()),
-                       has_verb ? "" : "; commands are: " + known_verbs(app));
+                       has_verb ? "" : "; commands are: " + known_verbs());
   }
   std::string words = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
@@ -147,8 +145,7 @@ bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<ve
   const std::string& first = words[at];
   if (first == "-h" || first == "--help" || first == "--version") return false;
   if (first.empty() || first.front() == '-') return true;
-  const auto is_it = [&first](const verb& each) { return each.name == first; };
-  if (std::any_of(verbs.begin(), verbs.end(), is_it)) return false;
+  if (std::ranges::find(verbs, first, &verb::name) != verbs.end()) return false;
   std::error_code unimportant;
   return first.find_first_of("/:.") != std::string::npos ||
          std::filesystem::is_regular_file(first, unimportant);

@@ -89,8 +89,7 @@ bool has_name(const option_row& row, const std::string& name) {
 
 /// The verb of that name; null where there is none.
 const verb* find_verb(const std::vector<verb>& verbs, std::string_view name) {
-  const auto found = std::find_if(verbs.begin(), verbs.end(),
-                                  [name](const verb& each) { return each.name == name; });
+  const auto found = std::ranges::find(verbs, name, &verb::name);
   return found == verbs.end() ? nullptr : &*found;
 }
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "g4lidar/error.hpp"
 
@@ -63,5 +65,12 @@ class failure : public std::runtime_error {
   exit_code code_;
   std::string_view problem_;
 };
+
+/// The value that a call of the library gave; throws a failure where it gave an error.
+template <class Value>
+Value value_of(result<Value> given) {
+  if (!given) throw failure(given.error());
+  if constexpr (!std::is_void_v<Value>) return *std::move(given);
+}
 
 }  // namespace g4_dump

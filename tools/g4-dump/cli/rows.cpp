@@ -19,8 +19,7 @@ double scaled_number(std::string_view text, std::initializer_list<unit> units) {
   const char* const end = text.data() + text.size();
   const auto [at, error] = std::from_chars(text.data(), end, number);
   const std::string_view name(at, static_cast<std::size_t>(end - at));
-  const auto* const found =
-      std::find_if(units.begin(), units.end(), [&](const unit& each) { return each.name == name; });
+  const auto* const found = std::ranges::find(units, name, &unit::name);
   return error == std::errc() && found != units.end() ? number * found->factor : -1.0;
 }
 
@@ -50,8 +49,7 @@ std::int64_t moment_of(const std::string& text) { return time_of(text, 0.0); }
 
 std::uint64_t byte_count_of(const std::string& text) {
   std::string lower = text;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   constexpr double k = 1024.0;
   const double bytes = scaled_number(lower, {{"", 1.0},
                                              {"b", 1.0},

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <iterator>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -38,9 +39,7 @@ using choices = std::vector<std::pair<std::string, Value>>;
 /// The words with `between` between them.
 template <class Value>
 [[nodiscard]] std::string words_of(const choices<Value>& known, std::string_view between) {
-  std::string words;
-  for (const auto& [word, meaning] : known) words.append(words.empty() ? "" : between).append(word);
-  return words;
+  return fmt::format("{}", fmt::join(known | std::views::keys, between));
 }
 
 /// What a word stands for; any other is refused with the list of them.

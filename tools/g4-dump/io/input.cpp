@@ -17,7 +17,6 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "interrupt.hpp"
-#include "progress.hpp"
 
 namespace g4_dump {
 namespace {
@@ -114,17 +113,14 @@ void input::pump(output& out, const byte_sink& sink, const common_options& optio
 g4lidar::recording_reader read_items(
     const std::string& path, const g4lidar::reading_options& range,
     const std::function<bool(const g4lidar::recorded_item&)>& take) {
-  auto reader = g4lidar::recording_reader::open(path, range);
-  if (!reader) throw failure(reader.error());
-  progress_bar bar(reader->size());
+  auto reader = value_of(g4lidar::recording_reader::open(path, range));
+  progress_bar bar(reader.size());
   while (interrupt() == 0) {
-    const auto got = reader->next();
-    if (!got) throw failure(got.error());
-    const auto& item = *got;
+    const auto item = value_of(reader.next());
     if (!item || !take(*item)) break;
-    bar.show(reader->position());
+    bar.show(reader.position());
   }
-  return *std::move(reader);
+  return reader;
 }
 
 std::string describe(const g4lidar::recording_damage& damage) {

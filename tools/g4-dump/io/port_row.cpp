@@ -13,8 +13,7 @@ namespace {
 /// A word without blanks.
 std::string cell(std::string text) {
   if (text.empty()) return "-";
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == ' ' || c == '\t' || c == '\n'; }, '_');
+  std::ranges::replace_if(text, [](char c) { return c == ' ' || c == '\t' || c == '\n'; }, '_');
   return printable(text);
 }
 

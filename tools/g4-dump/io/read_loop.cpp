@@ -9,7 +9,6 @@
 #include "cli/logger.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "source.hpp"
 
 namespace g4_dump {
@@ -113,7 +112,7 @@ void report_events(g4lidar::lidar& lidar) {
 void read_source(opened_source& source, const common_options& options, const read_sink& sink,
                  output& out) {
   g4lidar::lidar& lidar = source.lidar();
-  if (const auto started = lidar.start(); !started) throw failure(started.error());
+  value_of(lidar.start());
   read_loop(source, options, sink, out).run();
   static_cast<void>(lidar.stop());  // what was received is good, whatever the device answers
   report_events(lidar);

@@ -15,7 +15,6 @@
 #include "cli/logger.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "read_loop.hpp"
 #include "service_watch.hpp"
 

@@ -141,14 +141,13 @@ void copy_recording(const convert_options& options, output& out) {
 
 /// A part of raw bytes, by times that are counted.
 void copy_bytes(const convert_options& options, output& out) {
-  auto from = open_raw_bytes(path_of(options.in()), options.points.source.bytes_rate_hz);
-  if (!from) throw failure(from.error());
-  const std::int64_t begin_ns = (*from)->now_ns();
-  auto opened = (*from)->connect();
-  if (!opened) throw failure(opened.error());
+  const auto from =
+      value_of(open_raw_bytes(path_of(options.in()), options.points.source.bytes_rate_hz));
+  const std::int64_t begin_ns = from->now_ns();
+  const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;
   while (interrupt() == 0 && !out.is_closed()) {
-    const auto got = (*opened)->read(memory, (*opened)->now_ns() + 50'000'000);
+    const auto got = opened->read(memory, opened->now_ns() + 50'000'000);
     if (!got && got.error().code() == g4lidar::problem::end_of_input) break;
     if (!got) throw failure(got.error());
     const std::int64_t since_ns = got->arrival_ns - begin_ns;

@@ -26,10 +26,9 @@ struct device_facts {
 };
 
 device_facts facts_of_recording(const std::string& source) {
-  const auto reader = recording_reader::open(path_of(source));
-  if (!reader) throw failure(reader.error());
+  const auto reader = value_of(recording_reader::open(path_of(source)));
   device_facts facts{.source = source};
-  const auto& known = reader->device();
+  const auto& known = reader.device();
   if (!known) return facts;
   if (known->information.model != 0) facts.information = known->information;
   facts.settings = {known->ranging,  known->frequency, known->motor,
@@ -79,15 +78,14 @@ No setting is changed, but a device that is scanning is stopped first; that is r
 int health(const common_options& options) {
   output out(options.output);
   command_source source(options, task::asking);
-  const auto given = source.lidar().ask(requests::health());
-  if (!given) throw failure(given.error());
+  const auto given = value_of(source.lidar().ask(requests::health()));
   ordered_json all{{"source", source.lidar().name()},
-                   {"status", g4lidar::name_of(given->status)},
-                   {"error_code", given->error_code}};
+                   {"status", g4lidar::name_of(given.status)},
+                   {"error_code", given.error_code}};
   if (!options.json) all.erase("source");
   write_object(out, all, 12, options.json);
   out.commit();
-  const bool is_ill = given->status == health_status::error;
+  const bool is_ill = given.status == health_status::error;
   return static_cast<int>(is_ill ? exit_code::unhealthy : exit_code::ok);
 }
 

@@ -108,11 +108,10 @@ exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
 
 int list(const list_options& options) {
   output out(options.output);
-  auto found = list_ports();
-  if (!found) throw failure(found.error());
-  find_holders(*found);
+  auto found = value_of(list_ports());
+  find_holders(found);
   std::vector<listed_port> ports;
-  for (port_info& port : *found) ports.push_back({.port = std::move(port)});
+  for (port_info& port : found) ports.push_back({.port = std::move(port)});
   const bool probed = options.probe || options.all;
   if (probed) probe(ports, options);
   if (options.json) {

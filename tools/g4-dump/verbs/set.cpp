@@ -59,10 +59,8 @@ void carry_out(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json
 /// What the user should know about these settings.
 void report_consequences(const std::vector<wish>& wishes) {
   logger::info("The settings may be lost when the lidar restarts or has no power.\n");
-  const bool is_protected = std::any_of(wishes.begin(), wishes.end(), [](const wish& each) {
-    return each.value == answer(power_down_protection::on);
-  });
-  if (is_protected) {
+  const answer protection(power_down_protection::on);
+  if (std::ranges::find(wishes, protection, &wish::value) != wishes.end()) {
     logger::info(
         "With protection on, the lidar stops 3 s after the last keep-alive: dump, scan and record "
         "send them, start does not.\n");

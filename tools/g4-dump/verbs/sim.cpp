@@ -261,7 +261,7 @@ std::pair<std::string, std::uint16_t> tcp_place_of(const std::string& text) {
 }
 
 void add_new(std::vector<std::string>& all, const std::string& word) {
-  if (std::find(all.begin(), all.end(), word) != all.end()) {
+  if (std::ranges::find(all, word) != all.end()) {
     throw bad_value(in_quotes(word) + " is given twice");
   }
   all.push_back(word);

@@ -34,7 +34,7 @@ void wait_for_revolution(g4lidar::lidar& lidar) {
 int start(const common_options& options) {
   command_source source(options, task::starting);
   g4lidar::lidar& lidar = source.lidar();
-  if (const auto started = lidar.start(); !started) throw failure(started.error());
+  value_of(lidar.start());
   wait_for_revolution(lidar);
   report_events(lidar);
   logger::info(fmt::format("{}: scanning\n", lidar.name()));
@@ -54,8 +54,7 @@ int restart(const common_options& options) {
   command_source source(options, task::asking);
   g4lidar::lidar& lidar = source.lidar();
   const auto begin = clock::now();
-  const auto restarted = lidar.ask(requests::restart());
-  if (!restarted) throw failure(restarted.error());
+  value_of(lidar.ask(requests::restart()));
   const std::chrono::duration<double> took = clock::now() - begin;
   logger::info(fmt::format("{}: restarted; it answered after {:.1f} s. Its settings may be lost.\n",
                            lidar.name(), took.count()));

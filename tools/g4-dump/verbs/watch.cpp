@@ -40,10 +40,8 @@ std::string now_as_text() {
 using known_ports = std::map<std::string, port_info>;  // by their paths
 
 known_ports ports_now() {
-  auto found = list_ports();
-  if (!found) throw failure(found.error());
   known_ports ports;
-  for (port_info& port : *found) ports.emplace(port.path, std::move(port));
+  for (port_info& port : value_of(list_ports())) ports.emplace(port.path, std::move(port));
   return ports;
 }
 
