@@ -3,13 +3,9 @@
 // stopped, and queried.
 #include "live_run.hpp"
 
-#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
-#include <variant>
-
-#include "g4lidar/core/response.hpp"
 
 namespace g4lidar {
 namespace {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "link_monitor.hpp"
 #include "reply_statistics.hpp"

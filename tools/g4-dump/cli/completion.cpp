@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "common_options.hpp"
-#include "exit_code.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/sim/fault.hpp"
 #include "rows.hpp"

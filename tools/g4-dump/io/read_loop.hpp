@@ -2,7 +2,6 @@
 // The loop of a command that reads a lidar or a recording: until enough has come, the time is over, or ^C.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <span>

@@ -18,7 +18,6 @@
 #include "cli/logger.hpp"
 #include "cli/verbs.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
-#include "g4lidar/export/printable.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"

@@ -19,7 +19,6 @@
 #include "cli/rows.hpp"
 #include "cli/verbs.hpp"
 #include "g4lidar/export/digits.hpp"
-#include "g4lidar/export/printable.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "io/interrupt.hpp"

@@ -2,7 +2,6 @@
 // The verb stats: counts of a lidar while it is read.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
