@@ -31,7 +31,8 @@ cloud_point in_cloud(const point& p, frame to) noexcept {
 void write_binary(const cloud_point& p, text_sink& out) {
   char* at = out.room(sizeof(cloud_point) + sizeof(float));
   for (const float field : {p.x_m, p.y_m, 0.0F, p.range_m, p.angle_deg}) {
-    digits::put_word(at, std::bit_cast<std::uint32_t>(field));  // the next field overwrites half of it
+    digits::put_word(at,
+                     std::bit_cast<std::uint32_t>(field));  // the next field overwrites half of it
     at += sizeof field;
   }
   digits::put_word(at, static_cast<std::uint64_t>(p.time_ns));

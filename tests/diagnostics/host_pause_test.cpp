@@ -83,7 +83,7 @@ TEST(SpinningUp, IsWaitedForAndReported) {
     const examined done = examine(options);
     EXPECT_EQ(done.diagnoses(), "") << silence_ms << done;
     const bool is_reported = std::count(done.activities.begin(), done.activities.end(),
-                                    diagnostic_activity::spinning_up) == 1;
+                                        diagnostic_activity::spinning_up) == 1;
     EXPECT_EQ(is_reported, silence_ms > 500) << silence_ms;
     const double first_ms = number_of(done, diagnostic_stage::motor, "first_packet_ms");
     EXPECT_GE(first_ms, static_cast<double>(silence_ms));
