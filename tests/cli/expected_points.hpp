@@ -20,7 +20,7 @@ struct expected_point {
 };
 
 /// docs/protocol.md, Point packets: header AA 55, CT, LSN, FSA, LSA, CS, then samples of 2 bytes. For
-/// streams without damage: what is no packet is passed over.
+/// streams without damage: what is no packet is passed over, also a last packet that is cut off.
 inline std::vector<expected_point> points_in(const std::string& bytes) {
   const auto word = [&bytes](std::size_t at) {
     return static_cast<unsigned char>(bytes[at]) + 256 * static_cast<unsigned char>(bytes[at + 1]);
@@ -34,6 +34,8 @@ inline std::vector<expected_point> points_in(const std::string& bytes) {
       continue;
     }
     const int count = static_cast<unsigned char>(bytes[at + 3]);
+    const std::size_t end = at + 10 + 2 * static_cast<std::size_t>(count);
+    if (end > bytes.size()) break;
     const bool is_zero = (bytes[at + 2] & 1) != 0;
     if (is_zero && !is_first) ++scan;
     is_first = false;
@@ -48,7 +50,7 @@ inline std::vector<expected_point> points_in(const std::string& bytes) {
       const double turned = std::atan(slope) * 180.0 / std::numbers::pi;
       points.push_back({scan, std::fmod(level + turned + 720.0, 360.0), range_mm});
     }
-    at += 10 + 2 * static_cast<std::size_t>(count);
+    at = end;
   }
   return points;
 }
