@@ -6,7 +6,8 @@
 #   bench/device.sh [SECONDS [REPETITIONS]]: how long each measurement in real time takes, 10 by default, and
 #   how often each is repeated, 3 by default; the figures in the documents are of 20.
 # The paces (each packet, batches of 20 ms, whole scans) take turns. Each cell is the median over the
-# repetitions, and in brackets the 10th and 90th percentile; a ratio is of one repetition.
+# repetitions, and in brackets the 10th and 90th percentile; a ratio is of one repetition. The 99th percentile of the delay
+# is that of the scans of all repetitions.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/packages.sh
@@ -59,7 +60,15 @@ pace_row "system calls per second" calls_per_s 100
 pace_row "context switches per second" switches_per_s 60
 pace_row "CPU seconds for a minute of streaming" cpu_s_per_minute
 pace_row "zero packet written to scan delivered, median, ms" delay_median_ms 0.05
-pace_row "the same, 99th percentile, ms" delay_p99_ms 0.2
+tails=()
+for pace in "${paces[@]}"; do
+  tails+=("$(sed -n 's/^delay_ms //p' "$scratch/$pace".[0-9]* | sort -g | percentile 99)")
+done
+printf '| the same, 99th percentile of all scans, ms | %s | %s | %s | 0.2 |\n' "${tails[@]}"
+if awk -v v="${tails[2]}" 'BEGIN { exit !(v > 0.2) }'; then
+  echo "Missed: 99th percentile of the delay, whole scans: ${tails[2]} ms, promised 0.2" >&2
+  missed=1
+fi
 pace_row "resident memory, KiB" resident_kib
 echo
 heading

@@ -111,7 +111,7 @@ struct lidar_counts {
   std::uint64_t scans = 0;          ///< Revolutions that were completed.
   std::uint64_t partial_scans = 0;  ///< Pieces of revolutions.
   std::uint64_t scans_missed = 0;   ///< Not taken by next_scan() before the next one was complete.
-  std::uint64_t points_missed = 0;  ///< Not taken by next_points() before they were overwritten.
+  std::uint64_t points_missed = 0;  ///< Not returned by next_points(), if the program calls it.
   std::uint64_t command_retries = 0;  ///< Commands that had to be sent again.
   std::uint64_t reconnects = 0;       ///< How often the device was reconnected.
   std::int64_t largest_gap_ns = 0;    ///< Between two packets of one scan.
@@ -181,11 +181,12 @@ class G4LIDAR_API lidar {
   [[nodiscard]] view_result<scan> next_scan(milliseconds timeout);
   /// The same for a loop: `for (const auto& scan : lidar.scans(500ms))`; see scan_range.
   [[nodiscard]] scan_range scans(milliseconds timeout) & noexcept;
-  /// All points since the last call, at least one; valid until the next call. Errors: as
-  /// next_scan().
+  /// All points since the last call, at least one; valid until the next call. The first call begins
+  /// with the current revolution; earlier points count as missed. Errors: as next_scan().
   [[nodiscard]] view_result<std::span<const point>> next_points(milliseconds timeout);
 
-  /// Every point, for readers in any thread. Valid as long as this lidar, also after a move.
+  /// Every point, for readers in any thread. It is written from the first call on, so a program that takes only scans
+  /// does not pay for it. *Any thread.* Valid as long as this lidar, also after a move.
   [[nodiscard]] const lidar_ring& points() const noexcept;
 
   /// For an event loop: poll native_handle() for reading until next_deadline(), then call

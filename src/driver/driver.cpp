@@ -22,7 +22,6 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
              point_pipeline(options.transport_delay.count(), options.partial_scans),
              {}},
       feeder_(make_feeder(parts_, options)),
-      reader_(parts_.pipeline.ring().make_reader()),
       points_(8192) {}
 
 lidar::driver::~driver() { static_cast<void>(close()); }
@@ -39,11 +38,8 @@ result<void> lidar::driver::close() {
 
 void lidar::driver::release() noexcept {
   feeder_->release();
-  while (true) {
-    const ring_read left = reader_.read(points_.all());
-    if (hands_points_over_) points_missed_ += left.missed + left.points;
-    if (left.points == 0) return;
-  }
+  const std::uint64_t dropped = parts_.pipeline.drop_points();
+  if (hands_points_over_) points_missed_ += dropped;
 }
 
 result<scan> lidar::driver::next_scan(std::int64_t timeout_ns) {
@@ -68,7 +64,7 @@ result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_n
   const std::int64_t deadline_ns = feeder_->deadline_after_ns(timeout_ns);
   bool last = false;
   while (true) {
-    const ring_read read = reader_.read(points_.all());
+    const ring_read read = parts_.pipeline.read(points_.all());
     points_missed_ += read.missed;
     if (read.points > 0) return points_.all().first(read.points);
     if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
@@ -86,7 +82,7 @@ result<void> lidar::driver::process() {
 
 lidar_counts lidar::driver::counts() const noexcept {
   lidar_counts all = parts_.pipeline.counts();
-  all.points_missed = points_missed_;
+  if (hands_points_over_) all.points_missed = points_missed_ + parts_.pipeline.unwritten();
   feeder_->add_to(all);
   return all;
 }

@@ -61,7 +61,6 @@ class G4LIDAR_HIDDEN lidar::driver {
 
   feeder::parts parts_;
   std::unique_ptr<feeder> feeder_;
-  lidar_ring::reader reader_;
   point_storage points_;
   bool hands_points_over_ = false;  // by next_points()
   std::uint64_t points_missed_ = 0;

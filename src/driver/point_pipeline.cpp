@@ -49,7 +49,8 @@ void point_pipeline::add(packet_view packet) noexcept {
   bool lost = false;
   open_ = decoder_.decode(packet, arrival_ns_, input_.size(),
                           fits ? room.first<max_samples>() : std::span(spare_), lost);
-  ring_->push(open_.points);
+  points_ += open_.points.size();
+  if (auto* const made = ring_.find()) made->ring.push(open_.points);
   if (lost) assembler_.lost();  // whole packets are missing, so no bytes were skipped
   is_open_ = true;
 }
@@ -61,6 +62,16 @@ void point_pipeline::keep(const scan& found) noexcept {
   if (found.is_piece() && !partial_scans_) return;
   drop_scan();
   scan_ = found;
+}
+
+ring_read point_pipeline::read(std::span<point> out) noexcept {
+  if (ring_.find() == nullptr) {
+    lidar_ring& first = ring();
+    if (scan_) first.push(scan_->points);
+    first.push(assembler_.unfinished());
+    if (is_open_) first.push(open_.points);
+  }
+  return ring_.get().reader.read(out);
 }
 
 void point_pipeline::begin(std::uint32_t samples_per_second) noexcept {
@@ -76,7 +87,7 @@ void point_pipeline::end() noexcept {
 lidar_counts point_pipeline::counts() const noexcept {
   lidar_counts all = counts_;
   all.stream = stream_counts_;
-  all.stream.points = ring_->written();  // the packets of a device that is being stopped make none
+  all.stream.points = points_;  // the packets of a device that is being stopped make none
   all.held = parser_.held();
   all.samples_lost = decoder_.samples_lost();
   all.largest_gap_ns = decoder_.largest_gap_ns();

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
-#include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <span>
@@ -36,6 +37,38 @@ class point_storage {
  private:
   point* points_;
   std::size_t count_;
+};
+
+/// *Allocates on open.* The ring of a lidar and its first reader. They are made by the first call of get(), in memory that
+/// takes no pages before.
+class ring_on_demand {
+ public:
+  /// A ring that begins with point 0, and its reader. *Any thread.*
+  struct contents {
+    lidar_ring ring;
+    lidar_ring::reader reader = ring.make_reader();
+  };
+
+  ring_on_demand() : memory_(::operator new(sizeof(contents))) {
+    static_assert(std::is_trivially_destructible_v<contents>);
+  }
+  ring_on_demand(const ring_on_demand&) = delete;
+  ring_on_demand& operator=(const ring_on_demand&) = delete;
+  ~ring_on_demand() { ::operator delete(memory_); }
+
+  /// *Any thread.*
+  [[nodiscard]] contents& get() noexcept {
+    std::call_once(once_,
+                   [this] { made_.store(new (memory_) contents, std::memory_order_release); });
+    return *find();
+  }
+  /// Nothing before the first call of get().
+  [[nodiscard]] contents* find() const noexcept { return made_.load(std::memory_order_acquire); }
+
+ private:
+  void* memory_;
+  std::once_flag once_;
+  std::atomic<contents*> made_ = nullptr;
 };
 
 /// *Single thread, allocates on open.* The bytes of one read are fed at a time. Then, until nothing
@@ -121,7 +154,27 @@ class point_pipeline {
   [[nodiscard]] double period_ns() const noexcept { return decoder_.period_ns(); }
   /// When the first sample of the next packet, or of the last event, was measured, if none was lost.
   [[nodiscard]] std::int64_t next_sample_ns() const noexcept { return decoder_.next_sample_ns(); }
-  [[nodiscard]] lidar_ring& ring() noexcept { return *ring_; }
+
+  // ---- points ----
+
+  /// The ring, which is written from the first call on. *Any thread.*
+  [[nodiscard]] lidar_ring& ring() noexcept { return ring_.get().ring; }
+  /// The oldest points that this function has not returned yet. The first call begins with those of a scan that was not
+  /// taken, and of the unfinished revolution.
+  [[nodiscard]] ring_read read(std::span<point> out) noexcept;
+  /// Drops the points that read() would return, and returns their number.
+  std::uint64_t drop_points() noexcept {
+    auto* const made = ring_.find();
+    if (made == nullptr) return 0;
+    const std::uint64_t left = made->reader.ahead();
+    made->reader = made->ring.make_reader();
+    return left;
+  }
+  /// The points that were decoded before the ring was written.
+  [[nodiscard]] std::uint64_t unwritten() const noexcept {
+    const auto* const made = ring_.find();
+    return points_ - (made != nullptr ? made->ring.written() : 0);
+  }
   /// All counts except those of the caller.
   [[nodiscard]] lidar_counts counts() const noexcept;
 
@@ -143,13 +196,14 @@ class point_pipeline {
   std::optional<event> event_;  // found, and not decoded yet
   std::uint32_t events_of_reading_ = 0;
   timed_decoder decoder_;
-  std::unique_ptr<lidar_ring> ring_ = std::make_unique<lidar_ring>();
+  ring_on_demand ring_;
   point_storage storage_;
   scan_assembler assembler_;
   std::array<point, max_samples> spare_{};  // used where the storage ends
   decoded open_{};
   std::optional<scan> scan_;
   lidar_counts counts_;
+  std::uint64_t points_ = 0;  // decoded
   stream_counter stream_counts_;
   std::uint64_t scans_at_begin_ = 0;
 };

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <variant>
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
@@ -45,7 +47,6 @@ TEST(LidarReading, PointsComeOnceEachAndInOrder) {
   }
   const auto counts = lidar->counts();
   EXPECT_EQ(points, counts.stream.points);
-  EXPECT_EQ(points, lidar->points().written());
   EXPECT_EQ(counts.points_missed, 0U);
   EXPECT_NEAR(static_cast<double>(points), 9.0 * 9000, 9000);  // the motor needs time to spin up
 }
@@ -62,7 +63,70 @@ TEST(LidarReading, SlowReader_GetsTheNumberOfMissedPoints) {
   EXPECT_EQ(read.points + read.missed, lidar->points().written());
   const auto points = lidar->next_points(0ms);
   ASSERT_TRUE(points);
-  EXPECT_EQ(lidar->counts().points_missed + points->size() + 8192, lidar->points().written());
+  EXPECT_EQ(lidar->counts().points_missed + points->size() + 8192, lidar->counts().stream.points);
+}
+
+TEST(LidarReading, FirstPointsAfterScans_BeginWithTheUnfinishedRevolution) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  std::int64_t scan_end_ns = 0;
+  for (int i = 0; i < 10; ++i) {
+    const auto scan = lidar->next_scan(2000ms);
+    ASSERT_TRUE(scan);
+    scan_end_ns = scan->points.back().time_ns;
+  }
+  EXPECT_EQ(lidar->counts().points_missed, 0U);  // nobody wants them
+  const std::uint64_t in_scans = lidar->counts().stream.points;
+  const std::int64_t half_ns = bench.now_ns + 70 * ms;
+  while (bench.now_ns < half_ns) {
+    bench.now_ns = std::max(bench.now_ns, bench.device.next_ns(bench.now_ns));
+    ASSERT_TRUE(lidar->process());
+  }
+  EXPECT_GT(lidar->counts().stream.points, in_scans + 400);
+  std::uint64_t points = 0;
+  std::int64_t last_ns = scan_end_ns;
+  while (bench.now_ns < 5 * second) {
+    const auto some = lidar->next_points(500ms);
+    ASSERT_TRUE(some);
+    for (const point& p : *some) {
+      ASSERT_GT(p.time_ns, last_ns);
+      ASSERT_LT(p.time_ns - last_ns, 200 * 1000);  // 111 us from sample to sample: none is left out
+      last_ns = p.time_ns;
+      ++points;
+    }
+  }
+  const auto counts = lidar->counts();
+  EXPECT_EQ(points + counts.points_missed, counts.stream.points);
+  EXPECT_LE(counts.points_missed, in_scans);
+}
+
+TEST(LidarReading, PointsOfAScanThatWasNotTaken_AreReturned) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  while (lidar->counts().scans < 3) {
+    bench.now_ns = std::max(bench.now_ns, bench.device.next_ns(bench.now_ns));
+    ASSERT_TRUE(lidar->process());
+  }
+  const auto some = lidar->next_points(500ms);
+  ASSERT_TRUE(some);
+  EXPECT_TRUE(some->front().is_revolution_start());
+  EXPECT_GT(some->size(), 1200U);  // a revolution at 7 Hz
+  const auto counts = lidar->counts();
+  EXPECT_EQ(some->size() + counts.points_missed, counts.stream.points);
+}
+
+TEST(LidarReading, ReaderOfPoints_BeginsWithTheNextPoint) {
+  virtual_bench bench;
+  auto lidar = open_and_start(bench);
+  ASSERT_TRUE(lidar);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  const std::uint64_t before = lidar->counts().stream.points;
+  auto reader = lidar->points().make_reader();
+  EXPECT_EQ(reader.ahead(), 0U);
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(lidar->next_scan(2000ms));
+  EXPECT_EQ(reader.ahead(), lidar->counts().stream.points - before);
 }
 
 TEST(LidarReading, EventLoop_GetsEveryScan) {
@@ -145,14 +209,21 @@ TEST(LidarReading, StartWokenRepeatedly_Completes) {
   EXPECT_TRUE(scan) << scan.error().message();
 }
 
-TEST(LidarReading, NothingIsAllocatedWhileItStreams) {
-  virtual_bench bench;
+class LidarReadingWith : public testing::TestWithParam<const char*> {};
+
+TEST_P(LidarReadingWith, NothingIsAllocatedWhileItStreams) {
+  std::vector<sim::fault> faults;
+  if (*GetParam() != '\0') faults.push_back(std::get<sim::fault>(sim::parse_fault(GetParam())));
+  virtual_bench bench({}, faults);
   auto lidar = open_and_start(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->next_scan(2000ms));
+  int scans = 0;
   const std::size_t allocated = test::allocations_in([&] {
-    for (int i = 0; i < 50; ++i) {
-      ASSERT_TRUE(lidar->next_scan(2000ms));
+    while (bench.now_ns < 20 * second) {
+      const auto scan = lidar->next_scan(500ms);
+      ASSERT_TRUE(scan || !scan.error().is_fatal()) << scan.error().message();
+      scans += scan.has_value();
       static_cast<void>(lidar->next_points(0ms));
       static_cast<void>(lidar->counts());
       static_cast<void>(lidar->next_event());
@@ -161,7 +232,12 @@ TEST(LidarReading, NothingIsAllocatedWhileItStreams) {
     EXPECT_EQ(lidar->set(scan_frequency::hz(10)).error(), problem::scanning);
   });
   EXPECT_EQ(allocated, 0U);
+  EXPECT_GT(scans, 60);
 }
+
+INSTANTIATE_TEST_SUITE_P(Faults, LidarReadingWith,
+                         testing::Values("", "flip*0.001", "drop*0.001", "truncate*0.01",
+                                         "stall@5s+600ms"));
 
 TEST(LidarReading, Scan_IsDeliveredWhenItsEndArrives) {
   virtual_bench bench;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pace_bench.hpp"
+#include "support/measured_truth.hpp"
 
 namespace g4lidar {
 namespace {
@@ -190,6 +191,43 @@ INSTANTIATE_TEST_SUITE_P(Faults, ScanPaceWith,
                          testing::Values("flip*0.0001", "drop*0.001", "truncate*0.01", "jolt*0.01",
                                          "stall@10s+400ms", "batch=1ms", "batch=4ms",
                                          "batch=16ms"));
+
+/// The clock gets few arrivals at this pace, and with a bridge that holds bytes back each of them may be late.
+class ScanPaceTimes : public testing::TestWithParam<const char*> {};
+
+TEST_P(ScanPaceTimes, AreWithinAMillisecondOfTheTruth) {
+  std::vector<sim::fault> faults;
+  if (*GetParam() != '\0') faults.push_back(std::get<sim::fault>(sim::parse_fault(GetParam())));
+  sim::device_options simulated;
+  simulated.truth_capacity = 500'000;
+  test::virtual_bench bench(simulated, faults);
+  lidar device = start_with(bench, {});
+  std::vector<point> points;
+  while (bench.now_ns < 40 * second) {
+    const auto found = device.next_scan(500ms);
+    ASSERT_TRUE(found) << found.error().message();
+    if (bench.now_ns < 8 * second) continue;  // the clock needs 5 s from the start
+    points.insert(points.end(), found->begin(), found->end());
+  }
+  auto truth = measured_truth::of(bench.device, simulated.truth_capacity);
+  double squares = 0.0;
+  for (const point& each : points) {
+    const auto* const sent = truth.next(100'000, [&](const sim::sample_truth& sample) {
+      return std::abs(sample.time_ns - each.time_ns) < 20 * ms &&
+             looks_like(sample, static_cast<double>(each.angle_deg),
+                        static_cast<double>(each.range_mm));
+    });
+    ASSERT_NE(sent, nullptr);
+    const auto off_ns = static_cast<double>(each.time_ns - sent->time_ns);
+    ASSERT_LE(std::abs(off_ns), 1e6);
+    squares += off_ns * off_ns;
+  }
+  ASSERT_GT(points.size(), 250'000U);
+  EXPECT_LE(std::sqrt(squares / static_cast<double>(points.size())), 0.2e6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bridges, ScanPaceTimes,
+                         testing::Values("", "batch=1ms", "batch=4ms", "batch=16ms"));
 
 }  // namespace
 }  // namespace g4lidar

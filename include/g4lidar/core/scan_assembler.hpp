@@ -55,6 +55,11 @@ class scan_assembler {
     return storage_.subspan(used_);
   }
 
+  /// The points of the scan being filled. Valid until the next call of any other function.
+  [[nodiscard]] constexpr std::span<const point> unfinished() const noexcept {
+    return storage_.subspan(given_, used_ - given_);
+  }
+
   /// Takes the points of `packet` until a scan is complete. The scan is valid until the next call
   /// of any function. Call it again with the same `packet`, from whose front the taken points are
   /// removed, until it returns nothing.

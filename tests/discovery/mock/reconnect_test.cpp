@@ -95,6 +95,24 @@ TEST_F(Reconnect, OtherDeviceOnTheOldPath_IsNotOpened) {
 
 TEST_F(Reconnect, PathNamedByTheUser_IsOpened) { EXPECT_TRUE(opens_stranger("/dev/ttyUSB0")); }
 
+/// The system keeps what comes while the driver sleeps, also at the slowest speed.
+TEST_F(Reconnect, ScansOfAPortThatUdevFound_LoseNothing) {
+  bed.plug(first);
+  const auto ours = serve(first, '1');
+  lidar_options options;
+  options.frequency = scan_frequency{500};
+  auto device = lidar::open(options);
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  for (int i = 0; i < 15; ++i) {
+    const auto scan = device->next_scan(3s);
+    ASSERT_TRUE(scan) << scan.error().message();
+    if (i < 3) continue;  // the motor spins up
+    EXPECT_NEAR(static_cast<double>(scan->size()), 9000 / 5.0, 20.0);
+  }
+  EXPECT_EQ(device->counts().samples_lost, 0U);
+}
+
 TEST_F(Reconnect, RefusedPort_ReturnsAfterAReplug) {
   bed.plug(first);
   const pty port;
