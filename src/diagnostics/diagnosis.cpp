@@ -151,8 +151,8 @@ diagnosis_info describe(diagnosis what) noexcept {
 
 std::string_view name_of(diagnostic_stage where) noexcept {
   constexpr std::array<std::string_view, diagnostic_stage_count> names{
-      "port",   "permission", "holder", "baud_rate", "answer", "identity",
-      "health", "motor",      "stream", "rate",      "loss",   "usb_latency"};
+      "port",   "permission", "holder", "baud_rate", "answers", "identity",
+      "health", "motor",      "stream", "rate",      "loss",    "usb_latency"};
   return names[static_cast<std::size_t>(where)];
 }
 

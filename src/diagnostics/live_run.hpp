@@ -43,7 +43,7 @@ class live_run {
 
   /// The stage baud_rate. Returns whether there is a device to continue with.
   bool find_device();
-  /// The stages answer, identity, health.
+  /// The stages answers, identity, health.
   bool interview();
   /// The stage motor. Returns whether the scan runs.
   bool start_motor();

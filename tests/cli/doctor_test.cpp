@@ -61,9 +61,9 @@ TEST_F(Doctor, GoesThroughAllStages) {
   const outcome done = examine("sim:");
   const std::vector<json> stages = stages_of(done);
   ASSERT_EQ(stages.size(), 12U) << done.out << done.err;
-  const std::vector<std::string> names{"port",   "permission", "holder", "baud_rate",
-                                       "answer", "identity",   "health", "motor",
-                                       "stream", "rate",       "loss",   "usb_latency"};
+  const std::vector<std::string> names{"port",    "permission", "holder", "baud_rate",
+                                       "answers", "identity",   "health", "motor",
+                                       "stream",  "rate",       "loss",   "usb_latency"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(stages[i].at("stage"), names[i]);
     if (names[i] == "usb_latency") continue;
@@ -132,7 +132,7 @@ TEST_F(Doctor, ReportsAnUnplug) {
   EXPECT_THAT(diagnoses_of(stages_of(done)), Contains("unplugged")) << done.out;
 }
 
-TEST_F(Doctor, ReportsAPortThatIsNone) {
+TEST_F(Doctor, ReportsAPathThatIsNoPort) {
   const outcome missing = examine(path("nothing"));
   EXPECT_EQ(missing.code, 3);
   EXPECT_THAT(diagnoses_of(stages_of(missing)), Contains("no_port")) << missing.out;
@@ -144,7 +144,7 @@ TEST_F(Doctor, ReportsAPortThatIsNone) {
   EXPECT_EQ(run({"doctor", "-"}).code, 2);
 }
 
-TEST_F(Doctor, ReportsAPortThatMayNotBeOpened) {
+TEST_F(Doctor, ReportsMissingPermission) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may open everything";
   // A character device that only root may open is on every Linux.
   const outcome done = examine("/dev/mem");
@@ -152,7 +152,7 @@ TEST_F(Doctor, ReportsAPortThatMayNotBeOpened) {
   EXPECT_EQ(done.code, 4) << done.out;
 }
 
-TEST_F(Doctor, NamesWhoHoldsThePort) {
+TEST_F(Doctor, NamesTheProgramThatHasThePortOpen) {
   const std::string link = serve();
   program holder({"dump", link});
   holder.read_until("\n");

@@ -100,7 +100,7 @@ struct diagnosis_info {
 
 /// *Any thread.* (docs/design/doctor.md)
 [[nodiscard]] G4LIDAR_API diagnosis_info describe(diagnosis what) noexcept;
-/// "baud_rate", "answer". The names do not change.
+/// "baud_rate", "answers". The names do not change.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(diagnostic_stage where) noexcept;
 /// "ok", "skipped", "warn", "fail".
 [[nodiscard]] G4LIDAR_API std::string_view name_of(stage_verdict how) noexcept;
