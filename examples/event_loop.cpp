@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -21,8 +22,14 @@ int report(const g4lidar::error& why) {
   return 1;
 }
 
-/// A descriptor that is readable when the program should end. The signals are blocked first, before
-/// any thread is created, so that they interrupt no other call.
+/// The same for a system call that has just failed.
+int report(const char* system_call) {
+  std::perror(system_call);
+  return 1;
+}
+
+/// A descriptor that is readable when the program should end; -1 on failure. The signals are blocked
+/// first, before any thread is created, so that they interrupt no other call.
 int signals_as_descriptor() {
   sigset_t ending;
   sigemptyset(&ending);
@@ -34,10 +41,9 @@ int signals_as_descriptor() {
 
 /// For poll(); rounded up, so that it does not return too early.
 int milliseconds_until(std::chrono::steady_clock::time_point deadline) {
-  const auto left = deadline - std::chrono::steady_clock::now();
-  return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(
-                              std::clamp<std::chrono::nanoseconds>(left, 0ns, 1min))
-                              .count());
+  const auto left =
+      std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+  return static_cast<int>(std::clamp<std::chrono::milliseconds>(left, 0ms, 1min).count());
 }
 
 /// Takes every scan and event that has arrived. False: the end.
@@ -65,6 +71,7 @@ bool take_scans(g4lidar::lidar& lidar) {
 
 int main(int count, char** words) {
   const int signals = signals_as_descriptor();
+  if (signals < 0) return report("signalfd");
   g4lidar::lidar_options options;
   if (count > 1) options.device = words[1];
   options.reconnect = true;
@@ -74,7 +81,12 @@ int main(int count, char** words) {
   int code = 0;
   while (true) {
     std::array<pollfd, 2> waiting{{{signals, POLLIN, 0}, {lidar->native_handle(), POLLIN, 0}}};
-    poll(waiting.data(), waiting.size(), milliseconds_until(lidar->next_deadline()));
+    const int ready =
+        poll(waiting.data(), waiting.size(), milliseconds_until(lidar->next_deadline()));
+    if (ready < 0 && errno != EINTR) {
+      code = report("poll");
+      break;
+    }
     if (waiting[0].revents != 0) break;
     if (!take_scans(*lidar)) {
       code = 1;

@@ -12,16 +12,20 @@ int report(const g4lidar::error& why) {
 }
 
 void use(const g4lidar::scan& scan) {
-  g4lidar::polar nearest{0, 99};
-  for (const g4lidar::point& p : scan.points) {
-    const auto seen = to_polar(p, g4lidar::frame::robot);  // x forward, y to the left
-    const bool is_good = !p.is_no_return() && !p.is_too_near();
-    if (is_good && seen.range_m < nearest.range_m) nearest = seen;
+  const g4lidar::point* nearest = nullptr;
+  for (const g4lidar::point& p : scan) {
+    if (p.is_no_return() || p.is_too_near()) continue;  // not reliable
+    if (nearest == nullptr || p.range_mm < nearest->range_mm) nearest = &p;
   }
-  std::printf("%3u: %zu points at %.2f Hz, the nearest %.3f m away, %+.2f rad from ahead\n",
-              scan.revolution, scan.points.size(),
-              static_cast<double>(scan.measured_frequency_hz()),
-              static_cast<double>(nearest.range_m), static_cast<double>(nearest.bearing_rad));
+  std::printf("%3u: %zu points at %.2f Hz, ", scan.revolution, scan.size(),
+              static_cast<double>(scan.measured_frequency_hz()));
+  if (nearest == nullptr) {
+    std::puts("no return");
+  } else {
+    const auto seen = to_polar(*nearest, g4lidar::frame::robot);  // x forward, y to the left
+    std::printf("the nearest %.3f m away, %+.2f rad from ahead\n",
+                static_cast<double>(seen.range_m), static_cast<double>(seen.bearing_rad));
+  }
   std::fflush(stdout);
 }
 

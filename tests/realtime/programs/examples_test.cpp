@@ -35,6 +35,19 @@ TEST(LiveScan, PrintsALineForEachScanUntilASignal) {
   }
 }
 
+TEST(LiveScan, PrintsNoRangeWithoutAReturn) {
+  scratch_directory directory;
+  sim::device_options options = test::quick_g4();
+  options.scanner.dropout_ratio = 1.0;
+  device_on_pty simulated(options);
+  child_process program({EXAMPLE_LIVE_SCAN, simulated.path()}, directory.file("output"));
+  ASSERT_TRUE(program.prints("  3: ")) << program.output();
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 0);
+  const std::regex line(R"(( +\d+: \d+ points at \d+\.\d\d Hz, no return\n)+)");
+  EXPECT_TRUE(std::regex_match(program.output(), line)) << program.output();
+}
+
 TEST(LiveScan, PrintsTheError) {
   scratch_directory directory;
   child_process program({EXAMPLE_LIVE_SCAN, directory.file("nothing")}, directory.file("output"));
