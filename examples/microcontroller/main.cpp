@@ -31,7 +31,7 @@ class obstacle_watch {
            finish(g4lidar::requests::stop(), "stop");
   }
 
-  void say_counts() const {
+  void print_counts() const {
     line text;
     text << counts_.parsed_bytes + counts_.skipped_bytes() + parser_.held() << " bytes, "
          << counts_.packets << " packets, " << counts_.skipped_bytes() << " bytes skipped, "
@@ -135,7 +135,7 @@ void on_lidar_byte(std::uint8_t byte) { received.push(byte); }
 
 int main() {
   board::begin();
-  const bool all_well = watch.run();
-  watch.say_counts();
-  return all_well ? 0 : 1;
+  const bool has_succeeded = watch.run();
+  watch.print_counts();
+  return has_succeeded ? 0 : 1;
 }

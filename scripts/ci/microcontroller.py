@@ -16,8 +16,8 @@ stops = (b"\xa5\x65", b"\xa5\x00")
 
 
 def play(line, recording, sent):
-    """Until the program closes the line. Little is sent at once: what the program has not taken when
-    it says stop cannot be called back."""
+    """Until the program closes the line. Little is sent at once: bytes that the program has not read
+    when it sends a stop cannot be called back."""
     left = b""
     heard = b""
     line.setblocking(False)

@@ -265,7 +265,7 @@ result<void> live_driver::stop() {
   if (stage_ == stage::lost) return {};  // it is stopped after the reconnect
   if (auto ready = run_setup(); !ready) return ready;
   pipeline_.drop_scan();
-  // A stop that was woken has continued meanwhile.
+  // A stop that was woken has continued in other calls.
   if (std::exchange(stage_, stage::stopping) != stage::stopping) add_step(setup_step::stop);
   if (auto stopped = run_setup(); !stopped) return stopped;
   flush();

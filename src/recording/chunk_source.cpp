@@ -239,7 +239,7 @@ record_block chunk_source::step() {
                        header->kind == opcode::metadata;
   if (!is_read || size > largest_record) return {};
   const auto record = content(at, static_cast<std::size_t>(size));
-  if (record.size() < size) return {};  // the file has become shorter meanwhile
+  if (record.size() < size) return {};  // the file has become shorter
   return {record, at};
 }
 
@@ -282,11 +282,11 @@ std::optional<bytes> chunk_source::records_of(std::uint64_t at, const chunk_head
 void chunk_source::lose_chunk(std::uint64_t at, std::uint64_t length) {
   const std::uint64_t size = record_header_size + length;
   const auto behind = window(at + size, record_header_size + longest_chunk_header);
-  const bool ends_well = at + size == limit_ || believe(behind, at + size).has_value();
+  const bool is_followed = at + size == limit_ || believe(behind, at + size).has_value();
   const bool was_guess = std::exchange(is_guess_, false);
   wasted_ += size;
-  if (ends_well || !was_guess) ++damage_.chunks_lost;
-  if (ends_well || wasted_ / patience > size_) {
+  if (is_followed || !was_guess) ++damage_.chunks_lost;
+  if (is_followed || wasted_ / patience > size_) {
     damage_.bytes_skipped += size;
     at_ = trusted_ = at + size;
     return;

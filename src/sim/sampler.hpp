@@ -30,7 +30,7 @@ class sampler {
   void silence_until(std::int64_t time_ns) noexcept { silent_until_ns_ = time_ns; }
 
   /// Measures the next packet: its content when it is complete. `jolts`: the head, which turns
-  /// clockwise, moves back meanwhile. `has_stray`: a random byte precedes a zero packet.
+  /// clockwise, moves back during the packet. `has_stray`: a random byte precedes a zero packet.
   void measure(const motor& head, bool jolts, bool has_stray) noexcept {
     scanner_.set_speed_mhz(head.speed_mhz(scanner_.next_sample_ns()));
     if (jolts) scanner_.set_turning(turning::falling);

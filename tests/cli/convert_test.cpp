@@ -54,7 +54,7 @@ class Convert : public cli::scratch {
   }
 };
 
-TEST_F(Convert, RawBytesAreTheSameBehindARecording) {
+TEST_F(Convert, RawBytes_AreTheSameThroughARecording) {
   const std::string bytes = cli::read_file(raw("3"));
   convert("raw.bin", "walk.mcap");
   convert("walk.mcap", "again.bin");
@@ -66,7 +66,7 @@ TEST_F(Convert, RawBytesAreTheSameBehindARecording) {
   EXPECT_EQ(run({"replay", "--verify", path("second.mcap")}).code, 0);
 }
 
-TEST_F(Convert, ARecordingReplacesWhatALinkPointsToAndKeepsItsPermissions) {
+TEST_F(Convert, OutputThroughALink_ReplacesTheTargetAndKeepsItsPermissions) {
   raw("1");
   cli::write_file(path("real.mcap"), "older");
   fs::permissions(path("real.mcap"), fs::perms::owner_read | fs::perms::owner_write);
@@ -78,7 +78,7 @@ TEST_F(Convert, ARecordingReplacesWhatALinkPointsToAndKeepsItsPermissions) {
   EXPECT_EQ(run({"replay", "--verify", path("real.mcap")}).code, 0);
 }
 
-TEST_F(Convert, TextComesBackAsItWas) {
+TEST_F(Convert, Text_IsWrittenAsItWasRead) {
   raw("2");
   convert("raw.bin", "a.csv");
   convert("a.csv", "b.csv");
@@ -120,7 +120,7 @@ TEST_F(Convert, ToPointClouds) {
   EXPECT_THAT(text("one.pcd"), HasSubstr("\nDATA binary\n"));
 }
 
-TEST_F(Convert, APart) {
+TEST_F(Convert, PartOfARecording) {
   raw("6");
   convert("raw.bin", "part.csv", {"--from", "2s", "--to", "3s"});
   EXPECT_EQ(rows("part.csv").size(), 9001U);
@@ -141,7 +141,7 @@ TEST_F(Convert, APart) {
   EXPECT_NEAR(static_cast<double>(text("cut.bin").size()), 20'380.0, 500.0);
 }
 
-TEST_F(Convert, OfWhatIsDamagedTheWholeIsUsedAndTheRestCounted) {
+TEST_F(Convert, DamagedRecording_IntactPartIsUsedAndDamageIsCounted) {
   raw("20");
   convert("raw.bin", "walk.mcap");
   const std::string good = text("walk.mcap");
@@ -161,7 +161,7 @@ TEST_F(Convert, OfWhatIsDamagedTheWholeIsUsedAndTheRestCounted) {
   EXPECT_LT(rows("bad.csv").size(), rows("good.csv").size());
 }
 
-TEST_F(Convert, WhatCannotBeIsRefused) {
+TEST_F(Convert, ImpossibleConversions_AreRefused) {
   raw("1");
   convert("raw.bin", "a.csv");
   expect_refused({path("a.csv"), path("b.mcap")}, 2, "holds points, not bytes of a lidar");
@@ -180,7 +180,7 @@ TEST_F(Convert, WhatCannotBeIsRefused) {
   expect_refused({path("raw.bin"), path("none/b.mcap")}, 10, "Make its directory first");
 }
 
-TEST_F(Convert, FilesThatHoldNothingOfUse) {
+TEST_F(Convert, FilesWithoutUsableData_AreRefused) {
   cli::write_file(path("empty.bin"), "");
   cli::write_file(path("text.bin"), "dear\n");
   cli::write_file(path("text.csv"), "dear\nfriend\n");
@@ -199,7 +199,7 @@ TEST_F(Convert, FilesThatHoldNothingOfUse) {
   expect_refused({path("text.bin"), path("out.csv"), "--from-format", "mcap"}, 10, "text.bin");
 }
 
-TEST_F(Convert, ALongFileTakesNoMoreMemoryThanAShortOne) {
+TEST_F(Convert, LongFile_NeedsNoMoreMemoryThanAShortOne) {
   const std::string block = cli::zero(0) + cli::turn();
   cli::write_repeated(path("short.bin"), block, 1'000'000);
   cli::write_repeated(path("long.bin"), block, 6'000'000);

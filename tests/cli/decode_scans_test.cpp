@@ -77,7 +77,7 @@ TEST(Decode, ScansAsJsonl) {
   EXPECT_EQ(last_valid.at("angle_deg").size(), 120U);
 }
 
-TEST(Decode, AMotorThatStandsStillFillsNoMemoryAndLosesNoPoint) {
+TEST(Decode, StoppedMotor_FillsNoMemoryAndLosesNoPoint) {
   std::string recording;
   for (int i = 0; i < 1000; ++i)
     recording += cli::packet(10, 10, std::vector<std::uint16_t>(40, 4000));
@@ -111,7 +111,7 @@ TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {
   EXPECT_EQ(done.err, expected.dump() + "\n");
 }
 
-TEST(Decode, StatsInWords) {
+TEST(Decode, StatsAsText) {
   for (const words& each : {words{"decode"}, {"dump", "-"}}) {
     EXPECT_EQ(run(each, small_recording()).err,
               "92 bytes: 5 packets (1 suspect) with 9 points, 1 response\n"
@@ -120,7 +120,7 @@ TEST(Decode, StatsInWords) {
   EXPECT_EQ(run({"dump", "-", "-q"}, small_recording()).err, "");
 }
 
-TEST(Decode, AnInputThatIsMostlyNoiseIsRemarkedOn) {
+TEST(Decode, InputOfMostlyNoise_GivesARemark) {
   const std::string noise(1000, 'x');
   const outcome output = run({"decode"}, noise + cli::zero(0));
   EXPECT_EQ(output.code, 0);

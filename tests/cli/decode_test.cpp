@@ -90,7 +90,7 @@ TEST(Decode, Default_IsCsvOfStandardInput) {
   EXPECT_EQ(run({"decode", "--format=csv", "-o", "-"}, small_recording()).out, all);
 }
 
-TEST(Decode, ValidLeavesOutWhatCameBackEmpty) {
+TEST(Decode, Valid_LeavesOutPointsWithoutReturn) {
   const outcome done = run({"decode", "--valid"}, small_recording());
   const std::vector<std::string> lines = lines_of(done.out);
   ASSERT_EQ(lines.size(), 7U);
@@ -131,7 +131,7 @@ std::vector<bool> partial_scans(const std::string& recording) {
   return partial;
 }
 
-TEST(Decode, JsonlMarksRevolutionsThatWereNotSeenWhole) {
+TEST(Decode, Jsonl_FlagsPartialRevolutions) {
   using seen = std::vector<bool>;
   const std::string whole = cli::zero(0) + cli::turn();
   EXPECT_EQ(partial_scans(whole + whole + cli::zero(0)), (seen{false, false, true}));
@@ -152,7 +152,7 @@ TEST(Decode, JsonlMarksRevolutionsThatWereNotSeenWhole) {
   EXPECT_EQ(partial_scans(whole + suspect + whole), (seen{false, true, true}));
 }
 
-TEST(Decode, ScanGrowsWithEachZeroPacketButAVeryFirst) {
+TEST(Decode, ScanNumber_GrowsWithEachZeroPacketExceptTheFirst) {
   const auto last_scan = [](const std::string& recording) {
     return fields_of(lines_of(run({"decode"}, recording).out).back()).front();
   };

@@ -74,7 +74,7 @@ TEST(Dump, Metres) {
   EXPECT_THAT(run({"dump", "-", "--unit", "m", "-q"}, all_around()).out, HasSubstr("  0.28000  "));
 }
 
-TEST(Dump, JsonlNamesWhatCsvNames) {
+TEST(Dump, JsonlAndCsv_HaveTheSameNames) {
   const json first =
       json::parse(lines_of(run({"dump", "-", "-f", "jsonl", "--frame", "robot", "-q"},
                                cli::packet(90, 91, {0, 300}))
@@ -89,7 +89,7 @@ TEST(Dump, JsonlNamesWhatCsvNames) {
   EXPECT_EQ(first.at("too_near"), true);
 }
 
-TEST(Dump, SoManyRecordsBehindTheFilters) {
+TEST(Dump, Count_IsAppliedAfterTheFilters) {
   const std::string all = run({"dump", "-", "-f", "csv", "--fov", "10:20", "-q"}, simulated()).out;
   const std::string some =
       run({"dump", "-", "-f", "csv", "--fov", "10:20", "-n", "71", "-q"}, simulated()).out;
@@ -97,7 +97,7 @@ TEST(Dump, SoManyRecordsBehindTheFilters) {
   EXPECT_THAT(all, StartsWith(some));
 }
 
-TEST(Dump, SoLongByTheTimesOfTheSamples) {
+TEST(Dump, Duration_IsCountedByTheTimesOfTheSamples) {
   const auto rows = rows_of(run({"dump", "-", "-f", "csv", "-d", "500ms", "-q"}, simulated()).out);
   ASSERT_EQ(rows.size(), 4500U);
   EXPECT_LT(rows.back().time_ns, 500'000'000);
@@ -146,7 +146,7 @@ TEST(Help, NamesEveryColumnOfDumpAndScan) {
   expect_named("scan", {"--partial", "--grid", "1", "--unit", "m"});
 }
 
-TEST(Dump, WhatMakesNoSenseIsRefused) {
+TEST(Dump, InvalidOptions_AreRefused) {
   const auto refused = [](const std::vector<std::string>& options, const std::string& why) {
     std::vector<std::string> arguments{"dump", "-"};
     arguments.insert(arguments.end(), options.begin(), options.end());

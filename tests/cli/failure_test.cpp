@@ -80,7 +80,7 @@ TEST_F(Failure, EmptyInput) {
   expect_nothing_written({"decode", path("empty.bin")});
 }
 
-TEST_F(Failure, NotASinglePacket) {
+TEST_F(Failure, NoPacket) {
   cli::write_file(path("noise.bin"), std::string(500, '\xAA'));
   const outcome noise = run({"decode", path("noise.bin")});
   expect_sentence(noise, 10, "no point packet in the 500 bytes");
@@ -93,7 +93,7 @@ TEST_F(Failure, NotASinglePacket) {
   }
 }
 
-TEST_F(Failure, NotASinglePacket_JsonStatsComeAllTheSame) {
+TEST_F(Failure, NoPacket_JsonStatsAreWritten) {
   const outcome done = run({"decode", "--stats", "json"}, std::string(500, '\x01'));
   EXPECT_EQ(done.code, 10);
   EXPECT_THAT(done.err, StartsWith(R"({"bytes":500,"packets":0,)"));
@@ -133,7 +133,7 @@ TEST_F(Failure, WrongCommandLine) {
   expect_usage({"sim", "--samples", "81"}, "1 to 80");
 }
 
-TEST_F(Failure, SourceThatIsNone) {
+TEST_F(Failure, InvalidSource) {
   expect_sentence(run({"info", "serial:111"}), 2, "SOURCE or an option cannot have this value. ");
 }
 
@@ -157,7 +157,7 @@ TEST_F(Failure, StandardOutputIsFull) {
   EXPECT_EQ(listing(), "good.bin\n");
 }
 
-TEST_F(Failure, ADeviceThatIsFull) {
+TEST_F(Failure, FullDevice) {
   if (::geteuid() == 0) GTEST_SKIP() << "not as root, who could replace the device by a file";
   expect_sentence(run({"decode", good(), "-o", "/dev/full"}), 10,
                   "cannot write '/dev/full': No space left on device");
@@ -180,7 +180,7 @@ class file_size_limit {
   rlimit before_{};
 };
 
-TEST_F(Failure, AFileThatCannotGrowLeavesNothing) {
+TEST_F(Failure, FileThatCannotGrow_IsRemoved) {
   const std::string name = path("good.bin");
   cli::write_repeated(name, cli::zero(0) + cli::turn(), 100'000);
   const file_size_limit limit(1000);
@@ -219,7 +219,7 @@ TEST_F(Failure, StandardOutputIsClosed) {
   EXPECT_THAT(done.err, HasSubstr("cannot write standard output"));
 }
 
-TEST_F(Failure, StandardErrorIsClosed_NothingStraysIntoTheOutput) {
+TEST_F(Failure, StandardErrorIsClosed_NoMessageIsInTheOutput) {
   const std::string name = good();
   const std::string all = run({"decode", name}).out;
   const std::vector<std::string> arguments{"decode", "-", "-o", path("out.csv")};
@@ -236,7 +236,7 @@ TEST_F(Failure, WorldFiles) {
   expect_nothing_written({"sim", "--world", path("world.txt")});
 }
 
-TEST_F(Failure, SimToOnePlaceTwice) {
+TEST_F(Failure, SimWithOnePathForTwoOutputs) {
   for (const char* const truth : {"x", "./x"}) {
     const std::string name = (directory_ / truth).string();
     expect_sentence(run({"sim", "-o", path("x"), "--truth", name}), 2, "--truth and -o");
@@ -245,7 +245,7 @@ TEST_F(Failure, SimToOnePlaceTwice) {
   EXPECT_EQ(listing(), "");
 }
 
-TEST_F(Failure, NothingIsLeftWhenTheOutputIsReplacedAndFine) {
+TEST_F(Failure, ReplacedOutput_LeavesNoOtherFile) {
   const std::string name = good();
   const std::string all = run({"decode", name}).out;
   const std::string out = path("out.csv");
@@ -279,7 +279,7 @@ TEST_F(Failure, OutOfMemoryIsNotABadFile) {
   EXPECT_EQ(cli::read_file(path("err")), "g4-dump: out of memory\n");
 }
 
-TEST_F(Failure, ALinkStaysALink) {
+TEST_F(Failure, Link_StaysALink) {
   cli::write_file(path("real.csv"), "older\n");
   std::filesystem::create_symlink("real.csv", path("link.csv"));
   EXPECT_EQ(run({"decode", good(), "-o", path("link.csv")}).code, 0);

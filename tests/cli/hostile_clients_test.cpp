@@ -148,7 +148,7 @@ TEST_F(HostileClient, ConnectsAgainAndAgain) {
   expect_it_serves();
 }
 
-TEST_F(HostileClient, DisconnectsAmidAnAnswer) {
+TEST_F(HostileClient, DisconnectsDuringAnAnswer) {
   for (int i = 0; i < 50; ++i) {
     const client one(port_);
     one.resets();

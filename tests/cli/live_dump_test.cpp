@@ -42,7 +42,7 @@ class Live : public cli::scratch {
   }
 };
 
-TEST_F(Live, SoManyPoints) {
+TEST_F(Live, Count_EndsIt) {
   const outcome done = run({"dump", "sim:?seed=3", "-n", "2500", "-f", "csv", "--fov", "10:350"});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(lines_of(done.out).size(), 2501U);
@@ -77,7 +77,7 @@ TEST_F(Live, ScansInEachFormat) {
 }
 
 // The duration is counted from the start command on; points come when the head has spun up.
-TEST_F(Live, SoLong) {
+TEST_F(Live, Duration_EndsIt) {
   const auto begin = std::chrono::steady_clock::now();
   const outcome done = run({"dump", "sim:", "-d", "2500ms", "-f", "csv", "-q"});
   const auto took = std::chrono::steady_clock::now() - begin;
@@ -94,7 +94,7 @@ TEST_F(Live, SoLong) {
   EXPECT_NEAR(static_cast<double>(lines.size() - 2), span_ns * 9e-6, span_ns * 9e-6 * 0.01);
 }
 
-TEST_F(Live, InterruptedItPrintsTheCounts) {
+TEST_F(Live, Interrupted_PrintsTheCounts) {
   program started({"dump", "sim:", "-f", "csv"});
   started.read_until("\n0,");
   started.send(SIGINT);
@@ -106,7 +106,7 @@ TEST_F(Live, InterruptedItPrintsTheCounts) {
   EXPECT_EQ(done.out.back(), '\n');
 }
 
-TEST_F(Live, AFileGrowsAndOutlivesAKill) {
+TEST_F(Live, File_GrowsAndIsValidAfterAKill) {
   const std::string out = path("out.csv");
   cli::write_file(out, "older\n");
   program started({"dump", "sim:", "-f", "csv", "-o", out, "-q"});
@@ -117,7 +117,7 @@ TEST_F(Live, AFileGrowsAndOutlivesAKill) {
   EXPECT_THAT(cli::read_file(out), StartsWith("scan,angle_deg,range_mm,time_ns\n"));
 }
 
-TEST_F(Live, WithoutAPointAnOlderFileStays) {
+TEST_F(Live, NoPoint_KeepsTheOlderFile) {
   const std::string out = path("out.csv");
   cli::write_file(out, "older\n");
   EXPECT_EQ(run({"dump", path("none"), "-o", out}).code, 3);
@@ -126,7 +126,7 @@ TEST_F(Live, WithoutAPointAnOlderFileStays) {
   EXPECT_EQ(listing(), "out.csv\n");
 }
 
-TEST_F(Live, ALossEndsItByDefault) {
+TEST_F(Live, Loss_EndsItByDefault) {
   program simulator({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
   const outcome done = run({"dump", path("lidar"), "-f", "csv", "-o", path("out.csv")});
@@ -138,7 +138,7 @@ TEST_F(Live, ALossEndsItByDefault) {
   EXPECT_EQ(kept.back(), '\n');
 }
 
-TEST_F(Live, WithReconnectItGoesOn) {
+TEST_F(Live, Reconnect_Continues) {
   program simulator({"sim", "--link", path("lidar"), "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
   const std::string out = path("out.csv");
@@ -155,7 +155,7 @@ TEST_F(Live, WithReconnectItGoesOn) {
   EXPECT_THAT(done.err, HasSubstr(" 1 reconnect\n"));
 }
 
-TEST_F(Live, WithWaitItWaitsForADeviceThatIsNotThereYet) {
+TEST_F(Live, Wait_WaitsForAMissingDevice) {
   program started({"dump", path("lidar"), "-n", "50", "-f", "csv", "--on-loss", "wait"});
   std::this_thread::sleep_for(300ms);
   program simulator({"sim", "--link", path("lidar")});
@@ -168,7 +168,7 @@ TEST_F(Live, WithWaitItWaitsForADeviceThatIsNotThereYet) {
   EXPECT_EQ(never.wait().code, 128 + SIGTERM);
 }
 
-TEST_F(Live, AReaderThatHasGoneIsNoticedWhenNothingIsWritten) {
+TEST_F(Live, ClosedPipe_IsDetectedWhenNothingIsWritten) {
   program started({"dump", "sim:", "--range", "99:100"});
   started.read_until("time_s\n");
   started.close_output();

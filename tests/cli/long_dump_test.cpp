@@ -37,7 +37,7 @@ class LongDump : public cli::scratch {
   }
 };
 
-TEST_F(LongDump, TakesNoMoreMemoryThanAShortOne) {
+TEST_F(LongDump, NeedsNoMoreMemoryThanAShortOne) {
   cli::write_repeated(path("short.bin"), cli::zero(0) + cli::turn(), 500'000);
   cli::write_repeated(path("long.bin"), cli::zero(0) + cli::turn(), 10'000'000);
   const std::vector<std::string> options{"-f",     "csv",     "--frame", "robot",  "--fov",
@@ -71,7 +71,7 @@ TEST_F(LongDump, IsAYearLong) {
 
 // The first line of a long file comes before a fortieth of the time that all of it takes: the median of 21 runs,
 // each less the time that the program takes to start.
-TEST_F(LongDump, BeginsAtOnce) {
+TEST_F(LongDump, BeginsImmediately) {
   cli::write_repeated(path("long.bin"), cli::zero(0) + cli::turn(), 20'000'000);
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(dump(path("long.bin"), {"-f", "csv"}).code, 0);

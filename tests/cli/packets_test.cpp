@@ -52,7 +52,7 @@ TEST(Packets, ErrorsAlone) {
 }
 
 // However the bytes are cut, the lines that --hex adds hold all of them, in order.
-TEST(Packets, HexHoldsEveryByte) {
+TEST(Packets, Hex_ContainsEveryByte) {
   std::string bytes = run({"sim", "--seconds", "1", "--seed", "2"}).out;
   for (std::size_t i = 500; i < bytes.size(); i += 997)
     bytes[i] = static_cast<char>(bytes[i] ^ 0x10);
@@ -65,7 +65,7 @@ TEST(Packets, HexHoldsEveryByte) {
   EXPECT_EQ(hex, bytes);
 }
 
-TEST(Packets, BothWaysOfALidar) {
+TEST(Packets, BothDirectionsOfALidar) {
   const outcome done = run({"packets", "sim:?seed=4", "-d", "400ms", "--time", "zero"});
   EXPECT_EQ(done.code, 0) << done.err;
   const std::vector<std::string> lines = lines_of(done.out);
@@ -84,14 +84,14 @@ TEST(Packets, BothWaysOfALidar) {
   }
 }
 
-TEST(Packets, WhatWasExchangedBeforeAFailureIsWritten) {
+TEST(Packets, BytesBeforeAFailure_AreWritten) {
   const outcome done = run({"packets", "sim:?fault=mute@0"});
   EXPECT_EQ(done.code, 6);
   EXPECT_THAT(done.out, HasSubstr("> device information?  A5 90\n"));
   EXPECT_THAT(done.err, StartsWith("g4-dump: "));
 }
 
-TEST(Packets, SoManyLines) {
+TEST(Packets, Count_LimitsTheLines) {
   EXPECT_EQ(lines_of(run({"packets", "-", "-n", "3", "-q"}, with_everything()).out).size(), 3U);
   EXPECT_EQ(lines_of(run({"packets", "sim:", "-n", "20", "-q"}).out).size(), 20U);
   EXPECT_EQ(run({"packets", "-", "--time", "abs"}, with_everything()).code, 2);

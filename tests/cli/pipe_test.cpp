@@ -57,7 +57,7 @@ TEST_F(Pipe, JsonlFollowsRevolutionByRevolution) {
   EXPECT_EQ(started.wait().code, 0);
 }
 
-TEST_F(Pipe, AFifoCanBeReadAndWritten) {
+TEST_F(Pipe, Fifo_CanBeReadAndWritten) {
   const std::string in = path("in");
   const std::string out = path("out");
   ASSERT_EQ(::mkfifo(in.c_str(), 0600), 0);
@@ -69,7 +69,7 @@ TEST_F(Pipe, AFifoCanBeReadAndWritten) {
   EXPECT_EQ(listing(), "in\nout\n");
 }
 
-TEST_F(Pipe, AReaderThatHasHadEnoughIsANormalEnd) {
+TEST_F(Pipe, ClosedPipe_IsASuccess) {
   const std::string name = path("long.bin");
   cli::write_repeated(name, cli::zero(0) + cli::turn(), 2'000'000);
   for (const char* const format : {"csv", "jsonl", "text"}) {
@@ -87,7 +87,7 @@ TEST_F(Pipe, AReaderThatHasHadEnoughIsANormalEnd) {
   EXPECT_EQ(simulated.wait().code, 0);
 }
 
-TEST_F(Pipe, AReaderThatHasGoneIsNoticedWhileTheInputIsSilent) {
+TEST_F(Pipe, ClosedPipe_IsDetectedWhileTheInputIsSilent) {
   program started({"decode", "-"});
   started.feed(cli::zero(0));
   started.read_until("1000.00");
@@ -97,7 +97,7 @@ TEST_F(Pipe, AReaderThatHasGoneIsNoticedWhileTheInputIsSilent) {
   EXPECT_EQ(started.wait().code, 0);
 }
 
-TEST_F(Pipe, InterruptedItWritesWhatItHasAndTheCounts) {
+TEST_F(Pipe, Interrupted_WritesItsDataAndTheCounts) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     program started({"decode", "-", "--stats", "json"});
     started.feed(cli::zero(0) + cli::turn(9) + cli::zero(0).substr(0, 5));
@@ -113,7 +113,7 @@ TEST_F(Pipe, InterruptedItWritesWhatItHasAndTheCounts) {
   }
 }
 
-TEST_F(Pipe, InterruptedItKeepsTheFileOfWhatCameSoFar) {
+TEST_F(Pipe, Interrupted_KeepsTheFileWithTheDataSoFar) {
   const std::string out = path("out.jsonl");
   const std::string live = path("live");
   ASSERT_EQ(::mkfifo(live.c_str(), 0600), 0);
@@ -132,7 +132,7 @@ TEST_F(Pipe, InterruptedItKeepsTheFileOfWhatCameSoFar) {
   EXPECT_EQ(listing(), "live\nout.jsonl\n");
 }
 
-TEST_F(Pipe, InterruptedBeforeAnyPacketItLeavesNothing) {
+TEST_F(Pipe, InterruptedBeforeAPacket_LeavesNoFile) {
   program started({"decode", "-", "-o", path("out.csv")});
   started.feed("boot text");
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -141,7 +141,7 @@ TEST_F(Pipe, InterruptedBeforeAnyPacketItLeavesNothing) {
   EXPECT_EQ(listing(), "");
 }
 
-TEST_F(Pipe, AnInterruptedSimulationLeavesNothing) {
+TEST_F(Pipe, InterruptedSimulation_LeavesNoFile) {
   program started({"sim", "--seconds", "100000000", "-o", path("x"), "--truth", path("y")});
   while (listing().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   started.send(SIGINT);
@@ -149,7 +149,7 @@ TEST_F(Pipe, AnInterruptedSimulationLeavesNothing) {
   EXPECT_EQ(listing(), "");
 }
 
-TEST_F(Pipe, ALongFileTakesNoMoreMemoryThanAShortOne) {
+TEST_F(Pipe, LongFile_NeedsNoMoreMemoryThanAShortOne) {
   const std::string block = cli::zero(0) + cli::turn();
   const std::string short_one = path("short.bin");
   const std::string long_one = path("long.bin");
@@ -202,7 +202,7 @@ TEST_F(Pipe, AProgressBarOnATerminalForLargeFilesOnly) {
   EXPECT_THAT(unseen.wait().err, StartsWith("17"));
 }
 
-TEST_F(Pipe, BinaryIsNotPouredOntoATerminal) {
+TEST_F(Pipe, BinaryOnATerminal_IsRefused) {
   int ours = -1;
   int theirs = -1;
   ASSERT_EQ(::openpty(&ours, &theirs, nullptr, nullptr, nullptr), 0);

@@ -56,7 +56,7 @@ class Record : public cli::scratch {
   }
 };
 
-TEST_F(Record, WhatIsRecordedIsPlayedToTheSamePoints) {
+TEST_F(Record, Replay_GivesTheSamePoints) {
   const std::string file = path("walk.mcap");
   const outcome made = record_scans(file, 4);
   ASSERT_EQ(made.code, 0) << made.err;
@@ -88,7 +88,7 @@ TEST_F(Record, ReadsAtThePaceOfRevolutions) {
   EXPECT_LT(times.size(), packets / 2);
 }
 
-TEST_F(Record, ARecordingOfARecordingHasTheSameDigests) {
+TEST_F(Record, RecordingOfARecording_HasTheSameDigests) {
   const std::string first = path("first.mcap");
   const std::string second = path("second.mcap");
   const outcome made = record_scans(first, 3);
@@ -105,7 +105,7 @@ TEST_F(Record, ARecordingOfARecordingHasTheSameDigests) {
   EXPECT_EQ(cli::read_file(path("first.bin")), cli::read_file(path("second.bin")));
 }
 
-TEST_F(Record, ScansAreInItUnlessTheyAreUnwanted) {
+TEST_F(Record, Scans_AreRecordedByDefault) {
   const std::vector<std::string> names{"--frame-id", "roof", "--topic", "/up/there"};
   ASSERT_EQ(record_scans(path("with.mcap"), 1, names).code, 0);
   EXPECT_THAT(record_scans(path("without.mcap"), 1, {"--no-scans"}).err,
@@ -130,7 +130,7 @@ TEST_F(Record, RawBytesInAFileAreCounted) {
   EXPECT_EQ(cli::read_file(path("again.bin")), cli::read_file(path("raw.bin")));
 }
 
-TEST_F(Record, APipeCanBeRecorded) {
+TEST_F(Record, Pipe_CanBeRecorded) {
   std::string bytes;
   for (int i = 0; i < 20; ++i) bytes += cli::zero(0) + cli::turn();
   const outcome made = run({"record", "-", path("pipe.mcap")}, bytes);
@@ -140,7 +140,7 @@ TEST_F(Record, APipeCanBeRecorded) {
   EXPECT_EQ(cli::read_file(path("pipe.bin")), bytes);
 }
 
-TEST_F(Record, ASignalEndsTheFileProperly) {
+TEST_F(Record, Signal_CompletesTheFile) {
   program interrupted({"record", "sim:", path("int.mcap")});
   program terminated({"record", "sim:", path("term.mcap")});
   std::this_thread::sleep_for(2s);
@@ -157,7 +157,7 @@ TEST_F(Record, ASignalEndsTheFileProperly) {
 
 // The time between the last point in a file and the moment when its program was killed: the 75th percentile
 // of four recordings, side by side.
-TEST_F(Record, KilledItHasLostASecondAtMost) {
+TEST_F(Record, Killed_LosesAtMostASecond) {
   std::vector<std::string> names;
   std::vector<std::unique_ptr<program>> started;
   for (const std::string name : {"a.mcap", "b.mcap", "c.mcap", "d.mcap"}) {
@@ -198,7 +198,7 @@ TEST_F(Record, FilesAreRotated) {
   EXPECT_GT(bytes.size(), 20'000U);
 }
 
-TEST_F(Record, AFileThatIsThereIsLeftAlone) {
+TEST_F(Record, ExistingFile_IsNotChanged) {
   cli::write_file(path("walk.mcap"), "dear");
   expect_refused({"record", "sim:", path("walk.mcap")}, 10, "it exists already");
   EXPECT_EQ(cli::read_file(path("walk.mcap")), "dear");
@@ -206,13 +206,13 @@ TEST_F(Record, AFileThatIsThereIsLeftAlone) {
   expect_verified("walk.mcap");
 }
 
-TEST_F(Record, WithoutASourceThereIsNoFile) {
+TEST_F(Record, MissingSource_LeavesNoFile) {
   EXPECT_EQ(run({"record", path("none"), path("walk.mcap")}).code, 3);
   EXPECT_NE(run({"record", "tcp:localhost:1", path("walk.mcap")}).code, 0);
   EXPECT_EQ(listing(), "");
 }
 
-TEST_F(Record, WhatMakesNoSenseIsRefused) {
+TEST_F(Record, InvalidOptions_AreRefused) {
   expect_refused({"record", "sim:"}, 2, "no output file");
   expect_refused({"record", "sim:", "-o", "-"}, 2, "not to standard output");
   expect_refused({"record", "sim:", "-o", path("out.csv")}, 2, "record writes MCAP files");
@@ -226,7 +226,7 @@ TEST_F(Record, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(listing(), "");
 }
 
-TEST_F(Record, ADiskThatIsFullEndsItAndLeavesWhatWasWritten) {
+TEST_F(Record, FullDisk_EndsItAndKeepsWrittenData) {
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
   const rlimit limit{120'000, before.rlim_max};
@@ -265,7 +265,7 @@ TEST_F(Replay, TakesAsLongAsItTook) {
   }
 }
 
-TEST_F(Replay, GoesOnForEverWithLoop) {
+TEST_F(Replay, Loop_DoesNotEnd) {
   ASSERT_EQ(record_scans(path("walk.mcap"), 2).code, 0);
   const outcome done = run({"replay", path("walk.mcap"), "--playback-speed", "max", "--loop",
                             "--scans", "-f", "csv", "-n", "20"});
@@ -273,7 +273,7 @@ TEST_F(Replay, GoesOnForEverWithLoop) {
   EXPECT_EQ(cli::lines_of(done.out).size(), 21U);
 }
 
-TEST_F(Replay, APartOfIt) {
+TEST_F(Replay, PartOfARecording) {
   ASSERT_EQ(record_scans(path("walk.mcap"), 8).code, 0);
   const auto all = points_of(path("walk.mcap"));
   const auto part = points_of(path("walk.mcap"), {"--from", "600ms", "--to", "1200ms"});
@@ -283,7 +283,7 @@ TEST_F(Replay, APartOfIt) {
   EXPECT_LE(cli::number_in(part.back(), 3) - cli::number_in(part[1], 3), 700'000'000);
 }
 
-TEST_F(Replay, WhatWasChangedIsFound) {
+TEST_F(Replay, Verify_DetectsChanges) {
   ASSERT_EQ(record_scans(path("walk.mcap"), 3).code, 0);
   const std::string good = cli::read_file(path("walk.mcap"));
   ASSERT_EQ(run({"convert", path("walk.mcap"), path("walk.bin")}).code, 0);
@@ -317,7 +317,7 @@ TEST_F(Replay, PointsOfAnotherVersionAreNotCompared) {
   EXPECT_THAT(done.err, HasSubstr("points were computed by another version"));
 }
 
-TEST_F(Replay, WhatIsNoRecordingIsRefused) {
+TEST_F(Replay, OtherFiles_AreRefused) {
   cli::write_file(path("empty"), "");
   cli::write_file(path("text.mcap"), "dear\n");
   const std::string magic = "\x89MCAP0\r\n";

@@ -50,7 +50,7 @@ TEST_F(RecordingSource, EachVerbThatReadsTakesIt) {
   EXPECT_THAT(run({"info", whole_}).out, HasSubstr("serial      2021101000070073\n"));
 }
 
-TEST_F(RecordingSource, WithoutAVerbUnderAnyName) {
+TEST_F(RecordingSource, AnyNameWithoutAVerb_IsRecognised) {
   const std::string odd = path("odd");
   cli::write_file(odd, cli::read_file(whole_));
   const std::string wanted = run({"dump", whole_, "-q"}).out;
@@ -61,7 +61,7 @@ TEST_F(RecordingSource, WithoutAVerbUnderAnyName) {
 }
 
 // Its seconds are those of the recording, however fast it is read.
-TEST_F(RecordingSource, StatsAreOfItsOwnTime) {
+TEST_F(RecordingSource, Stats_UseTheTimesOfTheRecording) {
   const outcome done = run({"stats", whole_, "--json"});
   EXPECT_EQ(done.code, 0) << done.err;
   const std::size_t at = done.out.find("\"points_per_second\":");
@@ -111,12 +111,12 @@ TEST_F(RecordingSource, IsNoRawBytes) {
 }
 
 // Who reads points has missed no scan, and who reads scans has missed no point.
-TEST_F(RecordingSource, WhatWasNotAskedForIsNotMissed) {
+TEST_F(RecordingSource, UnrequestedData_IsNotCountedAsMissed) {
   EXPECT_THAT(run({"dump", whole_}).err, HasSubstr(" lost, 0 points missed, "));
   EXPECT_THAT(run({"scan", whole_}).err, HasSubstr(" lost, 0 scans missed, "));
 }
 
-TEST(NoSource, ANameThatLeadsNowhere) {
+TEST(NoSource, MissingFileOrPort_IsReported) {
   const outcome file = run({"dump", "nowhere.mcap"});
   EXPECT_EQ(file.code, 10);
   EXPECT_THAT(file.err, StartsWith("g4-dump: there is no file 'nowhere.mcap'. Check the name"));
@@ -132,7 +132,7 @@ TEST(NoSource, IsAProblemWithAName) {
               HasSubstr("\"problem\":\"no_port\""));
 }
 
-TEST(LostSource, WhatWasCountedIsReported) {
+TEST(LostSource, Counts_AreReported) {
   const outcome packets = run({"packets", "sim:?fault=unplug@500ms"});
   EXPECT_EQ(packets.code, 9);
   EXPECT_THAT(packets.err, HasSubstr(" bytes skipped: "));

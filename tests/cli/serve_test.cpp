@@ -91,7 +91,7 @@ TEST_F(Serve, SeveralLidarsAtOnceUntilASignal) {
   }
 }
 
-TEST_F(Serve, ItIsSilentAboutCommandsWithoutLog) {
+TEST_F(Serve, NoLog_PrintsNoCommands) {
   cli::program simulator({"sim", "--link", path("lidar")});
   ASSERT_TRUE(appears(path("lidar")));
   EXPECT_EQ(serial_at(path("lidar")), "2021101000070073");
@@ -99,7 +99,7 @@ TEST_F(Serve, ItIsSilentAboutCommandsWithoutLog) {
   EXPECT_EQ(simulator.wait().err, "G4 2021101000070073 at " + path("lidar") + "\n");
 }
 
-TEST_F(Serve, FaultsAreAtWork) {
+TEST_F(Serve, Faults_AreApplied) {
   cli::program simulator({"sim", "--link", path("lidar"), "--fault", "mute@0+60s", "--fault",
                           "scanning@100ms", "--fault", "unplug@2s+1s"});
   ASSERT_TRUE(appears(path("lidar")));
@@ -110,7 +110,7 @@ TEST_F(Serve, FaultsAreAtWork) {
   EXPECT_EQ(simulator.wait().code, 128 + SIGTERM);
 }
 
-TEST_F(Serve, OptionsOfTheDeviceAreAtWork) {
+TEST_F(Serve, DeviceOptions_AreApplied) {
   const cli::simulator simulator(path("old"), {"--device", "answers_direction=false"});
   EXPECT_THAT(run({"info", path("old")}).out, HasSubstr("direction   unknown"));
   EXPECT_THAT(run({"info", "sim:?answers_direction=false&reaction_ns=2ms"}).out,
@@ -133,7 +133,7 @@ TEST_F(Serve, OptionsOfTheDeviceAreAtWork) {
   EXPECT_THAT(run({"sim", "--device", "boot_ns=1s"}).err, HasSubstr("need --link"));
 }
 
-TEST_F(Serve, WhatMakesNoSenseIsRefused) {
+TEST_F(Serve, InvalidOptions_AreRefused) {
   const std::string link = path("lidar");
   refused({"sim", "--link", link, "--link", path("x/../lidar")}, "is given twice");
   refused({"sim", "--link", link, "--serial", "123"}, "a serial number has 16 decimal digits");
@@ -155,7 +155,7 @@ TEST_F(Serve, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(listing(), "");
 }
 
-TEST_F(Serve, TheLinkOfALivingDeviceIsNotTaken) {
+TEST_F(Serve, LinkOfARunningDevice_IsNotReplaced) {
   cli::program first({"sim", "--link", path("lidar"), "--fault", "unplug@300ms+200ms"});
   ASSERT_TRUE(appears(path("lidar")));
   // The same place by another name, too.
@@ -216,7 +216,7 @@ TEST_F(Serve, ARegisteredDeviceIsDiscovered) {
   ::unsetenv("G4LIDAR_SIM_DIR");
 }
 
-TEST_F(Serve, WhatStandsInTheWayIsLeftAlone) {
+TEST_F(Serve, ExistingFile_IsNotReplaced) {
   cli::write_file(path("letter"), "dear");
   const outcome done = run({"sim", "--link", path("letter")});
   EXPECT_EQ(done.code, 10);

@@ -121,7 +121,7 @@ class ServiceUnit : public cli::scratch {
   }
 };
 
-TEST_F(ServiceUnit, ItsCommandRecordsAndReportsThatItRuns) {
+TEST_F(ServiceUnit, Command_RecordsAndReportsThatItRuns) {
   const settings unit = read_unit();
   EXPECT_EQ(only(unit, "Type"), "notify");
   const auto [first, last] = unit.equal_range("Environment");

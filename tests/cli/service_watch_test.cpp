@@ -42,14 +42,14 @@ TEST_F(ServiceWatch, EachWordIsSentOnce) {
   EXPECT_EQ(systemd.heard(), words{"STOPPING=1"});
 }
 
-TEST_F(ServiceWatch, AnAbstractNameDoes) {
+TEST_F(ServiceWatch, AbstractName_IsAccepted) {
   const manager systemd("@g4lidar-test-" + std::to_string(::getpid()));
   service_watch watch;
   watch.ready();
   EXPECT_EQ(systemd.heard(), words{"READY=1"});
 }
 
-TEST_F(ServiceWatch, TheWatchdogHearsAtHalfOfItsTime) {
+TEST_F(ServiceWatch, Watchdog_IsNotifiedAtHalfItsTime) {
   const manager systemd(path("notify"));
   ::setenv("WATCHDOG_USEC", "10000000", 1);
   ::setenv("WATCHDOG_PID", std::to_string(::getpid()).c_str(), 1);
@@ -67,7 +67,7 @@ TEST_F(ServiceWatch, TheWatchdogHearsAtHalfOfItsTime) {
   EXPECT_EQ(systemd.heard(), words{"WATCHDOG=1"});
 }
 
-TEST_F(ServiceWatch, TheClockOfTheSystemDoesToo) {
+TEST_F(ServiceWatch, DefaultTime_IsThatOfTheSystem) {
   const manager systemd(path("notify"));
   ::setenv("WATCHDOG_USEC", "3600000000", 1);
   service_watch watch;
@@ -76,7 +76,7 @@ TEST_F(ServiceWatch, TheClockOfTheSystemDoesToo) {
   EXPECT_EQ(systemd.heard(), words{"WATCHDOG=1"});
 }
 
-TEST_F(ServiceWatch, NobodyWatchesWhereNothingOrAnotherIsWatched) {
+TEST_F(ServiceWatch, NoWatchdogForThisProcess_NothingIsSent) {
   const manager systemd(path("notify"));
   const auto silent = [&] {
     service_watch watch;
@@ -95,7 +95,7 @@ TEST_F(ServiceWatch, NobodyWatchesWhereNothingOrAnotherIsWatched) {
   EXPECT_TRUE(silent()) << "it is another process that is watched";
 }
 
-TEST_F(ServiceWatch, AFullSocketHoldsNothingUpAndWhatWasLostIsSentAgain) {
+TEST_F(ServiceWatch, FullSocket_DoesNotBlockAndLostTextIsSentAgain) {
   const manager systemd(path("notify"));
   ::setenv("WATCHDOG_USEC", "2", 1);
   service_watch watch;
@@ -110,8 +110,8 @@ TEST_F(ServiceWatch, AFullSocketHoldsNothingUpAndWhatWasLostIsSentAgain) {
   EXPECT_EQ(systemd.heard(), (words{"STATUS=reported late", "WATCHDOG=1"}));
 }
 
-TEST_F(ServiceWatch, AManagerThatIsNotThereIsNoTrouble) {
-  const auto all_is_well = [] {
+TEST_F(ServiceWatch, MissingManager_IsIgnored) {
+  const auto sends_nothing = [] {
     service_watch watch;
     watch.ready();
     watch.alive(second_ns);
@@ -121,11 +121,11 @@ TEST_F(ServiceWatch, AManagerThatIsNotThereIsNoTrouble) {
   };
   ::unsetenv("NOTIFY_SOCKET");
   ::setenv("WATCHDOG_USEC", "1000000", 1);
-  EXPECT_TRUE(all_is_well());
+  EXPECT_TRUE(sends_nothing());
   for (const std::string& name : {std::string(), std::string("@"), std::string("vsock:2:1"),
                                   path("none"), "/" + std::string(200, 'x')}) {
     ::setenv("NOTIFY_SOCKET", name.c_str(), 1);
-    EXPECT_TRUE(all_is_well()) << name;
+    EXPECT_TRUE(sends_nothing()) << name;
   }
   ::unsetenv("NOTIFY_SOCKET");
   ::unsetenv("WATCHDOG_USEC");

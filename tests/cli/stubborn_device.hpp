@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A device on a pseudo-terminal that answers by rote.
+// A device on a pseudo-terminal that always sends the same answers.
 #pragma once
 
 #include <fcntl.h>

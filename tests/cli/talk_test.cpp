@@ -125,7 +125,7 @@ TEST_F(Talk, Set_AsJson) {
       (json{{"name", "protection"}, {"before", nullptr}, {"wanted", false}, {"after", false}}));
 }
 
-TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
+TEST_F(Talk, Set_InvalidWord_SetsNothing) {
   cli::simulator simulator(port());
   for (const char* const word :
        {"sample_rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=7.55",
@@ -140,7 +140,7 @@ TEST_F(Talk, Set_NothingIsSetWhereAWordMakesNoSense) {
   EXPECT_THAT(simulator.log(), Not(HasSubstr(" A5 ")));
 }
 
-TEST_F(Talk, Set_WhatIsRefusedIsShownAsItIsAndEndsIt) {
+TEST_F(Talk, Set_RefusedSetting_IsShownAndEndsIt) {
   const cli::stubborn_device device;
   const outcome done = run({"set", device.path(), "sample_rate=9k", "freq=9", "sample_rate=9k"});
   EXPECT_EQ(done.code, 2) << "given twice";
@@ -157,7 +157,7 @@ TEST_F(Talk, Set_WhatIsRefusedIsShownAsItIsAndEndsIt) {
   EXPECT_EQ(json::parse(json_error.err).at("exit_code"), 8);
 }
 
-TEST_F(Talk, Info_WhatIsNotAnsweredIsUnknown) {
+TEST_F(Talk, Info_MissingAnswer_IsUnknown) {
   const cli::stubborn_device device;
   const outcome done = run({"info", device.path()});
   EXPECT_EQ(done.code, 0) << done.err;
@@ -178,7 +178,7 @@ TEST_F(Talk, Start_LeavesItScanningAndStopStopsIt) {
   EXPECT_THAT(run({"stop", port()}).err, HasSubstr("it was not scanning"));
 }
 
-TEST_F(Talk, WhatIsFoundScanning_IsStoppedAndThatIsReported) {
+TEST_F(Talk, ScanningDevice_IsStoppedAndReported) {
   const cli::simulator simulator(port());
   for (const char* const verb : {"info", "health", "start", "restart"}) {
     EXPECT_EQ(run({"start", port()}).code, 0);
@@ -197,7 +197,7 @@ TEST_F(Talk, Start_TooLittlePower) {
   EXPECT_THAT(done.err, HasSubstr("too little power"));
 }
 
-TEST_F(Talk, Start_ADeviceThatIsDefectiveIsNotStarted) {
+TEST_F(Talk, Start_DefectiveDevice_IsNotStarted) {
   const outcome done = run({"start", "sim:?fault=health=error"});
   EXPECT_EQ(done.code, 8);
   EXPECT_THAT(done.err, HasSubstr("reports that it is defective"));
@@ -239,7 +239,7 @@ TEST_F(Talk, ExitCodes) {
   EXPECT_EQ(run({"stop", "sim:?fault=scanning&fault=deaf"}).code, 8);
 }
 
-TEST_F(Talk, AnotherProgramHasIt) {
+TEST_F(Talk, PortOfAnotherProgram_IsBusy) {
   const cli::simulator simulator(port());
   cli::program dump({"dump", port()});
   dump.read_until("\n");
@@ -252,7 +252,7 @@ TEST_F(Talk, AnotherProgramHasIt) {
 
 // ---- stats -------------------------------------------------------------------------------------
 
-TEST_F(Talk, Stats_CountsWhatComes) {
+TEST_F(Talk, Stats_CountsReceivedData) {
   const outcome done = run({"stats", "sim:", "-n", "3", "--json"});
   EXPECT_EQ(done.code, 0) << done.err;
   const json counts = json::parse(done.out);

@@ -37,13 +37,13 @@ struct PathWatch : testing::Test {
   fs::path directory;
 };
 
-TEST_F(PathWatch, NothingHappens_NothingIsTold) {
+TEST_F(PathWatch, NoChange_IsNotReported) {
   path_watch watch((directory / "g4").string());
   EXPECT_FALSE(is_readable(watch.native_handle()));
   EXPECT_FALSE(watch.take());
 }
 
-TEST_F(PathWatch, LinkThatIsMadeOrRenamed_IsTold) {
+TEST_F(PathWatch, CreatedOrRenamedLink_IsReported) {
   path_watch watch((directory / "g4").string());
   fs::create_symlink("/dev/null", directory / "g4");
   EXPECT_TRUE(is_readable(watch.native_handle()));
@@ -54,21 +54,21 @@ TEST_F(PathWatch, LinkThatIsMadeOrRenamed_IsTold) {
   EXPECT_TRUE(watch.take());
 }
 
-TEST_F(PathWatch, Permissions_AreTold) {
+TEST_F(PathWatch, Permissions_AreReported) {
   touch(directory / "g4");
   path_watch watch((directory / "g4").string());
   fs::permissions(directory / "g4", fs::perms::owner_all);
   EXPECT_TRUE(watch.take());
 }
 
-TEST_F(PathWatch, OtherFiles_AreNot) {
+TEST_F(PathWatch, OtherFiles_AreIgnored) {
   path_watch watch((directory / "g4").string());
   touch(directory / "other");
   fs::remove(directory / "other");
   EXPECT_FALSE(watch.take());
 }
 
-TEST_F(PathWatch, DirectoryThatIsMissing_IsFollowedWhenItAppears) {
+TEST_F(PathWatch, MissingDirectory_IsWatchedWhenItAppears) {
   const fs::path links = directory / "serial" / "by-id";
   path_watch watch((links / "usb-CP2102").string());
   for (int round = 0; round < 3; ++round) {

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # The two programs of the README are equal to the examples; the files and commands that the
 # documents name exist; links and the documents that the sources name exist; a command line within a
-# sentence is also in a block, and so is executed; no figures of speech stand in documents and sources.
+# sentence is also in a block, and so is executed; no line of a document is too long; no figures of
+# speech stand in documents, names, comments and messages.
 # Needs G4_DUMP and G4LIDAR_SOURCE_DIR.
 set -euo pipefail
 cd "$G4LIDAR_SOURCE_DIR"
@@ -74,9 +75,20 @@ while read -r path; do
   fi
 done < <(grep -rhoE 'docs/[A-Za-z0-9_./-]+\.md' include src tools | sort --unique)
 
-# Figures of speech, in documents, names, comments and messages alike (CONTRIBUTING.md, Style).
-figures='tell|tells|telling|told|say|says|said|lives|twins?|ear|exam|rival|errand|manners|portrait|noted'
-if grep -rnwiE "$figures" "${documents[@]}" include src tools examples >&2; then
+# Lines of documents have at most 120 characters; rows of tables cannot be wrapped.
+if awk 'length($0) > 120 && !/^\|/ { print FILENAME ":" FNR ": " $0; found = 1 } END { exit !found }' \
+  "${documents[@]}" examples/*/*.md >&2; then
+  echo "These lines are longer than 120 characters" >&2
+  missing=1
+fi
+
+# Figures of speech, in documents, names, comments and messages alike (CONTRIBUTING.md, Style): as
+# words, as parts of names between underscores, and as parts of names that begin with a capital letter.
+figures='tells?|telling|told|says?|said|lives|twins?|ear|exam|rivals?|errands?|manners|portrait|noted|meanwhile|rote|pours?|poured|amid|strangers?'
+capitals=$(sed -E 's/(^|\|)(.)/\1\u\2/g' <<<"$figures")
+searched=("${documents[@]}" include src tools examples tests scripts bench fuzz cmake packaging .ci CMakeLists.txt)
+if { grep -rniE "(^|[^[:alpha:]])($figures)([^[:alpha:]]|$)|[a-z]_well\>|\<all (is|was) well" "${searched[@]}"
+  grep -rnE "[[:lower:][:digit:]]($capitals)([^[:lower:]]|$)" "${searched[@]}"; } | grep -v "^$here/check_words.sh:" >&2; then
   echo "These lines contain figures of speech: write the term of the field" >&2
   missing=1
 fi

@@ -72,11 +72,11 @@ class DamagedRevolutions : public testing::TestWithParam<damage> {
 
   void expect_one_turn(const scan& found, const share& shares) const {
     // The cut by the angle is exact to one sample.
-    std::size_t strangers = found.size();
+    std::size_t foreign = found.size();
     for (const auto& [revolution, count] : shares.of) {
-      strangers = std::min(strangers, found.size() - shares.unknown - count);
+      foreign = std::min(foreign, found.size() - shares.unknown - count);
     }
-    EXPECT_LE(strangers, 2U) << found.revolution;
+    EXPECT_LE(foreign, 2U) << found.revolution;
     EXPECT_LE(found.turned_deg, 361.0F + 45.0F) << found.revolution;
   }
 

@@ -69,7 +69,7 @@ TEST(Waking, EveryCallWoken_StillGetsItsAnswer) {
   EXPECT_EQ(device->counts().command_retries, 0U);
 }
 
-// The result that another call has received meanwhile may be obsolete.
+// The result that another call has received may be obsolete.
 TEST(Waking, WokenAsk_IsRepeatedAfterOtherCalls) {
   virtual_bench bench;
   auto device = open_virtual(bench);

@@ -57,10 +57,10 @@ trouble as_nobody(Fails fails) {
   }
   ::close(pipe[1]);
   error reported(task::finding, problem::system, "no word from the other user");
-  const bool has_told = ::read(pipe[0], &reported, sizeof reported) == sizeof reported;
+  const bool has_reported = ::read(pipe[0], &reported, sizeof reported) == sizeof reported;
   ::close(pipe[0]);
   ::waitpid(child, nullptr, 0);
-  return has_told ? trouble(reported) : std::nullopt;
+  return has_reported ? trouble(reported) : std::nullopt;
 }
 static_assert(std::is_trivially_copyable_v<error>);
 

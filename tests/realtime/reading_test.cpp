@@ -145,7 +145,7 @@ std::size_t samples_until(const readings& last, const std::vector<sim::sent_samp
 
 /// The number of sent samples that are neither points nor counted as lost, in turns, after a reader
 /// paused for longer than the buffer lasts.
-double turns_not_told() {
+double uncounted_turns() {
   device_on_pty simulated;
   auto device = started(simulated);
   EXPECT_TRUE(device) << device.error().message();
@@ -177,7 +177,7 @@ double turns_not_told() {
 // right.
 TEST(RealTime, SlowReader_GetsTheNumberOfLostScans) {
   test::expect_three_of_four([] {
-    const double turns = turns_not_told();
+    const double turns = uncounted_turns();
     return turns > -0.1 && std::abs(turns - std::round(turns)) < 0.1;
   });
 }

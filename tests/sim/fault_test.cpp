@@ -186,7 +186,7 @@ TEST(SimFaults, WrongBaudRate_IsGarbage) {
 
 TEST(SimFaults, BrownOut_SilencesTheDeviceUntilItEnds) {
   host_side host({}, {make_fault(fault_kind::brown_out, 0, 3 * second)});
-  EXPECT_EQ(host.ask(command::device_info), information) << "without the motor all is well";
+  EXPECT_EQ(host.ask(command::device_info), information) << "without the motor nothing fails";
   const heard got = test::taken_apart(host.ask(command::start, second));
   EXPECT_EQ(got.responses.size(), 1U);
   EXPECT_LT(got.bytes.size(), 800U) << "30 ms of packets";

@@ -61,7 +61,7 @@ application::application(const run_parameters& parameters, bool verbose)
 }
 
 void application::fail(const std::string& what) {
-  if (is_well()) report_.failed_ns = now();
+  if (has_passed()) report_.failed_ns = now();
   checker_.fail(what);
 }
 
@@ -77,7 +77,7 @@ std::int64_t application::within(std::int64_t limit_ns, const char* name, Call&&
     fail(std::string(name) + " took " + std::to_string(took_ns / ms) + " ms instead of " +
          std::to_string(limit_ns / ms));
   }
-  if (!is_well() && report_.failed_ns == 0) report_.failed_ns = now();
+  if (!has_passed() && report_.failed_ns == 0) report_.failed_ns = now();
   print_events();
   print_state();
   return took_ns;
@@ -126,7 +126,7 @@ void application::wake() {
 }
 
 void application::sleep_until(std::int64_t until_ns) {
-  while (now() < until_ns && is_well()) {
+  while (now() < until_ns && has_passed()) {
     environment_.clock.advance_to(std::min(until_ns, now() + 100 * ms));
     static_cast<void>(environment_.device.is_plugged(now()));
     checker_.look();
@@ -267,9 +267,9 @@ void application::process() {
 
 bool application::be_scanning() {
   if (!lidar_) open();
-  if (!is_well() || !lidar_) return false;
+  if (!has_passed() || !lidar_) return false;
   if (!wants_scan_) start();
-  return is_well() && lidar_ && wants_scan_;
+  return has_passed() && lidar_ && wants_scan_;
 }
 
 void application::act_once() {

@@ -25,7 +25,7 @@ class application {
   application& operator=(const application&) = delete;
 
   [[nodiscard]] std::int64_t now() const { return environment_.clock.now_ns(); }
-  [[nodiscard]] bool is_well() const { return checker_.failure().empty(); }
+  [[nodiscard]] bool has_passed() const { return checker_.failure().empty(); }
   /// Revolutions over all lidars of this run.
   [[nodiscard]] std::uint64_t scans() const { return checker_.scans(); }
 

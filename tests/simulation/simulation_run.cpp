@@ -54,15 +54,15 @@ class recovery {
 
 run_report run_simulation(const run_parameters& parameters, bool verbose) {
   application app(parameters, verbose);
-  while (app.is_well() && app.now() < parameters.calm_ns) app.act();
-  if (app.is_well()) app.calm_down();
+  while (app.has_passed() && app.now() < parameters.calm_ns) app.act();
+  if (app.has_passed()) app.calm_down();
   recovery recovered(parameters, app);
-  while (app.is_well() && app.now() < parameters.end_ns) {
+  while (app.has_passed() && app.now() < parameters.end_ns) {
     app.read_calmly();
-    if (app.is_well()) recovered.look();
+    if (app.has_passed()) recovered.look();
   }
-  if (app.is_well() && recovered.took_ns() < 0) app.fail("it has not recovered");
-  if (app.is_well()) app.finish();
+  if (app.has_passed() && recovered.took_ns() < 0) app.fail("it has not recovered");
+  if (app.has_passed()) app.finish();
   run_report report = app.report();
   report.allowed_ns = recovered.allowed_ns();
   report.recovery_ns = std::max<std::int64_t>(recovered.took_ns(), 0);

@@ -16,7 +16,7 @@ inline constexpr std::size_t event_kinds =
     static_cast<std::size_t>(lidar_event::kind::overflow) + 1;
 
 struct run_report {
-  std::string failure;         ///< Empty if all was well.
+  std::string failure;         ///< Empty if nothing failed.
   std::int64_t failed_ns = 0;  ///< When.
   truth_counts truths;
   time_counts times;

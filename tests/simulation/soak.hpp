@@ -8,7 +8,7 @@
 namespace g4lidar::simulation {
 
 struct soak_report {
-  std::string failure;  ///< Empty if all was well.
+  std::string failure;  ///< Empty if nothing failed.
   std::uint64_t unplugs = 0;
   std::uint64_t reconnects = 0;
   std::int64_t slowest_ns = 0;     ///< From the plug to the next whole revolution.

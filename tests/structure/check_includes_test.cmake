@@ -32,11 +32,11 @@ endfunction()
 function(expect name message)
   execute_process(
     COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}/${name}" "-DLAYERS=${SCRATCH}/layers.txt" -P "${SCRIPT}"
-    OUTPUT_VARIABLE said ERROR_VARIABLE said
+    OUTPUT_VARIABLE output ERROR_VARIABLE output
   )
-  string(REGEX REPLACE "[ \n]+" " " said "${said}")
-  if(NOT said MATCHES "${message}")
-    message(FATAL_ERROR "${name}: expected '${message}', but:\n${said}")
+  string(REGEX REPLACE "[ \n]+" " " output "${output}")
+  if(NOT output MATCHES "${message}")
+    message(FATAL_ERROR "${name}: expected '${message}', but:\n${output}")
   endif()
 endfunction()
 

@@ -16,11 +16,11 @@ function(expect message) # <file> <text>...: of the valid tree with these files 
     file(WRITE "${SCRATCH}/${file}" "${text}\n")
   endwhile()
   execute_process(
-    COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}" -P "${SCRIPT}" OUTPUT_VARIABLE said ERROR_VARIABLE said
+    COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}" -P "${SCRIPT}" OUTPUT_VARIABLE output ERROR_VARIABLE output
   )
-  string(REGEX REPLACE "[ \n]+" " " said "${said}")
-  if(NOT said MATCHES "${message}")
-    message(FATAL_ERROR "expected '${message}', but:\n${said}")
+  string(REGEX REPLACE "[ \n]+" " " output "${output}")
+  if(NOT output MATCHES "${message}")
+    message(FATAL_ERROR "expected '${message}', but:\n${output}")
   endif()
 endfunction()
 

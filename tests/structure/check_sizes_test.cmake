@@ -18,11 +18,11 @@ function(expect members lines message) # <file> <text>...
   execute_process(
     COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}" "-DAWK=${AWK}" -DMOST_MEMBERS=${members} -DMOST_LINES=${lines}
             -P "${SCRIPT}"
-    OUTPUT_VARIABLE said ERROR_VARIABLE said
+    OUTPUT_VARIABLE output ERROR_VARIABLE output
   )
-  string(REGEX REPLACE "[ \n]+" " " said "${said}")
-  if(NOT said MATCHES "${message}")
-    message(FATAL_ERROR "expected '${message}', but:\n${said}")
+  string(REGEX REPLACE "[ \n]+" " " output "${output}")
+  if(NOT output MATCHES "${message}")
+    message(FATAL_ERROR "expected '${message}', but:\n${output}")
   endif()
 endfunction()
 

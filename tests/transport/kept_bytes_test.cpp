@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A driver that sleeps relies on the system to keep what comes meanwhile: as much as kept_bytes() says.
+// A driver that sleeps relies on the system to keep the bytes that arrive: as many as kept_bytes() returns.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -103,7 +103,7 @@ struct ring_read {
 ///
 /// Method: before the producer writes points, it publishes how far it will write (`claimed_`), and
 /// afterwards how far it has written (`written_`). A reader copies and then loads `claimed_`:
-/// points that the producer may have overwritten meanwhile are removed from the copy and counted as
+/// points that the producer may have overwritten since are removed from the copy and counted as
 /// missed. Each word of a point is an atomic that is stored with release and loaded with acquire,
 /// so a reader that has seen any word of a newer point also sees the claim made before it; no
 /// fences are needed.

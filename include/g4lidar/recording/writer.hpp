@@ -126,7 +126,7 @@ class G4LIDAR_API recording_writer {
 };
 
 /// `from`, with recording: the bytes that are read and sent, and when its transports open and
-/// break. The writer must outlive the result; it may be moved meanwhile, and must be used by the
+/// break. The writer must outlive the result; it may be moved, and must be used by the
 /// same thread. Recording a replayed recording gives an equal recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> recorded(
     std::unique_ptr<connector> from, recording_writer& into);

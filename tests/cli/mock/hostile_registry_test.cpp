@@ -85,7 +85,7 @@ class Registry : public cli::scratch {
   g4lidar::test::testbed bed_;
 };
 
-TEST_F(Registry, TheTerminalOfAnotherProgramIsNotWrittenTo) {
+TEST_F(Registry, TerminalOfAnotherProgram_IsNotWrittenTo) {
   const pty terminal;
   const pty second;
   fs::create_symlink(terminal.path(), in_registry("g4-2021101000070099"));
@@ -96,7 +96,7 @@ TEST_F(Registry, TheTerminalOfAnotherProgramIsNotWrittenTo) {
   EXPECT_TRUE(is_untouched(second));
 }
 
-TEST_F(Registry, ALinkThatNoLongerLeadsToItsDeviceIsIgnored) {
+TEST_F(Registry, StaleLink_IsIgnored) {
   const pty terminal;
   const std::string link = in_registry("g4-2021101000070073");
   const cli::simulator simulator(link);
@@ -127,7 +127,7 @@ TEST_F(Registry, OtherFilesAreIgnored) {
   EXPECT_EQ(cli::read_file(in_registry("a_file")), "\xA5\x5A");
 }
 
-TEST_F(Registry, TenThousandFilesAreLookedThrough) {
+TEST_F(Registry, TenThousandFiles_AreExamined) {
   for (int i = 0; i < 5'000; ++i) {
     cli::write_file(in_registry("file-" + std::to_string(i)), "");
     fs::create_symlink("/dev/pts/4294967295", in_registry("link-" + std::to_string(i)));
@@ -139,7 +139,7 @@ TEST_F(Registry, TenThousandFilesAreLookedThrough) {
   EXPECT_EQ(info.code, 0) << info.err;
 }
 
-TEST_F(Registry, ADirectoryThatIsNoneHasNoDevices) {
+TEST_F(Registry, InvalidDirectory_HasNoDevices) {
   cli::write_file(path("letter"), "dear");
   ASSERT_EQ(::mkfifo(path("fifo").c_str(), 0600), 0);
   for (const std::string name : {"letter", "fifo", "none", "\x1B[2J"}) {
@@ -155,7 +155,7 @@ TEST_F(Registry, ADirectoryThatIsNoneHasNoDevices) {
   EXPECT_EQ(cli::read_file(path("letter")), "dear");
 }
 
-TEST_F(Registry, ANameWithEscapesIsShownWithoutThem) {
+TEST_F(Registry, NameWithEscapes_IsShownWithoutThem) {
   const std::string link = in_registry("g4-\x1B[31m\x9Bq\n\xC2\x9B \xFF");
   const cli::simulator simulator(link);
   for (const std::vector<std::string>& words : {std::vector<std::string>{"list", "--probe"},
@@ -172,7 +172,7 @@ TEST_F(Registry, ANameWithEscapesIsShownWithoutThem) {
   }
 }
 
-TEST_F(Registry, WatchReportsThoseThatComeAndGo) {
+TEST_F(Registry, Watch_ReportsDevicesThatAppearAndDisappear) {
   cli::program watch({"watch"});
   watch.read_until("BY-ID\n");
   {

@@ -202,7 +202,7 @@ TEST_F(PortVerbs, Probe_WritesToOtherPortsOnlyWhenAsked) {
   EXPECT_THAT(all.out, HasSubstr("2021101000070073"));
 }
 
-TEST_F(PortVerbs, Probe_NobodyIsDisturbed) {
+TEST_F(PortVerbs, Probe_DisturbsNoOtherProgram) {
   bed.plug(first);
   const auto lidar = serve(first, '1');
   cli::program dump({"dump"});  // the only G4
@@ -239,7 +239,7 @@ TEST_F(PortVerbs, Watch_ReportsPortsThatAppearAndDisappear) {
                                               "10c4:ea60", "cp210x", "g4", "no", "-"));
 }
 
-TEST_F(PortVerbs, Watch_JsonEndsAfterSoMany) {
+TEST_F(PortVerbs, Watch_JsonEndsAfterTheCount) {
   cli::program watch({"watch", "-n", "2", "--json", "-q"});
   // Its first line cannot be waited for: plugged until it has seen one.
   std::string seen;
@@ -269,7 +269,7 @@ TEST_F(PortVerbs, Watch_EndsInTime) {
   EXPECT_EQ(lines_of(done.out).size(), 1U);
 }
 
-TEST_F(PortVerbs, Watch_NobodyReadsAnyMore) {
+TEST_F(PortVerbs, Watch_ClosedPipe) {
   cli::program watch({"watch", "--json"});
   watch.close_output();
   EXPECT_EQ(watch.wait().code, 0);

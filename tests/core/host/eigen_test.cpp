@@ -3,14 +3,14 @@
 
 #include <cstddef>
 
-namespace eigen_says {
+namespace eigen_check {
 std::size_t complaints = 0;
 void complain() { ++complaints; }
-}  // namespace eigen_says
+}  // namespace eigen_check
 
 // Eigen asserts that it does not allocate while this is set; in release builds, too.
 #define EIGEN_RUNTIME_NO_MALLOC
-#define eigen_assert(condition) ((condition) ? static_cast<void>(0) : eigen_says::complain())
+#define eigen_assert(condition) ((condition) ? static_cast<void>(0) : eigen_check::complain())
 #include "g4lidar/eigen.hpp"
 
 #include <gtest/gtest.h>
@@ -80,11 +80,11 @@ std::vector<xy_point> some_xy(frame to) {
 template <class Work>
 std::size_t allocations_in(Work&& work) {
   news = 0;
-  eigen_says::complaints = 0;
+  eigen_check::complaints = 0;
   Eigen::internal::set_is_malloc_allowed(false);
   work();
   Eigen::internal::set_is_malloc_allowed(true);
-  return news + eigen_says::complaints;
+  return news + eigen_check::complaints;
 }
 
 TEST(EigenMaps, ShowThePointsInPlace) {

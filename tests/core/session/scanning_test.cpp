@@ -45,7 +45,7 @@ class session_scanning : public ::testing::Test {
   void protect() {
     EXPECT_ASKED(bench, requests::set(power_down_protection::on), ">D9 <byte:0 =answered:0");
   }
-  /// That many packets, one every 100 ms; what the session does meanwhile.
+  /// That many packets, one every 100 ms; returns what the session does.
   std::string packets(int count) {
     std::string all;
     for (int i = 0; i < count; ++i) {

@@ -56,7 +56,7 @@ class Reconnect : public testing::Test {
 
   /// Connects with `device` while a G4 is attached, replaces the G4 by another device, and connects
   /// twice more. Returns whether the other device was opened.
-  [[nodiscard]] bool opens_stranger(std::string_view device) {
+  [[nodiscard]] bool opens_other_adapter(std::string_view device) {
     auto made = system_connector::make(device, 230'400);
     EXPECT_TRUE(made);
     bed.plug(first);
@@ -65,18 +65,19 @@ class Reconnect : public testing::Test {
       EXPECT_TRUE((*made)->connect());
     }
     bed.unplug(first);
-    bed.plug(stranger);
+    bed.plug(other);
     const pty printer;
-    link(stranger, printer);
+    link(other, printer);
     auto line = (*made)->connect();
     if (!line) line = (*made)->connect();
     const bool opened = line.has_value();
     termios settings{};
     EXPECT_EQ(::tcgetattr(printer.keep(), &settings), 0);
-    EXPECT_EQ(::cfgetospeed(&settings) == B230400, opened) << "the stranger's rate was changed";
+    EXPECT_EQ(::cfgetospeed(&settings) == B230400, opened)
+        << "the other adapter's rate was changed";
     pollfd written{printer.master(), POLLIN, 0};
-    EXPECT_EQ(::poll(&written, 1, 0), 0) << "the stranger was written to";
-    remove(stranger);
+    EXPECT_EQ(::poll(&written, 1, 0), 0) << "the other adapter was written to";
+    remove(other);
     return opened;
   }
 
@@ -84,16 +85,16 @@ class Reconnect : public testing::Test {
   const bridge first{};
   const bridge second{.name = "ttyUSB1", .place = "1-1.2"};
   /// Another adapter, at the same USB port and with the same name.
-  const bridge stranger{.vendor = "067b", .product = "2303", .driver = "pl2303"};
+  const bridge other{.vendor = "067b", .product = "2303", .driver = "pl2303"};
 };
 
 TEST_F(Reconnect, OtherDeviceOnTheOldPath_IsNotOpened) {
   for (const char* device : {"", "serial:2021101000070071", "usb:1-1.4"}) {
-    EXPECT_FALSE(opens_stranger(device)) << device;
+    EXPECT_FALSE(opens_other_adapter(device)) << device;
   }
 }
 
-TEST_F(Reconnect, PathNamedByTheUser_IsOpened) { EXPECT_TRUE(opens_stranger("/dev/ttyUSB0")); }
+TEST_F(Reconnect, PathNamedByTheUser_IsOpened) { EXPECT_TRUE(opens_other_adapter("/dev/ttyUSB0")); }
 
 /// The system keeps what comes while the driver sleeps, also at the slowest speed.
 TEST_F(Reconnect, ScansOfAPortThatUdevFound_LoseNothing) {
