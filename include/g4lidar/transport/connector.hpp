@@ -40,7 +40,8 @@ class G4LIDAR_API connector {
   /// a replug does not return that port again before its replug; other connectors do nothing.
   virtual void refuse() noexcept {}
 
-  // A connector that wraps another one must forward these functions, too.
+  // A connector that wraps another one must forward these functions, too: derive it from
+  // forwarding_connector of transport/forwarding.hpp.
 
   /// Begins to watch for the return of a lost device. Returns a descriptor for poll() that is readable when
   /// may_be_back() may be true; -1 if there is none. Called again, it changes nothing.
@@ -50,7 +51,8 @@ class G4LIDAR_API connector {
   [[nodiscard]] virtual bool may_be_back() noexcept { return false; }
 
   /// What this connector adds for recordings; null for an ordinary connector to a device. Valid as long
-  /// as this.
+  /// as this. The type is internal to the library: do not override this function. A connector that
+  /// wraps another one derives from forwarding_connector, which forwards it.
   [[nodiscard]] virtual recording_hook* recording() noexcept { return nullptr; }
 
  protected:
