@@ -28,8 +28,8 @@ measure() {
   local into=$scratch/$1.$2
   "$bench" delay "$seconds" "$1" >"$into"
   "$bench" stream "$seconds" "$1" >>"$into" 2>/dev/null
-  strace -o "$scratch/calls" "$bench" stream 4 "$1" >/dev/null 2>&1
-  awk '/"begin\\n"/ { on = 1; next } /"end\\n"/ { on = 0 } on { ++n } END { print "calls_per_s", n / 4 }' \
+  strace -o "$scratch/calls" "$bench" stream 2 "$1" >/dev/null 2>&1
+  awk '/"begin\\n"/ { on = 1; next } /"end\\n"/ { on = 0 } on { ++n } END { print "calls_per_s", n / 2 }' \
     "$scratch/calls" >>"$into"
 }
 
