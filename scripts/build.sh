@@ -79,11 +79,40 @@ build() {
   run_quietly "Building $directory" cmake --build "$directory" --parallel "$(nproc)" "${targets[@]}"
 }
 
+# report_tests: reads the results that ctest has written, and prints the skipped and the failed tests
+# and the counts. A test in an executable that is one CTest test can be skipped, too.
+report_tests() {
+  awk '
+    /<testcase / {
+      match($0, /name="[^"]*"/)
+      name = substr($0, RSTART + 6, RLENGTH - 7)
+      passes = /status="run"/
+      fails = /status="fail"/
+      reason = ""
+    }
+    follows { reason = ": " $0; follows = 0 } # the line of GTEST_SKIP()
+    /: Skipped$/ { follows = 1 }
+    match($0, /SKIPPED: .*/) { reason = ": " substr($0, RSTART + 9) } # of a script
+    /\[  SKIPPED \] .* ms\)$/ && (passes || fails) {
+      sub(/ \([0-9]+ ms\)$/, "")
+      sub(/.*SKIPPED \] (\[NON-XML-CHAR-0x1B\]\[m)?/, "") # the colour that follows
+      ++skipped
+      print "SKIPPED: " name ": " $0 reason
+      reason = ""
+    }
+    /<\/testcase>/ {
+      if (passes) ++passed
+      else if (fails) { ++failed; print "FAILED: " name }
+      else { ++skipped; print "SKIPPED: " name reason }
+    }
+    END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }'
+}
+
 # run_tests <preset> <ctest argument>...: one more in parallel than there are processors, because
 # many tests wait most of their time. The time limit of a test is that of the preset, multiplied for
 # longer random tests (G4LIDAR_TEST_SCALE).
 # ctest counts a skipped test as passed: the last line does not. Each skipped test has a line
-# "SKIPPED: name", each failed one a line "FAILED: name".
+# "SKIPPED: name: reason", each failed one a line "FAILED: name".
 run_tests() {
   local preset=$1 scale=${G4LIDAR_TEST_SCALE:-1} longer=() code=0
   local results=$PWD/build/$preset/tests.xml
@@ -92,16 +121,11 @@ run_tests() {
   # The seed of rapidcheck: fixed by default.
   export RC_PARAMS=${RC_PARAMS:-seed=${G4LIDAR_TEST_SEED:-1}}
   rm -f "$results"
-  ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-junit "$results" "${longer[@]}" "$@" || code=$?
+  # All output is kept: the skipped tests of an executable are named in it.
+  ctest --preset "$preset" --parallel "$(($(nproc) + 1))" --output-junit "$results" \
+    --test-output-size-passed 10000000 "${longer[@]}" "$@" || code=$?
   if [[ -e $results ]]; then
-    awk '/<testcase / {
-        match($0, /name="[^"]*"/)
-        name = substr($0, RSTART + 6, RLENGTH - 7)
-        if (/status="run"/) ++passed
-        else if (/status="fail"/) { ++failed; print "FAILED: " name }
-        else { ++skipped; print "SKIPPED: " name }
-      }
-      END { printf "tests: %d passed, %d failed, %d skipped\n", passed, failed, skipped }' "$results"
+    report_tests <"$results"
   fi
   return "$code"
 }

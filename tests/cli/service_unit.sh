@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: MIT
 # systemd accepts the unit, for any form of source behind the @.
 set -euo pipefail
+# shellcheck source=cli/checks.bash
+source "${BASH_SOURCE%/*}/checks.bash"
+need systemd-analyze
 
-if ! command -v systemd-analyze >/dev/null; then
-  echo "skipped: there is no systemd-analyze here"
-  exit 0
-fi
 unit="$PWD/g4lidar-record@.service"
 sed "s,@g4_dump@,$G4_DUMP," "$G4LIDAR_SOURCE_DIR/packaging/systemd/g4lidar-record@.service.in" >"$unit"
 code=0

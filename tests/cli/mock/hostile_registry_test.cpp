@@ -12,7 +12,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "escapes.hpp"
@@ -40,11 +39,8 @@ class Registry : public cli::scratch {
   }
   ~Registry() override { ::unsetenv("G4LIDAR_SIM_DIR"); }
   void SetUp() override {
-    const char* preload = std::getenv("LD_PRELOAD");
-    if (preload == nullptr ||
-        std::string_view(preload).find("umockdev") == std::string_view::npos) {
-      GTEST_SKIP() << "umockdev is not preloaded; run this with umockdev-wrapper";
-    }
+    if (!g4lidar::test::is_preloaded())
+      GTEST_SKIP() << "umockdev is not preloaded; use umockdev-wrapper";
   }
 
   [[nodiscard]] std::string in_registry(const std::string& name) const {

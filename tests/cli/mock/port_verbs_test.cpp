@@ -6,12 +6,10 @@
 
 #include <csignal>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "g4lidar/sim/pty_port.hpp"
@@ -42,11 +40,8 @@ std::vector<std::string> words_of(const std::string& line) {
 class PortVerbs : public testing::Test {
  protected:
   void SetUp() override {
-    const char* preload = std::getenv("LD_PRELOAD");
-    if (preload == nullptr ||
-        std::string_view(preload).find("umockdev") == std::string_view::npos) {
-      GTEST_SKIP() << "umockdev is not preloaded; run this with umockdev-wrapper";
-    }
+    if (!g4lidar::test::is_preloaded())
+      GTEST_SKIP() << "umockdev is not preloaded; use umockdev-wrapper";
   }
 
   /// The other end of a port, where nobody answers.

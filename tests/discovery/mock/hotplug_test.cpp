@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <poll.h>
 
-#include <cstdlib>
 #include <filesystem>
-#include <string_view>
 #include <vector>
 
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
@@ -25,11 +23,7 @@ using testing::IsEmpty;
 class Hotplug : public testing::Test {
  protected:
   void SetUp() override {
-    const char* preload = std::getenv("LD_PRELOAD");
-    if (preload == nullptr ||
-        std::string_view(preload).find("umockdev") == std::string_view::npos) {
-      GTEST_SKIP() << "umockdev is not preloaded; run this with umockdev-wrapper";
-    }
+    if (!is_preloaded()) GTEST_SKIP() << "umockdev is not preloaded; use umockdev-wrapper";
   }
 
   [[nodiscard]] static std::vector<std::string> listed() {

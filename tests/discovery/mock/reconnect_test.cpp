@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -26,11 +25,7 @@ using kind = lidar_event::kind;
 class Reconnect : public testing::Test {
  protected:
   void SetUp() override {
-    const char* preload = std::getenv("LD_PRELOAD");
-    if (preload == nullptr ||
-        std::string_view(preload).find("umockdev") == std::string_view::npos) {
-      GTEST_SKIP() << "umockdev is not preloaded; run this with umockdev-wrapper";
-    }
+    if (!is_preloaded()) GTEST_SKIP() << "umockdev is not preloaded; use umockdev-wrapper";
   }
 
   void link(const bridge& what, const pty& device) const {

@@ -22,6 +22,8 @@ std::string tty_path(const bridge& what) { return port_path(what) + "/tty/" + wh
 
 }  // namespace
 
+bool is_preloaded() { return umockdev_in_mock_environment() != FALSE; }
+
 testbed::testbed() : bed_(umockdev_testbed_new()) {
   gchar* root = umockdev_testbed_get_root_dir(bed_);
   root_ = root;

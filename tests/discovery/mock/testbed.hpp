@@ -21,6 +21,9 @@ struct bridge {
   std::string driver = "cp210x";
 };
 
+/// Whether this process sees the devices of a test bed. Without them its tests are skipped.
+[[nodiscard]] bool is_preloaded();
+
 class testbed {
  public:
   testbed();
