@@ -20,19 +20,19 @@ struct G4LIDAR_HIDDEN background_reader::state {
 
   void run() {
     while (!stopping.load(std::memory_order_acquire)) {
-      const auto waited = wait();
+      const auto waited = wait(longest_wait);
       publish();
       if (waited || !waited.error().is_fatal()) continue;
       const std::lock_guard lock(mutex);
       failure = waited.error();
-      break;
+      scans.end();
+      return;
     }
-    scans.end();
   }
 
   /// Waits until a scan arrives, or something is due.
-  result<void> wait() {
-    const auto scan = device.next_scan(longest_wait);
+  result<void> wait(lidar::milliseconds timeout) {
+    const auto scan = device.next_scan(timeout);
     if (!scan) return tl::unexpected(scan.error());
     scans.put(*scan);
     return {};
@@ -52,6 +52,9 @@ struct G4LIDAR_HIDDEN background_reader::state {
     // The thread may have ended without being woken.
     const auto stopped = device.stop();
     if (!stopped && stopped.error() == problem::cancelled) static_cast<void>(device.stop());
+    while (wait(lidar::milliseconds(0))) {  // what was measured before the stop
+    }
+    scans.end();
     publish();
   }
 

@@ -4,10 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "g4lidar/transport/forwarding.hpp"
 #include "support/allocation_count.hpp"
 #include "support/virtual_transport.hpp"
 
@@ -17,6 +25,7 @@ namespace {
 using namespace std::chrono_literals;
 using test::open_virtual;
 using test::virtual_bench;
+using test::virtual_connector;
 
 constexpr std::int64_t ms = 1'000'000;
 
@@ -91,20 +100,75 @@ TEST(BackgroundReader, ProvidesScansAndCountsMissedOnes) {
   EXPECT_EQ(reader->counts().scans_missed + taken + 1, reader->counts().scans);
 }
 
+/// What a test and the thread of the reader share: after so many bytes nothing arrives until the
+/// reader is woken.
+struct hold_point {
+  std::size_t bytes;
+  std::atomic<bool> is_reached = false;
+};
+
+class held_transport final : public forwarding_transport {
+ public:
+  held_transport(std::unique_ptr<transport> inner, hold_point& at, virtual_bench& bench)
+      : forwarding_transport(std::move(inner)), at_(&at), bench_(&bench) {}
+
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override {
+    if (seen_ >= at_->bytes && !at_->is_reached) {
+      at_->is_reached = true;
+      while (!bench_->wake) std::this_thread::sleep_for(1ms);
+    }
+    const auto got = inner().read(out, deadline_ns);
+    if (got) seen_ += got->count;
+    return got;
+  }
+
+ private:
+  hold_point* at_;
+  virtual_bench* bench_;
+  std::size_t seen_ = 0;
+};
+
+class holding_connector final : public forwarding_connector {
+ public:
+  holding_connector(virtual_bench& bench, hold_point& at)
+      : forwarding_connector(std::make_unique<virtual_connector>(bench)),
+        bench_(&bench),
+        at_(&at) {}
+
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
+    auto made = inner().connect();
+    if (!made) return made;
+    return std::make_unique<held_transport>(*std::move(made), *at_, *bench_);
+  }
+
+ private:
+  virtual_bench* bench_;
+  hold_point* at_;
+};
+
 TEST(BackgroundReader, ProvidesPiecesWithTheirFlags) {
   virtual_bench bench;
+  hold_point after{12'000};  // fewer scans than the reader keeps
   lidar_options options;
   options.partial_scans = true;
-  auto lidar = open_virtual(bench, options);
+  auto lidar = lidar::open(std::make_unique<holding_connector>(bench, after), options);
   ASSERT_TRUE(lidar);
   auto reader = background_reader::start(std::move(*lidar));
   ASSERT_TRUE(reader);
-  ASSERT_TRUE(comes_true([&] { return reader->counts().scans >= 1; }));
+  ASSERT_TRUE(comes_true([&] { return after.is_reached.load(); }));
   reader->stop();
-  EXPECT_GE(reader->counts().partial_scans, 1U);
-  bool has_piece = reader->counts().scans_missed > 0;  // the first ones may have been dropped
-  while (const auto one = reader->next_scan(0s)) has_piece = has_piece || one->is_partial();
-  EXPECT_TRUE(has_piece);
+  std::vector<scan_flags> flags;
+  std::uint64_t points = 0;
+  while (const auto one = reader->next_scan(0s)) {
+    flags.push_back(one->flags);
+    points += one->size();
+  }
+  using enum scan_flags;
+  EXPECT_EQ(flags, (std::vector{start_missing, none, end_missing}));
+  EXPECT_EQ(points, reader->counts().stream.points);
+  EXPECT_EQ(reader->counts().partial_scans, 2U);
+  EXPECT_EQ(reader->counts().scans_missed, 0U);
 }
 
 TEST(BackgroundReader, AllocatesNothingWhileItStreams) {
@@ -170,18 +234,64 @@ TEST(BackgroundReader, Failed_HasTheError) {
   EXPECT_EQ(event->what, lidar_event::kind::lost);
 }
 
-TEST(BackgroundReader, StopsDuringAReconnect) {
-  const sim::fault faults[] = {sim::make_fault(sim::fault_kind::unplug, 4000 * ms)};
-  virtual_bench bench({}, faults);
+/// A lidar that is unplugged for so long.
+struct unplugged_bench : virtual_bench {
+  explicit unplugged_bench(std::int64_t outage_ns)
+      : virtual_bench({},
+                      std::array{sim::make_fault(sim::fault_kind::unplug, 4000 * ms, outage_ns)}) {}
+};
+
+/// A reader that has just lost it and reconnects.
+background_reader reconnecting(unplugged_bench& bench) {
   lidar_options options;
   options.reconnect = true;
   auto lidar = open_virtual(bench, options);
-  ASSERT_TRUE(lidar);
+  EXPECT_TRUE(lidar);
   auto reader = background_reader::start(std::move(*lidar));
-  ASSERT_TRUE(reader);
-  ASSERT_TRUE(comes_true([&] { return reader->next_event().has_value(); }));
-  reader->stop();
-  EXPECT_FALSE(reader->failed());
+  EXPECT_TRUE(reader);
+  EXPECT_TRUE(comes_true([&] { return reader->next_event().has_value(); }));
+  return *std::move(reader);
+}
+
+TEST(BackgroundReader, StopsDuringAReconnect) {
+  for (int i = 0; i < 20; ++i) {
+    unplugged_bench bench(sim::forever_ns);
+    background_reader reader = reconnecting(bench);
+    std::this_thread::sleep_for(std::chrono::microseconds(100 * i));
+    reader.stop();
+    EXPECT_FALSE(reader.failed());
+    EXPECT_EQ(reader.counts().reconnects, 0U);
+  }
+}
+
+TEST(BackgroundReader, DestroyedDuringAReconnect_Ends) {
+  for (int i = 0; i < 20; ++i) {
+    unplugged_bench bench(sim::forever_ns);
+    const background_reader reader = reconnecting(bench);
+    std::this_thread::sleep_for(std::chrono::microseconds(100 * i));
+    EXPECT_EQ(reader.counts().reconnects, 0U);
+  }
+}
+
+TEST(BackgroundReader, ReplacedDuringAReconnect_Ends) {
+  for (int i = 0; i < 20; ++i) {
+    unplugged_bench bench(sim::forever_ns);
+    unplugged_bench other(sim::forever_ns);
+    background_reader reader = reconnecting(bench);
+    reader = reconnecting(other);
+    EXPECT_FALSE(reader.failed());
+    EXPECT_EQ(reader.next_scan(lidar::milliseconds::min()).has_value(), true) << "of the other one";
+  }
+}
+
+TEST(BackgroundReader, MovedDuringAReconnect_Reconnects) {
+  unplugged_bench bench(3'600'000 * ms);
+  background_reader reader = reconnecting(bench);
+  background_reader moved = std::move(reader);
+  EXPECT_EQ(moved.counts().reconnects, 0U) << "it was to be moved before that";
+  EXPECT_TRUE(comes_true([&] { return moved.counts().reconnects == 1; }));
+  EXPECT_TRUE(comes_true([&] { return moved.next_scan(1s).has_value(); }));
+  EXPECT_FALSE(moved.failed());
 }
 
 TEST(BackgroundReader, StartFails_HasTheError) {
