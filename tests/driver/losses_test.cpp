@@ -120,6 +120,20 @@ TEST(Losses, FileOfBytes_IsDeliveredCompletely) {
     EXPECT_EQ(some.error().code(), problem::end_of_input);
     EXPECT_EQ(points, device->counts().stream.points);
     EXPECT_GT(points, 10'000U);
+
+    lidar_options options;
+    options.device = "file:" + path;
+    options.partial_scans = true;
+    auto again = lidar::open(options);
+    ASSERT_TRUE(again) << again.error().message();
+    ASSERT_TRUE(again->start());
+    std::uint64_t in_scans = 0;
+    result<scan> scan = again->next_scan(500ms);
+    for (; scan; scan = again->next_scan(500ms)) in_scans += scan->size();
+    EXPECT_EQ(scan.error().code(), problem::end_of_input);
+    EXPECT_EQ(in_scans, points);
+    EXPECT_EQ(in_scans, again->counts().stream.points);
+    EXPECT_EQ(again->counts().scans_missed, 0U);
     std::remove(path.c_str());
   }
 }

@@ -86,10 +86,11 @@ inline std::vector<sim::fault> faults_of(const std::vector<std::string_view>& te
 }
 
 /// Everything that a recording gives, from its beginning to its end.
-inline run_result replayed(std::unique_ptr<connector> from, bool by_scans = true) {
+inline run_result replayed(std::unique_ptr<connector> from, bool by_scans = true,
+                           const lidar_options& options = {}) {
   using namespace std::chrono_literals;
   run_result run;
-  auto opened = lidar::open(std::move(from));
+  auto opened = lidar::open(std::move(from), options);
   if (!opened) {
     ADD_FAILURE() << opened.error().message();
     return run;

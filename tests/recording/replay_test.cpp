@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "recorded_run.hpp"
+#include "support/test_scale.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -138,11 +139,27 @@ void expect_same_recording(const std::string& one, const std::string& other) {
   }
 }
 
+/// Each point of the file is in exactly one scan or piece.
+void expect_every_point_in_a_scan(const std::string& path, std::size_t wanted) {
+  auto from = replay::open(path);
+  ASSERT_TRUE(from) << from.error().message();
+  lidar_options options;
+  options.partial_scans = true;
+  const run_result run = replayed(std::move(*from), true, options);
+  std::size_t points = 0;
+  for (const auto& scan : run.scans) points += scan.size();
+  EXPECT_EQ(points, wanted);
+  EXPECT_EQ(points, run.counts.stream.points);
+  EXPECT_EQ(run.counts.scans_missed, 0U);
+  EXPECT_EQ(run.scans.size(), run.counts.scans + run.counts.partial_scans);
+}
+
 class Replay : public testing::TestWithParam<run_case> {};
 
 TEST_P(Replay, GivesTheSamePoints) {
-  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-    SCOPED_TRACE(seed);
+  for (const int each : test::seeds(2)) {
+    SCOPED_TRACE(each);
+    const auto seed = static_cast<std::uint64_t>(each);
     const temporary_path path;
     auto writer = recording_writer::create(path.text());
     ASSERT_TRUE(writer) << writer.error().message();
@@ -168,6 +185,7 @@ TEST_P(Replay, GivesTheSamePoints) {
     EXPECT_EQ(before.counts.partial_scans, after.counts.partial_scans);
     EXPECT_EQ(before.counts.samples_lost, after.counts.samples_lost);
     EXPECT_EQ(before.counts.largest_gap_ns, after.counts.largest_gap_ns);
+    expect_every_point_in_a_scan(path.text(), before.points.size());
   }
 }
 
