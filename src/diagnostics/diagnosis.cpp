@@ -170,6 +170,13 @@ diagnosis diagnosis_of(problem what) noexcept {
   return system;
 }
 
+std::optional<diagnosis> diagnosis_of(const stream_counts& counts, std::uint64_t size) noexcept {
+  if (size == 0) return bad_file;
+  if (counts.packets + counts.responses == 0) return wrong_baud_rate;
+  if (counts.packets > 0 && counts.skipped_bytes() > size / 2) return line_noise;
+  return std::nullopt;
+}
+
 std::string_view evidence::unit() const noexcept {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> units{{{"per_s", "1/s"},
                                                                                 {"_ms", "ms"},

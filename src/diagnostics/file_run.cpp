@@ -3,7 +3,6 @@
 #include "stages.hpp"
 
 #include <array>
-#include <optional>
 #include <utility>
 #include <variant>
 
@@ -46,13 +45,11 @@ class file_run {
     auto opened = recording_reader::open(path);
     if (!opened) return fail(opened.error());
     recording_reader& reader = *opened;
-    for (;;) {
-      const auto next = reader.next();
-      if (!next) return fail(next.error());
-      const std::optional<recorded_item>& item = *next;
-      if (!item || is_cancelled()) break;
-      take(*item);
-    }
+    const auto read = reader.for_each([this](const recorded_item& item) {
+      take(item);
+      return !is_cancelled();
+    });
+    if (!read) return fail(read.error());
     const recording_damage& damage = reader.damage();
     if (damage.bytes_skipped > 0) port_.add("damaged_bytes", damage.bytes_skipped);
     if (damage.chunks_lost > 0) port_.add("lost_chunks", damage.chunks_lost);
@@ -138,7 +135,7 @@ class file_run {
     baud.add("bytes", measured_.arrivals().bytes());
     baud.add("packets", counts.packets);
     baud.add("responses", counts.responses);
-    if (counts.packets + counts.responses == 0) {
+    if (diagnosis_of(counts, measured_.arrivals().bytes()) == diagnosis::wrong_baud_rate) {
       baud.find(diagnosis::wrong_baud_rate);
       baud.remark = "It is also possible that these bytes are not those of a lidar.";
     }

@@ -38,19 +38,16 @@ std::optional<recorded_device> device_in(std::string_view path) {
   stream_parser parser;
   std::optional<recorded_device> found;
   std::uint64_t read = 0;
-  while (!found && read < far_enough) {
-    const auto next = reader->next();
-    if (!next) break;
-    const std::optional<recorded_item> item = *next;
-    if (!item) break;
-    read += item->data.size() + 1;
-    if (item->what != recorded_item::kind::from_device) continue;
-    parser.feed(item->data, [&](const event& what) {
+  static_cast<void>(reader->for_each([&](const recorded_item& item) {
+    read += item.data.size() + 1;
+    if (item.what != recorded_item::kind::from_device) return true;
+    parser.feed(item.data, [&](const event& what) {
       const auto* const response = std::get_if<response_view>(&what);
       if (response == nullptr || found) return;
       if (const auto who = response->as_device_info()) found = recorded_device{.information = *who};
     });
-  }
+    return !found && read < far_enough;
+  }));
   return found;
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "diagnostics/doctor_bench.hpp"
@@ -74,6 +75,18 @@ TEST(Bytes, OfAnotherRateOrModelAreFound) {
   sim::device_options options;
   options.info.model = 4;
   EXPECT_EQ(in_file(bytes_of({}, 3, options)).diagnoses(), "other_device");
+}
+
+TEST(Bytes, AreDiagnosedByTheirCounts) {
+  stream_counts counts;
+  EXPECT_EQ(diagnosis_of(counts, 0), diagnosis::bad_file);
+  counts.skipped_by_reason = {300, 200, 400, 100};
+  EXPECT_EQ(diagnosis_of(counts, 1000), diagnosis::wrong_baud_rate);
+  counts.responses = 1;
+  EXPECT_EQ(diagnosis_of(counts, 1020), std::nullopt) << "the lidar was not scanning";
+  counts.packets = 1;
+  EXPECT_EQ(diagnosis_of(counts, 1999), diagnosis::line_noise);
+  EXPECT_EQ(diagnosis_of(counts, 2000), std::nullopt) << "half is not more than half";
 }
 
 TEST(Bytes, ThatAreFewOrNoneAreNoFault) {

@@ -182,14 +182,34 @@ TEST(Recording, UnreadableFile_IsAnErrorAndNoDamage) {
       std::make_shared<failing_source>(bytes(whole), std::uint64_t{512} << 10U), "it", {});
   ASSERT_TRUE(reader) << reader.error().message();
   std::size_t items = 0;
-  auto next = reader->next();
-  for (; next && *next; next = reader->next()) ++items;
-  ASSERT_FALSE(next);
-  EXPECT_EQ(next.error(), problem::system);
-  EXPECT_EQ(next.error().system_errno(), EIO);
+  const auto read = reader->for_each([&](const recorded_item&) { return ++items > 0; });
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error(), problem::system);
+  EXPECT_EQ(read.error().system_errno(), EIO);
   EXPECT_GT(items, 1000U);
   EXPECT_FALSE(reader->damage().any());
   EXPECT_FALSE(reader->next()) << "it stays so";
+}
+
+TEST(Recording, ForEach_StopsWhereItIsTold) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_readings(writer, 0, 10);
+  ASSERT_TRUE(writer.close());
+  auto reader = recording_reader::open(path.text());
+  ASSERT_TRUE(reader) << reader.error().message();
+  std::vector<std::int64_t> times;
+  const auto take_readings = [&](std::size_t most) {
+    return reader->for_each([&times, most](const recorded_item& item) {
+      if (item.what == recorded_item::kind::from_device) times.push_back(item.time_ns);
+      return times.size() < most;
+    });
+  };
+  ASSERT_TRUE(take_readings(4));
+  EXPECT_EQ(times, (std::vector{time_of(0), time_of(1), time_of(2), time_of(3)}));
+  ASSERT_TRUE(take_readings(1000)) << "the end is no error";
+  EXPECT_EQ(times.size(), 10U);
+  EXPECT_EQ(times[4], time_of(4)) << "it goes on with the next item";
 }
 
 TEST(Recording, BeginInTheMiddle_ReturnsTheStateFirst) {

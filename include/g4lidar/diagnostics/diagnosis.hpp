@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 
@@ -106,6 +108,12 @@ struct diagnosis_info {
 [[nodiscard]] G4LIDAR_API std::string_view name_of(stage_verdict how) noexcept;
 /// The diagnosis for an error that ended a connection, or prevented it from being opened.
 [[nodiscard]] G4LIDAR_API diagnosis diagnosis_of(problem what) noexcept;
+/// The diagnosis for `size` raw bytes, such as a file, in which a stream_counter counted `counts`:
+/// bad_file if there are none; wrong_baud_rate if they contain no packet and no response; line_noise
+/// if they contain packets, but more than half of them belong to none. Nothing if there is no fault:
+/// bytes with responses only are those of a lidar that was not scanning.
+[[nodiscard]] G4LIDAR_API std::optional<diagnosis> diagnosis_of(const stream_counts& counts,
+                                                                std::uint64_t size) noexcept;
 
 /// One measurement or fact: a name that ends in its unit ("slowest_ms"), and a value.
 struct evidence {

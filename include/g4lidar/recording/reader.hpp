@@ -72,6 +72,16 @@ class G4LIDAR_API recording_reader {
   /// with system if the rest of the file cannot be read.
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
 
+  /// Calls `take` with each item until it returns false or the recording ends. Fails like next().
+  template <class Take>
+  [[nodiscard]] result<void> for_each(Take take) {
+    while (true) {
+      const auto item = next();
+      if (!item) return tl::unexpected(item.error());
+      if (!*item || !take(**item)) return {};
+    }
+  }
+
   /// What is known about the lidar: from the metadata, or from its first replies; for a cut-off
   /// file, from what has been read so far.
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept;

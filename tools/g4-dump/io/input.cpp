@@ -16,6 +16,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "interrupt.hpp"
 
 namespace g4_dump {
@@ -23,7 +24,7 @@ namespace {
 
 std::string advice_on(int error, const std::string& what_to_give) {
   if (error == ENOENT || error == ENOTDIR) return "Check the name. " + what_to_give;
-  if (error == EACCES || error == EPERM) return "You need the permission to read it.";
+  if (error == EACCES || error == EPERM) return "You need permission to read it.";
   return what_to_give;
 }
 
@@ -35,6 +36,11 @@ void refuse_recording(std::span<const std::uint8_t> begin, const std::string& ti
                 title +
                     " is a recording, not raw bytes. Give the file's name to g4-dump dump, scan "
                     "or packets; a recording is not read from a pipe.");
+}
+
+std::string baud_question() {
+  return fmt::format("Was the port read at a wrong baud rate (a G4 needs {})?",
+                     diagnostic_options{}.baud);
 }
 
 }  // namespace
@@ -76,8 +82,8 @@ std::size_t input::read(std::span<std::uint8_t> into) {
     if (errno == EAGAIN && wait_for_input(fd_, -1) == wake::input) continue;
     if (errno == EINTR || errno == EAGAIN) continue;
     throw failure(exit_code::bad_file,
-                  fmt::format("cannot read {}: {}. Check the disk or the device it lies on, or "
-                              "make a copy of it and give that.",
+                  fmt::format("cannot read {}: {}. Check the disk, or copy the file and give "
+                              "the copy.",
                               title_, std::strerror(errno)));
   }
   return 0;
@@ -110,20 +116,19 @@ void input::pump(output& out, const byte_sink& sink, const common_options& optio
   }
 }
 
-g4lidar::recording_reader read_items(
-    const std::string& path, const g4lidar::reading_options& range,
-    const std::function<bool(const g4lidar::recorded_item&)>& take) {
-  auto reader = value_of(g4lidar::recording_reader::open(path, range));
+recording_reader read_items(const std::string& path, const reading_options& range,
+                            const std::function<bool(const recorded_item&)>& take) {
+  auto reader = value_of(recording_reader::open(path, range));
   progress_bar bar(reader.size());
-  while (interrupt() == 0) {
-    const auto item = value_of(reader.next());
-    if (!item || !take(*item)) break;
+  value_of(reader.for_each([&](const recorded_item& item) {
+    if (interrupt() != 0 || !take(item)) return false;
     bar.show(reader.position());
-  }
+    return true;
+  }));
   return reader;
 }
 
-std::string describe(const g4lidar::recording_damage& damage) {
+std::string describe(const recording_damage& damage) {
   if (!damage.any()) return {};
   return fmt::format("{}{} of the file skipped, {} damaged\n",
                      damage.is_cut_off ? "the file was cut off, " : "",
@@ -160,30 +165,27 @@ bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept {
 
 std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes, bool has_text,
                           const std::string& title) {
-  if (bytes == 0) {
-    return fmt::format("{} is empty. Give raw bytes from the lidar's port while it was scanning.",
-                       title);
+  const auto found = diagnosis_of(counts, bytes);
+  if (found == diagnosis::bad_file) {
+    return title + " is empty. Give raw bytes from the lidar's port while it was scanning.";
   }
-  const std::string found =
+  const std::string text =
       fmt::format("no point packet in the {} of {}", counted(bytes, "byte"), title);
   if (has_text) {
-    return found +
+    return text +
            ": this is text. Give raw bytes from the lidar's port, or use g4-dump convert for csv "
            "and jsonl.";
   }
-  if (counts.responses > 0) {
-    return fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.",
-                       found, counts.responses == 1 ? "a response" : "responses");
+  if (found == diagnosis::wrong_baud_rate) {
+    return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
   }
-  return found +
-         ". Was the port read at a wrong baud rate (a G4 needs 230400)? Give raw bytes from the "
-         "lidar's port.";
+  return fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.", text,
+                     counts.responses == 1 ? "a response" : "responses");
 }
 
 std::string warning_about(const stream_counts& counts, std::uint64_t bytes) {
-  if (counts.packets == 0 || counts.skipped_bytes() * 2 <= bytes) return {};
-  return "More than half of the bytes belong to no packet. Was the port read at a wrong baud rate "
-         "(a G4 needs 230400)?\n";
+  if (diagnosis_of(counts, bytes) != diagnosis::line_noise) return {};
+  return "More than half of the bytes belong to no packet. " + baud_question() + "\n";
 }
 
 }  // namespace g4_dump
