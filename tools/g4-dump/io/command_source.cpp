@@ -64,12 +64,12 @@ command_source::command_source(const common_options& options, task doing)
     logger::info(fmt::format("{}: was scanning and has been stopped\n", lidar().name()));
 }
 
-verb device_verb(verb made, int (*run)(const common_options&), bool has_output) {
+verb device_verb(verb made, exit_code (*run)(const common_options&), bool has_output) {
   const auto options = std::make_shared<common_options>();
   made.arguments = {source_argument(*options)};
   if (has_output) made.options = {json_row(*options), output_row(*options)};
   made.options = joined(made.options, device_rows(*options));
-  made.run = [options, run] { return run(*options); };
+  made.run = [options, run] { return static_cast<int>(run(*options)); };
   return made;
 }
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/common_options.hpp"
+#include "cli/exit_code.hpp"
 #include "cli/verbs.hpp"
-#include "g4lidar/error.hpp"
 #include "io/source.hpp"
 
 namespace g4_dump {
@@ -30,7 +30,7 @@ class command_source {
 };
 
 /// `made` with SOURCE and the options of the device; with --json and --output where `has_output`.
-[[nodiscard]] verb device_verb(verb made, int (*run)(const common_options&),
+[[nodiscard]] verb device_verb(verb made, exit_code (*run)(const common_options&),
                                bool has_output = false);
 
 /// An object as a line of JSON, or for people: lines "name  value" with `width` columns for the

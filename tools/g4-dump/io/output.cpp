@@ -113,7 +113,7 @@ const char* advice_on_writing(int error) noexcept {
   if (error == EEXIST) return "Give another name, or --force to replace it.";
   if (is_one_of(ENOENT, ENOTDIR)) return "Make its directory first, or give another name.";
   if (is_one_of(EACCES, EPERM, EROFS)) return "Give a place where you may write.";
-  if (is_one_of(ENOSPC, EDQUOT, EFBIG)) return "Make room there, or give another place.";
+  if (is_one_of(ENOSPC, EDQUOT, EFBIG)) return "Free some space there, or give another place.";
   return "Give another place.";
 }
 
@@ -143,7 +143,7 @@ numbered_files numbered_files_of(const std::string& name) {
 void refuse_same_file(const std::optional<file_id>& from, const output& to) {
   if (!from || from != to.id()) return;
   throw failure(exit_code::usage,
-                to.title() + " is what is read, too. Give another name after -o.");
+                to.title() + " is also the input. Give another name for the output.");
 }
 
 }  // namespace g4_dump

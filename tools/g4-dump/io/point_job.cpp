@@ -50,7 +50,7 @@ shaping_options shape_of(const point_job& job, const common_options& common, sou
   shape.follows_wall_clock = kind != source_kind::recording;
   shape.wall_ahead_ns = wall_clock().ahead().count();
   if (shape.follows_wall_clock) return shape;
-  read_items(path_of(common.source), {}, [&shape](const g4lidar::recorded_item& first) {
+  read_items(path_of(common.source), {}, [&shape](const recorded_item& first) {
     shape.wall_ahead_ns = first.wall_ns - first.time_ns;
     return false;
   });

@@ -85,7 +85,7 @@ class read_loop {
   }
 
   g4lidar::lidar& lidar_;
-  const g4lidar::recording_reader* recording_;
+  const recording_reader* recording_;
   const common_options& options_;
   const read_sink& sink_;
   output& out_;
@@ -102,7 +102,7 @@ class read_loop {
 
 void report_events(g4lidar::lidar& lidar) {
   while (const auto event = lidar.next_event()) {
-    const bool is_loss = event->what == g4lidar::lidar_event::kind::lost;
+    const bool is_loss = event->what == lidar_event::kind::lost;
     if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // a file is over
     logger::info(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what),
                              is_loss ? ", " : "", is_loss ? name_of(event->reason) : ""));
@@ -118,7 +118,7 @@ void read_source(opened_source& source, const common_options& options, const rea
   report_events(lidar);
 }
 
-void report_counts(const g4lidar::lidar_counts& counts, bool has_scans) {
+void report_counts(const lidar_counts& counts, bool has_scans) {
   // What was not read was not wanted: scans beside points are not missed, nor points beside scans.
   logger::info(fmt::format(
       "{}: {} ({} suspect) with {} in {} and {}\n{} skipped, {} lost, {} missed, {}\n",

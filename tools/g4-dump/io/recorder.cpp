@@ -61,19 +61,17 @@ class recorder {
     opening how = job_.source;
     how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
     // The ring holds the points of many readings; nobody waits for the single packet.
-    how.how.pace = g4lidar::read_pace::revolutions;
-    how.tap = [this](std::unique_ptr<g4lidar::connector> from)
-        -> g4lidar::result<std::unique_ptr<g4lidar::connector>> {
+    how.how.pace = read_pace::revolutions;
+    how.tap = [this](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
       if (!writer_) {
-        auto made = g4lidar::recording_writer::create(job_.path, job_.made);
+        auto made = recording_writer::create(job_.path, job_.made);
         if (!made) throw file_failure(made.error(), title_);
-        writer_ = std::make_unique<g4lidar::recording_writer>(std::move(*made));
+        writer_ = std::make_unique<recording_writer>(std::move(*made));
       }
-      return g4lidar::recorded(std::move(from), *writer_);
+      return recorded(std::move(from), *writer_);
     };
     source_ = std::make_unique<opened_source>(job_.common, how);
-    points_ =
-        std::make_unique<g4lidar::lidar_ring::reader>(source_->lidar().points().make_reader());
+    points_ = std::make_unique<lidar_ring::reader>(source_->lidar().points().make_reader());
     has_run_ = true;
     describe();
   }
@@ -83,10 +81,10 @@ class recorder {
     const source_kind kind = kind_of(job_.common.source);
     if (kind == source_kind::recording || kind == source_kind::bytes) return;
     g4lidar::lidar& lidar = source_->lidar();
-    g4lidar::recorded_device known;
+    recorded_device known;
     known.information = lidar.information();
-    if (const auto got = lidar.ask(g4lidar::requests::get_ranging())) known.ranging = *got;
-    if (const auto got = lidar.ask(g4lidar::requests::get_scan_frequency())) known.frequency = *got;
+    if (const auto got = lidar.ask(requests::get_ranging())) known.ranging = *got;
+    if (const auto got = lidar.ask(requests::get_scan_frequency())) known.frequency = *got;
     writer_->device(known);
   }
 
@@ -103,7 +101,7 @@ class recorder {
     report_to_service();
     if (const auto why = writer_->take_error()) throw file_failure(*why, title_);
     if (!line_.is_due()) return;
-    const g4lidar::lidar_counts lidar = source_->lidar().counts();
+    const lidar_counts lidar = source_->lidar().counts();
     line_.draw(fmt::format(
         "{:.0f} s  {}  {}  {} skipped  {:.1f} MB in {}", line_.seconds(),
         counted(lidar.stream.points, "point"), counted(lidar.scans, "scan"),
@@ -160,7 +158,7 @@ class recorder {
   service_watch service_;
   std::unique_ptr<recording_writer> writer_;  // outlives the source, which is recorded by it
   std::unique_ptr<opened_source> source_;
-  std::unique_ptr<g4lidar::lidar_ring::reader> points_;
+  std::unique_ptr<lidar_ring::reader> points_;
   std::array<g4lidar::point, 512> memory_{};
   std::optional<g4lidar::error> file_error_;
   recorded_result result_;
@@ -172,7 +170,7 @@ class recorder {
 recorded_result record(const recording_job& job) { return recorder(job).run(); }
 
 void report_recorded(const recorded_result& result, const std::string& path) {
-  const g4lidar::recording_counts& file = result.file;
+  const recording_counts& file = result.file;
   logger::info(fmt::format("{}: {} in {}: {} from the lidar, {} to it, {}\n", path,
                            counted(file.file_bytes, "byte"), counted(file.files, "file"),
                            counted(file.bytes_from_device, "byte"), file.bytes_to_device,

@@ -67,7 +67,7 @@ source_kind kind_of(const std::string& source) {
   if (path.empty() || ::stat(path.c_str(), &status) != 0 || S_ISCHR(status.st_mode)) {
     return name.starts_with(file_prefix) ? source_kind::bytes : source_kind::device;
   }
-  if (S_ISREG(status.st_mode) && g4lidar::is_recording(path)) return source_kind::recording;
+  if (S_ISREG(status.st_mode) && is_recording(path)) return source_kind::recording;
   return source_kind::bytes;
 }
 
@@ -103,7 +103,7 @@ simulated_port serve_simulated(const std::string& source) {
 }
 
 opened_source::opened_source(const common_options& options, const opening& wish) {
-  g4lidar::lidar_options how = wish.how;
+  lidar_options how = wish.how;
   how.device = options.source;
   how.baud = options.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
@@ -114,10 +114,10 @@ opened_source::opened_source(const common_options& options, const opening& wish)
   }
   while (true) {
     const std::string path = path_of(how.device);
-    auto from = kind == source_kind::recording ? g4lidar::replay::open(path, wish.played)
+    auto from = kind == source_kind::recording ? replay::open(path, wish.played)
                 : kind == source_kind::bytes   ? open_raw_bytes(path, wish.bytes_rate_hz)
-                                               : g4lidar::connector_for(how);
-    if (from) played_ = g4lidar::replay::reader_of(**from);
+                                               : connector_for(how);
+    if (from) played_ = replay::reader_of(**from);
     if (from && wish.tap) from = wish.tap(std::move(*from));
     if (from && wish.each) from = std::make_unique<tapped_connector>(std::move(*from), wish.each);
     auto opened = from ? g4lidar::lidar::open(std::move(*from), how) : tl::unexpected(from.error());

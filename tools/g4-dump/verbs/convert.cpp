@@ -34,13 +34,11 @@ struct convert_options {
   std::optional<file_form> from;  ///< Else by its contents and name.
   std::optional<file_form> to;    ///< Else by its name.
   bool shapes = false;            ///< An option was given that only points can have.
-  g4lidar::packing packed{};      ///< A recording.
+  packing packed{};               ///< A recording.
 
   [[nodiscard]] const std::string& in() const noexcept { return points.common->source; }
   [[nodiscard]] const std::string& out() const noexcept { return points.common->output; }
-  [[nodiscard]] const g4lidar::reading_options& range() const noexcept {
-    return points.source.played.range;
-  }
+  [[nodiscard]] const reading_options& range() const noexcept { return points.source.played.range; }
 };
 
 /// Those that are read, with pcd those that are written, then other names of them.
@@ -127,8 +125,8 @@ int to_points(convert_options options, file_form from, file_form to) {
 /// What the lidar sent, as it sent it.
 void copy_recording(const convert_options& options, output& out) {
   std::uint64_t count = 0;
-  const auto take = [&](const g4lidar::recorded_item& item) {
-    if (item.what == g4lidar::recorded_item::kind::from_device) {
+  const auto take = [&](const recorded_item& item) {
+    if (item.what == recorded_item::kind::from_device) {
       out.write({reinterpret_cast<const char*>(item.data.data()), item.data.size()});
       count += item.data.size();
     }
@@ -222,12 +220,12 @@ option_rows form_rows(convert_options& options) {
   const choices<file_form> inputs(forms().begin(), forms().begin() + 4);
   const choices<file_form> outputs(forms().begin(), forms().begin() + 5);
   point_job& job = options.points;
-  g4lidar::reading_options& range = job.source.played.range;
+  reading_options& range = job.source.played.range;
   return {
       choice_row("--from-format", "Format of IN (by its contents and name)", options.from, inputs),
       choice_row("--to-format", "Format of OUT (by its name)", options.to, outputs),
-      moment_row("--from", "Leave out what came before: 10s", range.from_ns),
-      moment_row("--to", "Leave out what came from then on: 40s", range.to_ns),
+      moment_row("--from", "Begin at this time of IN: 10s", range.from_ns),
+      moment_row("--to", "End at this time of IN: 40s", range.to_ns),
       value_row("--ascii", "", "Write pcd as text", job.data,
                 [](const std::string&) { return pcd_data::ascii; }),
       sample_rate_row(job.source.bytes_rate_hz),

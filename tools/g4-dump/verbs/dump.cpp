@@ -89,7 +89,7 @@ verb make_dump_verb() {
   const auto job = std::make_shared<point_job>();
   common_options& common = *job->common;
   const auto refuse_pcd = [](const std::string& word) {
-    if (word == "pcd") throw bad_value("'pcd' holds revolutions; see the verb scan");
+    if (word == "pcd") throw bad_value("'pcd' is a format of revolutions: use g4-dump scan");
   };
   return {.name = "dump",
           .summary = "Print points (the default command)",

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verbs info and health: what a device, or a recording of one, reports about itself and its
-// settings; the health status that a device reports.
+// The verb info: what a device, or a recording of one, reports about itself and its settings.
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -57,14 +56,14 @@ void write(const device_facts& facts, bool as_json, output& out) {
   write_object(out, all, 12, as_json);
 }
 
-int info(const common_options& options) {
+exit_code info(const common_options& options) {
   const std::string& source = options.source;
   output out(options.output);
   const bool is_recording = kind_of(source) == source_kind::recording;
   const device_facts facts = is_recording ? facts_of_recording(source) : facts_of_device(options);
   write(facts, options.json, out);
   out.commit();
-  return static_cast<int>(exit_code::ok);
+  return exit_code::ok;
 }
 
 constexpr const char* info_details =
@@ -74,25 +73,6 @@ for constant and protection, and old firmware does not answer for direction: the
 With --json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.
 
 No setting is changed, but a device that is scanning is stopped first; that is reported.)";
-
-int health(const common_options& options) {
-  output out(options.output);
-  command_source source(options, task::asking);
-  const auto given = value_of(source.lidar().ask(requests::health()));
-  ordered_json all{{"source", source.lidar().name()},
-                   {"status", g4lidar::name_of(given.status)},
-                   {"error_code", given.error_code}};
-  if (!options.json) all.erase("source");
-  write_object(out, all, 12, options.json);
-  out.commit();
-  const bool is_ill = given.status == health_status::error;
-  return static_cast<int>(is_ill ? exit_code::unhealthy : exit_code::ok);
-}
-
-constexpr const char* health_details =
-    R"(Two lines: status (ok, warning, error) and error_code. The meaning of the bits of the code is
-not documented. The exit code is 8 if the status is error. A device that is scanning is stopped
-first; that is reported.)";
 
 }  // namespace
 
@@ -104,16 +84,6 @@ verb make_info_verb() {
        .examples = {{"g4-dump info", "Information about the only G4"},
                     {"g4-dump info /dev/ttyUSB0 --json", "The same of one port, as JSON"}}},
       info, true);
-}
-
-verb make_health_verb() {
-  return device_verb({.name = "health",
-                      .summary = "Print the health status",
-                      .details = health_details,
-                      .examples = {{"g4-dump health", "Health of the only G4"},
-                                   {"g4-dump health 'sim:?fault=health=warning'",
-                                    "A simulated G4 with a warning"}}},
-                     health, true);
 }
 
 }  // namespace g4_dump

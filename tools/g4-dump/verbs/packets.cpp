@@ -51,8 +51,8 @@ void list_bytes(const packets_options& options) {
 }
 
 /// An event of the transport in a recording.
-void log_event(const g4lidar::recorded_event& event, protocol_log& log) {
-  using enum g4lidar::recorded_event::kind;
+void log_event(const recorded_event& event, protocol_log& log) {
+  using enum recorded_event::kind;
   if (event.what == opened) return log.remark(fmt::format("opened {}", event.name), event.time_ns);
   if (event.what != closed && event.what != gap) return;
   log.finish();
@@ -68,15 +68,15 @@ void list_recording(const packets_options& options) {
   const time_style wanted = common.time.value_or(time_style::absolute);
   std::optional<protocol_log> log;
   std::optional<std::int64_t> end_ns;
-  const auto reader = read_items(path, {}, [&](const g4lidar::recorded_item& item) {
+  const auto reader = read_items(path, {}, [&](const recorded_item& item) {
     if (!log) {
       log.emplace(options.style, time_shift(wanted, item.wall_ns - item.time_ns), out);
       if (common.duration.count() > 0) end_ns = item.time_ns + common.duration.count();
     }
     if (end_ns && item.time_ns >= *end_ns) return false;
-    if (item.what == g4lidar::recorded_item::kind::from_device) {
+    if (item.what == recorded_item::kind::from_device) {
       log->from_device(item.data, item.time_ns);
-    } else if (item.what == g4lidar::recorded_item::kind::to_device) {
+    } else if (item.what == recorded_item::kind::to_device) {
       log->to_device(item.data, item.time_ns);
     } else {
       log_event(item.other, *log);

@@ -70,7 +70,7 @@ int run(record_options& options) {
 }
 
 option_rows file_rows(record_options& options) {
-  g4lidar::recording_options& made = options.job.made;
+  recording_options& made = options.job.made;
   const auto size = [](const std::string& word) {
     const std::uint64_t bytes = byte_count_of(word);
     if (bytes < 1U << 20U) throw bad_value(in_quotes(word) + " is below 1M");
@@ -94,7 +94,7 @@ option_rows file_rows(record_options& options) {
 }
 
 option_rows scan_rows(record_options& options) {
-  g4lidar::recording_options& made = options.job.made;
+  recording_options& made = options.job.made;
   const auto name = [](const char* option, const char* help, std::string& into) {
     return text_row(option, "NAME", help, into, completion::nothing);
   };

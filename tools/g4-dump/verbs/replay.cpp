@@ -81,7 +81,7 @@ void verify(const std::string& path) {
                    ? fmt::format("{} as recorded: {:016x}\n", points, found.points)
                    : points +
                          " as recorded; their digest is that of another processor, which "
-                         "rounds otherwise\n");
+                         "rounds differently\n");
 }
 
 int run(const replay_verb_options& options) {
@@ -103,7 +103,7 @@ verb make_replay_verb() {
   const auto options = std::make_shared<replay_verb_options>();
   point_job& job = options->job;
   common_options& common = *job.common;
-  g4lidar::replay_options& played = job.source.played;
+  replay_options& played = job.source.played;
   played.rate = 1.0;
   option_row verification =
       flag_row("--verify", "Check that the file holds what was recorded", options->verify);
@@ -122,8 +122,8 @@ verb make_replay_verb() {
                       return word == "max" ? 0.0 : number_of(word, 0.001, 1000.0);
                     }),
           flag_row("--loop", "Start again at the end", played.loop),
-          moment_row("--from", "Leave out what was recorded before: 10s", played.range.from_ns),
-          moment_row("--to", "Leave out what was recorded from then on: 40s", played.range.to_ns),
+          moment_row("--from", "Begin at this time of the recording: 10s", played.range.from_ns),
+          moment_row("--to", "End at this time of the recording: 40s", played.range.to_ns),
           verification, ending_rows(common), filter_rows(common), shape_rows(common)),
       .details = replay_details,
       .examples = {{"g4-dump replay walk.mcap", "Print the points at the speed of the recording"},

@@ -86,7 +86,7 @@ void check(const sim_options& options) {
 }
 
 /// Throws a failure for a port that could not be opened. `advice` is for a place that is taken.
-sim::pty_port opened(g4lidar::result<sim::pty_port> port, const std::string& place,
+sim::pty_port opened(result<sim::pty_port> port, const std::string& place,
                      std::string_view advice) {
   if (port) return *std::move(port);
   if (port.error().code() != g4lidar::problem::busy) {
@@ -142,7 +142,7 @@ int serve(const sim_options& options) {
         if (!options.log) break;
         logger::write(fmt::format(
             "{:.3f} {} A5 {:02X} {}{}{}\n", static_cast<double>(what.time_ns) / 1e9,
-            devices[i].info.serial_number(), what.code, g4lidar::word_for_command(what.code),
+            devices[i].info.serial_number(), what.code, word_for_command(what.code),
             what.scanning ? ", while scanning" : "", what.obeyed ? "" : ", not obeyed"));
       }
       ports[i].simulated().clear_log();
@@ -220,7 +220,6 @@ option_rows file_rows(sim_options& options) {
 }
 
 option_rows scanner_rows(sim::scanner_options& scanner) {
-  using g4lidar::ranging_frequency;
   const auto number = [](const char* name, const char* value, const char* help, auto& into) {
     return number_row(name, value, help, into, -1e9, 1e9);
   };

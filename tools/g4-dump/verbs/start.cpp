@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verbs start, stop and restart. After start the device goes on scanning when the command has ended.
+// The verb start. The device goes on scanning when the command has ended.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -31,7 +31,7 @@ void wait_for_revolution(g4lidar::lidar& lidar) {
   throw interrupted();
 }
 
-int start(const common_options& options) {
+exit_code start(const common_options& options) {
   command_source source(options, task::starting);
   g4lidar::lidar& lidar = source.lidar();
   value_of(lidar.start());
@@ -39,26 +39,7 @@ int start(const common_options& options) {
   report_events(lidar);
   logger::info(fmt::format("{}: scanning\n", lidar.name()));
   lidar.release();
-  return static_cast<int>(exit_code::ok);
-}
-
-int stop(const common_options& options) {
-  command_source source(options, task::stopping);  // which has stopped it
-  if (!source.was_scanning()) {
-    logger::info(fmt::format("{}: stopped; it was not scanning\n", source.lidar().name()));
-  }
-  return static_cast<int>(exit_code::ok);
-}
-
-int restart(const common_options& options) {
-  command_source source(options, task::asking);
-  g4lidar::lidar& lidar = source.lidar();
-  const auto begin = clock::now();
-  value_of(lidar.ask(requests::restart()));
-  const std::chrono::duration<double> took = clock::now() - begin;
-  logger::info(fmt::format("{}: restarted; it answered after {:.1f} s. Its settings may be lost.\n",
-                           lidar.name(), took.count()));
-  return static_cast<int>(exit_code::ok);
+  return exit_code::ok;
 }
 
 }  // namespace
@@ -74,24 +55,6 @@ changed.)",
        .examples = {{"g4-dump start", "Start the only G4"},
                     {"g4-dump start /dev/ttyUSB0", "Start the one at this port"}}},
       start);
-}
-
-verb make_stop_verb() {
-  return device_verb({.name = "stop",
-                      .summary = "Stop scanning",
-                      .details = "The command ends when the device is silent. It is no error if "
-                                 "the device was not scanning.",
-                      .examples = {{"g4-dump stop", "Stop the only G4"}}},
-                     stop);
-}
-
-verb make_restart_verb() {
-  return device_verb(
-      {.name = "restart",
-       .summary = "Restart the device and wait until it answers",
-       .details = "It does not scan after the restart, and its settings may be lost.",
-       .examples = {{"g4-dump restart", "Restart the only G4"}}},
-      restart);
 }
 
 }  // namespace g4_dump
