@@ -70,7 +70,7 @@ TEST_F(Failure, UnreadableFile) {
   if (::geteuid() == 0) GTEST_SKIP() << "nothing is unreadable for root";
   const std::string name = good();
   std::filesystem::permissions(name, std::filesystem::perms::none);
-  expect_sentence(run({"decode", name}), 10, "Permission denied. You need the permission");
+  expect_sentence(run({"decode", name}), 10, "Permission denied. You need permission");
 }
 
 TEST_F(Failure, EmptyInput) {
@@ -121,6 +121,8 @@ TEST_F(Failure, WrongCommandLine) {
   }
   expect_usage({"decode", "--sample-rate"}, "--sample-rate needs one value");
   expect_usage({"decode", "-n", "5", "-n", "6"}, "--count is given twice");
+  expect_usage({"info", "--json=5"}, "--json takes no value. See: g4-dump info --help");
+  expect_usage({"decode", "--quiet=no"}, "--quiet takes no value. See: g4-dump decode --help");
   for (const char* const seconds : {"-1", "long", "1e10", "nan", "inf"}) {
     expect_usage({"sim", "--seconds", seconds}, "--seconds");
   }
@@ -152,7 +154,7 @@ TEST_F(Failure, StandardOutputIsFull) {
         {"sim", "--seconds", "1", "-o", path("x"), "--truth", "-"}}) {
     cli::program started(arguments, {{}, stream::of_file("/dev/full"), {}});
     expect_sentence(started.wait(), 10,
-                    "cannot write standard output: No space left on device. Make room");
+                    "cannot write standard output: No space left on device. Free some space");
   }
   EXPECT_EQ(listing(), "good.bin\n");
 }
@@ -184,7 +186,8 @@ TEST_F(Failure, FileThatCannotGrow_IsRemoved) {
   const std::string name = path("good.bin");
   cli::write_repeated(name, cli::zero(0) + cli::turn(), 100'000);
   const file_size_limit limit(1000);
-  expect_sentence(run({"decode", name, "-o", path("out.csv")}), 10, "File too large. Make room");
+  expect_sentence(run({"decode", name, "-o", path("out.csv")}), 10,
+                  "File too large. Free some space");
   expect_nothing_written({"decode", name});
   expect_nothing_written({"sim", "--seconds", "5"});
 }
@@ -204,10 +207,11 @@ TEST_F(Failure, OutputIsTheInput) {
   std::filesystem::create_symlink(name, path("link"));
   std::filesystem::create_hard_link(name, path("other"));
   for (const char* const out : {"good.bin", "link", "other"}) {
-    expect_sentence(run({"decode", name, "-o", path(out)}), 2, "is what is read, too");
+    expect_sentence(run({"decode", name, "-o", path(out)}), 2,
+                    "is also the input. Give another name for the output.");
   }
   cli::program redirected({"decode", "-", "-o", name}, {stream::of_file(name), {}, {}});
-  expect_sentence(redirected.wait(), 2, "is what is read, too");
+  expect_sentence(redirected.wait(), 2, "is also the input. Give another name for the output.");
   EXPECT_EQ(cli::read_file(name), bytes);
   EXPECT_EQ(listing(), "good.bin\nlink\nother\n");
 }
@@ -298,6 +302,8 @@ TEST(Help, IsOnStandardOutputAndHasExamples) {
     for (const std::string& line : cli::lines_of(done.out)) EXPECT_LE(line.size(), 100U) << line;
   }
   EXPECT_THAT(run({"--help"}).out, HasSubstr("decode"));
+  EXPECT_EQ(run({"help", "sim"}).out, run({"sim", "--help"}).out);
+  EXPECT_EQ(run({"help"}).out, run({"--help"}).out);
 }
 
 TEST(Help, NamesEveryColumn) {

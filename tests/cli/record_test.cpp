@@ -234,7 +234,7 @@ TEST_F(Record, FullDisk_EndsItAndKeepsWrittenData) {
   const outcome done = run({"record", "sim:", path("walk.mcap"), "-d", "20s"});
   ::setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(done.code, 10) << done.err;
-  EXPECT_THAT(done.err, HasSubstr("File too large. Make room"));
+  EXPECT_THAT(done.err, HasSubstr("File too large. Free some space"));
   EXPECT_GT(points_of(path("walk.mcap")).size(), 1000U);
 }
 

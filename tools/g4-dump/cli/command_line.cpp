@@ -101,10 +101,15 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   }
   std::string words = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    const bool is_repeated = words.find("At Most") != std::string::npos;
-    words =
-        words.substr(0, words.find(':')) + (is_repeated ? " is given twice" : " needs one value");
+    const std::string name = words.substr(0, words.find_first_of(": "));
+    const auto says = [&words](const char* what) { return words.find(what) != std::string::npos; };
+    words = says("flag override") ? "--" + name + " takes no value"
+            : says("At Most")     ? name + " is given twice"
+                                  : name + " needs one value";
   }
+  constexpr std::string_view excludes = " excludes ";
+  const std::size_t at = words.find(excludes);
+  if (at != std::string::npos) words.replace(at, excludes.size(), " cannot be used with ");
   if (!words.empty() && words.back() == '.') words.pop_back();
   return words;
 }
@@ -178,6 +183,10 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   if (words.size() >= 2 && words[0] == "--complete") {
     return [words] { return complete(std::span(words).subspan(1)); };
   }
+  if (!words.empty() && words.front() == "help") {
+    std::ranges::rotate(words, words.begin() + 1);
+    words.back() = "--help";
+  }
   const std::vector<verb> verbs = all_verbs();
   CLI::App app("The console tool for the YDLIDAR G4", "g4-dump");
   app.set_version_flag("--version",
@@ -185,6 +194,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
                                    G4LIDAR_VERSION_PATCH),
                        "Print the version and exit");
   app.fallthrough();
+  app.option_defaults()->disable_flag_override();
   app.footer(app_footer());
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.get_formatter()->column_width(36);

@@ -59,7 +59,7 @@ option_rows ending_rows(common_options& options, bool with_idle) {
                               std::uint64_t{1}, UINT64_MAX),
                    duration_row(options)};
   if (with_idle)
-    rows.push_back(duration_row("--idle", "Stop when no data came for this time", options.idle));
+    rows.push_back(duration_row("--idle", "Stop if no data arrives for this time", options.idle));
   return in_group("End condition", rows);
 }
 
