@@ -94,7 +94,7 @@ option_row frame_row(const char* name, const char* help, frame& into) {
 }
 
 option_row time_row(common_options& options) {
-  return choice_row("--time", "Since 1970, monotonic, since the last or the first record (abs)",
+  return choice_row("--time", "Wall clock, monotonic, since the previous or first record (abs)",
                     options.time,
                     choices<time_style>{{"abs", time_style::absolute},
                                         {"mono", time_style::monotonic},
@@ -127,7 +127,7 @@ option_rows baud_row(common_options& options) {
 option_rows device_rows(common_options& options) {
   return joined(
       in_group("Device",
-               {choice_row("--on-loss", "wait: also for a device that is not connected yet (exit)",
+               {choice_row("--on-loss", "If the device is lost; wait: also at the start (exit)",
                            options.on_loss,
                            choices<loss_rule>{{"exit", loss_rule::exit},
                                               {"wait", loss_rule::wait},
