@@ -135,8 +135,9 @@ class file_run {
     baud.add("bytes", measured_.arrivals().bytes());
     baud.add("packets", counts.packets);
     baud.add("responses", counts.responses);
-    if (diagnosis_of(counts, measured_.arrivals().bytes()) == diagnosis::wrong_baud_rate) {
-      baud.find(diagnosis::wrong_baud_rate);
+    const auto found = diagnosis_of(counts, measured_.arrivals().bytes());
+    if (found) baud.find(*found);
+    if (found == diagnosis::wrong_baud_rate) {
       baud.remark = "It is also possible that these bytes are not those of a lidar.";
     }
     log_.report(std::move(baud));

@@ -155,7 +155,7 @@ std::variant<fault, fault_error> read_what(std::string_view what) {
     if (kind.name == name) known = &kind;
     all.append(all.empty() ? "" : ", ").append(kind.name);
   }
-  if (known == nullptr) return wrong(name, "is no fault; there are " + all);
+  if (known == nullptr) return wrong(name, "is not a fault; faults are " + all);
   fault read = make_fault(known->kind);
   if (has_amount) {
     if (known->amount == amount_is::nothing) return wrong(name, "takes no amount");

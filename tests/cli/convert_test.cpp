@@ -175,7 +175,8 @@ TEST_F(Convert, ImpossibleConversions_AreRefused) {
   expect_refused({path("raw.bin"), path("b.csv"), "--from-format", "pcd"}, 2, "is not one of");
   expect_refused({"sim:", path("b.csv")}, 2, "is not a file");
   expect_refused({path("none"), path("b.csv")}, 10, "there is no file");
-  expect_refused({path("a.csv"), path("a.csv")}, 2, "is also the input. Give another name for the output.");
+  expect_refused({path("a.csv"), path("a.csv")}, 2,
+                 "is also the input. Give another name for the output.");
   expect_refused({path("raw.bin"), path("none/b.csv")}, 10, "Make its directory first");
   expect_refused({path("raw.bin"), path("none/b.mcap")}, 10, "Make its directory first");
 }

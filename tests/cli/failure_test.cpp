@@ -61,6 +61,11 @@ TEST_F(Failure, MissingFile) {
   expect_nothing_written({"decode", path("none.bin")});
 }
 
+TEST_F(Failure, MissingRecording) {
+  expect_sentence(run({"replay", path("none.mcap")}), 10, "none.mcap'. Check the name");
+  expect_sentence(run({"replay", good()}), 10, "is not a recording. Give a file made by g4-dump");
+}
+
 TEST_F(Failure, DirectoryForAFile) {
   expect_sentence(run({"decode", directory_}), 10, "is a directory. Give a file");
   expect_nothing_written({"decode", directory_});
@@ -121,6 +126,8 @@ TEST_F(Failure, WrongCommandLine) {
   }
   expect_usage({"decode", "--sample-rate"}, "--sample-rate needs one value");
   expect_usage({"decode", "-n", "5", "-n", "6"}, "--count is given twice");
+  expect_usage({"replay", "--verify", "--loop", "x"}, "--loop cannot be used with --verify");
+  expect_usage({"set", "foo=3"}, "g4-dump: 'foo' is not one of sample_rate, freq, ");
   expect_usage({"info", "--json=5"}, "--json takes no value. See: g4-dump info --help");
   expect_usage({"decode", "--quiet=no"}, "--quiet takes no value. See: g4-dump decode --help");
   for (const char* const seconds : {"-1", "long", "1e10", "nan", "inf"}) {

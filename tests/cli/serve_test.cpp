@@ -143,7 +143,8 @@ TEST_F(Serve, InvalidOptions_AreRefused) {
   refused({"sim", "--link", link, "--link", path("two"), "--serial", "1111222233334444", "--serial",
            "1111222233334444"},
           "is given twice");
-  refused({"sim", "--link", link, "--fault", "unplugged"}, "'unplugged' is no fault; there are");
+  refused({"sim", "--link", link, "--fault", "unplugged"},
+          "'unplugged' is not a fault; faults are");
   refused({"sim", "--link", link, "--fault", "unplug@5"}, "--fault: unplug@5: '5' is no time");
   refused({"sim", "--link", link, "-o", path("file")}, "--link");
   refused({"sim", "--link", link, "--truth", path("file")}, "--link");

@@ -77,6 +77,15 @@ TEST(Bytes, OfAnotherRateOrModelAreFound) {
   EXPECT_EQ(in_file(bytes_of({}, 3, options)).diagnoses(), "other_device");
 }
 
+TEST(Bytes, OfWhichMostAreNoise) {
+  const std::string good = bytes_of({}, 6);
+  const auto after_noise = [&good](std::size_t percent) {
+    return in_file(std::string(good.size() * percent / 100, '\x80') + good).diagnoses();
+  };
+  EXPECT_EQ(after_noise(90), "");
+  EXPECT_EQ(after_noise(110), "line_noise");
+}
+
 TEST(Bytes, AreDiagnosedByTheirCounts) {
   stream_counts counts;
   EXPECT_EQ(diagnosis_of(counts, 0), diagnosis::bad_file);

@@ -68,8 +68,8 @@ TEST(SimFaultText, ParsesRateAndAmount) {
 }
 
 TEST(SimFaultText, InvalidTexts_AreRefused) {
-  EXPECT_THAT(refusal(""), HasSubstr("'' is no fault; there are flip, drop,"));
-  EXPECT_THAT(refusal("Flip"), HasSubstr("'Flip' is no fault"));
+  EXPECT_THAT(refusal(""), HasSubstr("'' is not a fault; faults are flip, drop,"));
+  EXPECT_THAT(refusal("Flip"), HasSubstr("'Flip' is not a fault"));
   EXPECT_EQ(refusal("unplug=3"), "'unplug' takes no amount");
   EXPECT_EQ(refusal("unplug*0.5"), "'unplug' takes no rate");
   EXPECT_EQ(refusal("flip*2"), "the rate of a fault must be 0 to 1");

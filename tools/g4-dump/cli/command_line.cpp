@@ -32,7 +32,8 @@ void add(CLI::App& app, const option_row& row) {
     try {
       for (const std::string& word : words) inner(word);
     } catch (const bad_value& reason) {
-      throw CLI::ValidationError(name, reason.what());  // which contains the name, too
+      // An argument is known by its value; set takes settings in place of SOURCE.
+      throw CLI::ValidationError((name.starts_with('-') ? name + ": " : "") + reason.what());
     }
   };
   CLI::Option* option = nullptr;
@@ -197,6 +198,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   app.option_defaults()->disable_flag_override();
   app.footer(app_footer());
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Positionals", "Arguments");
   app.get_formatter()->column_width(36);
   for (const option_row& row : global_rows()) add(app, row);
   std::function<int()> chosen;

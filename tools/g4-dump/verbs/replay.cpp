@@ -2,6 +2,7 @@
 // The verb replay: a recording at the speed at which it was made, or another; and whether it is whole.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -86,11 +87,13 @@ void verify(const std::string& path) {
 
 int run(const replay_verb_options& options) {
   const std::string& name = options.job.common->source;
+  if (!std::filesystem::exists(path_of(name))) {
+    refuse("there is no file " + in_quotes(name) + ". Check the name.");
+  }
   if (kind_of(name) != source_kind::recording) {
-    throw failure(exit_code::bad_file,
-                  in_quotes(name) +
-                      " is not a recording. Give a file made by g4-dump record; g4-dump dump reads "
-                      "raw bytes.");
+    refuse(
+        in_quotes(name) +
+        " is not a recording. Give a file made by g4-dump record; g4-dump dump reads raw bytes.");
   }
   if (!options.verify) return run(options.job);
   verify(path_of(name));
