@@ -103,10 +103,10 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   std::string words = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const std::string name = words.substr(0, words.find_first_of(": "));
-    const auto says = [&words](const char* what) { return words.find(what) != std::string::npos; };
-    words = says("flag override") ? "--" + name + " takes no value"
-            : says("At Most")     ? name + " is given twice"
-                                  : name + " needs one value";
+    const auto has = [&words](const char* what) { return words.find(what) != std::string::npos; };
+    words = has("flag override") ? "--" + name + " takes no value"
+            : has("At Most")     ? name + " is given twice"
+                                 : name + " needs one value";
   }
   constexpr std::string_view excludes = " excludes ";
   const std::size_t at = words.find(excludes);
