@@ -191,7 +191,7 @@ TEST(Recording, UnreadableFile_IsAnErrorAndNoDamage) {
   EXPECT_FALSE(reader->next()) << "it stays so";
 }
 
-TEST(Recording, ForEach_StopsWhereItIsTold) {
+TEST(Recording, ForEach_StopsWhenTakeReturnsFalse) {
   const temporary_path path;
   auto writer = made_writer(path.text());
   record_readings(writer, 0, 10);
