@@ -32,7 +32,6 @@ void add(CLI::App& app, const option_row& row) {
     try {
       for (const std::string& word : words) inner(word);
     } catch (const bad_value& reason) {
-      // An argument is known by its value; set takes settings in place of SOURCE.
       throw CLI::ValidationError((name.starts_with('-') ? name + ": " : "") + reason.what());
     }
   };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verbs start, stop and restart. After start the device goes on scanning when the command has
-// ended.
+// The verbs start, stop and restart. After start the device goes on scanning.
 #include <fmt/format.h>
 
 #include <chrono>
