@@ -149,7 +149,7 @@ void put_event(record_text& out, const recorded_event& what, std::int64_t wall_a
   message.put(std::uint8_t{what.delivers});
   message.put(name_of(what.what));
   message.put(name_of(what.reason));
-  message.put(what.name.substr(0, 255));
+  message.put(what.name.substr(0, longest_name));
 }
 
 std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept {

@@ -68,6 +68,9 @@ inline constexpr std::string_view points_version = "2";
 /// The digests of a file, and the time of its last item.
 [[nodiscard]] recorded_digest digest_of(field_reader& map, std::int64_t& last_ns);
 
+/// Longer names of transports are cut to this.
+inline constexpr std::size_t longest_name = 255;
+
 /// The state of a transport, from its recorded events.
 struct transport_state {
   bool is_known = false;  ///< Whether there was an event.
@@ -75,7 +78,7 @@ struct transport_state {
   bool delivers = true;
   std::uint32_t baud = 0;
   std::uint32_t samples_per_second = 0;
-  std::array<char, 64> name{};
+  std::array<char, longest_name> name{};
   std::uint8_t name_size = 0;
 
   void take(const recorded_event& what) noexcept;

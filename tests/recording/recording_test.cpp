@@ -235,6 +235,29 @@ TEST(Recording, BeginInTheMiddle_ReturnsTheStateFirst) {
   EXPECT_TRUE((*first)->other.delivers);
 }
 
+/// The state that each chunk repeats has the whole name, as the event of the opening has.
+TEST(Recording, BeginInTheMiddle_KeepsALongName) {
+  const std::string by_id = "/dev/serial/by-id/";
+  for (const std::size_t size : {65U, 200U, 255U, 300U}) {
+    const temporary_path path;
+    auto writer = made_writer(path.text());
+    recorded_event event{.what = recorded_event::kind::opened, .time_ns = time_of(0)};
+    const std::string name = by_id + std::string(size - by_id.size(), 'x');
+    event.name = name;
+    writer.event(event);
+    record_readings(writer, 1, 1000);
+    ASSERT_TRUE(writer.close());
+    for (const std::int64_t from_ns : {std::int64_t{0}, 5 * second}) {
+      auto reader = recording_reader::open(path.text(), {.from_ns = from_ns});
+      ASSERT_TRUE(reader);
+      const auto first = reader->next();
+      ASSERT_TRUE(first && *first);
+      ASSERT_EQ((*first)->what, recorded_item::kind::other);
+      EXPECT_EQ((*first)->other.name, name.substr(0, 255)) << from_ns;
+    }
+  }
+}
+
 TEST(Recording, ContainsItsDevice) {
   const temporary_path path;
   auto writer = made_writer(path.text());
