@@ -2,6 +2,10 @@
 // A device that reboots without a loss of the link loses its settings: the driver applies them again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
 #include "g4lidar/lidar.hpp"
 #include "support/virtual_transport.hpp"
 
@@ -99,6 +103,59 @@ TEST(UnnoticedReboot, UnderKeepAlives) {
   expect_settings_and_times(bench, *device);
 }
 
+/// How often the device received this command.
+int times_in(const sim::device& device, std::uint8_t code) {
+  return static_cast<int>(std::ranges::count(device.log(), code, &sim::asked::code));
+}
+
+/// The scan ended by itself while the program was busy, and the call that notices it is the stop: the device
+/// is not set up and started once more.
+TEST(UnnoticedReboot, StopThatNoticesIt_SetsNothingUp) {
+  sim::device_options protects = forgetful();
+  protects.initial.protection = power_down_protection::on;
+  for (const bool is_protected : {false, true}) {
+    SCOPED_TRACE(is_protected);
+    const sim::fault faults[] = {dip(2300 * ms, 0, 60'000 * ms)};
+    virtual_bench bench(is_protected ? protects : forgetful(),
+                        std::span(faults).first(is_protected ? 0 : 1));
+    auto device = open_virtual(bench, at_4_khz());
+    ASSERT_TRUE(device);
+    ASSERT_TRUE(device->start());
+    ASSERT_TRUE(device->next_scan(2000ms));
+    while (device->next_scan(400ms)) {
+    }
+    ASSERT_TRUE(device->is_scanning());
+    ASSERT_FALSE(device->next_event());
+    bench.now_ns += 1000 * ms;  // longer than stall_time
+    bench.device.clear_log();
+    EXPECT_TRUE(device->stop());
+    const auto event = device->next_event();
+    ASSERT_TRUE(event) << "the stop has not noticed it";
+    EXPECT_EQ(event->what,
+              is_protected ? lidar_event::kind::protection_found_on : lidar_event::kind::restarted);
+    EXPECT_FALSE(device->is_scanning());
+    EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
+    EXPECT_EQ(times_in(bench.device, 0x60), 0);
+    EXPECT_EQ(device->next_scan(500ms).error(), problem::not_scanning);
+  }
+}
+
+/// The same for a restart by the caller whose call was woken: only the request itself starts again.
+TEST(UnnoticedReboot, StopAfterAWokenRestart_SetsNothingUp) {
+  virtual_bench bench(forgetful());
+  auto device = open_virtual(bench, at_4_khz());
+  ASSERT_TRUE(device);
+  ASSERT_TRUE(device->start());
+  ASSERT_TRUE(device->next_scan(5000ms));
+  bench.device.clear_log();
+  device->wake();
+  const auto woken = device->ask(requests::restart(), while_scanning::stop_and_resume);
+  EXPECT_EQ(woken.error(), problem::cancelled);
+  EXPECT_TRUE(device->stop());
+  EXPECT_TRUE(bench.device.is_idle_and_silent(bench.now_ns));
+  EXPECT_EQ(times_in(bench.device, 0x60), 1);
+}
+
 /// What a healthy device is sent has not become more, also if it refuses to go beyond 12 Hz.
 TEST(UnnoticedReboot, AQuickStartSendsNothingMore) {
   for (const sim::at_limit limit : {sim::at_limit::clamp, sim::at_limit::refuse}) {
@@ -112,14 +169,8 @@ TEST(UnnoticedReboot, AQuickStartSendsNothingMore) {
     ASSERT_TRUE(device);
     bench.device.clear_log();
     ASSERT_TRUE(device->start());
-    int healths = 0;
-    int starts = 0;
-    for (const sim::asked& each : bench.device.log()) {
-      healths += each.code == 0x91 ? 1 : 0;
-      starts += each.code == 0x60 ? 1 : 0;
-    }
-    EXPECT_EQ(healths, 1);
-    EXPECT_EQ(starts, 1);
+    EXPECT_EQ(times_in(bench.device, 0x91), 1);
+    EXPECT_EQ(times_in(bench.device, 0x60), 1);
   }
 }
 
