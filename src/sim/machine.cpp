@@ -57,6 +57,7 @@ device::machine::event device::machine::next_event() const noexcept {
   consider(from_host_.next_command_ns(), happening::command_due);
   consider(answers_.next_ns(), happening::answer_due);
   consider(sampler_.next_ns(), happening::packet_measured);
+  consider(sampler_.end_ns(), happening::scan_end);
   if (is_scanning() && settings.protection == power_down_protection::on) {
     consider(fed_ns_ + options_.protection_ns, happening::protection);
   }
@@ -88,6 +89,8 @@ void device::machine::handle(happening what) noexcept {
       return answers_.take_due(now_ns_, [this](const answer_bytes& due) { send(due); });
     case happening::packet_measured:
       return packet_measured();
+    case happening::scan_end:
+      return end_scan();
     case happening::protection:
       stopped_by_protection_ = true;
       return end_scan();

@@ -137,6 +137,7 @@ class G4LIDAR_HIDDEN device::machine {
     command_due,
     answer_due,
     packet_measured,
+    scan_end,
     protection,
     booted,
     death,
@@ -176,6 +177,7 @@ class G4LIDAR_HIDDEN device::machine {
 
   // Scanning.
   void begin_scan() noexcept;
+  void stop_scan() noexcept;
   void end_scan() noexcept;
   void keep_motor() noexcept;
   void measure() noexcept;

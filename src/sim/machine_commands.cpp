@@ -34,10 +34,10 @@ bool device::machine::obey(command code) noexcept {
   switch (code) {
     case command::forced_stop:
       if (!options_.obeys_forced_stop) return false;
-      end_scan();
+      stop_scan();
       return true;
     case command::stop:
-      end_scan();
+      stop_scan();
       return true;
     case command::start:
       return obey_start();
@@ -82,6 +82,7 @@ bool device::machine::obey_start() noexcept {
   if (condition().status == health_status::error && options_.error_refuses_start) return false;
   fed_ns_ = now_ns_;
   if (is_scanning()) {
+    sampler_.end_at(forever_ns);  // a stop that has not ended the scan yet has no effect
     if (options_.start_again_answers) answer(answer_with(response_kind::scan_started, {}));
     return true;
   }

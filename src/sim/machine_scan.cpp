@@ -17,6 +17,13 @@ void device::machine::begin_scan() noexcept {
   measure();
 }
 
+/// A second stop does not delay the end. A device that sends nothing yet has nothing left to send.
+void device::machine::stop_scan() noexcept {
+  if (!is_scanning()) return;
+  if (options_.stop_ns == 0 || sampler_.is_silent(now_ns_)) return end_scan();
+  sampler_.end_at(std::min(sampler_.end_ns(), now_ns_ + options_.stop_ns));
+}
+
 void device::machine::end_scan() noexcept {
   if (!is_scanning()) return;
   state_ = state::idle;

@@ -25,9 +25,16 @@ class sampler {
   }
   /// A scan begins at a random angle.
   void begin(std::int64_t now_ns) noexcept { scanner_.resume(now_ns, phases_.next()); }
-  void end() noexcept { complete_ns_ = forever_ns; }
+  void end() noexcept { complete_ns_ = end_ns_ = forever_ns; }
+  /// The scan is to be ended at this time; forever_ns: it is not.
+  void end_at(std::int64_t time_ns) noexcept { end_ns_ = time_ns; }
+  [[nodiscard]] std::int64_t end_ns() const noexcept { return end_ns_; }
   /// No packet is sent before this time.
   void silence_until(std::int64_t time_ns) noexcept { silent_until_ns_ = time_ns; }
+
+  [[nodiscard]] bool is_silent(std::int64_t now_ns) const noexcept {
+    return now_ns < silent_until_ns_;
+  }
 
   /// Measures the next packet: its content when it is complete. `jolts`: the head, which turns
   /// clockwise, moves back during the packet. `has_stray`: a random byte precedes a zero packet.
@@ -47,7 +54,7 @@ class sampler {
   [[nodiscard]] std::int64_t next_ns() const noexcept { return complete_ns_; }
   /// The complete packet; nullptr if it is not sent. Valid until measure().
   [[nodiscard]] transmission* take(std::int64_t now_ns) noexcept {
-    if (now_ns < silent_until_ns_) return nullptr;
+    if (is_silent(now_ns)) return nullptr;
     measured_.packet = packets_++;
     return &measured_;
   }
@@ -60,6 +67,7 @@ class sampler {
   std::uint64_t packets_ = 0;  // sent ones
   std::int64_t complete_ns_ = forever_ns;
   std::int64_t silent_until_ns_ = 0;
+  std::int64_t end_ns_ = forever_ns;
 };
 
 }  // namespace g4lidar::sim

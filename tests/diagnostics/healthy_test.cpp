@@ -60,6 +60,7 @@ sim::device_options odd_device(std::uint64_t seed) {
   options.reaction_ns = by.flip() ? 1'000'000 : 20'000'000;
   options.acceleration_mhz_per_s = by.flip() ? 14'000 : 5'000;
   options.standstill_ns = by.flip() ? 60'000'000 : 400'000'000;
+  options.stop_ns = by.flip() ? 0 : 300'000'000;
   options.stray_after_start = by.flip();
   options.stray_before_zero = by.flip();
   options.stop_truncates = by.flip();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The options of the device that delay its first answer, its scan header and its first packet.
+// The options of the device that delay its first answer, its scan header, its first packet and its stop.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -63,6 +63,48 @@ TEST(SimStartTimes, SpinUp_IsSilentAfterTheHeader) {
   EXPECT_EQ(header.responses.size(), 1U);
   EXPECT_EQ(header.packets, 0U);
   EXPECT_GT(taken_apart(host.listen(100 * ms)).packets, 0U);
+}
+
+TEST(SimStartTimes, Stop_EndsTheScanLater) {
+  sim::device_options options;
+  options.stop_ns = 300 * ms;
+  host_side host(options);
+  host.send(0x60);
+  static_cast<void>(host.listen(1'000 * ms));
+  host.send(0x65);
+  static_cast<void>(host.listen(200 * ms));
+  host.send(0x65);  // does not delay it
+  EXPECT_GT(taken_apart(host.listen(99 * ms)).packets, 10U);
+  EXPECT_TRUE(host.device.is_scanning());
+  static_cast<void>(host.listen(slack_ns));
+  EXPECT_FALSE(host.device.is_scanning());
+  EXPECT_TRUE(host.listen(1'000 * ms).empty());
+  EXPECT_FALSE(host.device.motor_turns());
+}
+
+TEST(SimStartTimes, Stop_DuringSpinUp_IsNotLate) {
+  sim::device_options options;
+  options.stop_ns = 300 * ms;
+  options.silence_ns = 500 * ms;
+  host_side host(options);
+  host.send(0x60);
+  static_cast<void>(host.listen(400 * ms));
+  host.send(0x65);
+  EXPECT_TRUE(host.listen(1'000 * ms).empty());
+}
+
+TEST(SimStartTimes, StartBeforeTheEnd_CancelsALateStop) {
+  sim::device_options options;
+  options.stop_ns = 300 * ms;
+  host_side host(options);
+  host.send(0x60);
+  static_cast<void>(host.listen(1'000 * ms));
+  host.send(0x65);
+  static_cast<void>(host.listen(100 * ms));
+  host.send(0x60);
+  static_cast<void>(host.listen(1'000 * ms));
+  EXPECT_GT(taken_apart(host.listen(100 * ms)).packets, 10U);
+  EXPECT_TRUE(host.device.is_scanning());
 }
 
 }  // namespace

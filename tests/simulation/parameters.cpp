@@ -58,6 +58,7 @@ void draw_times(dice& d, sim::device_options& device) {
   device.header_ns = d.chance(0.5) ? 0 : tenfold(180 * ms);
   device.silence_ns = d.chance(0.5) ? 0 : tenfold(250 * ms);
   device.standstill_ns = tenfold(20 * ms);
+  device.stop_ns = d.chance(0.5) ? 0 : tenfold(40 * ms);
 }
 
 void draw_questions(dice& d, sim::device_options& device) {
@@ -240,7 +241,7 @@ std::int64_t own_time_ns(const run_parameters& parameters) {
                                   fastest_mhz * second / parameters.device.acceleration_mhz_per_s;
   const std::int64_t turns_ns = 2 * 100 * second / slowest_chz(parameters);
   const sim::device_options& v = parameters.device;
-  return v.boot_ns + v.first_answer_ns + most_commands * v.reaction_ns + v.header_ns +
+  return v.stop_ns + v.boot_ns + v.first_answer_ns + most_commands * v.reaction_ns + v.header_ns +
          std::max(v.silence_ns, spin_up_ns) + turns_ns;
 }
 
@@ -292,14 +293,13 @@ std::string describe(const run_parameters& parameters) {
   text += text_of(
       "  device at %u cHz, %zu samples a packet, rate %.4f, batch %.1f to %.1f ms\n"
       "  times in ms: boot %.0f, first answer %.0f, answer %.0f, header %.0f, silence %.0f, "
-      "standstill "
-      "%.0f\n",
+      "standstill %.0f, stop %.0f\n",
       unsigned{v.scanner.scan_frequency_chz}, v.scanner.samples_per_packet,
       v.scanner.sample_rate_ratio, in_seconds(v.batch_min_ns) * 1e3,
       in_seconds(v.batch_max_ns) * 1e3, in_seconds(v.boot_ns) * 1e3,
       in_seconds(v.first_answer_ns) * 1e3, in_seconds(v.reaction_ns) * 1e3,
       in_seconds(v.header_ns) * 1e3, in_seconds(v.silence_ns) * 1e3,
-      in_seconds(v.standstill_ns) * 1e3);
+      in_seconds(v.standstill_ns) * 1e3, in_seconds(v.stop_ns) * 1e3);
   return text;
 }
 

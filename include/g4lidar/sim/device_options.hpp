@@ -66,6 +66,7 @@ struct device_options {
   std::int64_t header_ns = 0;  ///< From the effect of the command to the scan header.
   std::int64_t silence_ns =
       0;  ///< From the header to the first packet; earlier measurements are not sent.
+  std::int64_t stop_ns = 0;  ///< From a stop to the last packet; 0 if none was sent yet.
 
   // The motor.
   std::uint32_t acceleration_mhz_per_s = 14'000;  ///< Of the scan frequency; 7 Hz in half a second.

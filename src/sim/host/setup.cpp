@@ -36,7 +36,7 @@ using member =
                  bool options::*, turning options::*, at_limit options::*, disturbance options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 39> members{{
+constexpr std::array<std::pair<std::string_view, member>, 40> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -44,6 +44,7 @@ constexpr std::array<std::pair<std::string_view, member>, 39> members{{
     {"first_answer_ns", &options::first_answer_ns},
     {"header_ns", &options::header_ns},
     {"silence_ns", &options::silence_ns},
+    {"stop_ns", &options::stop_ns},
     {"acceleration_mhz_per_s", &options::acceleration_mhz_per_s},
     {"standstill_ns", &options::standstill_ns},
     {"motor_drift_ppm", &options::motor_drift_ppm},
