@@ -141,8 +141,9 @@ class G4LIDAR_API lidar {
   using milliseconds = std::chrono::milliseconds;
 
   /// Opens the device and queries its identity. A device that is scanning is stopped first. Takes
-  /// about 60 ms with a healthy device, and at most 3 s on a named port. Errors: all of
-  /// docs/errors.md except those of a running scan.
+  /// about 60 ms with a healthy device, and at most 3 s with one fault; if many bytes are damaged, at
+  /// most 15 s. If ports are queried first (see select_port()), each of them adds at most 2.5 s.
+  /// Errors: all of docs/errors.md except those of a running scan.
   [[nodiscard]] static result<lidar> open(const lidar_options& options = {});
   /// The same by name; see lidar_options::device.
   [[nodiscard]] static result<lidar> open(std::string_view device);
@@ -158,8 +159,9 @@ class G4LIDAR_API lidar {
   /// Queries the health, applies the settings of the options and starts the scan. Returns when the
   /// device has confirmed: after about 20 ms with a healthy device without settings. If an answer or
   /// the scan header is missing, the device may have rebooted, and the settings are applied once more.
-  /// Blocks at most 1.5 s with one fault of the device or the connection. If many bytes are damaged:
-  /// at most 15 s for each of at most 17 requests (docs/design/simulation.md).
+  /// Blocks at most 7 s with one fault of the device or the connection (three starts without an
+  /// answer), and at most 10 s if all settings are given. If many bytes are damaged: at most 15 s for
+  /// each of at most 17 requests (docs/design/simulation.md).
   /// Errors: unhealthy, not_reached, timeout, ...
   [[nodiscard]] result<void> start();
   /// Stops the scan. Returns when the device has stopped sending: after about 50 ms, and after at
