@@ -23,7 +23,9 @@ namespace g4lidar {
 ///     }
 class G4LIDAR_API background_reader {
  public:
-  /// Starts the scan, then the thread. Errors: those of lidar::start(), and system.
+  /// Starts the scan, then the thread. Blocks at most as long as lidar::start(); if it fails, the
+  /// lidar is closed, which may also take as long as lidar::close(). Errors: those of
+  /// lidar::start(), and system.
   [[nodiscard]] static result<background_reader> start(lidar&& device);
 
   background_reader(background_reader&&) noexcept;

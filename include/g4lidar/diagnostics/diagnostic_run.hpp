@@ -45,7 +45,8 @@ struct diagnostic_options {
 /// lidar_options::device, or for "file:PATH", a recording or raw bytes. Stages that need a device
 /// are skipped for a file.
 ///
-/// Takes about 3 s plus `measuring_time` with a healthy lidar. Sends queries, one start, and stops;
+/// Takes about 3 s plus `measuring_time` with a healthy lidar, and at most 45 s plus `measuring_time`
+/// with one fault, if answers are at most 4 s late. Sends queries, one start, and stops;
 /// changes no setting; the motor is stopped at the end. *Allocates. Single thread.*
 [[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
     std::string_view source, const diagnostic_options& options = {});

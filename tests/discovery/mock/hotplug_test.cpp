@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <poll.h>
 
+#include <chrono>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
@@ -230,6 +232,24 @@ TEST_F(Hotplug, TwoBridgesOneG4_IsSelected) {
   connect(first, silent);
   const auto two = serve(second, '2');
   EXPECT_EQ(select_port("", {.probe_timeout = 1s})->path, "/dev/ttyUSB1");
+}
+
+/// Each port takes its own probe_timeout, although its device never answers.
+TEST_F(Hotplug, SeveralSilentPorts_TakeTheirTimeEach) {
+  bed.plug(first);
+  bed.plug(second);
+  const pty one;
+  const pty two;
+  connect(first, one);
+  connect(second, two);
+  for (const std::string& which : {std::string(), number('1')}) {
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(select_port(which, {.probe_timeout = 200ms}).error().code(), problem::no_port);
+    const auto took = std::chrono::steady_clock::now() - begin;
+    EXPECT_GE(took, 2 * 200ms);
+    EXPECT_LT(took, 2 * 200ms + 1000ms) << "a probe without a limit takes 2 s and more";
+  }
+  EXPECT_EQ(find_options().probe_timeout, 2500ms) << "as in the documentation of lidar::open()";
 }
 
 TEST_F(Hotplug, ReplugElsewhere_IsFoundByItsNumber) {

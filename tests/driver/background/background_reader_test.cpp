@@ -305,5 +305,24 @@ TEST(BackgroundReader, StartFails_HasTheError) {
   EXPECT_EQ(reader.error().code(), problem::unhealthy);
 }
 
+/// The time of `start` on a lidar that receives nothing from a time on at which it is open and not started.
+template <class Start>
+std::int64_t time_of_failed(Start&& start) {
+  const sim::fault faults[] = {sim::make_fault(sim::fault_kind::deaf, 1053 * ms)};
+  virtual_bench bench({}, faults);
+  auto lidar = open_virtual(bench);
+  EXPECT_TRUE(lidar);
+  const std::int64_t before_ns = bench.now_ns;
+  if (lidar) start(*lidar);
+  return bench.now_ns - before_ns;
+}
+
+TEST(BackgroundReader, FailedStart_TakesAsLongAsThatOfTheLidar) {
+  const std::int64_t alone_ns = time_of_failed([](lidar& it) { EXPECT_FALSE(it.start()); });
+  const std::int64_t with_thread_ns =
+      time_of_failed([](lidar& it) { EXPECT_FALSE(background_reader::start(std::move(it))); });
+  EXPECT_EQ(with_thread_ns, alone_ns);
+}
+
 }  // namespace
 }  // namespace g4lidar
