@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -54,6 +57,31 @@ class Convert : public cli::scratch {
   }
 };
 
+/// A row of points as csv. Its range is in millimetres or metres.
+struct csv_row {
+  long scan = 0;
+  double angle_deg = 0.0;
+  double range = 0.0;
+  long long time_ns = 0;
+};
+
+csv_row row_of(const std::string& line) {
+  csv_row read;
+  EXPECT_EQ(std::sscanf(line.c_str(), "%ld,%lf,%lf,%lld", &read.scan, &read.angle_deg, &read.range,
+                        &read.time_ns),
+            4)
+      << line;
+  return read;
+}
+
+/// The same but for the rounding of angles, which are 32-bit floats with six decimals.
+void expect_row(const csv_row& got, const csv_row& wanted) {
+  EXPECT_EQ(got.scan, wanted.scan);
+  EXPECT_LT(std::abs(std::remainder(got.angle_deg - wanted.angle_deg, 360.0)), 5e-5);
+  EXPECT_NEAR(got.range, wanted.range, 1e-9);  // quarters of a millimetre: exact in both units
+  EXPECT_EQ(got.time_ns, wanted.time_ns);
+}
+
 TEST_F(Convert, RawBytes_AreTheSameThroughARecording) {
   const std::string bytes = cli::read_file(raw("3"));
   convert("raw.bin", "walk.mcap");
@@ -92,8 +120,18 @@ TEST_F(Convert, Text_IsWrittenAsItWasRead) {
   EXPECT_THAT(text("m.csv"), StartsWith("scan,angle_deg,range_m,time_ns\n"));
   convert("m.csv", "back.csv", {"--from-frame", "robot"});
   const auto first = rows("a.csv");
+  const auto other = rows("m.csv");
   const auto back = rows("back.csv");
+  ASSERT_GT(first.size(), 10'000U);
+  ASSERT_EQ(first.size(), other.size());
   ASSERT_EQ(first.size(), back.size());
+  for (std::size_t i = 1; i < first.size(); ++i) {
+    const csv_row wanted = row_of(first[i]);
+    expect_row(row_of(other[i]),
+               {wanted.scan, 180.0 - wanted.angle_deg, wanted.range / 1000.0, wanted.time_ns});
+    expect_row(row_of(back[i]), wanted);
+    ASSERT_FALSE(HasFailure()) << first[i] << "; " << other[i] << "; " << back[i];
+  }
 }
 
 TEST_F(Convert, ColumnsAreFoundByTheirNames) {

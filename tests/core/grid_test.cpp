@@ -15,6 +15,7 @@
 
 #include "g4lidar/core/decode.hpp"
 #include "support/packet_maker.hpp"
+#include "support/test_scale.hpp"
 
 namespace g4lidar {
 namespace {
@@ -209,23 +210,31 @@ std::vector<point> scattered(std::mt19937& source, std::size_t count, std::size_
   return points;
 }
 
+void expect_reference(const std::vector<point>& points, std::size_t bins,
+                      const grid_options& options) {
+  const std::vector<float> got = grid_of(points, bins, options);
+  for (std::size_t bin = 0; bin < bins; bin += bins > 1000 ? 7 : 1) {
+    bool found = false;
+    for (const float range_m : allowed(points, bins, bin, options)) {
+      found = found || std::fabs(got[bin] - range_m) < 1e-5F ||
+              (std::isnan(range_m) && std::isnan(got[bin])) || got[bin] == range_m;
+    }
+    ASSERT_TRUE(found) << "bin " << bin << " of " << bins << " holds " << got[bin];
+  }
+}
+
 TEST(Grid, AgreesWithTheReferenceInBothFrames) {
-  std::mt19937 source(7);
-  for (const std::size_t bins : {1U, 7U, 360U, 1440U, 4000U}) {
-    for (const std::size_t count : {10U, 300U, 1500U}) {
-      if (bins * count > 2'000'000) continue;  // too slow under an emulator
-      const std::vector<point> points = scattered(source, count, bins);
-      for (const frame to : {frame::robot, frame::vendor}) {
-        for (const grid_pick pick : {grid_pick::nearest, grid_pick::minimum}) {
-          const grid_options options{to, pick, count == 300U};
-          const std::vector<float> got = grid_of(points, bins, options);
-          for (std::size_t bin = 0; bin < bins; bin += bins > 1000 ? 7 : 1) {
-            bool found = false;
-            for (const float range_m : allowed(points, bins, bin, options)) {
-              found = found || std::fabs(got[bin] - range_m) < 1e-5F ||
-                      (std::isnan(range_m) && std::isnan(got[bin])) || got[bin] == range_m;
-            }
-            ASSERT_TRUE(found) << "bin " << bin << " of " << bins << " holds " << got[bin];
+  for (const int seed : test::seeds(1)) {
+    SCOPED_TRACE(seed);
+    std::mt19937 source(static_cast<std::uint32_t>(seed));
+    for (const std::size_t bins : {1U, 7U, 360U, 1440U, 4000U}) {
+      for (const std::size_t count : {10U, 300U, 1500U}) {
+        if (bins * count > 2'000'000) continue;  // too slow under an emulator
+        const std::vector<point> points = scattered(source, count, bins);
+        for (const frame to : {frame::robot, frame::vendor}) {
+          for (const grid_pick pick : {grid_pick::nearest, grid_pick::minimum}) {
+            expect_reference(points, bins, {to, pick, count == 300U});
+            if (HasFatalFailure()) return;
           }
         }
       }

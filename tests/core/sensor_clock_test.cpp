@@ -73,7 +73,7 @@ TEST(SensorClock, KeepsItsPromiseInEachRun) {
   const int runs = test::scaled(6);
   for (const condition& c : promised()) {
     errors all;
-    for (int seed = 1; seed <= runs; ++seed) {
+    for (const int seed : test::seeds(6)) {
       SCOPED_TRACE(std::string(c.name) + ", seed " + std::to_string(seed));
       errors one = simulate(drawn(c.options, static_cast<std::uint64_t>(seed)), {}, 25.0);
       EXPECT_LT(one.rms_us(), 200.0);
@@ -91,10 +91,9 @@ TEST(SensorClock, KeepsItsPromiseInEachRun) {
 // Without seen() the packets of a bridge with a timer of 16 ms can beat with it: the least delay
 // then changes slowly, and no arrival shows it. See docs/design/sensor_clock.md.
 TEST(SensorClock, WholePacketsOnly_KeepsItsPromiseOnAverage) {
-  const int runs = test::scaled(6);
   for (const condition& c : promised()) {
     errors all;
-    for (int seed = 1; seed <= runs; ++seed) {
+    for (const int seed : test::seeds(6)) {
       all.add(simulate(drawn(c.options, static_cast<std::uint64_t>(seed)), {.seen = false}, 25.0));
     }
     all.print(c.name);

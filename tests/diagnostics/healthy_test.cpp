@@ -85,9 +85,9 @@ sim::device_options odd_device(std::uint64_t seed) {
 }
 
 TEST(Healthy, DefaultDevice_HasNoDiagnosis) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (const int seed : test::seeds(10)) {
     sim::device_options options;
-    options.scanner.seed = seed;
+    options.scanner.seed = static_cast<std::uint64_t>(seed);
     expect_healthy(options);
     if (HasFatalFailure()) FAIL() << "seed " << seed;
   }
@@ -141,9 +141,10 @@ TEST(Settings, ProtectionOn_IsFound) {
 // The speed hardly changes during a run: the true value at its end determines the expected result.
 TEST(Settings, UnsteadyMotor_IsFound) {
   int off = 0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  const auto seeds = test::seeds(12);
+  for (const int seed : seeds) {
     sim::device_options options;
-    options.scanner.seed = seed;
+    options.scanner.seed = static_cast<std::uint64_t>(seed);
     options.motor_drift_ppm = 100'000;
     options.motor_drift_period_ns = 1'000'000'000'000;
     sim::device simulated(sim::built_in_world(), options);
@@ -161,7 +162,7 @@ TEST(Settings, UnsteadyMotor_IsFound) {
     off += off_ratio > 0.06 ? 1 : 0;
   }
   EXPECT_GT(off, 0);
-  EXPECT_LT(off, 12);
+  EXPECT_LT(off, static_cast<int>(seeds.size()));
 }
 
 TEST(Settings, DefectiveDeviceThatDoesNotStart) {

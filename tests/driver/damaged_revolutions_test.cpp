@@ -17,6 +17,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "support/measured_truth.hpp"
+#include "support/test_scale.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar {
@@ -35,10 +36,12 @@ class DamagedRevolutions : public testing::TestWithParam<damage> {
  protected:
   static constexpr std::int64_t run_ns = 60'000'000'000;
 
-  void run() {
+  void run(std::uint64_t seed) {
+    scans_.clear();
     sim::fault fault = sim::make_fault(GetParam().kind, 3'000'000'000);
     fault.rate = GetParam().rate;
     sim::device_options options;
+    options.scanner.seed = seed;
     options.truth_capacity = 700'000;
     test::virtual_bench bench(options, std::span(&fault, 1));
     auto device = test::open_virtual(bench);
@@ -93,36 +96,43 @@ class DamagedRevolutions : public testing::TestWithParam<damage> {
     EXPECT_FALSE(found.is_piece());
   }
 
+  void expect_intact_points() {
+    std::size_t delivered = 0;
+    std::size_t unknown = 0;
+    for (const auto& [found, points] : scans_) {
+      share shares;
+      for (const point& each : points) {
+        const sim::sample_truth* const truth = truth_of(each);
+        if (truth == nullptr) {
+          ++shares.unknown;
+          continue;
+        }
+        ++delivered;
+        ++shares.of[truth->revolution];
+      }
+      unknown += shares.unknown;
+      ASSERT_FALSE(shares.of.empty());
+      expect_one_turn(found, shares);
+      expect_flags(found, shares);
+    }
+    // All except the pieces at the start and at the end.
+    const std::size_t intact = truth_.intact();
+    EXPECT_GE(static_cast<double>(delivered), 0.99 * static_cast<double>(intact));
+    EXPECT_LE(delivered, intact + truth_.revolutions().rbegin()->second.intact + 2);
+    EXPECT_LE(unknown, intact / 1000);
+    RecordProperty("delivered", std::to_string(delivered) + " of " + std::to_string(intact));
+  }
+
   std::vector<std::pair<scan, std::vector<point>>> scans_;
   measured_truth truth_;
 };
 
 TEST_P(DamagedRevolutions, HoldTheIntactPointsAndNoneIsMerged) {
-  ASSERT_NO_FATAL_FAILURE(run());
-  std::size_t delivered = 0;
-  std::size_t unknown = 0;
-  for (const auto& [found, points] : scans_) {
-    share shares;
-    for (const point& each : points) {
-      const sim::sample_truth* const truth = truth_of(each);
-      if (truth == nullptr) {
-        ++shares.unknown;
-        continue;
-      }
-      ++delivered;
-      ++shares.of[truth->revolution];
-    }
-    unknown += shares.unknown;
-    ASSERT_FALSE(shares.of.empty());
-    expect_one_turn(found, shares);
-    expect_flags(found, shares);
+  for (const int seed : test::seeds(1)) {
+    SCOPED_TRACE(seed);
+    ASSERT_NO_FATAL_FAILURE(run(static_cast<std::uint64_t>(seed)));
+    ASSERT_NO_FATAL_FAILURE(expect_intact_points());
   }
-  // All except the pieces at the start and at the end.
-  const std::size_t intact = truth_.intact();
-  EXPECT_GE(static_cast<double>(delivered), 0.99 * static_cast<double>(intact));
-  EXPECT_LE(delivered, intact + truth_.revolutions().rbegin()->second.intact + 2);
-  EXPECT_LE(unknown, intact / 1000);
-  RecordProperty("delivered", std::to_string(delivered) + " of " + std::to_string(intact));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "g4lidar/lidar.hpp"
+#include "support/test_scale.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar {
@@ -57,8 +58,9 @@ class Return : public testing::TestWithParam<std::int64_t> {};
 
 // The revolution in which it begins is not whole, the next one is: two revolutions of 143 ms at most.
 TEST_P(Return, ItIsStartedWithin100msAndScansWithin300msMore) {
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const return_times times = return_after(GetParam() * ms, true, seed);
+  for (const int seed : test::seeds(20)) {
+    const return_times times =
+        return_after(GetParam() * ms, true, static_cast<std::uint64_t>(seed));
     EXPECT_GT(times.started_ns, 0) << seed;
     EXPECT_LE(times.started_ns, 100 * ms) << seed;
     EXPECT_LE(times.scan_ns, 300 * ms) << seed;
