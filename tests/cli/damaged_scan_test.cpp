@@ -23,7 +23,6 @@
 #include "support/cdr_reader.hpp"
 #include "support/mcap_messages.hpp"
 #include "support/measured_truth.hpp"
-#include "support/test_scale.hpp"
 
 namespace {
 
@@ -74,7 +73,6 @@ class DamagedScan : public cli::scratch, public testing::WithParamInterface<dama
     const auto* const fault = std::get_if<sim::fault>(&read);
     ASSERT_NE(fault, nullptr);
     sim::device_options options;
-    options.scanner.seed = static_cast<std::uint64_t>(g4lidar::test::seeds(1).front());
     options.truth_capacity = 300'000;
     options.scanner.noise_mm = 8.0;
     sim::device simulated(sim::built_in_world(), options, std::span(fault, 1));
