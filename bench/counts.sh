@@ -56,7 +56,7 @@ for seconds in 5 10; do
   "$g4_dump" convert -q "$scratch/$seconds.bin" "$scratch/$seconds.mcap"
 done
 heading
-row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 66 "66"
+row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 60 "60"
 row "the same, bursts of 64 bytes" "$(per_sample 64)" ""
 row "instructions per point, convert of raw bytes to csv" "$(per_point bin)" "" 320 "320"
 row "the same of a recording with scans" "$(per_point mcap)" "" 400 "400"

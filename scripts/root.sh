@@ -50,7 +50,7 @@ make_root() {
   done
   if ! mountpoint --quiet "$debian_root/proc"; then mount -t proc proc "$debian_root/proc"; fi
   # Pseudo-terminals of its own, for the simulated G4.
-  mount -t devpts -o newinstance,ptmxmode=666,mode=620 devpts "$debian_root/dev/pts"
+  mount -t devpts -o newinstance,gid=5,ptmxmode=666,mode=620 devpts "$debian_root/dev/pts"
   ln -sf pts/ptmx "$debian_root/dev/ptmx"
 }
 
