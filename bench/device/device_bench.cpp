@@ -63,7 +63,11 @@ int delay(int seconds, std::string_view pace) {
   const bench::pty pty;
   std::vector<std::int64_t> written;
   const std::int64_t end = steady_ns() + seconds * second;
-  std::thread feeder([&] { bench::feed_in_real_time(pty.master(), end + 2 * second, written); });
+  std::thread feeder([&] {
+    bench::use_processor(0);
+    bench::feed_in_real_time(pty.master(), end + 2 * second, written);
+  });
+  bench::use_processor(1);
   const std::int64_t begin = steady_ns();
   std::int64_t opened = 0;
   std::int64_t first = 0;

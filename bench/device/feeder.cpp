@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -87,6 +88,13 @@ pty::pty() : master_(posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
 pty::~pty() {
   ::close(slave_);
   ::close(master_);
+}
+
+void use_processor(int number) noexcept {
+  cpu_set_t only;
+  CPU_ZERO(&only);
+  CPU_SET(number, &only);
+  static_cast<void>(sched_setaffinity(0, sizeof(only), &only));
 }
 
 void feed_in_real_time(int master, std::int64_t end_ns,

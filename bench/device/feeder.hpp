@@ -30,6 +30,10 @@ class pty {
   std::string path_;
 };
 
+/// From now on this thread runs on that processor alone, if the machine has it. A real lidar takes no time of the
+/// program's processor.
+void use_processor(int number) noexcept;
+
 /// Runs a G4 on the master until `end_ns`. Stores in `zero_packets_ns` when each complete zero
 /// packet was about to be written.
 void feed_in_real_time(int master, std::int64_t end_ns, std::vector<std::int64_t>& zero_packets_ns);

@@ -145,12 +145,16 @@ class file_run {
     report_identity(log_, device_.information);
     report_health(log_, device_.condition);
     stage_report motor{.stage = diagnostic_stage::motor};
-    judge_motor(motor, measured_);
-    if (counts.packets <= few_packets) {
+    // Two comparisons of the speed need three times its samples; a head that stands still shows it sooner.
+    const bool is_short =
+        !measured_.was_steady() && !measured_.stands() && measured_.samples() < 3 * steady_samples;
+    if (is_short || counts.packets <= few_packets) {
       motor.outcome = stage_verdict::skipped;
       motor.remark = "There are too few packets.";
-    } else if (motor.diagnoses.empty()) {
-      motor.remark = "The angles in the packets show a constant speed.";
+    } else {
+      judge_motor(motor, measured_);
+      if (motor.diagnoses.empty())
+        motor.remark = "The angles in the packets show a constant speed.";
     }
     log_.report(std::move(motor));
     if (counts.packets == 0)

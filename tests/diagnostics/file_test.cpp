@@ -62,6 +62,15 @@ TEST(Bytes, OfAHealthyDeviceGetNoDiagnosis) {
   EXPECT_NEAR(std::get<double>(rate.back().value), 9000.0 / 7.0, 4.0);
 }
 
+TEST(Bytes, OfAMomentGetNoDiagnosis) {
+  const std::string all = bytes_of({}, 6);
+  // From a tenth of a second to a second.
+  for (std::size_t count = 2000; count <= 20'000; count += 1000) {
+    const examined done = in_file(all.substr(all.size() - count));
+    EXPECT_EQ(done.diagnoses(), "") << count << " bytes\n" << done;
+  }
+}
+
 TEST(Bytes, ShowDamage) {
   EXPECT_EQ(in_file(bytes_of({"flip"}, 6)).diagnoses(), "bits_flipped");
   EXPECT_EQ(in_file(bytes_of({"drop"}, 6)).diagnoses(), "bytes_dropped");

@@ -76,9 +76,10 @@ class G4LIDAR_API recording_reader {
   template <class Take>
   [[nodiscard]] result<void> for_each(Take take) {
     while (true) {
-      const auto item = next();
-      if (!item) return tl::unexpected(item.error());
-      if (!*item || !take(**item)) return {};
+      const auto found = next();
+      if (!found) return tl::unexpected(found.error());
+      const std::optional<recorded_item>& item = *found;
+      if (!item || !take(*item)) return {};
     }
   }
 
