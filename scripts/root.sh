@@ -40,6 +40,7 @@ make_root() {
   else
     tar --extract --file "$archive" --directory "$debian_root" --same-permissions
   fi
+  chmod 755 "$debian_root" # as every root directory: mktemp gives it to one user
   echo "Made a minimal Debian 12 in $((SECONDS - begin)) s"
 
   # Its apt and its name service reach the same servers as this machine.
