@@ -90,7 +90,7 @@ pty::~pty() {
   ::close(master_);
 }
 
-void use_processor(int number) noexcept {
+void use_processor(unsigned number) noexcept {
   cpu_set_t only;
   CPU_ZERO(&only);
   CPU_SET(number, &only);

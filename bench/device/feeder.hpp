@@ -32,7 +32,7 @@ class pty {
 
 /// From now on this thread runs on that processor alone, if the machine has it. A real lidar takes no time of the
 /// program's processor.
-void use_processor(int number) noexcept;
+void use_processor(unsigned number) noexcept;
 
 /// Runs a G4 on the master until `end_ns`. Stores in `zero_packets_ns` when each complete zero
 /// packet was about to be written.

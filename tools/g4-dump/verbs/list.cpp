@@ -111,6 +111,7 @@ int list(const list_options& options) {
   auto found = value_of(list_ports());
   find_holders(found);
   std::vector<listed_port> ports;
+  ports.reserve(found.size());
   for (port_info& port : found) ports.push_back({.port = std::move(port)});
   const bool probed = options.probe || options.all;
   if (probed) probe(ports, options);
