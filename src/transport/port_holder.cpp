@@ -51,6 +51,15 @@ std::optional<long> locker(const std::string& line, const struct stat& file) {
   return is_it && pid > 0 ? std::optional(pid) : std::nullopt;
 }
 
+/// Whether this open file, "/proc/1234/fd/5", is the device at `path`. In another container a link with the same
+/// target may be another device.
+bool is_device_at(const std::string& path, const std::string& open_file) noexcept {
+  struct stat here{};
+  struct stat there{};
+  return ::stat(path.c_str(), &here) == 0 && ::stat(open_file.c_str(), &there) == 0 &&
+         here.st_rdev == there.st_rdev && here.st_dev == there.st_dev;
+}
+
 bool can_come_of_a_port_conflict(problem what) noexcept {
   using enum problem;
   return is_one_of(what, silence, garbage, does_not_stop, timeout, wrong_answer, stalled, brown_out,
@@ -94,8 +103,9 @@ std::map<std::string, std::string> device_holders() {
     const std::string files = "/proc/" + std::string(pid) + "/fd/";
     each_entry(files, [&](std::string_view fd) {
       if (!is_number(fd)) return;
-      const std::string target = link_target(files + std::string(fd));
-      if (target.starts_with("/dev/") && !holders.contains(target)) {
+      const std::string file = files + std::string(fd);
+      const std::string target = link_target(file);
+      if (target.starts_with("/dev/") && !holders.contains(target) && is_device_at(target, file)) {
         holders.emplace(target, program(pid));
       }
     });
@@ -127,8 +137,9 @@ std::string port_conflict(const std::string& path) {
     bool has_port = false;
     bool has_master = false;
     each_entry(files, [&](std::string_view fd) {
-      const std::string target = link_target(files + std::string(fd));
-      has_port = has_port || target == real.data();
+      const std::string file = files + std::string(fd);
+      const std::string target = link_target(file);
+      has_port = has_port || (target == real.data() && is_device_at(target, file));
       has_master = has_master || (is_pty && target.ends_with("/ptmx"));
     });
     if (has_port && !has_master) name = program(pid);

@@ -114,7 +114,8 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                    const system_calls& calls) {
   const auto wanted = parse(address);
   if (!wanted) {
-    return failure(task::opening, problem::bad_option, std::string(address) + ", not host:port");
+    return failure(task::opening, problem::bad_option,
+                   "tcp:" + std::string(address) + ", not tcp:host:port");
   }
   std::string name = "tcp:" + wanted->host + ":" + wanted->port;
   const address_list list = addresses_of(*wanted);

@@ -255,7 +255,7 @@ std::vector<scenario> port_scenarios() {
       {"BytesStolen", interference, task::reading, true, "/dev/pts/", bytes_stolen},
       {"SettingsChanged", interference, task::asking, true, ", whose settings were changed",
        settings_changed},
-      {"NoAddress", bad_option, task::opening, true, "nowhere, not host:port",
+      {"NoAddress", bad_option, task::opening, true, "tcp:nowhere, not tcp:host:port",
        [] { return opening("tcp:nowhere"); }},
       {"NobodyListens", cannot_connect, task::opening, true, "tcp:127.0.0.1:", nobody_listens},
       {"BridgeCloses", end_of_input, task::reading, true, "tcp:127.0.0.1:", bridge_closes},

@@ -5,6 +5,7 @@
 #include "discovery/system_connector.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "listener.hpp"
+#include "other_container.hpp"
 #include "pty.hpp"
 #include "transport/port_holder.hpp"
 
@@ -39,6 +40,13 @@ TEST(Connector, ChangedBaudRate_IsDetectedAtAnyRate) {
   EXPECT_EQ(reported_after_change(115'200, B115200), problem::timeout);
   EXPECT_EQ(reported_after_change(115'200, B230400), problem::interference);
   EXPECT_EQ(reported_after_change(250'000, B38400), problem::interference);
+}
+
+TEST(Connector, APtyOfAnotherContainer_WithTheSameNumber_IsNotTheSamePort) {
+  const test::pty port;
+  const test::other_container other(port.path());
+  if (!other.is_open()) GTEST_SKIP() << "no mount namespaces here";
+  EXPECT_EQ(port_conflict(port.path()), "");
 }
 
 }  // namespace
