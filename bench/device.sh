@@ -4,10 +4,11 @@
 # with its promises; fails if one is not kept. Times of a busy machine have no meaning, so this is
 # for the nightly. Counts: bench/counts.sh.
 #   bench/device.sh [SECONDS [REPETITIONS]]: how long each measurement in real time takes, 10 by default, and
-#   how often each is repeated, 3 by default; the figures in the documents are of 20.
+#   how often each is repeated, 3 by default.
 # The paces (each packet, batches of 20 ms, whole scans) take turns. Each cell is the median over the
-# repetitions, and in brackets the 10th and 90th percentile; a ratio is of one repetition. The 99th percentile of the delay
-# is that of the scans of all repetitions.
+# repetitions, and in brackets the 10th and 90th percentile; a ratio is of one repetition. The tail of the
+# delay is that of the scans of all repetitions, and of those in which the host took no time from this virtual machine
+# (steal in /proc/stat).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/packages.sh
@@ -23,10 +24,15 @@ trap 'rm -rf "$scratch"' EXIT
 source bench/row.sh
 paces=(packets 20 scans)
 
+# stolen: the time that the host of this virtual machine has taken from its processors so far, in 10 ms.
+stolen() { awk '$1 == "cpu" { print $9 }' /proc/stat; }
+
 # measure <pace> <repetition>: all of it, into one file. A tracer would disturb the times, so it has a run of its own.
 measure() {
-  local into=$scratch/$1.$2
+  local into=$scratch/$1.$2 before
+  before=$(stolen)
   "$bench" delay "$seconds" "$1" >"$into"
+  if (($(stolen) == before)); then sed -n 's/^delay_ms/undisturbed_ms/p' "$into" >"$into.undisturbed"; fi
   "$bench" stream "$seconds" "$1" >>"$into" 2>/dev/null
   strace -o "$scratch/calls" "$bench" stream 2 "$1" >/dev/null 2>&1
   awk '/"begin\\n"/ { on = 1; next } /"end\\n"/ { on = 0 } on { ++n } END { print "calls_per_s", n / 2 }' \
@@ -60,16 +66,24 @@ pace_row "system calls per second" calls_per_s 100
 pace_row "context switches per second" switches_per_s 60
 pace_row "CPU seconds for a minute of streaming" cpu_s_per_minute
 pace_row "zero packet written to scan delivered, median, ms" delay_median_ms 0.05
-tails=()
-for pace in "${paces[@]}"; do
-  tails+=("$(sed -n 's/^delay_ms //p' "$scratch/$pace".[0-9]* | sort -g | percentile 99)")
-done
-printf '| the same, 99th percentile of all scans, ms | %s | %s | %s | 0.2 |\n' "${tails[@]}"
-if awk -v v="${tails[2]}" 'BEGIN { exit !(v > 0.2) }'; then
-  echo "Missed: 99th percentile of the delay, whole scans: ${tails[2]} ms, promised 0.2" >&2
+# tail_row <what> <name> <suffix>: the 99th percentile of all delays of these files, for each pace.
+tail_row() {
+  local pace files tails=()
+  for pace in "${paces[@]}"; do
+    files=("$scratch/$pace".[0-9]*"$3")
+    tails+=("$(if [[ -e ${files[0]} ]]; then sed -n "s/^$2 //p" "${files[@]}" | sort -g | percentile 99; fi)")
+  done
+  printf '| the same, 99th percentile of %s, ms | %s | %s | %s | %s |\n' "$1" "${tails[@]}" "${4:-}"
+  tail=${tails[2]}
+}
+quiet=$(find "$scratch" -name 'scans.*.undisturbed' | wc -l)
+tail_row "all scans" delay_ms ""
+tail_row "the scans of the $quiet of $repetitions runs without stolen time" undisturbed_ms .undisturbed 0.2
+if awk -v v="$tail" 'BEGIN { exit !(v == "" || v > 0.2) }'; then
+  echo "Missed: 99th percentile of the delay, whole scans: ${tail:-no run without stolen time}, promised 0.2" >&2
   missed=1
 fi
-pace_row "resident memory, KiB" resident_kib
+pace_row "resident memory, KiB" resident_kib 3584
 echo
 heading
 row "CPU time of whole scans, relative to packets" "$(median cpu_ratio ratio)" "" 0.35 "0.35"

@@ -22,6 +22,12 @@ LIMITS = [  # bytes per second
     ("framing and checksum", "parse_whole", "20480", 5e9),
     ("the same, a byte at a time", "parse_by_byte", "20480", 100e6),
 ]
+DESKEW = [  # points per second
+    ("deskew with a twist", "deskew_twist", "1280", 100e6),
+    ("deskew with poses at 100 Hz", "deskew_path", "1280", None),
+]
+TWIST = ("twist from two revolutions", "estimate_twist", "1286", 2.0)  # at most so many milliseconds
+POINT_BYTES = 24
 
 
 def medians(path):
@@ -62,6 +68,15 @@ def main():
         value = found[f"{mine}/{size}"]
         print(f"{name}: {value / 1e9:.2f} GB/s (promised {least / 1e9:g})")
         held(name, value, least)
+    for name, mine, size, least in DESKEW:
+        value = found[f"{mine}/{size}"] / POINT_BYTES
+        promised = "" if least is None else f" (promised {least / 1e6:g})"
+        print(f"{name}: {value / 1e6:.0f} million points/s{promised}")
+        held(name, value, least)
+    name, mine, size, most = TWIST
+    milliseconds = int(size) * POINT_BYTES / found[f"{mine}/{size}"] * 1e3
+    print(f"{name}: {milliseconds:.2f} ms per revolution of {size} points (promised {most:g})")
+    held(name, 1.0 / milliseconds, 1.0 / most)
     print(f"memcpy of points in memory: {found['copy_points/2048000'] / 1e9:.1f} GB/s")
     if missed and "--check" in sys.argv:
         sys.exit("Missed:\n  " + "\n  ".join(missed))

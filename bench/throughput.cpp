@@ -17,6 +17,7 @@
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/deskew.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
 
@@ -143,6 +144,46 @@ void places_in_bulk(benchmark::State& state) {
   state.SetLabel(name_of(best_instruction_set()));
 }
 
+/// Points of one revolution after another, 9000 a second.
+std::vector<point> points_of(std::size_t count) {
+  const recording input = make_recording(count);
+  std::vector<point> points(input.points + max_samples);
+  bulk_decoder decoder;
+  bytes rest = input.data;
+  points.resize(decoder.decode(rest, points).size());
+  std::int64_t time_ns = 1'000'000'000;
+  for (point& p : points) p.time_ns = time_ns += 111'111;
+  return points;
+}
+
+/// Deskews revolutions of 1280 points, each to its first point, by what `motion` gives for it.
+template <class Motion>
+void deskew_scans(benchmark::State& state, const Motion& motion) {
+  const std::vector<point> points = points_of(static_cast<std::size_t>(state.range(0)));
+  std::vector<point> out(points.size());
+  for (auto _ : state) {
+    for (std::size_t at = 0; at < points.size(); at += scan_points) {
+      const std::size_t count = std::min<std::size_t>(scan_points, points.size() - at);
+      const std::span<const point> scan(points.data() + at, count);
+      benchmark::DoNotOptimize(
+          deskew(scan, motion, scan.front().time_ns, std::span(out).subspan(at)).outside);
+    }
+    benchmark::ClobberMemory();
+  }
+  count_bytes(state, points.size() * sizeof(point));
+}
+void deskew_twist(benchmark::State& state) { deskew_scans(state, twist_2d{1.0, 0.0, 1.5}); }
+/// Poses at 100 Hz.
+void deskew_path(benchmark::State& state) {
+  std::vector<stamped_pose> path{{0, {}}};
+  const std::int64_t end_ns = 2'000'000'000 + state.range(0) * 111'112;
+  while (path.back().time_ns < end_ns) {
+    path.push_back(
+        {path.back().time_ns + 10'000'000, path.back().pose * moved_by({1.0, 0.0, 1.5}, 0.01)});
+  }
+  deskew_scans(state, std::span<const stamped_pose>(path));
+}
+
 void sizes(benchmark::internal::Benchmark* each) {
   for (const std::int64_t points : {scan_points, cache_points, memory_points}) each->Arg(points);
 }
@@ -157,5 +198,7 @@ BENCHMARK(points_by_core<table_correction>)->Name("points_table")->Apply(sizes);
 BENCHMARK(points_by_core<compact_correction>)->Name("points_compact")->Apply(sizes);
 BENCHMARK(points_in_bulk)->Apply(sizes);
 BENCHMARK(places_in_bulk)->Apply(sizes);
+BENCHMARK(deskew_twist)->Apply(sizes);
+BENCHMARK(deskew_path)->Apply(sizes);
 
 }  // namespace

@@ -97,15 +97,16 @@ int delay(int seconds, std::string_view pace) {
   return 0;
 }
 
-/// What it holds now, of status in /proc: the peak that getrusage() gives is that of the shell before, too.
+/// What it holds now: the peak that getrusage() gives is that of the shell before, too, and VmRSS in status of
+/// /proc is inexact (proc(5)).
 long resident_kib() {
-  std::FILE* const status = std::fopen("/proc/self/status", "r");
+  std::FILE* const rollup = std::fopen("/proc/self/smaps_rollup", "r");
   long found = 0;
   std::array<char, 256> text{};
-  while (status != nullptr && std::fgets(text.data(), text.size(), status) != nullptr) {
-    if (std::sscanf(text.data(), "VmRSS: %ld", &found) == 1) break;
+  while (rollup != nullptr && std::fgets(text.data(), text.size(), rollup) != nullptr) {
+    if (std::sscanf(text.data(), "Rss: %ld", &found) == 1) break;
   }
-  if (status != nullptr) std::fclose(status);
+  if (rollup != nullptr) std::fclose(rollup);
   return found;
 }
 
