@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Selects points: range limits, a field of view, ignored sectors.
+// Selects points: range limits, a field of view, ignored sectors, masks, flags.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,10 @@
 #include <limits>
 #include <span>
 
+#include "g4lidar/cartesian.hpp"
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/polygon.hpp"
 
 namespace g4lidar {
 
@@ -49,12 +51,18 @@ struct point_filter {
   sector field_of_view{};  ///< Points in other directions are left out.
   std::span<const sector>
       ignored_sectors{};  ///< Points in one of them are left out. A view of the caller's memory.
+  /// Returns inside of one of them are left out: parts of the robot. Always in frame::robot; a point
+  /// without return has no place, and stays. A view of the caller's memory.
+  std::span<const polygon> masks{};
   /// Limits of the range in millimetres, both included. A point without return has range 0, so it
   /// is left out where `least_range_mm` is above 0.
   float least_range_mm = 0.0F;
   float greatest_range_mm = std::numeric_limits<float>::infinity();
   bool returns_only = false;  ///< Points without return are left out.
   bool trusted_only = false;  ///< Points flagged too_near are left out.
+  /// Points with one of these flags are left out: isolated | veiling after mark_isolated() and
+  /// mark_veiling().
+  point_flags excluded = point_flags::none;
 
   /// Whether the direction is in the field of view and in no ignored sector. *Pure.*
   [[nodiscard]] constexpr bool has_direction(const point& p) const noexcept {
@@ -70,19 +78,32 @@ struct point_filter {
   [[nodiscard]] constexpr bool has_range(const point& p) const noexcept {
     return p.range_mm >= least_range_mm && p.range_mm <= greatest_range_mm;
   }
+  /// Whether the place is inside of no mask. *Pure.*
+  [[nodiscard]] constexpr bool has_place(const point& p) const noexcept {
+    if (masks.empty() || p.is_no_return()) return true;
+    const xy_point at = to_xy(p, frame::robot);
+    for (const polygon& mask : masks) {
+      if (is_inside({at.x_m, at.y_m}, mask)) return false;
+    }
+    return true;
+  }
+  /// Whether the point has no flag of `excluded`. *Pure.*
+  [[nodiscard]] constexpr bool has_flags(const point& p) const noexcept {
+    return (p.flags & excluded) == point_flags::none;
+  }
   /// Whether there are range limits. *Pure.*
   [[nodiscard]] constexpr bool limits_ranges() const noexcept {
     return least_range_mm > 0.0F || greatest_range_mm < std::numeric_limits<float>::infinity();
   }
   /// Whether `p` is kept. *Pure.*
   [[nodiscard]] constexpr bool keeps(const point& p) const noexcept {
-    return has_range(p) && has_direction(p) && !(returns_only && p.is_no_return()) &&
-           !(trusted_only && p.is_too_near());
+    return has_range(p) && has_flags(p) && has_direction(p) && has_place(p) &&
+           !(returns_only && p.is_no_return()) && !(trusted_only && p.is_too_near());
   }
   /// Whether every point is kept. *Pure.*
   [[nodiscard]] constexpr bool keeps_everything() const noexcept {
-    return field_of_view.is_everything() && ignored_sectors.empty() && !limits_ranges() &&
-           !returns_only && !trusted_only;
+    return field_of_view.is_everything() && ignored_sectors.empty() && masks.empty() &&
+           !limits_ranges() && !returns_only && !trusted_only && excluded == point_flags::none;
   }
 };
 
@@ -107,9 +128,10 @@ constexpr std::span<point> filter_points(std::span<point> points,
 }
 
 /// The same for fill_grid(), which must distinguish "no obstacle" from "not known". Points in
-/// excluded directions are left out, so that their bins become NaN. A return outside the range
-/// limits stays and is flagged too_near, so that its bin becomes NaN and not empty. A return within
-/// limits that the caller set loses that flag, even if it is near, because the caller requested it.
+/// excluded directions are left out, so that their bins become NaN. A return that is left out for
+/// its range, its place or a flag stays and is flagged too_near, so that its bin becomes NaN and not
+/// empty. A return within range limits that the caller set loses that flag, even if it is near,
+/// because the caller requested it.
 /// Points without return stay. *Pure, never allocates.*
 constexpr std::span<point> filter_for_grid(std::span<const point> points,
                                            const point_filter& filter,
@@ -120,8 +142,12 @@ constexpr std::span<point> filter_for_grid(std::span<const point> points,
   for (const point& p : points) {
     if (!filter.has_direction(p)) continue;
     point& kept = out[count++] = p;
-    if (kept.is_no_return() || !filter.limits_ranges()) continue;
-    kept.flags = (kept.flags & revolution_start) | (filter.has_range(kept) ? none : too_near);
+    if (kept.is_no_return()) continue;
+    if (!filter.has_range(kept) || !filter.has_place(kept) || !filter.has_flags(kept)) {
+      kept.flags = kept.flags | too_near;
+    } else if (filter.limits_ranges()) {
+      kept.flags = without(kept.flags, too_near);
+    }
   }
   return out.first(count);
 }

@@ -187,8 +187,9 @@ class G4LIDAR_API lidar {
   /// with the current revolution; earlier points count as missed. Errors: as next_scan().
   [[nodiscard]] view_result<std::span<const point>> next_points(milliseconds timeout);
 
-  /// Every point, for readers in any thread. It is written from the first call on, so a program that takes only scans
-  /// does not pay for it. *Any thread.* Valid as long as this lidar, also after a move.
+  /// Every point, for readers in any thread. The ring is written from the first call on, so it costs
+  /// a program that takes only scans nothing. *Any thread.* Valid as long as this lidar, also after
+  /// a move.
   [[nodiscard]] const lidar_ring& points() const noexcept;
 
   /// For an event loop: poll native_handle() for reading until next_deadline(), then call

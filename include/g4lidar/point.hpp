@@ -23,6 +23,10 @@ enum class point_flags : std::uint8_t {
   no_return = 1,         ///< Nothing came back: `range_mm` is 0 and not a range.
   too_near = 2,          ///< Below 100 mm, where range and correction are not reliable.
   revolution_start = 4,  ///< The sample of a zero packet, the first one of its revolution.
+  not_deskewed = 8,      ///< deskew() left it where it was: its time or the motion is not known.
+  unlikely = 16,         ///< Its packet or its neighbours contradict it; see plausibility.hpp.
+  isolated = 32,         ///< No other return is near; set by mark_isolated().
+  veiling = 64,          ///< Between two surfaces, where nothing is; set by mark_veiling().
 };
 
 /// All flags of both. *Pure.*
@@ -32,6 +36,11 @@ enum class point_flags : std::uint8_t {
 /// The flags that both contain. *Pure.*
 [[nodiscard]] constexpr point_flags operator&(point_flags a, point_flags b) noexcept {
   return static_cast<point_flags>(static_cast<unsigned>(a) & static_cast<unsigned>(b));
+}
+
+/// The flags of `flags` that `left_out` does not contain. *Pure.*
+[[nodiscard]] constexpr point_flags without(point_flags flags, point_flags left_out) noexcept {
+  return static_cast<point_flags>(static_cast<unsigned>(flags) & ~static_cast<unsigned>(left_out));
 }
 
 /// Ranges below this are flagged too_near, in millimetres. (protocol: Point packets)
@@ -64,6 +73,11 @@ struct point {
   /// Whether this is the sample of a zero packet, which begins a revolution.
   [[nodiscard]] constexpr bool is_revolution_start() const noexcept {
     return (flags & point_flags::revolution_start) != point_flags::none;
+  }
+
+  /// Whether deskew() left it where it was, because its time or the motion is not known.
+  [[nodiscard]] constexpr bool is_not_deskewed() const noexcept {
+    return (flags & point_flags::not_deskewed) != point_flags::none;
   }
 
 #if __STDC_HOSTED__

@@ -39,8 +39,8 @@ class point_storage {
   std::size_t count_;
 };
 
-/// *Allocates on open.* The ring of a lidar and its first reader. They are made by the first call of get(), in memory that
-/// takes no pages before.
+/// *Allocates on open.* The ring of a lidar and its first reader. They are made by the first call of
+/// get(), in memory that takes no pages before.
 class ring_on_demand {
  public:
   /// A ring that begins with point 0, and its reader. *Any thread.*
@@ -159,8 +159,8 @@ class point_pipeline {
 
   /// The ring, which is written from the first call on. *Any thread.*
   [[nodiscard]] lidar_ring& ring() noexcept { return ring_.get().ring; }
-  /// The oldest points that this function has not returned yet. The first call begins with those of a scan that was not
-  /// taken, and of the unfinished revolution.
+  /// The oldest points that this function has not returned yet. The first call begins with those of
+  /// a scan that was not taken, and of the unfinished revolution.
   [[nodiscard]] ring_read read(std::span<point> out) noexcept;
   /// Drops the points that read() would return, and returns their number.
   std::uint64_t drop_points() noexcept {

@@ -4,33 +4,17 @@
 #include <bit>
 #include <string>
 
-#include "g4lidar/core/angle.hpp"
+#include "cloud_point.hpp"
 #include "value_text.hpp"
 
 namespace g4lidar {
 namespace {
 
-/// A point of the cloud, with the layout of a binary file, except for the byte order.
-struct cloud_point {
-  float x_m;
-  float y_m;
-  float range_m;
-  float angle_deg;
-  std::int64_t time_ns;
-};
-
-cloud_point in_cloud(const point& p, frame to) noexcept {
-  const float degrees = bearing_deg(p.angle_deg, to);
-  const sine_cosine direction = sine_cosine_deg(degrees);
-  const float range_m = p.range_mm / 1000.0F;
-  const bool is_signed = to == frame::robot && degrees >= 180.0F;
-  return {range_m * direction.cosine, range_m * direction.sine, range_m,
-          is_signed ? degrees - 360.0F : degrees, p.time_ns};
-}
-
-void write_binary(const cloud_point& p, text_sink& out) {
-  char* at = out.room(sizeof(cloud_point) + sizeof(float));
-  for (const float field : {p.x_m, p.y_m, 0.0F, p.range_m, p.angle_deg}) {
+/// 28 bytes.
+void write_binary(const point& p, frame to, text_sink& out) {
+  const cloud_point shown = in_cloud(p, to);
+  char* at = out.room(28);
+  for (const float field : {shown.x_m, shown.y_m, 0.0F, shown.range_m, shown.angle_deg}) {
     digits::put_word(at,
                      std::bit_cast<std::uint32_t>(field));  // the next field overwrites half of it
     at += sizeof field;
@@ -39,9 +23,10 @@ void write_binary(const cloud_point& p, text_sink& out) {
   out.wrote(at + sizeof p.time_ns);
 }
 
-void write_ascii(const cloud_point& p, text_sink& out) {
-  out.write(shortest(p.x_m) + " " + shortest(p.y_m) + " 0 " + shortest(p.range_m) + " " +
-            shortest(p.angle_deg) + " " + std::to_string(p.time_ns) + "\n");
+void write_ascii(const point& p, frame to, text_sink& out) {
+  const cloud_point shown = in_cloud(p, to);
+  out.write(shortest(shown.x_m) + " " + shortest(shown.y_m) + " 0 " + shortest(shown.range_m) +
+            " " + shortest(shown.angle_deg) + " " + std::to_string(p.time_ns) + "\n");
 }
 
 }  // namespace
@@ -66,8 +51,7 @@ void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink
   out.write(is_binary ? "DATA binary\n" : "DATA ascii\n");
   for (const point& p : points) {
     if (p.is_no_return()) continue;
-    const cloud_point shown = in_cloud(p, to);
-    is_binary ? write_binary(shown, out) : write_ascii(shown, out);
+    is_binary ? write_binary(p, to, out) : write_ascii(p, to, out);
   }
 }
 

@@ -12,7 +12,11 @@ shaping_writer::shaping_writer(std::unique_ptr<point_writer> inner, const shapin
     : inner_(std::move(inner)),
       options_(options),
       times_(options.time, options.wall_ahead_ns),
-      scan_times_(options.time, options.wall_ahead_ns) {}
+      scan_times_(options.time, options.wall_ahead_ns) {
+  point_flags& excluded = options_.filter.excluded;
+  if (options_.speckle) excluded = excluded | point_flags::isolated;
+  if (options_.edges) excluded = excluded | point_flags::veiling;
+}
 
 void shaping_writer::begin(text_sink& out) {
   if (!std::exchange(begun_, true)) inner_->begin(out);
@@ -41,6 +45,28 @@ std::span<const point> shaping_writer::in_range(std::span<const point> points) {
   return {begin, end};
 }
 
+bool shaping_writer::looks_at_neighbours() const noexcept {
+  return options_.speckle.has_value() || options_.edges.has_value();
+}
+
+void shaping_writer::mark(std::span<point> points, scan_ends ends) const {
+  if (options_.speckle) mark_isolated(points, *options_.speckle, ends);
+  if (options_.edges) mark_veiling(points, *options_.edges, ends);
+}
+
+std::span<const point> shaping_writer::marked_stream(std::span<const point> points, bool is_end) {
+  const std::size_t window = std::max(options_.speckle ? options_.speckle->window : 0,
+                                      options_.edges ? options_.edges->window : 0);
+  const std::size_t old = passed_on_ - std::min(passed_on_, window);
+  marked_.erase(marked_.begin(), marked_.begin() + static_cast<std::ptrdiff_t>(old));
+  marked_.insert(marked_.end(), points.begin(), points.end());
+  mark(marked_, scan_ends::open);
+  const std::size_t from = passed_on_ - old;
+  const std::size_t waiting = is_end ? 0 : window;
+  passed_on_ = std::max(from, marked_.size() - std::min(marked_.size(), waiting));
+  return std::span(marked_).subspan(from, passed_on_ - from);
+}
+
 std::span<const point> shaping_writer::shaped(std::span<const point> points) {
   const bool is_same = options_.filter.keeps_everything() && times_.changes_nothing();
   if (!options_.for_grid && is_same) return points;
@@ -54,6 +80,17 @@ std::span<const point> shaping_writer::shaped(std::span<const point> points) {
 void shaping_writer::write_points(std::span<const point> points, text_sink& out) {
   if (done_) return;
   points = in_range(points);
+  if (looks_at_neighbours()) points = marked_stream(points, done_);
+  write_shaped(points, out);
+}
+
+void shaping_writer::finish(text_sink& out) {
+  if (done_ || takes_scans() || !looks_at_neighbours()) return;
+  write_shaped(marked_stream({}, true), out);
+  done_ = true;
+}
+
+void shaping_writer::write_shaped(std::span<const point> points, text_sink& out) {
   if (points.empty()) return;
   begin(out);
   follow_wall_clock();
@@ -78,7 +115,12 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   times_.come(record.time_ns);
   scan_times_.come(record.time_ns);
   scan_record changed = record;
-  changed.scan.points = shaped(record.scan.points);
+  if (looks_at_neighbours()) {
+    marked_.assign(record.scan.points.begin(), record.scan.points.end());
+    mark(marked_, record.scan.is_piece() ? scan_ends::open : scan_ends::joined);
+    changed.scan.points = marked_;
+  }
+  changed.scan.points = shaped(changed.scan.points);
   changed.time_ns = scan_times_.of(record.time_ns);
   inner_->write_scan(changed, out);
   done_ = ++records_ >= options_.count;

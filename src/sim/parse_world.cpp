@@ -11,78 +11,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
+
+#include "route.hpp"
+#include "world_text.hpp"
 
 namespace g4lidar::sim {
 namespace {
-
-constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
-
-// Takes the next word from the front of `line`; empty at its end.
-std::string_view next_word(std::string_view& line) noexcept {
-  while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
-  std::size_t end = 0;
-  while (end < line.size() && !is_space(line[end])) ++end;
-  const std::string_view word = line.substr(0, end);
-  line.remove_prefix(end);
-  return word;
-}
-
-// A word for an error message, safe to print.
-std::string quoted(std::string_view word) {
-  constexpr std::size_t enough = 24;
-  std::string out = "'";
-  for (const char c : word.substr(0, enough)) out += c >= ' ' && c <= '~' ? c : '?';
-  out += word.size() > enough ? "...'" : "'";
-  return out;
-}
-
-// [+-]digits[.digits], at most 15 significant digits and 15 behind the point: an integer and a
-// power of ten are then both exact, and one division rounds like a correct conversion, in any
-// locale.
-std::optional<double> number(std::string_view word) noexcept {
-  const bool negative = !word.empty() && word.front() == '-';
-  if (!word.empty() && (word.front() == '-' || word.front() == '+')) word.remove_prefix(1);
-  std::int64_t digits = 0;
-  double scale = 1.0;
-  bool any = false;
-  bool behind_point = false;
-  for (const char c : word) {
-    if (c == '.' && !behind_point) {
-      behind_point = true;
-      continue;
-    }
-    if (c < '0' || c > '9') return std::nullopt;
-    any = true;
-    digits = digits * 10 + (c - '0');
-    if (behind_point) scale *= 10.0;
-    if (digits >= 1'000'000'000'000'000 || scale > 1e15) return std::nullopt;
-  }
-  if (!any) return std::nullopt;
-  const double value = static_cast<double>(digits) / scale;
-  return negative ? -value : value;
-}
-
-// Parses as many numbers as `out` holds from the rest of a line; returns the error, if any.
-std::optional<std::string> numbers(std::string_view rest, std::span<double> out,
-                                   std::string_view form) {
-  std::size_t count = 0;
-  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-    const std::optional<double> value = number(word);
-    if (!value) {
-      return quoted(word) + " is not a number; write decimals like -1.25, up to 15 digits";
-    }
-    if (count < out.size()) out[count] = *value;
-    ++count;
-  }
-  if (count == out.size()) return std::nullopt;
-  return "expected '" + std::string(form) + "', found " + std::to_string(count) +
-         (count == 1 ? " number" : " numbers");
-}
-
-bool too_far(std::span<const double> coordinates) noexcept {
-  return std::any_of(coordinates.begin(), coordinates.end(),
-                     [](double x) { return std::fabs(x) > max_coordinate_m; });
-}
 
 double distance_m(const wall& w, const pose& from) noexcept {
   const double dx = w.x2_m - w.x1_m;
@@ -95,23 +30,50 @@ double distance_m(const wall& w, const pose& from) noexcept {
   return std::sqrt(x * x + y * y);
 }
 
+// Takes the lines of `text` in turn, until one is wrong.
+template <class Take>
+std::optional<world_error> each_line(std::string_view text, const Take& take) {
+  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    line = line.substr(0, line.find('#'));
+    const std::string_view word = next_word(line);
+    if (!word.empty()) {
+      if (auto wrong = take(word, line, line_number)) {
+        return world_error{line_number, *std::move(wrong)};
+      }
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return std::nullopt;
+}
+
 // Collects a world from lines.
 class world_reader {
  public:
   // The error of the line, if any.
-  std::optional<std::string> take(std::string_view line, std::size_t line_number) {
-    line = line.substr(0, line.find('#'));
-    const std::string_view word = next_word(line);
-    if (word.empty()) return std::nullopt;
-    if (word == "wall") return take_wall(line, line_number);
-    if (word == "lidar") return take_lidar(line);
-    return quoted(word) + " is unknown; a line begins with 'wall', 'lidar' or '#'";
+  std::optional<std::string> take(std::string_view word, std::string_view rest,
+                                  std::size_t line_number) {
+    if (word == "wall") return take_wall(rest, line_number);
+    if (word == "disc") return take_disc(rest);
+    if (word == "lidar") return take_lidar(rest);
+    if (word == "mount") return take_mount(rest);
+    if (auto taken = route_.take(word, rest, line_number)) return *std::move(taken);
+    return quoted(word) +
+           " is unknown; a line begins with 'wall', 'disc', 'lidar', 'mount', 'pose', 'drive' or "
+           "'#'";
   }
 
   std::variant<world, world_error> finish() && {
-    if (!has_lidar_) return world_error{0, "there is no line 'lidar x y heading_deg'"};
+    if (!has_lidar_ && !route_.has_poses()) {
+      return world_error{0, "there is no line 'lidar x y heading_deg'"};
+    }
+    if (auto wrong = route_.finish(world_.lidar)) return *std::move(wrong);
+    world_.path = std::move(route_).path();
+    if (!world_.path.empty()) world_.lidar = world_.path.front().robot.at;
+    const pose lidar = placed(world_.lidar, world_.mount);
     for (std::size_t i = 0; i < world_.walls.size(); ++i) {
-      if (distance_m(world_.walls[i], world_.lidar) < min_clearance_m) {
+      if (distance_m(world_.walls[i], lidar) < min_clearance_m) {
         return world_error{line_of_wall_[i], "the wall is within 1 cm of the lidar"};
       }
     }
@@ -122,7 +84,7 @@ class world_reader {
   std::optional<std::string> take_wall(std::string_view rest, std::size_t line_number) {
     std::array<double, 4> at{};
     if (auto wrong = numbers(rest, at, "wall x1 y1 x2 y2")) return wrong;
-    if (too_far(at)) return "no coordinate may be beyond 1000 m";
+    if (too_far(at)) return too_far_message;
     const wall w{at[0], at[1], at[2], at[3]};
     const double dx = w.x2_m - w.x1_m;
     const double dy = w.y2_m - w.y1_m;
@@ -135,34 +97,75 @@ class world_reader {
     return std::nullopt;
   }
 
-  std::optional<std::string> take_lidar(std::string_view rest) {
-    std::array<double, 3> at{};
-    if (auto wrong = numbers(rest, at, "lidar x y heading_deg")) return wrong;
-    if (has_lidar_) return "there is a second lidar; a world has one";
-    if (too_far(std::span(at).first(2))) return "no coordinate may be beyond 1000 m";
-    if (std::fabs(at[2]) > 360.0) return "the heading must be -360 to 360 degrees";
-    world_.lidar = {at[0], at[1], at[2]};
-    has_lidar_ = true;
+  std::optional<std::string> take_disc(std::string_view rest) {
+    std::array<double, 6> at{};
+    auto read = read_numbers(rest, at, 3, "disc radius x y [to_x to_y speed]");
+    if (read.wrong) return std::move(read.wrong);
+    if (read.count == 4 || read.count == 5) {
+      return "expected 'disc radius x y', or 'disc radius x y to_x to_y speed'";
+    }
+    if (too_far(std::span(at).subspan(1, 4))) return too_far_message;
+    if (at[0] < min_disc_radius_m || at[0] > max_disc_radius_m) {
+      return "the radius must be 0.01 to 2 m";
+    }
+    if (at[5] < 0.0 || at[5] > max_disc_speed_m_per_s) return "the speed must be 0 to 10 m/s";
+    if (world_.discs.size() == max_discs) return "there are more than 1000 discs";
+    world_.discs.push_back({at[0], at[1], at[2], at[3], at[4], at[5]});
     return std::nullopt;
+  }
+
+  // x, y and heading.
+  static std::optional<std::string> read_pose(std::string_view rest, std::string_view form,
+                                              pose& into) {
+    std::array<double, 3> at{};
+    if (auto wrong = numbers(rest, at, form)) return wrong;
+    if (too_far(std::span(at).first(2))) return too_far_message;
+    if (std::fabs(at[2]) > 360.0) return heading_message;
+    into = {at[0], at[1], at[2]};
+    return std::nullopt;
+  }
+
+  std::optional<std::string> take_lidar(std::string_view rest) {
+    if (has_lidar_) return "there is a second lidar; a world has one";
+    has_lidar_ = true;
+    return read_pose(rest, "lidar x y heading_deg", world_.lidar);
+  }
+
+  std::optional<std::string> take_mount(std::string_view rest) {
+    if (has_mount_) return "there is a second line 'mount'; a world has one lidar";
+    has_mount_ = true;
+    return read_pose(rest, "mount x y heading_deg", world_.mount);
   }
 
   world world_;
   std::vector<std::size_t> line_of_wall_;
+  route route_;
   bool has_lidar_ = false;
+  bool has_mount_ = false;
 };
 
 }  // namespace
 
 std::variant<world, world_error> parse_world(std::string_view text) {
   world_reader reader;
-  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    if (auto wrong = reader.take(text.substr(0, end), line_number)) {
-      return world_error{line_number, *std::move(wrong)};
-    }
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
+  const auto take = [&](auto... line) { return reader.take(line...); };
+  if (auto wrong = each_line(text, take)) return *std::move(wrong);
   return std::move(reader).finish();
+}
+
+std::variant<std::vector<path_point>, world_error> parse_path(std::string_view text,
+                                                              const pose& start) {
+  route read;
+  const auto take = [&](std::string_view word, std::string_view rest,
+                        std::size_t line_number) -> std::optional<std::string> {
+    if (auto taken = read.take(word, rest, line_number)) return *std::move(taken);
+    return quoted(word) + " is unknown; a line of a path begins with 'pose', 'drive' or '#'";
+  };
+  if (auto wrong = each_line(text, take)) return *std::move(wrong);
+  if (auto wrong = read.finish(start)) return *std::move(wrong);
+  auto path = std::move(read).path();
+  if (path.empty()) return world_error{0, "there is no line 'pose' and no line 'drive'"};
+  return path;
 }
 
 }  // namespace g4lidar::sim

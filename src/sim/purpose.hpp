@@ -17,6 +17,8 @@ enum class purpose : std::uint64_t {
   strays = 6,
   batches = 7,
   garbage = 8,  // bytes at a wrong baud rate, to the device
+  odometry_way = 9,
+  odometry_turn = 10,
   faults = 100  // plus the index of the fault
 };
 

@@ -32,16 +32,6 @@ std::uint64_t first_phase(const scanner_options& options) noexcept {
   return static_cast<std::uint64_t>(turn * 0x1p53) << 11;
 }
 
-// The same place, mirrored at the lidar's own axis of angle 0.
-world mirrored(world scene) {
-  for (wall& w : scene.walls) {
-    w.y1_m = 2.0 * scene.lidar.y_m - w.y1_m;
-    w.y2_m = 2.0 * scene.lidar.y_m - w.y2_m;
-  }
-  scene.lidar.heading_deg = -scene.lidar.heading_deg;
-  return scene;
-}
-
 // -1 to 1 and back in a minute, from 0 at time 0.
 double slow_wave(std::int64_t time_ns) noexcept {
   constexpr std::int64_t quarter = 15'000'000'000;
@@ -103,7 +93,6 @@ static_assert(response_layouts[0].kind == response_kind::scan_started);
 scanner::scanner(const world& scene, const scanner_options& options)
     : options_(options),
       caster_(scene),
-      mirrored_caster_(mirrored(scene)),
       noise_(stream_for(options.seed, purpose::noise)),
       dropouts_(stream_for(options.seed, purpose::dropouts)),
       speed_mhz_(options.scan_frequency_chz * std::uint32_t{10}),
@@ -170,8 +159,10 @@ sample_truth scanner::measure() noexcept {
   const double since_index = static_cast<double>(phase_ >> 11) * 0x1p-53 * 360.0;
   truth.first_level_deg = wrap_once_deg(options_.index_deg + since_index);
   truth.bearing_deg = wrap_once_deg(truth.first_level_deg + far_correction_deg);
-  const ray_caster& caster = turning_ == turning::mirrored ? mirrored_caster_ : caster_;
-  if (const std::optional<sighting> target = caster.cast(truth.first_level_deg)) {
+  truth.lidar = caster_.lidar_at(truth.time_ns);
+  const bool is_mirrored = turning_ == turning::mirrored;
+  if (const std::optional<sighting> target =
+          caster_.cast(truth.first_level_deg, truth.lidar, truth.time_ns, is_mirrored)) {
     truth.bearing_deg = target->bearing_deg;
     truth.range_mm = target->range_mm;
   }

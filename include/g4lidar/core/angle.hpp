@@ -62,16 +62,15 @@ struct sine_cosine {
       x * x2 * (-1.6666667e-1F + x2 * (8.3333310e-3F + x2 * (-1.9840874e-4F + x2 * 2.7525562e-6F)));
   const float c =
       1.0F + x2 * (-0.5F + x2 * (4.1666666e-2F + x2 * (-1.3888885e-3F + x2 * 2.4760495e-5F)));
-  switch (quarter & 3) {
-    case 0:
-      return {s, c};
-    case 1:
-      return {c, -s};
-    case 2:
-      return {-s, -c};
-    default:
-      return {-c, s};
-  }
+  // An odd number of quarters exchanges the two; each has its sign in two of four quarters. No
+  // branch, so that a compiler can vectorize a loop over it.
+  const auto turns = static_cast<std::uint32_t>(quarter);
+  const std::uint32_t odd = 0U - (turns & 1U);
+  const auto bits = [](float number) { return std::bit_cast<std::uint32_t>(number); };
+  const auto either = [&](float a, float b, std::uint32_t sign) {
+    return std::bit_cast<float>(((bits(a) & odd) | (bits(b) & ~odd)) ^ ((sign & 2U) << 30U));
+  };
+  return {either(c, s, turns), either(s, c, turns + 1U)};
 }
 
 /// An angle on the circle. Sums and differences wrap. Two angles are equal or not, and neither is

@@ -87,9 +87,8 @@ struct compact_correction {
   /// The slope of the lower function.
   static constexpr float below_1 = 0.8795656197F;
 
-  /// atan(t) / t in degrees as a polynomial in t * t, for
-  /// t
-  /// <= 1.14; multiplied by t, it is within 2e-6 degrees.
+  /// atan(t) / t in degrees as a polynomial in t * t, for t <= 1.14; multiplied by t, it is within
+  /// 2e-6 degrees.
   static constexpr std::array<float, 9> coefficients{
       57.2957485712F,  -19.0970140142F, 11.4353011874F,   -8.01804181227F, 5.70921625447F,
       -3.59175127002F, 1.71076904796F,  -0.515605582546F, 0.0713759217089F};
@@ -100,12 +99,12 @@ struct compact_correction {
     const auto whole = static_cast<std::int32_t>(raw);
     const auto sample = static_cast<float>(whole + ((whole - 1) >> 31 & 1'000'000'000));
     const float t = (zero_raw - sample) / (below_0 + below_1 * sample);
-    return centre_deg + t * polynomial(t * t);
+    return centre_deg + t * arctangent_ratio(t * t);
   }
 
- private:
-  /// In pairs, and pairs of pairs: shorter dependency chains, and no loop to unroll.
-  [[nodiscard]] static constexpr float polynomial(float x) noexcept {
+  /// The polynomial of `coefficients` at `x` = t * t. *Pure.* In pairs, and pairs of pairs: shorter
+  /// dependency chains, and no loop to unroll.
+  [[nodiscard]] static constexpr float arctangent_ratio(float x) noexcept {
     const auto& c = coefficients;
     const float x2 = x * x;
     const float low = (c[0] + x * c[1]) + x2 * (c[2] + x * c[3]);

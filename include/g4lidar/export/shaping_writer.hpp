@@ -2,6 +2,7 @@
 // A writer before another writer: filters points, converts their times, and stops at a limit.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -14,13 +15,18 @@
 #include "g4lidar/export/text_sink.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
 
 /// What a shaping_writer does. By default it changes nothing.
 struct shaping_options {
-  point_filter filter{};  ///< Which points are written. Its ignored sectors outlive the writer.
+  point_filter filter{};  ///< Which points are written. What it views outlives the writer.
+  /// Isolated returns are left out, and veiling points. Of a stream of points the last ones wait for
+  /// their neighbours: see finish().
+  std::optional<speckle_limits> speckle{};
+  std::optional<edge_limits> edges{};
   bool for_grid = false;  ///< Filters with filter_for_grid(), for make_grid_writer().
   time_style time = time_style::monotonic;  ///< What is written in the place of times.
   std::int64_t wall_ahead_ns = 0;   ///< For time_style::absolute: wall clock minus monotonic clock.
@@ -48,6 +54,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   void write_points(std::span<const point> points, text_sink& out) override;
   /// Writes a revolution, or a piece of one.
   void write_scan(const scan_record& record, text_sink& out) override;
+  /// Writes the points that waited for their neighbours. Nothing is written after it.
+  void finish(text_sink& out);
 
   /// Whether nothing more will be written: the count or the end of the range is reached.
   [[nodiscard]] bool is_done() const noexcept { return done_; }
@@ -57,13 +65,20 @@ class G4LIDAR_API shaping_writer final : public point_writer {
  private:
   /// Those of `points` that are in the range of time.
   [[nodiscard]] std::span<const point> in_range(std::span<const point> points);
+  [[nodiscard]] bool looks_at_neighbours() const noexcept;
+  void mark(std::span<point> points, scan_ends ends) const;
+  /// The points of the stream that can be marked now, marked; `is_end`: all.
+  [[nodiscard]] std::span<const point> marked_stream(std::span<const point> points, bool is_end);
   /// Those that the filter keeps, with the times that are written.
   [[nodiscard]] std::span<const point> shaped(std::span<const point> points);
+  void write_shaped(std::span<const point> points, text_sink& out);
   void follow_wall_clock();
 
   std::unique_ptr<point_writer> inner_;
   shaping_options options_;
   std::vector<point> shaped_;
+  std::vector<point> marked_;  // of a stream also the neighbours of what comes next
+  std::size_t passed_on_ = 0;  // of `marked_`
   time_shift times_;
   time_shift scan_times_;
   std::optional<std::int64_t> first_ns_;

@@ -13,7 +13,7 @@
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/detail/sim/random.hpp"
-#include "g4lidar/detail/sim/ray_caster.hpp"
+#include "g4lidar/detail/sim/scene_caster.hpp"
 #include "g4lidar/settings.hpp"
 #include "g4lidar/sim/world.hpp"
 
@@ -63,6 +63,7 @@ struct sample_truth {
       bearing_deg;  ///< The direction of the target, clockwise, [0, 360); without a target, of an infinitely distant one.
   double range_mm;  ///< Of the target, at any distance and without noise; 0: there is none.
   std::uint16_t raw;  ///< As sent: quarters of a millimetre, 0 for no return.
+  pose lidar;         ///< The pose of the lidar at `time_ns`; its heading is not wrapped.
 };
 
 /// A packet as the device sends it, and the true values of its samples.
@@ -113,8 +114,7 @@ class G4LIDAR_API scanner {
   void set_step() noexcept;
 
   scanner_options options_;
-  ray_caster caster_;
-  ray_caster mirrored_caster_;
+  scene_caster caster_;
   random_stream noise_;
   random_stream dropouts_;
   turning turning_ = turning::clockwise;

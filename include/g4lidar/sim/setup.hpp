@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -21,6 +22,7 @@ namespace g4lidar::sim {
 /// All that a text contains about a device.
 struct setup {
   std::string world_file;  ///< For load_world().
+  std::string path_file;   ///< For load_path(); empty: the path of the world.
   device_options device;
   std::vector<fault> faults;
 };
@@ -30,7 +32,7 @@ struct setup_error {
   std::string message;
 };
 
-/// Sets what "NAME=VALUE" names: `world`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
+/// Sets what "NAME=VALUE" names: `world`, `path`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
 /// the member of device_options of that name (docs/sim.md lists them). Returns what is wrong, a sentence
 /// without a full stop; empty if nothing is. Does not check the values against each other: see
 /// problem_with(). Throws only std::bad_alloc.
@@ -46,6 +48,11 @@ struct setup_error {
 /// The world in a file of at most 16 MB; built_in_world() for an empty name. A file that cannot be
 /// read is an error of line 0. Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::variant<world, world_error> load_world(const std::string& file);
+
+/// Replaces the path of a world by that in a file of at most 16 MB (parse_path()). Returns the error,
+/// if any; a file that cannot be read is one of line 0. Throws only std::bad_alloc.
+[[nodiscard]] G4LIDAR_API std::optional<world_error> load_path(world& into,
+                                                               const std::string& file);
 
 /// The options of `count` devices that are served together. The seed is one higher for each. The
 /// first have `serials`, of 16 digits each; the others count up from the serial number of `each`,

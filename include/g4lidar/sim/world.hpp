@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The world that a simulated lidar measures: straight walls, and the position of the lidar.
+// The world that a simulated lidar measures: straight walls, discs that may move, and the position
+// or the path of the lidar.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
+#include "g4lidar/sim/path.hpp"
 
 namespace g4lidar::sim {
 
@@ -20,19 +22,28 @@ struct wall {
   double y2_m;
 };
 
-/// The position of a lidar and the direction of its angle 0: degrees counter-clockwise from the x
-/// axis. The lidar's own angles grow clockwise from there.
-struct pose {
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double heading_deg = 0.0;
+/// A round thing: a pillar, or a person who walks to and fro between two places on a straight way
+/// at a constant speed, from (x_m, y_m) at time 0. It stands if the speed is 0.
+struct disc {
+  double radius_m;
+  double x_m;
+  double y_m;
+  double to_x_m = 0.0;
+  double to_y_m = 0.0;
+  double speed_m_per_s = 0.0;
 };
 
-/// Walls and the position of the lidar. A world that is filled by a program must meet the rules of
-/// parse_world() for files.
+/// Walls, discs, and a robot with a lidar. A world that is filled by a program must meet the rules
+/// of parse_world() for files.
 struct world {
   std::vector<wall> walls;
+  /// Where the robot stands. With the default `mount` the lidar itself.
   pose lidar;
+  std::vector<disc> discs{};
+  /// How the robot moves, times ascending; empty: it stands at `lidar`.
+  std::vector<path_point> path{};
+  /// The pose of the lidar in the frame of the robot: x forward, y to the left.
+  pose mount{};
 };
 
 /// A flat with several rooms: a living room with oblique furniture, a pillar, and a post nearer
@@ -51,11 +62,24 @@ inline constexpr std::size_t max_walls = 10'000;
 inline constexpr double max_coordinate_m = 1000.0;
 /// The minimum length of a wall.
 inline constexpr double min_wall_length_m = 0.001;
-/// The minimum distance of a wall from the lidar.
+/// The minimum distance of a wall from the lidar at time 0.
 inline constexpr double min_clearance_m = 0.01;
+/// The maximum number of discs in a world.
+inline constexpr std::size_t max_discs = 1'000;
+/// The minimum radius of a disc.
+inline constexpr double min_disc_radius_m = 0.01;
+/// The maximum radius of a disc.
+inline constexpr double max_disc_radius_m = 2.0;
+/// The maximum speed of a disc.
+inline constexpr double max_disc_speed_m_per_s = 10.0;
 
 /// The world that `text` describes (docs/sim.md describes the format), or the first error in it.
 /// Independent of the locale. Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::variant<world, world_error> parse_world(std::string_view text);
+
+/// The path that `text` describes, lines `pose` or `drive` as in a world, or the first error in it.
+/// Commands begin at `start`. Independent of the locale. Throws only std::bad_alloc.
+[[nodiscard]] G4LIDAR_API std::variant<std::vector<path_point>, world_error> parse_path(
+    std::string_view text, const pose& start);
 
 }  // namespace g4lidar::sim

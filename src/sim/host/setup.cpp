@@ -154,7 +154,8 @@ std::string set_member(device_options& device, std::string_view name, std::strin
     }
     known.append(each).append(", ");
   }
-  return refused(name, "is not one of " + known + "fault, firmware, model, seed, serial, world");
+  return refused(name,
+                 "is not one of " + known + "fault, firmware, model, path, seed, serial, world");
 }
 
 // "3.2"
@@ -183,6 +184,24 @@ std::string decoded(std::string_view coded) {
   return text;
 }
 
+std::optional<world_error> read_text(const std::string& file, std::string& text) {
+  constexpr std::size_t longest = std::size_t{16} * 1024 * 1024;
+  std::error_code none;
+  if (fs::is_directory(file, none)) return world_error{0, "it is a directory"};
+  const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  std::array<char, 16'384> part;
+  ssize_t count = in ? 1 : -1;
+  while (count > 0 && text.size() <= longest) {
+    count = ::read(in.get(), part.data(), part.size());
+    if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
+  }
+  if (count < 0) {
+    return world_error{0, "it cannot be read: " + std::generic_category().message(errno)};
+  }
+  if (text.size() > longest) return world_error{0, "it is longer than 16 MB"};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string set(setup& into, std::string_view word) {
@@ -190,6 +209,10 @@ std::string set(setup& into, std::string_view word) {
   const std::string_view value = word.substr(std::min(name.size() + 1, word.size()));
   if (name == "world") {
     into.world_file = value;
+    return {};
+  }
+  if (name == "path") {
+    into.path_file = value;
     return {};
   }
   if (name == "seed") return read_into(into.device.scanner.seed, value);
@@ -223,23 +246,20 @@ std::variant<setup, setup_error> parse_setup(std::string_view source) {
 }
 
 std::variant<world, world_error> load_world(const std::string& file) {
-  constexpr std::size_t longest = std::size_t{16} * 1024 * 1024;
   if (file.empty()) return built_in_world();
-  std::error_code none;
-  if (fs::is_directory(file, none)) return world_error{0, "it is a directory"};
-  const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   std::string text;
-  std::array<char, 16'384> part;
-  ssize_t count = in ? 1 : -1;
-  while (count > 0 && text.size() <= longest) {
-    count = ::read(in.get(), part.data(), part.size());
-    if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
-  }
-  if (count < 0) {
-    return world_error{0, "it cannot be read: " + std::generic_category().message(errno)};
-  }
-  if (text.size() > longest) return world_error{0, "it is longer than 16 MB, and 10,000 walls"};
+  if (auto wrong = read_text(file, text)) return *std::move(wrong);
   return parse_world(text);
+}
+
+std::optional<world_error> load_path(world& into, const std::string& file) {
+  std::string text;
+  if (auto wrong = read_text(file, text)) return wrong;
+  auto read = parse_path(text, into.lidar);
+  if (auto* wrong = std::get_if<world_error>(&read)) return std::move(*wrong);
+  into.path = std::get<std::vector<path_point>>(std::move(read));
+  into.lidar = into.path.front().robot.at;
+  return std::nullopt;
 }
 
 std::vector<device_options> several(const device_options& each, std::size_t count,

@@ -18,11 +18,21 @@ namespace g4lidar::sim {
 /// The limit of the correction for far targets, in degrees.
 inline constexpr double far_correction_deg = -7.990596267964585603;
 
+/// A wall in millimetres in the lidar's frame: x at bearing 0, y at bearing 90.
+struct seen_wall {
+  double normal_x, normal_y;      ///< Unit vector, from the lidar to the line of the wall.
+  double tangent_x, tangent_y;    ///< Unit vector.
+  double distance;                ///< Of the line of the wall, >= 0.
+  double along_begin, along_end;  ///< Where the wall begins and ends on its line.
+  double nearest, farthest;       ///< Distances of the wall's points.
+  std::uint32_t index;
+};
+
 /// A target on the beam.
 struct sighting {
   double range_mm;     ///< From the centre of the lidar, > 0.
   double bearing_deg;  ///< Its direction: first-level angle + correction, in [0, 360).
-  std::uint32_t wall;  ///< The index of the wall that was hit.
+  std::uint32_t wall;  ///< The index of the wall that was hit; that of a disc, after all walls.
 };
 
 /// Finds the wall that the beam hits first. The correction depends on the range, so the beam is not
@@ -38,22 +48,6 @@ class G4LIDAR_API ray_caster {
   [[nodiscard]] std::optional<sighting> cast(double first_level_deg) const noexcept;
 
  private:
-  // A wall in millimetres in the lidar's frame: x at bearing 0, y at bearing 90.
-  struct seen_wall {
-    double normal_x, normal_y;      // unit vector, from the lidar to the line of the wall
-    double tangent_x, tangent_y;    // unit vector
-    double distance;                // of the line of the wall, >= 0
-    double along_begin, along_end;  // where the wall begins and ends on its line
-    double nearest, farthest;       // distances of the wall's points
-    std::uint32_t index;
-  };
-  struct beam;
-
-  [[nodiscard]] static seen_wall as_seen(const wall& w, const pose& from,
-                                         std::uint32_t index) noexcept;
-  [[nodiscard]] static std::optional<double> meet(const seen_wall& target, const beam& ray,
-                                                  double not_beyond_mm) noexcept;
-
   std::vector<seen_wall> walls_;  // the nearest first
   std::vector<std::uint32_t>
       candidates_;  // indices into walls_, sector by sector, in the order of walls_

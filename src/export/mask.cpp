@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/export/mask.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "g4lidar/export/printable.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::string_view spaces = " \t\r";
+
+// Takes the next word from the front of `line`; empty at its end.
+std::string_view next_word(std::string_view& line) noexcept {
+  line.remove_prefix(std::min(line.find_first_not_of(spaces), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(spaces));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+// A word for an error message.
+std::string quoted(std::string_view word) {
+  constexpr std::size_t enough = 24;
+  return "'" + printable(word.substr(0, enough)) + (word.size() > enough ? "...'" : "'");
+}
+
+std::optional<double> number(std::string_view word) noexcept {
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  double value = 0.0;
+  const char* const end = word.data() + word.size();
+  const auto [at, error] = std::from_chars(word.data(), end, value, std::chars_format::fixed);
+  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+// Whether all corners are on one line: then nothing is inside.
+bool has_no_area(const std::vector<corner>& corners) noexcept {
+  const corner& first = corners.front();
+  const auto is_other = [&first](const corner& c) { return c != first; };
+  const auto second = std::find_if(corners.begin(), corners.end(), is_other);
+  if (second == corners.end()) return true;
+  const auto off_line = [&](const corner& c) {
+    return (second->x_m - first.x_m) * (c.y_m - first.y_m) !=
+           (second->y_m - first.y_m) * (c.x_m - first.x_m);
+  };
+  return std::none_of(corners.begin(), corners.end(), off_line);
+}
+
+// Reads the corners of a polygon; returns the error, if any.
+std::optional<std::string> read_corners(std::string_view rest, std::vector<corner>& corners) {
+  std::size_t count = 0;
+  for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
+    const std::optional<double> value = number(word);
+    if (!value) return quoted(word) + " is not a number; write decimals like -0.25";
+    if (!(*value >= -max_mask_coordinate_m && *value <= max_mask_coordinate_m)) {
+      return "no coordinate may be beyond 100 m; coordinates are in metres";
+    }
+    if (count % 2 == 0) corners.emplace_back();
+    (count % 2 == 0 ? corners.back().x_m : corners.back().y_m) = static_cast<float>(*value);
+    if (++count > 2 * max_mask_corners) return "there are more than 1000 corners";
+  }
+  if (count % 2 != 0 || count < 6) {
+    return "expected 'polygon x1 y1 x2 y2 x3 y3 ...', found " + std::to_string(count) +
+           (count == 1 ? " number" : " numbers");
+  }
+  if (has_no_area(corners)) return "all corners are on one line";
+  return std::nullopt;
+}
+
+// Adds what a line contains; returns the error, if any.
+std::optional<std::string> read_line(std::string_view line, mask& made) {
+  line = line.substr(0, line.find('#'));
+  const std::string_view word = next_word(line);
+  if (word.empty()) return std::nullopt;
+  if (word != "polygon") return quoted(word) + " is unknown; a line begins with 'polygon' or '#'";
+  if (made.polygons().size() == max_mask_polygons) return "there are more than 1000 polygons";
+  std::vector<corner> corners;
+  if (auto wrong = read_corners(line, corners)) return wrong;
+  made.add(std::move(corners));
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::variant<mask, mask_error> parse_mask(std::string_view text) {
+  mask made;
+  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    if (auto wrong = read_line(text.substr(0, end), made)) {
+      return mask_error{line_number, *std::move(wrong)};
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  if (made.polygons().empty()) return mask_error{0, "there is no line 'polygon x1 y1 x2 y2 x3 y3'"};
+  return made;
+}
+
+}  // namespace g4lidar
