@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <ranges>
 #include <span>
 #include <string>
@@ -36,7 +37,17 @@ void add(CLI::App& app, const option_row& row) {
     }
   };
   CLI::Option* option = nullptr;
-  if (row.value.empty() && name.starts_with('-')) {
+  if (!row.optional_value.empty()) {
+    const auto given = std::make_shared<std::string>();
+    option = app.add_flag(row.names, *given, row.help)->disable_flag_override(false);
+    option->each([inner = row.take, given](const std::string& word) {
+      try {
+        inner(word == "true" ? "" : word);
+      } catch (const bad_value& reason) {  // CLI11 adds the name
+        throw CLI::ValidationError(reason.what());
+      }
+    });
+  } else if (row.value.empty() && name.starts_with('-')) {
     option = app.add_flag_function(row.names, [take](std::int64_t) { take({""}); }, row.help);
   } else {
     const bool is_list = row.repeatable && !name.starts_with('-');
@@ -183,11 +194,14 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   if (words.size() >= 2 && words[0] == "--complete") {
     return [words] { return complete(std::span(words).subspan(1)); };
   }
+  const std::vector<verb> verbs = all_verbs();
   if (!words.empty() && words.front() == "help") {
+    if (words.size() > 1 && std::ranges::find(verbs, words[1], &verb::name) == verbs.end()) {
+      return [what = in_quotes(words[1])] { return explain(what + " is not a command", ""); };
+    }
     std::ranges::rotate(words, words.begin() + 1);
     words.back() = "--help";
   }
-  const std::vector<verb> verbs = all_verbs();
   CLI::App app("The console tool for the YDLIDAR G4", "g4-dump");
   app.set_version_flag("--version",
                        fmt::format("g4-dump {}.{}.{}", G4LIDAR_VERSION_MAJOR, G4LIDAR_VERSION_MINOR,

@@ -63,6 +63,41 @@ option_rows ending_rows(common_options& options, bool with_idle) {
   return in_group("End condition", rows);
 }
 
+option_row speckle_row(common_options& options) {
+  option_row row{"--speckle", "", "Leave out returns without another one near them"};
+  row.optional_value = "LIMITS";
+  row.take = [&into = options.speckle](const std::string& word) {
+    speckle_limits limits;
+    const auto length = [](float& into_one) {
+      return [&into_one](double value) { into_one = static_cast<float>(value); };
+    };
+    const auto number = [](std::size_t& into_one) {
+      return [&into_one](double value) { into_one = static_cast<std::size_t>(value); };
+    };
+    take_numbers(word, {{"window", 1, max_window, true, number(limits.window)},
+                        {"count", 1, 2 * max_window, true, number(limits.count)},
+                        {"near", 0, 100, false, length(limits.near_m)},
+                        {"ratio", 0, 1, false, length(limits.near_ratio)}});
+    into = limits;
+  };
+  return row;
+}
+
+option_row edges_row(common_options& options) {
+  option_row row{"--edges", "", "Leave out veiling points at jumps of the range"};
+  row.optional_value = "LIMITS";
+  row.take = [&into = options.edges](const std::string& word) {
+    edge_limits limits;
+    take_numbers(
+        word, {{"window", 1, max_window, true,
+                [&limits](double value) { limits.window = static_cast<std::size_t>(value); }},
+               {"angle", 0.1, 45, false,
+                [&limits](double value) { limits.least_angle_deg = static_cast<float>(value); }}});
+    into = limits;
+  };
+  return row;
+}
+
 option_rows filter_rows(common_options& options) {
   option_row range{"--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16"};
   range.take = [&filter = options.filter](const std::string& word) {
@@ -81,11 +116,14 @@ option_rows filter_rows(common_options& options) {
                       options.ignored.push_back(directions(word));
                     }};
   ignore.repeatable = true;
-  return in_group("Filters", {range,
-                              value_row("--fov", "FROM:TO",
-                                        "Keep these directions, in degrees of the frame: -90:90",
-                                        options.filter.field_of_view, directions),
-                              ignore});
+  return in_group(
+      "Filters",
+      {range,
+       value_row("--fov", "FROM:TO", "Keep these directions, in degrees of the frame: -90:90",
+                 options.filter.field_of_view, directions),
+       ignore,
+       text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask),
+       speckle_row(options), edges_row(options)});
 }
 
 option_row frame_row(const char* name, const char* help, frame& into) {

@@ -14,6 +14,7 @@
 #include "g4lidar/export/point_writer.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "rows.hpp"
@@ -57,6 +58,9 @@ struct common_options {
   std::chrono::nanoseconds idle{0};      ///< The end when nothing has come for so long; 0: never.
   point_filter filter;  ///< But for its frame, which is `frame`, and its ignored sectors.
   std::vector<sector> ignored;
+  std::string mask;  ///< The file of --mask; empty: none.
+  std::optional<speckle_limits> speckle;
+  std::optional<edge_limits> edges;
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
   std::optional<time_style> time;  ///< If not given, what suits the source.
@@ -73,7 +77,7 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_row duration_row(common_options& options);
 /// -n, -d, --idle.
 [[nodiscard]] option_rows ending_rows(common_options& options, bool with_idle = true);
-/// --range, --fov, --ignore.
+/// --range, --fov, --ignore, --mask, --speckle, --edges.
 [[nodiscard]] option_rows filter_rows(common_options& options);
 /// --frame, --unit, --time.
 [[nodiscard]] option_rows shape_rows(common_options& options);

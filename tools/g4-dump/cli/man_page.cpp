@@ -38,6 +38,7 @@ std::string title_of(const option_row& row) {
   std::string names;
   for (const char c : row.names) names += c == ',' ? std::string("\\fR, \\fB") : escaped({&c, 1});
   std::string title = "\\fB" + names + "\\fR";
+  if (!row.optional_value.empty()) title += "[=\\fI" + escaped(row.optional_value) + "\\fR]";
   if (!row.value.empty()) title += " \\fI" + escaped(row.value) + "\\fR";
   return title;
 }

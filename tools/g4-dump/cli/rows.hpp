@@ -8,6 +8,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <ranges>
 #include <string>
@@ -66,6 +67,17 @@ struct number_range {
   double to;
 };
 [[nodiscard]] number_range range_of(const std::string& text, double least, double most);
+
+/// A number that a word such as "window=3,near=0.1" can set.
+struct named_number {
+  std::string_view name;
+  double least;
+  double most;
+  bool is_whole;
+  std::function<void(double)> take;
+};
+/// Sets the numbers that `text` names; it may be empty.
+void take_numbers(const std::string& text, const std::vector<named_number>& known);
 
 /// `into` becomes what `parse` makes of the word; it throws bad_value.
 template <class Target, class Parse>

@@ -34,6 +34,8 @@ struct option_row {
   bool required = false;
   std::string group{};                  ///< Its heading in the help; empty: Options.
   std::vector<std::string> excludes{};  ///< Refused together with these.
+  /// Of a flag: the value that it may have after `=`; then `take` gets it.
+  std::string optional_value{};
 };
 using option_rows = std::vector<option_row>;
 
@@ -57,10 +59,24 @@ struct verb {
   std::function<int()> run{};  ///< Returns the exit code; throws a failure.
 };
 
-[[nodiscard]] verb make_list_verb(), make_watch_verb(), make_info_verb(), make_health_verb(),
-    make_stats_verb(), make_dump_verb(), make_scan_verb(), make_doctor_verb(), make_packets_verb(),
-    make_decode_verb(), make_sim_verb(), make_set_verb(), make_start_verb(), make_stop_verb(),
-    make_restart_verb(), make_record_verb(), make_replay_verb(), make_convert_verb();
+[[nodiscard]] verb make_list_verb();
+[[nodiscard]] verb make_watch_verb();
+[[nodiscard]] verb make_info_verb();
+[[nodiscard]] verb make_health_verb();
+[[nodiscard]] verb make_stats_verb();
+[[nodiscard]] verb make_dump_verb();
+[[nodiscard]] verb make_scan_verb();
+[[nodiscard]] verb make_doctor_verb();
+[[nodiscard]] verb make_packets_verb();
+[[nodiscard]] verb make_decode_verb();
+[[nodiscard]] verb make_sim_verb();
+[[nodiscard]] verb make_set_verb();
+[[nodiscard]] verb make_start_verb();
+[[nodiscard]] verb make_stop_verb();
+[[nodiscard]] verb make_restart_verb();
+[[nodiscard]] verb make_record_verb();
+[[nodiscard]] verb make_replay_verb();
+[[nodiscard]] verb make_convert_verb();
 
 /// All of them, in the order of the help.
 [[nodiscard]] std::vector<verb> all_verbs();

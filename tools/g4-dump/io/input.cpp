@@ -38,8 +38,10 @@ void refuse_recording(std::span<const std::uint8_t> begin, const std::string& ti
                     "or packets; a recording is not read from a pipe.");
 }
 
-const std::string baud_question = fmt::format(
-    "Was the port read at a wrong baud rate (a G4 needs {})?", diagnostic_options{}.baud);
+std::string baud_question() {
+  return fmt::format("Was the port read at a wrong baud rate (a G4 needs {})?",
+                     diagnostic_options{}.baud);
+}
 
 }  // namespace
 
@@ -175,7 +177,7 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes, bool
            "and jsonl.";
   }
   if (found == diagnosis::wrong_baud_rate) {
-    return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question);
+    return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
   }
   return fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.", text,
                      counts.responses == 1 ? "a response" : "responses");
@@ -183,7 +185,7 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes, bool
 
 std::string warning_about(const stream_counts& counts, std::uint64_t bytes) {
   if (diagnosis_of(counts, bytes) != diagnosis::line_noise) return {};
-  return "More than half of the bytes belong to no packet. " + baud_question + "\n";
+  return "More than half of the bytes belong to no packet. " + baud_question() + "\n";
 }
 
 }  // namespace g4_dump

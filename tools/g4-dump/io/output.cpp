@@ -92,6 +92,18 @@ void output::take(std::string_view text) {
   }
 }
 
+void output::replace_begin(std::string_view text) {
+  flush();
+  if (fd_ <= 2 || closed_) return;
+  for (off_t at = 0; !text.empty();) {
+    const ssize_t count = ::pwrite(fd_, text.data(), text.size(), at);
+    if (count < 0 && errno != EINTR) give_up("write", errno);
+    if (count <= 0) continue;
+    text.remove_prefix(static_cast<std::size_t>(count));
+    at += count;
+  }
+}
+
 void output::commit() {
   flush();
   if (fd_ <= 2) return;

@@ -47,6 +47,8 @@ class output : public g4lidar::text_sink {
   output& operator=(const output&) = delete;
   ~output() override;
 
+  /// flush(), then writes `text` over the begin of what was written. For a file on disk.
+  void replace_begin(std::string_view text);
   /// flush(), and the file stands in its place.
   void commit();
 

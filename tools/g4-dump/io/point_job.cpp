@@ -14,10 +14,12 @@
 #include "cli/logger.hpp"
 #include "g4lidar/export/byte_points.hpp"
 #include "g4lidar/export/shaping_writer.hpp"
+#include "g4lidar/export/slam_text.hpp"
 #include "g4lidar/export/svg.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "mask_file.hpp"
 #include "output.hpp"
 #include "read_loop.hpp"
 
@@ -31,6 +33,8 @@ shaping_options shape_of(const point_job& job, const common_options& common, sou
   shape.filter.in = common.frame;
   shape.filter.ignored_sectors = common.ignored;
   shape.filter.returns_only = job.returns_only;
+  shape.speckle = common.speckle;
+  shape.edges = common.edges;
   shape.for_grid = job.bins > 0;
   shape.partial_scans = job.partial;
   if (common.count > 0) shape.count = common.count;
@@ -92,7 +96,9 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of(common_.source)) {
     if (job_.text) kind_ = source_kind::bytes;
     if (has_scan_files()) choose_files();
-    const shaping_options shape = shape_of(job_, common_, kind_);
+    shaping_options shape = shape_of(job_, common_, kind_);
+    if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
+    shape.filter.masks = mask_.polygons();
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;
     const bool has_long_times =
@@ -122,10 +128,16 @@ class point_run {
     }
   }
 
-  std::unique_ptr<point_writer> make_writer() const {
+  std::unique_ptr<point_writer> make_writer() {
+    if (job_.point_file) {
+      auto writer = make_point_file_writer(*job_.point_file, common_.frame);
+      point_file_ = writer.get();
+      return writer;
+    }
     if (has_scan_files()) {
       return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
     }
+    if (job_.carmen) return make_carmen_writer(job_.bins);
     if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins);
     return make_point_writer(job_.style);
   }
@@ -133,8 +145,19 @@ class point_run {
   /// Numbered files are made by their writer. What may have no end goes to its file at once.
   [[nodiscard]] std::string output_name() const { return files_ ? "/dev/null" : common_.output; }
   [[nodiscard]] output::appears when_it_appears(bool has_end) const {
-    return has_end || has_scan_files() || job_.whole_file ? output::appears::whole
-                                                          : output::appears::growing;
+    return has_end || has_scan_files() || job_.point_file || job_.whole_file
+               ? output::appears::whole
+               : output::appears::growing;
+  }
+
+  void commit(output& out) {
+    if (point_file_ != nullptr) {
+      writer_->begin(out);  // if there was no point
+      point_file_->end(out);
+      if (const std::string begin = point_file_->first_bytes(); !begin.empty())
+        out.replace_begin(begin);
+    }
+    out.commit();
   }
 
   void pump(input& in, output& out,
@@ -154,7 +177,7 @@ class point_run {
     output out(output_name(), when_it_appears(in.id().has_value()));
     refuse_same_file(in.id(), out);
     const std::uint64_t found = job_.text ? read_text(in, out) : read_bytes(in, out);
-    if (found > 0) out.commit();
+    if (found > 0) commit(out);
     report_left_out();
   }
 
@@ -166,6 +189,7 @@ class point_run {
       way.take(got);
     });
     if (!writer_->is_done()) way.finish();  // else what is left was not asked for
+    writer_->finish(out);
     if (job_.json_counts) {
       logger::write(json_line(counts_as_json(way.counts(), way.bytes())));
     } else if (way.bytes() > 0) {
@@ -186,6 +210,7 @@ class point_run {
       way.take({reinterpret_cast<const char*>(got.data()), got.size()});
     });
     if (!writer_->is_done()) way.finish();
+    writer_->finish(out);
     if (way.points() == 0 && interrupt() == 0) {
       throw failure(exit_code::bad_file,
                     in.title() +
@@ -208,13 +233,15 @@ class point_run {
     opened_source source(common_, how);
     try {
       run_lidar(source, out);
+      writer_->finish(out);
     } catch (const failure&) {  // what came before it is good
-      out.commit();
+      writer_->finish(out);
+      commit(out);
       report_lidar(source);
       throw;
     }
     const bool has_packets = source.lidar().counts().stream.packets > 0;
-    if (has_packets || !is_recording) out.commit();
+    if (has_packets || !is_recording) commit(out);
     report_lidar(source);
     if (!has_packets && is_recording && interrupt() == 0 && !out.is_closed()) {
       throw failure(exit_code::bad_file,
@@ -265,7 +292,9 @@ class point_run {
   common_options common_;
   source_kind kind_;
   numbered_files files_;
+  g4lidar::mask mask_;
   std::unique_ptr<shaping_writer> writer_;
+  point_file_writer* point_file_ = nullptr;  // behind writer_
 };
 
 }  // namespace

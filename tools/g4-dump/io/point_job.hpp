@@ -8,6 +8,7 @@
 
 #include "cli/common_options.hpp"
 #include "g4lidar/export/pcd.hpp"
+#include "g4lidar/export/point_file.hpp"
 #include "g4lidar/export/text_points.hpp"
 #include "source.hpp"
 
@@ -24,6 +25,8 @@ struct point_job {
   std::size_t bins = 0;              ///< 0: points and no grid.
   scan_file file = scan_file::none;  ///< One file for each revolution.
   pcd_data data = pcd_data::binary;
+  std::optional<point_file_format> point_file;  ///< One file for all points.
+  bool carmen = false;                          ///< A CARMEN log, of `bins` ranges.
   opening source{};                 ///< How it is opened; `played.range` holds for files, too.
   std::optional<text_source> text;  ///< The source holds points as text, in this format.
   g4lidar::frame text_frame = g4lidar::frame::vendor;  ///< Of the angles in that text.

@@ -75,28 +75,51 @@ std::string path_of(const std::string& source) {
   return source.starts_with(file_prefix) ? source.substr(file_prefix.size()) : source;
 }
 
-sim::world load_world(std::string name, const output* out) {
-  if (name == "-") name = "/dev/stdin";
-  if (out != nullptr) refuse_same_file(id_of_name(name), *out);
-  auto read = sim::load_world(name);
+namespace {
+
+/// "-" is standard input.
+std::string name_of_text(const std::string& name, const output* out) {
+  std::string file = name == "-" ? "/dev/stdin" : name;
+  if (out != nullptr && !file.empty()) refuse_same_file(id_of_name(file), *out);
+  return file;
+}
+
+[[noreturn]] void refuse(const std::string& file, const sim::world_error& error,
+                         std::string_view advice) {
+  throw failure(exit_code::bad_file,
+                fmt::format("{}{}: {}. {}", in_quotes(file),
+                            error.line > 0 ? fmt::format(", line {}", error.line) : "",
+                            error.message, advice));
+}
+
+}  // namespace
+
+sim::world load_scene(const sim::setup& setup, const output* out) {
+  const std::string file = name_of_text(setup.world_file, out);
+  auto read = sim::load_world(file);
   if (interrupt() != 0) throw interrupted();
   if (const auto* error = std::get_if<sim::world_error>(&read)) {
-    throw failure(
-        exit_code::bad_file,
-        fmt::format("{}{}: {}. Give a text file of walls (docs/sim.md has the format), or "
-                    "none for the built-in rooms.",
-                    in_quotes(name), error->line > 0 ? fmt::format(", line {}", error->line) : "",
-                    error->message));
+    refuse(
+        file, *error,
+        "Give a text file of walls (docs/sim.md has the format), or none for the built-in rooms.");
   }
-  return std::get<sim::world>(std::move(read));
+  auto scene = std::get<sim::world>(std::move(read));
+  if (setup.path_file.empty()) return scene;
+  const std::string path_file = name_of_text(setup.path_file, out);
+  const auto wrong = sim::load_path(scene, path_file);
+  if (interrupt() != 0) throw interrupted();
+  if (wrong) {
+    refuse(path_file, *wrong,
+           "Give a text file of poses or commands (docs/sim.md has the format).");
+  }
+  return scene;
 }
 
 simulated_port serve_simulated(const std::string& source) {
   const auto read = sim::parse_setup(source);
   if (const auto* error = std::get_if<sim::setup_error>(&read)) throw bad_value(error->message);
   const auto& wish = std::get<sim::setup>(read);
-  auto served =
-      sim::serve_alone(sim::device(load_world(wish.world_file), wish.device, wish.faults));
+  auto served = sim::serve_alone(sim::device(load_scene(wish), wish.device, wish.faults));
   if (served) return *std::move(served);
   throw failure(exit_code::bad_file,
                 in_tool_words(served.error().message()) + " TMPDIR can name another directory.");

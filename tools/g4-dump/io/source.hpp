@@ -31,9 +31,9 @@ enum class source_kind : unsigned char {
 /// The path of a source that is a file, without "file:".
 [[nodiscard]] std::string path_of(const std::string& source);
 
-/// The walls in the file of that name, or the built-in ones; not in the file that `out` writes. Throws
-/// a failure.
-[[nodiscard]] sim::world load_world(std::string name, const output* out = nullptr);
+/// The world and the path that a setup names, or the built-in rooms; not in the file that `out` writes.
+/// Throws a failure.
+[[nodiscard]] sim::world load_scene(const sim::setup& setup, const output* out = nullptr);
 
 using simulated_port = std::shared_ptr<const sim::background_pty>;
 /// The device of `sim:...`. Throws a failure, or bad_value.

@@ -27,7 +27,18 @@
 namespace g4_dump {
 namespace {
 
-enum class file_form : unsigned char { recording, raw_bytes, csv, jsonl, pcd };
+enum class file_form : unsigned char {
+  recording,
+  raw_bytes,
+  csv,
+  jsonl,
+  pcd,
+  npy,
+  npz,
+  ply,
+  xyz,
+  carmen
+};
 
 struct convert_options {
   point_job points;               ///< Its source is IN, its output OUT; also for bytes.
@@ -41,12 +52,13 @@ struct convert_options {
   [[nodiscard]] const reading_options& range() const noexcept { return points.source.played.range; }
 };
 
-/// Those that are read, with pcd those that are written, then other names of them.
+/// The first four are read, and all are written; then other names of them.
 const choices<file_form>& forms() {
-  static const choices<file_form> all{{"mcap", file_form::recording}, {"bin", file_form::raw_bytes},
-                                      {"csv", file_form::csv},        {"jsonl", file_form::jsonl},
-                                      {"pcd", file_form::pcd},        {"ndjson", file_form::jsonl},
-                                      {"raw", file_form::raw_bytes}};
+  static const choices<file_form> all{
+      {"mcap", file_form::recording}, {"bin", file_form::raw_bytes}, {"csv", file_form::csv},
+      {"jsonl", file_form::jsonl},    {"pcd", file_form::pcd},       {"npy", file_form::npy},
+      {"npz", file_form::npz},        {"ply", file_form::ply},       {"xyz", file_form::xyz},
+      {"carmen", file_form::carmen},  {"ndjson", file_form::jsonl},  {"raw", file_form::raw_bytes}};
   return all;
 }
 
@@ -72,7 +84,7 @@ file_form form_of_input(const convert_options& options) {
   const file_form by_looks =
       is_recording ? file_form::recording : form_of_name(name).value_or(file_form::raw_bytes);
   const file_form form = options.from.value_or(by_looks);
-  if (form == file_form::pcd) throw bad_value("pcd is written, but not read");
+  if (form >= file_form::pcd) throw bad_value("this format is written, but not read");
   if (form == file_form::recording && !is_recording) {
     throw failure(exit_code::bad_file,
                   in_quotes(name) + " is not a recording. Give a file made by g4-dump record.");
@@ -87,7 +99,8 @@ file_form form_of_output(const convert_options& options) {
   if (name.ends_with('/') || std::filesystem::is_directory(name, unknown)) return file_form::pcd;
   if (const auto form = form_of_name(name)) return *form;
   throw bad_value(
-      fmt::format("'{}' does not end in .mcap, .bin, .csv, .jsonl or .pcd; give its "
+      fmt::format("'{}' does not end in .mcap, .bin, .csv, .jsonl, .pcd, .npy, .npz, .ply, .xyz or "
+                  ".carmen; give its "
                   "format with --to-format",
                   name));
 }
@@ -95,7 +108,7 @@ file_form form_of_output(const convert_options& options) {
 bool is_text(file_form form) { return form == file_form::csv || form == file_form::jsonl; }
 
 void refuse_nonsense(const convert_options& options, file_form from, file_form to) {
-  const bool to_points = is_text(to) || to == file_form::pcd;
+  const bool to_points = to >= file_form::csv;
   if (is_text(from) && !to_points) {
     throw bad_value(
         fmt::format("{} holds points, not bytes of a lidar: it can be converted to csv, jsonl and "
@@ -105,10 +118,28 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
   if (!to_points && options.shapes) {
     throw bad_value(
         "raw bytes and recordings hold what the lidar sent: --range, --fov, --ignore, "
-        "--frame, --unit, --time and --scans are for points");
+        "--mask, --speckle, --edges, --frame, --unit, --time and --scans are for points");
   }
-  if (to == file_form::recording && options.out() == "-") {
-    throw bad_value("a recording is written to a file, not to standard output");
+  const bool ends_at_its_begin = to == file_form::recording || to == file_form::npy ||
+                                 to == file_form::npz || to == file_form::ply;
+  if (ends_at_its_begin && options.out() == "-") {
+    throw bad_value(fmt::format("{} is written to a file, not to standard output",
+                                to == file_form::recording ? "a recording" : "this format"));
+  }
+}
+
+std::optional<point_file_format> point_file_of(file_form form) {
+  switch (form) {
+    case file_form::npy:
+      return point_file_format::npy;
+    case file_form::npz:
+      return point_file_format::npz;
+    case file_form::ply:
+      return point_file_format::ply;
+    case file_form::xyz:
+      return point_file_format::xyz;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -117,7 +148,10 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (from == file_form::csv) job.text = text_source::csv;
   if (from == file_form::jsonl) job.text = text_source::jsonl;
   if (to == file_form::pcd) job.file = scan_file::pcd;
-  job.partial = to != file_form::pcd;
+  job.point_file = point_file_of(to);
+  job.carmen = to == file_form::carmen;
+  if (job.carmen) job.bins = g4lidar::recording_options{}.scan_bins;
+  job.partial = to != file_form::pcd && to != file_form::carmen;
   job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
   return run(job);
 }
@@ -205,7 +239,8 @@ int run(const convert_options& options) {
 
 constexpr const char* convert_details =
     R"(IN is a recording, csv or jsonl as g4-dump writes them for points, else raw bytes. If OUT is a
-directory or a name such as scan-%04d.pcd, each revolution gets a pcd file.
+directory or a name such as scan-%04d.pcd, each revolution gets a pcd file. npy, npz (NumPy), ply
+and xyz have all points. carmen is a log for SLAM programs: each revolution as 720 ranges.
 
 Points of a recording are those of the driver that was recorded, with their times. Raw bytes
 have no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
@@ -218,7 +253,7 @@ written. ^C ends the command; what was converted so far is written.)";
 
 option_rows form_rows(convert_options& options) {
   const choices<file_form> inputs(forms().begin(), forms().begin() + 4);
-  const choices<file_form> outputs(forms().begin(), forms().begin() + 5);
+  const choices<file_form> outputs(forms().begin(), forms().end() - 2);
   point_job& job = options.points;
   reading_options& range = job.source.played.range;
   return {

@@ -24,48 +24,10 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
+#include "sim.hpp"
 
 namespace g4_dump {
 namespace {
-
-struct sim_options {
-  double seconds = 10.0;
-  sim::setup setup;
-  std::string truth;
-  std::string output = "-";
-  // Devices instead of a file, each at one of these places.
-  std::vector<std::string> links{};
-  std::vector<std::pair<std::string, std::uint16_t>> bridges{};
-  bool is_registered = false;
-  std::vector<std::string> serials{};  ///< Of the first of them.
-  bool has_device_options = false;     ///< Whether an option of devices alone was given.
-  bool log = false;                    ///< Whether their commands are written to standard error.
-
-  [[nodiscard]] std::size_t devices() const noexcept {
-    return links.size() + bridges.size() + (is_registered ? 1U : 0U);
-  }
-};
-
-void write_truth(std::span<const sim::sample_truth> samples, output& out) {
-  using namespace g4lidar::digits;
-  constexpr std::size_t max_row = 160;
-  for (const sim::sample_truth& sample : samples) {
-    char* at = out.room(max_row);
-    const auto put = [&at](char* end) {
-      at = end;
-      *at++ = ',';
-    };
-    put(put_number(at, sample.index));
-    put(put_number(at, static_cast<std::uint64_t>(sample.time_ns)));
-    put(put_number(at, sample.revolution));
-    put(put_angle<6>(at, sample.first_level_deg));
-    put(put_angle<6>(at, sample.bearing_deg));
-    put(put_fixed<3>(at, sample.range_mm));
-    at = put_number(at, sample.raw);
-    *at++ = '\n';
-    out.wrote(at);
-  }
-}
 
 void check(const sim_options& options) {
   if (const auto problem = problem_with(options.setup.device); !problem.empty()) {
@@ -76,6 +38,13 @@ void check(const sim_options& options) {
   };
   if (!options.truth.empty() && plain(options.truth) == plain(options.output)) {
     throw bad_value("--truth and -o name the same file");
+  }
+  if (!options.odometry_file.empty() && (plain(options.odometry_file) == plain(options.output) ||
+                                         plain(options.odometry_file) == plain(options.truth))) {
+    throw bad_value("--odometry names the same file as -o or --truth");
+  }
+  if (const auto problem = problem_with(options.odometry); !problem.empty()) {
+    throw bad_value(std::string(problem));
   }
   if (options.devices() == 0 && options.has_device_options) {
     throw bad_value("--serial, --fault, --device and --log need --link, --tcp or --register");
@@ -103,7 +72,7 @@ sim::pty_port opened(result<sim::pty_port> port, const std::string& place,
 /// At the links, then the registered one, then the bridges.
 std::vector<sim::pty_port> open_ports(const sim_options& options,
                                       const std::vector<sim::device_options>& devices) {
-  const sim::world scene = load_world(options.setup.world_file);
+  const sim::world scene = load_scene(options.setup);
   std::vector<std::string> links = options.links;
   if (options.is_registered) {
     links.push_back(sim::registered_link(devices[links.size()].info.serial_number()));
@@ -155,46 +124,16 @@ int serve(const sim_options& options) {
 
 int run(const sim_options& options) {
   check(options);
-  if (options.devices() > 0) return serve(options);
-  output out(options.output);
-  if (out.is_terminal()) {
-    throw failure(exit_code::usage,
-                  "raw bytes are not for a terminal. Give a file with -o FILE, or a pipe: "
-                  "g4-dump sim | g4-dump decode");
-  }
-  std::optional<output> truth;
-  if (!options.truth.empty()) {
-    truth.emplace(options.truth);
-    refuse_same_file(out.id(), *truth);
-    truth->write("index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw\n");
-  }
-  const auto write = [&out](g4lidar::bytes data) {
-    out.write({reinterpret_cast<const char*>(data.data()), data.size()});
-  };
-  sim::scanner scanner(load_world(options.setup.world_file, &out), options.setup.device.scanner);
-  const auto end_ns = static_cast<std::int64_t>(std::llround(options.seconds * 1e9));
-  write(sim::scan_start_reply());
-  while (interrupt() == 0 && !out.is_closed()) {
-    const sim::sent_packet packet = scanner.next();
-    if (packet.complete_ns >= end_ns) break;
-    write(packet.data);
-    if (truth) write_truth(packet.samples, *truth);
-  }
-  // An interrupted simulation is of no use: it can be repeated.
-  if (interrupt() != 0) {
-    if (options.output == "-") out.flush();
-    return 128 + interrupt();
-  }
-  if (truth) truth->commit();
-  out.commit();
-  return static_cast<int>(exit_code::ok);
+  return options.devices() > 0 ? serve(options) : write_stream(options);
 }
 
 constexpr const char* sim_details =
     R"(The same options give the same bytes on every computer: the response to the start command, and
 all packets that were complete before N seconds. Columns of --truth: index, time_ns, scan,
 first_level_deg, bearing_deg (direction of the target), range_mm (its distance, exact; 0: no
-target), raw (as sent, in quarters of a millimeter).
+target), raw (as sent, in quarters of a millimeter), lidar_x_m, lidar_y_m, lidar_heading_deg
+(where the lidar was). Lines of --odometry: time_ns, x and y in m, yaw_rad, counted from where the
+robot was at time 0.
 
 With --link PATH the command serves a device that answers commands, on a pseudo-terminal to
 which the symbolic link PATH leads, until ^C. With --tcp PORT it serves a device for
@@ -216,7 +155,29 @@ option_rows file_rows(sim_options& options) {
       text_row("-o,--output", "FILE", "Output file; - for standard output (-)", options.output),
       text_row("--truth", "FILE", "Write the exact value of each sample, as csv", options.truth),
       text_row("--world", "FILE", "The walls (a flat of a few rooms); see docs/sim.md",
-               options.setup.world_file)};
+               options.setup.world_file),
+      text_row("--path", "FILE", "How the lidar moves (as in the world); see docs/sim.md",
+               options.setup.path_file)};
+}
+
+option_rows odometry_rows(sim_options& options) {
+  sim::odometry_options& how = options.odometry;
+  const auto number = [](const char* name, const char* value, const char* help, double& into,
+                         double least,
+                         double most) { return number_row(name, value, help, into, least, most); };
+  option_rows rows{
+      text_row("--odometry", "FILE", "Write the odometry: lines of time_ns, x, y and yaw_rad",
+               options.odometry_file),
+      number("--odometry-rate", "HZ", "Poses per second (50)", how.rate_hz, 0.1, 1000.0),
+      number("--way-noise", "RATIO", "Standard deviation of the odometry after 1 m (0)",
+             how.way_noise, 0.0, 1.0),
+      number("--turn-noise", "RATIO", "The same after a turn by 90 degrees (0)", how.turn_noise,
+             0.0, 1.0),
+      number("--way-slip", "RATIO", "Share by which each way is counted too long (0)", how.way_slip,
+             -0.5, 0.5),
+      number("--turn-slip", "RATIO", "Share by which each turn is counted too far (0)",
+             how.turn_slip, -0.5, 0.5)};
+  return in_group("Odometry of a lidar that moves", rows);
 }
 
 option_rows scanner_rows(sim::scanner_options& scanner) {
@@ -283,7 +244,7 @@ option_rows served_rows(sim_options& options) {
           [&options](const std::string& word) { options.bridges.push_back(tcp_place_of(word)); }),
       flag_row("--register", "Serve a device where list and serial: find it",
                options.is_registered)};
-  for (option_row& row : doors) row.excludes = {"--seconds", "--output", "--truth"};
+  for (option_row& row : doors) row.excludes = {"--seconds", "--output", "--truth", "--odometry"};
   option_rows of_devices{
       listed("--serial", "DIGITS", "Serial numbers of the devices, in turn: 16 digits each",
              [&options](const std::string& word) {
@@ -313,13 +274,15 @@ verb make_sim_verb() {
       .name = "sim",
       .summary = "Simulate a G4: write its bytes, or serve a device",
       .options = joined(file_rows(*options), scanner_rows(options->setup.device.scanner),
-                        served_rows(*options)),
+                        odometry_rows(*options), served_rows(*options)),
       .details = sim_details,
       .examples =
           {{"g4-dump sim --seconds 60 --seed 7 -o room.bin --truth room.csv",
             "A minute of raw bytes, and their exact values"},
            {"g4-dump sim --seconds 5 --noise-mm 8 --dropout 0.02 | g4-dump decode --format text",
             "Print the points of a noisy lidar"},
+           {"g4-dump sim --seconds 90 --world office.txt --odometry way.txt -o office.bin",
+            "Drive through a world whose file has a path, and write the odometry"},
            {"g4-dump sim --link /tmp/lidar --log", "Serve a device at /tmp/lidar"},
            {"G4LIDAR_SIM_DIR=/tmp/g4 g4-dump sim --register",
             "Serve a device for G4LIDAR_SIM_DIR=/tmp/g4 g4-dump list --probe"},

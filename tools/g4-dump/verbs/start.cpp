@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verbs start, stop and restart. After start the device goes on scanning.
+// The verb start: the device goes on scanning after it.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -55,41 +55,6 @@ changed.)",
        .examples = {{"g4-dump start", "Start the only G4"},
                     {"g4-dump start /dev/ttyUSB0", "Start the one at this port"}}},
       start);
-}
-
-verb make_stop_verb() {
-  const auto stop = [](const common_options& options) {
-    command_source source(options, task::stopping);  // which has stopped it
-    if (!source.was_scanning()) {
-      logger::info(fmt::format("{}: stopped; it was not scanning\n", source.lidar().name()));
-    }
-    return exit_code::ok;
-  };
-  return device_verb({.name = "stop",
-                      .summary = "Stop scanning",
-                      .details = "The command ends when the device is silent. It is no error if "
-                                 "the device was not scanning.",
-                      .examples = {{"g4-dump stop", "Stop the only G4"}}},
-                     stop);
-}
-
-verb make_restart_verb() {
-  const auto restart = [](const common_options& options) {
-    command_source source(options, task::asking);
-    const auto begin = clock::now();
-    value_of(source.lidar().ask(requests::restart()));
-    const std::chrono::duration<double> took = clock::now() - begin;
-    logger::info(
-        fmt::format("{}: restarted; it answered after {:.1f} s. Its settings may be lost.\n",
-                    source.lidar().name(), took.count()));
-    return exit_code::ok;
-  };
-  return device_verb(
-      {.name = "restart",
-       .summary = "Restart the device and wait until it answers",
-       .details = "It does not scan after the restart, and its settings may be lost.",
-       .examples = {{"g4-dump restart", "Restart the only G4"}}},
-      restart);
 }
 
 }  // namespace g4_dump

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The two halves of the verb sim: a stream in a file, and devices.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "g4lidar/sim/odometry.hpp"
+#include "g4lidar/sim/setup.hpp"
+#include "io/source.hpp"
+
+namespace g4_dump {
+
+struct sim_options {
+  double seconds = 10.0;
+  sim::setup setup;
+  std::string truth;
+  std::string odometry_file;
+  sim::odometry_options odometry;  ///< Its seed is that of the lidar.
+  std::string output = "-";
+  // Devices instead of a file, each at one of these places.
+  std::vector<std::string> links{};
+  std::vector<std::pair<std::string, std::uint16_t>> bridges{};
+  bool is_registered = false;
+  std::vector<std::string> serials{};  ///< Of the first of them.
+  bool has_device_options = false;     ///< Whether an option of devices alone was given.
+  bool log = false;                    ///< Whether their commands are written to standard error.
+
+  [[nodiscard]] std::size_t devices() const noexcept {
+    return links.size() + bridges.size() + (is_registered ? 1U : 0U);
+  }
+};
+
+/// Writes the bytes of a scan, the true values and the odometry.
+[[nodiscard]] int write_stream(const sim_options& options);
+
+}  // namespace g4_dump

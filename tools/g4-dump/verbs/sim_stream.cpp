@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The stream of a simulated lidar in a file, with what was true.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "cli/exit_code.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/export/digits.hpp"
+#include "g4lidar/sim/scanner.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/source.hpp"
+#include "sim.hpp"
+
+namespace g4_dump {
+namespace {
+
+void write_truth(std::span<const sim::sample_truth> samples, output& out) {
+  using namespace g4lidar::digits;
+  constexpr std::size_t max_row = 240;
+  for (const sim::sample_truth& sample : samples) {
+    char* at = out.room(max_row);
+    const auto put = [&at](char* end) {
+      at = end;
+      *at++ = ',';
+    };
+    put(put_number(at, sample.index));
+    put(put_number(at, static_cast<std::uint64_t>(sample.time_ns)));
+    put(put_number(at, sample.revolution));
+    put(put_angle<6>(at, sample.first_level_deg));
+    put(put_angle<6>(at, sample.bearing_deg));
+    put(put_fixed<3>(at, sample.range_mm));
+    put(put_number(at, sample.raw));
+    const sim::pose& lidar = sample.lidar;
+    const double turns = std::floor(lidar.heading_deg / 360.0);
+    out.wrote(fmt::format_to(at, "{:.6f},{:.6f},{:.6f}\n", lidar.x_m, lidar.y_m,
+                             lidar.heading_deg - 360.0 * turns));
+  }
+}
+
+/// Lines "time_ns x y yaw_rad", up to the end.
+void write_odometry(const sim::world& scene, const sim_options& options, std::int64_t end_ns,
+                    output& out) {
+  sim::odometry_options how = options.odometry;
+  how.seed = options.setup.device.scanner.seed;
+  sim::odometry odometry(scene, how);
+  constexpr std::size_t max_row = 120;
+  while (odometry.next_ns() < end_ns && interrupt() == 0) {
+    const sim::odometry_sample sample = odometry.next();
+    out.wrote(fmt::format_to(out.room(max_row), "{} {:.6f} {:.6f} {:.6f}\n", sample.time_ns,
+                             sample.x_m, sample.y_m, sample.yaw_rad));
+  }
+}
+
+}  // namespace
+
+int write_stream(const sim_options& options) {
+  output out(options.output);
+  if (out.is_terminal()) {
+    throw failure(exit_code::usage,
+                  "raw bytes are not for a terminal. Give a file with -o FILE, or a pipe: "
+                  "g4-dump sim | g4-dump decode");
+  }
+  std::optional<output> truth;
+  if (!options.truth.empty()) {
+    truth.emplace(options.truth);
+    refuse_same_file(out.id(), *truth);
+    truth->write(
+        "index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw,"
+        "lidar_x_m,lidar_y_m,lidar_heading_deg\n");
+  }
+  std::optional<output> way;
+  if (!options.odometry_file.empty()) {
+    way.emplace(options.odometry_file);
+    refuse_same_file(out.id(), *way);
+    if (truth) refuse_same_file(truth->id(), *way);
+  }
+  const auto write = [&out](g4lidar::bytes data) {
+    out.write({reinterpret_cast<const char*>(data.data()), data.size()});
+  };
+  const sim::world scene = load_scene(options.setup, &out);
+  sim::scanner scanner(scene, options.setup.device.scanner);
+  const auto end_ns = static_cast<std::int64_t>(std::llround(options.seconds * 1e9));
+  write(sim::scan_start_reply());
+  while (interrupt() == 0 && !out.is_closed()) {
+    const sim::sent_packet packet = scanner.next();
+    if (packet.complete_ns >= end_ns) break;
+    write(packet.data);
+    if (truth) write_truth(packet.samples, *truth);
+  }
+  if (way) write_odometry(scene, options, end_ns, *way);
+  // An interrupted simulation is of no use: it can be repeated.
+  if (interrupt() != 0) {
+    if (options.output == "-") out.flush();
+    return 128 + interrupt();
+  }
+  if (truth) truth->commit();
+  if (way) way->commit();
+  out.commit();
+  return static_cast<int>(exit_code::ok);
+}
+
+}  // namespace g4_dump
