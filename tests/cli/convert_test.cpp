@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -92,6 +93,49 @@ TEST_F(Convert, RawBytes_AreTheSameThroughARecording) {
   convert("second.mcap", "again.bin");
   EXPECT_EQ(text("again.bin"), bytes);
   EXPECT_EQ(run({"replay", "--verify", path("second.mcap")}).code, 0);
+}
+
+/// The number of points in the header of a npy file.
+long points_in(const std::string& npy) {
+  const std::size_t at = npy.find("'shape': (");
+  return at == std::string::npos ? -1 : std::stol(npy.substr(at + 10));
+}
+
+TEST_F(Convert, FilesOfAllPoints_HaveAsManyPointsAsTheCsv) {
+  raw("2");
+  convert("raw.bin", "walk.mcap");
+  for (const std::string form : {"csv", "npy", "npz", "ply", "xyz"})
+    convert("walk.mcap", "a." + form);
+  const long points = static_cast<long>(cli::lines_of(text("a.csv")).size()) - 1;
+  EXPECT_GT(points, 10'000);
+  EXPECT_EQ(points_in(text("a.npy")), points);
+  EXPECT_EQ(text("a.npy").size(), 192U + static_cast<std::size_t>(points) * 24);
+  EXPECT_THAT(text("a.npz"), HasSubstr(text("a.npy")));
+  const auto returns = cli::lines_of(text("a.xyz")).size();
+  EXPECT_THAT(text("a.ply"), HasSubstr("\nelement vertex " + std::to_string(returns) + " "));
+  convert("a.csv", "b.npy");
+  EXPECT_EQ(points_in(text("b.npy")), points);
+  convert("walk.mcap", "near.npy", {"--range", "0.5:1"});
+  EXPECT_LT(points_in(text("near.npy")), points);
+  convert("walk.mcap", "none.npy", {"--range", "0.001:0.002"});
+  EXPECT_EQ(points_in(text("none.npy")), 0);
+  const outcome piped = run({"convert", path("walk.mcap"), "-", "--to-format", "npy"});
+  EXPECT_EQ(piped.code, 2);
+  EXPECT_THAT(piped.err, HasSubstr("this format is written to a file, not to standard output"));
+  EXPECT_THAT(run({"convert", path("a.npy"), path("c.csv")}).err,
+              HasSubstr("written, but not read"));
+}
+
+TEST_F(Convert, CarmenLog_HasALineForEachWholeRevolution) {
+  raw("2");
+  convert("raw.bin", "walk.carmen");
+  const auto lines = cli::lines_of(text("walk.carmen"));
+  EXPECT_GE(lines.size(), 12U);
+  EXPECT_LE(lines.size(), 14U);
+  for (const std::string& line : lines) {
+    EXPECT_THAT(line, StartsWith("ROBOTLASER1 0 "));
+    EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 8 + 720 + 1 + 6 + 5 + 3);
+  }
 }
 
 TEST_F(Convert, OutputThroughALink_ReplacesTheTargetAndKeepsItsPermissions) {

@@ -111,6 +111,7 @@ TEST_F(Failure, WrongCommandLine) {
     EXPECT_THAT(done.err, HasSubstr("See: g4-dump"));
     EXPECT_EQ(cli::lines_of(done.err).size(), 1U);
   };
+  expect_usage({"help", "scam"}, "'scam' is not a command. See: g4-dump --help");
   expect_usage({"encode"}, "unknown command 'encode'; commands are: list, watch, ");
   expect_usage({"--colour"}, "unknown option '--colour'. See: g4-dump dump --help");
   expect_usage({"decode", "--colour"}, "unknown option '--colour'. See: g4-dump decode --help");

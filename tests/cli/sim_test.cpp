@@ -65,14 +65,16 @@ TEST_F(Sim, TheTruthIsWhatDecodeFinds) {
       bytes_of({"--seconds", "2", "--seed", "5", "--truth", path("truth.csv")});
   const std::vector<std::string> truth = lines_of(cli::read_file(path("truth.csv")));
   const std::vector<std::string> points = lines_of(run({"decode"}, bytes).out);
-  ASSERT_EQ(truth.at(0), "index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw");
+  ASSERT_EQ(truth.at(0),
+            "index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw,lidar_x_m,lidar_y_m,"
+            "lidar_heading_deg");
   ASSERT_EQ(truth.size(), points.size());
   std::size_t returns = 0;
   for (std::size_t i = 1; i < truth.size(); ++i) {
     SCOPED_TRACE(truth[i] + " decoded as " + points[i]);
     const std::vector<double> sample = numbers_of(truth[i]);
     const std::vector<double> point = numbers_of(points[i]);
-    ASSERT_EQ(sample.size(), 7U);
+    ASSERT_EQ(sample.size(), 10U);
     ASSERT_EQ(sample[0], static_cast<double>(i - 1));
     ASSERT_EQ(sample[1], point[3]);
     ASSERT_EQ(sample[2], point[0]);
@@ -133,6 +135,28 @@ TEST_F(Sim, AWorldFromAFile) {
     ASSERT_GE(range_mm, 1999.999) << truth[i];
     ASSERT_LE(range_mm, 2828.428) << truth[i];
   }
+}
+
+TEST_F(Sim, APathFromAFile) {
+  cli::write_file(path("way.txt"), "drive forward 2 0.5\n");
+  bytes_of({"--seconds", "5", "--path", path("way.txt"), "--truth", path("truth.csv"), "--odometry",
+            path("way.odo"), "--way-slip", "0.1", "--odometry-rate", "10"});
+  const std::vector<double> last = numbers_of(lines_of(cli::read_file(path("truth.csv"))).back());
+  EXPECT_NEAR(last[7], 0.0, 1e-6);
+  EXPECT_NEAR(last[8], 2.0, 1e-6) << "the lidar of the built-in world looks up";
+  EXPECT_NEAR(last[9], 90.0, 1e-6);
+  const std::vector<std::string> odometry = lines_of(cli::read_file(path("way.odo")));
+  ASSERT_EQ(odometry.size(), 50U);
+  EXPECT_EQ(odometry.front(), "0 0.000000 0.000000 0.000000");
+  EXPECT_EQ(odometry.back(), "4900000000 2.200000 0.000000 0.000000");
+}
+
+TEST_F(Sim, AWrongPathNamesItsLine) {
+  cli::write_file(path("way.txt"), "drive forward 2\npose 1 1 1 1\n");
+  const auto result = run({"sim", "--path", path("way.txt"), "-o", path("x.bin")});
+  EXPECT_EQ(result.code, 10);
+  EXPECT_THAT(result.err,
+              testing::HasSubstr("line 2: a path has lines 'pose' or lines 'drive', not both"));
 }
 
 }  // namespace

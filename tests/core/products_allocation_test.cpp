@@ -14,7 +14,9 @@
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/deskew.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/merge.hpp"
 #include "support/allocation_count.hpp"
 #include "support/packet_bytes.hpp"
 
@@ -97,6 +99,29 @@ TEST(Allocation, NoneFromPacketsToScans) {
   EXPECT_EQ(counts.suspect, 3U);
   EXPECT_EQ(read, 1024U + 64U);
   EXPECT_GT(scans, 20U);
+}
+
+TEST(Allocation, NoneInDeskewingAndMerging) {
+  static std::array<point, 1000> points;
+  std::int64_t time_ns = 0;
+  for (point& p : points) {
+    p.range_mm = 3000.0F;
+    p.time_ns = time_ns += 111'111;
+  }
+  const std::array<stamped_pose, 3> path{
+      {{0, {}}, {50'000'000, {0.1, 0, 0.1}}, {100'000'000, {0.2, 0, 0}}}};
+  const auto motion = [&](std::int64_t at_ns) { return pose_at(path, at_ns); };
+  static std::array<point, 2000> merged_points;
+  const std::array<mounted_scan, 2> lidars{{{points, {}}, {points, {{0.1, 0, 0}, true}}}};
+  std::size_t outside = 0;
+  const std::size_t allocations = allocations_in([&] {
+    outside += deskew(points, twist_2d{1, 0, 1}, 1).outside;
+    outside += deskew(points, path, 1).outside;
+    outside += deskew(points, motion, 1).outside;
+    outside += merge_scans(lidars, path, 100'000'000, merged_points).outside;
+  });
+  EXPECT_EQ(allocations, 0U);
+  EXPECT_EQ(outside, 400U);  // 100 of 1000 are later than the path
 }
 
 }  // namespace

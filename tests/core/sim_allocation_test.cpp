@@ -26,4 +26,17 @@ TEST(SimAllocation, NextPacketAllocatesNothing) {
             0U);
 }
 
+TEST(SimAllocation, NextPacketOfADrivingLidarAllocatesNothing) {
+  sim::world world = sim::built_in_world();
+  world.path = {{0, {world.lidar, {}}}, {2'000'000'000, {{1.0, 0.0, 180.0}, {}}}};
+  world.discs = {{0.3, 2.0, 0.0, 2.0, 1.0, 1.0}};
+  const sim::scanner original(world, {});
+  sim::scanner scanner = original;  // a copy has all the room, too
+  std::size_t samples = 0;
+  EXPECT_EQ(test::allocations_in([&] {
+              while (samples < 20'000) samples += scanner.next().samples.size();
+            }),
+            0U);
+}
+
 }  // namespace

@@ -5,8 +5,10 @@
 #include <bit>
 #include <cstdint>
 #include <string>
+#include <variant>
 
 #include "g4lidar/detail/sim/arithmetic.hpp"
+#include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/scanner.hpp"
 
 namespace {
@@ -109,6 +111,65 @@ INSTANTIATE_TEST_SUITE_P(
         golden{"slow_and_turned", slow_and_turned, 2, 0xD8B9710DC6F54DA1U, 0x10D1BED10ECA966DU},
         golden{"slow_and_turned", slow_and_turned, 3, 0x32D2D2AC5AB58749U, 0x2F8FB42FD8BC8789U}),
     [](const auto& case_) { return case_.param.name + ("_" + std::to_string(case_.param.seed)); });
+
+// A lidar on a robot that drives an arc and turns, among walls, pillars and somebody who walks.
+constexpr const char* driving_world = R"(wall -4 -3 6 -3
+wall 6 -3 6 3.5
+wall 6 3.5 -4 3
+wall -4 3 -4 -3
+disc 0.3 2 -1.5
+disc 0.25 -3 2 5 2.5 1.3
+lidar 0 0 12.5
+mount 0.2 -0.05 -30
+drive forward 1 0.8
+drive arc 1.2 100 0.6
+drive turn -200 90
+)";
+
+TEST(SimGolden, ADrivingLidarSeesTheSameOnEveryProcessor) {
+  const auto read = sim::parse_world(driving_world);
+  ASSERT_TRUE(std::holds_alternative<sim::world>(read));
+  const auto& world = std::get<sim::world>(read);
+  digest of_all;
+  const auto run = [&](sim::turning way) {
+    sim::scanner scanner(world, noisy(4));
+    scanner.set_turning(way);
+    for (std::int64_t now = 0; now < 7'500'000'000;) {
+      const sim::sent_packet packet = scanner.next();
+      of_all.add(packet.data);
+      for (const sim::sample_truth& truth : packet.samples) {
+        for (const double x : {truth.bearing_deg, truth.range_mm, truth.lidar.x_m, truth.lidar.y_m,
+                               truth.lidar.heading_deg}) {
+          of_all.add(x);
+        }
+      }
+      now = packet.complete_ns;
+    }
+  };
+  run(sim::turning::clockwise);
+  run(sim::turning::mirrored);
+  EXPECT_EQ(of_all.value(), 0x38ABFBD4D9DA1B63U) << std::hex << "0x" << of_all.value();
+}
+
+TEST(SimGolden, OdometryIsTheSameOnEveryProcessor) {
+  const auto read = sim::parse_world(driving_world);
+  ASSERT_TRUE(std::holds_alternative<sim::world>(read));
+  sim::odometry_options options;
+  options.rate_hz = 37.0;
+  options.way_noise = options.turn_noise = 0.04;
+  options.way_slip = options.turn_slip = 0.01;
+  sim::odometry odometry(std::get<sim::world>(read), options);
+  digest of_all;
+  for (int i = 0; i < 400; ++i) {
+    const sim::odometry_sample sample = odometry.next();
+    of_all.add(static_cast<std::uint64_t>(sample.time_ns));
+    for (const double x :
+         {sample.x_m, sample.y_m, sample.yaw_rad, sample.forward_m_per_s, sample.yaw_rad_per_s}) {
+      of_all.add(x);
+    }
+  }
+  EXPECT_EQ(of_all.value(), 0x9FF51F5B607FFF05U) << std::hex << "0x" << of_all.value();
+}
 
 TEST(SimGolden, ArithmeticIsTheSameOnEveryProcessor) {
   digest of_all;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "g4lidar/grid.hpp"
+#include "g4lidar/polygon.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -163,6 +164,37 @@ TEST(FilterPoints, KeepsTheOrderInPlaceAndInOtherMemory) {
   EXPECT_THAT(filter_points(std::span<point>(), filter), IsEmpty());
 }
 
+// In the robot's frame the device's 180 degrees are ahead, and 90 degrees are to the left.
+TEST(PointFilter, Masks_AreInTheRobotsFrame) {
+  const std::array<corner, 4> ahead{{{0.9F, -0.1F}, {1.1F, -0.1F}, {1.1F, 0.1F}, {0.9F, 0.1F}}};
+  const std::array<corner, 3> left{{{-0.2F, 0.8F}, {0.2F, 0.8F}, {0.0F, 1.5F}}};
+  const std::array<polygon, 2> masks{ahead, left};
+  point_filter filter;
+  filter.masks = masks;
+  EXPECT_FALSE(filter.keeps_everything());
+  for (const frame in : {frame::vendor, frame::robot}) {
+    filter.in = in;
+    EXPECT_THAT(angles_kept({0, 90, 100, 180, 184, 190, 270}, filter),
+                ElementsAre(0, 100, 190, 270));
+    EXPECT_TRUE(filter.keeps(at(180, 1200.0F)));
+    EXPECT_TRUE(filter.keeps(at(180, 800.0F)));
+    EXPECT_TRUE(filter.keeps(at(180, 0.0F))) << "a point without return has no place";
+  }
+}
+
+TEST(PointFilter, Excluded_LeavesOutFlaggedPoints) {
+  using enum point_flags;
+  point p = at(0);
+  p.flags = veiling | revolution_start;
+  point_filter filter;
+  EXPECT_TRUE(filter.keeps(p));
+  filter.excluded = isolated;
+  EXPECT_FALSE(filter.keeps_everything());
+  EXPECT_TRUE(filter.keeps(p));
+  filter.excluded = isolated | veiling;
+  EXPECT_FALSE(filter.keeps(p));
+}
+
 // With a minimum of 1 m: a return at 0.5 m makes its bin unknown, even if another sample of the bin
 // brought no return; one at 50 mm within limits that include it is used.
 TEST(FilterForGrid, DistinguishesEmptyFromUnknown) {
@@ -185,6 +217,31 @@ TEST(FilterForGrid, DistinguishesEmptyFromUnknown) {
   EXPECT_TRUE(std::isnan(bins[1])) << "left out: not known, not empty";
   EXPECT_TRUE(std::isinf(bins[2]));
   EXPECT_EQ(bins[3], 0.05F);
+}
+
+// Where a return is left out, something was in the way of the beam: a sample without return in the
+// same bin must not make it free.
+TEST(FilterForGrid, MaskedAndFlaggedReturns_MakeABinUnknown) {
+  std::array<point, 6> all{at(0), at(1, 0.0F), at(90), at(91, 0.0F), at(180), at(270)};
+  all[2].flags = point_flags::isolated;
+  all[4].flags = point_flags::veiling | point_flags::revolution_start;
+  const std::array<corner, 4> behind{
+      {{-1.1F, -0.1F}, {-0.9F, -0.1F}, {-0.9F, 0.1F}, {-1.1F, 0.1F}}};
+  const std::array<polygon, 1> masks{behind};
+  point_filter filter;
+  filter.masks = masks;
+  filter.excluded = point_flags::isolated;
+  for (const float least_mm : {0.0F, 300.0F}) {
+    filter.least_range_mm = least_mm;
+    std::array<point, 6> memory{};
+    std::array<float, 4> bins{};
+    fill_grid(filter_for_grid(all, filter, memory), bins, {.to = frame::vendor});
+    EXPECT_TRUE(std::isnan(bins[0]));
+    EXPECT_TRUE(std::isnan(bins[1]));
+    EXPECT_EQ(bins[2], 1.0F) << "its flag is not among those to leave out";
+    EXPECT_EQ(bins[3], 1.0F);
+    EXPECT_EQ(memory[4].flags, all[4].flags);
+  }
 }
 
 }  // namespace

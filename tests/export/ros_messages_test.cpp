@@ -63,6 +63,27 @@ TEST(LaserScan, IsReadByTheRulesOfCdr) {
   EXPECT_TRUE(read.is_at_end());
 }
 
+/// SLAM programs compute the number of ranges from the angles, as slam_toolbox does in single precision, and reject a
+/// message with another number.
+TEST(LaserScan, AnglesGiveTheNumberOfRanges) {
+  for (std::size_t bins = 90; bins <= 4000; ++bins) {
+    std::vector<std::uint8_t> message;
+    put_laser_scan(std::vector<float>(bins, 1.0F), {.frame_id = "laser"}, message);
+    cdr_reader read(message);
+    static_cast<void>(read.number<std::int32_t>());
+    static_cast<void>(read.number<std::uint32_t>());
+    static_cast<void>(read.text());
+    const auto first = read.number<float>();
+    const auto last = read.number<float>();
+    const auto step = read.number<float>();
+    ASSERT_EQ(std::lround((last - first) / step), static_cast<long>(bins) - 1) << bins;
+    ASSERT_NEAR(
+        (static_cast<double>(last) - static_cast<double>(first)) / static_cast<double>(step),
+        static_cast<double>(bins) - 1, 0.01)
+        << "far from the next number";
+  }
+}
+
 TEST(LaserScan, TimesBefore1970CountUpFromTheSecondBefore) {
   std::vector<std::uint8_t> message;
   put_laser_scan(std::array<float, 1>{1.0F}, {.stamp_ns = -1}, message);

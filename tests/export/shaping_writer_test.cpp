@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -112,6 +113,88 @@ TEST_F(ShapingWriter, WritesARangeOfTime) {
   EXPECT_THAT(heard_, ElementsAre(1'005'000));
   EXPECT_FALSE(write({.from_ns = 20'000}));
   EXPECT_THAT(heard_, IsEmpty());
+}
+
+/// 40 points at 4 m; numbers 0, 7, 20 and 39 are at 2 m, number 30 without return.
+std::vector<point> wall_with_specks() {
+  std::vector<point> points(40);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].angle_deg = static_cast<float>(i) * 0.25F;
+    points[i].range_mm = i == 0 || i == 7 || i == 20 || i == 39 ? 2000.0F : 4000.0F;
+    points[i].time_ns = static_cast<std::int64_t>(i);
+  }
+  points[30].range_mm = 0.0F;
+  points[30].flags = point_flags::no_return;
+  return points;
+}
+
+// The points of a stream come in any pieces, and neighbours may be in different ones.
+TEST(ShapingWriterSpeckle, DoesNotDependOnThePieces) {
+  const std::vector<point> points = wall_with_specks();
+  callback_sink sink([](std::string_view) {});
+  for (const std::size_t size : {1U, 2U, 3U, 7U, 39U, 40U}) {
+    times heard;
+    shaping_writer writer(std::make_unique<listener>(heard, false),
+                          {.speckle = speckle_limits{.window = 3}, .edges = edge_limits{}});
+    for (std::size_t from = 0; from < points.size(); from += size) {
+      writer.write_points(std::span(points).subspan(from, std::min(size, points.size() - from)),
+                          sink);
+      const std::size_t known =
+          std::min(from + size, points.size()) - std::min<std::size_t>(from + size, 3);
+      ASSERT_TRUE(heard.empty() || heard.back() < static_cast<std::int64_t>(known));
+    }
+    writer.finish(sink);
+    writer.finish(sink);
+    times expected;
+    for (std::int64_t i = 0; i < 40; ++i) {
+      if (i != 0 && i != 7 && i != 20 && i != 39) expected.push_back(i);
+    }
+    EXPECT_EQ(heard, expected) << size;
+  }
+}
+
+TEST(ShapingWriterSpeckle, TheEndOfTheRangeOfTime_WritesWhatWaited) {
+  times heard;
+  callback_sink sink([](std::string_view) {});
+  shaping_writer writer(std::make_unique<listener>(heard, false),
+                        {.speckle = speckle_limits{}, .to_ns = 6});
+  const std::vector<point> points = wall_with_specks();
+  writer.write_points(std::span(points).first(5), sink);
+  EXPECT_THAT(heard, ElementsAre(1, 2));
+  writer.write_points(std::span(points).subspan(5), sink);
+  EXPECT_THAT(heard, ElementsAre(1, 2, 3, 4, 5));
+  EXPECT_TRUE(writer.is_done());
+  writer.finish(sink);
+  EXPECT_EQ(heard.size(), 5U);
+}
+
+// The ends of a whole revolution are neighbours, those of a piece are not.
+TEST(ShapingWriterSpeckle, OfARevolution) {
+  class counter final : public point_writer {
+   public:
+    explicit counter(std::vector<std::size_t>& sizes) : sizes_(sizes) {}
+    [[nodiscard]] bool takes_scans() const noexcept override { return true; }
+    void write_scan(const scan_record& record, text_sink&) override {
+      sizes_.push_back(record.scan.size());
+    }
+
+   private:
+    std::vector<std::size_t>& sizes_;
+  };
+  std::vector<point> points = wall_with_specks();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].angle_deg = static_cast<float>(i) * 9.0F;
+  points.back().angle_deg = 359.75F;  // it and the first one are near each other
+  callback_sink sink([](std::string_view) {});
+  std::vector<std::size_t> sizes;
+  shaping_writer writer(std::make_unique<counter>(sizes), {.speckle = speckle_limits{}});
+  scan_record record;
+  record.scan.points = points;
+  writer.write_scan(record, sink);
+  record.scan.flags = scan_flags::start_missing;
+  writer.write_scan(record, sink);
+  writer.finish(sink);
+  EXPECT_THAT(sizes, ElementsAre(3, 1)) << "with the point without return";
 }
 
 TEST_F(ShapingWriter, LeavesOutPiecesIfRequested) {

@@ -96,6 +96,21 @@ TEST(SimDevice, DoesNotDependOnTheNumberOfCalls) {
   EXPECT_EQ(bytes_when_looked_at(7 * ms), seldom);
 }
 
+// The same of a lidar that drives, with people around.
+TEST(SimDevice, DrivingDoesNotDependOnTheNumberOfCalls) {
+  const auto read = sim::parse_world(
+      "wall -4 -3 6 -3\nwall 6 -3 6 3\nwall 6 3 -4 3\nwall -4 3 -4 -3\n"
+      "disc 0.25 -3 2 5 2.5 1.3\nlidar 0 0 0\ndrive arc 1 360\n");
+  const auto bytes_when_looked_at = [&](std::int64_t every_ns) {
+    sim::device simulated(std::get<sim::world>(read), device_with_seed(3));
+    return bytes_of_run(simulated, every_ns);
+  };
+  const byte_vector seldom = bytes_when_looked_at(140 * ms);
+  EXPECT_GT(seldom.size(), 100'000U);
+  EXPECT_EQ(bytes_when_looked_at(ms), seldom);
+  EXPECT_EQ(bytes_when_looked_at(7 * ms), seldom);
+}
+
 TEST(SimDevice, SlowReader_LosesBytesAndTheyAreCounted) {
   test::host_side host;
   host.send(command::start);

@@ -65,13 +65,18 @@ TEST(SimStartTimes, SpinUp_IsSilentAfterTheHeader) {
   EXPECT_GT(taken_apart(host.listen(100 * ms)).packets, 0U);
 }
 
+/// Sends a start, and after this time a stop.
+void start_and_stop(host_side& host, std::int64_t after_ns) {
+  host.send(0x60);
+  static_cast<void>(host.listen(after_ns));
+  host.send(0x65);
+}
+
 TEST(SimStartTimes, Stop_EndsTheScanLater) {
   sim::device_options options;
   options.stop_ns = 300 * ms;
   host_side host(options);
-  host.send(0x60);
-  static_cast<void>(host.listen(1'000 * ms));
-  host.send(0x65);
+  start_and_stop(host, 1'000 * ms);
   static_cast<void>(host.listen(200 * ms));
   host.send(0x65);  // does not delay it
   EXPECT_GT(taken_apart(host.listen(99 * ms)).packets, 10U);
@@ -87,9 +92,7 @@ TEST(SimStartTimes, Stop_DuringSpinUp_IsNotLate) {
   options.stop_ns = 300 * ms;
   options.silence_ns = 500 * ms;
   host_side host(options);
-  host.send(0x60);
-  static_cast<void>(host.listen(400 * ms));
-  host.send(0x65);
+  start_and_stop(host, 400 * ms);
   EXPECT_TRUE(host.listen(1'000 * ms).empty());
 }
 
@@ -97,9 +100,7 @@ TEST(SimStartTimes, StartBeforeTheEnd_CancelsALateStop) {
   sim::device_options options;
   options.stop_ns = 300 * ms;
   host_side host(options);
-  host.send(0x60);
-  static_cast<void>(host.listen(1'000 * ms));
-  host.send(0x65);
+  start_and_stop(host, 1'000 * ms);
   static_cast<void>(host.listen(100 * ms));
   host.send(0x60);
   static_cast<void>(host.listen(1'000 * ms));

@@ -25,9 +25,13 @@
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/deskew.hpp"
 #include "g4lidar/detail/wire_check.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/merge.hpp"
+#include "g4lidar/outliers.hpp"
+#include "g4lidar/plausibility.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/version.hpp"
 
@@ -143,6 +147,24 @@ void fill(std::span<const point> points, std::span<float> ranges_m, const grid_o
 std::span<point> keep(std::span<point> points, const point_filter& filter) {
   const std::span<point> kept = filter_points(points, filter);
   return filter_for_grid(kept, filter, kept);
+}
+std::size_t deskew_by_twist(std::span<point> points, const twist_2d& twist, const mounting& mount) {
+  return deskew(points, twist, 1, mount).outside;
+}
+std::size_t deskew_by_path(std::span<point> points, std::span<const stamped_pose> path) {
+  return deskew(points, path, 1).outside;
+}
+merged merge(std::span<const mounted_scan> lidars, const twist_2d& twist, std::span<point> out) {
+  return merge_scans(lidars, twist, 1, out);
+}
+std::size_t mark(std::span<point> points, const speckle_limits& speckle, const edge_limits& edges) {
+  return mark_isolated(points, speckle) + mark_veiling(points, edges, scan_ends::open);
+}
+bool judge(angle_check& check, packet_view packet, std::span<point> points) {
+  if (check.fits(packet)) return mark_bit_errors(points) > 0;
+  check.lost();
+  mark_unlikely(points);
+  return true;
 }
 void count_time(sample_clock& clock, point& p, std::size_t samples) {
   p.time_ns = clock.now_ns();

@@ -133,7 +133,7 @@ TEST_F(SimSetup, InvalidTexts_AreRefused) {
   EXPECT_THAT(refusal("/dev/ttyUSB0"), HasSubstr("does not begin with sim:"));
   EXPECT_THAT(refusal("sim:?colour=red"), StartsWith("'colour' is not one of baud, batch_min_ns,"));
   EXPECT_THAT(refusal("sim:colour"),
-              HasSubstr("boots_at_start, fault, firmware, model, seed, serial, world"));
+              HasSubstr("boots_at_start, fault, firmware, model, path, seed, serial, world"));
   EXPECT_THAT(refusal("sim:?&"), StartsWith("'' is not one of baud"));
   EXPECT_EQ(refusal("sim:?seed=-1"), "'-1' is not in the range 0 to 18446744073709551615");
   EXPECT_EQ(refusal("sim:?seed="), "'' is not in the range 0 to 18446744073709551615");
@@ -185,6 +185,24 @@ TEST_F(SimSetup, WorldFiles) {
   EXPECT_EQ(error_of(directory_ / "none"), "0: it cannot be read: No such file or directory");
   EXPECT_EQ(error_of(directory_), "0: it is a directory");
   EXPECT_THAT(error_of("/dev/zero"), StartsWith("0: it is longer than 16 MB"));
+}
+
+TEST_F(SimSetup, PathFiles) {
+  sim::world world = sim::built_in_world();
+  const auto error_of = [&](const std::string& file) {
+    const auto wrong = sim::load_path(world, file);
+    return wrong ? std::to_string(wrong->line) + ": " + wrong->message : "nothing";
+  };
+  EXPECT_EQ(error_of(written("drive forward 2\n")), "nothing");
+  EXPECT_NEAR(world.path.back().robot.at.y_m, 2.0, 1e-9);
+  EXPECT_EQ(error_of(written("pose 1 2 3 4\n")), "nothing");
+  EXPECT_EQ(world.lidar, (sim::pose{2.0, 3.0, 4.0}));
+  EXPECT_THAT(error_of(written("\nwall 1 1 2 2\n")), StartsWith("2: 'wall' is unknown"));
+  EXPECT_EQ(error_of(written("")), "0: there is no line 'pose' and no line 'drive'");
+  EXPECT_EQ(error_of(directory_ / "none"), "0: it cannot be read: No such file or directory");
+  EXPECT_EQ(world.lidar, (sim::pose{2.0, 3.0, 4.0})) << "changed by an error";
+  const auto setup = sim::parse_setup("sim:?path=way.txt");
+  EXPECT_EQ(std::get<sim::setup>(setup).path_file, "way.txt");
 }
 
 TEST_F(SimSetup, RegisteredLinksAreInTheDirectoryOfTheVariable) {

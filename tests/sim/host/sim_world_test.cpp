@@ -74,6 +74,38 @@ INSTANTIATE_TEST_SUITE_P(
         refusal{"heading", "lidar 0 0 360.5", 1, "-360 to 360"},
         refusal{"no_length", "lidar 0 0 0\nwall 1 1 1 1.0005", 2, "shorter than 1 mm"},
         refusal{"at_the_lidar", "lidar 1 1 0\nwall 5 5 6 6\nwall 0 1 2 1.01", 3, "within 1 cm"},
+        refusal{"disc_form", "lidar 0 0 0\ndisc 1 1 1 2", 2, "disc radius x y to_x to_y speed"},
+        refusal{"disc_size", "lidar 0 0 0\ndisc 2.1 5 5", 2, "radius must be 0.01 to 2 m"},
+        refusal{"disc_speed", "disc 1 5 5 6 6 -1", 1, "speed must be 0 to 10 m/s"},
+        refusal{"far_disc", "disc 1 5 1001", 1, "beyond 1000 m"},
+        refusal{"two_mounts", "mount 0 0 0\nmount 0 0 0", 2, "second line 'mount'"},
+        refusal{"far_mount", "mount 0 -1001 0", 1, "beyond 1000 m"},
+        refusal{"wall_at_the_mount", "lidar 0 0 0\nmount 1 0 0\nwall 1 1 1 -1", 3, "within 1 cm"},
+        refusal{"wall_at_the_first_pose", "wall 1 1 1 -1\npose 0 1 0 0", 1, "within 1 cm"},
+        refusal{"drive_without_lidar", "drive wait 1", 0, "there is no line 'lidar"},
+        refusal{"pose_form", "pose 0 0 0", 1, "expected 'pose time x y heading_deg', found 3"},
+        refusal{"pose_nan", "pose 0 nan 0 0", 1, "'nan' is not a number"},
+        refusal{"pose_before_zero", "pose -1 0 0 0", 1, "time must be 0 to 1000000 s"},
+        refusal{"pose_heading", "pose 0 0 0 361", 1, "-360 to 360"},
+        refusal{"far_pose", "pose 0 1001 0 0", 1, "beyond 1000 m"},
+        refusal{"time_stands", "pose 1 0 0 0\npose 1 0 0 0", 2, "not later"},
+        refusal{"time_falls", "pose 1 0 0 0\n\npose 0.9 0 0 0", 3, "not later"},
+        refusal{"jump", "pose 1 0 0 0\npose 2 20.1 0 0", 2, "more than 20 m/s"},
+        refusal{"whirl", "pose 1 0 0 0\npose 1.1 0 0 101", 2, "more than 1000 degrees"},
+        refusal{"both", "pose 1 0 0 0\ndrive wait 1", 2, "not both"},
+        refusal{"both_reversed", "lidar 0 0 0\ndrive wait 1\npose 1 0 0 0", 3, "not both"},
+        refusal{"unknown_command", "drive left 90", 1, "'left' is unknown; commands are"},
+        refusal{"no_command", "drive", 1, "'' is unknown; commands are"},
+        refusal{"command_form", "drive arc 1", 1, "expected 'drive arc radius degrees"},
+        refusal{"far_forward", "drive forward 2001", 1, "a way must be"},
+        refusal{"no_forward", "drive forward 0", 1, "a way must be"},
+        refusal{"forward_speed", "drive forward 1 20.1", 1, "moves at 0.01 to 20 m/s"},
+        refusal{"no_turn", "drive turn 0.01", 1, "a turn must be"},
+        refusal{"turn_speed", "drive turn 90 0", 1, "turns at 1 to 1000"},
+        refusal{"arc_radius", "drive arc 0 90", 1, "radius must be"},
+        refusal{"arc_speed", "drive arc 0.05 90 1", 1, "turn at more than 1000"},
+        refusal{"endless_wait", "drive wait 100001", 1, "a wait must be"},
+        refusal{"leaves", "lidar 0 0 0\ndrive forward 999\ndrive forward 2", 3, "leave the world"},
         refusal{"behind_a_comment", "# a\n# b\nlidar 0 0\n", 3, "found 2 numbers"}),
     [](const auto& case_) { return std::string(case_.param.name); });
 
@@ -118,8 +150,61 @@ TEST(SimWorld, MoreThanTenThousandWalls_AreRefused) {
   EXPECT_EQ(error->line, sim::max_walls + 2);
 }
 
+TEST(SimWorld, ReadsDiscsMountAndPath) {
+  const sim::world world = good(
+      "disc 0.5 1 2\n"
+      "disc 0.25 1 2 3 4 1.5\n"
+      "mount 0.1 -0.2 90\n"
+      "pose 1.5 3 4 -90\n"
+      "pose 2 3 4.5 -100\n");
+  ASSERT_EQ(world.discs.size(), 2U);
+  EXPECT_EQ(world.discs[0].radius_m, 0.5);
+  EXPECT_EQ(world.discs[0].speed_m_per_s, 0.0);
+  EXPECT_EQ(world.discs[1].to_x_m, 3.0);
+  EXPECT_EQ(world.discs[1].to_y_m, 4.0);
+  EXPECT_EQ(world.discs[1].speed_m_per_s, 1.5);
+  EXPECT_EQ(world.mount, (sim::pose{0.1, -0.2, 90.0}));
+  EXPECT_EQ(world.lidar, (sim::pose{3.0, 4.0, -90.0}));
+  ASSERT_EQ(world.path.size(), 2U);
+  EXPECT_EQ(world.path[1].time_ns, 2'000'000'000);
+  EXPECT_EQ(world.path[1].robot.at, (sim::pose{3.0, 4.5, -100.0}));
+}
+
+TEST(SimWorld, HugeCounts_AreRefused) {
+  const auto line_of_error = [](const std::string& text) {
+    const auto read = sim::parse_world(text);
+    const auto* error = std::get_if<sim::world_error>(&read);
+    return error != nullptr ? error->line : 0;
+  };
+  std::string discs = "lidar 0 0 0\n";
+  for (int i = 0; i < 1001; ++i) discs += "disc 1 5 5\n";
+  EXPECT_EQ(line_of_error(discs), 1002U);
+  std::string poses;
+  for (int i = 0; i < 100'001; ++i) poses += "pose " + std::to_string(i) + " 0 0 0\n";
+  EXPECT_EQ(line_of_error(poses), 100'001U);
+  std::string arcs = "lidar 0 0 0\n";
+  for (int i = 0; i < 1000; ++i) arcs += "drive arc 1 3600 10\n";
+  EXPECT_GT(line_of_error(arcs), 50U);
+  std::string waits = "lidar 0 0 0\n";
+  for (int i = 0; i < 11; ++i) waits += "drive wait 100000\n";
+  EXPECT_EQ(line_of_error(waits), 12U);
+}
+
+TEST(SimPath, APathFileHasPosesOrCommandsAlone) {
+  const auto error_of = [](std::string_view text) {
+    const auto read = sim::parse_path(text, {});
+    const auto* error = std::get_if<sim::world_error>(&read);
+    return error != nullptr ? std::to_string(error->line) + " " + error->message : "";
+  };
+  EXPECT_EQ(error_of("# here\ndrive wait 1\n"), "");
+  EXPECT_EQ(error_of(""), "0 there is no line 'pose' and no line 'drive'");
+  EXPECT_EQ(error_of("\nwall 1 1 2 2\n"),
+            "2 'wall' is unknown; a line of a path begins with 'pose', 'drive' or '#'");
+}
+
 TEST(SimWorld, AnyBytesAreAWorldOrAnError) {
-  constexpr std::string_view letters = "wall lidar 0123456789.-+#\n\n\t\r\xFF";
+  constexpr std::string_view letters =
+      "wall lidar disc pose drive turn arc wait 0123456789.-+#\n\n\t\r\xFF";
   sim::random_stream random(7);
   for (int i = 0; i < 20'000; ++i) {
     std::string text = i % 2 == 0 ? "lidar 0 0 0\n" : "";
