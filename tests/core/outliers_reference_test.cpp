@@ -88,6 +88,7 @@ std::optional<bool> is_veiling(const std::vector<point>& points, std::size_t i,
 }
 
 TEST(Outliers, RandomScans_AsInDoublePrecision) {
+  std::size_t asked = 0;
   std::size_t compared = 0;
   std::size_t found = 0;
   for (const int seed : seeds(300)) {
@@ -119,6 +120,7 @@ TEST(Outliers, RandomScans_AsInDoublePrecision) {
     std::vector<point> got = points;
     mark_isolated(got, speckle, ends);
     mark_veiling(got, edges, ends);
+    asked += 2 * size;
     for (std::size_t i = 0; i < size; ++i) {
       const auto lonely = is_isolated(points, i, speckle, joined);
       const auto between = is_veiling(points, i, edges, joined);
@@ -130,8 +132,8 @@ TEST(Outliers, RandomScans_AsInDoublePrecision) {
       found += (lonely.value_or(false) ? 1U : 0U) + (between.value_or(false) ? 1U : 0U);
     }
   }
-  EXPECT_GT(compared, 20'000U);
-  EXPECT_GT(found, 1'000U);
+  EXPECT_GT(10 * compared, 9 * asked);
+  EXPECT_GT(20 * found, asked);
 }
 
 }  // namespace
