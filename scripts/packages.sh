@@ -28,6 +28,10 @@ packages_package=(
   debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev ninja-build
 )
 
+# To make maps: scripts/slam.
+# shellcheck disable=SC2034
+packages_slam=(mrpt-apps python3-venv)
+
 # The contents of a sysroot for cross-building, in the architecture of the target: see
 # scripts/sysroot.
 # shellcheck disable=SC2034

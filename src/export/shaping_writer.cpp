@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "g4lidar/deskew.hpp"
 #include "g4lidar/wall_clock.hpp"
 
 namespace g4lidar {
@@ -16,6 +17,7 @@ shaping_writer::shaping_writer(std::unique_ptr<point_writer> inner, const shapin
   point_flags& excluded = options_.filter.excluded;
   if (options_.speckle) excluded = excluded | point_flags::isolated;
   if (options_.edges) excluded = excluded | point_flags::veiling;
+  if (options_.deskew == deskewing::by_scans) estimator_.emplace();
 }
 
 void shaping_writer::begin(text_sink& out) {
@@ -67,12 +69,30 @@ std::span<const point> shaping_writer::marked_stream(std::span<const point> poin
   return std::span(marked_).subspan(from, passed_on_ - from);
 }
 
+void shaping_writer::deskew_scan(std::span<point> points, std::int64_t first_ns) {
+  if (!estimator_) {
+    not_deskewed_ += deskew(points, options_.path, first_ns, options_.mount).outside;
+    return;
+  }
+  const twist_estimate motion = estimator_->add(points);
+  // Where a direction is not known, its speed of the last revolution is the best guess.
+  if (motion.is_known() || motion.status == twist_status::degenerate) {
+    not_deskewed_ += deskew(points, motion.twist, first_ns).outside;
+    return;
+  }
+  for (point& p : points) p.flags = p.flags | point_flags::not_deskewed;
+  not_deskewed_ += points.size();
+}
+
 std::span<const point> shaping_writer::shaped(std::span<const point> points) {
-  const bool is_same = options_.filter.keeps_everything() && times_.changes_nothing();
+  const bool deskews = options_.deskew != deskewing::none;
+  const bool is_same =
+      options_.filter.keeps_everything() && times_.changes_nothing() && !deskews;
   if (!options_.for_grid && is_same) return points;
   if (shaped_.size() < points.size()) shaped_.resize(points.size());
   const auto kept = options_.for_grid ? filter_for_grid(points, options_.filter, shaped_)
                                       : filter_points(points, options_.filter, shaped_);
+  if (deskews && !points.empty()) deskew_scan(kept, points.front().time_ns);
   for (point& p : kept) p.time_ns = times_.of(p.time_ns);
   return kept;
 }
@@ -120,8 +140,10 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
     mark(marked_, record.scan.is_piece() ? scan_ends::open : scan_ends::joined);
     changed.scan.points = marked_;
   }
+  if (!inner_->takes_scans()) return write_shaped(changed.scan.points, out);
   changed.scan.points = shaped(changed.scan.points);
   changed.time_ns = scan_times_.of(record.time_ns);
+  changed.robot = pose_at(options_.path, record.time_ns).value_or(record.robot);
   inner_->write_scan(changed, out);
   done_ = ++records_ >= options_.count;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "g4lidar/export/slam_text.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstdint>
 #include <numbers>
@@ -26,23 +27,40 @@ std::string numbers_of(const pose_2d& pose) {
 
 class carmen_writer final : public point_writer {
  public:
-  explicit carmen_writer(std::size_t bins) : ranges_m_(bins) {}
+  carmen_writer(std::size_t bins, const mounting& mount) : ranges_m_(bins), mount_(mount) {}
 
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
   void write_scan(const scan_record& record, text_sink& out) override {
     fill_grid(record.scan.points, ranges_m_);
-    write_carmen_scan({.ranges_m = ranges_m_, .stamp_ns = record.time_ns}, out);
+    // Seen from above the angles of a lidar that hangs upside down grow clockwise; the first bin is behind it.
+    if (mount_.upside_down) std::reverse(ranges_m_.begin() + 1, ranges_m_.end());
+    write_carmen_scan({.ranges_m = ranges_m_,
+                       .robot = record.robot,
+                       .mount = mount_.pose,
+                       .stamp_ns = record.time_ns},
+                      out);
   }
 
  private:
   std::vector<float> ranges_m_;
+  mounting mount_;
+};
+
+class tum_writer final : public point_writer {
+ public:
+  [[nodiscard]] bool takes_scans() const noexcept override { return true; }
+  void write_scan(const scan_record& record, text_sink& out) override {
+    write_tum_pose({record.time_ns, record.robot}, out);
+  }
 };
 
 }  // namespace
 
-std::unique_ptr<point_writer> make_carmen_writer(std::size_t bins) {
-  return std::make_unique<carmen_writer>(bins);
+std::unique_ptr<point_writer> make_carmen_writer(std::size_t bins, const mounting& mount) {
+  return std::make_unique<carmen_writer>(bins, mount);
 }
+
+std::unique_ptr<point_writer> make_tum_writer() { return std::make_unique<tum_writer>(); }
 
 void write_carmen_scan(const carmen_scan& scan, text_sink& out) {
   const std::size_t bins = scan.ranges_m.size();

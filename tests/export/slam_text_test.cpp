@@ -83,5 +83,39 @@ TEST(SlamText, TumLine_HasTheQuaternionOfTheYaw) {
   EXPECT_NEAR(std::stod(words[7]), 0.5, 1e-8);
 }
 
+point at(float angle_deg, float range_mm) {
+  point p;
+  p.angle_deg = angle_deg;
+  p.range_mm = range_mm;
+  return p;
+}
+
+TEST(SlamText, Carmen_OfALidarWithItsTopDown) {
+  // Bins at -180, -90, 0 and 90 degrees of the robot; the lidar sees a return on its right, which is left of the robot.
+  const std::vector<point> points{at(0.0F, 1000.0F), at(270.0F, 2000.0F), at(180.0F, 3000.0F)};
+  const auto line = [&](const mounting& mount) {
+    scan_record record{.time_ns = 5'000'000'000, .robot = {4.0, 2.0, 0.0}};
+    record.scan.points = points;
+    return words_of(written(
+        [&](text_sink& out) { make_carmen_writer(4, mount)->write_scan(record, out); }));
+  };
+  const auto ranges = [](const std::vector<std::string>& words) {
+    return std::vector(words.begin() + 9, words.begin() + 13);
+  };
+  EXPECT_THAT(ranges(line({})), testing::ElementsAre("1.0000", "2.0000", "3.0000", "30.00"));
+  const auto down = line({.pose = {0.5, 0.0, 0.0}, .upside_down = true});
+  EXPECT_THAT(ranges(down), testing::ElementsAre("1.0000", "30.00", "3.0000", "2.0000"));
+  EXPECT_EQ(down.at(14), "4.500000");
+  EXPECT_EQ(down.at(17), "4.000000");
+}
+
+TEST(SlamText, Tum_IsTheRobotAtEachRevolution) {
+  const auto words = words_of(written([](text_sink& out) {
+    make_tum_writer()->write_scan({.time_ns = 3'000'000'000, .robot = {1.5, -0.5, 0.0}}, out);
+  }));
+  EXPECT_THAT(words, testing::ElementsAre("3.000000", "1.500000", "-0.500000", "0", "0", "0",
+                                          "0.000000000", "1.000000000"));
+}
+
 }  // namespace
 }  // namespace g4lidar

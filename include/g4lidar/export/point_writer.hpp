@@ -10,6 +10,7 @@
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/export/text_sink.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan.hpp"
 
@@ -43,6 +44,7 @@ struct scan_record {
   std::int64_t time_ns =
       0;  ///< The time of its first point, including points that are not written.
   double measured_hz = 0.0;  ///< The rotation frequency; 0 if it is not known.
+  pose_2d robot{};           ///< Where the robot was at `time_ns`; 0 if it is not known.
 };
 
 /// Writes records to a sink: of points or of revolutions, one of the two. *Single thread.* Points

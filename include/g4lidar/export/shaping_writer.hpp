@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A writer before another writer: filters points, converts their times, and stops at a limit.
+// A writer before another writer: filters and deskews points, converts their times, and stops at a limit.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,19 @@
 #include "g4lidar/export/text_sink.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/twist_estimator.hpp"
 
 namespace g4lidar {
+
+/// How a shaping_writer knows the motion by which it deskews.
+enum class deskewing : std::uint8_t {
+  none,      ///< It does not deskew.
+  by_path,   ///< From shaping_options::path.
+  by_scans,  ///< From a twist_estimator.
+};
 
 /// What a shaping_writer does. By default it changes nothing.
 struct shaping_options {
@@ -27,6 +36,13 @@ struct shaping_options {
   /// their neighbours: see finish().
   std::optional<speckle_limits> speckle{};
   std::optional<edge_limits> edges{};
+  /// Each revolution is deskewed to the time of its first point, after it was filtered. Points whose motion
+  /// is not known are written as they are, flagged not_deskewed.
+  deskewing deskew = deskewing::none;
+  /// The poses of the robot by its odometry, times ascending, of the same clock as those of the points. Also
+  /// for scan_record::robot. A view of the caller's memory.
+  std::span<const stamped_pose> path{};
+  mounting mount{};       ///< For deskewing::by_path.
   bool for_grid = false;  ///< Filters with filter_for_grid(), for make_grid_writer().
   time_style time = time_style::monotonic;  ///< What is written in the place of times.
   std::int64_t wall_ahead_ns = 0;   ///< For time_style::absolute: wall clock minus monotonic clock.
@@ -46,8 +62,10 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   /// `inner` is not null.
   shaping_writer(std::unique_ptr<point_writer> inner, const shaping_options& options);
 
-  /// As the other writer.
-  [[nodiscard]] bool takes_scans() const noexcept override { return inner_->takes_scans(); }
+  /// As the other writer. One that deskews takes revolutions, and passes their points on.
+  [[nodiscard]] bool takes_scans() const noexcept override {
+    return options_.deskew != deskewing::none || inner_->takes_scans();
+  }
   /// As point_writer::begin(); the first record calls it if nobody has.
   void begin(text_sink& out) override;
   /// Writes any number of points.
@@ -61,6 +79,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   [[nodiscard]] bool is_done() const noexcept { return done_; }
   /// How many pieces of revolutions were left out.
   [[nodiscard]] std::uint64_t pieces_left_out() const noexcept { return pieces_; }
+  /// How many points were written as they were, because their motion is not known.
+  [[nodiscard]] std::uint64_t points_not_deskewed() const noexcept { return not_deskewed_; }
 
  private:
   /// Those of `points` that are in the range of time.
@@ -69,7 +89,9 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   void mark(std::span<point> points, scan_ends ends) const;
   /// The points of the stream that can be marked now, marked; `is_end`: all.
   [[nodiscard]] std::span<const point> marked_stream(std::span<const point> points, bool is_end);
-  /// Those that the filter keeps, with the times that are written.
+  /// Deskews a revolution to the time of its first point.
+  void deskew_scan(std::span<point> points, std::int64_t first_ns);
+  /// Those that the filter keeps, deskewed if they are a revolution, with the times that are written.
   [[nodiscard]] std::span<const point> shaped(std::span<const point> points);
   void write_shaped(std::span<const point> points, text_sink& out);
   void follow_wall_clock();
@@ -86,6 +108,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   bool done_ = false;
   std::uint64_t records_ = 0;
   std::uint64_t pieces_ = 0;
+  std::uint64_t not_deskewed_ = 0;
+  std::optional<twist_estimator> estimator_;
 };
 
 }  // namespace g4lidar

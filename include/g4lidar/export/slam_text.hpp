@@ -29,9 +29,13 @@ struct carmen_scan {
 /// laser's x axis, so the written laser pose is turned by half a bin. Tested with MRPT's carmen2rawlog.
 G4LIDAR_API void write_carmen_scan(const carmen_scan& scan, text_sink& out);
 
-/// The writer of revolutions as lines of a CARMEN log with `bins` ranges, at least two, without odometry: the robot's pose
-/// is 0. The stamp is scan_record::time_ns. *Allocates on construction.*
-[[nodiscard]] G4LIDAR_API std::unique_ptr<point_writer> make_carmen_writer(std::size_t bins);
+/// The writer of revolutions as lines of a CARMEN log with `bins` ranges, at least two, with scan_record::robot and
+/// scan_record::time_ns. *Allocates on construction.*
+[[nodiscard]] G4LIDAR_API std::unique_ptr<point_writer> make_carmen_writer(
+    std::size_t bins, const mounting& mount = {});
+
+/// The writer of scan_record::robot and scan_record::time_ns of each revolution as lines of a TUM trajectory.
+[[nodiscard]] G4LIDAR_API std::unique_ptr<point_writer> make_tum_writer();
 
 /// Writes one line of a TUM trajectory: the time in seconds, the position in metres (z is 0), and the rotation as a
 /// quaternion x y z w.

@@ -3,8 +3,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string_view>
 
 namespace g4_dump {
@@ -124,6 +126,42 @@ option_rows filter_rows(common_options& options) {
        ignore,
        text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask),
        speckle_row(options), edges_row(options)});
+}
+
+/// "X,Y,DEG" or "X,Y,DEG,down".
+mounting mounting_of(const std::string& text) {
+  const std::string upside_down = ",down";
+  const bool is_down = text.ends_with(upside_down);
+  const std::string place = text.substr(0, text.size() - (is_down ? upside_down.size() : 0));
+  const std::size_t first = place.find(',');
+  const std::size_t second = std::min(place.find(',', first + 1), place.size());
+  if (first == std::string::npos || second == place.size()) {
+    throw bad_value("'" + text + "' is not a place such as 0.1,0,180 (m, m, degrees)");
+  }
+  const auto metres = [](const std::string& word) { return number_of(word, -100.0, 100.0); };
+  const double yaw_deg = number_of(place.substr(second + 1), -360.0, 360.0);
+  return {{metres(place.substr(0, first)), metres(place.substr(first + 1, second - first - 1)),
+           yaw_deg * std::numbers::pi / 180.0},
+          is_down};
+}
+
+option_rows motion_rows(common_options& options) {
+  return in_group("Motion of the robot",
+                  {text_row("--odometry", "FILE", "Poses: lines of time_ns, x, y and yaw_rad",
+                            options.odometry),
+                   value_row("--mount", "X,Y,DEG[,down]",
+                             "Where the lidar is on the robot; down: top down (0,0,0)",
+                             options.mount, mounting_of)});
+}
+
+option_row deskew_row(common_options& options) {
+  option_row row =
+      choice_row("--deskew", "Deskew each revolution by the odometry, or by the scans alone",
+                 options.deskew,
+                 choices<deskewing>{{"odometry", deskewing::by_path},
+                                    {"scans", deskewing::by_scans}});
+  row.group = "Motion of the robot";
+  return row;
 }
 
 option_row frame_row(const char* name, const char* help, frame& into) {

@@ -12,8 +12,10 @@
 
 #include "exit_code.hpp"
 #include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/export/shaping_writer.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
@@ -61,6 +63,9 @@ struct common_options {
   std::string mask;  ///< The file of --mask; empty: none.
   std::optional<speckle_limits> speckle;
   std::optional<edge_limits> edges;
+  deskewing deskew = deskewing::none;
+  std::string odometry;  ///< The file of --odometry; empty: that of the recording.
+  mounting mount;
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
   std::optional<time_style> time;  ///< If not given, what suits the source.
@@ -79,6 +84,10 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_rows ending_rows(common_options& options, bool with_idle = true);
 /// --range, --fov, --ignore, --mask, --speckle, --edges.
 [[nodiscard]] option_rows filter_rows(common_options& options);
+/// --odometry, --mount.
+[[nodiscard]] option_rows motion_rows(common_options& options);
+/// --deskew.
+[[nodiscard]] option_row deskew_row(common_options& options);
 /// --frame, --unit, --time.
 [[nodiscard]] option_rows shape_rows(common_options& options);
 [[nodiscard]] option_row time_row(common_options& options);

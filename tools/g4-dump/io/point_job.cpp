@@ -35,6 +35,8 @@ shaping_options shape_of(const point_job& job, const common_options& common, sou
   shape.filter.returns_only = job.returns_only;
   shape.speckle = common.speckle;
   shape.edges = common.edges;
+  shape.deskew = common.deskew;
+  shape.mount = common.mount;
   shape.for_grid = job.bins > 0;
   shape.partial_scans = job.partial;
   if (common.count > 0) shape.count = common.count;
@@ -99,6 +101,7 @@ class point_run {
     shaping_options shape = shape_of(job_, common_, kind_);
     if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
     shape.filter.masks = mask_.polygons();
+    shape.path = path_;
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;
     const bool has_long_times =
@@ -137,7 +140,8 @@ class point_run {
     if (has_scan_files()) {
       return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
     }
-    if (job_.carmen) return make_carmen_writer(job_.bins);
+    if (job_.log == slam_log::carmen) return make_carmen_writer(job_.bins, common_.mount);
+    if (job_.log == slam_log::tum) return make_tum_writer();
     if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins);
     return make_point_writer(job_.style);
   }
@@ -150,7 +154,9 @@ class point_run {
                : output::appears::growing;
   }
 
+  /// Writes what is left, and ends the file.
   void commit(output& out) {
+    writer_->finish(out);
     if (point_file_ != nullptr) {
       writer_->begin(out);  // if there was no point
       point_file_->end(out);
@@ -189,7 +195,6 @@ class point_run {
       way.take(got);
     });
     if (!writer_->is_done()) way.finish();  // else what is left was not asked for
-    writer_->finish(out);
     if (job_.json_counts) {
       logger::write(json_line(counts_as_json(way.counts(), way.bytes())));
     } else if (way.bytes() > 0) {
@@ -210,7 +215,6 @@ class point_run {
       way.take({reinterpret_cast<const char*>(got.data()), got.size()});
     });
     if (!writer_->is_done()) way.finish();
-    writer_->finish(out);
     if (way.points() == 0 && interrupt() == 0) {
       throw failure(exit_code::bad_file,
                     in.title() +
@@ -233,9 +237,7 @@ class point_run {
     opened_source source(common_, how);
     try {
       run_lidar(source, out);
-      writer_->finish(out);
     } catch (const failure&) {  // what came before it is good
-      writer_->finish(out);
       commit(out);
       report_lidar(source);
       throw;
@@ -282,6 +284,12 @@ class point_run {
                                counted(count, "incomplete revolution"),
                                count == 1 ? "it" : "them"));
     }
+    if (const std::uint64_t count = writer_->points_not_deskewed(); count > 0) {
+      logger::info(fmt::format("{} not deskewed: {}\n", counted(count, "point"),
+                               common_.deskew == deskewing::by_path
+                                   ? "the odometry has no pose at their time"
+                                   : "the scans do not show the motion"));
+    }
     if (has_scan_files() && !files_ && writer_->is_done()) {
       logger::info(
           "the first whole revolution; OUT with %04d, or a directory, takes all of them\n");
@@ -293,6 +301,7 @@ class point_run {
   source_kind kind_;
   numbered_files files_;
   g4lidar::mask mask_;
+  std::vector<stamped_pose> path_;
   std::unique_ptr<shaping_writer> writer_;
   point_file_writer* point_file_ = nullptr;  // behind writer_
 };

@@ -17,6 +17,9 @@ namespace g4_dump {
 /// The formats of which a file holds one revolution.
 enum class scan_file : unsigned char { none, pcd, svg };
 
+/// The formats for SLAM programs, with a line for each revolution.
+enum class slam_log : unsigned char { none, carmen, tum };
+
 struct point_job {
   shared_options common = std::make_shared<common_options>();
   text_style style{.format = text_format::text, .as_they_come = true};
@@ -26,7 +29,7 @@ struct point_job {
   scan_file file = scan_file::none;  ///< One file for each revolution.
   pcd_data data = pcd_data::binary;
   std::optional<point_file_format> point_file;  ///< One file for all points.
-  bool carmen = false;                          ///< A CARMEN log, of `bins` ranges.
+  slam_log log = slam_log::none;                ///< carmen: of `bins` ranges.
   opening source{};                 ///< How it is opened; `played.range` holds for files, too.
   std::optional<text_source> text;  ///< The source holds points as text, in this format.
   g4lidar::frame text_frame = g4lidar::frame::vendor;  ///< Of the angles in that text.

@@ -27,6 +27,7 @@
 namespace g4_dump {
 namespace {
 
+/// In this order: bytes, points that are also read, points that are only written.
 enum class file_form : unsigned char {
   recording,
   raw_bytes,
@@ -37,7 +38,8 @@ enum class file_form : unsigned char {
   npz,
   ply,
   xyz,
-  carmen
+  carmen,
+  tum
 };
 
 struct convert_options {
@@ -58,7 +60,8 @@ const choices<file_form>& forms() {
       {"mcap", file_form::recording}, {"bin", file_form::raw_bytes}, {"csv", file_form::csv},
       {"jsonl", file_form::jsonl},    {"pcd", file_form::pcd},       {"npy", file_form::npy},
       {"npz", file_form::npz},        {"ply", file_form::ply},       {"xyz", file_form::xyz},
-      {"carmen", file_form::carmen},  {"ndjson", file_form::jsonl},  {"raw", file_form::raw_bytes}};
+      {"carmen", file_form::carmen},  {"tum", file_form::tum},       {"ndjson", file_form::jsonl},
+      {"raw", file_form::raw_bytes}};
   return all;
 }
 
@@ -99,9 +102,8 @@ file_form form_of_output(const convert_options& options) {
   if (name.ends_with('/') || std::filesystem::is_directory(name, unknown)) return file_form::pcd;
   if (const auto form = form_of_name(name)) return *form;
   throw bad_value(
-      fmt::format("'{}' does not end in .mcap, .bin, .csv, .jsonl, .pcd, .npy, .npz, .ply, .xyz or "
-                  ".carmen; give its "
-                  "format with --to-format",
+      fmt::format("'{}' does not end in .mcap, .bin, .csv, .jsonl, .pcd, .npy, .npz, .ply, "
+                  ".xyz, .carmen or .tum; give its format with --to-format",
                   name));
 }
 
@@ -118,7 +120,8 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
   if (!to_points && options.shapes) {
     throw bad_value(
         "raw bytes and recordings hold what the lidar sent: --range, --fov, --ignore, "
-        "--mask, --speckle, --edges, --frame, --unit, --time and --scans are for points");
+        "--mask, --speckle, --edges, --deskew, --frame, --unit, --time and --scans are for "
+        "points");
   }
   const bool ends_at_its_begin = to == file_form::recording || to == file_form::npy ||
                                  to == file_form::npz || to == file_form::ply;
@@ -149,9 +152,12 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (from == file_form::jsonl) job.text = text_source::jsonl;
   if (to == file_form::pcd) job.file = scan_file::pcd;
   job.point_file = point_file_of(to);
-  job.carmen = to == file_form::carmen;
-  if (job.carmen) job.bins = g4lidar::recording_options{}.scan_bins;
-  job.partial = to != file_form::pcd && to != file_form::carmen;
+  if (to == file_form::tum) job.log = slam_log::tum;
+  if (to == file_form::carmen) {
+    job.log = slam_log::carmen;
+    job.bins = g4lidar::recording_options{}.scan_bins;
+  }
+  job.partial = to != file_form::pcd && job.log == slam_log::none;
   job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
   return run(job);
 }
@@ -240,7 +246,8 @@ int run(const convert_options& options) {
 constexpr const char* convert_details =
     R"(IN is a recording, csv or jsonl as g4-dump writes them for points, else raw bytes. If OUT is a
 directory or a name such as scan-%04d.pcd, each revolution gets a pcd file. npy, npz (NumPy), ply
-and xyz have all points. carmen is a log for SLAM programs: each revolution as 720 ranges.
+and xyz have all points. carmen is a log for SLAM programs: each revolution as 720 ranges. tum has
+the pose of the robot at each revolution. Both take the poses from --odometry.
 
 Points of a recording are those of the driver that was recorded, with their times. Raw bytes
 have no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
@@ -273,7 +280,7 @@ option_rows point_rows(convert_options& options) {
   common_options& common = *options.points.common;
   option_rows rows = joined(flag_row("--scans", "A record for each revolution, in csv and jsonl",
                                      options.points.style.scans),
-                            filter_rows(common), shape_rows(common));
+                            filter_rows(common), shape_rows(common), deskew_row(common));
   for (option_row& row : rows) {
     row = checked(std::move(row), [&options](const std::string&) { options.shapes = true; });
   }
