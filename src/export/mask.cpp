@@ -3,40 +3,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
-#include <system_error>
 #include <utility>
 
-#include "g4lidar/export/printable.hpp"
+#include "words.hpp"
 
 namespace g4lidar {
 namespace {
-
-constexpr std::string_view spaces = " \t\r";
-
-// Takes the next word from the front of `line`; empty at its end.
-std::string_view next_word(std::string_view& line) noexcept {
-  line.remove_prefix(std::min(line.find_first_not_of(spaces), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(spaces));
-  line.remove_prefix(word.size());
-  return word;
-}
-
-// A word for an error message.
-std::string quoted(std::string_view word) {
-  constexpr std::size_t enough = 24;
-  return "'" + printable(word.substr(0, enough)) + (word.size() > enough ? "...'" : "'");
-}
-
-std::optional<double> number(std::string_view word) noexcept {
-  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-  double value = 0.0;
-  const char* const end = word.data() + word.size();
-  const auto [at, error] = std::from_chars(word.data(), end, value, std::chars_format::fixed);
-  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 // Whether all corners are on one line: then nothing is inside.
 bool has_no_area(const std::vector<corner>& corners) noexcept {
@@ -55,7 +28,7 @@ bool has_no_area(const std::vector<corner>& corners) noexcept {
 std::optional<std::string> read_corners(std::string_view rest, std::vector<corner>& corners) {
   std::size_t count = 0;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
-    const std::optional<double> value = number(word);
+    const std::optional<double> value = number_in(word, std::chars_format::fixed);
     if (!value) return quoted(word) + " is not a number; write decimals like -0.25";
     if (!(*value >= -max_mask_coordinate_m && *value <= max_mask_coordinate_m)) {
       return "no coordinate may be beyond 100 m; coordinates are in metres";
@@ -74,7 +47,6 @@ std::optional<std::string> read_corners(std::string_view rest, std::vector<corne
 
 // Adds what a line contains; returns the error, if any.
 std::optional<std::string> read_line(std::string_view line, mask& made) {
-  line = line.substr(0, line.find('#'));
   const std::string_view word = next_word(line);
   if (word.empty()) return std::nullopt;
   if (word != "polygon") return quoted(word) + " is unknown; a line begins with 'polygon' or '#'";
@@ -90,11 +62,9 @@ std::optional<std::string> read_line(std::string_view line, mask& made) {
 std::variant<mask, mask_error> parse_mask(std::string_view text) {
   mask made;
   for (std::size_t line_number = 1; !text.empty(); ++line_number) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    if (auto wrong = read_line(text.substr(0, end), made)) {
+    if (auto wrong = read_line(next_line(text), made)) {
       return mask_error{line_number, *std::move(wrong)};
     }
-    text.remove_prefix(std::min(end + 1, text.size()));
   }
   if (made.polygons().empty()) return mask_error{0, "there is no line 'polygon x1 y1 x2 y2 x3 y3'"};
   return made;

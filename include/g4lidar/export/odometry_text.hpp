@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Odometry from a text, as g4-dump sim --odometry writes it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/motion.hpp"
+
+namespace g4lidar {
+
+/// Why a text is not odometry.
+struct odometry_error {
+  std::size_t line;     ///< Counted from 1; 0 if there is no pose.
+  std::string message;  ///< One sentence without the line number, for people.
+};
+
+/// The maximum of a coordinate (metres) and of a yaw (radians) in odometry, in magnitude.
+inline constexpr double max_odometry_value = 1e6;
+
+/// The poses that `text` contains, or the first error in it. Each line is empty, or
+/// `time_ns x y yaw`: a whole number of nanoseconds, greater than in the line before, metres and
+/// radians; from `#` on a line is a comment. At least one pose. Independent of the locale. Throws
+/// only std::bad_alloc.
+[[nodiscard]] G4LIDAR_API std::variant<std::vector<stamped_pose>, odometry_error> parse_odometry(
+    std::string_view text);
+
+}  // namespace g4lidar
