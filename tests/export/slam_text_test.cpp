@@ -94,8 +94,10 @@ TEST(SlamText, Carmen_OfALidarWithItsTopDown) {
   // Bins at -180, -90, 0 and 90 degrees of the robot; the lidar sees a return on its right, which is left of the robot.
   const std::vector<point> points{at(0.0F, 1000.0F), at(270.0F, 2000.0F), at(180.0F, 3000.0F)};
   const auto line = [&](const mounting& mount) {
-    scan_record record{.time_ns = 5'000'000'000, .robot = {4.0, 2.0, 0.0}};
+    scan_record record;
     record.scan.points = points;
+    record.time_ns = 5'000'000'000;
+    record.robot = {4.0, 2.0, 0.0};
     return words_of(written(
         [&](text_sink& out) { make_carmen_writer(4, mount)->write_scan(record, out); }));
   };
@@ -110,9 +112,11 @@ TEST(SlamText, Carmen_OfALidarWithItsTopDown) {
 }
 
 TEST(SlamText, Tum_IsTheRobotAtEachRevolution) {
-  const auto words = words_of(written([](text_sink& out) {
-    make_tum_writer()->write_scan({.time_ns = 3'000'000'000, .robot = {1.5, -0.5, 0.0}}, out);
-  }));
+  scan_record record;
+  record.time_ns = 3'000'000'000;
+  record.robot = {1.5, -0.5, 0.0};
+  const auto words =
+      words_of(written([&](text_sink& out) { make_tum_writer()->write_scan(record, out); }));
   EXPECT_THAT(words, testing::ElementsAre("3.000000", "1.500000", "-0.500000", "0", "0", "0",
                                           "0.000000000", "1.000000000"));
 }

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -20,6 +21,7 @@
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "mask_file.hpp"
+#include "odometry_file.hpp"
 #include "output.hpp"
 #include "read_loop.hpp"
 
@@ -101,6 +103,10 @@ class point_run {
     shaping_options shape = shape_of(job_, common_, kind_);
     if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
     shape.filter.masks = mask_.polygons();
+    if (!common_.odometry.empty()) path_ = load_odometry(common_.odometry);
+    if (path_.empty() && common_.deskew == deskewing::by_path) {
+      throw bad_value("--deskew odometry needs the poses: give --odometry FILE, or --deskew scans");
+    }
     shape.path = path_;
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;

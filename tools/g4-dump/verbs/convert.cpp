@@ -300,7 +300,7 @@ verb make_convert_verb() {
       .arguments = {file_argument("IN", "A recording, raw bytes, csv or jsonl", common.source),
                     file_argument("OUT", "The file to write; - with --to-format: standard output",
                                   common.output)},
-      .options = joined(form_rows(*options), point_rows(*options)),
+      .options = joined(form_rows(*options), motion_rows(common), point_rows(*options)),
       .details = convert_details,
       .examples =
           {{"g4-dump convert walk.mcap walk.csv --from 10s --to 40s", "The points of 30 s as csv"},
