@@ -48,12 +48,10 @@ struct grid_place {
   return {bin % bins, off < 0.0F ? -off : off};
 }
 
-/// Fills every bin of `ranges_m`, which is not empty: the range in metres; +infinity if the sensor
-/// measured there and nothing came back (never instead of a return); NaN if nothing is known,
-/// because the sensor did not measure there or every return is too near to be reliable. *Never
-/// allocates.* Accepts a scan of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
+/// Like fill_grid() below, of the points for which `takes(point, bin)` is true.
+template <class Takes>
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
-                         const grid_options& options = {}) noexcept {
+                         const grid_options& options, Takes takes) noexcept {
   assert(!ranges_m.empty() && points.size() <= (std::size_t{1} << 24));
   // First each bin holds the index of its best point, which a float holds exactly; then the range.
   constexpr float nothing = -1.0F;
@@ -71,6 +69,7 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   for (std::size_t i = 0; i < points.size(); ++i) {
     const point& p = points[i];
     const grid_place place = place_in_grid(p.angle_deg, options.to, ranges_m.size());
+    if (!takes(p, place.bin)) continue;
     float& slot = ranges_m[place.bin];
     if (slot < 0.0F || better(p, place.off_middle_deg, points[static_cast<std::size_t>(slot)])) {
       slot = static_cast<float>(i);
@@ -85,6 +84,15 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
           best->is_no_return() ? std::numeric_limits<float>::infinity() : best->range_mm * 0.001F;
     }
   }
+}
+
+/// Fills every bin of `ranges_m`, which is not empty: the range in metres; +infinity if the sensor
+/// measured there and nothing came back (never instead of a return); NaN if nothing is known,
+/// because the sensor did not measure there or every return is too near to be reliable. *Never
+/// allocates.* Accepts a scan of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
+constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
+                         const grid_options& options = {}) noexcept {
+  fill_grid(points, ranges_m, options, [](const point&, std::size_t) { return true; });
 }
 
 }  // namespace g4lidar

@@ -40,6 +40,16 @@ struct stamped_pose {
   pose_2d pose;
 };
 
+/// What odometry contains about a time: the pose of the robot in a fixed frame, and its velocity in its own frame.
+struct stamped_odometry {
+  std::int64_t time_ns = 0;  ///< As in stamped_pose.
+  pose_2d pose{};
+  twist_2d twist{};
+
+  friend constexpr bool operator==(const stamped_odometry&,
+                                   const stamped_odometry&) noexcept = default;
+};
+
 /// How a lidar is fixed to a robot.
 struct mounting {
   /// The place of the lidar's own frame (frame::robot) in the frame of the robot.

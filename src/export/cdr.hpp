@@ -25,6 +25,8 @@ class cdr_writer {
   void put(Number value) {
     if constexpr (std::is_same_v<Number, float>) {
       put(std::bit_cast<std::uint32_t>(value));
+    } else if constexpr (std::is_same_v<Number, double>) {
+      put(std::bit_cast<std::uint64_t>(value));
     } else {
       static_assert(std::is_integral_v<Number>);
       while ((out_.size() - origin_) % sizeof(Number) != 0) out_.push_back(0);

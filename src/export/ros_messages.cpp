@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "cdr.hpp"
 #include "g4lidar/cartesian.hpp"
+#include "g4lidar/grid.hpp"
 
 namespace g4lidar {
 namespace {
@@ -68,26 +71,122 @@ uint8 datatype
 uint32 count
 )";
 
+constexpr std::string_view odometry_text =
+    R"(std_msgs/Header header
+string child_frame_id
+geometry_msgs/PoseWithCovariance pose
+geometry_msgs/TwistWithCovariance twist
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: geometry_msgs/PoseWithCovariance
+geometry_msgs/Pose pose
+float64[36] covariance
+================================================================================
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position
+geometry_msgs/Quaternion orientation
+================================================================================
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x 0
+float64 y 0
+float64 z 0
+float64 w 1
+================================================================================
+MSG: geometry_msgs/TwistWithCovariance
+geometry_msgs/Twist twist
+float64[36] covariance
+================================================================================
+MSG: geometry_msgs/Twist
+geometry_msgs/Vector3 linear
+geometry_msgs/Vector3 angular
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+)";
+
+constexpr std::string_view tf_message_text =
+    R"(geometry_msgs/TransformStamped[] transforms
+================================================================================
+MSG: geometry_msgs/TransformStamped
+std_msgs/Header header
+string child_frame_id
+geometry_msgs/Transform transform
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: geometry_msgs/Transform
+geometry_msgs/Vector3 translation
+geometry_msgs/Quaternion rotation
+================================================================================
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+================================================================================
+MSG: geometry_msgs/Quaternion
+float64 x 0
+float64 y 0
+float64 z 0
+float64 w 1
+)";
+
 /// Reliable ranges, in metres: the maximum is that of 16 bits.
 constexpr float least_range_m = too_near_mm * 0.001F;
 constexpr float greatest_range_m = 16.38375F;
 
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-void put_header(cdr_writer& message, const message_header& header) {
+void put_header(cdr_writer& message, std::int64_t stamp_ns, std::string_view frame_id) {
   // The nanoseconds count from the previous second, also before 1970.
-  const std::int64_t rest_ns = (header.stamp_ns % second_ns + second_ns) % second_ns;
-  message.put(static_cast<std::int32_t>((header.stamp_ns - rest_ns) / second_ns));
+  const std::int64_t rest_ns = (stamp_ns % second_ns + second_ns) % second_ns;
+  message.put(static_cast<std::int32_t>((stamp_ns - rest_ns) / second_ns));
   message.put(static_cast<std::uint32_t>(rest_ns));
-  message.put(header.frame_id);
+  message.put(frame_id);
 }
 
-/// x, y, z, t; the codes are those of sensor_msgs/PointField.
+void put_all(cdr_writer& message, std::span<const double> values) {
+  for (const double value : values) message.put(value);
+}
+
+/// The vector or point, and the quaternion of a turn about z, with the top down after half a turn about x.
+void put_place(cdr_writer& message, const pose_2d& place, bool upside_down) {
+  const auto [sine, cosine] = rotation_by(wrap_rad(place.yaw_rad) / 2.0);
+  put_all(message, std::array{place.x_m, place.y_m, 0.0});
+  put_all(message,
+          upside_down ? std::array{cosine, sine, 0.0, 0.0} : std::array{0.0, 0.0, sine, cosine});
+}
+
+/// The codes are those of sensor_msgs/PointField.
 void put_fields(cdr_writer& message) {
   constexpr std::uint8_t uint32_code = 6;
   constexpr std::uint8_t float32_code = 7;
-  constexpr std::array<std::pair<std::string_view, std::uint8_t>, 4> fields{
-      {{"x", float32_code}, {"y", float32_code}, {"z", float32_code}, {"t", uint32_code}}};
+  constexpr std::array<std::pair<std::string_view, std::uint8_t>, 6> fields{
+      {{"x", float32_code},
+       {"y", float32_code},
+       {"z", float32_code},
+       {"t", uint32_code},
+       {"range", float32_code},
+       {"angle", float32_code}}};
   message.put(static_cast<std::uint32_t>(fields.size()));
   std::uint32_t offset = 0;
   for (const auto& [name, code] : fields) {
@@ -106,32 +205,71 @@ message_schema laser_scan_schema() noexcept {
 message_schema point_cloud2_schema() noexcept {
   return {"sensor_msgs/msg/PointCloud2", point_cloud2_text};
 }
+message_schema odometry_schema() noexcept { return {"nav_msgs/msg/Odometry", odometry_text}; }
+message_schema tf_message_schema() noexcept { return {"tf2_msgs/msg/TFMessage", tf_message_text}; }
+
+std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_ns,
+                           std::span<float> ranges_m) noexcept {
+  // The direction at the beginning, seen from each return: the corrections differ by some degrees.
+  const std::int64_t begin_ns = points.empty() ? 0 : points.front().time_ns;
+  const auto part_of = [&](std::int64_t time_ns) {
+    return duration_ns <= 0 ? 0.0F : static_cast<float>(time_ns) / static_cast<float>(duration_ns);
+  };
+  std::optional<angle> first;
+  float sum_deg = 0.0F;
+  float count = 0.0F;
+  for (const point& p : points) {
+    if (p.is_no_return()) continue;
+    const angle begun = angle::from_degrees(p.angle_deg - 360.0F * part_of(p.time_ns - begin_ns));
+    if (!first) first = begun;
+    sum_deg += (begun - *first).signed_degrees();
+    ++count;
+  }
+  const float begin_deg =
+      first ? angle::from_degrees(first->degrees() + sum_deg / count).degrees() : 0.0F;
+  const std::size_t bins = ranges_m.size();
+  const std::size_t first_bin = place_in_grid(begin_deg, frame::vendor, bins).bin;
+  const auto is_in_time = [&](const point& p, std::size_t bin) {
+    const float part =
+        static_cast<float>((bin + bins - first_bin) % bins) / static_cast<float>(bins);
+    return duration_ns <= 0 || std::abs(part - part_of(p.time_ns - begin_ns)) < 0.5F;
+  };
+  fill_grid(points, ranges_m, {.to = frame::vendor}, is_in_time);
+  return first_bin;
+}
 
 void put_laser_scan(std::span<const float> ranges_m, const message_header& header,
                     std::vector<std::uint8_t>& out) {
   constexpr float pi = std::numbers::pi_v<float>;
-  const float increment = 2 * pi / static_cast<float>(ranges_m.size());
+  const std::size_t bins = ranges_m.size();
+  const bool is_by_time = header.order == scan_order::time;
+  const std::size_t first = is_by_time ? header.first_bin % bins : 0;
+  const float increment = 2 * pi / static_cast<float>(bins);
+  const float least = -pi + increment * static_cast<float>(first);
+  const float duration_s = static_cast<float>(header.duration_ns) * 1e-9F;
   cdr_writer message(out);
-  put_header(message, header);
-  message.put(-pi);
-  message.put(-pi + increment * static_cast<float>(ranges_m.size() - 1));
+  put_header(message, header.stamp_ns, header.frame_id);
+  message.put(least);
+  message.put(least + increment * static_cast<float>(bins - 1));
   message.put(increment);
-  message.put(0.0F);
-  message.put(static_cast<float>(header.duration_ns) * 1e-9F);
+  message.put(is_by_time ? duration_s / static_cast<float>(bins) : 0.0F);
+  message.put(duration_s);
   message.put(least_range_m);
   message.put(greatest_range_m);
-  message.put(static_cast<std::uint32_t>(ranges_m.size()));
-  for (const float range_m : ranges_m) message.put(range_m);
+  message.put(static_cast<std::uint32_t>(bins));
+  for (const float range_m : ranges_m.subspan(first)) message.put(range_m);
+  for (const float range_m : ranges_m.first(first)) message.put(range_m);
   message.put(std::uint32_t{0});
 }
 
 void put_point_cloud2(std::span<const point> points, const message_header& header,
                       std::vector<std::uint8_t>& out) {
-  constexpr std::uint32_t point_size = 16;
+  constexpr std::uint32_t point_size = 24;
+  const float left = header.order == scan_order::time ? -1.0F : 1.0F;  // the y axis
   const auto count = static_cast<std::uint32_t>(std::count_if(
       points.begin(), points.end(), [](const point& p) { return !p.is_no_return(); }));
   cdr_writer message(out);
-  put_header(message, header);
+  put_header(message, header.stamp_ns, header.frame_id);
   message.put(std::uint32_t{1});
   message.put(count);
   put_fields(message);
@@ -144,12 +282,34 @@ void put_point_cloud2(std::span<const point> points, const message_header& heade
     const xy_point place = to_xy(p, frame::robot);
     const std::int64_t since_ns = p.time_ns - points.front().time_ns;
     message.put(place.x_m);
-    message.put(place.y_m);
+    message.put(left * place.y_m);
     message.put(0.0F);
     message.put(static_cast<std::uint32_t>(
         std::clamp<std::int64_t>(since_ns, 0, std::numeric_limits<std::uint32_t>::max())));
+    const polar measured = to_polar(p, frame::robot);
+    message.put(measured.range_m);
+    message.put(left * measured.bearing_rad);
   }
   message.put(std::uint8_t{1});
+}
+
+void put_odometry(const odometry_message& message, std::vector<std::uint8_t>& out) {
+  const auto& [forward, leftward, turn] = message.twist;
+  cdr_writer text(out);
+  put_header(text, message.stamp_ns, message.frame_id);
+  text.put(message.child_frame_id);
+  put_place(text, message.pose, false);
+  put_all(text, message.pose_covariance);
+  put_all(text, std::array{forward, leftward, 0.0, 0.0, 0.0, turn});
+  put_all(text, message.twist_covariance);
+}
+
+void put_tf_message(const transform_message& message, std::vector<std::uint8_t>& out) {
+  cdr_writer text(out);
+  text.put(std::uint32_t{1});
+  put_header(text, message.stamp_ns, message.frame_id);
+  text.put(message.child_frame_id);
+  put_place(text, message.place.pose, message.place.upside_down);
 }
 
 }  // namespace g4lidar

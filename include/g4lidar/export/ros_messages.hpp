@@ -3,21 +3,36 @@
 // messages. Does not need ROS.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
+
+/// The order of the ranges of a LaserScan, and with it its frame.
+enum class scan_order : std::uint8_t {
+  /// Counter-clockwise from behind, in the lidar's own frame (frame::robot): x forward, y to the left.
+  /// The device turns the other way, so the times of the ranges are not known: time_increment is 0.
+  angle,
+  /// In the order in which they were measured, with their real time_increment, in a frame with z
+  /// down: the lidar's own, turned by half a turn about x, so y is to the right.
+  time,
+};
 
 /// The header of a message, and the duration of the revolution.
 struct message_header {
   std::int64_t stamp_ns = 0;     ///< Of the first point, nanoseconds since 1970.
   std::string_view frame_id{};   ///< The coordinate frame, such as "laser".
   std::int64_t duration_ns = 0;  ///< From the first point to the first one of the next revolution.
+  scan_order order = scan_order::angle;  ///< See scan_order; also of a PointCloud2, for its frame.
+  std::size_t first_bin = 0;             ///< In the order of time: where the revolution begins.
 };
 
 /// The name and the definition of a message, as recordings contain them. Valid forever.
@@ -27,19 +42,57 @@ struct message_schema {
 };
 [[nodiscard]] G4LIDAR_API message_schema laser_scan_schema() noexcept;    ///< LaserScan.
 [[nodiscard]] G4LIDAR_API message_schema point_cloud2_schema() noexcept;  ///< PointCloud2.
+[[nodiscard]] G4LIDAR_API message_schema odometry_schema() noexcept;      ///< Odometry.
+[[nodiscard]] G4LIDAR_API message_schema tf_message_schema() noexcept;    ///< TFMessage.
 
-/// Appends a sensor_msgs/msg/LaserScan to `out`: `ranges_m` are the bins that fill_grid() fills in
-/// the robot's frame, at least one. angle_min is -pi, angle_increment 2 pi / bins, range_min 0.1 m
-/// (ranges below are not reliable), range_max 16.38375 m (the maximum of the protocol);
-/// time_increment is 0, because the bins are not in the order of time: the device turns against the
-/// direction in which the angles grow. Without intensities. Allocates beyond the capacity of `out`.
+/// Fills `ranges_m`, not empty, with `points` for a LaserScan in the order of time, as fill_grid() does
+/// in the vendor's frame, and returns its first_bin: that of the mean direction from which the
+/// returns began. Points at the begin or the end of the revolution whose bin is at the other end, so that
+/// its time would be wrong by a revolution, are left out. *Never allocates.*
+[[nodiscard]] G4LIDAR_API std::size_t fill_time_grid(std::span<const point> points,
+                                                     std::int64_t duration_ns,
+                                                     std::span<float> ranges_m) noexcept;
+
+/// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is 0.1 m (ranges below are not reliable),
+/// range_max 16.38375 m (the maximum of the protocol), angle_increment 2 pi / bins. Without
+/// intensities. Allocates beyond the capacity of `out`.
+///
+/// By angle, `ranges_m` are the bins that fill_grid() fills in the robot's frame, at least one:
+/// angle_min is -pi. By time, they are those that fill_time_grid() fills, and the message
+/// begins with `first_bin`: angle_min is the angle of this bin, time_increment duration_ns / bins. SLAM programs compute the number of ranges from the angles; they get it.
 G4LIDAR_API void put_laser_scan(std::span<const float> ranges_m, const message_header& header,
                                 std::vector<std::uint8_t>& out);
 
-/// Appends a sensor_msgs/msg/PointCloud2 of the returns among `points`, in their order, in the robot's
-/// frame: float32 x, y, z in metres (z is 0) and uint32 t, nanoseconds since the first of `points`.
-/// One row, is_dense. Allocates beyond the capacity of `out`.
+/// Appends a sensor_msgs/msg/PointCloud2 of the returns among `points`, in their order, as measured:
+/// float32 x, y, z in metres (z is 0), uint32 t, nanoseconds since the first of `points`, float32
+/// range in metres and float32 angle in radians, counter-clockwise from x. One row, is_dense.
+/// Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_point_cloud2(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);
+
+/// A message of odometry. Covariances are those of x, y, z, and of the rotations about x, y, z, row
+/// by row; 0: not known.
+struct odometry_message {
+  std::int64_t stamp_ns = 0;                      ///< Nanoseconds since 1970.
+  std::string_view frame_id = "odom";             ///< The fixed frame, that of the pose.
+  std::string_view child_frame_id = "base_link";  ///< The robot's frame, that of the twist.
+  pose_2d pose{};                                 ///< Of the robot.
+  twist_2d twist{};                               ///< Of the robot.
+  std::array<double, 36> pose_covariance{};       ///< Of `pose`.
+  std::array<double, 36> twist_covariance{};      ///< Of `twist`.
+};
+/// Appends a nav_msgs/msg/Odometry to `out`. Allocates beyond the capacity of `out`.
+G4LIDAR_API void put_odometry(const odometry_message& message, std::vector<std::uint8_t>& out);
+
+/// The place of one frame in another.
+struct transform_message {
+  std::int64_t stamp_ns = 0;                  ///< Nanoseconds since 1970.
+  std::string_view frame_id = "base_link";    ///< The frame in which the place is.
+  std::string_view child_frame_id = "laser";  ///< The frame whose place it is.
+  mounting place{};                           ///< The place.
+};
+/// Appends a tf2_msgs/msg/TFMessage with this transform to `out`. Allocates beyond the capacity of
+/// `out`.
+G4LIDAR_API void put_tf_message(const transform_message& message, std::vector<std::uint8_t>& out);
 
 }  // namespace g4lidar
