@@ -62,7 +62,7 @@ std::vector<std::uint8_t> made_recording() {
   std::uint32_t sequence = 0;
   for (int i = 0; i < 4; ++i) {
     open_chunk chunk;
-    put_channels(chunk.text(), "/scan");
+    channel_set().put_channels(chunk.text());
     for (int k = 0; k < 3; ++k, ++number) {
       chunk.begin_message(topic::from_device, sequence++, number);
       put_recorded_bytes(chunk.text(), reading(number), number);

@@ -85,7 +85,7 @@ class file_run {
   }
 
   void take(const recorded_item& item) {
-    last_ns_ = item.time_ns;
+    if (item.what != recorded_item::kind::odometry) last_ns_ = item.time_ns;
     switch (item.what) {
       case recorded_item::kind::from_device:
         return take(item.data, item.time_ns);
@@ -95,6 +95,8 @@ class file_run {
       case recorded_item::kind::other:
         if (item.other.what == recorded_event::kind::gap) measured_.part();
         if (item.other.what == recorded_event::kind::closed) await_speed();
+        return;
+      case recorded_item::kind::odometry:
         return;
     }
   }

@@ -140,6 +140,7 @@ bool replay_player::is_here(const recorded_event& what) const noexcept {
              pipeline_.events_of_reading() >= what.events;
     case recorded_event::kind::sent:
     case recorded_event::kind::state:
+    case recorded_event::kind::odometry:
       return true;  // the place does not matter
     case recorded_event::kind::opened:
     case recorded_event::kind::closed:
@@ -202,6 +203,7 @@ void replay_player::play(const recorded_event& what) {
       return play_state(what);
     case recorded_event::kind::cut:
     case recorded_event::kind::sent:
+    case recorded_event::kind::odometry:
       return;
   }
 }

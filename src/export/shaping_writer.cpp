@@ -86,8 +86,7 @@ void shaping_writer::deskew_scan(std::span<point> points, std::int64_t first_ns)
 
 std::span<const point> shaping_writer::shaped(std::span<const point> points) {
   const bool deskews = options_.deskew != deskewing::none;
-  const bool is_same =
-      options_.filter.keeps_everything() && times_.changes_nothing() && !deskews;
+  const bool is_same = options_.filter.keeps_everything() && times_.changes_nothing() && !deskews;
   if (!options_.for_grid && is_same) return points;
   if (shaped_.size() < points.size()) shaped_.resize(points.size());
   const auto kept = options_.for_grid ? filter_for_grid(points, options_.filter, shaped_)

@@ -6,10 +6,13 @@
 #include <new>
 #include <utility>
 
+#include "core/saturating.hpp"
+
 namespace g4lidar {
 
 using mcap::chunk_source;
 using mcap::field_reader;
+using mcap::index_of;
 using mcap::opcode;
 using mcap::record_header_size;
 using mcap::topic;
@@ -22,6 +25,9 @@ constexpr int blocks_at_front = 32;
 constexpr int most_records = 1000;
 /// The resolution of the search for the begin; the rest is read.
 constexpr std::uint64_t near_enough = std::uint64_t{64} << 10U;
+
+/// Odometry may be recorded by this time later than what else has its time.
+constexpr std::int64_t late_ns = 1'000'000'000;
 
 /// The sum of two of them does not overflow.
 bool is_a_time(std::int64_t time_ns) noexcept {
@@ -51,8 +57,8 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
   read_front();
   const std::optional<recorded_item> first = read();
   if (const auto& why = file_->trouble()) return tl::unexpected(*why);
-  const bool is_ours =
-      std::ranges::any_of(channels_, [](const auto& id) { return id.has_value(); });
+  const bool is_ours = std::any_of(channels_.begin(), channels_.begin() + index_of(topic::scan),
+                                   [](const auto& id) { return id.has_value(); });
   if (!is_ours || (!first && damage().any())) {
     return failure(task::opening, problem::bad_file, path_);
   }
@@ -60,7 +66,8 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
     is_over_ = true;
     return {};
   }
-  first_ns_ = first->time_ns;
+  const bool is_odometry = first->what == recorded_item::kind::odometry;
+  first_ns_ = is_odometry ? first_time_ahead().value_or(first->time_ns) : first->time_ns;
   const auto behind_first = [&](std::int64_t time_ns) {
     return time_ns > never_ns - std::max<std::int64_t>(first_ns_, 0) ? never_ns
                                                                      : first_ns_ + time_ns;
@@ -139,9 +146,7 @@ void recording_reader::file_reader::take_channel(field_reader record) noexcept {
   const std::string_view encoding = record.take_text();
   if (!record.is_good() || encoding != "cdr") return;
   for (const mcap::topic_words& known : mcap::all_topics()) {
-    if (known.id != topic::scan && known.name == name) {
-      channels_[static_cast<std::size_t>(known.id) - 1] = id;
-    }
+    if (known.is_read() && known.name == name) channels_[index_of(known.id)] = id;
   }
 }
 
@@ -199,9 +204,19 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes r
     const field_reader record(rest.take(rest.take<std::uint64_t>()));
     if (kind == opcode::channel) take_channel(record);
     if (kind != opcode::message) continue;
-    if (const auto item = item_in(record)) return item->time_ns;
+    const auto item = item_in(record);
+    if (item && item->what != recorded_item::kind::odometry) return item->time_ns;
   }
   return std::nullopt;
+}
+
+/// The same of the records that follow; they are not read.
+std::optional<std::int64_t> recording_reader::file_reader::first_time_ahead() noexcept {
+  const auto sequence = sequence_;
+  const auto time_ns = first_time_in(records_);
+  sequence_ = sequence;
+  is_gap_ = false;
+  return time_ns;
 }
 
 /// Skips items before the requested time; the state of the transport at that time is returned
@@ -212,8 +227,11 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
     if (!item) item = read();
     if (!item) return item;
     if (item->time_ns >= to_ns_) {
-      is_over_ = true;
-      return std::nullopt;
+      const bool is_odometry = item->what == recorded_item::kind::odometry;
+      const bool has_odometry = channels_[index_of(topic::odometry)].has_value();
+      is_over_ = !is_odometry && (!has_odometry || item->time_ns - to_ns_ >= late_ns);
+      if (is_over_) return std::nullopt;
+      continue;
     }
     const bool is_event = item->what == recorded_item::kind::other;
     if (item->time_ns < from_ns_) {
@@ -262,6 +280,7 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
       if (kind != opcode::message) continue;
       auto item = item_in(record);
       if (!item) continue;
+      if (item->what == recorded_item::kind::odometry) return item;
       last_ns_ = std::max(last_ns_, item->time_ns);
       if (!std::exchange(is_gap_, false)) return item;
       waiting_ = item;
@@ -272,6 +291,7 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
     }
     records_ = chunks_->next().records;
     if (records_.empty()) return std::nullopt;
+    if (!wall_ahead_ns_) static_cast<void>(first_time_ahead());  // for odometry before it
   }
 }
 
@@ -281,19 +301,29 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   const auto wall_ns = static_cast<std::int64_t>(record.take<std::uint64_t>());
   static_cast<void>(record.take<std::uint64_t>());
   if (!record.is_good() || !is_a_time(wall_ns)) return std::nullopt;
-  const auto is = [&](topic which) { return channels_[static_cast<std::size_t>(which) - 1] == id; };
+  const auto is = [&](topic which) { return channels_[index_of(which)] == id; };
   const bool is_from_device = is(topic::from_device);
   if (is_from_device || is(topic::to_device)) {
     const auto found = mcap::recorded_bytes_from(record.rest());
     if (!found || !is_a_time(found->time_ns)) return std::nullopt;
+    wall_ahead_ns_ = wall_ns - found->time_ns;
     if (is_from_device && skips(sequence)) is_gap_ = true;
     const auto what =
         is_from_device ? recorded_item::kind::from_device : recorded_item::kind::to_device;
     return recorded_item{what, found->time_ns, wall_ns, found->data, {}};
   }
+  if (is(topic::odometry)) {
+    auto found = mcap::odometry_from(record.rest());
+    if (!found || !wall_ahead_ns_) return std::nullopt;
+    const std::int64_t stamp_ns = found->time_ns;
+    found->time_ns = saturating_sub(stamp_ns, *wall_ahead_ns_);
+    if (!is_a_time(stamp_ns) || !is_a_time(found->time_ns)) return std::nullopt;
+    return recorded_item{recorded_item::kind::odometry, found->time_ns, stamp_ns, {}, {}, *found};
+  }
   if (!is(topic::events)) return std::nullopt;
   const auto found = mcap::event_from(record.rest());
   if (!found || !is_a_time(found->time_ns)) return std::nullopt;
+  wall_ahead_ns_ = wall_ns - found->time_ns;
   return recorded_item{recorded_item::kind::other, found->time_ns, wall_ns, {}, *found};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "channels.hpp"
 #include "chunk_source.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "messages.hpp"
@@ -42,6 +43,7 @@ class recording_reader::file_reader {
   void seek(std::int64_t from_ns);
   [[nodiscard]] std::optional<std::uint64_t> chunk_before(std::int64_t from_ns);
   [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes records) noexcept;
+  [[nodiscard]] std::optional<std::int64_t> first_time_ahead() noexcept;
 
   [[nodiscard]] std::optional<recorded_item> advance();
   [[nodiscard]] std::optional<recorded_item> read();
@@ -58,7 +60,8 @@ class recording_reader::file_reader {
   std::optional<recorded_device> device_;
   std::optional<recorded_digest> digest_;
   mutable recording_damage damage_;
-  std::uint64_t bytes_skipped_ = 0;  // in chunks
+  std::uint64_t bytes_skipped_ = 0;            // in chunks
+  std::optional<std::int64_t> wall_ahead_ns_;  // at the last item with both times
   std::int64_t first_ns_ = 0;
   std::int64_t last_ns_ = 0;
   std::int64_t from_ns_ = std::numeric_limits<std::int64_t>::min();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <new>
 #include <utility>
@@ -16,7 +17,9 @@ namespace {
 /// Bytes in one message; a driver reads fewer at a time.
 constexpr std::size_t largest_piece = std::size_t{64} << 10U;
 /// Size of a message of any kind without its data.
-constexpr std::size_t message_room = 1024;
+constexpr std::size_t message_room = 2048;
+/// Size of a point in a PointCloud2.
+constexpr std::size_t point_room = 24;
 
 std::int64_t ns_of(std::chrono::nanoseconds time) noexcept { return time.count(); }
 
@@ -52,6 +55,7 @@ recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_vi
     : options_(options),
       first_path_(path),
       file_(std::make_unique<mcap::mcap_file>(std::move(first))),
+      channels_(options),
       ranges_(options.scan_bins) {
   if (options.packed == packing::zstd) packer_.emplace(std::size_t{1} << 20U);
   counts_.files = 1;
@@ -74,20 +78,22 @@ result<void> recording_writer::file_writer::guarded(Work work) noexcept {
   }
 }
 
-/// One message of about `size` bytes, which `put` writes.
+/// One message of about `size` bytes, which `put` writes. Chunks and files are divided by the times of
+/// all items but odometry, which may be of any time.
 template <class Put>
 void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::size_t size,
                                         Put put) noexcept {
-  last_ns_ = std::max(last_ns_, time_ns);
+  const std::int64_t item_ns = id == topic::odometry ? last_ns_ : time_ns;
+  last_ns_ = std::max(last_ns_, item_ns);
   static_cast<void>(guarded([&]() -> result<void> {
     result<void> ended;
-    const bool is_due = covered_.chunk_age_ns(time_ns) >= ns_of(options_.chunk_time);
+    const bool is_due = covered_.chunk_age_ns(item_ns) >= ns_of(options_.chunk_time);
     if (!chunk_.is_empty() && (is_due || !chunk_.has_room_for(size + message_room))) {
       ended = end_chunk();
     }
-    if (chunk_.is_empty()) begin_chunk(time_ns);
-    std::uint32_t& sequence = sequences_[mcap::open_chunk::index_of(id)];
-    covered_.add(time_ns);
+    if (chunk_.is_empty()) begin_chunk(item_ns);
+    std::uint32_t& sequence = sequences_[mcap::index_of(id)];
+    covered_.add(item_ns);
     chunk_.begin_message(id, sequence++, wall_.at(time_ns));
     put(chunk_.text());
     chunk_.end_message();
@@ -117,6 +123,10 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
   if (what.what == recorded_event::kind::sent) {
     return put_bytes(direction::to_device, what.data, what.time_ns);
   }
+  if (what.what == recorded_event::kind::odometry) {
+    if (options_.keep_odometry) odometry(what.odometry);
+    return;
+  }
   if (what.what !=
       recorded_event::kind::state) {  // each chunk begins with one, of the state before
     put(topic::events, what.time_ns, 0,
@@ -127,12 +137,62 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
 
 void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexcept {
   if (is_closed_ || revolution.points.empty()) return;
-  ++counts_.scans;
-  fill_grid(revolution.points, ranges_, {.to = frame::robot});
-  const std::int64_t first_ns = revolution.points.front().time_ns;
-  put(topic::scan, last_ns_, ranges_.size() * sizeof(float), [&](mcap::record_text& out) {
-    put_laser_scan(ranges_, {wall_.at(first_ns), options_.frame_id, revolution.duration_ns},
-                   out.memory());
+  const std::span<const point> points = revolution.points;
+  message_header header{.frame_id = options_.frame_id,
+                        .duration_ns = revolution.duration_ns,
+                        .order = options_.order};
+  const auto put_stamped = [&](topic id, std::size_t size, auto put_message) {
+    put(id, last_ns_, size, [&](mcap::record_text& out) {
+      header.stamp_ns = wall_.at(points.front().time_ns);
+      put_message(out.memory());
+    });
+  };
+  if (options_.scans) {
+    ++counts_.scans;
+    if (options_.order == scan_order::time) {
+      header.first_bin = fill_time_grid(points, revolution.duration_ns, ranges_);
+    } else {
+      fill_grid(points, ranges_, {.to = frame::robot});
+    }
+    put_stamped(topic::scan, ranges_.size() * sizeof(float),
+                [&](auto& out) { put_laser_scan(ranges_, header, out); });
+  }
+  if (channels_.has(topic::points)) {
+    put_stamped(topic::points, points.size() * point_room,
+                [&](auto& out) { put_point_cloud2(points, header, out); });
+  }
+}
+
+/// Whether the file has the channel, which is added if necessary.
+bool recording_writer::file_writer::has_channel(topic id) noexcept {
+  if (channels_.has(id)) return true;
+  static_cast<void>(guarded([&]() -> result<void> {
+    auto done = end_chunk();
+    mcap::channel_set more = channels_;
+    more.add(id);
+    if (done) done = file_->extend(more);
+    if (done) channels_ = more;
+    return done;
+  }));
+  return channels_.has(id);
+}
+
+void recording_writer::file_writer::odometry(const stamped_odometry& what) noexcept {
+  const auto& [x_m, y_m, yaw_rad] = what.pose;
+  const auto& [forward, leftward, turn] = what.twist;
+  const bool is_finite =
+      std::isfinite(x_m + y_m + yaw_rad) && std::isfinite(forward + leftward + turn);
+  const bool has_begun =
+      transport_.is_known || counts_.bytes_from_device + counts_.bytes_to_device > 0;
+  if (is_closed_ || !is_finite || !has_begun || !has_channel(topic::odometry)) return;
+  ++counts_.odometry;
+  put(topic::odometry, what.time_ns, 0, [&](mcap::record_text& out) {
+    put_odometry({.stamp_ns = wall_.at(what.time_ns),
+                  .frame_id = options_.odometry_frame_id,
+                  .child_frame_id = options_.robot_frame_id,
+                  .pose = what.pose,
+                  .twist = what.twist},
+                 out.memory());
   });
 }
 
@@ -152,9 +212,9 @@ void recording_writer::file_writer::device(const recorded_device& known) noexcep
 void recording_writer::file_writer::begin_chunk(std::int64_t time_ns) {
   wall_.update();
   covered_.begin_chunk(time_ns, !file_->has_chunks());
-  put_channels(chunk_.text(), options_.topic);
+  channels_.put_channels(chunk_.text());
   if (!transport_.is_known) return;
-  chunk_.begin_message(topic::events, sequences_[mcap::open_chunk::index_of(topic::events)]++,
+  chunk_.begin_message(topic::events, sequences_[mcap::index_of(topic::events)]++,
                        wall_.at(time_ns));
   mcap::put_event(chunk_.text(), transport_.as_event(time_ns), wall_.ahead_ns());
   chunk_.end_message();
@@ -179,6 +239,9 @@ result<void> recording_writer::file_writer::end_chunk() {
     const bool is_old = rotate_ns != 0 && covered_.length_ns() >= rotate_ns;
     if (file_->has_chunks() && (is_full || is_old)) rotated = rotate();
   }
+  if (packed && options_.mount && !file_->has_chunks()) {
+    if (auto first = add_transform(); !first) rotated = first;
+  }
   result<void> added = packed ? file_->add(chunk_, *packed) : tl::unexpected(packed.error());
   if (!added) {
     lose_chunk();
@@ -191,6 +254,26 @@ result<void> recording_writer::file_writer::end_chunk() {
   return rotated;
 }
 
+/// The first chunk of each file: how the lidar is fixed to the robot.
+result<void> recording_writer::file_writer::add_transform() {
+  mounting place =
+      *options_.mount;  // NOLINT(bugprone-unchecked-optional-access): the caller checks
+  if (options_.order == scan_order::time) place.upside_down = !place.upside_down;
+  const auto begin_ns = static_cast<std::int64_t>(chunk_.first_ns());
+  mcap::open_chunk first;
+  channels_.put_channels(first.text());
+  first.begin_message(topic::tf_static, sequences_[mcap::index_of(topic::tf_static)]++, begin_ns);
+  put_tf_message({.stamp_ns = begin_ns,
+                  .frame_id = options_.robot_frame_id,
+                  .child_frame_id = options_.frame_id,
+                  .place = place},
+                 first.text().memory());
+  first.end_message();
+  auto added = file_->add(first, {});
+  if (added) ++counts_.chunks;
+  return added;
+}
+
 void recording_writer::file_writer::lose_chunk() noexcept {
   chunk_.clear();
   ++counts_.chunks_lost;
@@ -199,7 +282,7 @@ void recording_writer::file_writer::lose_chunk() noexcept {
 
 /// The new file is created first: if that fails, the old one is continued.
 result<void> recording_writer::file_writer::rotate() {
-  auto next = mcap::mcap_file::create(next_path(), options_.topic, options_.overwrite);
+  auto next = mcap::mcap_file::create(next_path(), channels_, options_.overwrite);
   if (!next) return tl::unexpected(next.error());
   auto ended = end_file(false);
   ++counts_.files;

@@ -67,6 +67,7 @@ class recording_writer::file_writer {
   void put_bytes(direction way, bytes data, std::int64_t time_ns) noexcept;
   void event(const recorded_event& what) noexcept;
   void scan(const g4lidar::scan& revolution) noexcept;
+  void odometry(const stamped_odometry& what) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
   void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
@@ -84,7 +85,9 @@ class recording_writer::file_writer {
   result<void> guarded(Work work) noexcept;
   template <class Put>
   void put(mcap::topic id, std::int64_t time_ns, std::size_t size, Put put) noexcept;
+  [[nodiscard]] bool has_channel(mcap::topic id) noexcept;
   void begin_chunk(std::int64_t time_ns);
+  [[nodiscard]] result<void> add_transform();
   [[nodiscard]] result<void> end_chunk();
   [[nodiscard]] result<bytes> pack();
   [[nodiscard]] result<void> rotate();
@@ -95,6 +98,7 @@ class recording_writer::file_writer {
   recording_options options_;
   std::string first_path_;
   std::unique_ptr<mcap::mcap_file> file_;
+  mcap::channel_set channels_;  // of the current file
   mcap::open_chunk chunk_;
   std::optional<mcap::packer> packer_;
   std::vector<float> ranges_;

@@ -25,30 +25,7 @@ std::string library_name() {
          "." + std::to_string(of.patch_number);
 }
 
-void put_schemas(record_text& out) {
-  for (const schema_words& schema : all_schemas()) {
-    const std::size_t record = out.begin(opcode::schema);
-    out.put(schema.id);
-    out.put(schema.name);
-    out.put("ros2msg");
-    out.put(schema.text);
-    out.end(record);
-  }
-}
-
 }  // namespace
-
-void put_channels(record_text& out, std::string_view scan_topic) {
-  for (const topic_words& channel : all_topics()) {
-    const std::size_t record = out.begin(opcode::channel);
-    out.put(static_cast<std::uint16_t>(channel.id));
-    out.put(channel.schema);
-    out.put(channel.id == topic::scan ? scan_topic : channel.name);
-    out.put("cdr");
-    put_map(out, {{"offered_qos_profiles", ""}});
-    out.end(record);
-  }
-}
 
 // ---- open_chunk --------------------------------------------------------------------------------
 
@@ -80,12 +57,11 @@ void open_chunk::clear() noexcept {
 
 // ---- mcap_file ---------------------------------------------------------------------------------
 
-result<mcap_file> mcap_file::create(const std::string& path, std::string scan_topic,
-                                    bool overwrite) {
+result<mcap_file> mcap_file::create(const std::string& path, channel_set channels, bool overwrite) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | (overwrite ? O_TRUNC : O_EXCL);
   owned_fd fd(uninterrupted([&] { return ::open(path.c_str(), flags, 0666); }));
   if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
-  mcap_file made(std::move(fd), path, std::move(scan_topic));
+  mcap_file made(std::move(fd), path, std::move(channels));
   record_text& text = made.text_;
   text.reserve(text_room);
   text.put(bytes(magic));
@@ -93,8 +69,8 @@ result<mcap_file> mcap_file::create(const std::string& path, std::string scan_to
   text.put("ros2");
   text.put(std::string_view(library_name()));
   text.end(header);
-  put_schemas(text);
-  put_channels(text, made.scan_topic_);
+  made.channels_.put_schemas(text);
+  made.channels_.put_channels(text);
   if (auto written = made.write(text.all()); !written) return tl::unexpected(written.error());
   return made;
 }
@@ -148,7 +124,7 @@ result<void> mcap_file::add(const open_chunk& chunk, bytes packed) {
   for (const topic_words& channel : all_topics()) {
     const auto places = chunk.places(channel.id);
     if (places.empty()) continue;
-    place.index_offsets[open_chunk::index_of(channel.id)] = offset_ + text_.size();
+    place.index_offsets[index_of(channel.id)] = offset_ + text_.size();
     const std::size_t index = text_.begin(opcode::message_index);
     text_.put(static_cast<std::uint16_t>(channel.id));
     const std::size_t array = text_.begin<std::uint32_t>();
@@ -162,10 +138,19 @@ result<void> mcap_file::add(const open_chunk& chunk, bytes packed) {
   place.index_length = text_.size() - place.length;
   if (auto written = write(text_.all()); !written) return written;
   for (const topic_words& channel : all_topics()) {
-    messages_[open_chunk::index_of(channel.id)] += chunk.places(channel.id).size();
+    messages_[index_of(channel.id)] += chunk.places(channel.id).size();
   }
   chunks_.push_back(place);
   return {};
+}
+
+result<void> mcap_file::extend(const channel_set& channels) {
+  text_.clear();
+  channels.put_schemas(text_, &channels_);
+  channels.put_channels(text_);
+  auto written = write(text_.all());
+  if (written) channels_ = channels;
+  return written;
 }
 
 result<void> mcap_file::add_metadata(std::string_view name, const word_map& words) {
@@ -181,8 +166,8 @@ result<void> mcap_file::add_metadata(std::string_view name, const word_map& word
 }
 
 std::uint64_t mcap_file::closed_size() const noexcept {
-  constexpr std::uint64_t of_summary = 8192;
-  constexpr std::uint64_t of_chunk = 160;
+  constexpr std::uint64_t of_summary = 12'288;  // with all schemas
+  constexpr std::uint64_t of_chunk = 120 + 10 * topic_count;
   return offset_ + of_summary + of_chunk * (chunks_.size() + 1);
 }
 
@@ -210,8 +195,8 @@ void mcap_file::put_statistics() {
   }
   const std::size_t record = text_.begin(opcode::statistics);
   text_.put(all);
-  text_.put(static_cast<std::uint16_t>(all_schemas().size()));
-  text_.put(static_cast<std::uint32_t>(all_topics().size()));
+  text_.put(channels_.schema_count());
+  text_.put(channels_.count());
   text_.put(std::uint32_t{0});
   text_.put(static_cast<std::uint32_t>(metadata_.size()));
   text_.put(static_cast<std::uint32_t>(chunks_.size()));
@@ -219,8 +204,9 @@ void mcap_file::put_statistics() {
   text_.put(last_ns);
   const std::size_t counts = text_.begin<std::uint32_t>();
   for (const topic_words& channel : all_topics()) {
+    if (!channels_.has(channel.id)) continue;
     text_.put(static_cast<std::uint16_t>(channel.id));
-    text_.put(messages_[open_chunk::index_of(channel.id)]);
+    text_.put(messages_[index_of(channel.id)]);
   }
   text_.end<std::uint32_t>(counts);
   text_.end(record);
@@ -234,7 +220,7 @@ void mcap_file::put_chunk_index(const chunk_place& of) {
   text_.put(of.length);
   const std::size_t offsets = text_.begin<std::uint32_t>();
   for (const topic_words& channel : all_topics()) {
-    const std::uint64_t offset = of.index_offsets[open_chunk::index_of(channel.id)];
+    const std::uint64_t offset = of.index_offsets[index_of(channel.id)];
     if (offset == 0) continue;
     text_.put(static_cast<std::uint16_t>(channel.id));
     text_.put(offset);
@@ -271,9 +257,9 @@ result<void> mcap_file::summarise() {
     groups.push_back({kind, at, at});
   };
   begin(opcode::schema);
-  put_schemas(text_);
+  channels_.put_schemas(text_);
   begin(opcode::channel);
-  put_channels(text_, scan_topic_);
+  channels_.put_channels(text_);
   begin(opcode::statistics);
   put_statistics();
   begin(opcode::chunk_index);

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "channels.hpp"
 #include "crc32.hpp"
 #include "g4lidar/error.hpp"
 #include "messages.hpp"
@@ -18,9 +19,6 @@
 #include "transport/owned_fd.hpp"
 
 namespace g4lidar::mcap {
-
-/// The records before the messages of a chunk. Scans are on `scan_topic`.
-void put_channels(record_text& out, std::string_view scan_topic);
 
 /// The messages of a chunk that is being filled. It is written to a file as a whole. *Allocates on
 /// open.*
@@ -51,9 +49,6 @@ class open_chunk {
   [[nodiscard]] std::span<const place> places(topic id) const noexcept {
     return places_[index_of(id)];
   }
-  [[nodiscard]] static std::size_t index_of(topic id) noexcept {
-    return static_cast<std::size_t>(id) - 1;
-  }
 
  private:
   static constexpr std::size_t room = std::size_t{1} << 20U;
@@ -70,13 +65,15 @@ class open_chunk {
 /// *Single thread.* Only complete records are passed to the system; a partial write is reverted.
 class mcap_file {
  public:
-  /// Creates it, and writes the records before the chunks. Scans are on `scan_topic`.
-  [[nodiscard]] static result<mcap_file> create(const std::string& path, std::string scan_topic,
+  /// Creates it, and writes the records before the chunks.
+  [[nodiscard]] static result<mcap_file> create(const std::string& path, channel_set channels,
                                                 bool overwrite);
   mcap_file(mcap_file&&) noexcept = default;
 
   /// `packed`: the records compressed with zstd, or empty.
   [[nodiscard]] result<void> add(const open_chunk& chunk, bytes packed);
+  /// From now on it has these channels; those that it already has must be among them.
+  [[nodiscard]] result<void> extend(const channel_set& channels);
   [[nodiscard]] result<void> add_metadata(std::string_view name, const word_map& words);
   /// Writes the summary; nothing can be added afterwards.
   [[nodiscard]] result<void> close();
@@ -98,8 +95,8 @@ class mcap_file {
     std::string name;
   };
 
-  mcap_file(owned_fd fd, std::string path, std::string scan_topic) noexcept
-      : fd_(std::move(fd)), path_(std::move(path)), scan_topic_(std::move(scan_topic)) {}
+  mcap_file(owned_fd fd, std::string path, channel_set channels) noexcept
+      : fd_(std::move(fd)), path_(std::move(path)), channels_(std::move(channels)) {}
   [[nodiscard]] result<void> write(bytes data);
   [[nodiscard]] result<void> write_all(bytes data) noexcept;
   [[nodiscard]] result<void> end_data();
@@ -109,7 +106,7 @@ class mcap_file {
 
   owned_fd fd_;
   std::string path_;
-  std::string scan_topic_;
+  channel_set channels_;
   std::uint64_t offset_ = 0;
   crc32 crc_;  // of everything written, and later of the summary
   record_text text_;

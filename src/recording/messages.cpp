@@ -2,18 +2,19 @@
 #include "messages.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
+#include <cmath>
 
 #include "export/cdr.hpp"
 #include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/response.hpp"
-#include "g4lidar/export/ros_messages.hpp"
 
 namespace g4lidar {
 namespace {
 
-constexpr std::array<std::string_view, 8> event_names{"opened", "closed", "sent", "begun",
-                                                      "held",   "cut",    "gap",  "state"};
+constexpr std::array<std::string_view, 9> event_names{
+    "opened", "closed", "sent", "begun", "held", "cut", "gap", "state", "odometry"};
 
 }  // namespace
 
@@ -42,33 +43,6 @@ std::string_view computed_with() noexcept {
 
 namespace mcap {
 namespace {
-
-constexpr std::string_view recorded_bytes_schema =
-    R"(# Bytes that were read from, or sent to, a lidar together.
-int64 monotonic_ns  # when, by the steady clock of the computer; the wall clock is the message's time
-uint8[] data
-)";
-
-constexpr std::string_view recorded_event_schema =
-    R"(# What happened on the transport to a lidar beside the bytes.
-int64 monotonic_ns
-int64 wall_ahead_ns  # wall clock - monotonic clock
-uint32 baud
-uint32 samples_per_second
-uint32 unparsed  # bytes of the last reading that had not been parsed
-uint32 events    # of the parser since the last reading
-bool delivers    # whether packets make points from here on
-string what      # opened, closed, begun, held, cut, gap, state
-string reason
-string name
-)";
-
-constexpr std::array<topic_words, topic_count> topics{{
-    {topic::from_device, "/g4lidar/from_device", 1},
-    {topic::to_device, "/g4lidar/to_device", 1},
-    {topic::events, "/g4lidar/events", 2},
-    {topic::scan, "/scan", 3},
-}};
 
 std::optional<problem> problem_named(std::string_view name) noexcept {
   for (std::size_t i = 0; i < problem_count; ++i) {
@@ -122,16 +96,6 @@ void take_firmware(device_information& who, std::string_view text) noexcept {
 
 }  // namespace
 
-std::span<const schema_words> all_schemas() noexcept {
-  static const std::array<schema_words, 3> schemas{{
-      {1, "g4lidar_msgs/msg/RecordedBytes", recorded_bytes_schema},
-      {2, "g4lidar_msgs/msg/RecordedEvent", recorded_event_schema},
-      {3, laser_scan_schema().name, laser_scan_schema().text},
-  }};
-  return schemas;
-}
-std::span<const topic_words> all_topics() noexcept { return topics; }
-
 void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns) {
   cdr_writer message(out.memory());
   message.put(time_ns);
@@ -183,7 +147,38 @@ std::optional<recorded_event> event_from(bytes message) noexcept {
   made.what = static_cast<recorded_event::kind>(named - event_names.begin());
   if (made.samples_per_second > most_samples_per_second) return std::nullopt;
   if (made.what == recorded_event::kind::begun && made.samples_per_second == 0) return std::nullopt;
-  return made.what == recorded_event::kind::sent ? std::nullopt : std::optional(made);
+  // These have channels of their own.
+  const bool is_event =
+      made.what != recorded_event::kind::sent && made.what != recorded_event::kind::odometry;
+  return is_event ? std::optional(made) : std::nullopt;
+}
+
+std::optional<stamped_odometry> odometry_from(bytes message) noexcept {
+  if (message.size() < 4 || message[1] != 1) return std::nullopt;
+  field_reader fields(message.subspan(4));
+  const auto number = [&fields] { return std::bit_cast<double>(fields.take<std::uint64_t>()); };
+  constexpr std::size_t covariance_size = 36 * sizeof(double);
+  const auto seconds = static_cast<std::int32_t>(fields.take<std::uint32_t>());
+  const auto rest_ns = fields.take<std::uint32_t>();
+  static_cast<void>(fields.take_cdr_text());
+  static_cast<void>(fields.take_cdr_text());
+  fields.align(sizeof(double));
+  std::array<double, 7> pose{};  // x, y, z, and the quaternion x, y, z, w
+  std::ranges::generate(pose, number);
+  static_cast<void>(fields.take(covariance_size));
+  std::array<double, 6> twist{};
+  std::ranges::generate(twist, number);
+  static_cast<void>(fields.take(covariance_size));
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  const bool is_good = fields.is_good() && fields.is_at_end() && rest_ns < 1'000'000'000 &&
+                       std::ranges::all_of(pose, is_finite) &&
+                       std::ranges::all_of(twist, is_finite);
+  if (!is_good) return std::nullopt;
+  const auto& [x, y, z, qx, qy, qz, qw] = pose;
+  const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
+  if (!is_finite(yaw)) return std::nullopt;
+  return stamped_odometry{
+      std::int64_t{seconds} * 1'000'000'000 + rest_ns, {x, y, yaw}, {twist[0], twist[1], twist[5]}};
 }
 
 void put_map(record_text& out, const word_map& words) {
@@ -278,6 +273,7 @@ void transport_state::take(const recorded_event& what) noexcept {
     case sent:
     case cut:
     case gap:
+    case odometry:
       break;
   }
 }

@@ -14,28 +14,12 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/detail/recorded_device.hpp"
 #include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/recording/digest.hpp"
 #include "g4lidar/scan.hpp"
 #include "record_text.hpp"
 
 namespace g4lidar::mcap {
-
-/// The channels of a recording, with their numbers in a file.
-enum class topic : std::uint16_t { from_device = 1, to_device = 2, events = 3, scan = 4 };
-inline constexpr std::size_t topic_count = 4;
-
-struct schema_words {
-  std::uint16_t id;
-  std::string_view name;
-  std::string_view text;
-};
-struct topic_words {
-  topic id;
-  std::string_view name;
-  std::uint16_t schema;
-};
-[[nodiscard]] std::span<const schema_words> all_schemas() noexcept;
-[[nodiscard]] std::span<const topic_words> all_topics() noexcept;
 
 /// The number of bytes before the recorded bytes in a message.
 inline constexpr std::size_t recorded_bytes_header_size = 4 + 8 + 4;
@@ -49,6 +33,8 @@ struct recorded_bytes {
   bytes data;
 };
 [[nodiscard]] std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept;
+/// The time is the stamp of the message; nothing if it is another message, or invalid.
+[[nodiscard]] std::optional<stamped_odometry> odometry_from(bytes message) noexcept;
 /// A view of `message`; nothing if it is invalid, or of an unknown kind.
 [[nodiscard]] std::optional<recorded_event> event_from(bytes message) noexcept;
 

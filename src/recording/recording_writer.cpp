@@ -3,6 +3,7 @@
 #include "g4lidar/recording/writer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "file_writer.hpp"
@@ -35,7 +36,7 @@ bool is_topic(std::string_view name) noexcept {
 /// Names with another meaning for a reader.
 bool is_our_own(std::string_view name) noexcept {
   return std::ranges::any_of(mcap::all_topics(), [&](const mcap::topic_words& known) {
-    return known.id != mcap::topic::scan && known.name == name;
+    return !known.is_named_by_options() && known.name == name;
   });
 }
 
@@ -57,7 +58,21 @@ std::optional<error> problem_with(const recording_options& options) noexcept {
     return bad("scan_bins: 1 to 65536");
   if (!is_topic(options.topic)) return bad("topic: a whole name as ROS has them, like /front/scan");
   if (is_our_own(options.topic)) return bad("topic: one of the recording's own");
-  if (options.frame_id.size() > longest_name) return bad("frame_id: at most 255 bytes");
+  if (!options.points_topic.empty()) {
+    if (!is_topic(options.points_topic)) return bad("points_topic: a whole name as ROS has them");
+    if (is_our_own(options.points_topic) || options.points_topic == options.topic) {
+      return bad("points_topic: one of the recording's own");
+    }
+  }
+  for (const std::string& name :
+       {options.frame_id, options.robot_frame_id, options.odometry_frame_id}) {
+    if (name.size() > longest_name) return bad("frame_id: at most 255 bytes");
+  }
+  if (options.mount) {
+    const auto& [x_m, y_m, yaw_rad] = options.mount->pose;
+    const bool is_good = std::isfinite(x_m) && std::isfinite(y_m) && std::isfinite(yaw_rad);
+    if (!is_good) return bad("mount: finite numbers");
+  }
   return std::nullopt;
 }
 
@@ -78,7 +93,8 @@ recording_writer::~recording_writer() { static_cast<void>(close()); }
 result<recording_writer> recording_writer::create(std::string_view path,
                                                   const recording_options& options) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
-  auto first = mcap::mcap_file::create(std::string(path), options.topic, options.overwrite);
+  auto first =
+      mcap::mcap_file::create(std::string(path), mcap::channel_set(options), options.overwrite);
   if (!first) return tl::unexpected(first.error());
   return recording_writer(std::make_unique<file_writer>(std::move(*first), path, options));
 }
@@ -94,6 +110,9 @@ void recording_writer::event(const recorded_event& what) noexcept {
 }
 void recording_writer::scan(const g4lidar::scan& revolution) noexcept {
   if (made_) made_->scan(revolution);
+}
+void recording_writer::odometry(const stamped_odometry& what) noexcept {
+  if (made_) made_->odometry(what);
 }
 void recording_writer::points(std::span<const point> delivered) noexcept {
   if (made_) made_->points(delivered);

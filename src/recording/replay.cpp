@@ -95,6 +95,11 @@ class player final : public recorded_event_source {
       what.what = recorded_event::kind::sent;
       what.data = item.data;
     }
+    if (item.what == recorded_item::kind::odometry) {
+      what.what = recorded_event::kind::odometry;
+      what.odometry = item.odometry;
+      what.odometry.time_ns = item.time_ns;  // in this round
+    }
     if (what.what == recorded_event::kind::opened || what.what == recorded_event::kind::state) {
       baud_ = what.baud;
     }
@@ -138,7 +143,9 @@ class player final : public recorded_event_source {
   }
   void set_handle_for_next() noexcept {
     if (clock_.is_free()) return;
-    if (const recorded_item* const next = peek()) set_handle(next->time_ns);
+    const recorded_item* const next = peek();
+    // Odometry is not waited for: its time may be any.
+    if (next && next->what != recorded_item::kind::odometry) set_handle(next->time_ns);
   }
   void follow_wall_clock(const recorded_item& item) noexcept {
     wall_ahead_ns_ = saturating_sub(item.wall_ns, item.time_ns);
@@ -179,7 +186,7 @@ class player final : public recorded_event_source {
       if (item_) item_->wall_ns = saturating_add(item_->wall_ns, moved_ns_);
     }
     if (!item_) return nullptr;
-    last_ns_ = item_->time_ns;
+    if (item_->what != recorded_item::kind::odometry) last_ns_ = item_->time_ns;
     has_read_ = has_read_ || item_->what == recorded_item::kind::from_device;
     return &*item_;
   }

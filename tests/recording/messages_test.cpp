@@ -4,6 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/export/ros_messages.hpp"
+
 namespace g4lidar::test {
 namespace {
 
@@ -47,6 +53,47 @@ TEST(Messages, TruncatedEvent_IsRefused) {
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_FALSE(mcap::event_from(whole.first(size))) << size;
   }
+}
+
+std::vector<std::uint8_t> odometry_bytes(const odometry_message& what) {
+  std::vector<std::uint8_t> message;
+  put_odometry(what, message);
+  return message;
+}
+
+TEST(Messages, Odometry_IsReadAsWritten) {
+  for (const std::string_view frame : {"", "o", "odom", "a/long/name"}) {
+    for (const double yaw : {0.0, 1.0, -3.0, 3.1415, 1e-9}) {
+      const auto message = odometry_bytes({.stamp_ns = -1'500'000'000,
+                                           .frame_id = frame,
+                                           .pose = {1.5, -2.0, yaw},
+                                           .twist = {0.5, 0.25, -0.125}});
+      const auto read = mcap::odometry_from(message);
+      ASSERT_TRUE(read);
+      EXPECT_EQ(read->time_ns, -1'500'000'000);
+      EXPECT_EQ(read->pose.x_m, 1.5);
+      EXPECT_EQ(read->pose.y_m, -2.0);
+      EXPECT_NEAR(read->pose.yaw_rad, yaw, 1e-15);
+      EXPECT_EQ(read->twist, (twist_2d{0.5, 0.25, -0.125}));
+    }
+  }
+}
+
+TEST(Messages, OtherOdometry_IsRefused) {
+  const auto whole = odometry_bytes({.pose = {1.0, 2.0, 3.0}});
+  ASSERT_TRUE(mcap::odometry_from(whole));
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_FALSE(mcap::odometry_from(bytes(whole).first(size))) << size;
+  }
+  auto longer = whole;
+  longer.push_back(0);
+  EXPECT_FALSE(mcap::odometry_from(longer));
+  auto big_endian = whole;
+  big_endian[1] = 0;
+  EXPECT_FALSE(mcap::odometry_from(big_endian));
+  const double bad = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(mcap::odometry_from(odometry_bytes({.pose = {1.0, bad, 0.0}})));
+  EXPECT_FALSE(mcap::odometry_from(odometry_bytes({.twist = {1.0, 0.0, bad}})));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <limits>
 #include <numeric>
@@ -153,9 +154,15 @@ TEST(Recording, InvalidOptions_AreRefused) {
   EXPECT_TRUE(refused({.scan_bins = 0}));
   EXPECT_TRUE(refused({.scan_bins = 65'537}));
   EXPECT_TRUE(refused({.frame_id = std::string(256, 'x')}));
-  for (const std::string topic :
-       {"", "scan", "/", "/scan/", "/a//b", "/1st", "/a/1st", "/a__b", "/a b", "/a-b", "~/scan",
-        "/{node}", "/sc\xC3\xA4n", "/g4lidar/events", "/g4lidar/to_device"}) {
+  EXPECT_TRUE(refused({.robot_frame_id = std::string(256, 'x')}));
+  EXPECT_TRUE(refused({.odometry_frame_id = std::string(256, 'x')}));
+  EXPECT_TRUE(refused({.mount = mounting{{0.0, std::nan(""), 0.0}}}));
+  for (const std::string topic : {"points", "/scan", "/odom", "/tf_static", "/g4lidar/events"}) {
+    EXPECT_TRUE(refused({.points_topic = topic})) << topic;
+  }
+  for (const std::string topic : {"", "scan", "/", "/scan/", "/a//b", "/1st", "/a/1st", "/a__b",
+                                  "/a b", "/a-b", "~/scan", "/{node}", "/sc\xC3\xA4n",
+                                  "/g4lidar/events", "/g4lidar/to_device", "/odom", "/tf_static"}) {
     EXPECT_TRUE(refused({.topic = topic})) << topic;
   }
   EXPECT_TRUE(refused({.topic = "/" + std::string(255, 'x')}));

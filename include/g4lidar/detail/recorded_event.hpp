@@ -10,6 +10,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/motion.hpp"
 
 namespace g4lidar {
 
@@ -30,8 +31,9 @@ struct recorded_event {
     begun,   ///< The following points begin a new stream: `samples_per_second`, `delivers`.
     held,    ///< From here on packets produce no points, until the next `begun`.
     cut,  ///< The unparsed bytes were discarded, and a held packet was parsed again from its second byte.
-    gap,    ///< Bytes are missing from the recording at this place.
-    state,  ///< The current state, repeated for readers that begin here: all of the above.
+    gap,       ///< Bytes are missing from the recording at this place.
+    state,     ///< The current state, repeated for readers that begin here: all of the above.
+    odometry,  ///< The robot's `odometry`, which is recorded beside the bytes.
   };
   kind what;
   problem reason = problem::cancelled;   ///< Of `closed`; cancelled: no error.
@@ -43,6 +45,7 @@ struct recorded_event {
   std::int64_t time_ns = 0;              ///< By the clock of the transport.
   std::string_view name{};               ///< transport::name(), of `opened` and `state`.
   bytes data{};                          ///< Of `sent`.
+  stamped_odometry odometry{};           ///< Of `odometry`.
 };
 
 /// The names in tools and documents. Valid forever.

@@ -13,6 +13,7 @@
 #include "g4lidar/detail/recorded_device.hpp"
 #include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/recording/digest.hpp"
 
 namespace g4lidar {
@@ -27,12 +28,16 @@ struct recorded_item {
     from_device,  ///< `data` was read in one call.
     to_device,    ///< `data` was sent.
     other,        ///< The event `other`.
+    odometry,     ///< The `odometry` of the robot; its time may be before that of the item before.
   };
   kind what;
-  std::int64_t time_ns;  ///< By the clock of the transport, when `data` had arrived or was sent.
+  /// By the clock of the transport, when `data` had arrived or was sent; of `odometry`, computed from
+  /// its stamp with the difference of the clocks at this place of the recording.
+  std::int64_t time_ns;
   std::int64_t wall_ns;  ///< The same by the wall clock, nanoseconds since 1970.
   bytes data;
   recorded_event other;
+  stamped_odometry odometry{};  ///< Its time is `time_ns`.
 };
 
 /// What is damaged in a file. All intact parts are read nevertheless.
@@ -88,9 +93,9 @@ class G4LIDAR_API recording_reader {
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept;
   /// The digests of this file; only if it was closed.
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept;
-  /// The time of the first item.
+  /// The time of the first item that is not odometry.
   [[nodiscard]] std::int64_t first_ns() const noexcept;
-  /// The time of the last item; 0 if the file was cut off.
+  /// The time of the last one; 0 if the file was cut off.
   [[nodiscard]] std::int64_t last_ns() const noexcept;
   /// The damage found so far.
   [[nodiscard]] const recording_damage& damage() const noexcept;

@@ -16,6 +16,8 @@
 #include "g4lidar/detail/recorded_device.hpp"
 #include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/digest.hpp"
 #include "g4lidar/scan.hpp"
@@ -48,8 +50,22 @@ struct recording_options {
   /// The topic of the LaserScan messages, a full ROS name: `/front/scan`. At most 255 bytes, and
   /// different from the topics of the recording itself.
   std::string topic = "/scan";
-  std::string frame_id = "laser";  ///< Of the LaserScan messages.
-  std::uint32_t scan_bins = 720;   ///< The number of ranges in each of them, 1 to 65536.
+  std::string frame_id = "laser";  ///< Of the LaserScan and PointCloud2 messages.
+  std::uint32_t scan_bins = 720;   ///< The number of ranges in each LaserScan, 1 to 65536.
+  bool scans = true;               ///< Whether revolutions are recorded as LaserScan messages.
+  /// The order of the ranges of a LaserScan. In the order of time `frame_id` is a frame with z down.
+  scan_order order = scan_order::angle;
+  /// The topic of PointCloud2 messages, one for each revolution; like `topic`, and different from it.
+  /// Empty: there are none.
+  std::string points_topic{};
+
+  /// How the lidar is fixed to the robot: written as the transform from `robot_frame_id` to
+  /// `frame_id`, once at the beginning of each file, on /tf_static. In the order of time the
+  /// transform also contains the half turn of the frame with z down.
+  std::optional<mounting> mount{};
+  std::string robot_frame_id = "base_link";  ///< Also of the Odometry messages. At most 255 bytes.
+  std::string odometry_frame_id = "odom";    ///< Of the Odometry messages. At most 255 bytes.
+  bool keep_odometry = true;  ///< Whether the odometry of a replayed recording is recorded again.
 };
 
 /// Counts since create(), over all files.
@@ -58,6 +74,7 @@ struct recording_counts {
   std::uint64_t bytes_to_device = 0;
   std::uint64_t readings = 0;  ///< Messages of bytes from the device.
   std::uint64_t scans = 0;     ///< LaserScan messages.
+  std::uint64_t odometry = 0;  ///< Odometry messages.
   std::uint64_t chunks = 0;    ///< Written.
   std::uint64_t files = 0;
   std::uint64_t file_bytes = 0;  ///< Written to all of them.
@@ -91,8 +108,12 @@ class G4LIDAR_API recording_writer {
   void to_device(bytes data, std::int64_t time_ns) noexcept;
   /// Records any other event; for `sent` use to_device().
   void event(const recorded_event& what) noexcept;
-  /// Records a revolution, as a LaserScan with its points in the robot's frame.
+  /// Records a revolution, as a LaserScan and a PointCloud2, according to the options.
   void scan(const g4lidar::scan& revolution) noexcept;
+  /// Records odometry of the robot, as an Odometry message on /odom. Its time is of the same clock as
+  /// the other times, and may be before or after theirs. Ignored before the first bytes or event, and if a number is not
+  /// finite.
+  void odometry(const stamped_odometry& what) noexcept;
   /// Adds delivered points, in order, to their digest; the points are not stored.
   void points(std::span<const point> delivered) noexcept;
   /// Identity and settings of the lidar, for the metadata of this file and of those that follow.

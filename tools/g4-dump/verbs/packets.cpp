@@ -69,6 +69,7 @@ void list_recording(const packets_options& options) {
   std::optional<protocol_log> log;
   std::optional<std::int64_t> end_ns;
   const auto reader = read_items(path, {}, [&](const recorded_item& item) {
+    if (item.what == recorded_item::kind::odometry) return true;
     if (!log) {
       log.emplace(options.style, time_shift(wanted, item.wall_ns - item.time_ns), out);
       if (common.duration.count() > 0) end_ns = item.time_ns + common.duration.count();

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "channels.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "g4lidar/export/ros_messages.hpp"
+#include "messages.hpp"
+
+namespace g4lidar::mcap {
+namespace {
+
+constexpr std::string_view recorded_bytes_schema =
+    R"(# Bytes that were read from, or sent to, a lidar together.
+int64 monotonic_ns  # when, by the steady clock of the computer; the wall clock is the message's time
+uint8[] data
+)";
+
+constexpr std::string_view recorded_event_schema =
+    R"(# What happened on the transport to a lidar beside the bytes.
+int64 monotonic_ns
+int64 wall_ahead_ns  # wall clock - monotonic clock
+uint32 baud
+uint32 samples_per_second
+uint32 unparsed  # bytes of the last reading that had not been parsed
+uint32 events    # of the parser since the last reading
+bool delivers    # whether packets make points from here on
+string what      # opened, closed, begun, held, cut, gap, state
+string reason
+string name
+)";
+
+struct schema_words {
+  std::uint16_t id;
+  std::string_view name;
+  std::string_view text;
+};
+constexpr std::uint16_t schema_count_of_all = 6;
+std::span<const schema_words> all_schemas() noexcept {
+  const auto words = [](std::uint16_t id, message_schema of) {
+    return schema_words{id, of.name, of.text};
+  };
+  static const std::array<schema_words, schema_count_of_all> schemas{{
+      {1, "g4lidar_msgs/msg/RecordedBytes", recorded_bytes_schema},
+      {2, "g4lidar_msgs/msg/RecordedEvent", recorded_event_schema},
+      words(3, laser_scan_schema()),
+      words(4, point_cloud2_schema()),
+      words(5, odometry_schema()),
+      words(6, tf_message_schema()),
+  }};
+  return schemas;
+}
+
+constexpr std::array<topic_words, topic_count> topics{{
+    {topic::from_device, "/g4lidar/from_device", 1},
+    {topic::to_device, "/g4lidar/to_device", 1},
+    {topic::events, "/g4lidar/events", 2},
+    {topic::scan, "/scan", 3},
+    {topic::points, "/points", 4},
+    {topic::odometry, "/odom", 5},
+    {topic::tf_static, "/tf_static", 6},
+}};
+
+/// Whether a channel of the set has this schema.
+bool uses(const channel_set& set, std::uint16_t schema) noexcept {
+  return std::ranges::any_of(
+      topics, [&](const topic_words& of) { return of.schema == schema && set.has(of.id); });
+}
+
+}  // namespace
+
+std::span<const topic_words> all_topics() noexcept { return topics; }
+
+channel_set::channel_set(const recording_options& options)
+    : scan_topic_(options.topic), points_topic_(options.points_topic) {
+  if (!points_topic_.empty()) add(topic::points);
+  if (options.mount) add(topic::tf_static);
+}
+
+std::uint32_t channel_set::count() const noexcept {
+  return static_cast<std::uint32_t>(std::ranges::count(is_in_, true));
+}
+std::uint16_t channel_set::schema_count() const noexcept {
+  return static_cast<std::uint16_t>(std::ranges::count_if(
+      all_schemas(), [&](const schema_words& schema) { return uses(*this, schema.id); }));
+}
+
+void channel_set::put_schemas(record_text& out, const channel_set* without) const {
+  for (const schema_words& schema : all_schemas()) {
+    if (!uses(*this, schema.id) || (without != nullptr && uses(*without, schema.id))) continue;
+    const std::size_t record = out.begin(opcode::schema);
+    out.put(schema.id);
+    out.put(schema.name);
+    out.put("ros2msg");
+    out.put(schema.text);
+    out.end(record);
+  }
+}
+
+void channel_set::put_channels(record_text& out) const {
+  for (const topic_words& channel : topics) {
+    if (!has(channel.id)) continue;
+    const std::size_t record = out.begin(opcode::channel);
+    out.put(static_cast<std::uint16_t>(channel.id));
+    out.put(channel.schema);
+    out.put(channel.id == topic::scan     ? std::string_view(scan_topic_)
+            : channel.id == topic::points ? std::string_view(points_topic_)
+                                          : channel.name);
+    out.put("cdr");
+    put_map(out, {{"offered_qos_profiles", ""}});
+    out.end(record);
+  }
+}
+
+}  // namespace g4lidar::mcap

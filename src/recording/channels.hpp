@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The channels of a recording and their schemas. (docs/recordings.md)
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "g4lidar/recording/writer.hpp"
+#include "record_text.hpp"
+
+namespace g4lidar::mcap {
+
+/// The channels, with their numbers in a file.
+enum class topic : std::uint16_t {
+  from_device = 1,
+  to_device = 2,
+  events = 3,
+  scan = 4,
+  points = 5,
+  odometry = 6,
+  tf_static = 7,
+};
+inline constexpr std::size_t topic_count = 7;
+[[nodiscard]] constexpr std::size_t index_of(topic id) noexcept {
+  return static_cast<std::size_t>(id) - 1;
+}
+
+struct topic_words {
+  topic id;
+  std::string_view name;
+  std::uint16_t schema;
+
+  [[nodiscard]] constexpr bool is_named_by_options() const noexcept {
+    return id == topic::scan || id == topic::points;
+  }
+  /// Whether readers of recordings return its messages.
+  [[nodiscard]] constexpr bool is_read() const noexcept {
+    return index_of(id) < index_of(topic::scan) || id == topic::odometry;
+  }
+};
+[[nodiscard]] std::span<const topic_words> all_topics() noexcept;
+
+/// The channels in a file, with their names.
+class channel_set {
+ public:
+  channel_set() : channel_set(recording_options{}) {}
+  /// Those that a recording with these options begins with.
+  explicit channel_set(const recording_options& options);
+
+  [[nodiscard]] bool has(topic id) const noexcept { return is_in_[index_of(id)]; }
+  void add(topic id) noexcept { is_in_[index_of(id)] = true; }
+  [[nodiscard]] std::uint32_t count() const noexcept;
+  [[nodiscard]] std::uint16_t schema_count() const noexcept;
+
+  /// Their records, but for those that `without` has.
+  void put_schemas(record_text& out, const channel_set* without = nullptr) const;
+  void put_channels(record_text& out) const;
+
+ private:
+  std::array<bool, topic_count> is_in_{true, true, true, true};
+  std::string scan_topic_;
+  std::string points_topic_;
+};
+
+}  // namespace g4lidar::mcap
