@@ -65,7 +65,8 @@ struct ride {
 };
 
 // Adds the points of a ride, each phase in one piece or divided into pieces that are at most that
-// long on average; a curve needs some of them, because the first one begins at rest. `placed_at` gives the pose at a progress.
+// long on average; a curve needs some of them, because the first one begins at rest. `placed_at`
+// gives the pose at a progress.
 template <class Place>
 void add_ride(std::vector<path_point>& path, const ride& all, std::optional<double> piece,
               const Place& placed_at) {
