@@ -3,6 +3,7 @@
 // is written when it has ended.
 #include <string>
 
+#include "g4lidar/detail/text.hpp"
 #include "value_text.hpp"
 
 namespace g4lidar {
@@ -33,7 +34,7 @@ class jsonl_points final : public point_writer {
   }
 
  private:
-  static constexpr std::size_t max_object = 256;
+  static constexpr std::size_t max_object = 384;
 
   char* put_point(char* at, const point& p) const noexcept {
     at = digits::put_number(put_text(at, "{\"scan\":"), p.revolution);
@@ -41,7 +42,13 @@ class jsonl_points final : public point_writer {
     at = put_range_column(put_text(at, range_name_), p, style_.unit);
     at = digits::put_signed(put_text(at, ",\"time_ns\":"), p.time_ns);
     at = put_bool(put_text(at, ",\"no_return\":"), p.is_no_return());
-    return put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
+    at = put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
+    for (const detail::doubt& each : detail::doubts) {
+      if (each.flag == point_flags::too_near || (p.flags & each.flag) == point_flags::none)
+        continue;
+      at = put_text(put_text(put_text(at, ",\""), each.name), "\":true");
+    }
+    return at;
   }
 
   text_style style_;

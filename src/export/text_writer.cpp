@@ -2,7 +2,9 @@
 // Columns for people; they may change. For programs there are csv and jsonl.
 #include <array>
 #include <string_view>
+#include <utility>
 
+#include "g4lidar/detail/text.hpp"
 #include "value_text.hpp"
 
 namespace g4lidar {
@@ -51,7 +53,12 @@ class point_columns final : public point_writer {
     });
     right(2, [](char* to) { return to; });
     right(time_width(), [&](char* to) { return put_seconds(to, p.time_ns); });
-    return digits::put_text(at, p.is_too_near() ? "  too near\n" : "\n");
+    std::string_view before = "  ";
+    for (const detail::doubt& each : detail::doubts) {
+      if ((p.flags & each.flag) == point_flags::none) continue;
+      at = digits::put_text(digits::put_text(at, std::exchange(before, ", ")), each.words);
+    }
+    return digits::put_text(at, "\n");
   }
 
   text_style style_;

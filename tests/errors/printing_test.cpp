@@ -45,6 +45,13 @@ TEST(Printing, OfPoints) {
   p.range_mm = 0.0F;
   p.flags = point_flags::no_return | point_flags::revolution_start;
   EXPECT_EQ(printed(p), "12.346 deg, no return");
+  p.flags = p.flags | point_flags::unlikely;
+  EXPECT_EQ(printed(p), "12.346 deg, no return, unlikely");
+  p.range_mm = 16'383.75F;
+  p.flags = point_flags::too_near | point_flags::not_deskewed | point_flags::unlikely |
+            point_flags::isolated | point_flags::veiling;
+  EXPECT_EQ(printed(p),
+            "12.346 deg, 16383.8 mm, too near, not deskewed, unlikely, isolated, veiling");
 }
 
 TEST(Printing, OfScans) {

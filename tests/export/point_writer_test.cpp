@@ -165,6 +165,21 @@ TEST(Jsonl, OfPointsAsTheyArrive) {
             "\n");
 }
 
+// With all numbers as long as they can be.
+TEST(Jsonl, OfPointsWithFlags_NamesThoseThatAreSet) {
+  point p = made(359.999F, 99'999'999.0F, INT64_MIN, UINT32_MAX);
+  p.flags = point_flags::not_deskewed | point_flags::unlikely | point_flags::isolated |
+            point_flags::veiling | point_flags::revolution_start;
+  EXPECT_THAT(points_as({.format = text_format::jsonl, .as_they_come = true}, std::span(&p, 1)),
+              EndsWith(R"("time_ns":-9223372036854775808,"no_return":false,"too_near":false,)"
+                       R"("not_deskewed":true,"unlikely":true,"isolated":true,"veiling":true})"
+                       "\n"));
+  p.flags = point_flags::unlikely;
+  EXPECT_THAT(points_as({.format = text_format::jsonl, .as_they_come = true}, std::span(&p, 1)),
+              EndsWith(R"("too_near":false,"unlikely":true})"
+                       "\n"));
+}
+
 TEST(Jsonl, OfPointsWithPartial) {
   scan_record record = whole_scan();
   record.scan.points = std::span(few).first(1);
@@ -201,6 +216,11 @@ TEST(Text, OfPoints) {
             "     0      90.00    1234.50      1.000000\n"
             "     7     180.00          -      0.000000\n"
             "4294967295     270.50      75.25     -1.500000  too near\n");
+  point p = few[2];
+  p.flags = p.flags | point_flags::not_deskewed | point_flags::unlikely | point_flags::isolated |
+            point_flags::veiling;
+  EXPECT_THAT(points_as({.format = text_format::text}, std::span(&p, 1)),
+              EndsWith(" -1.500000  too near, not deskewed, unlikely, isolated, veiling\n"));
 }
 
 TEST(Text, OfRevolutions) {

@@ -47,13 +47,33 @@ class short_text {
   std::size_t size_ = 0;
 };
 
-/// "12.345 deg, 1234.5 mm"; "12.345 deg, no return".
+/// A flag that makes a point doubtful, and its name for people and for programs.
+struct doubt {
+  point_flags flag;
+  std::string_view words;
+  std::string_view name;
+};
+inline constexpr std::array<doubt, 5> doubts{{
+    {point_flags::too_near, "too near", "too_near"},
+    {point_flags::not_deskewed, "not deskewed", "not_deskewed"},
+    {point_flags::unlikely, "unlikely", "unlikely"},
+    {point_flags::isolated, "isolated", "isolated"},
+    {point_flags::veiling, "veiling", "veiling"},
+}};
+
+/// "12.345 deg, 1234.5 mm"; "12.345 deg, no return"; "12.345 deg, 60.0 mm, too near, unlikely".
 [[nodiscard]] inline short_text text_of(const point& p) noexcept {
   short_text text;
   text.add(p.angle_deg, 3).add(" deg, ");
-  if (p.is_no_return()) return text.add("no return");
-  text.add(p.range_mm, 1).add(" mm");
-  return p.is_too_near() ? text.add(", too near") : text;
+  if (p.is_no_return()) {
+    text.add("no return");
+  } else {
+    text.add(p.range_mm, 1).add(" mm");
+  }
+  for (const doubt& each : doubts) {
+    if ((p.flags & each.flag) != point_flags::none) text.add(", ").add(each.words);
+  }
+  return text;
 }
 
 /// "scan 12: 1286 points"; "scan 12: 640 points, end_missing data_lost".

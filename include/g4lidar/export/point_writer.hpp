@@ -62,7 +62,8 @@ struct scan_record {
 /// | `time_ns` | point::time_ns |
 ///
 /// More columns may follow; the columns above do not change their position. jsonl has keys with the
-/// same names, and `no_return`, `too_near` and `partial` (true, false).
+/// same names, and `no_return`, `too_near` and `partial` (true, false); `not_deskewed`, `unlikely`,
+/// `isolated` and `veiling` (true) only where that flag is set.
 ///
 /// csv of revolutions:
 ///

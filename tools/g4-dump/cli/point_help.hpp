@@ -41,7 +41,8 @@ inline constexpr const char* point_columns =
   time_ns    time of the point
 
 More columns may follow in later versions. jsonl has the same names, and no_return and too_near
-(below 100 mm: not reliable). text is for people.)";
+(below 100 mm: not reliable); not_deskewed, unlikely, isolated and veiling only if they are true.
+text is for people.)";
 
 inline constexpr const char* scan_columns =
     R"(A record is a revolution, with flags if data is missing; with --partial also a piece of one.
