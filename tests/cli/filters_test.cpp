@@ -64,6 +64,12 @@ TEST(Filters, SpeckleAndEdges_OfPoints) {
   EXPECT_EQ(ranges_with({"--edges=angle=2,window=2"}), walls_without({3000}));
 }
 
+TEST(Filters, TheHelpShowsTheirOptionalValues) {
+  const std::string help = run({"dump", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("\n  --speckle[=LIMITS]                Leave out returns"));
+  EXPECT_THAT(help, HasSubstr("\n  --edges[=LIMITS]                  Leave out veiling points"));
+}
+
 TEST(Filters, OptionsBeforeTheSource_DoNotTakeIt) {
   EXPECT_EQ(run({"dump", "--speckle", "-", "-f", "csv", "-q"}, two_walls()).out,
             run({"dump", "-", "--speckle", "-f", "csv", "-q"}, two_walls()).out);

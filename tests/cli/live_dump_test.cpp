@@ -94,6 +94,34 @@ TEST_F(Live, Duration_EndsIt) {
   EXPECT_NEAR(static_cast<double>(lines.size() - 2), span_ns * 9e-6, span_ns * 9e-6 * 0.01);
 }
 
+// At 0.5 m/s towards a wall.
+TEST_F(Live, ALidarOnAPath_SeesAWallComeNearer) {
+  cli::write_file(path("hall.txt"),
+                  "wall -2 -3 12 -3\nwall 12 -3 12 3\nwall 12 3 -2 3\nwall -2 3 -2 -3\n"
+                  "lidar 0 0 0\n");
+  cli::write_file(path("way.txt"), "drive forward 11 0.5\n");
+  program simulator(
+      {"sim", "--link", path("lidar"), "--world", path("hall.txt"), "--path", path("way.txt")});
+  ASSERT_TRUE(appears(path("lidar")));
+  for (const std::string& source :
+       {path("lidar"), "sim:?world=" + path("hall.txt") + "&path=" + path("way.txt")}) {
+    const outcome done =
+        run({"dump", source, "-n", "150", "-f", "csv", "--fov", "-1:1", "--time", "zero", "-q"});
+    EXPECT_EQ(done.code, 0) << done.err;
+    const std::vector<std::string> lines = lines_of(done.out);
+    ASSERT_EQ(lines.size(), 151U);
+    const auto number = [](const std::string& line, int column) {
+      std::size_t at = 0;
+      for (int i = 0; i < column; ++i) at = line.find(',', at) + 1;
+      return std::stod(line.substr(at));
+    };
+    // In the second half its speed is constant.
+    const double seconds = (number(lines[150], 3) - number(lines[75], 3)) * 1e-9;
+    EXPECT_GT(seconds, 0.8) << source;
+    EXPECT_NEAR(number(lines[75], 2) - number(lines[150], 2), 500.0 * seconds, 20.0) << source;
+  }
+}
+
 TEST_F(Live, Interrupted_PrintsTheCounts) {
   program started({"dump", "sim:", "-f", "csv"});
   started.read_until("\n0,");

@@ -151,6 +151,22 @@ TEST_F(Sim, APathFromAFile) {
   EXPECT_EQ(odometry.back(), "4900000000 2.200000 0.000000 0.000000");
 }
 
+TEST_F(Sim, OptionsOfTheOdometryWithoutIt_AreRefused) {
+  for (const std::string option :
+       {"--odometry-rate", "--way-noise", "--turn-noise", "--way-slip", "--turn-slip"}) {
+    for (const std::vector<std::string>& where :
+         {std::vector<std::string>{"-o", path("x.bin")}, {"--link", path("lidar")}}) {
+      std::vector<std::string> words{"sim", option, "0.2"};
+      words.insert(words.end(), where.begin(), where.end());
+      const outcome done = run(words);
+      EXPECT_EQ(done.code, 2) << option;
+      EXPECT_THAT(done.err, testing::HasSubstr(option));
+      EXPECT_THAT(done.err, testing::HasSubstr("need --odometry"));
+    }
+  }
+  EXPECT_EQ(listing(), "");
+}
+
 TEST_F(Sim, AWrongPathNamesItsLine) {
   cli::write_file(path("way.txt"), "drive forward 2\npose 1 1 1 1\n");
   const auto result = run({"sim", "--path", path("way.txt"), "-o", path("x.bin")});

@@ -27,6 +27,14 @@ std::string long_name(const std::string& names) {
   return comma == std::string::npos ? names : names.substr(comma + 1);
 }
 
+/// The value that a flag may have is shown without a space before it: --speckle[=LIMITS].
+class help_formatter final : public CLI::Formatter {
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string text = CLI::Formatter::make_option_opts(option);
+    return text.starts_with(" [=") ? text.substr(1) : text;
+  }
+};
+
 void add(CLI::App& app, const option_row& row) {
   const std::string name = long_name(row.names);
   const auto take = [inner = row.take, name](const std::vector<std::string>& words) {
@@ -40,6 +48,7 @@ void add(CLI::App& app, const option_row& row) {
   if (!row.optional_value.empty()) {
     const auto given = std::make_shared<std::string>();
     option = app.add_flag(row.names, *given, row.help)->disable_flag_override(false);
+    option->option_text("[=" + row.optional_value + "]");
     option->each([inner = row.take, given](const std::string& word) {
       try {
         inner(word == "true" ? "" : word);
@@ -210,6 +219,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   app.fallthrough();
   app.option_defaults()->disable_flag_override();
   app.footer(app_footer());
+  app.formatter(std::make_shared<help_formatter>());
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   app.get_formatter()->label("Positionals", "Arguments");
   app.get_formatter()->column_width(36);

@@ -43,6 +43,10 @@ void check(const sim_options& options) {
                                          plain(options.odometry_file) == plain(options.truth))) {
     throw bad_value("--odometry names the same file as -o or --truth");
   }
+  if (options.odometry_file.empty() && options.has_odometry_options) {
+    throw bad_value(
+        "--odometry-rate, --way-noise, --turn-noise, --way-slip and --turn-slip need --odometry");
+  }
   if (const auto problem = problem_with(options.odometry); !problem.empty()) {
     throw bad_value(std::string(problem));
   }
@@ -162,9 +166,11 @@ option_rows file_rows(sim_options& options) {
 
 option_rows odometry_rows(sim_options& options) {
   sim::odometry_options& how = options.odometry;
-  const auto number = [](const char* name, const char* value, const char* help, double& into,
-                         double least,
-                         double most) { return number_row(name, value, help, into, least, most); };
+  const auto number = [&options](const char* name, const char* value, const char* help,
+                                 double& into, double least, double most) {
+    return checked(number_row(name, value, help, into, least, most),
+                   [&options](const std::string&) { options.has_odometry_options = true; });
+  };
   option_rows rows{
       text_row("--odometry", "FILE", "Write the odometry: lines of time_ns, x, y and yaw_rad",
                options.odometry_file),

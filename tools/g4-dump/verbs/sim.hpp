@@ -18,7 +18,8 @@ struct sim_options {
   sim::setup setup;
   std::string truth;
   std::string odometry_file;
-  sim::odometry_options odometry;  ///< Its seed is that of the lidar.
+  sim::odometry_options odometry;     ///< Its seed is that of the lidar.
+  bool has_odometry_options = false;  ///< Whether one of them was given.
   std::string output = "-";
   // Devices instead of a file, each at one of these places.
   std::vector<std::string> links{};
