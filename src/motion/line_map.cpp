@@ -10,6 +10,8 @@ namespace g4lidar {
 namespace {
 
 constexpr std::size_t fewest_points = 5;
+/// The variance of the direction of a line without noise: the angles of a packet are rounded, all in the same way.
+constexpr double rounding_rad2 = 1e-6;
 
 /// Without the care of std::hypot for values that are too large to square, and four times as fast.
 double length_of(double x, double y) noexcept { return std::sqrt(x * x + y * y); }
@@ -87,7 +89,7 @@ bool line_map::fit(std::size_t from, std::size_t to, double range,
   if (!(length > 0.0)) return false;
   out.normal_x = -tangent_y / length;
   out.normal_y = tangent_x / length;
-  out.normal_variance = across / (along * (n - 2.0));
+  out.normal_variance = across / (along * (n - 2.0)) + rounding_rad2;
   out.variance = across;
   return true;
 }

@@ -15,6 +15,9 @@ namespace {
 constexpr std::size_t fewest_matches = 40;
 constexpr double reach_m = 0.5;  // from a point to the nearest one of the other revolution
 constexpr double least_noise_m = 0.002;
+// The first iterations count distances of this size, too: in a corridor only the wall at its end shows the speed, and
+// without a previous estimate that wall is off by the way of a whole revolution.
+constexpr double widest_m = 0.1;
 constexpr double most_noise_m = 0.05;  // of two revolutions that fit
 constexpr double unknown_m_per_s = 10.0;
 constexpr double known_m_per_s = 0.3;  // the greatest standard deviation of what is known
@@ -24,9 +27,9 @@ constexpr double converged_deviations = 0.2;  // the correction after which the 
 constexpr double accepted_deviations = 0.5;   // the same after the last iteration
 constexpr double most_turn_rad = 1.4;         // within a revolution
 
-/// How much a distance counts: 1 on the line, little beyond 3 deviations (Geman and McClure).
-double weight_of(double distance, double noise) noexcept {
-  return 1.0 / squared(1.0 + squared(distance / (3.0 * noise)));
+/// How much a distance counts: 1 on the line, little beyond 3 widths (Geman and McClure).
+double weight_of(double distance, double width) noexcept {
+  return 1.0 / squared(1.0 + squared(distance / (3.0 * width)));
 }
 
 double period_s(const scan_points& before, const scan_points& after) noexcept {
@@ -90,7 +93,8 @@ twist_estimate twist_search::find(const scan_points& before, const scan_points& 
   for (twist_2d trial : std::span(starts).first(apart_rad < same_start_rad ? 0 : 2)) {
     for (int i = 0; i < trial_iterations && is_possible(trial); ++i) {
       match_points(before, after, trial, trial_step);
-      if (matched_ < fewest_matches / 2 || correct(trial, inform()) < converged_deviations) break;
+      if (matched_ < fewest_matches / 2 || correct(trial, inform(widest_m)) < converged_deviations)
+        break;
     }
     if (!is_possible(trial)) continue;
     match_points(before, after, trial, trial_step);
@@ -101,12 +105,14 @@ twist_estimate twist_search::find(const scan_points& before, const scan_points& 
 
   information info{};
   double corrected = std::numeric_limits<double>::max();
-  for (int i = 0; i < iterations && corrected >= converged_deviations; ++i) {
+  double width = widest_m;
+  for (int i = 0; i < iterations && corrected >= converged_deviations; ++i, width *= 0.3) {
     if (!is_possible(twist)) return unknown_twist(twist_status::no_correspondence, last);
     match_points(before, after, twist, 1);
     if (matched_ < fewest_matches) return unknown_twist(twist_status::too_few_returns, last);
-    info = inform();
+    info = inform(width);
     corrected = correct(twist, info);
+    if (width > info.noise) corrected = std::numeric_limits<double>::max();
   }
   if (corrected > accepted_deviations || !fits(info))
     return unknown_twist(twist_status::no_correspondence, last);
@@ -160,9 +166,10 @@ double twist_search::noise() noexcept {
   return std::max(1.4826 * *middle, least_noise_m);  // of normally distributed distances
 }
 
-twist_search::information twist_search::inform() noexcept {
+twist_search::information twist_search::inform(double width) noexcept {
   information made{};
   made.noise = noise();
+  width = std::max(width, made.noise);
   double lever2 = 0.0;
   double times2 = 0.0;
   for (const match& m : std::span(matches_).first(matched_)) {
@@ -177,7 +184,7 @@ twist_search::information twist_search::inform() noexcept {
   vector_3 gradient{};
   double line_variance = 0.0;
   for (const match& m : std::span(matches_).first(matched_)) {
-    const double weight = weight_of(m.distance, made.noise);
+    const double weight = weight_of(m.distance, width);
     line_variance += m.variance;
     const vector_3 slope = {m.slope[0], m.slope[1], m.slope[2] / made.lever};
     add_square(known, slope, weight);

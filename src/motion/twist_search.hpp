@@ -44,7 +44,7 @@ class twist_search {
                     std::size_t step) noexcept;
   [[nodiscard]] double misfit() const noexcept;
   [[nodiscard]] double noise() noexcept;
-  [[nodiscard]] information inform() noexcept;
+  [[nodiscard]] information inform(double width) noexcept;
   [[nodiscard]] static double correct(twist_2d& twist, const information& info) noexcept;
   [[nodiscard]] bool fits(const information& info) const noexcept;
   [[nodiscard]] static twist_estimate describe(const twist_2d& twist,
