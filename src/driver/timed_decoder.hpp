@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Decodes packets to points with their times.
+// Decodes packets to points with their times, flagged unlikely if the angles of the packet do not fit.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/plausibility.hpp"
 
 namespace g4lidar {
 
@@ -30,6 +31,7 @@ class timed_decoder {
   /// A scan begins, or continues after an interruption. `samples_per_second` is nominal.
   void begin(std::uint32_t samples_per_second) noexcept {
     clock_.reset(samples_per_second);
+    angles_ = {};
     last_packet_ns_ = 0;
   }
 
@@ -40,9 +42,12 @@ class timed_decoder {
     const std::int64_t arrival_ns = read_ns - gathered_for_ns(packet, behind);
     decoded found = without_points(packet, revolutions_.count(packet));
     const packet_times times = clock_.stamp(found, arrival_ns);
+    const bool fits = angles_.fits(packet);
+    if (times.lost > 0) angles_.lost();  // or the angles are wrong: the next packet decides
     if (!found.suspect) {
       to_points_(packet, found.revolution, times, out);
       found.points = out.first(packet.sample_count());
+      if (!fits) mark_unlikely(out.first(packet.sample_count()));
     }
     samples_lost_ += static_cast<std::uint64_t>(times.lost);
     lost = times.lost > 0;
@@ -54,6 +59,7 @@ class timed_decoder {
   }
   /// Bytes were skipped within the scan.
   void gone(skipped what) noexcept {
+    angles_.lost();
     if (what.reason != skip_reason::noise) clock_.lost(what.count);
   }
   /// So many bytes of an unfinished packet have arrived. See sensor_clock::seen().
@@ -90,6 +96,7 @@ class timed_decoder {
       bulk::kernels_of(best_instruction_set()).to_timed_points;
   sensor_clock clock_;
   revolution_counter revolutions_;
+  angle_check angles_;
   std::int64_t last_packet_ns_ = 0;  // since begin()
   std::int64_t largest_gap_ns_ = 0;
   std::uint64_t samples_lost_ = 0;

@@ -46,7 +46,10 @@ void byte_points::finish() {
 void byte_points::take(const event& found) {
   counts_.add(found);
   if (const auto* packet = std::get_if<packet_view>(&found)) return take(*packet);
-  if (const auto* gone = std::get_if<skipped>(&found)) assembler_.add(*gone);
+  if (const auto* gone = std::get_if<skipped>(&found)) {
+    angles_.lost();
+    assembler_.add(*gone);
+  }
 }
 
 void byte_points::take(g4lidar::packet_view packet) {
@@ -57,6 +60,7 @@ void byte_points::take(g4lidar::packet_view packet) {
     p.time_ns = clock_.now_ns();
     clock_.tick();
   }
+  if (!angles_.fits(packet)) mark_unlikely(std::span(points_).first(decoded.points.size()));
   // The samples of a suspect packet were also measured, although their angles are not known. The
   // clock begins with the first point.
   if (decoded.suspect && counts_.points > 0) clock_.tick(decoded.sample_count);

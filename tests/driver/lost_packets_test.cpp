@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Packets that were lost without a trace, by an overflow that ends where it began. Only the angles
-// show them.
+// Packets that were lost without a trace, by an overflow that ends where it began, and packets with
+// wrong angles. Only the angles show them.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
+#include <vector>
 
+#include "g4lidar/export/byte_points.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/scanner.hpp"
+#include "support/packet_maker.hpp"
 
 namespace g4lidar {
 namespace {
@@ -61,6 +66,66 @@ TEST_F(LostPackets, NoScanWithALostPacketIsWhole) {
   EXPECT_EQ(damaged, 2);
   EXPECT_GE(whole, 7);
   EXPECT_EQ(device->counts().samples_lost, lost);
+}
+
+/// The ranges of the points that are flagged unlikely.
+class unlikely_ranges final : public point_writer {
+ public:
+  [[nodiscard]] bool takes_scans() const noexcept override { return false; }
+  void write_points(std::span<const point> points, text_sink&) override { add(points); }
+  void add(std::span<const point> points) {
+    for (const point& p : points) {
+      if ((p.flags & point_flags::unlikely) != point_flags::none) ranges_mm.push_back(p.range_mm);
+    }
+  }
+  std::vector<float> ranges_mm;
+};
+
+// Of two packets in turn the first half is lost, and one as a whole, without a trace: then the one
+// after it is flagged, too.
+TEST_F(LostPackets, OnlyAPacketWithWrongAnglesIsUnlikely) {
+  file_.open(path_, std::ios::binary);
+  sim::scanner scanner(sim::built_in_world(), {});
+  std::vector<std::uint8_t> raw;
+  std::vector<float> after_loss;
+  std::vector<float> expected;
+  write(sim::scan_start_reply());
+  for (int i = 0; i < 400; ++i) {
+    const sim::sent_packet packet = scanner.next();
+    bytes data = packet.data;
+    const packet_view view = *packet_view::from(data);
+    made::packet turned(view.ct(), (view.first_angle_64ths() + 640) % turn_64ths,
+                        (view.last_angle_64ths() + 640) % turn_64ths, view.sample_count());
+    for (std::size_t k = 0; k < view.sample_count(); ++k) {
+      turned.set(k, view.sample(k));
+      const float range_mm = static_cast<float>(view.sample(k)) * 0.25F;
+      if (i == 151) after_loss.push_back(range_mm);
+      if (i == 200) expected.push_back(range_mm);
+    }
+    if (i == 200) data = turned.data();
+    if (i == 220 || i == 221) data = data.last(data.size() / 2);
+    raw.insert(raw.end(), data.begin(), data.end());
+    if (i != 150) write(data);
+  }
+  file_.close();
+  ASSERT_EQ(expected.size(), 40U);
+  auto device = lidar::open("file:" + path_.string());
+  ASSERT_TRUE(device) << device.error().message();
+  ASSERT_TRUE(device->start());
+  unlikely_ranges driven;
+  while (const auto scan = device->next_scan(1s)) driven.add(scan->points);
+  after_loss.insert(after_loss.end(), expected.begin(), expected.end());
+  EXPECT_EQ(driven.ranges_mm, after_loss);
+  unlikely_ranges converted;
+  callback_sink nowhere([](std::string_view) {});
+  byte_points points(converted, nowhere, 9000);
+  for (bytes rest = raw; !rest.empty();) {
+    const std::size_t count = std::min<std::size_t>(rest.size(), 61);
+    points.take(rest.first(count));
+    rest = rest.subspan(count);
+  }
+  points.finish();
+  EXPECT_EQ(converted.ranges_mm, expected);
 }
 
 }  // namespace

@@ -118,6 +118,9 @@ void invariant_checker::check(const known_point& found) {
 
 void invariant_checker::check_time(const known_point& found) {
   if (found.time_ns - steady_since_ns_ < 5 * second) return;
+  if (parameters_->healthy && (found.seen.flags & point_flags::unlikely) != point_flags::none) {
+    fail("a point of a healthy device is flagged unlikely");
+  }
   const std::int64_t off_ns = std::abs(found.seen.time_ns - found.time_ns);
   ++times_.settled;
   times_.late += off_ns > ms;

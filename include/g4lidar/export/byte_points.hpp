@@ -17,13 +17,15 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/export/point_writer.hpp"
 #include "g4lidar/export/text_sink.hpp"
+#include "g4lidar/plausibility.hpp"
 
 namespace g4lidar {
 
 /// Parses and decodes bytes and passes them to a point_writer: as points, or as revolutions if the
 /// writer accepts these. Raw bytes contain no times, so they are counted from the first point on at
-/// a constant rate; samples of suspect packets are counted, lost ones are not. *Single thread,
-/// allocates on construction*; exceptions of the sink are passed on.
+/// a constant rate; samples of suspect packets are counted, lost ones are not. Points of a packet
+/// whose angles do not fit (angle_check) are flagged unlikely. *Single thread, allocates on
+/// construction*; exceptions of the sink are passed on.
 class G4LIDAR_API byte_points {
  public:
   /// `writer` and `out` must outlive this. `samples_per_second`: 1 to 10^9.
@@ -53,6 +55,7 @@ class G4LIDAR_API byte_points {
   stream_parser parser_;
   stream_counter counts_;
   revolution_counter revolutions_;
+  angle_check angles_;
   sample_clock clock_;
   std::array<point, max_samples> points_{};
   std::vector<point> scan_storage_;
