@@ -9,6 +9,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from evo.core import metrics, sync
+from evo.tools import file_interface
 
 
 def numbers(path):
@@ -23,9 +25,9 @@ def poses_of(path):
 
 
 def write_trajectory(arguments):
-    """icp-slam numbers its poses; their times are those of the scans, in the same order."""
+    """icp-slam writes a pose for the odometry of each scan and one for the scan, in the order of the log, without times."""
     stamps = [line.split()[0] for line in Path(arguments.stamps).read_text().splitlines()]
-    poses = numbers(arguments.poses)
+    poses = numbers(arguments.poses)[1::2]
     if len(stamps) != len(poses):
         raise SystemExit(f"icp-slam wrote {len(poses)} poses for {len(stamps)} scans")
     with open(arguments.out, "w") as out:
@@ -57,22 +59,70 @@ class World:
         self.ends = placed([wall[2:] for wall in values["wall"]])
         self.discs = [(disc[0], placed([disc[1:3]])[0]) for disc in values["disc"] if len(disc) == 3]
 
-    def distances(self, points):
-        """From each point to the nearest wall or pillar."""
-        nearest = np.full(len(points), np.inf)
+    def offsets(self, points):
+        """From each point to the nearest wall or pillar: its number, and the distance with a sign for the side."""
+        offsets = []
         for begin, end in zip(self.begins, self.ends):
             along = end - begin
             part = np.clip((points - begin) @ along / (along @ along), 0.0, 1.0)
-            nearest = np.minimum(nearest, np.linalg.norm(points - (begin + part[:, None] * along), axis=1))
+            off = points - (begin + part[:, None] * along)
+            side = np.sign(off @ [-along[1], along[0]])
+            offsets.append(np.where(side == 0.0, 1.0, side) * np.linalg.norm(off, axis=1))
         for radius, middle in self.discs:
-            nearest = np.minimum(nearest, abs(np.linalg.norm(points - middle, axis=1) - radius))
-        return nearest
+            offsets.append(np.linalg.norm(points - middle, axis=1) - radius)
+        offsets = np.array(offsets)
+        nearest = np.argmin(abs(offsets), axis=0)
+        return nearest, offsets[nearest, np.arange(len(points))]
 
 
-def print_map_error(arguments):
-    off_m = World(arguments.world).distances(map_points(arguments.map))
-    print(f"map: {len(off_m)} points, {100.0 * np.mean(off_m <= 0.03):.1f} % within 3 cm of a wall, "
-          f"median {100.0 * np.median(off_m):.1f} cm, 95th percentile {100.0 * np.percentile(off_m, 95):.1f} cm")
+def trajectory_error(truth, estimated, relation):
+    """The root mean square of the absolute trajectory error. Both begin at the same pose, and are not aligned."""
+    pair = sync.associate_trajectories(file_interface.read_tum_trajectory_file(truth),
+                                       file_interface.read_tum_trajectory_file(estimated))
+    error = metrics.APE(relation)
+    error.process_data(pair)
+    return error.get_statistic(metrics.StatisticsType.rmse)
+
+
+def wall_errors(world, directory):
+    """Of each wall and pillar with at least 20 points of the map: how far off the median of its points is, in metres."""
+    wall, off_m = world.offsets(map_points(directory))
+    return np.array([abs(np.median(off_m[wall == each])) for each in np.unique(wall) if np.sum(wall == each) >= 20])
+
+
+def score(arguments):
+    """A table of all drives; the exit code tells whether the promises are kept."""
+    world = World(arguments.world)
+    results = Path(arguments.results)
+    drives = sorted(results.glob("drive-*-truth.tum"))
+    print("| deskewed by | trajectory, m | trajectory, degrees | walls within 3 cm | worst wall, cm |")
+    print("|---|---|---|---|---|")
+    found = {}
+    for how in ("odometry", "scans", "none"):
+        rows = []
+        for truth in drives:
+            name = truth.name.replace("truth.tum", how)
+            estimated = results / (name + ".tum")
+            walls = wall_errors(world, results / name / "map")
+            rows.append((trajectory_error(truth, estimated, metrics.PoseRelation.translation_part),
+                         trajectory_error(truth, estimated, metrics.PoseRelation.rotation_angle_deg),
+                         100.0 * np.mean(walls <= 0.03), 100.0 * np.max(walls)))
+        found[how] = np.array(rows)
+        cells = [f"{np.median(column):.{digits}f} ({np.min(column):.{digits}f} to {np.max(column):.{digits}f})"
+                 for column, digits in zip(found[how].T, (3, 2, 0, 1))]
+        print(f"| {how} | {cells[0]} | {cells[1]} | {cells[2]} % | {cells[3]} |")
+    print(f"Medians of {len(drives)} drives, and in brackets the least and the greatest value.")
+    missed = []
+    for how in ("odometry", "scans"):
+        if np.any(found[how][:, 0] > 0.05) or np.any(found[how][:, 1] > 0.5):
+            missed.append(f"deskewed by {how}: 0.05 m and 0.5 degrees in each drive")
+        if np.any(found[how][:, :2] >= found["none"][:, :2]):
+            missed.append(f"deskewed by {how}: better than without in each drive")
+        if np.median(found[how][:, 2]) < 90.0:
+            missed.append(f"deskewed by {how}: 90 % of the walls within 3 cm")
+    for words in missed:
+        print(f"Missed: {words}")
+    raise SystemExit(1 if missed else 0)
 
 
 def draw(arguments):
@@ -100,7 +150,7 @@ def main():
     parser = argparse.ArgumentParser()
     commands = parser.add_subparsers(required=True)
     for name, run, words in (("trajectory", write_trajectory, ("stamps", "poses", "out")),
-                             ("map", print_map_error, ("map", "world")),
+                             ("score", score, ("results", "world")),
                              ("draw", draw, ("map", "path", "out"))):
         command = commands.add_parser(name)
         for word in words:

@@ -134,7 +134,7 @@ TEST_F(Convert, CarmenLog_HasALineForEachWholeRevolution) {
   EXPECT_LE(lines.size(), 14U);
   for (const std::string& line : lines) {
     EXPECT_THAT(line, StartsWith("ROBOTLASER1 0 "));
-    EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 8 + 720 + 1 + 6 + 5 + 3);
+    EXPECT_EQ(std::count(line.begin(), line.end(), ' '), 8 + 1440 + 1 + 6 + 5 + 3);
   }
 }
 

@@ -103,11 +103,7 @@ class point_run {
     shaping_options shape = shape_of(job_, common_, kind_);
     if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
     shape.filter.masks = mask_.polygons();
-    if (!common_.odometry.empty()) path_ = load_odometry(common_.odometry);
-    if (path_.empty() && common_.deskew == deskewing::by_path) {
-      throw bad_value("--deskew odometry needs the poses: give --odometry FILE, or --deskew scans");
-    }
-    shape.path = path_;
+    shape.path = load_path();
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;
     const bool has_long_times =
@@ -135,6 +131,27 @@ class point_run {
         ::isatty(1) != 0) {
       throw bad_value("standard output is a terminal; give -o FILE, or --pcd-data ascii");
     }
+  }
+
+  /// The poses of the file of --odometry, or of the recording.
+  const std::vector<stamped_pose>& load_path() {
+    const bool is_needed = common_.deskew == deskewing::by_path || job_.log != slam_log::none;
+    if (!common_.odometry.empty()) {
+      path_ = load_odometry(common_.odometry);
+    } else if (is_needed && kind_ == source_kind::recording) {
+      read_items(path_of(common_.source), {}, [this](const recorded_item& item) {
+        const bool is_later = path_.empty() || item.time_ns > path_.back().time_ns;
+        if (item.what == recorded_item::kind::odometry && is_later)
+          path_.push_back({item.time_ns, item.odometry.pose});
+        return true;
+      });
+    }
+    if (path_.empty() && common_.deskew == deskewing::by_path) {
+      throw bad_value("--deskew odometry needs the poses of the robot, and " +
+                      in_quotes(common_.source) +
+                      " has none: give --odometry FILE, or --deskew scans");
+    }
+    return path_;
   }
 
   std::unique_ptr<point_writer> make_writer() {

@@ -155,7 +155,7 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (to == file_form::tum) job.log = slam_log::tum;
   if (to == file_form::carmen) {
     job.log = slam_log::carmen;
-    job.bins = g4lidar::recording_options{}.scan_bins;
+    job.bins = 1440;  // a revolution has 1286 points at 7 Hz
   }
   job.partial = to != file_form::pcd && job.log == slam_log::none;
   job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
@@ -246,7 +246,7 @@ int run(const convert_options& options) {
 constexpr const char* convert_details =
     R"(IN is a recording, csv or jsonl as g4-dump writes them for points, else raw bytes. If OUT is a
 directory or a name such as scan-%04d.pcd, each revolution gets a pcd file. npy, npz (NumPy), ply
-and xyz have all points. carmen is a log for SLAM programs: each revolution as 720 ranges. tum has
+and xyz have all points. carmen is a log for SLAM programs: each revolution as 1440 ranges. tum has
 the pose of the robot at each revolution. Both take the poses from --odometry.
 
 Points of a recording are those of the driver that was recorded, with their times. Raw bytes
