@@ -64,8 +64,8 @@ struct common_options {
   std::optional<speckle_limits> speckle;
   std::optional<edge_limits> edges;
   deskewing deskew = deskewing::none;
-  std::string odometry;  ///< The file of --odometry; empty: that of the recording.
-  mounting mount;
+  std::string odometry;           ///< The file of --odometry; empty: that of the recording.
+  std::optional<mounting> mount;  ///< Where it is given.
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
   std::optional<time_style> time;  ///< If not given, what suits the source.

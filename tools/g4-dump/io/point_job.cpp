@@ -38,7 +38,7 @@ shaping_options shape_of(const point_job& job, const common_options& common, sou
   shape.speckle = common.speckle;
   shape.edges = common.edges;
   shape.deskew = common.deskew;
-  shape.mount = common.mount;
+  shape.mount = common.mount.value_or(mounting{});
   shape.for_grid = job.bins > 0;
   shape.partial_scans = job.partial;
   if (common.count > 0) shape.count = common.count;
@@ -163,7 +163,8 @@ class point_run {
     if (has_scan_files()) {
       return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
     }
-    if (job_.log == slam_log::carmen) return make_carmen_writer(job_.bins, common_.mount);
+    if (job_.log == slam_log::carmen)
+      return make_carmen_writer(job_.bins, common_.mount.value_or(mounting{}));
     if (job_.log == slam_log::tum) return make_tum_writer();
     if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins);
     return make_point_writer(job_.style);

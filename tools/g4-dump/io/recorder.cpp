@@ -3,17 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "cli/rows.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/recording/reader.hpp"
+#include "odometry_file.hpp"
 #include "output.hpp"
 #include "read_loop.hpp"
 #include "service_watch.hpp"
@@ -34,6 +40,39 @@ failure file_failure(const g4lidar::error& why, const std::string& path) {
               number == EEXIST ? "it exists already" : std::generic_category().message(number),
               advice_on_writing(number), is_full ? " What was written before can be read." : "")};
 }
+
+/// The poses of a file, which are recorded beside the points of the same times.
+class odometry_feed {
+ public:
+  void load(const std::string& path) { poses_ = load_odometry(path); }
+  /// Its times are those of the source plus `shift_ns`.
+  void shift(std::int64_t shift_ns) {
+    for (stamped_pose& each : poses_) each.time_ns += shift_ns;
+  }
+  /// Records what was before these points, and the pose after them.
+  void follow(std::span<const point> points, recording_writer& into) {
+    if (poses_.empty() || points.empty()) return;
+    if (!std::exchange(has_begun_, true)) {
+      const auto first =
+          std::ranges::upper_bound(poses_, points.front().time_ns, {}, &stamped_pose::time_ns);
+      next_ = static_cast<std::size_t>(first - poses_.begin()) - (first == poses_.begin() ? 0 : 1);
+    }
+    while (next_ < poses_.size()) {
+      const bool is_first = next_ == 0;
+      const stamped_pose& before = poses_[is_first ? 0 : next_ - 1];
+      if (!is_first && before.time_ns >= points.back().time_ns) return;
+      const stamped_pose& pose = poses_[next_++];
+      const double seconds = static_cast<double>(pose.time_ns - before.time_ns) * 1e-9;
+      const pose_2d moved = inverse(before.pose) * pose.pose;
+      into.odometry({pose.time_ns, pose.pose, is_first ? twist_2d{} : twist_to(moved, seconds)});
+    }
+  }
+
+ private:
+  std::vector<stamped_pose> poses_;
+  std::size_t next_ = 0;
+  bool has_begun_ = false;
+};
 
 /// One recording, from its beginning to its end.
 class recorder {
@@ -58,15 +97,26 @@ class recorder {
  private:
   /// The file is there before the source is opened, for that is recorded, too.
   void open() {
+    recording_options made = job_.made;
+    made.mount = job_.common.mount;
+    if (!job_.common.odometry.empty()) {
+      odometry_.load(job_.common.odometry);
+      made.keep_odometry = false;
+    }
     opening how = job_.source;
     how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
     // The ring holds the points of many readings; nobody waits for the single packet.
     how.how.pace = read_pace::revolutions;
-    how.tap = [this](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
+    how.tap = [this, &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
       if (!writer_) {
-        auto made = recording_writer::create(job_.path, job_.made);
-        if (!made) throw file_failure(made.error(), title_);
-        writer_ = std::make_unique<recording_writer>(std::move(*made));
+        auto file = recording_writer::create(job_.path, made);
+        if (!file) throw file_failure(file.error(), title_);
+        writer_ = std::make_unique<recording_writer>(std::move(*file));
+        // The bytes of a file are counted from its beginning, by a clock that begins elsewhere.
+        const std::string& name = job_.common.source;
+        if (kind_of(name) == source_kind::bytes && is_file(path_of(name))) {
+          odometry_.shift(from->now_ns());
+        }
       }
       return recorded(std::move(from), *writer_);
     };
@@ -90,7 +140,7 @@ class recorder {
 
   read_sink sink() {
     const auto take = [this](const g4lidar::scan& scan) -> std::uint64_t {
-      if (job_.scans && !scan.is_piece()) writer_->scan(scan);
+      if (!scan.is_piece()) writer_->scan(scan);
       return scan.is_piece() ? 0 : 1;
     };
     return {.scan = take, .pulse = [this] { pulse(); }, .with_bar = !job_.shows_counts};
@@ -112,7 +162,9 @@ class recorder {
 
   void take_points() {
     while (const std::size_t count = points_->read(memory_).points) {
-      writer_->points(std::span(memory_).first(count));
+      const std::span<const point> points = std::span(memory_).first(count);
+      writer_->points(points);
+      odometry_.follow(points, *writer_);
     }
   }
 
@@ -147,9 +199,13 @@ class recorder {
     result_.digest = writer_->digest();
     std::error_code unimportant;
     // It holds an attempt to open the source, and nothing else.
-    const bool is_file = std::filesystem::is_regular_file(job_.path, unimportant);
-    if (!has_run_ && is_file) std::filesystem::remove(job_.path, unimportant);
+    if (!has_run_ && is_file(job_.path)) std::filesystem::remove(job_.path, unimportant);
     writer_.reset();
+  }
+
+  static bool is_file(const std::string& path) {
+    std::error_code unimportant;
+    return std::filesystem::is_regular_file(path, unimportant);
   }
 
   const recording_job& job_;
@@ -160,12 +216,21 @@ class recorder {
   std::unique_ptr<opened_source> source_;
   std::unique_ptr<lidar_ring::reader> points_;
   std::array<g4lidar::point, 512> memory_{};
+  odometry_feed odometry_;
   std::optional<g4lidar::error> file_error_;
   recorded_result result_;
   bool has_run_ = false;
 };
 
 }  // namespace
+
+option_rows message_rows(g4lidar::recording_options& into) {
+  return {value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
+                    into.points_topic, [](const std::string&) { return "/points"; }),
+          choice_row(
+              "--order", "Order of the ranges of a LaserScan; time: z is down (angle)", into.order,
+              choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}})};
+}
 
 recorded_result record(const recording_job& job) { return recorder(job).run(); }
 
@@ -175,6 +240,7 @@ void report_recorded(const recorded_result& result, const std::string& path) {
                            counted(file.file_bytes, "byte"), counted(file.files, "file"),
                            counted(file.bytes_from_device, "byte"), file.bytes_to_device,
                            counted(file.scans, "scan")));
+  if (file.odometry > 0) logger::info(counted(file.odometry, "pose") + " of the odometry\n");
   if (file.chunks_lost > 0) {
     logger::info(fmt::format("{} in {} could not be written\n", counted(file.bytes_lost, "byte"),
                              counted(file.chunks_lost, "chunk")));

@@ -13,12 +13,12 @@ namespace g4_dump {
 
 /// What is recorded, and how.
 struct recording_job {
-  common_options common;  ///< The source, and when it ends.
-  opening source;         ///< Its tap is the recorder's.
-  std::string path;       ///< Of the recording.
-  std::string title{};    ///< Its name in messages; empty: its path.
+  /// The source, and when it ends; --odometry, which replaces that of a recording; --mount.
+  common_options common;
+  opening source;       ///< Its tap is the recorder's.
+  std::string path;     ///< Of the recording.
+  std::string title{};  ///< Its name in messages; empty: its path.
   g4lidar::recording_options made;
-  bool scans = true;         ///< Whether revolutions are kept as LaserScan, too.
   bool shows_counts = true;  ///< While it runs, on a terminal.
 };
 
@@ -31,6 +31,9 @@ struct recorded_result {
   g4lidar::recording_damage damage;
   std::optional<g4lidar::recorded_digest> recorded;
 };
+
+/// --points and --order.
+[[nodiscard]] option_rows message_rows(g4lidar::recording_options& into);
 
 /// Records until one of the options' ends, a signal, or the end of the source. Whatever happens, the
 /// file is ended properly; where the source cannot be opened there is none. Throws a failure: of the

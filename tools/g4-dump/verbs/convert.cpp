@@ -47,7 +47,7 @@ struct convert_options {
   std::optional<file_form> from;  ///< Else by its contents and name.
   std::optional<file_form> to;    ///< Else by its name.
   bool shapes = false;            ///< An option was given that only points can have.
-  packing packed{};               ///< A recording.
+  recording_options made;         ///< Of a recording.
 
   [[nodiscard]] const std::string& in() const noexcept { return points.common->source; }
   [[nodiscard]] const std::string& out() const noexcept { return points.common->output; }
@@ -122,6 +122,11 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
         "raw bytes and recordings hold what the lidar sent: --range, --fov, --ignore, "
         "--mask, --speckle, --edges, --deskew, --frame, --unit, --time and --scans are for "
         "points");
+  }
+  const recording_options& made = options.made;
+  const bool has_messages = !made.points_topic.empty() || made.order == scan_order::time;
+  if (to != file_form::recording && has_messages) {
+    throw bad_value("--points and --order are for recordings");
   }
   const bool ends_at_its_begin = to == file_form::recording || to == file_form::npy ||
                                  to == file_form::npz || to == file_form::ply;
@@ -222,8 +227,8 @@ int to_recording(const convert_options& options) {
   job.common = *options.points.common;
   job.source = options.points.source;
   job.path = out.place();
+  job.made = options.made;
   job.made.overwrite = true;
-  job.made.packed = options.packed;
   job.title = options.out();
   const recorded_result result = record(job);
   if (result.lidar.stream.packets == 0 && interrupt() == 0) refuse_without_packets(options, result);
@@ -251,8 +256,8 @@ the pose of the robot at each revolution. Both take the poses from --odometry.
 
 Points of a recording are those of the driver that was recorded, with their times. Raw bytes
 have no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
-are. From a recording to a recording, all bytes both ways are kept, and the LaserScan messages
-are computed again.
+are. From a recording to a recording, all bytes both ways and the odometry are kept, and the other
+messages are computed again: see --points, --order, --odometry and --mount of g4-dump record.
 
 --from and --to count from the beginning of IN. Of a damaged IN the undamaged part is converted,
 and the rest is counted on standard error. OUT appears, or is replaced, when everything is
@@ -272,7 +277,7 @@ option_rows form_rows(convert_options& options) {
                 [](const std::string&) { return pcd_data::ascii; }),
       sample_rate_row(job.source.bytes_rate_hz),
       frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
-      compress_row(options.packed)};
+      compress_row(options.made.packed)};
 }
 
 /// Rows that make sense for points only.
@@ -300,7 +305,8 @@ verb make_convert_verb() {
       .arguments = {file_argument("IN", "A recording, raw bytes, csv or jsonl", common.source),
                     file_argument("OUT", "The file to write; - with --to-format: standard output",
                                   common.output)},
-      .options = joined(form_rows(*options), motion_rows(common), point_rows(*options)),
+      .options = joined(form_rows(*options), message_rows(options->made), motion_rows(common),
+                        point_rows(*options)),
       .details = convert_details,
       .examples =
           {{"g4-dump convert walk.mcap walk.csv --from 10s --to 40s", "The points of 30 s as csv"},
@@ -308,6 +314,8 @@ verb make_convert_verb() {
             "A point cloud for each revolution"},
            {"g4-dump convert walk.mcap walk.bin", "The bytes that the lidar sent"},
            {"g4-dump convert walk.bin walk.mcap --compress", "Raw bytes to a compressed recording"},
+           {"g4-dump convert way.bin way.mcap --odometry way.txt",
+            "Raw bytes and odometry to a recording"},
            {"g4-dump convert walk.csv walk.jsonl --range 0.28:16", "The near returns as JSON"}},
       .exits = {0, 2, 10, 130},
       .run = [options] { return run(*options); }};

@@ -27,7 +27,13 @@ walk-0001.mcap and so on; each can be opened by itself.
 SOURCE may be a recording: the new one holds the same bytes in the same order and has the same
 digest, which is printed at the end and kept in the file (see g4-dump replay --verify). Files of
 raw bytes carry no times: times are counted with --sample-rate, from the last change of the file
-on.)";
+on.
+
+--points adds each revolution as sensor_msgs/msg/PointCloud2 on /points: x y z, t in ns since the
+stamp, range, angle. --order time writes the ranges of a LaserScan as they were measured, with
+their real time_increment, in a frame with z down. --odometry FILE adds nav_msgs/msg/Odometry on
+/odom: lines as sim --odometry writes them, with times of the source's clock (of raw bytes in a
+file: since its first byte). --mount adds /tf_static from base_link.)";
 
 struct record_options {
   std::vector<std::string> words;  // SOURCE and OUT, or one of them
@@ -98,12 +104,13 @@ option_rows scan_rows(record_options& options) {
   const auto name = [](const char* option, const char* help, std::string& into) {
     return text_row(option, "NAME", help, into, completion::nothing);
   };
-  return in_group("Contents",
-                  {value_row("--no-scans", "", "Record the bytes, no LaserScan messages",
-                             options.job.scans, [](const std::string&) { return false; }),
-                   name("--topic", "Topic of the LaserScan messages (/scan)", made.topic),
-                   name("--frame-id", "frame_id of the LaserScan messages (laser)", made.frame_id),
-                   sample_rate_row(options.job.source.bytes_rate_hz)});
+  const option_rows rows =
+      joined(option_rows{value_row("--no-scans", "", "Record the bytes, no LaserScan messages",
+                                   made.scans, [](const std::string&) { return false; }),
+                         name("--topic", "Topic of the LaserScan messages (/scan)", made.topic),
+                         name("--frame-id", "frame_id of scans and points (laser)", made.frame_id)},
+             message_rows(made), sample_rate_row(options.job.source.bytes_rate_hz));
+  return joined(in_group("Contents", rows), motion_rows(options.job.common));
 }
 
 }  // namespace
@@ -115,20 +122,23 @@ verb make_record_verb() {
   option_row out = text_row("OUT", "", "The recording, as with -o", options->job.path);
   source.take =
       out.take = [words = &options->words](const std::string& word) { words->push_back(word); };
-  return {.name = "record",
-          .summary = "Record all bytes both ways, and the scans",
-          .arguments = {source, out},
-          .options = joined(file_rows(*options), scan_rows(*options), ending_rows(common),
-                            device_rows(common)),
-          .details = record_details,
-          .examples = {{"g4-dump record walk.mcap", "Record the only G4 until ^C"},
-                       {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
-                        "Record one port for ten minutes"},
-                       {"g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",
-                        "Record for days, a file each hour, also after unplugs"},
-                       {"g4-dump record 'sim:?seed=7' -n 20 room.mcap",
-                        "Record 20 scans of a simulated G4"}},
-          .run = [options] { return run(*options); }};
+  return {
+      .name = "record",
+      .summary = "Record all bytes both ways, and the scans",
+      .arguments = {source, out},
+      .options = joined(file_rows(*options), scan_rows(*options), ending_rows(common),
+                        device_rows(common)),
+      .details = record_details,
+      .examples = {{"g4-dump record walk.mcap", "Record the only G4 until ^C"},
+                   {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
+                    "Record one port for ten minutes"},
+                   {"g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",
+                    "Record for days, a file each hour, also after unplugs"},
+                   {"g4-dump record 'sim:?seed=7' -n 20 room.mcap",
+                    "Record 20 scans of a simulated G4"},
+                   {"g4-dump record walk.mcap slam.mcap --points --order time --mount 0.1,0,180",
+                    "Add to a recording what SLAM programs read"}},
+      .run = [options] { return run(*options); }};
 }
 
 }  // namespace g4_dump

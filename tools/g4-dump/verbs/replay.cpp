@@ -44,7 +44,7 @@ void verify(const std::string& path) {
   job.common.source = path;
   job.path = "/dev/null";
   job.made.overwrite = true;
-  job.scans = job.shows_counts = false;
+  job.made.scans = job.shows_counts = false;
   const recorded_result result = record(job);
   if (interrupt() != 0) return;
   if (result.damage.any()) {
