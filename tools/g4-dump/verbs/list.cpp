@@ -22,7 +22,8 @@
 namespace g4_dump {
 namespace {
 
-struct list_options : common_options {
+struct list_options {
+  common_options common;
   bool probe = false;
   bool all = false;  ///< Probe other ports, too.
 };
@@ -49,7 +50,7 @@ void probe(std::vector<listed_port>& ports, const list_options& options) {
   for (listed_port& each : ports) {
     if (!options.all && !is_g4_bridge(each.port)) continue;
     if (interrupt() != 0) throw interrupted();
-    const auto& answer = each.answer.emplace(ask_at(each.port, options.baud));
+    const auto& answer = each.answer.emplace(ask_at(each.port, options.common.baud));
     if (!answer) logger::info(in_tool_words(answer.error().message()) + "\n");
   }
 }
@@ -107,7 +108,7 @@ exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
 }
 
 int list(const list_options& options) {
-  output out(options.output);
+  output out(options.common.output);
   auto found = value_of(list_ports());
   find_holders(found);
   std::vector<listed_port> ports;
@@ -115,7 +116,7 @@ int list(const list_options& options) {
   for (port_info& port : found) ports.push_back({.port = std::move(port)});
   const bool probed = options.probe || options.all;
   if (probed) probe(ports, options);
-  if (options.json) {
+  if (options.common.json) {
     for (const listed_port& each : ports) out.write(json_line(object_of(each)));
   } else if (!ports.empty()) {
     write_table(ports, probed, out);
@@ -156,7 +157,8 @@ verb make_list_verb() {
               flag_row("--probe", "Query the device at each port with a bridge of a G4",
                        options->probe),
               flag_row("--all", "Query every port: sends two commands to any device", options->all),
-              json_row(*options), output_row(*options), baud_row(*options)),
+              json_row(options->common), output_row(options->common),
+              baud_row(options->common)),
           .details = list_details,
           .examples = {{"g4-dump list", "The serial ports"},
                        {"g4-dump list --probe", "The lidars that answer"}},
