@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # The cost of the driver on a pty with the simulated G4 at the rate of a real connection, compared
 # with its promises; fails if one is not kept. Times of a busy machine have no meaning, so this is
-# for the nightly. Counts: bench/counts.sh.
+# for the nightly. Counts: bench/counts.sh. The median delay is promised to be 0.05 ms, or 1.5 times that of a bare loop
+# of poll and read in the same runs, whichever is more.
 #   bench/device.sh [SECONDS [REPETITIONS]]: how long each measurement in real time takes, 10 by default, and
 #   how often each is repeated, 3 by default.
 # The paces (each packet, batches of 20 ms, whole scans) take turns. Each cell is the median over the
@@ -41,6 +42,7 @@ measure() {
 
 for ((run = 1; run <= repetitions; ++run)); do
   for pace in "${paces[@]}"; do measure "$pace" "$run"; done
+  "$bench" delay "$seconds" bare >"$scratch/bare.$run"
   join <(sort "$scratch/packets.$run") <(sort "$scratch/scans.$run") |
     awk '$1 == "cpu_s_per_minute" { print "cpu_ratio", $3 / $2 }' >"$scratch/ratio.$run"
 done
@@ -65,7 +67,11 @@ echo "|---|---|---|---|---|"
 pace_row "system calls per second" calls_per_s 100
 pace_row "context switches per second" switches_per_s 60
 pace_row "CPU seconds for a minute of streaming" cpu_s_per_minute
-pace_row "zero packet written to scan delivered, median, ms" delay_median_ms 0.05
+bare=$(median delay_median_ms bare)
+# How fast a waiting program continues is a matter of the machine, too.
+most=$(awk -v b="$bare" 'BEGIN { print (b * 1.5 > 0.05 ? b * 1.5 : 0.05) }')
+pace_row "zero packet written to scan delivered, median, ms" delay_median_ms "$most"
+echo "| zero packet written to parsed, in a bare loop of poll and read, median, ms | $(cell delay_median_ms bare) | | | |"
 # tail_row <what> <name> <suffix>: the 99th percentile of all delays of these files, for each pace.
 tail_row() {
   local pace files tails=()
@@ -87,7 +93,7 @@ pace_row "resident memory, KiB" resident_kib 3584
 echo
 heading
 row "CPU time of whole scans, relative to packets" "$(median cpu_ratio ratio)" "" 0.35 "0.35"
-row "zero packet to scan at the pace of packets, median" "$(median delay_median_ms packets)" ms 0.05 "0.05"
+row "zero packet to scan at the pace of packets, median" "$(median delay_median_ms packets)" ms "$most" "$most"
 row "open and start" "$(median open_and_start_ms scans)" ms 100 "100"
 row "from open to the first whole scan" "$(median first_scan_ms scans)" ms 2500 "2500"
 "$bench" flood 10 >"$scratch/flood"

@@ -4,7 +4,8 @@
 //   device_bench delay SECONDS [PACE]   from the end of a zero packet to the delivered scan, and the first scan
 //   device_bench stream SECONDS [PACE]  CPU time, context switches, memory, calls of operator new
 //                                 and delete while streaming
-// PACE is `packets`, `scans` (the default), or a batch in milliseconds.
+// PACE is `packets`, `scans` (the default), or a batch in milliseconds; of delay also `bare`: a loop of poll and read
+// without the driver.
 //   device_bench flood MEGABYTES  bytes per second, and those of a reader that only counts
 //   device_bench memory SCANS [BURST]  scans from memory, in bursts of so many bytes, for
 //                                 counting instructions
@@ -24,6 +25,7 @@
 #include <thread>
 
 #include "feeder.hpp"
+#include "memory_connector.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/transport/connector.hpp"
@@ -59,6 +61,33 @@ lidar open_and_start(const std::string& path, std::string_view pace = "scans") {
 
 double ms_of(std::int64_t ns) { return static_cast<double>(ns) / 1e6; }
 
+using taken_scans = std::vector<std::pair<std::uint32_t, std::int64_t>>;  // revolution, when
+
+/// What a program without a driver would do: poll, read, and parse each packet. When it has each zero packet.
+taken_scans zero_packets_of_a_bare_loop(const std::string& path, std::int64_t end) {
+  const int port = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  const auto start = encode(command::start);
+  static_cast<void>(::write(port, start.data(), start.size()));
+  taken_scans taken;
+  stream_parser parser;
+  std::array<std::uint8_t, 4096> buffer;
+  while (steady_ns() < end) {
+    pollfd ready{port, POLLIN, 0};
+    static_cast<void>(poll(&ready, 1, 500));
+    const ssize_t count = ::read(port, buffer.data(), buffer.size());
+    bytes input(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+    while (const auto found = parser.next(input)) {
+      const auto* const packet = std::get_if<packet_view>(&*found);
+      if (packet == nullptr || !packet->is_zero()) continue;
+      taken.emplace_back(static_cast<std::uint32_t>(taken.size()), steady_ns());
+    }
+  }
+  const auto stop = encode(command::stop);
+  static_cast<void>(::write(port, stop.data(), stop.size()));
+  ::close(port);
+  return taken;
+}
+
 int delay(int seconds, std::string_view pace) {
   const bench::pty pty;
   std::vector<std::int64_t> written;
@@ -71,8 +100,10 @@ int delay(int seconds, std::string_view pace) {
   const std::int64_t begin = steady_ns();
   std::int64_t opened = 0;
   std::int64_t first = 0;
-  std::vector<std::pair<std::uint32_t, std::int64_t>> taken;  // revolution, when
-  {
+  taken_scans taken;
+  if (pace == "bare") {
+    taken = zero_packets_of_a_bare_loop(pty.path(), end);
+  } else {
     lidar device = open_and_start(pty.path(), pace);
     opened = steady_ns();
     while (steady_ns() < end) {
@@ -232,80 +263,11 @@ int flood(int megabytes) {
   return 0;
 }
 
-/// A transport that returns a recording in bursts, at the rate of a real connection, and answers
-/// the commands of a start.
-class memory_transport final : public transport {
- public:
-  memory_transport(const bench::recording& from, std::size_t scans, std::size_t burst,
-                   std::int64_t& now)
-      : from_(from), left_(scans / 20), burst_(burst), now_(now) {}
-
-  result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
-    if (!scanning_) {
-      now_ += 100'000;
-      const std::size_t count = device_.read(out, now_);
-      if (count == 0 && now_ < deadline_ns) now_ = std::min(deadline_ns, now_ + 10'000'000);
-      return received{count, now_};
-    }
-    if (place_ == from_.data.size()) {
-      place_ = 0;
-      if (--left_ == 0) return failure(task::reading, problem::end_of_input);
-    }
-    const std::size_t count = std::min(burst_, from_.data.size() - place_);
-    const std::int64_t there_ns = last_ns_ + static_cast<std::int64_t>(count) * 43'402;
-    now_ = std::max(now_, std::min(there_ns, deadline_ns));
-    if (now_ < there_ns) return received{};
-    std::memcpy(out.data(), from_.data.data() + place_, count);
-    place_ += count;
-    last_ns_ = there_ns;
-    return received{count, now_};
-  }
-  result<void> write(bytes data, std::int64_t /*deadline_ns*/) noexcept override {
-    if (scanning_) return {};  // from now on it returns the recording only
-    device_.write(data, now_);
-    scanning_ = data.size() == 2 && data[1] == static_cast<std::uint8_t>(command::start);
-    last_ns_ = now_;
-    return {};
-  }
-  result<void> pause(std::int64_t deadline_ns) noexcept override {
-    now_ = deadline_ns;
-    return {};
-  }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
-  void wake() noexcept override {}
-  [[nodiscard]] std::string_view name() const noexcept override { return "memory"; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return 230'400; }
-
- private:
-  const bench::recording& from_;
-  std::size_t left_;
-  std::size_t burst_;
-  std::size_t place_ = 0;
-  std::int64_t last_ns_ = 0;  // the time of the last burst
-  std::int64_t& now_;
-  bool scanning_ = false;
-  sim::device device_{sim::built_in_world()};
-};
-
-class memory_connector final : public connector {
- public:
-  memory_connector(const bench::recording& from, std::size_t scans, std::size_t burst)
-      : next_(std::make_unique<memory_transport>(from, scans, burst, now_)) {}
-  result<std::unique_ptr<transport>> connect() noexcept override { return std::move(next_); }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
-  bool pause(std::int64_t /*deadline_ns*/) noexcept override { return true; }
-  void wake() noexcept override {}
-
- private:
-  std::int64_t now_ = 1'000'000'000;
-  std::unique_ptr<transport> next_;
-};
-
 int memory(int scans, int burst) {
   const bench::recording revolutions = bench::record(20);
   lidar_options options;
   auto opened =
-      lidar::open(std::make_unique<memory_connector>(revolutions, static_cast<std::size_t>(scans),
+      lidar::open(std::make_unique<bench::memory_connector>(revolutions, static_cast<std::size_t>(scans),
                                                      static_cast<std::size_t>(burst)),
                   options);
   if (!opened) fail(opened.error());
