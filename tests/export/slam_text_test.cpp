@@ -98,8 +98,8 @@ TEST(SlamText, Carmen_OfALidarWithItsTopDown) {
     record.scan.points = points;
     record.time_ns = 5'000'000'000;
     record.robot = {4.0, 2.0, 0.0};
-    return words_of(written(
-        [&](text_sink& out) { make_carmen_writer(4, mount)->write_scan(record, out); }));
+    return words_of(
+        written([&](text_sink& out) { make_carmen_writer(4, mount)->write_scan(record, out); }));
   };
   const auto ranges = [](const std::vector<std::string>& words) {
     return std::vector(words.begin() + 9, words.begin() + 13);

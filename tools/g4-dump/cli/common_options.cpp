@@ -155,11 +155,9 @@ option_rows motion_rows(common_options& options) {
 }
 
 option_row deskew_row(common_options& options) {
-  option_row row =
-      choice_row("--deskew", "Deskew each revolution by the odometry, or by the scans alone",
-                 options.deskew,
-                 choices<deskewing>{{"odometry", deskewing::by_path},
-                                    {"scans", deskewing::by_scans}});
+  option_row row = choice_row(
+      "--deskew", "Deskew each revolution by the odometry, or by the scans alone", options.deskew,
+      choices<deskewing>{{"odometry", deskewing::by_path}, {"scans", deskewing::by_scans}});
   row.group = "Motion of the robot";
   return row;
 }
