@@ -156,6 +156,26 @@ TEST_F(RobotRecording, RecordedAgain_KeepsTheOdometry) {
   EXPECT_EQ(other[1].time_ns, 1'600'000'000);
 }
 
+/// Of a device in real time, whose path began when it was opened.
+TEST_F(RobotRecording, SimulatedRobot_HasItsOwnOdometry) {
+  write_file(path("long.txt"), "drive forward 3 0.5\n");
+  expect_good({"record", "sim:?path=" + path("long.txt"), path("own.mcap"), "-n", "8"});
+  const auto got = odometry_of("own.mcap");
+  ASSERT_GT(got.size(), 40U);
+  EXPECT_GT(got.back().pose.x_m, got.front().pose.x_m + 0.1) << "it has moved";
+  for (std::size_t i = 1; i < got.size(); ++i) {
+    EXPECT_EQ(got[i].time_ns - got[i - 1].time_ns, 20'000'000);
+    EXPECT_NEAR(got[i].pose.x_m - got[i - 1].pose.x_m, got[i].twist.x_m_per_s * 0.02, 1e-9);
+  }
+  expect_good({"convert", path("own.mcap"), path("own.csv"), "--time", "mono"});
+  const auto rows = cli::lines_of(read_file(path("own.csv")));
+  const auto time_in = [](const std::string& row) {
+    return std::stoll(row.substr(row.rfind(',') + 1));
+  };
+  EXPECT_LE(got.front().time_ns, time_in(rows[1]));
+  EXPECT_GE(got.back().time_ns, time_in(rows.back()));
+}
+
 TEST_F(RobotRecording, MountAndOrder) {
   expect_good({"convert", path("way.bin"), path("way.mcap"), "--mount", "0.5,-0.25,90,down",
                "--order", "time", "--points"});

@@ -41,9 +41,12 @@ failure file_failure(const g4lidar::error& why, const std::string& path) {
               advice_on_writing(number), is_full ? " What was written before can be read." : "")};
 }
 
-/// The poses of a file, which are recorded beside the points of the same times.
+/// The poses of a file, or of a simulated robot, which are recorded beside the points of the same
+/// times.
 class odometry_feed {
  public:
+  /// That of a file has precedence.
+  void follow(simulated_robot* robot) { robot_ = robot; }
   void load(const std::string& path) { poses_ = load_odometry(path); }
   /// Its times are those of the source plus `shift_ns`.
   void shift(std::int64_t shift_ns) {
@@ -51,7 +54,9 @@ class odometry_feed {
   }
   /// Records what was before these points, and the pose after them.
   void follow(std::span<const point> points, recording_writer& into) {
-    if (poses_.empty() || points.empty()) return;
+    if (points.empty()) return;
+    if (poses_.empty() && robot_ != nullptr) return follow_robot(points, into);
+    if (poses_.empty()) return;
     if (!std::exchange(has_begun_, true)) {
       const auto first =
           std::ranges::upper_bound(poses_, points.front().time_ns, {}, &stamped_pose::time_ns);
@@ -69,6 +74,23 @@ class odometry_feed {
   }
 
  private:
+  void follow_robot(std::span<const point> points, recording_writer& into) {
+    while (last_ns_ < points.back().time_ns) {
+      const sim::odometry_sample at = robot_->way.next();
+      const std::int64_t time_ns = at.time_ns + robot_->begin_ns;
+      // What was before the first point is of no use.
+      if (has_begun_ || robot_->way.next_ns() + robot_->begin_ns > points.front().time_ns) {
+        has_begun_ = true;
+        into.odometry({time_ns,
+                       {at.x_m, at.y_m, at.yaw_rad},
+                       {at.forward_m_per_s, at.left_m_per_s, at.yaw_rad_per_s}});
+      }
+      last_ns_ = time_ns;
+    }
+  }
+
+  simulated_robot* robot_ = nullptr;
+  std::int64_t last_ns_ = 0;  // of the robot
   std::vector<stamped_pose> poses_;
   std::size_t next_ = 0;
   bool has_begun_ = false;
@@ -122,6 +144,7 @@ class recorder {
     };
     source_ = std::make_unique<opened_source>(job_.common, how);
     points_ = std::make_unique<lidar_ring::reader>(source_->lidar().points().make_reader());
+    odometry_.follow(source_->robot());
     has_run_ = true;
     describe();
   }
@@ -191,6 +214,7 @@ class recorder {
       result_.lidar = source_->lidar().counts();
     }
     points_.reset();
+    odometry_.follow(nullptr);
     source_.reset();
     const auto closed = writer_->close();
     file_error_ = writer_->take_error();

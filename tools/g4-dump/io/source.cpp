@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -115,11 +116,19 @@ sim::world load_scene(const sim::setup& setup, const output* out) {
   return scene;
 }
 
-simulated_port serve_simulated(const std::string& source) {
+simulated_port serve_simulated(const std::string& source, std::optional<simulated_robot>* robot) {
   const auto read = sim::parse_setup(source);
   if (const auto* error = std::get_if<sim::setup_error>(&read)) throw bad_value(error->message);
   const auto& wish = std::get<sim::setup>(read);
-  auto served = sim::serve_alone(sim::device(load_scene(wish), wish.device, wish.faults));
+  const sim::world scene = load_scene(wish);
+  auto served = sim::serve_alone(sim::device(scene, wish.device, wish.faults));
+  if (served && robot != nullptr && !scene.path.empty()) {
+    (*served)->with([&](const sim::device&, std::int64_t now_ns) {
+      const auto steady_ns = std::chrono::steady_clock::now().time_since_epoch();
+      *robot = simulated_robot{sim::odometry(scene, {.seed = wish.device.scanner.seed}),
+                               std::chrono::nanoseconds(steady_ns).count() - now_ns};
+    });
+  }
   if (served) return *std::move(served);
   throw failure(exit_code::bad_file,
                 in_tool_words(served.error().message()) + " TMPDIR can name another directory.");
@@ -132,7 +141,7 @@ opened_source::opened_source(const common_options& options, const opening& wish)
   how.reconnect = options.on_loss != loss_rule::exit;
   const source_kind kind = kind_of(options.source);
   if (kind == source_kind::simulated) {
-    simulation_ = serve_simulated(options.source);
+    simulation_ = serve_simulated(options.source, &robot_);
     how.device = simulation_->path();
   }
   while (true) {

@@ -12,6 +12,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/replay.hpp"
+#include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/setup.hpp"
 #include "g4lidar/transport/connector.hpp"
 
@@ -36,8 +37,15 @@ enum class source_kind : unsigned char {
 [[nodiscard]] sim::world load_scene(const sim::setup& setup, const output* out = nullptr);
 
 using simulated_port = std::shared_ptr<const sim::background_pty>;
-/// The device of `sim:...`. Throws a failure, or bad_value.
-[[nodiscard]] simulated_port serve_simulated(const std::string& source);
+/// The way of a simulated robot, without errors.
+struct simulated_robot {
+  sim::odometry way;
+  std::int64_t begin_ns;  ///< Its time 0, by the clock of the transport.
+};
+/// The device of `sim:...`, and the robot that carries it if it has a path. Throws a failure, or
+/// bad_value.
+[[nodiscard]] simulated_port serve_simulated(const std::string& source,
+                                             std::optional<simulated_robot>* robot = nullptr);
 
 /// Puts something between the driver and the connections, such as one that records.
 using connector_tap = std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>;
@@ -67,6 +75,9 @@ class opened_source {
     return *lidar_;  // NOLINT(bugprone-unchecked-optional-access): made by the constructor
   }
 
+  /// The simulated robot that carries the lidar; null if there is none, or if it has no path.
+  [[nodiscard]] simulated_robot* robot() noexcept { return robot_ ? &*robot_ : nullptr; }
+
   /// The reader of the recording that is played; null for every other source.
   [[nodiscard]] const g4lidar::recording_reader* recording() const noexcept { return played_; }
   /// What is wrong with the recording that is played, as far as it was read; nothing of all else.
@@ -75,7 +86,8 @@ class opened_source {
   }
 
  private:
-  simulated_port simulation_;                          // outlives the lidar
+  simulated_port simulation_;  // outlives the lidar
+  std::optional<simulated_robot> robot_;
   const g4lidar::recording_reader* played_ = nullptr;  // the lidar's
   std::optional<g4lidar::lidar> lidar_;
 };

@@ -33,7 +33,7 @@ on.
 stamp, range, angle. --order time writes the ranges of a LaserScan as they were measured, with
 their real time_increment, in a frame with z down. --odometry FILE adds nav_msgs/msg/Odometry on
 /odom: lines as sim --odometry writes them, with times of the source's clock (of raw bytes in a
-file: since its first byte). --mount adds /tf_static from base_link.)";
+file: since its first byte); a simulated robot adds its own without errors. --mount adds /tf_static from base_link.)";
 
 struct record_options {
   std::vector<std::string> words;  // SOURCE and OUT, or one of them
