@@ -26,7 +26,7 @@ def poses_of(path):
 
 def write_trajectory(arguments):
     """icp-slam writes a pose for the odometry of each scan and one for the scan, in the order of the log, without times."""
-    stamps = [line.split()[0] for line in Path(arguments.stamps).read_text().splitlines()]
+    stamps = [line.split()[-1] for line in Path(arguments.scans).read_text().splitlines()]
     poses = numbers(arguments.poses)[1::2]
     if len(stamps) != len(poses):
         raise SystemExit(f"icp-slam wrote {len(poses)} poses for {len(stamps)} scans")
@@ -77,8 +77,10 @@ class World:
 
 def trajectory_error(truth, estimated, relation):
     """The root mean square of the absolute trajectory error. Both begin at the same pose, and are not aligned."""
-    pair = sync.associate_trajectories(file_interface.read_tum_trajectory_file(truth),
-                                       file_interface.read_tum_trajectory_file(estimated))
+    truth = file_interface.read_tum_trajectory_file(truth)
+    pair = sync.associate_trajectories(truth, file_interface.read_tum_trajectory_file(estimated))
+    if pair[0].num_poses < truth.num_poses:
+        raise SystemExit(f"only {pair[0].num_poses} of {truth.num_poses} poses have a counterpart in time")
     error = metrics.APE(relation)
     error.process_data(pair)
     return error.get_statistic(metrics.StatisticsType.rmse)
@@ -129,9 +131,9 @@ def draw(arguments):
     figure, axes = plt.subplots(figsize=(10, 7), layout="constrained")
     if arguments.world:
         world = World(arguments.world)
-        for begin, end in zip(world.begins, world.ends):
-            axes.plot(*np.transpose([begin, end]), color="#f0a030", linewidth=3.0, zorder=1,
-                      label="walls of the world" if begin is world.begins[0] else None)
+        for number, wall in enumerate(zip(world.begins, world.ends)):
+            axes.plot(*np.transpose(wall), color="#f0a030", linewidth=3.0, zorder=1,
+                      label="_" if number else "walls of the world")
         for radius, middle in world.discs:
             axes.add_patch(plt.Circle(middle, radius, color="#f0a030", fill=False, linewidth=3.0, zorder=1))
     points = map_points(arguments.map)
@@ -142,14 +144,14 @@ def draw(arguments):
     axes.set_aspect("equal")
     axes.set_xlabel("x in m")
     axes.set_ylabel("y in m")
-    axes.legend(loc="upper right")
+    figure.legend(loc="outside lower center", ncols=4, markerscale=6)
     figure.savefig(arguments.out, dpi=100, metadata={"Software": None})
 
 
 def main():
     parser = argparse.ArgumentParser()
     commands = parser.add_subparsers(required=True)
-    for name, run, words in (("trajectory", write_trajectory, ("stamps", "poses", "out")),
+    for name, run, words in (("trajectory", write_trajectory, ("scans", "poses", "out")),
                              ("score", score, ("results", "world")),
                              ("draw", draw, ("map", "path", "out"))):
         command = commands.add_parser(name)

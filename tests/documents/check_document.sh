@@ -27,7 +27,9 @@ leave() {
 }
 trap leave EXIT
 mkdir "$scratch/here"
+ln -s "$(realpath "$(dirname "${BASH_SOURCE[0]}")/../../scripts")" "$scratch/here/scripts"
 cd "$scratch/here"
+export G4_DUMP
 set -m # a background job can be interrupted, and is a process group that ends as a whole
 PATH=${PROGRAMS:-}${PROGRAMS:+:}$(dirname "$G4_DUMP"):$PATH
 

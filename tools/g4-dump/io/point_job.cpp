@@ -146,10 +146,10 @@ class point_run {
         return true;
       });
     }
-    if (path_.empty() && common_.deskew == deskewing::by_path) {
-      throw bad_value("--deskew odometry needs the poses of the robot, and " +
-                      in_quotes(common_.source) +
-                      " has none: give --odometry FILE, or --deskew scans");
+    if (path_.empty() && (common_.deskew == deskewing::by_path || job_.log == slam_log::tum)) {
+      throw bad_value(in_quotes(common_.source) +
+                      " has no poses of the robot: give --odometry FILE" +
+                      (job_.log == slam_log::tum ? "" : ", or --deskew scans"));
     }
     return path_;
   }

@@ -252,7 +252,7 @@ constexpr const char* convert_details =
     R"(IN is a recording, csv or jsonl as g4-dump writes them for points, else raw bytes. If OUT is a
 directory or a name such as scan-%04d.pcd, each revolution gets a pcd file. npy, npz (NumPy), ply
 and xyz have all points. carmen is a log for SLAM programs: each revolution as 1440 ranges. tum has
-the pose of the robot at each revolution. Both take the poses from --odometry.
+the pose of the robot at each revolution. The poses are those of --odometry, or of the recording.
 
 Points of a recording are those of the driver that was recorded, with their times. Raw bytes
 have no times: they are counted from 0 with --sample-rate. Times in csv and jsonl stay as they
