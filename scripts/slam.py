@@ -93,7 +93,7 @@ def wall_errors(world, directory):
 
 
 def score(arguments):
-    """A table of all drives; the exit code tells whether the promises are kept."""
+    """A table of all drives; the exit code is 1 if a promise is not kept."""
     world = World(arguments.world)
     results = Path(arguments.results)
     drives = sorted(results.glob("drive-*-truth.tum"))

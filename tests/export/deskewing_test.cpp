@@ -94,7 +94,7 @@ TEST_F(Deskewing, ALidarThatLooksBack_SeesTheWallFromTheFirstPlace) {
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F), FloatNear(4800.0F, 0.02F)));
 }
 
-TEST_F(Deskewing, WithoutIt_TheRobotIsWhereTheOdometrySays) {
+TEST_F(Deskewing, WithoutIt_TheRobotIsOnThePathOfTheOdometry) {
   write({.path = path_});
   EXPECT_THAT(ranges(), ElementsAre(5000.0F, 4900.0F));
   ASSERT_EQ(heard_.robot.size(), 1U);
