@@ -25,11 +25,11 @@
 #include <thread>
 
 #include "feeder.hpp"
-#include "memory_connector.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "memory_connector.hpp"
 #include "support/allocation_count.hpp"
 
 namespace {
@@ -266,10 +266,10 @@ int flood(int megabytes) {
 int memory(int scans, int burst) {
   const bench::recording revolutions = bench::record(20);
   lidar_options options;
-  auto opened =
-      lidar::open(std::make_unique<bench::memory_connector>(revolutions, static_cast<std::size_t>(scans),
-                                                     static_cast<std::size_t>(burst)),
-                  options);
+  auto opened = lidar::open(
+      std::make_unique<bench::memory_connector>(revolutions, static_cast<std::size_t>(scans),
+                                                static_cast<std::size_t>(burst)),
+      options);
   if (!opened) fail(opened.error());
   if (auto started = opened->start(); !started) fail(started.error());
   std::size_t samples = 0;

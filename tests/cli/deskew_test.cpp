@@ -31,9 +31,9 @@ class Deskew : public cli::scratch {
   /// How far from the walls the points are, in metres: the 90th percentile. The pose of each revolution is that in
   /// the TUM file; the points are those of the csv file.
   double off_the_walls(const std::vector<std::string>& options) {
-    std::vector<std::string> words{"convert", path("way.bin"), path("way.csv"), "--frame",
-                                   "robot",   "--unit",        "m",             "--range",
-                                   "0.1:",    "--odometry",    path("way.odo")};
+    std::vector<std::string> words{
+        "convert", path("way.bin"), path("way.csv"), "--frame",    "robot",        "--unit",
+        "m",       "--range",       "0.1:",          "--odometry", path("way.odo")};
     words.insert(words.end(), options.begin(), options.end());
     const outcome done = run(words);
     EXPECT_EQ(done.code, 0) << done.err;
