@@ -34,9 +34,9 @@ struct constant_motion {
                                            point_block& block) const noexcept {
     const std::int64_t begin_ns = points.front().time_ns;
     if (begin_ns == 0 || !has(begin_ns)) return 0;
-    // At most 1 second and 0.2 radians from the first point, where the series of set_places() are exact.
+    // At most 1 second and 0.02 radians from the first point, where the series of set_places() are exact.
     const double rate = twist.yaw_rad_per_s < 0.0 ? -twist.yaw_rad_per_s : twist.yaw_rad_per_s;
-    const auto reach_ns = static_cast<std::int64_t>(rate > 0.2 ? 0.2e9 / rate : 1e9);
+    const auto reach_ns = static_cast<std::int64_t>(rate > 0.02 ? 0.02e9 / rate : 1e9);
     std::int64_t low_ns = std::max(first_ns, begin_ns - reach_ns);
     std::int64_t high_ns = std::min(last_ns, begin_ns + reach_ns);
     // 0 is no time.

@@ -93,7 +93,7 @@ struct point_block {
   }
 
   /// The places at `since_ns` on an arc that begins at `start`, for the first `count` points. The lidar turns there by
-  /// at most 0.2 radians.
+  /// at most 0.02 radians.
   constexpr void set_places(const pose_2d& start, const twist_2d& twist,
                             std::size_t count) noexcept {
     // The series of the position in powers of the time: each derivative is the one before it, turned by a quarter turn
@@ -101,8 +101,8 @@ struct point_block {
     const rotation r = rotation_by(start.yaw_rad);
     double x_rate = 1000.0 * (r.cosine * twist.x_m_per_s - r.sine * twist.y_m_per_s);
     double y_rate = 1000.0 * (r.sine * twist.x_m_per_s + r.cosine * twist.y_m_per_s);
-    std::array<float, 5> x_series;
-    std::array<float, 5> y_series;
+    std::array<float, 3> x_series;
+    std::array<float, 3> y_series;
     for (std::size_t power = 0; power < x_series.size(); ++power) {
       x_series[power] = static_cast<float>(x_rate);
       y_series[power] = static_cast<float>(y_rate);
@@ -116,18 +116,19 @@ struct point_block {
     const float turn_0 = turn_deg[0];
     const float x_0 = x_mm[0];
     const float y_0 = y_mm[0];
-    const auto [x_1, x_2, x_3, x_4, x_5] = x_series;
-    const auto [y_1, y_2, y_3, y_4, y_5] = y_series;
+    const auto [x_1, x_2, x_3] = x_series;
+    const auto [y_1, y_2, y_3] = y_series;
     for (std::size_t i = 0; i < count; ++i) {
       const float t = static_cast<float>(since_ns[i]) * 1e-9F;
       turn_deg[i] = turn_0 + turn_rate * t;
-      x_mm[i] = x_0 + t * (x_1 + t * (x_2 + t * (x_3 + t * (x_4 + t * x_5))));
-      y_mm[i] = y_0 + t * (y_1 + t * (y_2 + t * (y_3 + t * (y_4 + t * y_5))));
+      x_mm[i] = x_0 + t * (x_1 + t * (x_2 + t * x_3));
+      y_mm[i] = y_0 + t * (y_1 + t * (y_2 + t * y_3));
     }
   }
 
   /// The first `count` points as seen from where the lidar was at the reference time.
   constexpr void move(std::size_t count) noexcept {
+    std::uint32_t is_near = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const float turned = wrap_once_deg(angle_deg[i] + turn_deg[i]);
       const sine_cosine look = sine_cosine_deg(turned);
@@ -137,8 +138,32 @@ struct point_block {
       const float y = masked(returned, y_mm[i]);
       const float ahead = range_mm[i] + (look.cosine * x + look.sine * y);
       const float aside = look.cosine * y - look.sine * x;
-      angle_deg[i] = wrap_once_deg(turned + direction_deg(ahead, aside));
-      range_mm[i] = square_root(ahead * ahead + aside * aside);
+      is_near |= negative_mask(ahead - 4.0F * aside) | negative_mask(ahead + 4.0F * aside);
+      angle_deg[i] = turned;
+      x_mm[i] = ahead;
+      y_mm[i] = aside;
+    }
+    is_near != 0 ? turn_any(count) : turn_far(count);
+  }
+
+  /// The rest of move(): direction and length of (x_mm, y_mm), seen in the direction angle_deg.
+  constexpr void turn_any(std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      angle_deg[i] = wrap_once_deg(angle_deg[i] + direction_deg(x_mm[i], y_mm[i]));
+      range_mm[i] = square_root(x_mm[i] * x_mm[i] + y_mm[i] * y_mm[i]);
+    }
+  }
+  /// The same where y is at most a quarter of x: the next terms of both series are below 1e-7 of the sums.
+  constexpr void turn_far(std::size_t count) noexcept {
+    constexpr auto d = static_cast<float>(degrees);
+    for (std::size_t i = 0; i < count; ++i) {
+      const float slope = y_mm[i] / (x_mm[i] + 1e-30F);  // 0 for the origin
+      const float s = slope * slope;
+      const float turn =
+          slope * (d + s * (-d / 3.0F + s * (d / 5.0F + s * (-d / 7.0F + s * (d / 9.0F)))));
+      const float longer = s * (0.5F + s * (-0.125F + s * (0.0625F + s * (-5.0F / 128.0F))));
+      angle_deg[i] = wrap_once_deg(angle_deg[i] + turn);
+      range_mm[i] = x_mm[i] + x_mm[i] * longer;
     }
   }
 
