@@ -147,14 +147,14 @@ TEST(TimeGrid, RangesAreInTheOrderOfTheirTimes) {
 /// The first samples have no return, so their directions are not corrected.
 TEST(TimeGrid, BeginsWhereTheReturnsBegin) {
   std::vector<point> points = turned_points();
-  for (std::size_t i = 0; i < 20; ++i) {
+  for (std::size_t i = 0; i < 200; ++i) {
     points[i].flags = point_flags::no_return;
     points[i].angle_deg = static_cast<float>(i);
     points[i].range_mm = 0.0F;
   }
   std::vector<float> ranges(360);
   EXPECT_EQ(fill_time_grid(points, turn_ns, ranges), 353U);
-  EXPECT_FLOAT_EQ(ranges[13], 21.0F);
+  EXPECT_FLOAT_EQ(ranges[195], 203.0F);
   EXPECT_EQ(ranges[5], std::numeric_limits<float>::infinity());
 }
 
@@ -278,12 +278,12 @@ TEST(Odometry, IsReadByTheRulesOfCdr) {
 }
 
 TEST(TfMessage, IsReadByTheRulesOfCdr) {
-  // A quarter turn to the left, and the top down: x of the lidar is the robot's y, and y its x.
+  // The axes of a frame that is turned by 0.5 rad: y points the other way with the top down.
   for (const bool upside_down : {false, true}) {
     std::vector<std::uint8_t> message;
     put_tf_message({.stamp_ns = 3'000'000'004,
                     .child_frame_id = "lidar",
-                    .place = {{0.5, 0.25, 1.5707963267948966}, upside_down}},
+                    .place = {{0.5, 0.25, 0.5}, upside_down}},
                    message);
     cdr_reader read(message);
     EXPECT_EQ(read.number<std::uint32_t>(), 1U);
@@ -298,10 +298,11 @@ TEST(TfMessage, IsReadByTheRulesOfCdr) {
     const auto w = read.number<double>();
     EXPECT_TRUE(read.is_at_end());
     // The columns of the rotation's matrix: where the axes of the lidar point.
-    EXPECT_NEAR(1 - 2 * (y * y + z * z), 0.0, 1e-12);
-    EXPECT_NEAR(2 * (x * y + z * w), 1.0, 1e-12);
-    EXPECT_NEAR(2 * (x * y - z * w), upside_down ? 1.0 : -1.0, 1e-12);
-    EXPECT_NEAR(1 - 2 * (x * x + z * z), 0.0, 1e-12);
+    const double left = upside_down ? -1.0 : 1.0;
+    EXPECT_NEAR(1 - 2 * (y * y + z * z), std::cos(0.5), 1e-12);
+    EXPECT_NEAR(2 * (x * y + z * w), std::sin(0.5), 1e-12);
+    EXPECT_NEAR(2 * (x * y - z * w), -left * std::sin(0.5), 1e-12);
+    EXPECT_NEAR(1 - 2 * (x * x + z * z), left * std::cos(0.5), 1e-12);
     EXPECT_NEAR(1 - 2 * (x * x + y * y), upside_down ? -1.0 : 1.0, 1e-12);
   }
 }

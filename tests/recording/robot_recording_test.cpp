@@ -185,6 +185,17 @@ TEST(RobotRecording, RecordedAgain_KeepsTheOdometry) {
   EXPECT_EQ(again->digest().payload, writer.digest().payload);
 }
 
+/// A channel that is added later: readers need its schema before it.
+TEST(RobotRecording, SchemaOfOdometry_IsBeforeItsChannel) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_robot(writer, 100);
+  ASSERT_TRUE(writer.close());
+  const std::string text = text_of(path.text());
+  EXPECT_LT(text.find("nav_msgs/msg/Odometry"), text.find("/odom"));
+  EXPECT_NE(text.find("/odom"), std::string::npos);
+}
+
 /// Only what is used is in a file.
 TEST(RobotRecording, ChannelsThatAreNotUsed_AreNotThere) {
   const temporary_path path;
