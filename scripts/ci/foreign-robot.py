@@ -10,6 +10,8 @@ import sys
 from pathlib import Path
 
 import numpy
+from mcap.reader import make_reader
+from mcap.stream_reader import StreamReader
 from rosbags.highlevel import AnyReader
 from rosbags.typesys import Stores, get_typestore
 
@@ -34,6 +36,19 @@ def messages_of(order):
         for connection, _, data in reader.messages(connections=connections):
             messages[connection.topic].append(reader.deserialize(data, connection.msgtype))
         return messages
+
+
+def count_by_mcap(order):
+    """The messages of the file, with all checksums, as a stream and by its summary."""
+    with open(f"{prefix}-{order}.mcap", "rb") as file:
+        records = list(StreamReader(file, validate_crcs=True).records)
+        file.seek(0)
+        statistics = make_reader(file, validate_crcs=True).get_summary().statistics
+        file.seek(0)
+        indexed = sum(1 for _ in make_reader(file, validate_crcs=True).iter_messages())
+    assert records and indexed == statistics.message_count == sum(statistics.channel_message_counts.values())
+    assert statistics.channel_count == 7 and statistics.schema_count == 6
+    return indexed
 
 
 def stamp_of(message):
@@ -161,5 +176,6 @@ for order in ("angle", "time"):
     missing = sum(check_scan(each, scans, grid, by_time) for each in messages["/scan"])
     poses = check_odometry(messages["/odom"], lines)
     check_transform(messages["/tf_static"], by_time)
-    print(f"{prefix.split('/')[-1]}-{order}.mcap: {len(grid)} LaserScan ({missing} ranges left out at the seams), "
+    count = count_by_mcap(order)
+    print(f"{prefix.split('/')[-1]}-{order}.mcap: {count} messages by mcap, {len(grid)} LaserScan ({missing} ranges left out at the seams), "
           f"{points} points of PointCloud2, {poses} Odometry and a TFMessage by rosbags: as in the csv and .odo")
