@@ -40,6 +40,9 @@ struct stamped_pose {
   pose_2d pose;
 };
 
+/// The maximum of a coordinate (metres) and of a yaw (radians) in odometry, in magnitude.
+inline constexpr double max_odometry_value = 1e6;
+
 /// What odometry contains about a time: the pose of the robot in a fixed frame, and its velocity in its own frame.
 struct stamped_odometry {
   std::int64_t time_ns = 0;  ///< As in stamped_pose.

@@ -69,13 +69,13 @@ std::span<const point> shaping_writer::marked_stream(std::span<const point> poin
   return std::span(marked_).subspan(from, passed_on_ - from);
 }
 
-void shaping_writer::deskew_scan(std::span<point> points, std::int64_t first_ns) {
+void shaping_writer::deskew_scan(std::span<point> points, std::span<const point> whole) {
+  const std::int64_t first_ns = whole.front().time_ns;
   if (!estimator_) {
     not_deskewed_ += deskew(points, options_.path, first_ns, options_.mount).outside;
     return;
   }
-  const twist_estimate motion = estimator_->add(points);
-  // Where a direction is not known, its speed of the last revolution is the best guess.
+  const twist_estimate motion = estimator_->add(whole);
   if (motion.is_known() || motion.status == twist_status::degenerate) {
     not_deskewed_ += deskew(points, motion.twist, first_ns).outside;
     return;
@@ -91,7 +91,7 @@ std::span<const point> shaping_writer::shaped(std::span<const point> points) {
   if (shaped_.size() < points.size()) shaped_.resize(points.size());
   const auto kept = options_.for_grid ? filter_for_grid(points, options_.filter, shaped_)
                                       : filter_points(points, options_.filter, shaped_);
-  if (deskews && !points.empty()) deskew_scan(kept, points.front().time_ns);
+  if (deskews && !points.empty()) deskew_scan(kept, points);
   for (point& p : kept) p.time_ns = times_.of(p.time_ns);
   return kept;
 }
@@ -131,6 +131,11 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   }
   follow_wall_clock();
   if (in_range(record.scan.points).size() < record.scan.points.size()) return;
+  const std::optional<pose_2d> robot = pose_at(options_.path, record.time_ns);
+  if (options_.on_path_only && !robot) {
+    ++off_path_;
+    return;
+  }
   times_.come(record.time_ns);
   scan_times_.come(record.time_ns);
   scan_record changed = record;
@@ -142,7 +147,7 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   if (!inner_->takes_scans()) return write_shaped(changed.scan.points, out);
   changed.scan.points = shaped(changed.scan.points);
   changed.time_ns = scan_times_.of(record.time_ns);
-  changed.robot = pose_at(options_.path, record.time_ns).value_or(record.robot);
+  changed.robot = robot.value_or(record.robot);
   inner_->write_scan(changed, out);
   done_ = ++records_ >= options_.count;
 }

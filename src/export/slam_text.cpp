@@ -31,7 +31,7 @@ class carmen_writer final : public point_writer {
 
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
   void write_scan(const scan_record& record, text_sink& out) override {
-    fill_grid(record.scan.points, ranges_m_);
+    fill_grid(record.scan.points, ranges_m_, {.pick = grid_pick::minimum});
     // Seen from above the angles of a lidar that hangs upside down grow clockwise; the first bin is behind it.
     if (mount_.upside_down) std::reverse(ranges_m_.begin() + 1, ranges_m_.end());
     write_carmen_scan({.ranges_m = ranges_m_,

@@ -2,6 +2,7 @@
 #include "file_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -180,11 +181,12 @@ bool recording_writer::file_writer::has_channel(topic id) noexcept {
 void recording_writer::file_writer::odometry(const stamped_odometry& what) noexcept {
   const auto& [x_m, y_m, yaw_rad] = what.pose;
   const auto& [forward, leftward, turn] = what.twist;
-  const bool is_finite =
-      std::isfinite(x_m + y_m + yaw_rad) && std::isfinite(forward + leftward + turn);
+  const std::array values{x_m, y_m, yaw_rad, forward, leftward, turn};
+  const bool is_possible = std::ranges::all_of(
+      values, [](double value) { return std::fabs(value) <= max_odometry_value; });
   const bool has_begun =
       transport_.is_known || counts_.bytes_from_device + counts_.bytes_to_device > 0;
-  if (is_closed_ || !is_finite || !has_begun || !has_channel(topic::odometry)) return;
+  if (is_closed_ || !is_possible || !has_begun || !has_channel(topic::odometry)) return;
   ++counts_.odometry;
   put(topic::odometry, what.time_ns, 0, [&](mcap::record_text& out) {
     put_odometry({.stamp_ns = wall_.at(what.time_ns),

@@ -169,14 +169,13 @@ std::optional<stamped_odometry> odometry_from(bytes message) noexcept {
   std::array<double, 6> twist{};
   std::ranges::generate(twist, number);
   static_cast<void>(fields.take(covariance_size));
-  const auto is_finite = [](double value) { return std::isfinite(value); };
+  const auto is_possible = [](double value) { return std::fabs(value) <= max_odometry_value; };
   const bool is_good = fields.is_good() && fields.is_at_end() && rest_ns < 1'000'000'000 &&
-                       std::ranges::all_of(pose, is_finite) &&
-                       std::ranges::all_of(twist, is_finite);
+                       std::ranges::all_of(pose, is_possible) &&
+                       std::ranges::all_of(twist, is_possible);
   if (!is_good) return std::nullopt;
   const auto& [x, y, z, qx, qy, qz, qw] = pose;
   const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
-  if (!is_finite(yaw)) return std::nullopt;
   return stamped_odometry{
       std::int64_t{seconds} * 1'000'000'000 + rest_ns, {x, y, yaw}, {twist[0], twist[1], twist[5]}};
 }

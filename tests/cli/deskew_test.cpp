@@ -85,6 +85,40 @@ TEST_F(Deskew, EachRevolutionIsSeenFromThePlaceOfItsFirstPoint) {
   EXPECT_LT(off_the_walls({"--deskew", "scans"}), 0.03);
 }
 
+/// The estimator sees the whole revolution, whatever is written of it.
+TEST_F(Deskew, ByScans_OfAFieldOfView) {
+  const outcome done = run({"convert", path("way.bin"), path("way.xyz"), "--deskew", "scans",
+                            "--frame", "robot", "--fov", "-45:45"});
+  EXPECT_EQ(done.code, 0);
+  const auto at = done.err.find(" points not deskewed");
+  const auto from = done.err.rfind('\n', at) + 1;
+  ASSERT_NE(at, std::string::npos) << done.err << " (at least the first revolution)";
+  EXPECT_LT(std::stod(done.err.substr(from, at - from)), 3000.0) << "of 13,000";
+}
+
+TEST_F(Deskew, OdometryOfAPart_GivesPosesForThatPartOnly) {
+  std::string part;
+  for (const std::string& line : cli::lines_of(cli::read_file(path("way.odo")))) {
+    const double seconds = std::strtod(line.c_str(), nullptr) / 1e9;
+    if (seconds >= 2.0 && seconds <= 3.0) part += line + "\n";
+  }
+  cli::write_file(path("part.odo"), part);
+  for (const std::string name : {"part.tum", "part.carmen"}) {
+    const outcome done =
+        run({"convert", path("way.bin"), path(name), "--odometry", path("part.odo")});
+    EXPECT_EQ(done.code, 0);
+    EXPECT_THAT(done.err, HasSubstr("left out: the odometry has no pose at their time"));
+    EXPECT_EQ(cli::lines_of(cli::read_file(path(name))).size(), 7U) << "a second at 7 Hz";
+  }
+}
+
+TEST_F(Deskew, TimesThatGoBack_AreRefused) {
+  const outcome done = run({"convert", path("way.bin"), path("no.tum"), "--odometry",
+                            path("way.odo"), "--time", "delta"});
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.err, HasSubstr("times that do not go back"));
+}
+
 TEST_F(Deskew, WhatHasNoPoses_IsRefused) {
   for (const auto& words : {std::vector<std::string>{path("no.csv"), "--deskew", "odometry"},
                             std::vector<std::string>{path("no.tum")}}) {
@@ -104,7 +138,7 @@ TEST_F(Deskew, OdometryThatEndsEarly_IsReported) {
   EXPECT_THAT(done.err, HasSubstr("not deskewed: the odometry has no pose at their time"));
 }
 
-TEST_F(Deskew, AMountThatIsNone_IsRefused) {
+TEST_F(Deskew, InvalidMount_IsRefused) {
   for (const std::string word : {"1,2", "1,2,x", "1,2,3,up", "1e9,0,0", "", ",,"}) {
     const outcome done =
         run({"convert", path("way.bin"), path("no.csv"), "--mount", word, "--deskew", "scans"});

@@ -63,6 +63,7 @@ class Deskewing : public ::testing::Test {
     record.time_ns = begin_ns;
     writer.write_scan(record, sink);
     not_deskewed_ = writer.points_not_deskewed();
+    off_path_ = writer.scans_off_path();
   }
   [[nodiscard]] std::vector<float> ranges() const {
     std::vector<float> all;
@@ -76,6 +77,7 @@ class Deskewing : public ::testing::Test {
   const std::array<point, 2> points_{ahead(5000.0F, begin_ns), ahead(4900.0F, begin_ns + tenth_ns)};
   heard heard_;
   std::uint64_t not_deskewed_ = 0;
+  std::uint64_t off_path_ = 0;
 };
 
 TEST_F(Deskewing, ByPath_SeesTheWallFromTheFirstPlace) {
@@ -99,6 +101,19 @@ TEST_F(Deskewing, WithoutIt_TheRobotIsOnThePathOfTheOdometry) {
   EXPECT_THAT(ranges(), ElementsAre(5000.0F, 4900.0F));
   ASSERT_EQ(heard_.robot.size(), 1U);
   EXPECT_NEAR(heard_.robot[0].x_m, 2.1, 1e-9);
+}
+
+TEST_F(Deskewing, RevolutionsOffThePath_AreLeftOutOnRequest) {
+  const auto early = std::span(path_).first(1);
+  write({.path = early});
+  ASSERT_EQ(heard_.robot.size(), 1U);
+  EXPECT_EQ(heard_.robot[0], pose_2d{});
+  EXPECT_EQ(off_path_, 0U);
+  write({.path = early, .on_path_only = true});
+  EXPECT_EQ(heard_.robot.size(), 1U);
+  EXPECT_EQ(off_path_, 1U);
+  write({.path = path_, .on_path_only = true});
+  EXPECT_EQ(heard_.robot.size(), 2U);
 }
 
 TEST_F(Deskewing, PointsArePassedOnWhereNoRevolutionsAreTaken) {

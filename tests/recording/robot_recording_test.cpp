@@ -98,8 +98,9 @@ TEST(RobotRecording, OdometryOfAnyTime_ChangesNothingElse) {
     writer.odometry(odometry_at(i % 2 == 0 ? time_of(5'000'000) : time_of(0) - 3600 * second));
   }
   writer.odometry({.pose = {0.0, std::nan(""), 0.0}});
+  writer.odometry({.pose = {1e7, 0.0, 0.0}});
   ASSERT_TRUE(writer.close());
-  EXPECT_EQ(writer.counts().odometry, 200U) << "without the one that is not a number";
+  EXPECT_EQ(writer.counts().odometry, 200U) << "without those that are not possible";
   EXPECT_EQ(writer.counts().files, 1U);
   EXPECT_LE(writer.counts().chunks, 6U);
   EXPECT_EQ(contents_of_file(path.text(), {.to_ns = second}).readings, numbers(0, 100));
@@ -147,6 +148,20 @@ TEST(RobotRecording, ForeignOdometry_IsNotReturned) {
   const contents found = contents_of_bytes(file);
   EXPECT_EQ(found.readings, numbers(0, 100));
   EXPECT_EQ(found.gaps, 0U);
+}
+
+TEST(RobotRecording, ImpossibleOdometry_IsNotReturned) {
+  for (const double value : {1e308, -1e7, std::nan("")}) {
+    const auto file = file_with_odometry([value](std::vector<std::uint8_t>& out, std::uint32_t i) {
+      put_odometry({.stamp_ns = time_of(i) + wall_ahead_ns, .pose = {value, 0.0, 0.0}}, out);
+    });
+    auto reader = recording_access::open(std::make_shared<memory_source>(file), "memory", {});
+    ASSERT_TRUE(reader);
+    EXPECT_TRUE(reader->for_each([](const recorded_item& item) {
+      EXPECT_NE(item.what, recorded_item::kind::odometry);
+      return true;
+    }));
+  }
 }
 
 /// In a chunk of a damaged file, or in a file that another program has sorted, odometry may be first: the clocks are known

@@ -19,9 +19,6 @@ struct odometry_error {
   std::string message;  ///< One sentence without the line number, for people.
 };
 
-/// The maximum of a coordinate (metres) and of a yaw (radians) in odometry, in magnitude.
-inline constexpr double max_odometry_value = 1e6;
-
 /// The poses that `text` contains, or the first error in it. Each line is empty, or
 /// `time_ns x y yaw`: a whole number of nanoseconds, greater than in the line before, metres and
 /// radians; from `#` on a line is a comment. At least one pose. Independent of the locale. Throws

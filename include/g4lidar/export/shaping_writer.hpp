@@ -37,13 +37,15 @@ struct shaping_options {
   std::optional<speckle_limits> speckle{};
   std::optional<edge_limits> edges{};
   /// Each revolution is deskewed to the time of its first point, after it was filtered. Points whose motion
-  /// is not known are written as they are, flagged not_deskewed.
+  /// is not known are written as they are, flagged not_deskewed. The twist_estimator takes the points as they
+  /// were before the filter; where one direction is not known, the value of its last estimate is used.
   deskewing deskew = deskewing::none;
   /// The poses of the robot by its odometry, times ascending, of the same clock as those of the points. Also
   /// for scan_record::robot. A view of the caller's memory.
   std::span<const stamped_pose> path{};
-  mounting mount{};       ///< For deskewing::by_path.
-  bool for_grid = false;  ///< Filters with filter_for_grid(), for make_grid_writer().
+  mounting mount{};           ///< For deskewing::by_path.
+  bool on_path_only = false;  ///< Revolutions at whose first point `path` has no pose are left out.
+  bool for_grid = false;      ///< Filters with filter_for_grid(), for make_grid_writer().
   time_style time = time_style::monotonic;  ///< What is written in the place of times.
   std::int64_t wall_ahead_ns = 0;   ///< For time_style::absolute: wall clock minus monotonic clock.
   bool follows_wall_clock = false;  ///< Measures that again while it runs: for live data.
@@ -79,6 +81,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   [[nodiscard]] bool is_done() const noexcept { return done_; }
   /// How many pieces of revolutions were left out.
   [[nodiscard]] std::uint64_t pieces_left_out() const noexcept { return pieces_; }
+  /// How many revolutions were left out because the path has no pose for them.
+  [[nodiscard]] std::uint64_t scans_off_path() const noexcept { return off_path_; }
   /// How many points were written as they were, because their motion is not known.
   [[nodiscard]] std::uint64_t points_not_deskewed() const noexcept { return not_deskewed_; }
 
@@ -89,8 +93,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   void mark(std::span<point> points, scan_ends ends) const;
   /// The points of the stream that can be marked now, marked; `is_end`: all.
   [[nodiscard]] std::span<const point> marked_stream(std::span<const point> points, bool is_end);
-  /// Deskews a revolution to the time of its first point.
-  void deskew_scan(std::span<point> points, std::int64_t first_ns);
+  /// Deskews the points that are left of a revolution to the time of its first point.
+  void deskew_scan(std::span<point> points, std::span<const point> whole);
   /// Those that the filter keeps, deskewed if they are a revolution, with the times that are written.
   [[nodiscard]] std::span<const point> shaped(std::span<const point> points);
   void write_shaped(std::span<const point> points, text_sink& out);
@@ -108,6 +112,7 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   bool done_ = false;
   std::uint64_t records_ = 0;
   std::uint64_t pieces_ = 0;
+  std::uint64_t off_path_ = 0;
   std::uint64_t not_deskewed_ = 0;
   std::optional<twist_estimator> estimator_;
 };

@@ -112,7 +112,7 @@ class G4LIDAR_API recording_writer {
   void scan(const g4lidar::scan& revolution) noexcept;
   /// Records odometry of the robot, as an Odometry message on /odom. Its time is of the same clock as
   /// the other times, and may be before or after theirs. Ignored before the first bytes or event, and if a number is not
-  /// finite.
+  /// at most max_odometry_value in magnitude.
   void odometry(const stamped_odometry& what) noexcept;
   /// Adds delivered points, in order, to their digest; the points are not stored.
   void points(std::span<const point> delivered) noexcept;

@@ -29,7 +29,7 @@ struct odometry_options {
 /// What is wrong with `options`, a sentence for people; empty if nothing is. *Pure.*
 [[nodiscard]] G4LIDAR_API std::string_view problem_with(const odometry_options& options) noexcept;
 
-/// Where a robot believes to be, in the frame in which its true pose at time 0 is zero, and its mean
+/// The pose that odometry reports, in the frame in which its true pose at time 0 is zero, and its mean
 /// velocity since the sample before, in its own frame; zero at time 0.
 struct odometry_sample {
   std::int64_t time_ns;  ///< As those of the lidar's samples.

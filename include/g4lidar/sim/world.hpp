@@ -22,7 +22,7 @@ struct wall {
   double y2_m;
 };
 
-/// A round thing: a pillar, or a person who walks to and fro between two places on a straight way
+/// A round thing: a pillar, or a person who walks back and forth between two places on a straight way
 /// at a constant speed, from (x_m, y_m) at time 0. It stands if the speed is 0.
 struct disc {
   double radius_m;

@@ -50,6 +50,9 @@ shaping_options shape_of(const point_job& job, const common_options& common, sou
     shape.to_ns = std::min<std::int64_t>(shape.to_ns, common.duration.count());
   }
   shape.time = common.time.value_or(is_file ? time_style::monotonic : time_style::absolute);
+  if (job.log != slam_log::none && shape.time == time_style::delta) {
+    throw bad_value("--time delta: this format needs times that do not go back");
+  }
   if (is_file && !job.text && common.time &&
       (shape.time == time_style::absolute || shape.time == time_style::monotonic)) {
     throw bad_value("--time: raw bytes carry no times; use zero or delta, see --sample-rate");
@@ -103,7 +106,7 @@ class point_run {
     shaping_options shape = shape_of(job_, common_, kind_);
     if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
     shape.filter.masks = mask_.polygons();
-    shape.path = load_path();
+    load_path(shape);
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;
     const bool has_long_times =
@@ -134,24 +137,27 @@ class point_run {
   }
 
   /// The poses of the file of --odometry, or of the recording.
-  const std::vector<stamped_pose>& load_path() {
+  void load_path(shaping_options& shape) {
     const bool is_needed = common_.deskew == deskewing::by_path || job_.log != slam_log::none;
     if (!common_.odometry.empty()) {
       path_ = load_odometry(common_.odometry);
     } else if (is_needed && kind_ == source_kind::recording) {
       read_items(path_of(common_.source), {}, [this](const recorded_item& item) {
-        const bool is_later = path_.empty() || item.time_ns > path_.back().time_ns;
-        if (item.what == recorded_item::kind::odometry && is_later)
+        if (item.what == recorded_item::kind::odometry)
           path_.push_back({item.time_ns, item.odometry.pose});
         return true;
       });
+      std::ranges::stable_sort(path_, {}, &stamped_pose::time_ns);
+      const auto same = std::ranges::unique(path_, {}, &stamped_pose::time_ns);
+      path_.erase(same.begin(), same.end());
     }
     if (path_.empty() && (common_.deskew == deskewing::by_path || job_.log == slam_log::tum)) {
       throw bad_value(in_quotes(common_.source) +
                       " has no poses of the robot: give --odometry FILE" +
                       (job_.log == slam_log::tum ? "" : ", or --deskew scans"));
     }
-    return path_;
+    shape.path = path_;
+    shape.on_path_only = job_.log != slam_log::none && !path_.empty();
   }
 
   std::unique_ptr<point_writer> make_writer() {
@@ -304,9 +310,12 @@ class point_run {
 
   void report_left_out() const {
     if (const std::uint64_t count = writer_->pieces_left_out(); count > 0) {
-      logger::info(fmt::format("{} left out; --partial writes {}, too\n",
-                               counted(count, "incomplete revolution"),
-                               count == 1 ? "it" : "them"));
+      logger::info(counted(count, "incomplete revolution") + " left out" +
+                   (job_.whole_file ? "\n" : "; --partial includes them\n"));
+    }
+    if (const std::uint64_t count = writer_->scans_off_path(); count > 0) {
+      logger::info(counted(count, "revolution") +
+                   " left out: the odometry has no pose at their time\n");
     }
     if (const std::uint64_t count = writer_->points_not_deskewed(); count > 0) {
       logger::info(fmt::format("{} not deskewed: {}\n", counted(count, "point"),

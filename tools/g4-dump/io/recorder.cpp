@@ -117,7 +117,7 @@ class recorder {
   }
 
  private:
-  /// The file is there before the source is opened, for that is recorded, too.
+  /// The file is there before the source is opened, because opening is recorded, too.
   void open() {
     recording_options made = job_.made;
     made.mount = job_.common.mount;

@@ -113,8 +113,8 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
   const bool to_points = to >= file_form::csv;
   if (is_text(from) && !to_points) {
     throw bad_value(
-        fmt::format("{} holds points, not bytes of a lidar: it can be converted to csv, jsonl and "
-                    "pcd, but not to raw bytes or a recording",
+        fmt::format("{} holds points, not bytes of a lidar: it can be converted to other formats "
+                    "of points, but not to raw bytes or a recording",
                     in_quotes(options.in())));
   }
   if (!to_points && options.shapes) {
@@ -127,6 +127,9 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
   const bool has_messages = !made.points_topic.empty() || made.order == scan_order::time;
   if (to != file_form::recording && has_messages) {
     throw bad_value("--points and --order are for recordings");
+  }
+  if (to == file_form::raw_bytes && !options.points.common->odometry.empty()) {
+    throw bad_value("raw bytes hold no odometry: --odometry is for recordings and points");
   }
   const bool ends_at_its_begin = to == file_form::recording || to == file_form::npy ||
                                  to == file_form::npz || to == file_form::ply;
@@ -301,7 +304,7 @@ verb make_convert_verb() {
   options->points.style = {};
   return {
       .name = "convert",
-      .summary = "Convert recordings, raw bytes, csv, jsonl and pcd",
+      .summary = "Convert recordings, raw bytes and points",
       .arguments = {file_argument("IN", "A recording, raw bytes, csv or jsonl", common.source),
                     file_argument("OUT", "The file to write; - with --to-format: standard output",
                                   common.output)},
