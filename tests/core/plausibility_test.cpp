@@ -75,7 +75,8 @@ class noisy_line {
     sent_.push_back({offset_, {made.begin(), made.end()}});
     std::vector<std::uint8_t> data = sent_.back().data;
     while (to_next_flip_ < data.size()) {
-      data[to_next_flip_] ^= static_cast<std::uint8_t>(1U << (random_() % 8));
+      data[static_cast<std::size_t>(to_next_flip_)] ^=
+          static_cast<std::uint8_t>(1U << (random_() % 8));
       to_next_flip_ += 1 + gap_(random_);
     }
     to_next_flip_ -= data.size();
