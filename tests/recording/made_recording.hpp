@@ -82,6 +82,7 @@ class memory_source final : public mcap::byte_source {
 struct contents {
   std::vector<std::uint32_t> readings;
   std::size_t commands = 0;
+  std::size_t odometry = 0;
   std::size_t gaps = 0;
   recording_damage damage;
   bool is_open = false;
@@ -99,6 +100,7 @@ contents contents_of(Reader& reader) {
     }
     EXPECT_EQ((*item)->wall_ns - (*item)->time_ns, wall_ahead_ns);
     if ((*item)->what == recorded_item::kind::to_device) ++found.commands;
+    if ((*item)->what == recorded_item::kind::odometry) ++found.odometry;
     if ((*item)->what == recorded_item::kind::other) {
       found.gaps += (*item)->other.what == recorded_event::kind::gap ? 1U : 0U;
     }
