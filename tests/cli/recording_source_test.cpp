@@ -145,7 +145,7 @@ TEST(LostSource, Counts_AreReported) {
 TEST(DamagedScans, AreCountedWhereTheyAreLeftOut) {
   const outcome done = run({"scan", "sim:?fault=flip*0.2%&seed=3", "-d", "1500ms"});
   EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr(" left out; --partial writes "));
+  EXPECT_THAT(done.err, HasSubstr(" left out; --partial includes them"));
 }
 
 TEST_F(RecordingSource, NothingWhole_IsABadFileAndNothingIsWritten) {
