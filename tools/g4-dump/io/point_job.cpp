@@ -147,7 +147,7 @@ class point_run {
           path_.push_back({item.time_ns, item.odometry.pose});
         return true;
       });
-      std::ranges::stable_sort(path_, {}, &stamped_pose::time_ns);
+      std::ranges::sort(path_, {}, &stamped_pose::time_ns);
       const auto same = std::ranges::unique(path_, {}, &stamped_pose::time_ns);
       path_.erase(same.begin(), same.end());
     }
