@@ -163,7 +163,7 @@ std::string_view name_of(stage_verdict how) noexcept {
 
 diagnosis diagnosis_of(problem what) noexcept {
   if (what == problem::gone || what == problem::end_of_input) return unplugged;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(bad_baud_rate); ++i) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto* const known = std::get_if<problem>(&rows[i].advice);
     if (known != nullptr && *known == what) return static_cast<diagnosis>(i);
   }

@@ -39,14 +39,6 @@ std::string digits_of(unsigned number, unsigned base, std::size_t count) {
   return text;
 }
 
-/// The stage to which this error belongs.
-diagnostic_stage stage_of(diagnosis what) noexcept {
-  using enum diagnosis;
-  if (what == permission) return diagnostic_stage::permission;
-  if (what == busy || what == interference) return diagnostic_stage::holder;
-  return what == bad_baud_rate ? diagnostic_stage::baud_rate : diagnostic_stage::port;
-}
-
 /// Reports `current` and begins the next stage.
 void pass(stage_log& log, stage_report& current) {
   const auto next = static_cast<diagnostic_stage>(static_cast<int>(current.stage) + 1);

@@ -18,7 +18,29 @@ constexpr double held_back_limit_ms = 3.3;
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
 
+/// The last diagnosis of each stage, in the order of the enumeration. An unplug belongs to the port.
+constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
+    {{diagnosis::bad_file, diagnostic_stage::port},
+     {diagnosis::permission, diagnostic_stage::permission},
+     {diagnosis::interference, diagnostic_stage::holder},
+     {diagnosis::wrong_baud_rate, diagnostic_stage::baud_rate},
+     {diagnosis::answers_missing, diagnostic_stage::answers},
+     {diagnosis::other_device, diagnostic_stage::identity},
+     {diagnosis::health_error, diagnostic_stage::health},
+     {diagnosis::motor_unsteady, diagnostic_stage::motor},
+     {diagnosis::unplugged, diagnostic_stage::port},
+     {diagnosis::host_busy, diagnostic_stage::stream},
+     {diagnosis::sample_rate_off, diagnostic_stage::rate},
+     {diagnosis::line_noise, diagnostic_stage::loss},
+     {diagnosis::usb_latency, diagnostic_stage::usb_latency}}};
+
 }  // namespace
+
+diagnostic_stage stage_of(diagnosis what) noexcept {
+  return std::ranges::lower_bound(last_of_stages, what, {},
+                                  &decltype(last_of_stages)::value_type::first)
+      ->second;
+}
 
 bool report_identity(stage_log& log, const std::optional<device_information>& known) {
   if (!known) {
@@ -89,6 +111,9 @@ void judge_motor(stage_report& motor, const stream_statistics& measured) {
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known) {
   const double frequency_hz = measured.frequency_hz();
   const double rate_hz = measured.sample_rate_hz();
+  // A computer that is busy again and again makes arrivals late that look like another rate.
+  const bool is_certain =
+      measured.arrivals().longest_host_pause_ns() < arrival_statistics::stall_ns;
   stage_report rate{.stage = diagnostic_stage::rate};
   if (measured.reported_hz() > 0.0) rate.add("reported_hz", measured.reported_hz());
   if (measured.turns_per_sample() > 0.0) {
@@ -104,14 +129,14 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     const double set_hz = known.frequency->chz / 100.0;
     rate.add("set_hz", set_hz);
     const bool is_off = std::abs(frequency_hz - set_hz) > frequency_tolerance * set_hz;
-    if (is_off && measured.was_steady()) rate.find(diagnosis::frequency_off);
+    if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
   }
   rate.add("samples_per_s", rate_hz);
   if (known.ranging) {
     const double nominal_hz = samples_per_second(*known.ranging);
     rate.add("nominal_samples_per_s", nominal_hz);
     const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
-    if (is_off) rate.find(diagnosis::sample_rate_off);
+    if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);
   }
   log.report(std::move(rate));
 }
@@ -149,7 +174,7 @@ void report_loss(stage_log& log, const stream_statistics& measured) {
 }
 
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud) {
-  if (baud == 0 || measured.arrivals().bytes() == 0) {
+  if (baud == 0 || !measured.arrivals().has_delays()) {
     return log.skip(diagnostic_stage::usb_latency, "There is nothing to measure it by.");
   }
   stage_report latency{.stage = diagnostic_stage::usb_latency};

@@ -43,6 +43,8 @@ class stage_log {
   std::vector<stage_report> stages_;
 };
 
+/// The stage to which a diagnosis of a connection or of a running scan belongs.
+[[nodiscard]] diagnostic_stage stage_of(diagnosis what) noexcept;
 /// The message of an error without its advice, which the diagnosis has.
 [[nodiscard]] std::string cause_of(const error& why);
 /// Reports all stages of a recording or of raw bytes; those that need a device as skipped.

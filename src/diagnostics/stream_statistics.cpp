@@ -23,16 +23,10 @@ constexpr std::size_t few_bytes = 5;
 constexpr double standing_deg = 0.02;
 /// The largest change of its speed between two checks.
 constexpr double steady_ratio = 0.01;
-/// Shorter stretches give no sample rate.
-constexpr double shortest_pace_ns = 100e6;
-/// The usual delay of bytes.
-constexpr double usual_delay_ns = 8e6;
-/// The greatest difference of the sample period from 1/9000 s, as a fraction of it: for 4000 Hz it
-/// is 1.25.
-constexpr arrival_window::slopes any_rate{-0.5, 2.0};
 
+/// From one angle to another, both from 0 to below 360.
 double forward_deg(double from, double to) noexcept {
-  const double way = std::fmod(to - from, 360.0);
+  const double way = to - from;
   return way < 0.0 ? way + 360.0 : way;
 }
 
@@ -59,44 +53,9 @@ bool comes_in_bursts(const damage_counts& damage, std::uint64_t good_packets) {
 
 }  // namespace
 
-void arrival_statistics::take(const reading& came) {
-  bytes_ += came.count;
-  if (!came.is_backlog) portions_[std::min(came.count, portions_.size() - 1)] += came.count;
-  if (came.silence_ns >= stall_ns) ++stalls_;
-  longest_silence_ns_ = std::max(longest_silence_ns_, came.silence_ns);
-  longest_pause_ns_ = std::max(longest_pause_ns_, came.host_pause_ns);
-}
-
-double arrival_statistics::held_back_ms(std::uint32_t baud) const noexcept {
-  std::uint64_t all = 0;
-  for (const std::uint64_t count : portions_) all += count;
-  if (baud == 0 || all == 0) return 0.0;
-  std::uint64_t seen = 0;
-  std::size_t size = 0;
-  while (size + 1 < portions_.size() && 2 * (seen += portions_[size]) < all) ++size;
-  return static_cast<double>(size) * 10'000.0 / static_cast<double>(baud);
-}
-
-void sample_pace::add(std::size_t samples, std::int64_t arrival_ns) noexcept {
-  samples_ += static_cast<std::int64_t>(samples);
-  if (window_.add({samples_, arrival_ns}, period_ns_)) {
-    period_ns_ = window_.fit(any_rate, usual_delay_ns).period_ns;
-  }
-}
-
-void sample_pace::part() noexcept {
-  if (window_.span_ns() > shortest_pace_ns) {
-    const double samples = window_.span_ns() / nominal_ns;
-    parted_samples_ += samples;
-    parted_ns_ += samples * window_.fit(any_rate, usual_delay_ns).period_ns;
-  }
-  window_.clear();
-}
-
-double sample_pace::rate_hz() const noexcept {
-  sample_pace all = *this;
-  all.part();
-  return all.parted_ns_ > 0.0 ? all.parted_samples_ * 1e9 / all.parted_ns_ : 0.0;
+void step_median::add(double step_deg) noexcept {
+  steps_[count_++ % steps_.size()] = step_deg;
+  if (count_ <= steps_.size() || count_ % 8 == 0) recent_ = get();
 }
 
 std::optional<double> step_median::get() const {
@@ -109,22 +68,28 @@ std::optional<double> step_median::get() const {
 }
 
 void stream_statistics::begin() {
-  stream_statistics fresh;
-  fresh.judging_ = true;
-  fresh.steady_ = steady_;
-  fresh.steps_ = steps_;
-  fresh.zero_deg_ = zero_deg_;
-  fresh.last_ = last_;
-  fresh.sizes_ = sizes_;
-  fresh.between_.size = max_between + 1;  // the bytes before are not evaluated
-  fresh.between_.is_unsure = true;
-  *this = std::move(fresh);
+  tally_ = {};
+  judging_ = true;
+  between_ = {.size = max_between + 1, .is_unsure = true};  // the bytes before are not evaluated
+  backlog_ns_ = 0;
+  since_packet_ = 0;
+}
+
+stream_tally stream_statistics::next_stretch() {
+  tally_.pace.part();
+  return std::exchange(tally_, {});
+}
+
+void stream_statistics::add(const stream_tally& earlier) {
+  tally_.pace.part();
+  tally_.add(earlier);
+  steady_ = 2 * tally_.unsteady <= tally_.checks && !stands();
 }
 
 void stream_statistics::part() {
   last_.reset();
   between_ = {};
-  pace_.part();
+  tally_.pace.part();
 }
 
 void stream_statistics::suspend() {
@@ -142,20 +107,22 @@ bool stream_statistics::is_steady() {
   const double step = step_deg().value_or(0.0);
   steady_ = step > standing_deg && std::abs(step - step_before_) < steady_ratio * step;
   step_before_ = step;
+  ++tally_.checks;
+  if (!steady_) ++tally_.unsteady;
   return steady_;
 }
 
 bool stream_statistics::stands() const { return step_deg().value_or(0.0) <= standing_deg; }
 
 void stream_statistics::take(const reading& came) {
-  arrivals_.take(came);
+  tally_.arrivals.take(came);
   if (std::max(came.silence_ns, came.host_pause_ns) < arrival_statistics::stall_ns) return;
   between_.is_unsure = true;
   backlog_ns_ = came.arrival_ns + backlog_time_ns;
 }
 
 void stream_statistics::take(const observed_event& came) {
-  counts_.add(came.what);
+  tally_.counts.add(came.what);
   if (const auto* packet = std::get_if<packet_view>(&came.what)) {
     return take_packet(*packet, came.arrival_ns);
   }
@@ -168,22 +135,25 @@ void stream_statistics::take(const observed_event& came) {
 
 void stream_statistics::take_packet(packet_view packet, std::int64_t arrival_ns) {
   since_packet_ = 0;
-  samples_ += packet.sample_count();
-  ++sizes_[packet.sample_count()];
+  const std::size_t samples = packet.sample_count();
+  tally_.samples += samples;
+  ++sizes_[samples];
+  const bool is_usual = usual_size_ == 1 || sizes_[samples] > sizes_[usual_size_];
+  if (samples > 1 && is_usual) usual_size_ = samples;
   const int reported = packet.reported_frequency_dhz();
   if (packet.is_zero()) {
     zero_deg_ = packet.first_angle_64ths() / 64.0;
     if (reported > 0) {
-      reported_.sum += reported;
-      reported_.count += 1.0;
+      tally_.reported.sum += reported;
+      tally_.reported.count += 1.0;
     }
   }
   if (packet.is_suspect() || (judging_ && is_jerk(packet))) {
-    ++jerks_;
+    ++tally_.jerks;
     return part();
   }
   const place now{arrival_ns, packet.last_angle_64ths() / 64.0, packet.first_angle_64ths() / 64.0,
-                  packet.sample_count()};
+                  samples};
   if (last_) {
     if (between_.size <= 1) {
       const double way = forward_deg(last_->first_deg, now.first_deg);
@@ -198,58 +168,58 @@ void stream_statistics::take_packet(packet_view packet, std::int64_t arrival_ns)
 
 // A step back through zero looks like a step of nearly a full turn.
 bool stream_statistics::is_jerk(packet_view packet) const {
-  const std::optional<double> step = step_deg();
+  const std::optional<double> step = steps_.recent();
   if (!step || packet.sample_count() < 8) return false;
   const double expected_deg = *step * static_cast<double>(packet.sample_count() - 1);
   return packet.span_64ths() / 64.0 > 2.0 * expected_deg + 1.0;
 }
 
 void stream_statistics::judge(const place& before, const place& now, bool is_zero) {
-  const std::optional<double> step = step_deg();
+  const std::optional<double> step = steps_.recent();
   if (!step || *step <= 0.0) return;
   const double way = forward_deg(before.last_deg, now.first_deg);
   const double missing = way > nearly_round_deg ? 0.0 : std::max(0.0, way / *step - 1.0);
   const auto whole = static_cast<std::uint64_t>(std::llround(missing));
-  lost_ += whole;
+  tally_.lost += whole;
   measure_pace(before, now, static_cast<std::size_t>(whole));
   if (between_.is_unsure || between_.has_answers || now.arrival_ns < backlog_ns_) return;
-  const double size = static_cast<double>(packet_samples());
+  const double size = static_cast<double>(usual_size_);
   const double packets = std::round(missing / size);
   const bool has_index =
       is_zero || now.first_deg < before.last_deg ||
       (zero_deg_ && forward_deg(before.last_deg, *zero_deg_) <= way && missing >= 0.5);
   if (has_index) {
     const bool is_healthy = whole == 0 && between_.size <= 1;
-    if (!is_healthy) ++damage_.unclear;
+    if (!is_healthy) ++tally_.damage.unclear;
     return;
   }
   if (std::abs(missing - packets * size) > 1.5 + 0.02 * missing) {
-    ++damage_.unclear;
+    ++tally_.damage.unclear;
     return;
   }
   judge_bytes(static_cast<std::size_t>(packets));
 }
 
 void stream_statistics::judge_bytes(std::size_t lost_packets) {
-  const std::size_t expected = lost_packets * packet_size(packet_samples());
+  const std::size_t expected = lost_packets * packet_size(usual_size_);
   if (between_.size == expected) {
     if (lost_packets == 0) return;
-    ++damage_.changed;
-    damage_.changed_packets += lost_packets;
+    ++tally_.damage.changed;
+    tally_.damage.changed_packets += lost_packets;
     if (lost_packets == 1 && between_.raw.size() == expected) {
       const bytes packet = between_.raw;
       const auto wrong = static_cast<std::uint16_t>(packet_checksum(packet) ^ load_u16(packet, 8));
-      ++damage_.one_packet;
-      damage_.wrong_bits += static_cast<std::uint64_t>(std::popcount(wrong));
+      ++tally_.damage.one_packet;
+      tally_.damage.wrong_bits += static_cast<std::uint64_t>(std::popcount(wrong));
     }
   } else if (between_.size == 0) {
-    damage_.vanished += lost_packets;
+    tally_.damage.vanished += lost_packets;
   } else if (between_.size > expected) {
-    ++damage_.lengthened;
+    ++tally_.damage.lengthened;
   } else if (expected - between_.size <= few_bytes * lost_packets) {
-    ++damage_.shortened;
+    ++tally_.damage.shortened;
   } else {
-    ++damage_.cut;
+    ++tally_.damage.cut;
   }
 }
 
@@ -257,19 +227,12 @@ void stream_statistics::judge_bytes(std::size_t lost_packets) {
 void stream_statistics::measure_pace(const place& before, const place& now, std::size_t missing) {
   const bool may_miss_revolutions = between_.is_unsure || now.arrival_ns < backlog_ns_ ||
                                     now.arrival_ns - before.arrival_ns > pause_ns;
-  if (may_miss_revolutions && missing > 0) return pace_.part();
+  if (may_miss_revolutions && missing > 0) return tally_.pace.part();
   const std::size_t samples = now.samples + missing;
-  if (now.arrival_ns != 0) pace_.add(samples, now.arrival_ns);  // otherwise it is not known
-  turned_.sum += way_deg(before.last_deg, now.first_deg) + forward_deg(now.first_deg, now.last_deg);
-  turned_.count += static_cast<double>(samples);
-}
-
-std::size_t stream_statistics::packet_samples() const noexcept {
-  std::size_t most = 1;
-  for (std::size_t size = 2; size < sizes_.size(); ++size) {
-    if (sizes_[size] > sizes_[most] || (sizes_[size] > 0 && most == 1)) most = size;
-  }
-  return most;
+  if (now.arrival_ns != 0) tally_.pace.add(samples, now.arrival_ns);  // otherwise it is not known
+  tally_.turned.sum +=
+      way_deg(before.last_deg, now.first_deg) + forward_deg(now.first_deg, now.last_deg);
+  tally_.turned.count += static_cast<double>(samples);
 }
 
 std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {

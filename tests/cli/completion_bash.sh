@@ -5,13 +5,13 @@ set -euo pipefail
 # shellcheck source=cli/checks.bash
 source "${BASH_SOURCE%/*}/checks.bash"
 
-cp "$G4LIDAR_SOURCE_DIR"/packaging/completions/g4-dump.bash .
+cp "$G4LIDAR_SOURCE_DIR"/packaging/completions/programs.bash .
 
 # offered_by_bash <words behind g4-dump>: what follows the last of them.
 offered_by_bash() {
   # shellcheck disable=SC2016 # the words are the inner shell's
-  COMP_LINE="g4-dump $*" bash --norc -c 'source ./g4-dump.bash
-    COMP_POINT=${#COMP_LINE}; _g4_dump "$G4_DUMP"; printf "%s\n" "${COMPREPLY[@]}"'
+  COMP_LINE="g4-dump $*" bash --norc -c 'source ./programs.bash
+    COMP_POINT=${#COMP_LINE}; _g4lidar "$G4_DUMP"; printf "%s\n" "${COMPREPLY[@]}"'
 }
 mapfile -t verbs < <(all_verbs)
 ((${#verbs[@]} >= 4)) || fail "the help lists no commands"

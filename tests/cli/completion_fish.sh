@@ -6,12 +6,12 @@ set -euo pipefail
 source "${BASH_SOURCE%/*}/checks.bash"
 need fish
 
-cp "$G4LIDAR_SOURCE_DIR"/packaging/completions/g4-dump.fish .
+cp "$G4LIDAR_SOURCE_DIR"/packaging/completions/programs.fish .
 PATH="$(dirname "$G4_DUMP"):$PATH" # it runs the program by the name that was typed
 
 offered_by_fish() {
   env HOME="$PWD" XDG_CONFIG_HOME="$PWD" fish --no-config \
-    -c "source g4-dump.fish; complete -C '$1'" 2>/dev/null | cut -f 1
+    -c "source programs.fish; complete -C '$1'" 2>/dev/null | cut -f 1
 }
 expect fish scan "$(offered_by_fish 'g4-dump sc')"
 expect fish --format "$(offered_by_fish 'g4-dump scan --fo')"

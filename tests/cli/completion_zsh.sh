@@ -6,16 +6,16 @@ set -euo pipefail
 source "${BASH_SOURCE%/*}/checks.bash"
 need zsh
 
-cp "$G4LIDAR_SOURCE_DIR"/packaging/completions/_g4-dump .
+cp "$G4LIDAR_SOURCE_DIR"/packaging/completions/_programs .
 PATH="$(dirname "$G4_DUMP"):$PATH" # it runs the program by the name that was typed
 
-zsh -n _g4-dump || fail "zsh cannot read its completion"
+zsh -n _programs || fail "zsh cannot read its completion"
 offered_by_zsh() {
   # shellcheck disable=SC2016 # the words are the inner shell's
   zsh -f -c 'words=(g4-dump "$@") CURRENT=$#words
     _describe() { print -rl -- $offered $begun }
     _files() { print files }
-    completed() { source ./_g4-dump }
+    completed() { source ./_programs }
     completed' zsh "$@"
 }
 expect zsh 'scan:Print whole revolutions' "$(offered_by_zsh sc)"

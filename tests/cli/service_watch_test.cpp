@@ -18,7 +18,7 @@
 namespace {
 
 using cli::manager;
-using g4_dump::service_watch;
+using g4_tool::service_watch;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
 using words = std::vector<std::string>;

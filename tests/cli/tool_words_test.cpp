@@ -30,7 +30,7 @@ std::vector<std::string> all_advice() {
 
 TEST(ToolWords, HaveNothingOfTheLibrarysInterface) {
   for (const std::string& advice : all_advice()) {
-    const std::string words = g4_dump::in_tool_words(advice);
+    const std::string words = g4_tool::in_tool_words(advice);
     for (const char* const word : {"()", "::", "_options", "reconnecting on", "open it again",
                                    "all again", "a default", "to be interrupted"}) {
       EXPECT_THAT(words, Not(HasSubstr(word)));
@@ -39,14 +39,14 @@ TEST(ToolWords, HaveNothingOfTheLibrarysInterface) {
 }
 
 TEST(ToolWords, StandForWordsOfTheLibrary) {
-  for (const g4_dump::tool_word& each : g4_dump::tool_words()) {
+  for (const g4_tool::tool_word& each : g4_tool::tool_words()) {
     EXPECT_THAT(all_advice(), testing::Contains(HasSubstr(std::string(each.library))));
   }
 }
 
 TEST(ToolWords, NameTheOptionsOfTheTool) {
   const g4lidar::error lost(g4lidar::task::reading, g4lidar::problem::gone, "/dev/ttyUSB0");
-  EXPECT_EQ(g4_dump::in_tool_words(lost.message()),
+  EXPECT_EQ(g4_tool::in_tool_words(lost.message()),
             "reading /dev/ttyUSB0: the port is no longer there. Unless the program closed it, the "
             "lidar was unplugged: plug it in and run the command again; --on-loss reconnect waits "
             "for it.");

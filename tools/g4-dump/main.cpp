@@ -1,32 +1,41 @@
 // SPDX-License-Identifier: MIT
-// g4-dump: runs the verb of the command line and reports errors.
-#include <exception>
-#include <new>
-#include <string>
+// g4-dump: the console tool.
+#include "verbs/verbs.hpp"
 
-#include "cli/common_options.hpp"
-#include "cli/exit_code.hpp"
-#include "cli/logger.hpp"
-#include "cli/verbs.hpp"
-#include "io/interrupt.hpp"
+namespace {
+
+constexpr const char* description =
+    R"(g4-dump is the console tool for the YDLIDAR G4, a 360-degree scanning lidar on a serial port.
+Without a command it prints points, and without a source it takes the only G4 that is connected.
+
+Data goes to standard output, messages go to standard error. The tool never asks a question, and
+only the command set changes settings of the device. Control characters in what a device or a
+file sent are escaped.)";
+
+}  // namespace
+
+namespace g4_tool {
+
+std::vector<verb> all_verbs() {
+  return {
+      make_list_verb(),    make_watch_verb(),   make_info_verb(),    make_health_verb(),
+      make_stats_verb(),   make_doctor_verb(),  make_dump_verb(),    make_scan_verb(),
+      make_packets_verb(), make_decode_verb(),  make_sim_verb(),     make_set_verb(),
+      make_start_verb(),   make_stop_verb(),    make_restart_verb(), make_record_verb(),
+      make_replay_verb(),  make_convert_verb(), make_serve_verb(),
+#if G4LIDAR_VIEW
+      make_view_verb(),
+#endif
+  };
+}
+
+}  // namespace g4_tool
 
 int main(int argc, char** argv) {
-  using namespace g4_dump;
-  try {
-    prepare_process();
-    return read_command_line(argc, argv)();
-  } catch (const interrupted&) {
-    return 128 + interrupt();
-  } catch (const g4_dump::failure& reason) {
-    logger::error(reason.what(), reason.code(), reason.problem());
-    return static_cast<int>(reason.code());
-  } catch (const std::bad_alloc&) {
-    // Nothing is allocated for this.
-    logger::write(our_global_options().json_errors
-                      ? "{\"error\":\"out of memory\",\"exit_code\":11}\n"
-                      : "g4-dump: out of memory\n");
-  } catch (const std::exception& reason) {
-    logger::error(std::string("internal error: ") + reason.what(), exit_code::internal);
-  }
-  return static_cast<int>(exit_code::internal);
+  const g4_tool::program g4_dump{.name = "g4-dump",
+                                 .title = "The console tool for the YDLIDAR G4",
+                                 .description = description,
+                                 .verbs = g4_tool::all_verbs,
+                                 .default_verb = "dump"};
+  return g4_tool::run_program(g4_dump, argc, argv);
 }

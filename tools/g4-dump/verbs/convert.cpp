@@ -13,7 +13,6 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -23,8 +22,9 @@
 #include "io/point_job.hpp"
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 /// In this order: bytes, points that are also read, points that are only written.
@@ -324,4 +324,4 @@ verb make_convert_verb() {
       .run = [options] { return run(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

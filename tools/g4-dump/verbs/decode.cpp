@@ -6,10 +6,10 @@
 #include <string>
 
 #include "cli/point_help.hpp"
-#include "cli/verbs.hpp"
 #include "io/point_job.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 constexpr const char* decoding =
@@ -58,4 +58,4 @@ verb make_decode_verb() {
           .run = [job] { return run(*job); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -16,14 +16,14 @@
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 constexpr std::size_t text_indent = 15;
@@ -194,4 +194,4 @@ verb make_doctor_verb() {
           .run = [options] { return examine(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

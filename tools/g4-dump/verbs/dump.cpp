@@ -6,10 +6,10 @@
 #include <string>
 
 #include "cli/point_help.hpp"
-#include "cli/verbs.hpp"
 #include "io/point_job.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 
 verb make_dump_verb() {
   const auto job = std::make_shared<point_job>();
@@ -33,4 +33,4 @@ verb make_dump_verb() {
           .run = [job] { return run(*job); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -2,11 +2,11 @@
 // The verb health: the health status that a device reports.
 #include <nlohmann/json.hpp>
 
-#include "cli/verbs.hpp"
 #include "io/command_source.hpp"
 #include "io/output.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 exit_code health(const common_options& options) {
@@ -39,4 +39,4 @@ verb make_health_verb() {
                      health, true);
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

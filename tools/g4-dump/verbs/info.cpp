@@ -7,12 +7,12 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_source.hpp"
 #include "io/output.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 using nlohmann::ordered_json;
@@ -86,4 +86,4 @@ verb make_info_verb() {
       info, true);
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -11,15 +11,15 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/port_row.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 struct list_options {
@@ -165,4 +165,4 @@ verb make_list_verb() {
           .run = [options] { return list(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -9,7 +9,6 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/transport/forwarding.hpp"
@@ -19,8 +18,9 @@
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
 #include "io/source.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 struct packets_options {
@@ -194,4 +194,4 @@ verb make_packets_verb() {
       .run = [options] { return run(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

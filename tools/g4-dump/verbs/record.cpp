@@ -8,13 +8,13 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
-#include "cli/verbs.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/read_loop.hpp"
 #include "io/recorder.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 constexpr const char* record_details =
@@ -141,4 +141,4 @@ verb make_record_verb() {
       .run = [options] { return run(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -8,13 +8,13 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/point_job.hpp"
 #include "io/recorder.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 constexpr const char* replay_details =
@@ -138,4 +138,4 @@ verb make_replay_verb() {
       .run = [options] { return run(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

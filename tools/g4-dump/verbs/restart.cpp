@@ -6,10 +6,10 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "io/command_source.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 exit_code restart(const common_options& options) {
@@ -33,4 +33,4 @@ verb make_restart_verb() {
       restart);
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

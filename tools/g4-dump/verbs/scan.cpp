@@ -6,10 +6,10 @@
 #include <string>
 
 #include "cli/point_help.hpp"
-#include "cli/verbs.hpp"
 #include "io/point_job.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 constexpr const char* formats_text =
@@ -62,4 +62,4 @@ verb make_scan_verb() {
       .run = [job] { return run(*job); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -10,12 +10,12 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
-#include "cli/verbs.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 struct set_options : common_options {
@@ -121,4 +121,4 @@ verb make_set_verb() {
           .run = [options] { return set(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

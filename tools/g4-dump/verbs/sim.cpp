@@ -17,7 +17,6 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/export/digits.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/sim/scanner.hpp"
@@ -25,8 +24,9 @@
 #include "io/output.hpp"
 #include "io/source.hpp"
 #include "sim.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 void check(const sim_options& options) {
@@ -299,4 +299,4 @@ verb make_sim_verb() {
       .run = [options] { return run(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -11,7 +11,7 @@
 #include "g4lidar/sim/setup.hpp"
 #include "io/source.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 
 struct sim_options {
   double seconds = 10.0;
@@ -37,4 +37,4 @@ struct sim_options {
 /// Writes the bytes of a scan, the true values and the odometry.
 [[nodiscard]] int write_stream(const sim_options& options);
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -9,15 +9,15 @@
 #include <span>
 
 #include "cli/exit_code.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/export/digits.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
 #include "sim.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 void write_truth(std::span<const sim::sample_truth> samples, output& out) {
@@ -105,4 +105,4 @@ int write_stream(const sim_options& options) {
   return static_cast<int>(exit_code::ok);
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -6,12 +6,12 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/read_loop.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 using namespace std::chrono_literals;
@@ -57,4 +57,4 @@ changed.)",
       start);
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

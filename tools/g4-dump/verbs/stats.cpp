@@ -12,15 +12,15 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "io/command_source.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/read_loop.hpp"
 #include "io/source.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 using namespace std::chrono_literals;
@@ -200,4 +200,4 @@ verb make_stats_verb() {
       .run = [options] { return stats(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

@@ -4,10 +4,10 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "io/command_source.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 exit_code stop(const common_options& options) {
@@ -29,4 +29,4 @@ verb make_stop_verb() {
                      stop);
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

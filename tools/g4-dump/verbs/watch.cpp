@@ -15,14 +15,14 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/discovery.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/port_row.hpp"
+#include "verbs/verbs.hpp"
 
-namespace g4_dump {
+namespace g4_tool {
 namespace {
 
 using namespace std::chrono_literals;
@@ -149,4 +149,4 @@ verb make_watch_verb() {
           .run = [options] { return watch(*options); }};
 }
 
-}  // namespace g4_dump
+}  // namespace g4_tool

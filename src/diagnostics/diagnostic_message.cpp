@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+
+#include <array>
+
+#include "export/cdr.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::string_view diagnostic_array_text =
+    R"(std_msgs/Header header
+diagnostic_msgs/DiagnosticStatus[] status
+================================================================================
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+================================================================================
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+================================================================================
+MSG: diagnostic_msgs/DiagnosticStatus
+byte OK=0
+byte WARN=1
+byte ERROR=2
+byte STALE=3
+byte level
+string name
+string message
+string hardware_id
+diagnostic_msgs/KeyValue[] values
+================================================================================
+MSG: diagnostic_msgs/KeyValue
+string key
+string value
+)";
+
+constexpr std::string_view program_name = "g4lidar: ";
+
+diagnostic_level level_of(stage_verdict how) noexcept {
+  switch (how) {
+    case stage_verdict::warn:
+      return diagnostic_level::warn;
+    case stage_verdict::fail:
+      return diagnostic_level::error;
+    default:
+      return diagnostic_level::ok;
+  }
+}
+
+}  // namespace
+
+diagnostic_status status_of(const stage_report& stage, std::string_view hardware_id) {
+  diagnostic_status made{.level = level_of(stage.outcome),
+                         .name = std::string(program_name).append(name_of(stage.stage)),
+                         .hardware_id = std::string(hardware_id)};
+  for (const diagnosis what : stage.diagnoses) {
+    const diagnosis_info info = describe(what);
+    if (!made.message.empty()) made.message.append(" ");
+    made.message.append(info.cause).append(" ").append(info.advice);
+    made.values.emplace_back("diagnosis", info.name);
+  }
+  if (!stage.remark.empty()) {
+    made.message.append(made.message.empty() ? "" : " ").append(stage.remark);
+  }
+  if (made.message.empty()) made.message = name_of(stage.outcome);
+  for (const evidence& each : stage.measurements) made.values.emplace_back(each.name, each.text());
+  return made;
+}
+
+diagnostic_status status_of(const lidar_counts& counts, std::string_view hardware_id) {
+  diagnostic_status made{.name = std::string(program_name).append("counts"),
+                         .message = "ok",
+                         .hardware_id = std::string(hardware_id)};
+  const stream_counts& stream = counts.stream;
+  const std::array<std::pair<const char*, std::uint64_t>, 15> all{{
+      {"bytes", counts.bytes},
+      {"packets", stream.packets},
+      {"responses", stream.responses},
+      {"points", stream.points},
+      {"suspect_packets", stream.suspect},
+      {"skipped_noise_bytes", stream.skipped(skip_reason::noise)},
+      {"skipped_bad_header_bytes", stream.skipped(skip_reason::bad_header)},
+      {"skipped_bad_checksum_bytes", stream.skipped(skip_reason::bad_checksum)},
+      {"skipped_truncated_bytes", stream.skipped(skip_reason::truncated)},
+      {"samples_lost", counts.samples_lost},
+      {"scans", counts.scans},
+      {"partial_scans", counts.partial_scans},
+      {"scans_missed", counts.scans_missed},
+      {"command_retries", counts.command_retries},
+      {"reconnects", counts.reconnects},
+  }};
+  for (const auto& [name, count] : all) made.values.emplace_back(name, std::to_string(count));
+  return made;
+}
+
+std::vector<diagnostic_status> statuses_of(std::span<const stage_report> stages,
+                                           const lidar_counts& counts,
+                                           std::string_view hardware_id) {
+  std::vector<diagnostic_status> all;
+  all.reserve(stages.size() + 1);
+  for (const stage_report& each : stages) all.push_back(status_of(each, hardware_id));
+  all.push_back(status_of(counts, hardware_id));
+  return all;
+}
+
+message_schema diagnostic_array_schema() noexcept {
+  return {"diagnostic_msgs/msg/DiagnosticArray", diagnostic_array_text};
+}
+
+void put_diagnostic_array(std::span<const diagnostic_status> statuses, std::int64_t stamp_ns,
+                          std::vector<std::uint8_t>& out) {
+  cdr_writer message(out);
+  put_header(message, stamp_ns, "");
+  message.put(static_cast<std::uint32_t>(statuses.size()));
+  for (const diagnostic_status& each : statuses) {
+    message.put(static_cast<std::uint8_t>(each.level));
+    for (const std::string* text : {&each.name, &each.message, &each.hardware_id}) {
+      message.put(std::string_view(*text));
+    }
+    message.put(static_cast<std::uint32_t>(each.values.size()));
+    for (const auto& [name, value] : each.values) {
+      message.put(std::string_view(name));
+      message.put(std::string_view(value));
+    }
+  }
+}
+
+}  // namespace g4lidar

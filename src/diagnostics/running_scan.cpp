@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "running_scan.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace g4lidar {
+void running_scan::begin(bool is_device) {
+  is_device_ = is_device;
+  splitter_ = {};
+  asked_.reset();
+  garbage_ = 0;
+  time_ns_ = 0;
+  enter(is_device ? phase::rests : phase::starts);
+}
+
+void running_scan::end() {
+  splitter_.finish(to_);
+  enter(phase::rests);
+}
+
+// What was measured before is of another scan.
+void running_scan::enter(phase next) {
+  phase_ = next;
+  boots_ = splitter_.boots();
+  may_have_booted_ = false;
+  silence_ns_ = 0;
+  if (next == phase::speeds_up) {
+    begin_.phase_ns = time_ns_;
+    looked_ = measured_.samples();
+  } else if (next == phase::runs) {
+    measured_.begin();
+    looked_ = 0;
+    begin_.window_ns = begin_.stretch_ns = time_ns_;
+  } else {
+    measured_.suspend();
+    static_cast<void>(measured_.next_stretch());
+    earlier_ = {};
+  }
+}
+
+bool running_scan::is_current(std::int64_t now_ns) const noexcept {
+  return phase_ >= phase::speeds_up && now_ns - packet_ns_ < arrival_statistics::stall_ns;
+}
+
+void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns) {
+  if (data.size() < 2 || data[0] != command_start) return;
+  asked_ = static_cast<command>(data[1]);
+  if (phase_ != phase::rests && !is_current(now_ns)) has_rebooted_ |= may_have_booted_;
+  switch (*asked_) {
+    case command::start:
+      if (is_current(now_ns)) return;
+      has_stalled_ |= phase_ == phase::runs && silence_ns >= arrival_statistics::stall_ns;
+      return enter(phase::starts);
+    case command::stop:
+    case command::forced_stop:
+    case command::restart:
+    case command::restart_old:
+      return enter(phase::rests);
+    default:
+      return;
+  }
+}
+
+void running_scan::came(const reading& what, bytes data) {
+  reading known = what;
+  if (!is_device_) {
+    known.silence_ns = time_ns_ > 0 ? what.arrival_ns - time_ns_ : 0;
+    if (known.silence_ns >= pause_of_file_ns) enter(phase::starts);
+  }
+  time_ns_ = what.arrival_ns;
+  known.is_backlog |= known.silence_ns >= arrival_statistics::stall_ns;
+  silence_ns_ = std::max(silence_ns_, std::exchange(known.silence_ns, 0));
+  if (phase_ == phase::runs) measured_.take(known);
+  splitter_.take(data, what.arrival_ns, to_);
+  look();
+}
+
+void running_scan::take(const observed_event& found) {
+  const bool is_garbage = std::holds_alternative<skipped>(found.what);
+  garbage_ = is_garbage ? garbage_ + found.raw.size() : 0;
+  if (const auto* response = std::get_if<response_view>(&found.what)) take(*response);
+  if (phase_ == phase::rests) return;
+  may_have_booted_ |= std::exchange(boots_, splitter_.boots()) != splitter_.boots();
+  if (std::holds_alternative<packet_view>(found.what)) {
+    packet_ns_ = found.arrival_ns;
+    may_have_booted_ = false;
+    const std::int64_t silence_ns = std::exchange(silence_ns_, 0);
+    // A scan that ends is silent, too: a stall is a silence with packets behind it.
+    if (phase_ == phase::runs && silence_ns > 0) measured_.take(reading{0, time_ns_, silence_ns});
+    if (phase_ == phase::starts) enter(phase::speeds_up);
+  }
+  if (phase_ >= phase::speeds_up) measured_.take(found);
+}
+
+// What a byte means depends on the command; a device that introduces itself without one has booted.
+void running_scan::take(const response_view& response) {
+  known_.take(response);
+  if (const auto chz = response.as_frequency_chz()) known_.frequency = scan_frequency{*chz};
+  const auto value = response.as_byte();
+  if (value && (asked_ == command::ranging_query || asked_ == command::ranging_next)) {
+    known_.ranging = reply_byte<ranging_frequency>(*value);
+  }
+  const bool is_unasked = is_device_ && asked_ == command::start;
+  may_have_booted_ |= is_unasked && response.kind() == response_kind::device_info;
+  if (response.kind() == response_kind::scan_started && phase_ != phase::rests &&
+      !is_current(time_ns_)) {
+    enter(phase::starts);
+  }
+}
+
+void running_scan::look() {
+  if (phase_ < phase::speeds_up) return;
+  if (measured_.samples() >= looked_ + steady_samples) {
+    looked_ = measured_.samples();
+    const bool is_steady = measured_.is_steady();
+    if (phase_ == phase::speeds_up && is_steady) return enter(phase::runs);
+  }
+  if (phase_ == phase::speeds_up) {
+    if (time_ns_ >= begin_.phase_ns + spin_up_ns) enter(phase::runs);
+    return;
+  }
+  if (time_ns_ < begin_.stretch_ns + half_window_ns_) return;
+  earlier_ = measured_.next_stretch();
+  looked_ = 0;
+  begin_.window_ns = std::exchange(begin_.stretch_ns, time_ns_);
+}
+
+stream_statistics running_scan::window() const {
+  stream_statistics all = measured_;
+  all.add(earlier_);
+  return all;
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+// The picture of `g4-dump view`, without a terminal. All expected cells were calculated by hand.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "view/canvas.hpp"
+#include "view/picture.hpp"
+#include "view/radar.hpp"
+
+namespace g4_tool {
+namespace {
+
+using g4lidar::point;
+
+point at(float angle_deg, float range_m) {
+  return {.angle_deg = angle_deg, .range_mm = range_m * 1000.0F};
+}
+
+TEST(Canvas, EachDotOfABrailleCell_HasItsBit) {
+  canvas on(1, 1, glyphs::braille);
+  char32_t expected = 0x2800;
+  for (const auto& [x, y, bit] : std::vector<std::tuple<int, int, char32_t>>{{0, 0, 0x01},
+                                                                             {0, 1, 0x02},
+                                                                             {0, 2, 0x04},
+                                                                             {1, 0, 0x08},
+                                                                             {1, 1, 0x10},
+                                                                             {1, 2, 0x20},
+                                                                             {0, 3, 0x40},
+                                                                             {1, 3, 0x80}}) {
+    on.dot(x, y, ink::points);
+    expected += bit;
+    EXPECT_EQ(on.at(0, 0), (canvas_cell{expected, ink::points}));
+  }
+  EXPECT_EQ(on.text(0), "\u28FF");
+}
+
+TEST(Canvas, WordsHideDots_AndPointsHideTheGrid) {
+  canvas on(3, 1, glyphs::braille);
+  on.dot(0, 0, ink::grid);
+  EXPECT_EQ(on.at(0, 0), (canvas_cell{0x2801, ink::grid}));
+  on.dot(1, 3, ink::points);
+  EXPECT_EQ(on.at(0, 0), (canvas_cell{0x2880, ink::points}));
+  on.write(0, 0, "a", ink::warn);
+  EXPECT_EQ(on.at(0, 0), (canvas_cell{U'a', ink::warn}));
+  EXPECT_EQ(on.at(1, 0), canvas_cell{});
+  on.write(1, 0, "\xC3\xA9\x1B", ink::plain);  // nothing that a terminal would obey
+  EXPECT_EQ(on.text(0), "a??");
+}
+
+TEST(Canvas, InAscii_HasTwoDotsPerCell) {
+  canvas on(2, 2, glyphs::ascii);
+  on.dot(0, 1, ink::grid);
+  on.dot(1, 2, ink::points);
+  EXPECT_EQ(on.text(0), ".");
+  EXPECT_EQ(on.text(1), " *");
+}
+
+TEST(Canvas, WhatIsOutside_IsIgnored) {
+  canvas on(2, 1, glyphs::braille);
+  for (const int far : {-1, 4, 1000}) {
+    on.dot(far, 0, ink::points);
+    on.dot(0, far, ink::points);
+    on.write(far, 0, "x", ink::plain);
+    on.write(0, far, "x", ink::plain);
+  }
+  on.write(0, 0, "abc", ink::plain, {0, 0, 1, 1});
+  EXPECT_EQ(on.text(0), "a");
+  EXPECT_EQ(canvas(0, 0, glyphs::ascii).at(0, 0), canvas_cell{});
+}
+
+// 5 x 3 cells are 10 x 12 dots: the middle is at 4.5 and 5.5, and a metre has 4.5 dots.
+TEST(Radar, ShowsAPointWhereItIs) {
+  const std::vector<point> ahead{at(180.0F, 1.0F)};  // at 5, 1
+  const std::vector<point> left{at(90.0F, 1.0F)};    // at 0, 6; at 9, 6 in the vendor's frame
+  const cell_area all{0, 0, 5, 3};
+  radar_view view{.range_m = 1.0, .grid = false};
+  {
+    canvas on(5, 3, glyphs::braille);
+    draw_radar(on, all, ahead, view);
+    EXPECT_EQ(on.text(0), "  \u2810");
+    EXPECT_EQ(on.text(1), "  +");
+    EXPECT_EQ(on.text(2), "");
+  }
+  {
+    canvas on(5, 3, glyphs::braille);
+    draw_radar(on, all, left, view);
+    EXPECT_EQ(on.text(1), "\u2804 +");
+  }
+  view.frame = g4lidar::frame::vendor;
+  canvas on(5, 3, glyphs::braille);
+  draw_radar(on, all, left, view);
+  EXPECT_EQ(on.text(1), "  + \u2820");
+}
+
+TEST(Radar, OutsideOfItsArea_DrawsNothing) {
+  canvas on(20, 3, glyphs::braille);
+  draw_radar(on, {0, 0, 5, 3}, std::vector<point>{at(270.0F, 3.0F)}, {.range_m = 1.0});
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 5; column < 20; ++column) EXPECT_EQ(on.at(column, row), canvas_cell{});
+  }
+}
+
+// 21 x 11 cells in ASCII are 21 x 22 dots: 10 dots for 2 m, so the ring of 1 m is 5 dots from the middle.
+TEST(Radar, HasRingsWithTheirRanges) {
+  canvas on(21, 11, glyphs::ascii);
+  draw_radar(on, {0, 0, 21, 11}, {}, {.range_m = 2.0});
+  EXPECT_EQ(on.at(5, 5).what, ink::grid);
+  EXPECT_EQ(on.at(15, 5).what, ink::grid);
+  EXPECT_EQ(on.text(3).substr(11, 3), "1 m");  // the ring's highest dot is at 10.5 - 5, in row 3
+  EXPECT_EQ(on.at(10, 0), (canvas_cell{U'^', ink::title}));
+}
+
+TEST(Radar, RangeFollowsNearlyAllReturns) {
+  std::vector<point> points(100, at(10.0F, 2.5F));
+  EXPECT_EQ(range_for(points), 3.0);
+  points[0] = points[1] = at(10.0F, 15.0F);
+  EXPECT_EQ(range_for(points), 3.0);
+  for (int i = 0; i < 10; ++i) points[static_cast<std::size_t>(i)] = at(10.0F, 15.0F);
+  EXPECT_EQ(range_for(points), 16.0);
+  EXPECT_EQ(range_for({}), 16.0);
+  EXPECT_EQ(next_range(3.0, true), 4.0);
+  EXPECT_EQ(next_range(3.0, false), 2.0);
+  EXPECT_EQ(next_range(16.0, true), 16.0);
+  EXPECT_EQ(next_range(0.5, false), 0.5);
+}
+
+view_facts facts() {
+  view_facts known{.name = "sim:", .state = "running", .serial = "2021101000070073"};
+  known.frequency_hz = 7.0;
+  known.lost_percent = 1.5;
+  known.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
+  return known;
+}
+
+TEST(Picture, OfAnySize_IsDrawn) {
+  const std::vector<point> points{at(180.0F, 1.0F), at(20.0F, 3.0F)};
+  for (const int columns : {0, 1, 2, 5, 20, 59, 60, 80, 300}) {
+    for (const int rows : {0, 1, 2, 3, 11, 12, 24, 100}) {
+      for (const bool helps : {false, true}) {
+        canvas on(columns, rows, glyphs::braille);
+        draw_view(on, points, facts(), {.shows_help = helps});
+      }
+    }
+  }
+}
+
+TEST(Picture, HasTheFactsBesideTheRadar) {
+  view_facts known = facts();
+  canvas on(80, 24, glyphs::ascii);
+  draw_view(on, {}, known, {});
+  EXPECT_EQ(on.text(0).substr(54), "sim:");
+  EXPECT_EQ(on.text(1).substr(54), "state     running");
+  EXPECT_EQ(on.text(3).substr(54), "frequency 7.00 Hz");
+  EXPECT_EQ(on.text(6).substr(54), "lost      1.50 %");
+  EXPECT_EQ(on.text(14).substr(54), "ok");
+  known.stages[0].find(g4lidar::diagnosis::bits_flipped);
+  canvas bad(80, 24, glyphs::ascii);
+  draw_view(bad, {}, known, {.is_frozen = true});
+  EXPECT_EQ(bad.text(1).substr(54), "state     running, frozen");
+  EXPECT_EQ(bad.text(14).substr(54), "bits_flipped");
+  EXPECT_EQ(bad.at(54, 14).what, ink::bad);
+}
+
+TEST(Picture, WithLittleRoom_HasOneLine) {
+  canvas on(40, 6, glyphs::ascii);
+  draw_view(on, {}, facts(), {});
+  EXPECT_EQ(on.text(5), "running 7.00 Hz - lost 1.50% doctor ok");
+}
+
+}  // namespace
+}  // namespace g4_tool

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: MIT
+// A station: a source in a thread of its own, as programs that publish it use it.
+#include "io/station.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstdint>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "g4lidar/sim/pty_port.hpp"
+#include "g4lidar/sim/world.hpp"
+#include "io/playback_clock.hpp"
+#include "program.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using g4_tool::common_options;
+using g4_tool::loss_rule;
+using g4_tool::station;
+using g4_tool::station_state;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace sim = g4lidar::sim;
+
+constexpr auto patience = 30s;
+
+/// Remembers what came, and waits for it.
+class listener : public g4_tool::station_listener {
+ public:
+  void on_open(g4_tool::opened_source& /*source*/) override {
+    change([&] {
+      ++opened;
+      scans_since_opening = 0;
+    });
+  }
+  void on_scan(const g4lidar::scan& scan) override {
+    change([&] {
+      scans.push_back(scan.revolution);
+      ++scans_since_opening;
+      points += scan.size();
+      last_size = scan.size();
+      last_scan_wall_ns = of == nullptr ? 0 : of->wall_ns(scan.time_ns());
+    });
+  }
+  void on_points(std::span<const g4lidar::point> some) override {
+    change([&] { live_points += some.size(); });
+  }
+  void on_event(const g4lidar::lidar_event& event) override {
+    change([&] { events.emplace_back(name_of(event.what)); });
+  }
+  void on_state(station_state state, std::string_view why) override {
+    change([&] {
+      states.emplace_back(name_of(state));
+      whys.emplace_back(why);
+    });
+  }
+
+  bool wait(const std::function<bool()>& is_so) {
+    std::unique_lock lock(mutex);
+    return changed.wait_for(lock, patience, is_so);
+  }
+  /// Further scans, after all that came before.
+  bool wait_for_scans(std::size_t count) {
+    const std::size_t before = number_of_scans();
+    return wait([&] { return scans.size() >= before + count; });
+  }
+  bool wait_for_state(const std::string& name) {
+    return wait([&] { return !states.empty() && states.back() == name; });
+  }
+  std::size_t number_of_scans() {
+    const std::lock_guard lock(mutex);
+    return scans.size();
+  }
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  station* of = nullptr;
+  int opened = 0;
+  std::vector<std::uint32_t> scans;
+  std::size_t scans_since_opening = 0;
+  std::size_t points = 0;
+  std::size_t last_size = 0;
+  std::size_t live_points = 0;
+  std::int64_t last_scan_wall_ns = 0;
+  std::vector<std::string> events;
+  std::vector<std::string> states;
+  std::vector<std::string> whys;
+
+ private:
+  template <class Change>
+  void change(Change what) {
+    const std::lock_guard lock(mutex);
+    what();
+    changed.notify_all();
+  }
+};
+
+class Station : public cli::scratch {
+ protected:
+  station& begin(const std::string& source, loss_rule on_loss = loss_rule::exit,
+                 const g4_tool::station_options& wishes = {}) {
+    common_options options;
+    options.source = source;
+    options.on_loss = on_loss;
+    made_ = std::make_unique<station>(options, g4_tool::opening{}, heard, wishes);
+    heard.of = made_.get();
+    made_->start();
+    return *made_;
+  }
+  /// A simulated G4 at `lidar`.
+  sim::background_pty plug_in() {
+    return *sim::background_pty::open(sim::device(sim::built_in_world()), path("lidar"));
+  }
+  /// 7 revolutions a second, after the head has begun to turn.
+  std::string recording(const std::string& seconds) {
+    EXPECT_EQ(cli::run({"sim", "--seconds", seconds, "-o", path("raw.bin")}).code, 0);
+    EXPECT_EQ(cli::run({"convert", path("raw.bin"), path("made.mcap")}).code, 0);
+    return path("made.mcap");
+  }
+  static bool is_scanning(sim::background_pty& port) {
+    bool is = false;
+    port.with([&](sim::device& device, std::int64_t now_ns) {
+      static_cast<void>(device.available(now_ns));
+      is = device.is_scanning();
+    });
+    return is;
+  }
+
+  listener heard;
+
+ private:
+  std::unique_ptr<station> made_;
+};
+
+TEST_F(Station, SimulatedLidar_GivesScansUntilItIsStopped) {
+  station& made = begin("sim:?serial=1111222233334444");
+  ASSERT_TRUE(heard.wait_for_scans(10));
+  EXPECT_EQ(made.state(), station_state::running);
+  EXPECT_EQ(made.identity()->serial_number(), "1111222233334444");
+  EXPECT_FALSE(made.player());
+  EXPECT_GE(made.counts().scans, 2U);
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  EXPECT_LT(std::abs(heard.last_scan_wall_ns - std::chrono::nanoseconds(now).count()),
+            std::chrono::nanoseconds(patience).count());
+  made.stop();
+  const std::size_t all = heard.number_of_scans();
+  EXPECT_EQ(heard.scans.back() - heard.scans.front() + 1, all) << "each came once";
+  EXPECT_NEAR(static_cast<double>(heard.last_size), 9000 / 7.0, 20.0) << "it has spun up";
+  EXPECT_EQ(heard.live_points, 0U) << "not wanted";
+  EXPECT_EQ(heard.states.front(), "running");
+  EXPECT_EQ(heard.opened, 1);
+}
+
+TEST_F(Station, Points_ComeBeforeTheirScan) {
+  begin("sim:", loss_rule::exit, {.wants_points = true}).ask([](g4lidar::lidar*) {});
+  ASSERT_TRUE(heard.wait_for_scans(2));
+  const std::lock_guard lock(heard.mutex);
+  EXPECT_GE(heard.live_points, heard.points);
+}
+
+TEST_F(Station, Rest_StopsTheMotorAndStartsItAgain) {
+  auto port = plug_in();
+  station& made = begin(port.path());
+  ASSERT_TRUE(heard.wait_for_scans(1));
+  EXPECT_TRUE(is_scanning(port));
+  made.rest(true);
+  ASSERT_TRUE(heard.wait_for_state("resting"));
+  EXPECT_FALSE(is_scanning(port));
+  made.rest(false);
+  ASSERT_TRUE(heard.wait_for_scans(1));
+  EXPECT_TRUE(is_scanning(port));
+  made.stop();
+  EXPECT_FALSE(is_scanning(port));
+  EXPECT_THAT(heard.states, ElementsAre("running", "resting", "running"));
+}
+
+TEST_F(Station, StartsRested_NeverTurns) {
+  auto port = plug_in();
+  station& made = begin(port.path(), loss_rule::exit, {.starts_rested = true});
+  ASSERT_TRUE(heard.wait_for_state("resting"));
+  made.stop();
+  port.with([](sim::device& device, std::int64_t) {
+    constexpr auto start = static_cast<std::uint8_t>(g4lidar::command::start);
+    for (const auto& asked : device.log()) EXPECT_NE(asked.code, start);
+  });
+}
+
+TEST_F(Station, Ask_RunsBetweenTwoScans) {
+  station& made = begin("sim:");
+  ASSERT_TRUE(heard.wait_for_scans(1));
+  std::string was;
+  made.ask([&](g4lidar::lidar* lidar) {
+    const auto set =
+        lidar->set(g4lidar::scan_frequency::hz(10), g4lidar::while_scanning::stop_and_resume);
+    const std::lock_guard lock(heard.mutex);
+    was = set ? "set" : set.error().message();
+    heard.changed.notify_all();
+  });
+  ASSERT_TRUE(heard.wait([&] { return !was.empty(); }));
+  EXPECT_EQ(was, "set");
+  EXPECT_TRUE(heard.wait_for_scans(2)) << "it goes on";
+}
+
+TEST_F(Station, Wait_OpensALidarThatComesLater) {
+  station& made = begin(path("lidar"), loss_rule::wait);
+  ASSERT_TRUE(heard.wait([&] { return !heard.whys.empty(); }));
+  EXPECT_EQ(made.state(), station_state::opening);
+  EXPECT_THAT(made.why(), HasSubstr("no port"));
+  bool is_null = false;
+  made.ask([&](g4lidar::lidar* lidar) {
+    const std::lock_guard lock(heard.mutex);
+    is_null = lidar == nullptr;
+    heard.changed.notify_all();
+  });
+  EXPECT_TRUE(heard.wait([&] { return is_null; }));
+  const auto port = plug_in();
+  EXPECT_TRUE(heard.wait_for_scans(1));
+  EXPECT_EQ(made.why(), "");
+}
+
+TEST_F(Station, Reconnect_GoesOnAfterAnUnplug) {
+  station& made = begin("sim:?fault=unplug@1500ms+500ms", loss_rule::reconnect);
+  ASSERT_TRUE(heard.wait_for_state("lost"));
+  EXPECT_NE(made.why(), "");
+  ASSERT_TRUE(heard.wait_for_state("running"));
+  EXPECT_TRUE(heard.wait_for_scans(2));
+  made.stop();
+  EXPECT_THAT(heard.events, ::testing::IsSupersetOf({"lost", "reconnected"}));
+  EXPECT_EQ(made.counts().reconnects, 1U);
+}
+
+TEST_F(Station, Exit_EndsWithTheFailure) {
+  const station& made = begin("sim:?fault=unplug@1500ms");
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  ASSERT_NE(made.failure(), nullptr);
+  try {
+    std::rethrow_exception(made.failure());
+  } catch (const g4_tool::failure& reason) {
+    EXPECT_EQ(reason.code(), g4_tool::exit_code::lost) << reason.what();
+  }
+}
+
+TEST_F(Station, InvalidSource_EndsEvenWhereItWouldWait) {
+  const station& made = begin("sim:?colour=red", loss_rule::wait);
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  EXPECT_THROW(std::rethrow_exception(made.failure()), g4_tool::bad_value);
+}
+
+TEST_F(Station, Recording_IsPlayedByItsTimesAndEnds) {
+  const std::string file = recording("2");
+  const auto begun = std::chrono::steady_clock::now();
+  station& made = begin(file);
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  const auto took = std::chrono::steady_clock::now() - begun;
+  const std::size_t scans = heard.number_of_scans();
+  EXPECT_GE(scans, 6U);
+  EXPECT_GE(took, (scans - 1) * 1000ms / 7);
+  EXPECT_EQ(made.failure(), nullptr);
+  const auto player = made.player();
+  ASSERT_TRUE(player);
+  EXPECT_NEAR(player->length_s, 2.0, 0.5);
+  EXPECT_NEAR(player->position_s, player->length_s, 0.4);
+  // When it was made, not now: raw bytes have the time of their file.
+  struct stat about{};
+  ASSERT_EQ(::stat(path("raw.bin").c_str(), &about), 0);
+  const double made_s = static_cast<double>(about.st_mtim.tv_sec);
+  EXPECT_NEAR(static_cast<double>(heard.last_scan_wall_ns) / 1e9, made_s + 2.0, 1.5);
+}
+
+TEST_F(Station, Recording_AtFullSpeedAndAgainAfterASeek) {
+  station& made = begin(recording("4"), loss_rule::exit, {.speed = 0});
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  const std::size_t scans = heard.number_of_scans();
+  EXPECT_GE(scans, 20U);
+  made.seek(0);
+  ASSERT_TRUE(heard.wait_for_scans(scans));
+  EXPECT_EQ(heard.opened, 2);
+}
+
+TEST_F(Station, PausedRecording_ShowsOneRevolutionOfEachSeek) {
+  station& made = begin(recording("6"));
+  ASSERT_TRUE(heard.wait_for_scans(1));
+  made.pause(true);
+  made.seek(3.0);
+  ASSERT_TRUE(heard.wait([&] { return heard.opened == 2 && heard.scans_since_opening == 1; }));
+  std::this_thread::sleep_for(300ms);
+  EXPECT_TRUE(made.player()->is_paused);
+  EXPECT_NEAR(made.player()->position_s, 3.2, 0.3);
+  EXPECT_EQ(heard.scans_since_opening, 1U);
+  made.set_speed(100);
+  made.pause(false);
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  EXPECT_GT(heard.scans_since_opening, 10U);
+}
+
+TEST_F(Station, Recording_Loops) {
+  begin(recording("2"), loss_rule::exit, {.loops = true, .speed = 0});
+  EXPECT_TRUE(heard.wait([&] { return heard.opened > 2 && heard.scans.size() > 20; }));
+}
+
+TEST_F(Station, FileWithoutAPacket_IsAnErrorThatNamesIt) {
+  std::ofstream(path("notes.txt")) << std::string(1000, 'x');
+  const station& made = begin(path("notes.txt"), loss_rule::wait);
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  ASSERT_NE(made.failure(), nullptr);
+  try {
+    std::rethrow_exception(made.failure());
+  } catch (const g4_tool::failure& reason) {
+    EXPECT_EQ(reason.code(), g4_tool::exit_code::bad_file);
+    EXPECT_THAT(reason.what(), testing::HasSubstr("no point packet"));
+    EXPECT_THAT(reason.what(), testing::HasSubstr("notes.txt"));
+  }
+  // As a user meets it: it ends, and does not wait for a revolution.
+  const auto viewed = cli::run({"view", "--once", path("notes.txt")});
+  EXPECT_EQ(viewed.code, 10);
+  EXPECT_THAT(viewed.err, testing::HasSubstr("no point packet"));
+}
+
+TEST_F(Station, RawBytes_ArePlayedByTheirSamples) {
+  ASSERT_EQ(cli::run({"sim", "--seconds", "3", "-o", path("raw.bin")}).code, 0);
+  const auto begun = std::chrono::steady_clock::now();
+  begin(path("raw.bin"));
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  EXPECT_GE(heard.number_of_scans(), 5U);
+  EXPECT_GE(std::chrono::steady_clock::now() - begun, heard.number_of_scans() * 1000ms / 7 - 200ms);
+}
+
+TEST(PlaybackClock, KeepsItsPlaceWhenSpeedAndPauseChange) {
+  constexpr std::int64_t s = 1'000'000'000;
+  g4_tool::playback_clock clock;
+  EXPECT_EQ(clock.due_ns(100 * s, 101 * s, 5 * s), 6 * s);
+  clock.set_speed(2, 7 * s);  // at 102 s
+  EXPECT_EQ(clock.due_ns(100 * s, 106 * s, 7 * s), 9 * s);
+  clock.pause(true, 8 * s);  // at 104 s
+  EXPECT_EQ(clock.due_ns(100 * s, 106 * s, 8 * s), std::nullopt);
+  clock.pause(false, 20 * s);
+  EXPECT_EQ(clock.due_ns(100 * s, 106 * s, 20 * s), 21 * s);
+  clock.set_speed(0, 20 * s);
+  EXPECT_EQ(clock.due_ns(100 * s, 206 * s, 20 * s), 20 * s);
+  clock.set_speed(1000, 20 * s);  // as 100
+  EXPECT_EQ(clock.due_ns(200 * s, 300 * s, 20 * s), 21 * s);
+}
+
+}  // namespace

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+// The verb view: a radar in the terminal.
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "cli/common_options.hpp"
+#include "g4lidar/owned_scan.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/station.hpp"
+#include "io/station_board.hpp"
+#include "verbs/verbs.hpp"
+#include "view/picture.hpp"
+#include "view/screen.hpp"
+
+namespace g4_tool {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+/// Between two pictures, and between two looks at what changes slowly.
+constexpr auto least_pause = 66ms;
+constexpr auto facts_pause = 500ms;
+/// How long --once waits for a revolution.
+constexpr std::chrono::nanoseconds longest_wait = 20s;
+
+struct view_job {
+  shared_options common = std::make_shared<common_options>();
+  opening source{};
+  station_options wishes{};
+  view_settings settings{};
+  std::optional<glyphs> how{};
+  bool once = false;
+  int columns = 80;
+  int rows = 24;
+};
+
+/// What the thread of the station gives to that of the screen.
+class newest final : public station_listener {
+ public:
+  /// `keeps`: the first one at a steady speed stays.
+  explicit newest(bool keeps) : keeps_(keeps) {}
+
+  void on_scan(const scan& found) override {
+    {
+      const std::lock_guard lock(mutex_);
+      if ((!found.is_whole() && has_whole_) || (keeps_ && is_steady_)) return;
+      has_whole_ = found.is_whole();
+      // While the head speeds up, each revolution is faster than the one before.
+      const float frequency_hz = found.measured_frequency_hz();
+      is_steady_ = has_whole_ && std::abs(frequency_hz - frequency_hz_) < 0.02F * frequency_hz;
+      frequency_hz_ = frequency_hz;
+      scan_ = found;
+      is_new_ = true;
+    }
+    bell_.ring();
+  }
+  void on_event(const lidar_event& what) override {
+    const std::lock_guard lock(mutex_);
+    event_ = name_of(what.what);
+  }
+  void on_state(station_state /*state*/, std::string_view /*why*/) override { bell_.ring(); }
+
+  /// The newest revolution, if it was not taken yet.
+  [[nodiscard]] bool take(owned_scan& into, std::string& event) {
+    const std::lock_guard lock(mutex_);
+    event = event_;
+    if (!std::exchange(is_new_, false)) return false;
+    std::swap(into, scan_);
+    return true;
+  }
+  [[nodiscard]] bool is_steady() const {
+    const std::lock_guard lock(mutex_);
+    return is_steady_;
+  }
+  void wait(clock::time_point until, int other) const { bell_.wait(other, until); }
+
+ private:
+  bell bell_;
+  mutable std::mutex mutex_;
+  owned_scan scan_;
+  std::string event_;
+  bool is_new_ = false;
+  bool keeps_;
+  bool has_whole_ = false;
+  bool is_steady_ = false;
+  float frequency_hz_ = 0;
+};
+
+class viewer {
+ public:
+  explicit viewer(const view_job& job)
+      : job_(job), settings_(job.settings), station_(*job.common, job.source, newest_, job.wishes) {
+    const blocked_signals handled_by_this_thread;
+    station_.start();
+  }
+
+  int run() {
+    const glyphs how = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
+    {
+      screen terminal(wants_color(STDOUT_FILENO));
+      while (!is_over_ && interrupt() == 0 && !station_.failure() && !limits_.is_over()) {
+        follow();
+        canvas picture(terminal.columns(), terminal.rows(), how);
+        draw_view(picture, scan_.view().points, facts_, settings_);
+        terminal.show(picture);
+        wait(terminal);
+      }
+    }
+    station_.stop();
+    if (const auto failure = station_.failure()) std::rethrow_exception(failure);
+    return exit_code_now();
+  }
+
+  int run_once() {
+    output out(job_.common->output);
+    const auto until =
+        clock::now() + (job_.common->duration > 0ns ? job_.common->duration : longest_wait);
+    while (!newest_.is_steady() && interrupt() == 0 && clock::now() < until &&
+           !station_.failure() && station_.state() != station_state::ended) {
+      newest_.wait(std::min(until, clock::now() + 100ms), interrupt_handle());
+    }
+    follow();
+    station_.stop();
+    if (const auto failure = station_.failure()) std::rethrow_exception(failure);
+    if (interrupt() != 0) return exit_code_now();
+    if (scan_.view().empty()) throw failure(exit_code::lost, "no revolution has come.");
+    const glyphs how = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
+    canvas picture(job_.columns, job_.rows, how);
+    draw_view(picture, scan_.view().points, facts_, settings_);
+    for (int row = 0; row < picture.rows(); ++row) out.write(picture.text(row) + "\n");
+    out.commit();
+    return 0;
+  }
+
+ private:
+  /// Takes what has changed.
+  void follow() {
+    std::string event;
+    if (!settings_.is_frozen && newest_.take(scan_, event)) {
+      const scan now = scan_.view();
+      facts_.frequency_hz = static_cast<double>(now.measured_frequency_hz());
+      facts_.sample_rate_hz = static_cast<double>(now.sample_rate_hz());
+      if (!settings_.is_zoomed) follow_range(now);
+    }
+    if (!event.empty()) facts_.event = event;
+    if (const auto now = clock::now(); now >= facts_due_) {
+      facts_due_ = now + facts_pause;
+      facts_.stages = station_.stages();
+    }
+    const lidar_counts counts = station_.counts();
+    const auto all = static_cast<double>(counts.stream.points + counts.samples_lost);
+    facts_.lost_percent = all > 0 ? 100.0 * static_cast<double>(counts.samples_lost) / all : -1;
+    facts_.checksum_errors =
+        static_cast<std::int64_t>(counts.stream.skipped(skip_reason::bad_checksum));
+    facts_.scans = static_cast<std::int64_t>(counts.scans);
+    facts_.name = job_.common->source.empty() ? station_.name() : job_.common->source;
+    facts_.state = name_of(station_.state());
+    facts_.why = station_.why();
+    if (const auto who = station_.identity()) {
+      facts_.serial.assign(who->serial_digits.begin(), who->serial_digits.end());
+    }
+    if (const auto player = station_.player()) {
+      facts_.position_s = player->position_s;
+      facts_.length_s = player->length_s;
+    }
+  }
+
+  /// Farther at once; nearer only if it would have been so for a while, because a picture that changes
+  /// its size all the time cannot be read.
+  void follow_range(const scan& now) {
+    const double wanted_m = range_for(now.points);
+    double& range_m = settings_.radar.range_m;
+    nearer_ = wanted_m < range_m ? nearer_ + 1 : 0;
+    if (wanted_m > range_m || nearer_ > 10 || !std::exchange(has_range_, true)) range_m = wanted_m;
+  }
+
+  void wait(screen& terminal) {
+    const auto begin = clock::now();
+    const auto until = std::min({begin + facts_pause, limits_.end()});
+    newest_.wait(until, STDIN_FILENO);
+    bool is_pressed = false;
+    while (const int key = terminal.key()) {
+      press(key);
+      is_pressed = true;
+    }
+    if (terminal.is_gone()) is_over_ = true;
+    if (is_pressed || is_over_ || interrupt() != 0) return;
+    const auto rest = begin + least_pause - clock::now();
+    if (rest > 0ns) newest_.wait(clock::now() + rest, interrupt_handle());
+  }
+
+  void press(int key) {
+    radar_view& radar = settings_.radar;
+    switch (key) {
+      case '+':
+      case '=':
+      case '-':
+      case '_':
+        settings_.is_zoomed = true;
+        radar.range_m = next_range(radar.range_m, key == '-' || key == '_');
+        break;
+      case '0':
+        settings_.is_zoomed = false;
+        has_range_ = false;
+        break;
+      case 'p':
+        settings_.is_frozen = !settings_.is_frozen;
+        break;
+      case ' ':
+        if (const auto player = station_.player()) station_.pause(!player->is_paused);
+        break;
+      case 'f':
+        radar.frame = radar.frame == frame::robot ? frame::vendor : frame::robot;
+        break;
+      case 'g':
+        radar.grid = !radar.grid;
+        break;
+      case 'h':
+      case '?':
+        settings_.shows_help = !settings_.shows_help;
+        break;
+      case 'q':
+        is_over_ = true;
+        break;
+      default:
+        break;
+    }
+  }
+
+  const view_job& job_;
+  view_settings settings_;
+  newest newest_{job_.once};
+  station station_;
+  owned_scan scan_;
+  view_facts facts_;
+  time_limits limits_{job_.once ? 0ns : job_.common->duration, 0ns};
+  clock::time_point facts_due_{};
+  int nearer_ = 0;
+  bool has_range_ = false;
+  bool is_over_ = false;
+};
+
+int view(const view_job& job) {
+  viewer shown(job);
+  return job.once ? shown.run_once() : shown.run();
+}
+
+/// "80x24".
+void take_size(view_job& job, const std::string& word) {
+  const std::size_t cross = word.find('x');
+  if (cross == std::string::npos) throw bad_value("'" + word + "' is no size such as 80x24");
+  job.columns = number_of(word.substr(0, cross), 1, 1000);
+  job.rows = number_of(word.substr(cross + 1), 1, 1000);
+}
+
+constexpr const char* view_details =
+    R"(A radar in the terminal, of any size: each revolution from above, rings with their ranges, and
+beside it frequency, sample rate, losses, health, the last event and what is wrong, as doctor
+judges it. In a terminal of less than 60 columns or 12 rows the numbers stand in the last line.
+
+Up is ahead, or with --frame vendor the direction 0. Keys:
+  + -        nearer, farther
+  0          the range follows the returns
+  p          freeze the picture, or go on
+  space      a recording: pause, play
+  f          the frame: robot or vendor
+  g          rings on, off
+  h ?        help
+  q, ^C      quit; ^Z puts it in the background
+
+The motor stops at the end. A lidar that is unplugged is awaited (--on-loss reconnect). With --once
+one revolution is printed as text, of the size that --size names, to any output.)";
+
+}  // namespace
+
+verb make_view_verb() {
+  const auto job = std::make_shared<view_job>();
+  common_options& common = *job->common;
+  common.on_loss = loss_rule::reconnect;
+  view_settings& settings = job->settings;
+  option_row zoom =
+      value_row("--zoom", "METERS", "From the middle to the edge (as far as the returns)",
+                settings.radar.range_m, [&settings](const std::string& word) {
+                  settings.is_zoomed = true;
+                  return number_of(word, 0.5, 16.0);
+                });
+  option_row size{"--size", "COLUMNSxROWS", "Size of the picture of --once (80x24)",
+                  [target = job.get()](const std::string& word) { take_size(*target, word); }};
+  option_rows device = device_rows(common);
+  return {.name = "view",
+          .summary = "A radar in the terminal",
+          .arguments = {source_argument(common)},
+          .options = joined(
+              zoom,
+              frame_row("--frame", "What is up: ahead, or 0 degrees (robot)", settings.radar.frame),
+              choice_row("--glyphs", "What dots are made of (braille where the locale is UTF-8)",
+                         job->how,
+                         choices<glyphs>{{"braille", glyphs::braille}, {"ascii", glyphs::ascii}}),
+              flag_row("--once", "Print one revolution and end", job->once), size,
+              output_row(common), duration_row(common),
+              flag_row("--loop", "A recording begins again at its end", job->wishes.loops),
+              sample_rate_row(job->source.bytes_rate_hz), device),
+          .details = view_details,
+          .examples = {{"g4-dump view", "The only G4"},
+                       {"g4-dump view sim:", "A simulated one"},
+                       {"g4-dump view walk.mcap --loop", "A recording, again and again"},
+                       {"g4-dump view --once sim: --glyphs ascii", "One picture as text"}},
+          .run = [job] { return view(*job); }};
+}
+
+}  // namespace g4_tool

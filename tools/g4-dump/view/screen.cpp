@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#define NCURSES_NOMACROS 1  // NOLINT: of ncurses, whose macros are names such as move
+#include "screen.hpp"
+
+#include <curses.h>
+#include <langinfo.h>
+#include <poll.h>
+#include <pthread.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <clocale>
+#include <csignal>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "cli/exit_code.hpp"
+
+namespace g4_tool {
+namespace {
+
+/// Signals that end the program at once, and those that it handles the first time.
+constexpr std::array fatal_signals{SIGQUIT, SIGILL,  SIGABRT, SIGBUS,  SIGFPE,
+                                   SIGSEGV, SIGALRM, SIGUSR1, SIGUSR2, SIGSYS};
+constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
+
+/// What a signal handler needs: all of it is made before.
+struct restoring {
+  std::array<char, 256> words;
+  std::size_t size;
+  termios before;
+  std::array<struct sigaction, ending_signals.size()> ending;
+  std::array<struct sigaction, fatal_signals.size()> fatal;
+};
+restoring saved{};
+volatile std::sig_atomic_t is_ending = 0;
+sigset_t mask_before{};
+
+void add_word(const char* capability) {
+  const char* const word = ::tigetstr(capability);
+  if (word == nullptr || word == reinterpret_cast<const char*>(-1)) return;  // NOLINT: of terminfo
+  const std::string_view text(word);
+  if (saved.size + text.size() > saved.words.size()) return;
+  std::ranges::copy(text, saved.words.begin() + static_cast<std::ptrdiff_t>(saved.size));
+  saved.size += text.size();
+}
+
+void restore() noexcept {
+  [[maybe_unused]] const auto ignored = ::write(STDOUT_FILENO, saved.words.data(), saved.size);
+  ::tcsetattr(STDOUT_FILENO, TCSANOW, &saved.before);
+}
+
+void die(int number) {
+  restore();
+  std::signal(number, SIG_DFL);
+  ::raise(number);
+}
+
+/// The first one is kept for the loop, as without a screen; the second one ends the program.
+void end(int number) {
+  if (is_ending != 0) return die(number);
+  is_ending = 1;
+  for (std::size_t i = 0; i < ending_signals.size(); ++i) {
+    const struct sigaction& before = saved.ending[i];
+    if (ending_signals[i] == number && before.sa_handler != SIG_DFL)
+      return before.sa_handler(number);
+  }
+  die(number);
+}
+
+template <std::size_t Count>
+void handle(const std::array<int, Count>& signals, std::array<struct sigaction, Count>& before,
+            void (*handler)(int)) {
+  for (std::size_t i = 0; i < Count; ++i) {
+    struct sigaction action{};
+    action.sa_handler = handler;
+    action.sa_flags = SA_NODEFER;
+    ::sigaction(signals[i], nullptr, &before[i]);
+    if (before[i].sa_handler != SIG_IGN) ::sigaction(signals[i], &action, nullptr);
+  }
+}
+
+/// Black and white first: they need no terminal with colours.
+constexpr std::array<std::pair<attr_t, short>, ink_count> looks{{{A_NORMAL, -1},
+                                                                 {A_DIM, -1},
+                                                                 {A_DIM, COLOR_CYAN},
+                                                                 {A_NORMAL, COLOR_GREEN},
+                                                                 {A_NORMAL, COLOR_GREEN},
+                                                                 {A_BOLD, COLOR_YELLOW},
+                                                                 {A_BOLD, COLOR_RED},
+                                                                 {A_BOLD, -1}}};
+
+void set_look(ink what) {
+  const auto at = static_cast<std::size_t>(what);
+  const short pair =
+      ::has_colors() && looks[at].second >= 0 ? static_cast<short>(at + 1) : short{0};
+  ::attr_set(looks[at].first, pair, nullptr);
+}
+
+}  // namespace
+
+screen::screen(bool colored) {
+  const char* const name = std::getenv("TERM");
+  const bool has_terminal = ::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0 &&
+                            ::tcgetattr(STDOUT_FILENO, &saved.before) == 0;
+  if (!has_terminal) {
+    throw failure(exit_code::usage,
+                  "view needs a terminal. With --once it prints one picture to any output.");
+  }
+  if (name == nullptr || ::newterm(name, stdout, stdin) == nullptr) {
+    throw failure(exit_code::usage,
+                  "the type of this terminal is not known. Set TERM, or use --once.");
+  }
+  saved.size = 0;
+  for (const char* word : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_word(word);
+  is_ending = 0;
+  handle(ending_signals, saved.ending, end);
+  handle(fatal_signals, saved.fatal, die);
+  ::cbreak();
+  ::noecho();
+  ::nonl();
+  ::curs_set(0);
+  ::nodelay(::stdscr, true);
+  ::keypad(::stdscr, true);
+  if (!colored || !::has_colors()) return;
+  ::start_color();
+  ::use_default_colors();
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    ::init_pair(static_cast<short>(i + 1), looks[i].second, -1);
+  }
+}
+
+screen::~screen() {
+  ::endwin();
+  for (std::size_t i = 0; i < fatal_signals.size(); ++i) {
+    ::sigaction(fatal_signals[i], &saved.fatal[i], nullptr);
+  }
+  if (is_ending != 0) return;
+  for (std::size_t i = 0; i < ending_signals.size(); ++i) {
+    ::sigaction(ending_signals[i], &saved.ending[i], nullptr);
+  }
+}
+
+int screen::columns() const { return ::getmaxx(::stdscr); }
+int screen::rows() const { return ::getmaxy(::stdscr); }
+
+void screen::show(const canvas& picture) {
+  ::erase();
+  std::string words;
+  for (int row = 0; row < picture.rows(); ++row) {
+    ::move(row, 0);
+    for (int column = 0; column < picture.columns();) {
+      const ink what = picture.at(column, row).what;
+      words.clear();
+      for (; column < picture.columns(); ++column) {
+        const canvas_cell cell = picture.at(column, row);
+        if (cell.glyph != U' ' && cell.what != what) break;
+        add_utf8(words, cell.glyph);
+      }
+      set_look(what);
+      ::addstr(words.c_str());
+    }
+  }
+  ::refresh();
+}
+
+int screen::key() {
+  const int pressed = ::getch();
+  if (pressed == KEY_RESIZE) return resized;
+  return pressed > resized && pressed < 0x80 ? pressed : 0;
+}
+
+bool screen::is_gone() const {
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  return ::poll(&input, 1, 0) > 0 && (input.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0;
+}
+
+bool screen::has_utf8() {
+  std::setlocale(LC_CTYPE, "");
+  return std::string_view(::nl_langinfo(CODESET)) == "UTF-8";
+}
+
+blocked_signals::blocked_signals() {
+  sigset_t all{};
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &mask_before);
+}
+blocked_signals::~blocked_signals() { ::pthread_sigmask(SIG_SETMASK, &mask_before, nullptr); }
+
+}  // namespace g4_tool

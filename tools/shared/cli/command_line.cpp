@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: MIT
+// The table of verbs as CLI11 wants it; the only place that sees CLI11.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <ranges>
+#include <span>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "common_options.hpp"
+#include "exit_code.hpp"
+#include "g4lidar/version.hpp"
+#include "logger.hpp"
+#include "verbs.hpp"
+
+namespace g4_tool {
+namespace {
+
+/// "--output" of "-o,--output".
+std::string long_name(const std::string& names) {
+  const std::size_t comma = names.rfind(',');
+  return comma == std::string::npos ? names : names.substr(comma + 1);
+}
+
+/// The value that a flag may have is shown without a space before it: --speckle[=LIMITS].
+class help_formatter final : public CLI::Formatter {
+  std::string make_option_opts(const CLI::Option* option) const override {
+    const std::string text = CLI::Formatter::make_option_opts(option);
+    return text.starts_with(" [=") ? text.substr(1) : text;
+  }
+};
+
+/// Of a file of --config: a flag that is false is one that is not given.
+class config_reader final : public CLI::ConfigBase {
+  std::vector<CLI::ConfigItem> from_config(std::istream& in) const override {
+    std::vector<CLI::ConfigItem> lines = CLI::ConfigBase::from_config(in);
+    std::erase_if(lines, [](const CLI::ConfigItem& line) {
+      return line.inputs == std::vector<std::string>{"false"};
+    });
+    return lines;
+  }
+};
+
+void add(CLI::App& app, const option_row& row) {
+  const std::string name = long_name(row.names);
+  const auto take = [inner = row.take, name](const std::vector<std::string>& words) {
+    try {
+      for (const std::string& word : words) inner(word);
+    } catch (const bad_value& reason) {
+      throw CLI::ValidationError((name.starts_with('-') ? name + ": " : "") + reason.what());
+    }
+  };
+  CLI::Option* option = nullptr;
+  if (!row.optional_value.empty()) {
+    const auto given = std::make_shared<std::string>();
+    option = app.add_flag(row.names, *given, row.help)->disable_flag_override(false);
+    option->option_text("[=" + row.optional_value + "]");
+    option->each([inner = row.take, given](const std::string& word) {
+      try {
+        inner(word == "true" ? "" : word);
+      } catch (const bad_value& reason) {  // CLI11 adds the name
+        throw CLI::ValidationError(reason.what());
+      }
+    });
+  } else if (row.value.empty() && name.starts_with('-')) {
+    option = app.add_flag_function(row.names, [take](std::int64_t) { take({""}); }, row.help);
+  } else {
+    const bool is_list = row.repeatable && !name.starts_with('-');
+    option = app.add_option_function<std::vector<std::string>>(row.names, take, row.help)
+                 ->type_name(row.value)
+                 ->expected(1, is_list ? CLI::detail::expected_max_vector_size : 1)
+                 ->allow_extra_args(is_list)
+                 ->required(row.required)
+                 ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
+                                                      : CLI::MultiOptionPolicy::Throw);
+  }
+  if (!row.group.empty()) option->group(row.group);
+}
+
+/// The codes that are among `wanted`, or all.
+std::string exit_code_list(const std::vector<int>& wanted) {
+  std::string text = "Exit codes:";
+  for (const exit_code_row& row : exit_codes) {
+    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), row.code) != wanted.end()) {
+      text += fmt::format("{} {} {}", text.back() == ':' ? "" : ",", row.code, row.meaning);
+    }
+  }
+  return wrapped(text + '.', 0, 0);
+}
+
+std::string footer_of(const verb& shown) {
+  std::string text = shown.details;
+  if (!shown.examples.empty()) text += "\n\nExamples:";
+  for (const example& each : shown.examples) text += "\n  " + each.line + "\n      " + each.words;
+  return text + (text.empty() ? "" : "\n\n") + exit_code_list(shown.exits);
+}
+
+/// The arguments and options of `added`, as those of `made`.
+void fill(CLI::App& made, const verb& added) {
+  for (const option_row& row : added.arguments) add(made, row);
+  for (const option_row& row : added.options) add(made, row);
+  for (const option_row& row : added.options) {
+    CLI::Option* const option = made.get_option(long_name(row.names));
+    for (const std::string& other : row.excludes) option->excludes(made.get_option(other));
+  }
+}
+
+CLI::App* add(CLI::App& app, const verb& added) {
+  CLI::App* const made = app.add_subcommand(added.name, added.summary)->group("Commands");
+  made->footer(footer_of(added));
+  fill(*made, added);
+  return made;
+}
+
+std::string known_verbs() {
+  const std::vector<verb> verbs = this_program().verbs();
+  return fmt::format("{}", fmt::join(verbs | std::views::transform(&verb::name), ", "));
+}
+
+/// What is wrong with the command line, without a full stop.
+std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
+  const bool has_verb = !app.get_subcommands().empty() || app.get_subcommands({}).empty();
+  const std::vector<std::string> rest = app.remaining(has_verb);
+  if (!has_verb && rest.empty()) return "no command; commands are: " + known_verbs();
+  if (!has_verb || (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())) {
+    const bool is_option = rest.front().front() == '-';
+    const char* const what = is_option  ? "unknown option"
+                             : has_verb ? "unexpected argument"
+                                        : "unknown command";
+    return fmt::format("{} {}{}", what, in_quotes(rest.front()),
+                       has_verb ? "" : "; commands are: " + known_verbs());
+  }
+  std::string words = error.what();
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const std::string name = words.substr(0, words.find_first_of(": "));
+    const auto has = [&words](const char* what) { return words.find(what) != std::string::npos; };
+    words = has("flag override") ? "--" + name + " takes no value"
+            : has("At Most")     ? name + " is given twice"
+                                 : name + " needs one value";
+  }
+  constexpr std::string_view unknown = "INI was not able to parse ";
+  if (words.starts_with(unknown)) {
+    words =
+        "unknown option " + in_quotes(words.substr(unknown.size())) + " in the file of --config";
+  }
+  constexpr std::string_view unreadable = " was not readable (missing?)";
+  if (words.ends_with(unreadable)) {
+    words = "--config: cannot read " + in_quotes(words.substr(0, words.size() - unreadable.size()));
+  }
+  constexpr std::string_view excludes = " excludes ";
+  const std::size_t at = words.find(excludes);
+  if (at != std::string::npos) words.replace(at, excludes.size(), " cannot be used with ");
+  if (!words.empty() && words.back() == '.') words.pop_back();
+  return words;
+}
+
+int explain(const std::string& problem, const std::string& verb) {
+  logger::error(fmt::format("{}. See: {}{} --help", problem, this_program().name, verb),
+                exit_code::usage);
+  return static_cast<int>(exit_code::usage);
+}
+
+/// `run`, and a value that it refuses is a wrong command line.
+std::function<int()> guarded(const verb& chosen) {
+  const bool is_named = chosen.name != this_program().name;
+  return [run = chosen.run, name = is_named ? " " + chosen.name : std::string()] {
+    try {
+      return run();
+    } catch (const bad_value& reason) {
+      return explain(reason.what(), name);
+    }
+  };
+}
+
+/// How many words from `at` on are the program's own options, which may stand before the verb; 0:
+/// none.
+std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
+  const std::string& word = words[at];
+  if (word == "--color") return 2;
+  if (word == "--quiet" || word == "--verbose" || word == "--json-errors") return 1;
+  if (word.starts_with("--color=")) return 1;
+  const bool is_short = word.size() > 1 && word.front() == '-';
+  return is_short && word.find_first_not_of("qv", 1) == std::string::npos ? 1 : 0;
+}
+
+/// Whether an option or a source stands where a verb could: for the verb that needs not be named.
+/// `--help` and `--version` are the program's own. A file need not look like one.
+bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
+  std::size_t at = 0;
+  while (at < words.size() && own_words(words, at) > 0) at += own_words(words, at);
+  if (at >= words.size()) return true;
+  const std::string& first = words[at];
+  if (first == "-h" || first == "--help" || first == "--version") return false;
+  if (first.empty() || first.front() == '-') return true;
+  if (std::ranges::find(verbs, first, &verb::name) != verbs.end()) return false;
+  std::error_code unimportant;
+  return first.find_first_of("/:.") != std::string::npos ||
+         std::filesystem::is_regular_file(first, unimportant);
+}
+
+std::string source_list() {
+  std::string text;
+  for (const source_form& each : source_forms) {
+    text += fmt::format("  {:<25}{}\n", each.form, each.meaning);
+  }
+  return text;
+}
+
+std::string app_footer(const program& ours) {
+  return fmt::format(
+      "\nThe default command is {}. The default SOURCE is the only G4. Other sources:\n{}Data goes "
+      "to "
+      "standard output, messages go to standard error.\n{}\nHelp for a command: {} COMMAND --help",
+      ours.default_verb, source_list(), exit_code_list({}), ours.name);
+}
+
+}  // namespace
+
+std::function<int()> read_command_line(int argc, const char* const* argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given
+  if (words == std::vector<std::string>{"--generate", "man"}) return print_man_page;
+  if (words.size() >= 2 && words[0] == "--complete") {
+    return [words] { return complete(std::span(words).subspan(1)); };
+  }
+  const program& ours = this_program();
+  const std::vector<verb> verbs = ours.verbs();
+  if (!words.empty() && words.front() == "help") {
+    if (words.size() > 1 && std::ranges::find(verbs, words[1], &verb::name) == verbs.end()) {
+      return [what = in_quotes(words[1])] { return explain(what + " is not a command", ""); };
+    }
+    std::ranges::rotate(words, words.begin() + 1);
+    words.back() = "--help";
+  }
+  const bool is_single = verbs.size() == 1;
+  CLI::App app(std::string(ours.title), std::string(ours.name));
+  app.set_version_flag("--version",
+                       fmt::format("{} {}.{}.{}", ours.name, G4LIDAR_VERSION_MAJOR,
+                                   G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH),
+                       "Print the version and exit");
+  app.fallthrough();
+  app.option_defaults()->disable_flag_override();
+  app.footer(is_single ? "\nThe default SOURCE is the only G4. Other sources:\n" + source_list() +
+                             "\n" + footer_of(verbs.front())
+                       : app_footer(ours));
+  if (ours.has_config) {
+    app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");
+    app.config_formatter(std::make_shared<config_reader>());
+    app.allow_config_extras(CLI::config_extras_mode::error);
+  }
+  app.formatter(std::make_shared<help_formatter>());
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Positionals", "Arguments");
+  app.get_formatter()->column_width(36);
+  for (const option_row& row : global_rows()) add(app, row);
+  std::function<int()> chosen;
+  if (is_single) {
+    fill(app, verbs.front());
+    app.callback([&chosen, &verbs] { chosen = guarded(verbs.front()); });
+  } else {
+    for (const verb& each : verbs) {
+      add(app, each)->callback([&chosen, &each] { chosen = guarded(each); });
+    }
+    if (leaves_out_verb(words, verbs)) words.insert(words.begin(), std::string(ours.default_verb));
+  }
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  const auto done = [](int code) { return [code] { return code; }; };
+  try {
+    app.parse(words);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return done(app.exit(wanted));
+  } catch (const CLI::ParseError& error) {
+    const std::vector<CLI::App*> named = app.get_subcommands();
+    return done(
+        explain(problem_with(app, error), named.empty() ? "" : " " + named.back()->get_name()));
+  }
+  return chosen;
+}
+
+}  // namespace g4_tool

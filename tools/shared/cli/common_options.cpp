@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "common_options.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <string_view>
+
+namespace g4_tool {
+
+global_options& our_global_options() noexcept {
+  static global_options ours;
+  return ours;
+}
+
+option_rows global_rows() {
+  global_options& ours = our_global_options();
+  return {flag_row("-q,--quiet", "Write only errors to standard error", ours.quiet),
+          flag_row("-v,--verbose", "Write messages about each step", ours.verbose),
+          choice_row("--color", "When to color the output (auto: on a terminal)", ours.color,
+                     choices<color_choice>{{"auto", color_choice::automatic},
+                                           {"always", color_choice::always},
+                                           {"never", color_choice::never}}),
+          flag_row("--json-errors", "Write an error as a JSON object", ours.json_errors)};
+}
+
+option_rows standard_rows() {
+  return {{"-h,--help", "", "Print a help message and exit"},
+          {"--version", "", "Print the version and exit"}};
+}
+
+bool wants_color(int descriptor) noexcept {
+  if (our_global_options().color != color_choice::automatic) {
+    return our_global_options().color == color_choice::always;
+  }
+  const char* const no_color = std::getenv("NO_COLOR");
+  const char* const terminal = std::getenv("TERM");
+  if (no_color != nullptr && *no_color != '\0') return false;
+  if (terminal != nullptr && std::string_view(terminal) == "dumb") return false;
+  return ::isatty(descriptor) != 0;
+}
+
+option_row source_argument(common_options& options) {
+  return text_row("SOURCE", "", "The lidar, a recording, raw bytes, or sim: (the only G4)",
+                  options.source, completion::source);
+}
+
+option_row output_row(common_options& options) {
+  return text_row("-o,--output", "OUT", "Output file; - for standard output (-)", options.output);
+}
+
+option_row duration_row(common_options& options) {
+  return duration_row("-d,--duration", "Stop after this time: 10s, 500ms, 2min", options.duration);
+}
+
+option_rows ending_rows(common_options& options, bool with_idle) {
+  option_rows rows{number_row("-n,--count", "N", "Stop after N records", options.count,
+                              std::uint64_t{1}, UINT64_MAX),
+                   duration_row(options)};
+  if (with_idle)
+    rows.push_back(duration_row("--idle", "Stop if no data arrives for this time", options.idle));
+  return in_group("End condition", rows);
+}
+
+option_row speckle_row(common_options& options) {
+  option_row row{"--speckle", "", "Leave out returns without another one near them"};
+  row.optional_value = "LIMITS";
+  row.take = [&into = options.speckle](const std::string& word) {
+    speckle_limits limits;
+    const auto length = [](float& into_one) {
+      return [&into_one](double value) { into_one = static_cast<float>(value); };
+    };
+    const auto number = [](std::size_t& into_one) {
+      return [&into_one](double value) { into_one = static_cast<std::size_t>(value); };
+    };
+    take_numbers(word, {{"window", 1, max_window, true, number(limits.window)},
+                        {"count", 1, 2 * max_window, true, number(limits.count)},
+                        {"near", 0, 100, false, length(limits.near_m)},
+                        {"ratio", 0, 1, false, length(limits.near_ratio)}});
+    into = limits;
+  };
+  return row;
+}
+
+option_row edges_row(common_options& options) {
+  option_row row{"--edges", "", "Leave out veiling points at jumps of the range"};
+  row.optional_value = "LIMITS";
+  row.take = [&into = options.edges](const std::string& word) {
+    edge_limits limits;
+    take_numbers(
+        word, {{"window", 1, max_window, true,
+                [&limits](double value) { limits.window = static_cast<std::size_t>(value); }},
+               {"angle", 0.1, 45, false,
+                [&limits](double value) { limits.least_angle_deg = static_cast<float>(value); }}});
+    into = limits;
+  };
+  return row;
+}
+
+option_rows filter_rows(common_options& options) {
+  option_row range{"--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16"};
+  range.take = [&filter = options.filter](const std::string& word) {
+    const auto [from, to] = range_of(word, 0.0, 100.0);
+    if (to < from) throw bad_value("'" + word + "' ends before it begins");
+    // To the nearest thousandth of a millimetre, so that 0.28 is 280.
+    filter.least_range_mm = static_cast<float>(std::round(from * 1e6) / 1e3);
+    filter.greatest_range_mm = static_cast<float>(std::round(to * 1e6) / 1e3);
+  };
+  const auto directions = [](const std::string& word) {
+    const auto [from, to] = range_of(word, -360.0, 360.0);
+    return sector(from, to);
+  };
+  option_row ignore{"--ignore", "FROM:TO", "Leave out these directions: 30:40; may be repeated",
+                    [&options, directions](const std::string& word) {
+                      options.ignored.push_back(directions(word));
+                    }};
+  ignore.repeatable = true;
+  return in_group(
+      "Filters",
+      {range,
+       value_row("--fov", "FROM:TO", "Keep these directions, in degrees of the frame: -90:90",
+                 options.filter.field_of_view, directions),
+       ignore,
+       text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask),
+       speckle_row(options), edges_row(options)});
+}
+
+mounting mounting_of(const std::string& text) {
+  const std::string upside_down = ",down";
+  const bool is_down = text.ends_with(upside_down);
+  const std::string place = text.substr(0, text.size() - (is_down ? upside_down.size() : 0));
+  const std::size_t first = place.find(',');
+  const std::size_t second = std::min(place.find(',', first + 1), place.size());
+  if (first == std::string::npos || second == place.size()) {
+    throw bad_value("'" + text + "' is not a place such as 0.1,0,180 (m, m, degrees)");
+  }
+  const auto metres = [](const std::string& word) { return number_of(word, -100.0, 100.0); };
+  const double yaw_deg = number_of(place.substr(second + 1), -360.0, 360.0);
+  return {{metres(place.substr(0, first)), metres(place.substr(first + 1, second - first - 1)),
+           yaw_deg * std::numbers::pi / 180.0},
+          is_down};
+}
+
+option_rows motion_rows(common_options& options) {
+  return in_group("Motion of the robot",
+                  {text_row("--odometry", "FILE", "Poses: lines of time_ns, x, y and yaw_rad",
+                            options.odometry),
+                   value_row("--mount", "X,Y,DEG[,down]",
+                             "Where the lidar is on the robot; down: top down (0,0,0)",
+                             options.mount, mounting_of)});
+}
+
+option_row deskew_row(common_options& options) {
+  option_row row = choice_row(
+      "--deskew", "Deskew each revolution by the odometry, or by the scans alone", options.deskew,
+      choices<deskewing>{{"odometry", deskewing::by_path}, {"scans", deskewing::by_scans}});
+  row.group = "Motion of the robot";
+  return row;
+}
+
+option_row frame_row(const char* name, const char* help, frame& into) {
+  return choice_row(name, help, into,
+                    choices<frame>{{"vendor", frame::vendor}, {"robot", frame::robot}});
+}
+
+option_row time_row(common_options& options) {
+  return choice_row("--time", "Wall clock, monotonic, since the previous or first record (abs)",
+                    options.time,
+                    choices<time_style>{{"abs", time_style::absolute},
+                                        {"mono", time_style::monotonic},
+                                        {"delta", time_style::delta},
+                                        {"zero", time_style::zero}});
+}
+
+option_rows shape_rows(common_options& options) {
+  return in_group("Output form",
+                  {frame_row("--frame", "vendor: clockwise from the cable; robot: REP 103 (vendor)",
+                             options.frame),
+                   choice_row("--unit", "Unit of ranges (mm)", options.unit,
+                              choices<length_unit>{{"mm", length_unit::millimetres},
+                                                   {"m", length_unit::metres}}),
+                   time_row(options)});
+}
+
+option_row format_row(text_format& into, const char* help) {
+  return choice_row(
+      "-f,--format", help, into,
+      choices<text_format>{
+          {"csv", text_format::csv}, {"jsonl", text_format::jsonl}, {"text", text_format::text}});
+}
+
+option_rows baud_row(common_options& options) {
+  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)", options.baud, 1U,
+                                        10'000'000U)});
+}
+
+option_rows device_rows(common_options& options) {
+  return joined(
+      in_group("Device",
+               {choice_row("--on-loss", "If the device is lost; wait: also at the start (exit)",
+                           options.on_loss,
+                           choices<loss_rule>{{"exit", loss_rule::exit},
+                                              {"wait", loss_rule::wait},
+                                              {"reconnect", loss_rule::reconnect}})}),
+      baud_row(options));
+}
+
+option_row json_row(common_options& options) {
+  return flag_row("--json", "Write JSON, one object in each line", options.json);
+}
+
+option_row compress_row(packing& into) {
+  return value_row("--compress", "", "Compress a recording with zstd", into,
+                   [](const std::string&) {
+                     if (!has_zstd()) throw bad_value("this g4-dump was built without zstd");
+                     return packing::zstd;
+                   });
+}
+
+}  // namespace g4_tool

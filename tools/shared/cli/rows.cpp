@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "rows.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <initializer_list>
+
+namespace g4_tool {
+namespace {
+
+struct unit {
+  std::string_view name;
+  double factor;
+};
+
+/// A number and one of the units, in the smallest of them; below 0 where it is anything else.
+double scaled_number(std::string_view text, std::initializer_list<unit> units) {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, number);
+  const std::string_view name(at, static_cast<std::size_t>(end - at));
+  const auto* const found = std::ranges::find(units, name, &unit::name);
+  return error == std::errc() && found != units.end() ? number * found->factor : -1.0;
+}
+
+/// `text` as nanoseconds from `least` to ten years.
+std::int64_t time_of(const std::string& text, double least) {
+  constexpr double longest = 10 * 366 * 86400e9;
+  const double ns = scaled_number(text, {{"", 1e9},
+                                         {"ns", 1.0},
+                                         {"us", 1e3},
+                                         {"ms", 1e6},
+                                         {"s", 1e9},
+                                         {"min", 60e9},
+                                         {"h", 3600e9},
+                                         {"d", 86400e9}});
+  if (ns >= least && ns <= longest) return static_cast<std::int64_t>(ns);
+  throw bad_value(fmt::format(
+      "'{}' is not a time such as 10s, 500ms or 2min, above 0 and at most 10 years", text));
+}
+
+}  // namespace
+
+std::chrono::nanoseconds duration_of(const std::string& text) {
+  return std::chrono::nanoseconds(time_of(text, 1.0));
+}
+
+std::int64_t moment_of(const std::string& text) { return time_of(text, 0.0); }
+
+std::uint64_t byte_count_of(const std::string& text) {
+  std::string lower = text;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  constexpr double k = 1024.0;
+  const double bytes = scaled_number(lower, {{"", 1.0},
+                                             {"b", 1.0},
+                                             {"k", k},
+                                             {"kib", k},
+                                             {"kb", 1e3},
+                                             {"m", k * k},
+                                             {"mib", k * k},
+                                             {"mb", 1e6},
+                                             {"g", k * k * k},
+                                             {"gib", k * k * k},
+                                             {"gb", 1e9},
+                                             {"t", k * k * k * k},
+                                             {"tib", k * k * k * k},
+                                             {"tb", 1e12}});
+  if (bytes >= 1.0 && bytes <= 1e18) return static_cast<std::uint64_t>(bytes);
+  throw bad_value(fmt::format("'{}' is not a size such as 500M or 1G", text));
+}
+
+void take_numbers(const std::string& text, const std::vector<named_number>& known) {
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::string_view piece = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(piece.size() + 1, rest.size()));
+    const std::size_t equals = std::min(piece.find('='), piece.size());
+    const auto found = std::ranges::find(known, piece.substr(0, equals), &named_number::name);
+    if (found == known.end() || equals == piece.size()) {
+      throw bad_value(
+          fmt::format("'{}' is not one of {}=N", piece,
+                      fmt::join(known | std::views::transform(&named_number::name), "=N, ")));
+    }
+    const double value =
+        number_of(std::string(piece.substr(equals + 1)), found->least, found->most);
+    if (found->is_whole && value != std::floor(value)) {
+      throw bad_value(fmt::format("'{}' is not a whole number", piece));
+    }
+    found->take(value);
+  }
+}
+
+number_range range_of(const std::string& text, double least, double most) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos) {
+    throw bad_value(fmt::format("'{}' is not a range such as {}:{}", text, least, most));
+  }
+  const std::string from = text.substr(0, colon);
+  const std::string to = text.substr(colon + 1);
+  return {from.empty() ? least : number_of(from, least, most),
+          to.empty() ? most : number_of(to, least, most)};
+}
+
+}  // namespace g4_tool

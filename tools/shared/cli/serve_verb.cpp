@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "serve_verb.hpp"
+
+#include <utility>
+
+#include "rows.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr const char* serve_details =
+    R"(Open http://localhost:8765/ in a browser: the radar, rates and losses, what the doctor finds, the
+settings, and for a recording a time line. Foxglove connects to ws://localhost:8765/ and gets
+/scan (LaserScan), /points (PointCloud2) and /diagnostics (DiagnosticArray).
+
+Only programs of this machine can connect, unless --address is given: 0.0.0.0 for all networks.
+There is no password and no encryption. Web pages of other origins are refused, but those of
+--allow-origin, such as https://app.foxglove.dev. The settings of the lidar can be changed only
+with --allow-set.
+
+The web page draws all points in the robot's frame: x ahead, y left.)";
+
+std::string origin_of(const std::string& word) {
+  const std::size_t colon = word.find("://");
+  if (colon == std::string::npos || colon == 0 || word.find('/', colon + 3) != std::string::npos) {
+    throw bad_value("'" + word + "' is not an origin such as https://app.foxglove.dev");
+  }
+  return word;
+}
+
+option_rows server_rows(serve_options& options) {
+  option_row origin{
+      "--allow-origin", "ORIGIN",
+      "A web page of others that may connect: https://HOST; may be repeated",
+      [&into = options.origins](const std::string& word) { into.push_back(origin_of(word)); }};
+  origin.repeatable = true;
+  return in_group(
+      "Server",
+      {number_row("--port", "PORT", "TCP port; 0: any free one (8765)", options.port,
+                  std::uint16_t{0}, std::uint16_t{65535}),
+       text_row("--address", "ADDRESS", "Listen at this address of the machine (127.0.0.1)",
+                options.address, completion::nothing),
+       flag_row("--allow-set", "Let clients change the settings of the lidar", options.allows_set),
+       origin});
+}
+
+option_rows lidar_rows(serve_options& options) {
+  return joined(
+      in_group("Device",
+               {choice_row("--on-loss", "If the device is lost; wait: also at the start (wait)",
+                           options.common.on_loss,
+                           choices<loss_rule>{{"exit", loss_rule::exit},
+                                              {"wait", loss_rule::wait},
+                                              {"reconnect", loss_rule::reconnect}})}),
+      baud_row(options.common));
+}
+
+option_rows scan_rows(serve_options& options) {
+  return in_group(
+      "Scans",
+      {frame_row("--frame", "Of --fov and --ignore; robot: counter-clockwise, REP 103 (vendor)",
+                 options.common.frame),
+       choice_row("--deskew", "Deskew each revolution by the scans alone", options.common.deskew,
+                  choices<deskewing>{{"scans", deskewing::by_scans}}),
+       number_row("--grid", "N", "Ranges of each LaserScan (720)", options.bins, 1U, 65536U),
+       text_row("--frame-id", "NAME", "frame_id of the messages for Foxglove (laser)",
+                options.frame_id, completion::nothing)});
+}
+
+option_rows player_rows(serve_options& options) {
+  return in_group("Recordings",
+                  {number_row("--playback-speed", "FACTOR", "1: as recorded, 0.5: half as fast (1)",
+                              options.speed, 0.01, 100.0),
+                   flag_row("--loop", "Start again at the end", options.loops)});
+}
+
+}  // namespace
+
+verb make_serve_verb(std::string name, const std::function<int(const serve_options&)>& run) {
+  const auto options = std::make_shared<serve_options>();
+  const std::string command = name == "serve" ? "g4-dump serve" : name;
+  return {
+      .name = std::move(name),
+      .summary = "Show the lidar in a web page, and to Foxglove",
+      .arguments = {source_argument(options->common)},
+      .options = joined(server_rows(*options), lidar_rows(*options), filter_rows(options->common),
+                        scan_rows(*options), player_rows(*options),
+                        in_group("End condition", {duration_row(options->common)})),
+      .details = serve_details,
+      .examples = {{command, "Serve the only G4 at http://localhost:8765/"},
+                   {command + " walk.mcap --loop --port 8000", "Play a recording, again and again"},
+                   {command + " --address 0.0.0.0 --allow-set",
+                    "For all machines of the network, which may change settings"}},
+      .run = [options, run] { return run(*options); }};
+}
+
+}  // namespace g4_tool

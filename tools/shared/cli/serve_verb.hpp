@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The command line of g4-serve, which is also that of `g4-dump serve`.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common_options.hpp"
+#include "verbs.hpp"
+
+namespace g4_tool {
+
+struct serve_options {
+  serve_options() { common.on_loss = loss_rule::wait; }
+
+  common_options common;
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 8765;  ///< 0: any that is free.
+  bool allows_set = false;
+  std::vector<std::string> origins;  ///< Web pages of others that may connect.
+  std::uint32_t bins = 720;          ///< Of a LaserScan.
+  std::string frame_id = "laser";
+  double speed = 1.0;  ///< Of a recording.
+  bool loops = false;
+};
+
+/// The verb `name`, which `run` runs.
+[[nodiscard]] verb make_serve_verb(std::string name,
+                                   const std::function<int(const serve_options&)>& run);
+
+}  // namespace g4_tool

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "command_source.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "output.hpp"
+
+namespace g4_tool {
+namespace {
+
+/// Throws a failure where the source is a file, which cannot answer.
+void refuse_files(const common_options& options, task doing) {
+  const source_kind kind = kind_of(options.source);
+  if (kind == source_kind::device || kind == source_kind::simulated) return;
+  throw failure(error(doing, problem::read_only, options.source));
+}
+
+/// In this time the slowest G4 sends a packet.
+constexpr std::int64_t listen_ns = 60'000'000;
+
+/// Whether a packet comes. The driver reports what goes wrong.
+bool hears_packet(transport& port, std::int64_t deadline_ns) {
+  stream_parser parser;
+  std::array<std::uint8_t, 1024> buffer;
+  bool found = false;
+  while (!found && port.now_ns() < deadline_ns) {
+    const auto got = port.read(buffer, deadline_ns);
+    if (!got || got->count == 0) return false;
+    parser.feed(bytes(buffer).first(got->count), [&found](const event& what) {
+      found = found || std::holds_alternative<packet_view>(what);
+    });
+  }
+  return found;
+}
+
+/// Waits for a packet before anything is sent. The driver reports a scan only where it hears a whole
+/// packet before its own stop is obeyed.
+opening listening(bool& heard) {
+  opening how;
+  how.each = [&heard](std::unique_ptr<transport> port) {
+    if (hears_packet(*port, port->now_ns() + listen_ns)) heard = true;
+    return port;
+  };
+  return how;
+}
+
+}  // namespace
+
+command_source::command_source(const common_options& options, task doing)
+    : source_((refuse_files(options, doing), options), listening(was_scanning_)) {
+  while (const auto event = lidar().next_event()) {
+    was_scanning_ = was_scanning_ || event->what == lidar_event::kind::found_scanning;
+  }
+  if (was_scanning_)
+    logger::info(fmt::format("{}: was scanning and has been stopped\n", lidar().name()));
+}
+
+verb device_verb(verb made, exit_code (*run)(const common_options&), bool has_output) {
+  const auto options = std::make_shared<common_options>();
+  made.arguments = {source_argument(*options)};
+  if (has_output) made.options = {json_row(*options), output_row(*options)};
+  made.options = joined(made.options, device_rows(*options));
+  made.run = [options, run] { return static_cast<int>(run(*options)); };
+  return made;
+}
+
+void write_object(output& out, const nlohmann::ordered_json& value, std::size_t width,
+                  bool as_json) {
+  if (as_json) return out.write(json_line(value));
+  const nlohmann::ordered_json all = value.flatten();
+  for (const auto& [path, each] : all.items()) {
+    std::string name = path.substr(1);
+    std::replace(name.begin(), name.end(), '/', '_');
+    const std::string text = each.is_string() ? printable(each.get<std::string>()) : each.dump();
+    out.write(fmt::format("{:<{}}{}\n", name, width, each.is_null() ? "unknown" : text));
+  }
+}
+
+}  // namespace g4_tool

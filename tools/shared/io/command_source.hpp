@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// What the verbs that send commands to a device have in common.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "cli/common_options.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/verbs.hpp"
+#include "io/source.hpp"
+
+namespace g4_tool {
+
+class output;
+
+/// A device that is opened for commands, which stops it. Before that it listens whether the device is
+/// scanning, and reports that. (Discovery by serial number or among several has stopped it already.)
+class command_source {
+ public:
+  /// `doing` is what a file is refused for. Throws a failure.
+  command_source(const common_options& options, g4lidar::task doing);
+
+  [[nodiscard]] g4lidar::lidar& lidar() noexcept { return source_.lidar(); }
+  /// Whether it had to be stopped first.
+  [[nodiscard]] bool was_scanning() const noexcept { return was_scanning_; }
+
+ private:
+  bool was_scanning_ = false;
+  opened_source source_;
+};
+
+/// `made` with SOURCE and the options of the device; with --json and --output where `has_output`.
+[[nodiscard]] verb device_verb(verb made, exit_code (*run)(const common_options&),
+                               bool has_output = false);
+
+/// An object as a line of JSON, or for people: lines "name  value" with `width` columns for the
+/// name. Null is "unknown", and an object in it, such as "skipped", gives lines "skipped_noise".
+void write_object(output& out, const nlohmann::ordered_json& value, std::size_t width,
+                  bool as_json);
+
+}  // namespace g4_tool

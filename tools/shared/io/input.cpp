@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// Opening and reading, with every failure as a sentence.
+#include "input.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "interrupt.hpp"
+
+namespace g4_tool {
+namespace {
+
+std::string advice_on(int error, const std::string& what_to_give) {
+  if (error == ENOENT || error == ENOTDIR) return "Check the name. " + what_to_give;
+  if (error == EACCES || error == EPERM) return "You need permission to read it.";
+  return what_to_give;
+}
+
+/// A recording comes in files; in a pipe it would be taken for noise.
+void refuse_recording(std::span<const std::uint8_t> begin, const std::string& title) {
+  constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+  if (!std::ranges::equal(begin.first(std::min(begin.size(), magic.size())), magic)) return;
+  throw failure(exit_code::bad_file,
+                title +
+                    " is a recording, not raw bytes. Give the file's name to g4-dump dump, scan "
+                    "or packets; a recording is not read from a pipe.");
+}
+
+std::string baud_question() {
+  return fmt::format("Was the port read at a wrong baud rate (a G4 needs {})?",
+                     diagnostic_options{}.baud);
+}
+
+}  // namespace
+
+input::input(const std::string& name, const std::string& what_to_give) {
+  if (name == "-") {
+    title_ = "standard input";
+    if (::isatty(0) != 0) {
+      throw failure(exit_code::usage, "standard input is a terminal. " + what_to_give);
+    }
+  } else {
+    title_ = in_quotes(name);
+    fd_ = open_file(name, O_RDONLY);
+    if (fd_ < 0) {
+      throw failure(exit_code::bad_file,
+                    fmt::format("cannot open {}: {}. {}", title_, std::strerror(errno),
+                                advice_on(errno, what_to_give)));
+    }
+  }
+  struct stat status{};
+  if (::fstat(fd_, &status) != 0) return;
+  if (S_ISDIR(status.st_mode)) {
+    if (fd_ != 0) ::close(fd_);
+    throw failure(exit_code::bad_file, title_ + " is a directory. " + what_to_give);
+  }
+  id_ = id_of(status);
+  if (id_) size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+input::~input() {
+  if (fd_ != 0) ::close(fd_);
+}
+
+std::size_t input::read(std::span<std::uint8_t> into) {
+  while (interrupt() == 0) {
+    const ssize_t count = ::read(fd_, into.data(), into.size());
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno == EIO && ::isatty(fd_) != 0) return 0;  // the other side of a terminal has gone
+    if (errno == EAGAIN && wait_for_input(fd_, -1) == wake::input) continue;
+    if (errno == EINTR || errno == EAGAIN) continue;
+    throw failure(exit_code::bad_file,
+                  fmt::format("cannot read {}: {}. Check the disk, or copy the file and give "
+                              "the copy.",
+                              title_, std::strerror(errno)));
+  }
+  return 0;
+}
+
+bool input::wait(output& out, const time_limits& limits) const {
+  pollfd waiting{fd_, POLLIN, 0};
+  if (id_ || ::poll(&waiting, 1, 0) != 0) return true;
+  out.flush();
+  return !out.is_closed() && wait_for_input(fd_, out.descriptor(), limits.end()) == wake::input;
+}
+
+void input::pump(output& out, const byte_sink& sink, const common_options& options) {
+  constexpr std::size_t first_piece = 16'384;
+  progress_bar bar(size_, sink.with_bar && !out.is_terminal());
+  std::vector<std::uint8_t> buffer(std::size_t{256} * 1024);
+  time_limits limits(options.duration, options.idle);
+  std::uint64_t bytes = 0;
+  while (!out.is_closed() && !(sink.is_done && sink.is_done())) {
+    if (!wait(out, limits) || (!id_ && limits.is_over())) return;
+    const std::size_t most = bytes == 0 ? first_piece : buffer.size();
+    const std::span<const std::uint8_t> got(buffer.data(), read(std::span(buffer).first(most)));
+    if (got.empty()) return;
+    limits.came();
+    if (bytes == 0) refuse_recording(got, title_);
+    sink.take(got);
+    if (bytes == 0) out.flush();
+    bytes += got.size();
+    bar.show(bytes);
+  }
+}
+
+recording_reader read_items(const std::string& path, const reading_options& range,
+                            const std::function<bool(const recorded_item&)>& take) {
+  auto reader = value_of(recording_reader::open(path, range));
+  progress_bar bar(reader.size());
+  value_of(reader.for_each([&](const recorded_item& item) {
+    if (interrupt() != 0 || !take(item)) return false;
+    bar.show(reader.position());
+    return true;
+  }));
+  return reader;
+}
+
+std::string describe(const recording_damage& damage) {
+  if (!damage.any()) return {};
+  return fmt::format("{}{} of the file skipped, {} damaged\n",
+                     damage.is_cut_off ? "the file was cut off, " : "",
+                     counted(damage.bytes_skipped, "byte"), counted(damage.chunks_lost, "chunk"));
+}
+
+std::string stats_in_words(const stream_counts& counts, std::uint64_t bytes) {
+  return fmt::format(
+      "{}: {} ({} suspect) with {}, {}\n"
+      "{} skipped: {} noise, {} bad header, {} bad checksum, {} truncated\n",
+      counted(bytes, "byte"), counted(counts.packets, "packet"), counts.suspect,
+      counted(counts.points, "point"), counted(counts.responses, "response"),
+      counted(counts.skipped_bytes(), "byte"), counts.skipped(skip_reason::noise),
+      counts.skipped(skip_reason::bad_header), counts.skipped(skip_reason::bad_checksum),
+      counts.skipped(skip_reason::truncated));
+}
+
+nlohmann::ordered_json counts_as_json(const stream_counts& counts, std::uint64_t bytes) {
+  nlohmann::ordered_json skipped;
+  for (std::size_t i = 0; i < skip_reasons; ++i) {
+    skipped[name_of(static_cast<skip_reason>(i))] = counts.skipped_by_reason[i];
+  }
+  return {{"bytes", bytes},          {"packets", counts.packets}, {"responses", counts.responses},
+          {"points", counts.points}, {"suspect", counts.suspect}, {"skipped", skipped}};
+}
+
+bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept {
+  constexpr std::size_t enough = 4096;
+  const auto first = bytes.first(std::min(bytes.size(), enough));
+  return !first.empty() && std::all_of(first.begin(), first.end(), [](std::uint8_t c) {
+    return (c >= ' ' && c <= '~') || (c >= '\t' && c <= '\r');
+  });
+}
+
+std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes, bool has_text,
+                          const std::string& title) {
+  const auto found = diagnosis_of(counts, bytes);
+  if (found == diagnosis::bad_file) {
+    return title + " is empty. Give raw bytes from the lidar's port while it was scanning.";
+  }
+  const std::string text =
+      fmt::format("no point packet in the {} of {}", counted(bytes, "byte"), title);
+  if (has_text) {
+    return text +
+           ": this is text. Give raw bytes from the lidar's port, or use g4-dump convert for csv "
+           "and jsonl.";
+  }
+  if (found == diagnosis::wrong_baud_rate) {
+    return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
+  }
+  return fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.", text,
+                     counts.responses == 1 ? "a response" : "responses");
+}
+
+std::string warning_about(const stream_counts& counts, std::uint64_t bytes) {
+  if (diagnosis_of(counts, bytes) != diagnosis::line_noise) return {};
+  return "More than half of the bytes belong to no packet. " + baud_question() + "\n";
+}
+
+}  // namespace g4_tool

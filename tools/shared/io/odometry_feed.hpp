@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The odometry of a file, of a recording or of a simulated robot, beside the points of the same times.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "g4lidar/motion.hpp"
+#include "g4lidar/point.hpp"
+#include "source.hpp"
+
+namespace g4_tool {
+
+class odometry_feed {
+ public:
+  using taker = std::function<void(const g4lidar::stamped_odometry&)>;
+
+  /// That of a file or a recording has precedence. Null: none.
+  void follow(simulated_robot* robot) { robot_ = robot; }
+  /// The file of --odometry. Throws a failure.
+  void load(const std::string& path);
+  /// What a recording holds. Throws a failure.
+  void load_recording(const std::string& path);
+  /// The times of the file are those of the source plus `shift_ns`.
+  void shift(std::int64_t shift_ns);
+  /// From now on points can be earlier ones again.
+  void restart() noexcept { has_begun_ = false; }
+
+  /// Whether there is any.
+  [[nodiscard]] bool is_known() const noexcept { return robot_ != nullptr || !all_.empty(); }
+  /// Gives what was before these points, and the pose after them, in order, each once.
+  void follow(std::span<const g4lidar::point> points, const taker& take);
+
+ private:
+  void follow_robot(std::span<const g4lidar::point> points, const taker& take);
+
+  simulated_robot* robot_ = nullptr;
+  std::int64_t last_ns_ = 0;  // of the robot
+  std::vector<g4lidar::stamped_odometry> all_;
+  std::size_t next_ = 0;
+  bool has_begun_ = false;
+};
+
+}  // namespace g4_tool

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "point_job.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "g4lidar/export/byte_points.hpp"
+#include "g4lidar/export/shaping_writer.hpp"
+#include "g4lidar/export/slam_text.hpp"
+#include "g4lidar/export/svg.hpp"
+#include "g4lidar/wall_clock.hpp"
+#include "input.hpp"
+#include "interrupt.hpp"
+#include "mask_file.hpp"
+#include "odometry_file.hpp"
+#include "output.hpp"
+#include "read_loop.hpp"
+
+namespace g4_tool {
+namespace {
+
+shaping_options shape_of(const point_job& job, const common_options& common, source_kind kind) {
+  const bool is_file = kind == source_kind::bytes;
+  shaping_options shape;
+  shape.filter = common.filter;
+  shape.filter.in = common.frame;
+  shape.filter.ignored_sectors = common.ignored;
+  shape.filter.returns_only = job.returns_only;
+  shape.speckle = common.speckle;
+  shape.edges = common.edges;
+  shape.deskew = common.deskew;
+  shape.mount = common.mount.value_or(mounting{});
+  shape.for_grid = job.bins > 0;
+  shape.partial_scans = job.partial;
+  if (common.count > 0) shape.count = common.count;
+  if (is_file) {
+    shape.from_ns = job.source.played.range.from_ns;
+    shape.to_ns = job.source.played.range.to_ns;
+  }
+  if (common.duration.count() > 0 && (is_file || kind == source_kind::recording)) {
+    shape.to_ns = std::min<std::int64_t>(shape.to_ns, common.duration.count());
+  }
+  shape.time = common.time.value_or(is_file ? time_style::monotonic : time_style::absolute);
+  if (job.log != slam_log::none && shape.time == time_style::delta) {
+    throw bad_value("--time delta: this format needs times that do not go back");
+  }
+  if (is_file && !job.text && common.time &&
+      (shape.time == time_style::absolute || shape.time == time_style::monotonic)) {
+    throw bad_value("--time: raw bytes carry no times; use zero or delta, see --sample-rate");
+  }
+  if (shape.time != time_style::absolute || is_file) return shape;
+  shape.follows_wall_clock = kind != source_kind::recording;
+  shape.wall_ahead_ns = wall_clock().ahead().count();
+  if (shape.follows_wall_clock) return shape;
+  read_items(path_of(common.source), {}, [&shape](const recorded_item& first) {
+    shape.wall_ahead_ns = first.wall_ns - first.time_ns;
+    return false;
+  });
+  return shape;
+}
+
+/// Each revolution goes to the output, or to a file of its own.
+class scan_file_writer final : public point_writer {
+ public:
+  scan_file_writer(scan_file format, frame frame, pcd_data data, numbered_files files)
+      : format_(format), frame_(frame), data_(data), files_(std::move(files)) {}
+
+  [[nodiscard]] bool takes_scans() const noexcept override { return true; }
+
+  void write_scan(const scan_record& record, text_sink& out) override {
+    if (!files_) return write(record.scan.points, out);
+    output file(files_(number_++));
+    write(record.scan.points, file);
+    file.commit();
+  }
+
+ private:
+  void write(std::span<const point> points, text_sink& out) const {
+    if (format_ == scan_file::svg) return write_svg(points, out);
+    write_pcd(points, frame_, data_, out);
+  }
+
+  scan_file format_;
+  frame frame_;
+  pcd_data data_;
+  numbered_files files_;
+  std::uint64_t number_ = 0;
+};
+
+/// One run of a job, from the options to the counts.
+class point_run {
+ public:
+  explicit point_run(const point_job& job)
+      : job_(job), common_(*job.common), kind_(kind_of(common_.source)) {
+    if (job_.text) kind_ = source_kind::bytes;
+    if (has_scan_files()) choose_files();
+    shaping_options shape = shape_of(job_, common_, kind_);
+    if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
+    shape.filter.masks = mask_.polygons();
+    load_path(shape);
+    job_.style.to = common_.frame;
+    job_.style.unit = common_.unit;
+    const bool has_long_times =
+        shape.time == time_style::absolute || shape.time == time_style::monotonic;
+    if (has_long_times && kind_ != source_kind::bytes) job_.style.time_width = 10;
+    writer_ = std::make_unique<shaping_writer>(make_writer(), shape);
+  }
+
+  int run() {
+    kind_ == source_kind::bytes ? read_file() : read_lidar();
+    return exit_code_now();
+  }
+
+ private:
+  [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
+  void choose_files() {
+    if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
+    files_ = numbered_files_of(common_.output);
+    if (files_) return;
+    if (common_.count > 1) {
+      throw bad_value("-n: a file holds one revolution; write several with -o scan-%04d.pcd");
+    }
+    common_.count = 1;
+    if (job_.file == scan_file::pcd && common_.output == "-" && job_.data == pcd_data::binary &&
+        ::isatty(1) != 0) {
+      throw bad_value("standard output is a terminal; give -o FILE, or --pcd-data ascii");
+    }
+  }
+
+  /// The poses of the file of --odometry, or of the recording.
+  void load_path(shaping_options& shape) {
+    const bool is_needed = common_.deskew == deskewing::by_path || job_.log != slam_log::none;
+    if (!common_.odometry.empty()) {
+      path_ = load_odometry(common_.odometry);
+    } else if (is_needed && kind_ == source_kind::recording) {
+      read_items(path_of(common_.source), {}, [this](const recorded_item& item) {
+        if (item.what == recorded_item::kind::odometry)
+          path_.push_back({item.time_ns, item.odometry.pose});
+        return true;
+      });
+      std::ranges::sort(path_, {}, &stamped_pose::time_ns);
+      const auto same = std::ranges::unique(path_, {}, &stamped_pose::time_ns);
+      path_.erase(same.begin(), same.end());
+    }
+    if (path_.empty() && (common_.deskew == deskewing::by_path || job_.log == slam_log::tum)) {
+      throw bad_value(in_quotes(common_.source) +
+                      " has no poses of the robot: give --odometry FILE" +
+                      (job_.log == slam_log::tum ? "" : ", or --deskew scans"));
+    }
+    shape.path = path_;
+    shape.on_path_only = job_.log != slam_log::none && !path_.empty();
+  }
+
+  std::unique_ptr<point_writer> make_writer() {
+    if (job_.point_file) {
+      auto writer = make_point_file_writer(*job_.point_file, common_.frame);
+      point_file_ = writer.get();
+      return writer;
+    }
+    if (has_scan_files()) {
+      return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
+    }
+    if (job_.log == slam_log::carmen)
+      return make_carmen_writer(job_.bins, common_.mount.value_or(mounting{}));
+    if (job_.log == slam_log::tum) return make_tum_writer();
+    if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins);
+    return make_point_writer(job_.style);
+  }
+
+  /// Numbered files are made by their writer. What may have no end goes to its file at once.
+  [[nodiscard]] std::string output_name() const { return files_ ? "/dev/null" : common_.output; }
+  [[nodiscard]] output::appears when_it_appears(bool has_end) const {
+    return has_end || has_scan_files() || job_.point_file || job_.whole_file
+               ? output::appears::whole
+               : output::appears::growing;
+  }
+
+  /// Writes what is left, and ends the file.
+  void commit(output& out) {
+    writer_->finish(out);
+    if (point_file_ != nullptr) {
+      writer_->begin(out);  // if there was no point
+      point_file_->end(out);
+      if (const std::string begin = point_file_->first_bytes(); !begin.empty())
+        out.replace_begin(begin);
+    }
+    out.commit();
+  }
+
+  void pump(input& in, output& out,
+            const std::function<void(std::span<const std::uint8_t>)>& take) {
+    in.pump(out,
+            {.take = take,
+             .is_done = [this] { return writer_->is_done(); },
+             .with_bar = !job_.json_counts},
+            common_);
+  }
+
+  void read_file() {
+    input in(path_of(common_.source), job_.text
+                                          ? "Give csv or jsonl as g4-dump writes it."
+                                          : "Give a file of raw bytes from the lidar's port, or "
+                                            "pipe them in.");
+    output out(output_name(), when_it_appears(in.id().has_value()));
+    refuse_same_file(in.id(), out);
+    const std::uint64_t found = job_.text ? read_text(in, out) : read_bytes(in, out);
+    if (found > 0) commit(out);
+    report_left_out();
+  }
+
+  std::uint64_t read_bytes(input& in, output& out) {
+    byte_points way(*writer_, out, job_.source.bytes_rate_hz);
+    bool has_text = false;
+    pump(in, out, [&](std::span<const std::uint8_t> got) {
+      if (way.bytes() == 0) has_text = looks_like_text(got);
+      way.take(got);
+    });
+    if (!writer_->is_done()) way.finish();  // else what is left was not asked for
+    if (job_.json_counts) {
+      logger::write(json_line(counts_as_json(way.counts(), way.bytes())));
+    } else if (way.bytes() > 0) {
+      logger::info(stats_in_words(way.counts(), way.bytes()));
+      logger::info(warning_about(way.counts(), way.bytes()));
+    }
+    if (way.counts().packets == 0 && !out.is_closed() && interrupt() == 0) {
+      throw failure(exit_code::bad_file,
+                    why_no_packet(way.counts(), way.bytes(), has_text, in.title()));
+    }
+    return way.counts().packets;
+  }
+
+  std::uint64_t read_text(input& in, output& out) {
+    if (!job_.text) return 0;
+    text_points way(*job_.text, job_.text_frame, *writer_, out);
+    pump(in, out, [&](std::span<const std::uint8_t> got) {
+      way.take({reinterpret_cast<const char*>(got.data()), got.size()});
+    });
+    if (!writer_->is_done()) way.finish();
+    if (way.points() == 0 && interrupt() == 0) {
+      throw failure(exit_code::bad_file,
+                    in.title() +
+                        (way.is_foreign() ? " has no columns angle_deg and range_mm or "
+                                            "range_m. "
+                                          : " holds no points. ") +
+                        "Give points as g4-dump writes them, one in each line.");
+    }
+    logger::info(fmt::format("{}, {} without one\n", counted(way.points(), "point"),
+                             counted(way.bad_lines(), "line")));
+    return way.points();
+  }
+
+  void read_lidar() {
+    const bool is_recording = kind_ == source_kind::recording;
+    output out(output_name(), when_it_appears(is_recording));
+    if (is_recording) refuse_same_file(id_of_name(path_of(common_.source)), out);
+    opening how = job_.source;
+    how.how.partial_scans = writer_->takes_scans();  // the writer leaves them out, and counts them
+    opened_source source(common_, how);
+    try {
+      run_lidar(source, out);
+    } catch (const failure&) {  // what came before it is good
+      commit(out);
+      report_lidar(source);
+      throw;
+    }
+    const bool has_packets = source.lidar().counts().stream.packets > 0;
+    if (has_packets || !is_recording) commit(out);
+    report_lidar(source);
+    if (!has_packets && is_recording && interrupt() == 0 && !out.is_closed()) {
+      throw failure(exit_code::bad_file,
+                    "there is no whole packet in " + in_quotes(common_.source) +
+                        (job_.source.played.range.from_ns > 0 ? " from that time on." : ".") +
+                        " g4-dump packets shows what it holds; or give another file.");
+    }
+  }
+
+  void run_lidar(opened_source& source, output& out) {
+    read_sink sink;
+    if (writer_->takes_scans()) {
+      sink.scan = [&](const g4lidar::scan& scan) {
+        scan_record record{.scan = scan};
+        if (!scan.points.empty()) record.time_ns = scan.points.front().time_ns;
+        record.measured_hz = static_cast<double>(scan.measured_frequency_hz());
+        writer_->write_scan(record, out);
+        return std::uint64_t{1};
+      };
+    } else {
+      sink.points = [&](std::span<const point> points) { writer_->write_points(points, out); };
+    }
+    sink.is_done = [this] { return writer_->is_done(); };
+    common_options ending = common_;
+    if (kind_ == source_kind::recording) ending.duration = std::chrono::nanoseconds(0);
+    read_source(source, ending, sink, out);
+  }
+
+  void report_lidar(opened_source& source) const {
+    report_counts(source.lidar().counts(), writer_->takes_scans());
+    logger::info(describe(source.damage()));
+    report_left_out();
+  }
+
+  void report_left_out() const {
+    if (const std::uint64_t count = writer_->pieces_left_out(); count > 0) {
+      logger::info(counted(count, "incomplete revolution") + " left out" +
+                   (job_.whole_file ? "\n" : "; --partial includes them\n"));
+    }
+    if (const std::uint64_t count = writer_->scans_off_path(); count > 0) {
+      logger::info(counted(count, "revolution") +
+                   " left out: the odometry has no pose at their time\n");
+    }
+    if (const std::uint64_t count = writer_->points_not_deskewed(); count > 0) {
+      logger::info(fmt::format("{} not deskewed: {}\n", counted(count, "point"),
+                               common_.deskew == deskewing::by_path
+                                   ? "the odometry has no pose at their time"
+                                   : "the scans do not show the motion"));
+    }
+    if (has_scan_files() && !files_ && writer_->is_done()) {
+      logger::info(
+          "the first whole revolution; OUT with %04d, or a directory, takes all of them\n");
+    }
+  }
+
+  point_job job_;
+  common_options common_;
+  source_kind kind_;
+  numbered_files files_;
+  g4lidar::mask mask_;
+  std::vector<stamped_pose> path_;
+  std::unique_ptr<shaping_writer> writer_;
+  point_file_writer* point_file_ = nullptr;  // behind writer_
+};
+
+}  // namespace
+
+int run(const point_job& job) { return point_run(job).run(); }
+
+}  // namespace g4_tool

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "read_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "interrupt.hpp"
+#include "output.hpp"
+#include "source.hpp"
+
+namespace g4_tool {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+constexpr auto pulse_time = 100ms;
+constexpr auto flush_time = 50ms;
+
+class read_loop {
+ public:
+  read_loop(opened_source& source, const common_options& options, const read_sink& sink,
+            output& out)
+      : lidar_(source.lidar()),
+        recording_(source.recording()),
+        options_(options),
+        sink_(sink),
+        out_(out) {}
+
+  void run() {
+    while (!is_over()) {
+      const bool got = read();
+      report_events(lidar_);
+      if (ended_) return;
+      if (got) {
+        limits_.came();
+      } else {
+        flush_if_due();
+        wait();
+      }
+      if (recording_ != nullptr) bar_.show(recording_->position());
+      if (sink_.pulse) sink_.pulse();
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_over() const {
+    return interrupt() != 0 || out_.is_closed() || has_enough() || limits_.is_over();
+  }
+
+  [[nodiscard]] bool has_enough() const {
+    if (sink_.is_done) return sink_.is_done();
+    return options_.count > 0 && records_ >= options_.count;
+  }
+
+  void flush_if_due() {
+    const auto now = clock::now();
+    if (out_.has_unwritten() && !is_terminal_ && now - flushed_ < flush_time) return;
+    out_.flush();
+    flushed_ = now;
+  }
+
+  /// Takes what is there, without waiting where poll() can do that; false if nothing was.
+  bool read() {
+    const auto longest = lidar_.native_handle() < 0 ? 50ms : 0ms;
+    const auto take_scan = [this](const g4lidar::scan& scan) { records_ += sink_.scan(scan); };
+    const auto took = sink_.scan ? lidar_.next_scan(longest).map(take_scan)
+                                 : lidar_.next_points(longest).map(sink_.points);
+    if (took) return true;
+    ended_ = took.error() == g4lidar::problem::end_of_input;
+    if (ended_ || !took.error().is_fatal()) return false;
+    report_events(lidar_);
+    throw failure(took.error(), true);
+  }
+
+  void wait() {
+    if (lidar_.native_handle() < 0) return;  // it has waited itself
+    auto until = std::min({clock::now() + pulse_time, lidar_.next_deadline(), limits_.end()});
+    if (out_.has_unwritten()) until = std::min(until, flushed_ + flush_time);
+    const wake woken = wait_for_input(lidar_.native_handle(), out_.descriptor(), until);
+    if (woken == wake::output_closed) out_.close_early();
+  }
+
+  g4lidar::lidar& lidar_;
+  const recording_reader* recording_;
+  const common_options& options_;
+  const read_sink& sink_;
+  output& out_;
+  time_limits limits_{options_.duration, options_.idle};
+  clock::time_point flushed_ = clock::now();
+  bool is_terminal_ = out_.is_terminal();
+  progress_bar bar_{recording_ == nullptr ? 0 : recording_->size(),
+                    sink_.with_bar && !is_terminal_};
+  std::uint64_t records_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+void report_events(g4lidar::lidar& lidar) {
+  while (const auto event = lidar.next_event()) {
+    const bool is_loss = event->what == lidar_event::kind::lost;
+    if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // a file is over
+    logger::info(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what),
+                             is_loss ? ", " : "", is_loss ? name_of(event->reason) : ""));
+  }
+}
+
+void read_source(opened_source& source, const common_options& options, const read_sink& sink,
+                 output& out) {
+  g4lidar::lidar& lidar = source.lidar();
+  value_of(lidar.start());
+  read_loop(source, options, sink, out).run();
+  static_cast<void>(lidar.stop());  // what was received is good, whatever the device answers
+  report_events(lidar);
+}
+
+void report_counts(const lidar_counts& counts, bool has_scans) {
+  // What was not read was not wanted: scans beside points are not missed, nor points beside scans.
+  logger::info(fmt::format(
+      "{}: {} ({} suspect) with {} in {} and {}\n{} skipped, {} lost, {} missed, {}\n",
+      counted(counts.bytes, "byte"), counted(counts.stream.packets, "packet"),
+      counts.stream.suspect, counted(counts.stream.points, "point"), counted(counts.scans, "scan"),
+      counted(counts.partial_scans, "piece"), counted(counts.stream.skipped_bytes(), "byte"),
+      counted(counts.samples_lost, "sample"),
+      counted(has_scans ? counts.scans_missed : counts.points_missed, has_scans ? "scan" : "point"),
+      counted(counts.reconnects, "reconnect")));
+}
+
+}  // namespace g4_tool

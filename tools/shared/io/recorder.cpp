@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+#include "recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/rows.hpp"
+#include "g4lidar/motion.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "odometry_feed.hpp"
+#include "output.hpp"
+#include "read_loop.hpp"
+#include "service_watch.hpp"
+
+namespace g4_tool {
+namespace {
+
+/// What is wrong with the file of a recording, and what to try.
+failure file_failure(const g4lidar::error& why, const std::string& path) {
+  const int number = why.system_errno();
+  if (why.code() == problem::bad_option) return {exit_code::usage, in_tool_words(why.message())};
+  if (why.code() != problem::system || number == 0)
+    return {exit_code::bad_file, in_tool_words(why.message())};
+  const bool is_full = number == ENOSPC || number == EDQUOT || number == EFBIG;
+  return {exit_code::bad_file,
+          fmt::format(
+              "cannot write {}: {}. {}{}", in_quotes(path),
+              number == EEXIST ? "it exists already" : std::generic_category().message(number),
+              advice_on_writing(number), is_full ? " What was written before can be read." : "")};
+}
+
+/// One recording, from its beginning to its end.
+class recorder {
+ public:
+  explicit recorder(const recording_job& job) : job_(job), line_(job.shows_counts) {}
+
+  recorded_result run() {
+    try {
+      open();
+      output nowhere("/dev/null");
+      read_source(*source_, job_.common, sink(), nowhere);
+      end();
+      if (const auto why = file_error_) throw file_failure(*why, title_);
+    } catch (...) {
+      end();
+      if (job_.shows_counts && has_run_) report_recorded(result_, title_);
+      throw;
+    }
+    return result_;
+  }
+
+ private:
+  /// The file is there before the source is opened, because opening is recorded, too.
+  void open() {
+    recording_options made = job_.made;
+    made.mount = job_.common.mount;
+    if (!job_.common.odometry.empty()) {
+      odometry_.load(job_.common.odometry);
+      made.keep_odometry = false;
+    }
+    opening how = job_.source;
+    how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
+    // The ring holds the points of many readings; nobody waits for the single packet.
+    how.how.pace = read_pace::revolutions;
+    how.tap = [this, &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
+      if (!writer_) {
+        auto file = recording_writer::create(job_.path, made);
+        if (!file) throw file_failure(file.error(), title_);
+        writer_ = std::make_unique<recording_writer>(std::move(*file));
+        // The bytes of a file are counted from its beginning, by a clock that begins elsewhere.
+        const std::string& name = job_.common.source;
+        if (kind_of(name) == source_kind::bytes && is_file(path_of(name))) {
+          odometry_.shift(from->now_ns());
+        }
+      }
+      return recorded(std::move(from), *writer_);
+    };
+    source_ = std::make_unique<opened_source>(job_.common, how);
+    points_ = std::make_unique<lidar_ring::reader>(source_->lidar().points().make_reader());
+    odometry_.follow(source_->robot());
+    has_run_ = true;
+    describe();
+  }
+
+  /// What is known of the device; nothing is changed for it. Of a recording, recorded() knows it.
+  void describe() {
+    const source_kind kind = kind_of(job_.common.source);
+    if (kind == source_kind::recording || kind == source_kind::bytes) return;
+    g4lidar::lidar& lidar = source_->lidar();
+    recorded_device known;
+    known.information = lidar.information();
+    if (const auto got = lidar.ask(requests::get_ranging())) known.ranging = *got;
+    if (const auto got = lidar.ask(requests::get_scan_frequency())) known.frequency = *got;
+    writer_->device(known);
+  }
+
+  read_sink sink() {
+    const auto take = [this](const g4lidar::scan& scan) -> std::uint64_t {
+      if (!scan.is_piece()) writer_->scan(scan);
+      return scan.is_piece() ? 0 : 1;
+    };
+    return {.scan = take, .pulse = [this] { pulse(); }, .with_bar = !job_.shows_counts};
+  }
+
+  void pulse() {
+    take_points();
+    report_to_service();
+    if (const auto why = writer_->take_error()) throw file_failure(*why, title_);
+    if (!line_.is_due()) return;
+    const lidar_counts lidar = source_->lidar().counts();
+    line_.draw(fmt::format(
+        "{:.0f} s  {}  {}  {} skipped  {:.1f} MB in {}", line_.seconds(),
+        counted(lidar.stream.points, "point"), counted(lidar.scans, "scan"),
+        counted(lidar.stream.skipped_bytes(), "byte"),
+        static_cast<double>(writer_->counts().file_bytes) / 1e6,
+        printable(job_.title.empty() ? writer_->path() : std::string_view(job_.title))));
+  }
+
+  void take_points() {
+    while (const std::size_t count = points_->read(memory_).points) {
+      const std::span<const point> points = std::span(memory_).first(count);
+      writer_->points(points);
+      odometry_.follow(points, [this](const stamped_odometry& at) { writer_->odometry(at); });
+    }
+  }
+
+  /// A service is ready when the lidar scans, and alive with each turn.
+  void report_to_service() {
+    service_.ready();
+    service_.alive();
+    if (service_.is_heard()) {
+      service_.status(fmt::format("recording {}: {}", writer_->path(),
+                                  counted(source_->lidar().counts().scans, "scan")));
+    }
+  }
+
+  /// Ends the scan, the connection and the file, in this order; an earlier error is kept.
+  void end() {
+    line_.clear();
+    service_.stopping();
+    if (!writer_) return;
+    if (source_) {
+      result_.damage = source_->damage();
+      if (const auto* played = source_->recording()) result_.recorded = played->digest();
+      static_cast<void>(source_->lidar().close());
+      if (points_) take_points();
+      result_.lidar = source_->lidar().counts();
+    }
+    points_.reset();
+    odometry_.follow(nullptr);
+    source_.reset();
+    const auto closed = writer_->close();
+    file_error_ = writer_->take_error();
+    if (!closed && !file_error_) file_error_ = closed.error();
+    result_.file = writer_->counts();
+    result_.digest = writer_->digest();
+    std::error_code unimportant;
+    // It holds an attempt to open the source, and nothing else.
+    if (!has_run_ && is_file(job_.path)) std::filesystem::remove(job_.path, unimportant);
+    writer_.reset();
+  }
+
+  static bool is_file(const std::string& path) {
+    std::error_code unimportant;
+    return std::filesystem::is_regular_file(path, unimportant);
+  }
+
+  const recording_job& job_;
+  const std::string& title_ = job_.title.empty() ? job_.path : job_.title;
+  status_line line_;
+  service_watch service_;
+  std::unique_ptr<recording_writer> writer_;  // outlives the source, which is recorded by it
+  std::unique_ptr<opened_source> source_;
+  std::unique_ptr<lidar_ring::reader> points_;
+  std::array<g4lidar::point, 512> memory_{};
+  odometry_feed odometry_;
+  std::optional<g4lidar::error> file_error_;
+  recorded_result result_;
+  bool has_run_ = false;
+};
+
+}  // namespace
+
+option_rows message_rows(g4lidar::recording_options& into) {
+  return {value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
+                    into.points_topic, [](const std::string&) { return "/points"; }),
+          choice_row(
+              "--order", "Order of the ranges of a LaserScan; time: z is down (angle)", into.order,
+              choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}})};
+}
+
+recorded_result record(const recording_job& job) { return recorder(job).run(); }
+
+void report_recorded(const recorded_result& result, const std::string& path) {
+  const recording_counts& file = result.file;
+  logger::info(fmt::format("{}: {} in {}: {} from the lidar, {} to it, {}\n", path,
+                           counted(file.file_bytes, "byte"), counted(file.files, "file"),
+                           counted(file.bytes_from_device, "byte"), file.bytes_to_device,
+                           counted(file.scans, "scan")));
+  if (file.odometry > 0) logger::info(counted(file.odometry, "pose") + " of the odometry\n");
+  if (file.chunks_lost > 0) {
+    logger::info(fmt::format("{} in {} could not be written\n", counted(file.bytes_lost, "byte"),
+                             counted(file.chunks_lost, "chunk")));
+  }
+  logger::info(fmt::format("digest of all bytes {:016x}, of {} {:016x}\n", result.digest.payload,
+                           counted(result.digest.point_count, "point"), result.digest.points));
+}
+
+}  // namespace g4_tool

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "g4lidar/export/printable.hpp"
+
+namespace g4_tool {
+namespace {
+
+using g4lidar::stage_report;
+using g4lidar::stage_verdict;
+
+constexpr int panel_columns = 26;
+constexpr int label_columns = 10;
+/// With less there is no panel.
+constexpr int least_columns = 60;
+constexpr int least_rows = 12;
+
+std::string number_or_dash(double value, std::string_view unit, int decimals) {
+  return value < 0 ? "-" : fmt::format("{:.{}f}{}", value, decimals, unit);
+}
+std::string count_or_dash(std::int64_t value) { return value < 0 ? "-" : fmt::format("{}", value); }
+
+/// The worst stage, and the names of all diagnoses.
+struct verdict {
+  stage_verdict outcome = stage_verdict::ok;
+  std::vector<diagnosis> found{};
+};
+verdict verdict_of(std::span<const stage_report> stages) {
+  verdict all;
+  for (const stage_report& stage : stages) {
+    if (!stage.diagnoses.empty()) all.outcome = std::max(all.outcome, stage.outcome);
+    all.found.insert(all.found.end(), stage.diagnoses.begin(), stage.diagnoses.end());
+  }
+  return all;
+}
+
+ink ink_of(stage_verdict how) noexcept {
+  if (how == stage_verdict::fail) return ink::bad;
+  return how == stage_verdict::warn ? ink::warn : ink::good;
+}
+
+std::string words_of(const verdict& all, std::span<const stage_report> stages) {
+  if (stages.empty()) return "-";
+  if (all.found.empty()) return "ok";
+  std::string names;
+  for (const diagnosis what : all.found) {
+    names.append(names.empty() ? "" : " ").append(describe(what).name);
+  }
+  return names;
+}
+
+std::string health_of(std::span<const stage_report> stages) {
+  for (const stage_report& stage : stages) {
+    if (stage.stage != g4lidar::diagnostic_stage::health) continue;
+    for (const auto& each : stage.measurements) {
+      if (each.name == "status") return each.text();
+    }
+  }
+  return "-";
+}
+
+/// Lines of words at most so wide.
+std::vector<std::string> lines_of(std::string_view words, std::size_t width) {
+  std::vector<std::string> lines;
+  std::string line;
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find(' '), words.size());
+    const std::string_view word = words.substr(0, end);
+    words.remove_prefix(std::min(end + 1, words.size()));
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      lines.push_back(std::exchange(line, {}));
+    }
+    line.append(line.empty() ? "" : " ").append(word);
+  }
+  if (!line.empty()) lines.push_back(line);
+  return lines;
+}
+
+/// Words from the top of an area to its bottom.
+class column_of_words {
+ public:
+  column_of_words(canvas& on, const cell_area& in) : on_(on), in_(in) {}
+
+  void line(std::string_view words, ink what = ink::plain) {
+    if (row_ < in_.rows) on_.write(in_.column, in_.row + row_, words, what, in_);
+    ++row_;
+  }
+  void fact(std::string_view label, const std::string& value, ink what = ink::plain) {
+    if (row_ < in_.rows) {
+      on_.write(in_.column, in_.row + row_, label, ink::faint, in_);
+      on_.write(in_.column + label_columns, in_.row + row_, value, what, in_);
+    }
+    ++row_;
+  }
+  void paragraph(std::string_view words, ink what = ink::plain) {
+    for (const auto& each : lines_of(words, static_cast<std::size_t>(in_.columns)))
+      line(each, what);
+  }
+
+ private:
+  canvas& on_;
+  cell_area in_;
+  int row_ = 0;
+};
+
+void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
+                const view_settings& how) {
+  column_of_words words(on, in);
+  words.line(printable(facts.name), ink::title);
+  const bool is_lost = facts.state == "lost" || facts.state == "ended";
+  words.fact("state", how.is_frozen ? facts.state + ", frozen" : facts.state,
+             is_lost ? ink::bad : ink::plain);
+  if (!facts.serial.empty()) words.fact("serial", facts.serial);
+  words.fact("frequency", number_or_dash(facts.frequency_hz, " Hz", 2));
+  words.fact("samples", number_or_dash(facts.sample_rate_hz, " /s", 0));
+  words.fact("scans", count_or_dash(facts.scans));
+  words.fact("lost", number_or_dash(facts.lost_percent, " %", 2),
+             facts.lost_percent > 0.2 ? ink::warn : ink::plain);
+  words.fact("checksum", count_or_dash(facts.checksum_errors));
+  words.fact("health", health_of(facts.stages));
+  words.fact("frame", how.radar.frame == g4lidar::frame::robot ? "robot" : "vendor");
+  words.fact("range", fmt::format("{:g} m{}", how.radar.range_m, how.is_zoomed ? "" : ", auto"));
+  if (facts.length_s >= 0) {
+    words.fact("position",
+               fmt::format("{:.1f} of {:.1f} s", std::max(facts.position_s, 0.0), facts.length_s));
+  }
+  words.fact("event", facts.event.empty() ? "-" : facts.event);
+  const verdict all = verdict_of(facts.stages);
+  words.line("");
+  words.line("doctor", ink::faint);
+  words.paragraph(words_of(all, facts.stages), ink_of(all.outcome));
+  if (!facts.why.empty()) words.paragraph(printable(facts.why), ink::warn);
+  for (const diagnosis what : all.found) {
+    words.paragraph(describe(what).cause);
+    words.paragraph(in_tool_words(describe(what).advice), ink::faint);
+  }
+}
+
+/// The same in one line.
+std::string summary_of(const view_facts& facts, const view_settings& how) {
+  const verdict all = verdict_of(facts.stages);
+  return fmt::format("{} {} {} lost {} doctor {}", how.is_frozen ? "frozen" : facts.state,
+                     number_or_dash(facts.frequency_hz, " Hz", 2),
+                     number_or_dash(facts.sample_rate_hz, "/s", 0),
+                     number_or_dash(facts.lost_percent, "%", 2), words_of(all, facts.stages));
+}
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> keys{
+    {{"+ -", "nearer, farther"},
+     {"0", "the range follows the returns"},
+     {"p", "freeze the picture, or go on"},
+     {"f", "robot frame, or the vendor's"},
+     {"g", "rings on, off"},
+     {"space", "a recording: pause, play"},
+     {"h ?", "this help, on and off"},
+     {"q", "quit"}}};
+
+void draw_help(canvas& on, const cell_area& in) {
+  column_of_words words(on, in);
+  words.line("keys", ink::title);
+  for (const auto& [key, meaning] : keys) words.line(fmt::format("{:<6}{}", key, meaning));
+}
+
+}  // namespace
+
+void draw_view(canvas& on, std::span<const g4lidar::point> points, const view_facts& facts,
+               const view_settings& how) {
+  const bool has_panel = on.columns() >= least_columns && on.rows() >= least_rows;
+  if (how.shows_help && !has_panel) return draw_help(on, {0, 0, on.columns(), on.rows()});
+  const verdict all = verdict_of(facts.stages);
+  const int beside = has_panel ? panel_columns + 1 : 0;
+  const cell_area radar{0, 0, on.columns() - beside, on.rows() - (has_panel ? 0 : 1)};
+  draw_radar(on, radar, points, how.radar);
+  if (!has_panel) {
+    const std::string words = summary_of(facts, how);
+    return on.write(0, on.rows() - 1, words, ink_of(all.outcome));
+  }
+  const cell_area panel{on.columns() - panel_columns, 0, panel_columns, on.rows() - 1};
+  if (how.shows_help) {
+    const int wide = std::min(on.columns(), 40);
+    draw_help(on, {on.columns() - wide, 0, wide, on.rows() - 1});
+  } else {
+    draw_panel(on, panel, facts, how);
+  }
+  on.write(panel.column, on.rows() - 1, "+ - 0 p f g h help q quit", ink::faint);
+}
+
+}  // namespace g4_tool

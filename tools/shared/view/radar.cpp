@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "radar.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "g4lidar/cartesian.hpp"
+
+namespace g4_tool {
+namespace {
+
+using g4lidar::point;
+
+constexpr std::array<double, 9> ranges{0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0};
+/// Between the rings of each.
+constexpr std::array<double, 9> steps{0.25, 0.5, 0.5, 1.0, 1.0, 2.0, 2.0, 4.0, 4.0};
+/// The share of the returns that range_for() shows.
+constexpr double nearly_all = 0.97;
+
+std::size_t level_of(double range_m) noexcept {
+  const auto at = std::ranges::lower_bound(ranges, range_m - 1e-9);
+  return std::min<std::size_t>(static_cast<std::size_t>(at - ranges.begin()), ranges.size() - 1);
+}
+
+/// The middle of an area, and how many dots a metre has.
+struct scale {
+  double x;
+  double y;
+  double dots_per_m;
+  int begin_x, begin_y, end_x, end_y;
+
+  scale(const canvas& on, const cell_area& in, double range_m)
+      : begin_x(in.column * on.dots_across()),
+        begin_y(in.row * on.dots_down()),
+        end_x((in.column + in.columns) * on.dots_across()),
+        end_y((in.row + in.rows) * on.dots_down()) {
+    x = (begin_x + end_x - 1) / 2.0;
+    y = (begin_y + end_y - 1) / 2.0;
+    const double radius = (std::min(end_x - begin_x, end_y - begin_y) - 1) / 2.0;
+    dots_per_m = radius / range_m;
+  }
+  void dot(canvas& on, double right_m, double up_m, ink what) const {
+    const double at_x = x + right_m * dots_per_m;
+    const double at_y = y - up_m * dots_per_m;
+    const int column = static_cast<int>(std::lround(at_x));
+    const int row = static_cast<int>(std::lround(at_y));
+    if (column < begin_x || column >= end_x || row < begin_y || row >= end_y) return;
+    on.dot(column, row, what);
+  }
+};
+
+void draw_grid(canvas& on, const cell_area& in, const scale& to, const radar_view& view) {
+  const double step_m = steps[level_of(view.range_m)];
+  const int rings = static_cast<int>(view.range_m / step_m + 1e-9);
+  for (int ring = 1; ring <= rings; ++ring) {
+    const double ring_m = ring * step_m;
+    const double radius = ring_m * to.dots_per_m;
+    const int dots = 4 * std::max(2, static_cast<int>(radius / 2.0));  // about every third one
+    for (int i = 0; i < dots; ++i) {
+      const double turn = 2.0 * std::numbers::pi * i / dots;
+      to.dot(on, ring_m * std::sin(turn), ring_m * std::cos(turn), ink::grid);
+    }
+    const int row = static_cast<int>(std::lround(to.y - radius)) / on.dots_down();
+    const int column = static_cast<int>(to.x) / on.dots_across() + 1;
+    if (row >= in.row) on.write(column, row, fmt::format("{:g} m", ring_m), ink::faint, in);
+  }
+}
+
+}  // namespace
+
+std::span<const double> zoom_ranges() noexcept { return ranges; }
+
+double next_range(double range_m, bool farther) noexcept {
+  const std::size_t level = level_of(range_m);
+  if (farther) return ranges[std::min(level + 1, ranges.size() - 1)];
+  return ranges[level == 0 ? 0 : level - 1];
+}
+
+double range_for(std::span<const point> points) noexcept {
+  std::array<std::size_t, ranges.size()> counts{};
+  std::size_t all = 0;
+  for (const point& each : points) {
+    if (each.is_no_return()) continue;
+    ++counts[level_of(static_cast<double>(each.range_mm) / 1000.0)];
+    ++all;
+  }
+  std::size_t seen = 0;
+  for (std::size_t level = 0; level < ranges.size() && all > 0; ++level) {
+    seen += counts[level];
+    if (static_cast<double>(seen) >= nearly_all * static_cast<double>(all)) return ranges[level];
+  }
+  return ranges.back();
+}
+
+void draw_radar(canvas& on, const cell_area& in, std::span<const point> points,
+                const radar_view& view) {
+  if (in.columns < 3 || in.rows < 2) return;
+  const scale to(on, in, view.range_m);
+  if (view.grid) draw_grid(on, in, to, view);
+  const bool is_robot = view.frame == g4lidar::frame::robot;
+  for (const point& each : points) {
+    if (each.is_no_return()) continue;
+    const g4lidar::xy_point at = g4lidar::to_xy(each, view.frame);
+    const auto side_m =
+        static_cast<double>(at.y_m);  // left in the robot frame, right in the vendor's
+    to.dot(on, is_robot ? -side_m : side_m, static_cast<double>(at.x_m), ink::points);
+  }
+  const int column = static_cast<int>(to.x) / on.dots_across();
+  on.write(column, static_cast<int>(to.y) / on.dots_down(), "+", ink::title, in);
+  if (view.grid) on.write(column, in.row, is_robot ? "^" : "0", ink::title, in);
+}
+
+}  // namespace g4_tool
