@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// Names, networks and the arguments of ROS 2, without a domain.
+#include "options.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dds/network.hpp"
+
+namespace ros2 {
+namespace {
+
+using g4_tool::bad_value;
+using g4_tool::full_name;
+using g4_tool::named_source;
+using g4_tool::ros2_options;
+using g4_tool::without_ros_arguments;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+namespace dds = g4_tool::dds;
+
+TEST(Names, AreInTheNamespaceUnlessTheyBeginWithASlash) {
+  EXPECT_EQ(full_name("", "scan"), "/scan");
+  EXPECT_EQ(full_name("robot1", "scan"), "/robot1/scan");
+  EXPECT_EQ(full_name("/robot1/", "front/scan"), "/robot1/front/scan");
+  EXPECT_EQ(full_name("/robot1", "/tf"), "/tf");
+  EXPECT_EQ(full_name("/", ""), "");
+  for (const char* const wrong : {"1scan", "a b", "a//b", "a-b", "a/", "a__b", "__a"}) {
+    EXPECT_THROW(static_cast<void>(full_name("", wrong)), bad_value) << wrong;
+  }
+}
+
+std::vector<std::string> names_of(std::vector<std::string> sources, const char* mounted = nullptr) {
+  ros2_options options;
+  options.sources = std::move(sources);
+  if (mounted != nullptr) options.mounts.emplace_back(mounted, g4lidar::mounting{});
+  std::vector<std::string> names;
+  for (const named_source& each : g4_tool::sources_of(options)) {
+    names.push_back(each.name + "=" + each.source);
+  }
+  return names;
+}
+
+TEST(Sources, HaveNamesIfThereAreSeveral) {
+  EXPECT_THAT(names_of({}), ElementsAre("="));
+  EXPECT_THAT(names_of({"sim:?seed=5"}), ElementsAre("=sim:?seed=5"));
+  EXPECT_THAT(names_of({"front=/dev/ttyUSB0", "rear=serial:2021"}, "rear"),
+              ElementsAre("front=/dev/ttyUSB0", "rear=serial:2021"));
+  EXPECT_THROW(names_of({"a", "b"}), bad_value);
+  EXPECT_THROW(names_of({"x=a", "b"}), bad_value);
+  EXPECT_THROW(names_of({"x=a", "x=b"}), bad_value);
+  EXPECT_THROW(names_of({"x=a"}, "y"), bad_value);
+}
+
+template <class Function>
+std::string refusal_of(Function function) {
+  try {
+    function();
+  } catch (const bad_value& reason) {
+    return reason.what();
+  }
+  return "";
+}
+
+TEST(Sources, RefusalsNameTheLidarsThatThereAre) {
+  const auto refusal = [](const std::vector<std::string>& sources) {
+    return refusal_of([&] { names_of(sources, "side"); });
+  };
+  EXPECT_THAT(refusal({"front=a", "rear=b"}), HasSubstr("'side'; there is 'front', 'rear'"));
+  EXPECT_THAT(refusal({"sim:"}), HasSubstr("one without a name"));
+}
+
+TEST(Topics, HaveOneTypeEach) {
+  const auto refusal = [](const char* scan, const char* points, const char* name_space) {
+    ros2_options options;
+    options.sources = {"front=a", "rear=b"};
+    options.topics.scan = scan;
+    options.topics.points = points;
+    options.name_space = name_space;
+    return refusal_of([&] { static_cast<void>(g4_tool::sources_of(options)); });
+  };
+  EXPECT_EQ(refusal("off", "off", ""), "");
+  EXPECT_EQ(refusal("/all", "points", "x"), "");
+  EXPECT_EQ(refusal("all", "all", "x"),
+            "--points-topic: /x/front/all is the topic of --scan-topic");
+  EXPECT_THAT(refusal("all", "/x/rear/all", "x"), HasSubstr("/x/rear/all"));
+  EXPECT_THAT(refusal("scan", "/diagnostics", ""), HasSubstr("/diagnostics"));
+  EXPECT_THAT(refusal("/tf", "points", ""), HasSubstr("/tf"));
+}
+
+TEST(Sources, FilesAreNotMerged) {
+  ros2_options options;
+  options.sources = {"front=sim:", "rear=file:/tmp/walk.bin"};
+  EXPECT_EQ(g4_tool::sources_of(options).size(), 2U);
+  options.merges = true;
+  EXPECT_THROW(static_cast<void>(g4_tool::sources_of(options)), bad_value);
+  options.sources[1] = "rear=sim:";
+  EXPECT_EQ(g4_tool::sources_of(options).size(), 2U);
+}
+
+std::vector<std::string> translated(const std::vector<std::string>& words) {
+  const auto options = std::make_shared<ros2_options>();
+  return without_ros_arguments(words, ros2_rows(options));
+}
+
+TEST(RosArguments, BecomeOptions) {
+  EXPECT_THAT(translated({"sim:", "--grid", "90"}), ElementsAre("sim:", "--grid", "90"));
+  EXPECT_THAT(translated({"sim:", "--ros-args", "-r", "__ns:=/robot1", "--remap", "scan:=front",
+                          "-r", "__node:=lidar", "--", "-v"}),
+              ElementsAre("sim:", "--namespace", "/robot1", "--scan-topic", "front", "--node-name",
+                          "lidar", "-v"));
+  EXPECT_THAT(translated({"--ros-args", "-p", "frame_id:=front_laser", "-p", "standby:=true", "-p",
+                          "merge:=false", "--log-level", "info", "-p", "use_sim_time:=true"}),
+              ElementsAre("--frame-id", "front_laser", "--standby"));
+  EXPECT_THROW(translated({"--ros-args", "-p", "nonsense:=1"}), bad_value);
+  EXPECT_THROW(translated({"--ros-args", "-r", "nonsense:=1"}), bad_value);
+  EXPECT_THROW(translated({"--ros-args", "-p", "grid"}), bad_value);
+  EXPECT_THROW(translated({"--ros-args", "--params-file", "x.yaml"}), bad_value);
+}
+
+std::string configured(const std::map<std::string, std::string>& variables,
+                       const std::string& interface = "") {
+  const auto from = [&variables](const char* name) {
+    const auto found = variables.find(name);
+    return found == variables.end() ? std::string() : found->second;
+  };
+  return dds::configuration(dds::read_network({}, interface, from));
+}
+
+TEST(Network, FollowsTheVariablesOfRos) {
+  const auto domain = [](const std::string& value) {
+    return dds::read_network({}, "",
+                             [&value](const char* name) {
+                               return std::string(name) == "ROS_DOMAIN_ID" ? value : std::string();
+                             })
+        .domain;
+  };
+  EXPECT_EQ(domain(""), 0U);
+  EXPECT_EQ(domain("42"), 42U);
+  EXPECT_THROW(domain("233"), bad_value);
+  EXPECT_EQ(refusal_of([&] { static_cast<void>(domain("abc")); }),
+            "ROS_DOMAIN_ID: 'abc' is not in the range 0 to 232");
+  EXPECT_EQ(dds::read_network(7, "", [](const char*) { return "42"; }).domain, 7U);
+
+  EXPECT_THAT(configured({}), Not(HasSubstr("AllowMulticast")));
+  const std::string local = configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}});
+  EXPECT_THAT(local, HasSubstr("<AllowMulticast>false</AllowMulticast>"));
+  EXPECT_THAT(local, HasSubstr("<NetworkInterface address=\"127.0.0.1\"/>"));
+  EXPECT_THAT(local, HasSubstr("<Peer address=\"localhost\"/>"));
+  EXPECT_EQ(configured({{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_STATIC_PEERS", "robot2"}}), local);
+  const std::string peers = configured(
+      {{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}, {"ROS_STATIC_PEERS", "192.0.2.7;robot2"}});
+  EXPECT_THAT(peers, HasSubstr("<Peer address=\"192.0.2.7\"/><Peer address=\"robot2\"/>"));
+  EXPECT_THAT(peers, Not(HasSubstr("127.0.0.1")));  // else the other machine could not be reached
+  EXPECT_THAT(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}), HasSubstr("<Tag>"));
+  EXPECT_EQ(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT"}}),
+            "<CycloneDDS><Domain><Internal><MultipleReceiveThreads>false</MultipleReceiveThreads>"
+            "</Internal></Domain></CycloneDDS>");
+  EXPECT_EQ(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "nonsense"}}), local);
+  EXPECT_THAT(configured({{"CYCLONEDDS_URI", "file:///x.xml"}}),
+              ::testing::EndsWith(",file:///x.xml"));
+  EXPECT_THAT(configured({}, "eth0"), HasSubstr("<NetworkInterface name=\"eth0\"/>"));
+  EXPECT_THROW(configured({}, "\"/><x"), bad_value);
+}
+
+TEST(Network, MovesOnlyIfAnAddressIsGoneOrTheFirstOneCame) {
+  using list = std::vector<std::string>;
+  EXPECT_FALSE(dds::has_moved({}, {}));
+  EXPECT_TRUE(dds::has_moved({}, {"eth0 192.0.2.2"}));
+  EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, {"eth0 192.0.2.2"}));
+  EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, list{"docker0 172.17.0.1", "eth0 192.0.2.2"}));
+  EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2"}, {"eth0 192.0.2.3"}));
+  EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2"}, {}));
+}
+
+}  // namespace
+}  // namespace ros2

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+// Subscribers of every kind: none, late, slow, stopped; and the hashes of the types that they receive.
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/program.hpp"
+#include "lidar.hpp"
+#include "subscriber.hpp"
+#include "support/test_scale.hpp"
+
+namespace ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+class Subscribers : public cli::scratch {
+ protected:
+  test_domain domain_;
+};
+
+std::int64_t stamp_of(const scan_message& message) {
+  return message.header.stamp.sec * std::int64_t{1'000'000'000} + message.header.stamp.nanosec;
+}
+
+TEST_F(Subscribers, TheMotorTurnsOnlyForThem) {
+  const served_lidar lidar;
+  cli::program tool({lidar.path(), "--standby"});
+  subscriber<diagnostic_message> diagnostics(domain_, "/diagnostics", dds::diagnostic_array);
+  ASSERT_TRUE(comes_true([&] { return diagnostics.take() > 0; }));
+  EXPECT_FALSE(lidar.motor_turns());
+  {
+    subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+    // Within a second on an idle machine: docs/ros2.md. Here other programs may run.
+    EXPECT_TRUE(comes_true([&] { return lidar.motor_turns(); }));
+    EXPECT_TRUE(comes_true([&] { return scans.take() > 0; }));
+  }
+  EXPECT_TRUE(comes_true([&] { return !lidar.motor_turns(); }));
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
+  EXPECT_TRUE(comes_true([&] { return clouds.take() > 0; }));
+  tool.send(SIGINT);
+  EXPECT_EQ(tool.wait().code, 130);
+  EXPECT_FALSE(lidar.motor_turns());
+}
+
+TEST_F(Subscribers, NoScanIsLostAndEachReaderHasItsOwnSpeed) {
+  const std::string file = path("walk.mcap");
+  const auto wanted = static_cast<std::size_t>(1000 * g4lidar::test::test_scale());
+  make_recording(file, 60);
+  subscriber<scan_message> fast(domain_, "/scan", dds::laser_scan, {.depth = 1000});
+  subscriber<scan_message> slow(domain_, "/scan", dds::laser_scan, {.depth = 10});
+  cli::program tool({file, "--standby", "--playback-speed", "40", "--loop", "--points-topic", "off",
+                     "--depth", "1000"});
+  std::size_t got = 0;
+  std::size_t got_slowly = 0;
+  std::size_t gaps = 0;
+  std::int64_t before_ns = 0;
+  auto due = clock::now();
+  ASSERT_TRUE(comes_true(
+      [&] {
+        got += fast.take([&](const scan_message& message) {
+          // At 7 Hz a missing scan leaves a gap of 286 ms; the recording begins again after its end.
+          const std::int64_t since_ns = stamp_of(message) - before_ns;
+          gaps += before_ns != 0 && since_ns > 200'000'000 ? 1 : 0;
+          before_ns = stamp_of(message);
+        });
+        if (clock::now() >= due) {
+          got_slowly += slow.take();
+          due = clock::now() + 500ms;
+        }
+        return got >= wanted;
+      },
+      std::chrono::seconds(60 * g4lidar::test::test_scale() + 60)));
+  EXPECT_EQ(gaps, 0U);
+  EXPECT_GT(got_slowly, 0U);
+  EXPECT_LT(got_slowly, got / 2);
+  tool.send(SIGINT);
+}
+
+/// Reads until it is killed, for the next test.
+TEST_F(Subscribers, DISABLED_ReadsForever) {
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
+  const pid_t parent = ::getppid();
+  while (::getppid() == parent) {
+    static_cast<void>(clouds.take());
+    std::this_thread::sleep_for(10ms);
+  }
+}
+
+/// The values of /diagnostics that come, by their keys; the status of a name by "NAME level" and "NAME message".
+class diagnosis {
+ public:
+  explicit diagnosis(const test_domain& in)
+      : messages_(in, "/diagnostics", dds::diagnostic_array, {.depth = 1}) {}
+  std::string operator[](const std::string& key) {
+    messages_.take([this](const diagnostic_message& message) {
+      for (std::uint32_t i = 0; i < message.status._length; ++i) {
+        const auto& status = message.status._buffer[i];
+        values_[std::string(status.name) + " level"] = std::to_string(status.level);
+        values_[std::string(status.name) + " message"] = status.message;
+        for (std::uint32_t k = 0; k < status.values._length; ++k) {
+          values_[status.values._buffer[k].key] = status.values._buffer[k].value;
+        }
+      }
+    });
+    return values_[key];
+  }
+
+ private:
+  subscriber<diagnostic_message> messages_;
+  std::map<std::string, std::string> values_;
+};
+
+TEST_F(Subscribers, OneThatStandsStillHoldsUpNobody) {
+  const std::string file = path("walk.mcap");
+  make_recording(file, 20);
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2, {.depth = 1000});
+  subscriber<cloud_message> never_read(domain_, "/points", dds::point_cloud2, {.depth = 5});
+  const std::string domain = std::to_string(test_domain::number());
+  ::setenv("G4_ROS2_TEST_DOMAIN", domain.c_str(), 1);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/proc/self/exe", "ros2_tests", "--gtest_also_run_disabled_tests",
+            "--gtest_filter=Subscribers.DISABLED_ReadsForever", nullptr);
+    ::_exit(1);
+  }
+  cli::program tool({file, "--standby", "--loop", "--playback-speed", "10"});
+  diagnosis diagnostics(domain_);
+  ASSERT_TRUE(comes_true([&] { return diagnostics["/points subscribers"] == "3"; }));
+  EXPECT_EQ(diagnostics["/points lost"], "0");
+  EXPECT_EQ(diagnostics["g4lidar: topics level"], "0");
+  ::kill(child, SIGSTOP);
+  static_cast<void>(clouds.take());
+  std::size_t got = 0;
+  // Far beyond what any queue holds: 31 KB each.
+  EXPECT_TRUE(comes_true([&] { return (got += clouds.take()) >= 300; }, 60s)) << got;
+  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: topics level"] == "1"; }));
+  EXPECT_THAT(diagnostics["g4lidar: topics message"], ::testing::HasSubstr("too slow"));
+  const int lost = std::atoi(diagnostics["/points lost"].c_str());
+  EXPECT_GT(lost, 0);
+  EXPECT_LE(lost, std::atoi(diagnostics["/points sent"].c_str()) - 5);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  tool.send(SIGINT);
+  EXPECT_EQ(tool.wait().code, 130);
+}
+
+TEST_F(Subscribers, FindTheirTopicsAgainAfterAnUnplug) {
+  const served_lidar lidar;
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  cli::program tool({lidar.path()});
+  ASSERT_TRUE(comes_true([&] { return scans.take() > 0; }));
+  lidar.unplug(true);
+  std::this_thread::sleep_for(500ms);
+  static_cast<void>(scans.take());
+  lidar.unplug(false);
+  EXPECT_TRUE(comes_true([&] { return scans.take() > 0; }));
+  tool.send(SIGINT);
+}
+
+/// The typehash of each topic that is published, by its name in DDS.
+std::map<std::string, std::string> hashes_in(const test_domain& domain) {
+  std::map<std::string, std::string> found;
+  const dds::entity reader(
+      dds_create_reader(domain.participant(), DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr));
+  std::array<void*, 64> samples{};
+  std::array<dds_sample_info_t, 64> about{};
+  const dds_return_t count =
+      dds_take(reader.get(), samples.data(), about.data(), samples.size(), samples.size());
+  for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(count, 0)); ++i) {
+    if (!about[i].valid_data) continue;
+    const auto* const one = static_cast<const dds_builtintopic_endpoint_t*>(samples[i]);
+    void* data = nullptr;
+    std::size_t size = 0;
+    if (one->qos != nullptr && dds_qget_userdata(one->qos, &data, &size)) {
+      found[one->topic_name] = std::string(static_cast<const char*>(data), size);
+    }
+    dds_free(data);
+  }
+  return found;
+}
+
+TEST_F(Subscribers, ReceiveTheHashesOfTheTypes) {
+  const served_lidar lidar;
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  cli::program tool({lidar.path(), "--mount", "0,0,0"});
+  ASSERT_TRUE(comes_true([&] { return scans.take() > 0; }));
+  // As rosbags computes them: scripts/ci/ros2.
+  const std::map<std::string, std::string> wanted{
+      {"rt/scan", "64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828"},
+      {"rt/points", "9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5"},
+      {"rt/tf_static", "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"},
+      {"rt/diagnostics", "5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e"}};
+  for (const auto& [name, hash] : wanted) {
+    EXPECT_TRUE(comes_true([&, topic = name, text = hash] {
+      return hashes_in(domain_)[topic] == "typehash=RIHS01_" + text + ";";
+    })) << name;
+  }
+  tool.send(SIGINT);
+}
+
+}  // namespace
+}  // namespace ros2

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "bus.hpp"
+
+#include <fmt/format.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "cli/logger.hpp"
+
+namespace g4_tool::dds {
+namespace {
+
+/// What it cannot do is reported once, although it is tried again.
+void log_line(void*, const dds_log_data_t* line) {
+  static std::mutex mutex;
+  static std::string before;
+  std::string_view text(line->message, line->size);
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.remove_suffix(1);
+  const bool is_bad = (line->priority & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0;
+  const std::string words = fmt::format("Cyclone DDS: {}\n", text);
+  const std::lock_guard lock(mutex);
+  if (words == before) return;
+  before = words;
+  is_bad ? logger::info(words) : logger::verbose(words);
+}
+
+}  // namespace
+
+void wake(void* handle) noexcept {
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const auto unimportant =
+      ::write(*static_cast<const int*>(handle), &one, sizeof one);
+}
+
+bus::bus(network wanted)
+    : wanted_(std::move(wanted)), wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  static_cast<void>(configuration(wanted_));
+  dds_set_log_sink(log_line, nullptr);
+}
+
+bus::~bus() {
+  close();
+  ::close(wake_);
+}
+
+void bus::cleared() const noexcept {
+  std::uint64_t count = 0;
+  [[maybe_unused]] const auto unimportant = ::read(wake_, &count, sizeof count);
+}
+
+void bus::add(endpoint& what) {
+  endpoints_.push_back(&what);
+  if (is_up()) what.open(participant_.get(), &wake_);
+}
+
+void bus::remove(const endpoint& what) noexcept { std::erase(endpoints_, &what); }
+
+endpoint::~endpoint() { on_.remove(*this); }
+
+void bus::close() noexcept {
+  for (endpoint* each : endpoints_) each->close();
+  participant_ = {};
+  domain_ = {};
+}
+
+void bus::update() {
+  std::vector<std::string> now = addresses(wanted_.interface);
+  if (is_up() && !has_moved(on_, now)) return;
+  if (is_up()) {
+    logger::info("the network has changed: joining the ROS 2 domain again\n");
+    close();
+  }
+  on_ = std::move(now);
+  open();
+}
+
+void bus::open() {
+  network here = wanted_;
+  // Without a network there is no multicast: then the programs of this machine are addressed one by one.
+  if (on_.empty() && here.range == discovery_range::subnet && here.interface.empty()) {
+    here.peers.emplace_back("localhost");
+  }
+  domain_ = entity(dds_create_domain(here.domain, configuration(here).c_str()));
+  const dds_entity_t made =
+      domain_ ? dds_create_participant(wanted_.domain, nullptr, nullptr) : DDS_RETCODE_ERROR;
+  participant_ = entity(made);
+  if (!participant_) {
+    domain_ = {};
+    std::string problem = fmt::format(
+        "cannot join the ROS 2 domain {} now; trying again{}\n", wanted_.domain,
+        wanted_.interface.empty() ? "" : ". Is the interface " + wanted_.interface + " there?");
+    if (problem != std::exchange(problem_, problem)) logger::info(problem);
+    return;
+  }
+  logger::verbose(fmt::format("joined the ROS 2 domain {}\n", wanted_.domain));
+  problem_.clear();
+  for (endpoint* each : endpoints_) each->open(made, &wake_);
+}
+
+}  // namespace g4_tool::dds

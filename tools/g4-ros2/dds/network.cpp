@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "network.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+
+#include "cli/logger.hpp"
+#include "cli/rows.hpp"
+
+namespace g4_tool::dds {
+namespace {
+
+/// Beyond this the ports of two domains overlap.
+constexpr std::uint32_t greatest_domain = 232;
+/// ROS 2 sends its announcements to so many processes of a machine that it addresses one by one.
+constexpr int unicast_participants = 32;
+/// The ports of a domain are sufficient for so many.
+constexpr int most_participants = 119;
+
+discovery_range range_of(const std::string& word) {
+  if (word.empty() || word == "SUBNET") return discovery_range::subnet;
+  if (word == "OFF") return discovery_range::off;
+  if (word == "SYSTEM_DEFAULT") return discovery_range::system_default;
+  if (word != "LOCALHOST") {
+    logger::info(fmt::format(
+        "ROS_AUTOMATIC_DISCOVERY_RANGE: {} is not SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT; "
+        "LOCALHOST is used\n",
+        in_quotes(word)));
+  }
+  return discovery_range::localhost;
+}
+
+std::uint32_t domain_of(const std::string& word) {
+  try {
+    return word.empty() ? 0 : number_of(word, std::uint32_t{0}, greatest_domain);
+  } catch (const bad_value& reason) {
+    throw bad_value(std::string("ROS_DOMAIN_ID: ") + reason.what());
+  }
+}
+
+/// `text` as a value in the configuration, which is XML.
+std::string checked_name(const std::string& text) {
+  const auto is_good = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+           std::string_view(".:-_%/").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, is_good)) return text;
+  throw bad_value(in_quotes(text) + " is not the name or the address of a machine or an interface");
+}
+
+}  // namespace
+
+std::string variable(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+network read_network(std::optional<std::uint32_t> domain, const std::string& interface,
+                     const environment& from) {
+  network made{.interface = interface, .more = from("CYCLONEDDS_URI")};
+  made.domain = domain ? *domain : domain_of(from("ROS_DOMAIN_ID"));
+  const bool only_here = from("ROS_LOCALHOST_ONLY") == "1";
+  made.range =
+      only_here ? discovery_range::localhost : range_of(from("ROS_AUTOMATIC_DISCOVERY_RANGE"));
+  if (only_here || made.range == discovery_range::off) return made;
+  std::istringstream words(from("ROS_STATIC_PEERS"));
+  for (std::string word; std::getline(words, word, ';');) {
+    if (!word.empty()) made.peers.push_back(word);
+  }
+  return made;
+}
+
+std::string configuration(const network& wanted) {
+  std::string general;
+  std::string discovery;
+  const bool is_local = wanted.range == discovery_range::localhost;
+  std::string interface = wanted.interface;
+  // With other machines as peers it cannot be on loopback alone.
+  if (interface.empty() && is_local && wanted.peers.empty()) interface = "127.0.0.1";
+  if (!interface.empty()) {
+    const bool is_address = interface.find_first_of(".:") != std::string::npos;
+    general += fmt::format(R"(<Interfaces><NetworkInterface {}="{}"/></Interfaces>)",
+                           is_address ? "address" : "name", checked_name(interface));
+  }
+  if (is_local || wanted.range == discovery_range::off) {
+    general += "<AllowMulticast>false</AllowMulticast>";
+  }
+  if (wanted.range == discovery_range::off) {
+    discovery =
+        fmt::format("<ParticipantIndex>none</ParticipantIndex><Tag>alone_{}</Tag>", ::getpid());
+  } else if (wanted.range != discovery_range::system_default) {
+    std::vector<std::string> peers = wanted.peers;
+    if (is_local) peers.emplace_back("localhost");
+    discovery = fmt::format(
+        "<ParticipantIndex>auto</ParticipantIndex>"
+        "<MaxAutoParticipantIndex>{}</MaxAutoParticipantIndex>",
+        peers.empty() ? most_participants : unicast_participants);
+    if (!peers.empty()) {
+      discovery += "<Peers>";
+      for (const std::string& peer : peers) {
+        discovery += fmt::format(R"(<Peer address="{}"/>)", checked_name(peer));
+      }
+      discovery += "</Peers>";
+    }
+  }
+  std::string made = "<CycloneDDS><Domain>";
+  if (!general.empty()) made += "<General>" + general + "</General>";
+  if (!discovery.empty()) made += "<Discovery>" + discovery + "</Discovery>";
+  // With a thread for each socket, these wait at the end for a packet to their own address, which may be gone.
+  made += "<Internal><MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>";
+  return made + "</Domain></CycloneDDS>" + (wanted.more.empty() ? "" : "," + wanted.more);
+}
+
+std::vector<std::string> addresses(std::string_view interface) {
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) return {};
+  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owned(all, ::freeifaddrs);
+  std::vector<std::string> found;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    const bool is_up = (each->ifa_flags & (IFF_UP | IFF_RUNNING)) == (IFF_UP | IFF_RUNNING);
+    if (!is_up || each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    if ((each->ifa_flags & IFF_LOOPBACK) != 0) continue;
+    std::array<char, INET_ADDRSTRLEN> text{};
+    const auto* const address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+    if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) == nullptr) continue;
+    if (!interface.empty() && interface != each->ifa_name && interface != text.data()) continue;
+    found.push_back(std::string(each->ifa_name) + " " + text.data());
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+bool has_moved(const std::vector<std::string>& before, const std::vector<std::string>& now) {
+  if (before.empty()) return !now.empty();
+  return !std::ranges::includes(now, before);
+}
+
+}  // namespace g4_tool::dds

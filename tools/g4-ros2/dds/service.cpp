@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "service.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <span>
+#include <utility>
+
+#include "cli/logger.hpp"
+
+namespace g4_tool::dds {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// So many requests wait at most until they are handled, as ROS 2 has it.
+constexpr int depth = 10;
+/// So many replies wait at most for the readers of their clients, and so long.
+constexpr std::size_t most_waiting = 64;
+constexpr auto longest_wait = 1s;
+
+/// A text that no other service has.
+std::string unique_text() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}{:08x}{:08x}", random(), random(), random(), random());
+}
+
+/// What the writer and the reader of one client have in common: the key that rmw_cyclonedds gives both, else their
+/// participant.
+std::string identity_of(const dds_builtintopic_endpoint_t& of) {
+  void* data = nullptr;
+  std::size_t size = 0;
+  std::string user;
+  if (of.qos != nullptr && dds_qget_userdata(of.qos, &data, &size) && data != nullptr) {
+    user.assign(static_cast<const char*>(data), size);
+  }
+  dds_free(data);
+  if (const std::size_t at = user.find("clientid="); at != std::string::npos) {
+    return user.substr(at, user.find(';', at) - at);
+  }
+  const std::span<const std::uint8_t> key(of.participant_key.v);
+  return {key.begin(), key.end()};
+}
+
+using endpoint_data =
+    std::unique_ptr<dds_builtintopic_endpoint_t, void (*)(dds_builtintopic_endpoint_t*)>;
+
+std::string identity_of(endpoint_data found) { return found ? identity_of(*found) : std::string(); }
+
+/// Whether the client has a reader that `writer` knows: before that it would not get the reply.
+bool has_reader(dds_entity_t writer, const std::string& identity) {
+  if (identity.empty()) return true;
+  std::array<dds_instance_handle_t, 256> readers{};
+  const dds_return_t count = dds_get_matched_subscriptions(writer, readers.data(), readers.size());
+  const auto known = static_cast<std::size_t>(std::max(count, 0));
+  if (known > readers.size()) return true;  // too many to look at
+  return std::ranges::any_of(std::span(readers).first(known), [&](dds_instance_handle_t each) {
+    return identity_of({dds_get_matched_subscription_data(writer, each),
+                        dds_builtintopic_free_endpoint}) == identity;
+  });
+}
+
+}  // namespace
+
+service::service(bus& on, std::string name, const service_type& type, handler handles)
+    : endpoint(on), name_(std::move(name)), type_(type), handles_(std::move(handles)) {
+  on.add(*this);
+}
+
+void service::open(dds_entity_t participant, int* handle) {
+  const message_type hashed{type_.request, type_.hash};
+  const qos wish = qos_of({.type = &hashed, .depth = depth});
+  const std::string words =
+      fmt::format("serviceid={};typehash=RIHS01_{};", unique_text(), type_.hash);
+  dds_qset_userdata(wish.get(), words.data(), words.size());
+  const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(
+      dds_create_listener(handle), dds_delete_listener);
+  dds_lset_data_available(listener.get(), [](dds_entity_t, void* with) { wake(with); });
+  dds_lset_publication_matched(
+      listener.get(),
+      [](dds_entity_t, const dds_publication_matched_status_t, void* with) { wake(with); });
+  request_topic_ = entity(dds_create_topic(participant, type_.request,
+                                           ("rq" + name_ + "Request").c_str(), nullptr, nullptr));
+  reply_topic_ = entity(dds_create_topic(participant, type_.reply, ("rr" + name_ + "Reply").c_str(),
+                                         nullptr, nullptr));
+  writer_ = entity(dds_create_writer(participant, reply_topic_.get(), wish.get(), listener.get()));
+  reader_ =
+      entity(dds_create_reader(participant, request_topic_.get(), wish.get(), listener.get()));
+  if (!reader_ || !writer_) logger::info(fmt::format("cannot offer the service {}\n", name_));
+  const std::lock_guard lock(mutex_);
+  wake_ = handle;
+}
+
+void service::close() noexcept {
+  reader_ = {};
+  writer_ = {};
+  request_topic_ = {};
+  reply_topic_ = {};
+  const std::lock_guard lock(mutex_);
+  waiting_.clear();
+}
+
+void service::update() {
+  if (!reader_ || !writer_) return;
+  take_requests();
+  send_replies();
+}
+
+void service::take_requests() {
+  std::array<void*, depth> samples{};
+  std::array<dds_sample_info_t, depth> about{};
+  const dds_return_t count =
+      dds_take(reader_.get(), samples.data(), about.data(), samples.size(), samples.size());
+  if (count <= 0) return;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    if (!about[i].valid_data) continue;
+    ++counts_.requests;
+    const caller from{
+        *static_cast<const request_header*>(samples[i]),
+        identity_of({dds_get_matched_publication_data(reader_.get(), about[i].publication_handle),
+                     dds_builtintopic_free_endpoint})};
+    if (!handles_(samples[i], from)) ++counts_.ignored;
+  }
+  static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));
+}
+
+void service::send(const caller& to, reply what) {
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back({to, std::move(what), clock::now() + longest_wait});
+  if (wake_ != nullptr) wake(wake_);
+}
+
+void service::send_replies() {
+  const std::lock_guard lock(mutex_);
+  const auto now = clock::now();
+  const bool is_full = waiting_.size() > most_waiting;
+  std::erase_if(waiting_, [&](const waiting& each) {
+    if (!is_full && now < each.latest && !has_reader(writer_.get(), each.to.identity)) return false;
+    *static_cast<request_header*>(each.what.get()) = each.to.header;
+    const bool is_sent = dds_write(writer_.get(), each.what.get()) == DDS_RETCODE_OK;
+    ++(is_sent ? counts_.replies : counts_.lost);
+    return true;
+  });
+}
+
+}  // namespace g4_tool::dds

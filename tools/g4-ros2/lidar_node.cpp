@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "lidar_node.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "merger.hpp"
+
+namespace g4_tool {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// So long the motor turns on when the last subscriber has gone: one that comes again need not wait.
+constexpr auto rest_delay = 3s;
+
+constexpr auto diagnostics_pulse = 1s;
+
+diagnostic_status status_of_state(const station& device, const std::string& serial) {
+  const station_state state = device.state();
+  const bool is_bad = state == station_state::opening || state == station_state::lost;
+  diagnostic_status made{.level = is_bad ? diagnostic_level::error : diagnostic_level::ok,
+                         .name = "g4lidar: state",
+                         .message = std::string(name_of(state)),
+                         .hardware_id = serial,
+                         .values = {{"device", device.name()}}};
+  if (is_bad && !device.why().empty()) made.message += ": " + in_tool_words(device.why());
+  return made;
+}
+
+/// What subscribers get of the scans, and what they did not.
+diagnostic_status status_of_topics(const scan_messages& messages, const std::string& serial) {
+  diagnostic_status made{.name = "g4lidar: topics", .message = "ok", .hardware_id = serial};
+  for (const dds::publisher* const each : messages.topics()) {
+    const dds::publisher_counts counts = each->counts();
+    const auto add = [&](const char* what, std::uint64_t count) {
+      made.values.emplace_back(each->name() + " " + what, std::to_string(count));
+    };
+    add("subscribers", counts.subscribers);
+    add("sent", counts.sent);
+    add("lost", counts.lost);
+    add("refused", counts.refused);
+    if (counts.lost > 0 || counts.refused > 0) {
+      made.level = diagnostic_level::warn;
+      made.message = counts.refused > 0
+                         ? "a subscriber wants a quality of service that is not offered: see --qos"
+                         : "messages were lost because a subscriber is too slow";
+    }
+  }
+  return made;
+}
+
+bool has_times_of_its_own(const std::string& source) {
+  return kind_of(source) == source_kind::recording;
+}
+
+common_options options_of(const ros2_options& options, const std::string& source, bool merges) {
+  common_options made = options.common;
+  made.source = source;
+  if (merges) made.deskew = deskewing::none;  // merging does that
+  return made;
+}
+
+}  // namespace
+
+lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_source& which,
+                       merger* into, std::size_t index)
+    : options_(options),
+      which_(which),
+      name_space_(which.name.empty() ? full_name(options.name_space, "")
+                                     : full_name(options.name_space, which.name)),
+      merger_(into),
+      index_(index),
+      robot_(on, options, name_space_, index == 0 && has_times_of_its_own(which.source)),
+      shaper_(options_of(options, which.source, into != nullptr), which.mount.value_or(mounting{})),
+      parameters_(options_of(options, which.source, into != nullptr), options.fov, shaper_) {
+  const std::string frame_id = (which.name.empty() ? "" : which.name + "_") + options.frames.lidar;
+  parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
+  parameters_.fix("grid", std::int64_t{options.bins});
+  parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");
+  if (merger_ == nullptr) {
+    messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);
+  }
+  if (which.mount && merger_ == nullptr) {
+    place_ = publisher_of(on, "", "/tf_static",
+                          {.type = &dds::tf_message, .depth = 1, .is_for_late = true});
+    place_->publish(place_message(options, frame_id, *which.mount));
+  }
+  diagnostics_ = publisher_of(on, name_space_, options.topics.diagnostics,
+                              {.type = &dds::diagnostic_array, .depth = 10});
+  const source_kind kind = kind_of(which.source);
+  station_options wishes = options.station;
+  wishes.starts_rested = options.is_standby;
+  if (kind == source_kind::recording) feed_.load_recording(path_of(which.source));
+  wishes.wants_points = feed_.is_known() || kind == source_kind::simulated;
+  const bool follows = options.common.deskew == deskewing::by_path && merger_ == nullptr;
+  if (follows && !wishes.wants_points && options.topics.odometry != "off") {
+    driven_ = std::make_unique<odometry_subscription>(
+        on, full_name(name_space_, options.topics.odometry));
+  }
+  station_ = std::make_unique<station>(options_of(options, which.source, merger_ != nullptr),
+                                       options.source, *this, wishes);
+}
+
+lidar_node::~lidar_node() = default;
+
+bool lidar_node::is_wanted() const {
+  return merger_ == nullptr ? messages_->is_wanted() : merger_->is_wanted();
+}
+
+void lidar_node::update() {
+  const auto now = clock::now();
+  if (!options_.is_standby || is_wanted()) wanted_ = now;
+  station_->rest(!is_allowed_ || now - wanted_ > rest_delay);
+  if (!diagnostics_ || now < diagnostics_due_) return;
+  diagnostics_due_ = now + diagnostics_pulse;
+  if (diagnostics_->is_wanted()) publish_diagnostics();
+}
+
+void lidar_node::change(std::vector<named_value> wanted, std::function<void(std::string)> done) {
+  station_->ask([this, what = std::move(wanted), after = std::move(done)](g4lidar::lidar* lidar) {
+    after(parameters_.change(lidar, what));
+  });
+}
+
+void lidar_node::publish_diagnostics() {
+  const auto who = station_->identity();
+  const std::string serial(who ? who->serial_number() : "");
+  auto statuses = statuses_of(station_->stages(), station_->counts(), serial);
+  statuses.insert(statuses.begin(), status_of_state(*station_, serial));
+  statuses.push_back(status_of_topics(messages_ ? *messages_ : merger_->messages(), serial));
+  if (more_) statuses.push_back(more_());
+  if (!which_.name.empty()) {
+    for (diagnostic_status& each : statuses) each.name.insert(0, which_.name + " ");
+  }
+  std::vector<std::uint8_t> message;
+  const auto now_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
+  put_diagnostic_array(statuses, now_ns.count(), message);
+  diagnostics_->publish(message);
+}
+
+void lidar_node::on_open(opened_source& source) {
+  feed_.restart();
+  if (feed_.is_known() && source.robot() == nullptr) return;
+  feed_.follow(source.robot());
+  for (const wish& each : options_.settings) {
+    const auto done = source.lidar().ask(each.how);
+    if (!done) logger::info(in_tool_words(done.error().message()) + "\n");
+  }
+  if (const auto kind = kind_of(which_.source);
+      kind == source_kind::device || kind == source_kind::simulated) {
+    parameters_.fix("serial_number", std::string(source.lidar().information().serial_number()));
+    parameters_.read_device(source.lidar());
+  }
+}
+
+void lidar_node::on_points(std::span<const point> points) {
+  feed_.follow(points, [this](const stamped_odometry& at) {
+    path_.add(at);
+    robot_.publish(at, station_->wall_ns(at.time_ns));
+  });
+  if (!points.empty()) robot_.publish_clock(station_->wall_ns(points.back().time_ns));
+}
+
+void lidar_node::on_scan(const scan& whole) {
+  if (whole.is_piece()) return;
+  if (driven_) driven_->take(path_, ahead_ns());
+  const shaped_scan shaped = shaper_.shape(whole, path_.until(whole.end_ns()));
+  const scan_times when{whole.time_ns(), whole.duration_ns, ahead_ns()};
+  if (merger_ != nullptr) return merger_->add(index_, shaped, when);
+  messages_->publish(shaped, when);
+}
+
+void lidar_node::on_event(const lidar_event& event) {
+  logger::info(fmt::format("{}: {}\n", station_->name(), name_of(event.what)));
+}
+
+void lidar_node::on_state(station_state state, std::string_view why) {
+  // The failure of the only lidar is reported where the program ends.
+  if (state == station_state::ended && options_.sources.size() <= 1) why = {};
+  logger::info(fmt::format("{}{}: {}{}{}\n", which_.name.empty() ? "lidar" : "lidar ", which_.name,
+                           name_of(state), why.empty() ? "" : ". ", in_tool_words(why)));
+}
+
+}  // namespace g4_tool

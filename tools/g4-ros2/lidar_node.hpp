@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// One lidar, its thread and its topics.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dds/bus.hpp"
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/motion.hpp"
+#include "io/odometry_feed.hpp"
+#include "io/scan_shaper.hpp"
+#include "io/station.hpp"
+#include "options.hpp"
+#include "parameters.hpp"
+#include "robot_messages.hpp"
+#include "scan_messages.hpp"
+
+namespace g4_tool {
+
+class merger;
+
+class lidar_node final : public station_listener {
+ public:
+  /// `into`: where its scans are merged, as number `index`; null: it has topics of its own. `on`, `options`
+  /// and `into` outlive it.
+  lidar_node(dds::bus& on, const ros2_options& options, const named_source& which, merger* into,
+             std::size_t index);
+  ~lidar_node() override;
+
+  /// Starts or rests the motor as subscribers and commands want it, and publishes diagnostics when they
+  /// are due. To be called several times a second.
+  void update();
+  /// A command of a user: whether it is to run.
+  void allow(bool runs) noexcept { is_allowed_ = runs; }
+
+  /// Sets parameters of this lidar, all or none; `done` is called in another thread: why not, or empty.
+  void change(std::vector<named_value> wanted, std::function<void(std::string)> done);
+  [[nodiscard]] const lidar_parameters& parameters() const noexcept { return parameters_; }
+  /// One more status for its diagnostics.
+  void also_report(std::function<diagnostic_status()> what) { more_ = std::move(what); }
+
+  [[nodiscard]] const std::string& name() const noexcept { return which_.name; }
+  [[nodiscard]] station& device() noexcept { return *station_; }
+  [[nodiscard]] const std::string& name_space() const noexcept { return name_space_; }
+
+  void on_open(opened_source& source) override;
+  void on_scan(const scan& whole) override;
+  void on_points(std::span<const point> points) override;
+  void on_event(const lidar_event& event) override;
+  void on_state(station_state state, std::string_view why) override;
+
+ private:
+  using clock = std::chrono::steady_clock;
+
+  [[nodiscard]] bool is_wanted() const;
+  void publish_diagnostics();
+  [[nodiscard]] std::int64_t ahead_ns() const { return station_->wall_ns(0); }
+
+  const ros2_options& options_;
+  named_source which_;
+  std::string name_space_;
+  merger* merger_;
+  std::size_t index_;
+  std::unique_ptr<scan_messages> messages_;  // null if its scans are merged
+  robot_messages robot_;
+  std::unique_ptr<dds::publisher> place_;
+  std::unique_ptr<dds::publisher> diagnostics_;
+  std::unique_ptr<odometry_subscription> driven_;
+  odometry_feed feed_;  // of the station's thread, as the next two
+  odometry_path path_;
+  scan_shaper shaper_;
+  lidar_parameters parameters_;
+  std::function<diagnostic_status()> more_;
+  std::atomic<bool> is_allowed_ = true;
+  clock::time_point wanted_{};  // last
+  clock::time_point diagnostics_due_{};
+  std::unique_ptr<station> station_;  // ends first
+};
+
+}  // namespace g4_tool

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// g4-ros2: lidars as ROS 2 topics, without a ROS installation.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "node.hpp"
+#include "options.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr const char* description =
+    R"(g4-ros2 publishes the scans of one or more YDLIDAR G4 lidars as ROS 2 topics. It needs no ROS
+installation: it speaks DDS itself. Every ROS 2 from Humble on sees its topics, with rviz2, Nav2 and
+slam_toolbox, if it uses a DDS middleware. Without a source it takes the only G4 that is connected,
+waits for it if it is not there yet, and reconnects.)";
+
+constexpr const char* details =
+    R"(Topics:
+  scan           sensor_msgs/LaserScan, always the same number of ranges
+  points         sensor_msgs/PointCloud2 of the returns, with the field t (ns since the stamp)
+  /diagnostics   diagnostic_msgs/DiagnosticArray, once a second
+  /tf_static     the place of the lidar on the robot, with --mount
+  odom, /tf      the way of the robot, of a recording with odometry or a simulated robot
+  /clock         the time of a recording
+
+Services, for rmw_cyclonedds: get_parameters, set_parameters, list_parameters, ... of the node, as
+ros2 param uses them, with scan_frequency, sample_rate, range_min, range_max, fov and others;
+start and stop (std_srvs/Trigger).
+
+Several lidars have names: front=/dev/ttyUSB0 rear=/dev/ttyUSB1. Then each name is a namespace,
+and begins the frame of its lidar: front_laser. --merge publishes one scan and one cloud of all
+of them in the frame of the robot instead.
+
+The domain is that of ROS_DOMAIN_ID; ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE,
+ROS_STATIC_PEERS and CYCLONEDDS_URI are honoured. After --ros-args, -r renames topics, the node
+and the namespace, and -p sets any option: -p grid:=360. With --deskew odometry the robot's motion
+is that of the recording or the simulated robot, else of the subscribed odometry topic.)";
+
+verb make_verb() {
+  const auto options = std::make_shared<ros2_options>();
+  options->common.frame = frame::robot;
+  options->common.on_loss = loss_rule::wait;
+  option_row source{"SOURCE", "", "A lidar or a recording, or NAME=SOURCE (the only G4)",
+                    [options](const std::string& word) { options->sources.push_back(word); }};
+  source.complete = completion::source;
+  source.repeatable = true;
+  return {.name = "g4-ros2",
+          .summary = "Publish lidars as ROS 2 topics",
+          .arguments = {source},
+          .options = ros2_rows(options),
+          .details = details,
+          .examples = {{"g4-ros2", "Publish the only G4 on /scan and /points"},
+                       {"g4-ros2 --namespace robot1 --mount 0.2,0,0 --standby",
+                        "On /robot1/scan, with its place, and at rest while nobody subscribes"},
+                       {"g4-ros2 front=/dev/ttyUSB0 rear=/dev/ttyUSB1 --merge "
+                        "--mount front=0.2,0,0 --mount rear=-0.2,0,180",
+                        "Join two lidars into one scan"},
+                       {"g4-ros2 sim: --domain 42", "Publish a simulated G4 in domain 42"}},
+          .run = [options] { return run_node(*options); }};
+}
+
+}  // namespace
+}  // namespace g4_tool
+
+int main(int argc, char** argv) {
+  using namespace g4_tool;
+  const program g4_ros2{.name = "g4-ros2",
+                        .title = "YDLIDAR G4 lidars as ROS 2 topics",
+                        .description = description,
+                        .verbs = [] { return std::vector<verb>{make_verb()}; },
+                        .default_verb = "g4-ros2",
+                        .has_config = true};
+  std::vector<std::string> words;
+  try {
+    words = without_ros_arguments({argv + 1, argv + argc}, make_verb().options);
+  } catch (const bad_value& reason) {
+    logger::write(std::string("g4-ros2: ") + reason.what() + ". See: g4-ros2 --help\n");
+    return static_cast<int>(exit_code::usage);
+  }
+  std::vector<const char*> all{argv[0]};
+  for (const std::string& word : words) all.push_back(word.c_str());
+  return run_program(g4_ros2, static_cast<int>(all.size()), all.data());
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "node.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "cli/exit_code.hpp"
+#include "dds/bus.hpp"
+#include "io/interrupt.hpp"
+#include "io/service_watch.hpp"
+#include "lidar_node.hpp"
+#include "merger.hpp"
+#include "node_services.hpp"
+
+namespace g4_tool {
+namespace {
+
+using namespace std::chrono_literals;
+using clock = std::chrono::steady_clock;
+
+constexpr auto pulse = 100ms;
+constexpr auto network_pulse = 1s;
+
+class node {
+ public:
+  explicit node(const ros2_options& options)
+      : options_(options),
+        bus_(dds::read_network(options.transport.domain, options.transport.interface)) {
+    const std::vector<named_source> lidars = sources_of(options_);
+    if (options_.merges) merger_.emplace(bus_, options_, lidars);
+    for (const named_source& each : lidars) {
+      lidars_.push_back(std::make_unique<lidar_node>(
+          bus_, options_, each, merger_ ? &*merger_ : nullptr, lidars_.size()));
+    }
+    std::vector<lidar_node*> all;
+    all.reserve(lidars_.size());
+    for (const auto& each : lidars_) all.push_back(each.get());
+    services_ = std::make_unique<node_services>(bus_, options_, all);
+    lidars_.front()->also_report([this] { return services_->status(); });
+  }
+
+  int run() {
+    bus_.update();
+    for (const auto& each : lidars_) each->device().start();
+    while (interrupt() == 0 && !limits_.is_over() && !has_ended()) {
+      bus_.cleared();
+      if (const auto now = clock::now(); now >= network_due_) {
+        bus_.update();
+        network_due_ = now + network_pulse;
+      }
+      services_->update();
+      for (const auto& each : lidars_) each->update();
+      report();
+      static_cast<void>(wait_for_input(bus_.handle(), -1, clock::now() + pulse));
+    }
+    service_.stopping();
+    const std::exception_ptr why = failure_of_any();
+    lidars_.clear();
+    bus_.close();
+    if (why) std::rethrow_exception(why);
+    return exit_code_now();
+  }
+
+ private:
+  /// Whether nothing will come any more.
+  [[nodiscard]] bool has_ended() const {
+    return std::ranges::all_of(
+        lidars_, [](const auto& each) { return each->device().state() == station_state::ended; });
+  }
+
+  [[nodiscard]] std::exception_ptr failure_of_any() const {
+    for (const auto& each : lidars_) {
+      if (auto why = each->device().failure()) return why;
+    }
+    return nullptr;
+  }
+
+  /// A service is ready when it is in the domain, and alive with each turn.
+  void report() {
+    if (bus_.is_up()) service_.ready();
+    service_.alive();
+    if (!service_.is_heard()) return;
+    std::string text;
+    for (const auto& each : lidars_) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", each->name_space(),
+                          name_of(each->device().state()));
+    }
+    service_.status(text);
+  }
+
+  const ros2_options& options_;
+  dds::bus bus_;
+  std::optional<merger> merger_;
+  std::unique_ptr<node_services> services_;  // the threads of the lidars end before it
+  std::vector<std::unique_ptr<lidar_node>> lidars_;
+  time_limits limits_{options_.common.duration, 0ns};
+  service_watch service_;
+  clock::time_point network_due_{};
+};
+
+}  // namespace
+
+int run_node(const ros2_options& options) {
+  if (options.order == scan_order::time && options.common.deskew != deskewing::none) {
+    throw bad_value("--order time cannot be used with --deskew: deskewed points have one time");
+  }
+  return node(options).run();
+}
+
+}  // namespace g4_tool

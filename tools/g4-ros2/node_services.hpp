@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The services of the node: parameters as `ros2 param` uses them, start and stop.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dds/service.hpp"
+#include "lidar_node.hpp"
+#include "options.hpp"
+
+namespace g4_tool {
+
+/// *Single thread*: that of the bus. Of several lidars each has its parameters with its name before a dot.
+class node_services {
+ public:
+  /// All outlive it, but the threads of `lidars` end before it. Throws bad_value for the name of the node.
+  node_services(dds::bus& on, const ros2_options& options, std::vector<lidar_node*> lidars);
+  ~node_services();
+
+  /// To be called when the bus is readable, and several times a second.
+  void update();
+  [[nodiscard]] diagnostic_status status() const;
+
+ private:
+  /// Whose parameter it is.
+  struct target {
+    std::string name;  ///< "front.scan_frequency"
+    lidar_node* lidar;
+    const parameter* what;
+  };
+  struct set_job;
+  [[nodiscard]] const target* find(std::string_view name) const;
+  void offer(const std::string& name, const dds::service_type& type,
+             bool (node_services::*handle)(dds::service&, const void*, const dds::caller&));
+
+  bool get(dds::service& via, const void* request, const dds::caller& from);
+  bool get_types(dds::service& via, const void* request, const dds::caller& from);
+  bool list(dds::service& via, const void* request, const dds::caller& from);
+  bool describe(dds::service& via, const void* request, const dds::caller& from);
+  bool set(dds::service& via, const void* request, const dds::caller& from);
+  bool set_atomically(dds::service& via, const void* request, const dds::caller& from);
+  bool start(dds::service& via, const void* request, const dds::caller& from);
+  bool stop(dds::service& via, const void* request, const dds::caller& from);
+  bool command(dds::service& via, const dds::caller& from, bool runs);
+
+  dds::bus& on_;
+  const ros2_options& options_;
+  std::vector<lidar_node*> lidars_;
+  std::vector<target> targets_;
+  std::atomic<std::size_t> unfinished_ = 0;  // sets
+  std::vector<std::unique_ptr<dds::service>> services_;
+};
+
+}  // namespace g4_tool

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include "cli/logger.hpp"
+#include "cli/rows.hpp"
+
+namespace g4_tool {
+namespace {
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Whether it can stand between two slashes of a name of ROS 2.
+bool is_token(std::string_view word) {
+  return !word.empty() && is_letter(word.front()) &&
+         std::ranges::all_of(word, [](char c) { return is_letter(c) || is_digit(c); });
+}
+
+/// "front=/dev/ttyUSB0": the name, and what it names; without a name the whole word.
+std::pair<std::string, std::string> named(const std::string& word) {
+  const std::size_t at = word.find('=');
+  if (at == std::string::npos || !is_token(word.substr(0, at))) return {"", word};
+  return {word.substr(0, at), word.substr(at + 1)};
+}
+
+option_row name_row(const char* names, const char* help, std::string& into) {
+  return checked(text_row(names, "NAME", help, into, completion::nothing),
+                 [](const std::string& word) { static_cast<void>(full_name("", word)); });
+}
+
+option_row topic_row(const char* names, const char* help, std::string& into) {
+  return name_row(names, help, into);
+}
+
+option_row frame_name_row(const char* names, const char* help, std::string& into) {
+  return checked(text_row(names, "NAME", help, into, completion::nothing),
+                 [](const std::string& word) {
+                   if (word.empty()) throw bad_value("a frame needs a name");
+                 });
+}
+
+option_rows topic_rows(ros2_options& options) {
+  topic_names& topics = options.topics;
+  return in_group(
+      "Topics and frames",
+      {name_row("--namespace", "Namespace of the topics and services (/)", options.name_space),
+       name_row("--node-name", "Name of the node, and of its services (g4lidar)", options.node),
+       topic_row("--scan-topic", "LaserScan messages; off: none (scan)", topics.scan),
+       topic_row("--points-topic", "PointCloud2 messages; off: none (points)", topics.points),
+       topic_row("--diagnostics-topic", "DiagnosticArray messages; off: none (/diagnostics)",
+                 topics.diagnostics),
+       topic_row("--odometry-topic", "Odometry, published or subscribed; off: none (odom)",
+                 topics.odometry),
+       frame_name_row("--frame-id", "Frame of the lidar (laser)", options.frames.lidar),
+       frame_name_row("--base-frame", "Frame of the robot (base_link)", options.frames.robot),
+       frame_name_row("--odometry-frame", "Frame of the odometry (odom)",
+                      options.frames.odometry)});
+}
+
+option_rows scan_rows(ros2_options& options) {
+  return in_group(
+      "Scans",
+      {choice_row("--order", "Order of the ranges of a LaserScan; time: z is down (angle)",
+                  options.order,
+                  choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}}),
+       number_row("--grid", "N", "Ranges of each LaserScan (720)", options.bins, 1U, 65536U),
+       flag_row("--merge", "Join the lidars by their mountings into one scan", options.merges)});
+}
+
+option_rows network_rows(ros2_options& options) {
+  delivery& transport = options.transport;
+  return in_group(
+      "Network",
+      {value_row("--domain", "N", "ROS 2 domain (ROS_DOMAIN_ID, or 0)", transport.domain,
+                 [](const std::string& word) { return number_of(word, 0U, 232U); }),
+       text_row("--interface", "NAME", "Network interface or its address (any)",
+                transport.interface, completion::nothing),
+       choice_row("--qos", "Reliability of scans and points (reliable)", transport.is_reliable,
+                  choices<bool>{{"reliable", true}, {"best-effort", false}}),
+       number_row("--depth", "N", "Messages that wait for a slow subscriber (5)", transport.depth,
+                  1, 10'000)});
+}
+
+option_rows place_rows(ros2_options& options) {
+  option_row mount{"--mount", "X,Y,DEG[,down]",
+                   "Where the lidar is on the robot; NAME=X,Y,DEG: that lidar; for /tf_static",
+                   [&into = options.mounts](const std::string& word) {
+                     const auto [name, place] = named(word);
+                     into.emplace_back(name, mounting_of(place));
+                   }};
+  mount.repeatable = true;
+  return in_group("Motion of the robot", joined(mount, deskew_row(options.common)));
+}
+
+option_rows device_and_player_rows(ros2_options& options) {
+  option_row set{
+      "--set", "NAME=VALUE", "Set the lidar at the start: freq=10; may be repeated",
+      [&into = options.settings](const std::string& word) { into.push_back(wish_of(word)); }};
+  set.complete = completion::setting;
+  set.repeatable = true;
+  return joined(
+      in_group("Device", joined(set, flag_row("--standby", "Rest the motor while nobody subscribes",
+                                              options.is_standby))),
+      device_rows(options.common),
+      in_group("Recordings",
+               {number_row("--playback-speed", "FACTOR", "1: as recorded, 0.5: half as fast (1)",
+                           options.station.speed, 0.01, 100.0),
+                flag_row("--loop", "Start again at the end", options.station.loops)}));
+}
+
+/// Keeps the text of --fov, too.
+option_rows filter_rows_of(ros2_options& options) {
+  option_rows rows = filter_rows(options.common);
+  for (option_row& row : rows) {
+    if (row.names != "--fov") continue;
+    row.take = [&into = options.fov, inner = row.take](const std::string& word) {
+      inner(word);
+      into = word;
+    };
+  }
+  return rows;
+}
+
+/// "'front', 'rear'"
+std::string list_of(const std::vector<named_source>& lidars) {
+  std::string made;
+  for (const named_source& each : lidars) {
+    made += (made.empty() ? "" : ", ") +
+            (each.name.empty() ? "one without a name" : in_quotes(each.name));
+  }
+  return made;
+}
+
+/// A topic has one type.
+void check_topics(const ros2_options& options, const std::vector<named_source>& lidars) {
+  const topic_names& topics = options.topics;
+  const std::array<std::pair<const char*, std::string_view>, 4> wanted{
+      {{"--scan-topic", topics.scan},
+       {"--points-topic", topics.points},
+       {"--diagnostics-topic", topics.diagnostics},
+       {"--odometry-topic", topics.odometry}}};
+  std::map<std::string, std::string_view> owners{
+      {"/tf", "tf2_msgs"}, {"/tf_static", "tf2_msgs"}, {"/clock", "rosgraph_msgs"}};
+  for (const named_source& lidar : lidars) {
+    const std::string space = full_name(options.name_space, lidar.name);
+    for (const auto& [option, name] : wanted) {
+      if (name == "off") continue;
+      const std::string topic = full_name(space, name);
+      const auto [at, is_new] = owners.emplace(topic, option);
+      if (is_new || at->second == option) continue;
+      throw bad_value(fmt::format("{}: {} is the topic of {}", option, topic, at->second));
+    }
+  }
+}
+
+}  // namespace
+
+std::string full_name(std::string_view name_space, std::string_view name) {
+  std::string made(name.starts_with('/') ? "" : name_space);
+  if (!made.empty() && !made.starts_with('/')) made.insert(0, "/");
+  while (made.ends_with('/')) made.pop_back();
+  if (!name.empty() && !name.starts_with('/')) made += '/';
+  made += name;
+  for (std::size_t at = 0; at < made.size();) {
+    const std::size_t end = std::min(made.find('/', at + 1), made.size());
+    const std::string_view token = std::string_view(made).substr(at + 1, end - at - 1);
+    if ((!is_token(token) && made != "/") || token.find("__") != std::string_view::npos) {
+      throw bad_value(in_quotes(std::string(name)) +
+                      " is not a name of ROS 2: letters, digits, single _ and / between them");
+    }
+    at = end;
+  }
+  return made;
+}
+
+std::vector<named_source> sources_of(const ros2_options& options) {
+  std::vector<named_source> made;
+  std::set<std::string> names;
+  for (const std::string& word : options.sources) {
+    auto [name, source] = named(word);
+    if (!names.insert(name).second) {
+      throw bad_value(options.sources.size() > 1 && name.empty()
+                          ? "several lidars need names: front=" + options.sources.front()
+                          : in_quotes(name) + " names two lidars");
+    }
+    made.push_back({std::move(name), std::move(source), std::nullopt});
+  }
+  if (made.empty()) made.push_back({"", "", std::nullopt});
+  if (made.size() > 1 && names.contains("")) {
+    throw bad_value("several lidars need names: front=/dev/ttyUSB0");
+  }
+  const auto has_own_clock = [](const named_source& each) {
+    const source_kind kind = kind_of(each.source);
+    return kind == source_kind::recording || kind == source_kind::bytes;
+  };
+  if (options.merges && std::ranges::any_of(made, has_own_clock)) {
+    throw bad_value("--merge joins lidars; a file has a clock of its own");
+  }
+  for (const auto& [name, place] : options.mounts) {
+    const auto lidar = std::ranges::find(made, name, &named_source::name);
+    if (lidar == made.end()) {
+      throw bad_value(fmt::format("--mount: there is no lidar {}; there is {}", in_quotes(name),
+                                  list_of(made)));
+    }
+    lidar->mount = place;
+  }
+  check_topics(options, made);
+  return made;
+}
+
+option_rows ros2_rows(const std::shared_ptr<ros2_options>& shared) {
+  ros2_options& options = *shared;
+  return joined(topic_rows(options), scan_rows(options), place_rows(options),
+                filter_rows_of(options), network_rows(options), device_and_player_rows(options),
+                in_group("End condition", {duration_row(options.common)}));
+}
+
+}  // namespace g4_tool

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// What the command line, the file of --config and the arguments of ROS 2 decide.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cli/common_options.hpp"
+#include "cli/settings.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/export/ros_messages.hpp"
+#include "io/source.hpp"
+#include "io/station.hpp"
+
+namespace g4_tool {
+
+/// The names of topics; those that begin with a slash are not in the namespace, and "off" is none.
+struct topic_names {
+  std::string scan = "scan";
+  std::string points = "points";
+  std::string diagnostics = "/diagnostics";
+  std::string odometry = "odom";
+};
+
+/// The names of coordinate frames.
+struct frame_names {
+  std::string lidar = "laser";
+  std::string robot = "base_link";
+  std::string odometry = "odom";
+};
+
+/// How messages travel.
+struct delivery {
+  std::optional<std::uint32_t> domain;  ///< Where given, else ROS_DOMAIN_ID.
+  std::string interface;
+  bool is_reliable = true;
+  int depth = 5;
+};
+
+/// A place that was given for the lidar of a name, or for the only one.
+using named_mounting = std::pair<std::string, mounting>;
+
+struct ros2_options {
+  /// Of every lidar, but for its source. The frame of the filters is the robot's.
+  common_options common;
+  opening source;
+  station_options station;
+  std::vector<std::string> sources;  ///< "SOURCE", or "NAME=SOURCE".
+  std::vector<named_mounting> mounts;
+  std::vector<wish> settings;
+  std::string name_space;        ///< "/robot1"; empty: the root.
+  std::string node = "g4lidar";  ///< The name of the node.
+  topic_names topics;
+  frame_names frames;
+  delivery transport;
+  scan_order order = scan_order::angle;
+  std::uint32_t bins = 720;
+  std::string fov = "-180:180";  ///< As --fov has it.
+  bool merges = false;
+  bool is_standby = false;
+};
+
+/// One lidar of several.
+struct named_source {
+  std::string name;  ///< Empty for the only one.
+  std::string source;
+  std::optional<mounting> mount;
+};
+
+/// The lidars that the options name, at least one. Throws bad_value.
+[[nodiscard]] std::vector<named_source> sources_of(const ros2_options& options);
+
+/// A name of ROS 2 in a namespace: "/robot1/scan". Throws bad_value for one that ROS 2 does not allow.
+[[nodiscard]] std::string full_name(std::string_view name_space, std::string_view name);
+
+/// The table of options, which writes into `options`.
+[[nodiscard]] option_rows ros2_rows(const std::shared_ptr<ros2_options>& options);
+
+/// `words` of a command line with what follows `--ros-args` as options of this program: `-r __ns:=/x`
+/// is `--namespace /x`, `-p grid:=360` is `--grid 360`. Throws bad_value for what it cannot be.
+[[nodiscard]] std::vector<std::string> without_ros_arguments(const std::vector<std::string>& words,
+                                                             const option_rows& rows);
+
+}  // namespace g4_tool

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/exit_code.hpp"
+#include "cli/settings.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr std::uint8_t is_bool = 1;
+constexpr std::uint8_t is_integer = 2;
+constexpr std::uint8_t is_double = 3;
+constexpr std::uint8_t is_string = 4;
+
+/// Nobody writes a longer value.
+constexpr std::size_t longest_text = 100;
+
+std::string_view name_of_type(std::size_t type) {
+  constexpr std::array<std::string_view, 5> names{"not set", "a bool", "an integer", "a double",
+                                                  "a string"};
+  return names.at(type);
+}
+
+/// A whole number is a double, too. Throws bad_value for another type.
+parameter_value converted(const parameter& to, const parameter_value& from) {
+  const auto* const whole = std::get_if<std::int64_t>(&from);
+  if (to.type == is_double && whole != nullptr) return static_cast<double>(*whole);
+  if (from.index() != to.type) {
+    throw bad_value(fmt::format("{}: it is {}", to.name, name_of_type(to.type)));
+  }
+  const auto* const text = std::get_if<std::string>(&from);
+  if (text != nullptr && text->size() > longest_text) {
+    throw bad_value(fmt::format("{}: the text is too long", to.name));
+  }
+  return from;
+}
+
+/// As a person writes it.
+std::string word_of(const parameter_value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  const auto* const text = std::get_if<std::string>(&value);
+  return text != nullptr ? *text : std::string();
+}
+
+parameter_value value_of(const maybe_answer& given) {
+  const auto json = json_of(given);
+  if (json.is_boolean()) return json.get<bool>();
+  if (json.is_string()) return json.get<std::string>();
+  if (json.is_number_float()) return json.get<double>();
+  if (json.is_number()) return json.get<std::int64_t>();
+  return {};
+}
+
+const setting* setting_of(std::string_view name) {
+  const auto at = std::ranges::find(all_settings(), name, &setting::name);
+  return at == all_settings().end() ? nullptr : &*at;
+}
+
+/// Sets an option of the command line by its parser. Throws bad_value.
+void take_option(common_options& into, std::string_view option, const std::string& word) {
+  option_rows rows = filter_rows(into);
+  const auto row = std::ranges::find(rows, option, &option_row::names);
+  if (row != rows.end()) row->take(word);
+}
+
+}  // namespace
+
+std::span<const parameter> all_parameters() {
+  using enum parameter_kind;
+  static const std::vector<parameter> all{
+      {"constant", is_bool, device, "constant", "Constant scan frequency", "known when it was set"},
+      {"direction", is_string, device, "direction", "Sense of rotation of the motor", "cw, ccw"},
+      {"fov", is_string, filter, "", "Directions that are kept, degrees in the frame of the robot",
+       "FROM:TO, such as -90:90"},
+      {"frame_id", is_string, read_only, "", "Frame of the scans", ""},
+      {"grid", is_integer, read_only, "", "Ranges of each LaserScan", ""},
+      {"idle", is_bool, device, "idle", "Low power when no scan is running", ""},
+      {"order", is_string, read_only, "", "Order of the ranges of a LaserScan", "angle, time"},
+      {"protection", is_bool, device, "protection", "Power-down protection",
+       "known when it was set"},
+      {"range_max", is_double, filter, "", "Longest range that is kept, m", "", {0.0, 100.0, 0.0}},
+      {"range_min", is_double, filter, "", "Shortest range that is kept, m", "", {0.0, 100.0, 0.0}},
+      {"sample_rate", is_integer, device, "sample_rate", "Samples per second, Hz",
+       "4000, 8000, 9000"},
+      {"scan_frequency",
+       is_double,
+       device,
+       "freq",
+       "Revolutions per second, Hz",
+       "multiples of 0.1",
+       {5.0, 12.0, 0.1}},
+      {"serial_number", is_string, read_only, "", "Serial number of the lidar", ""}};
+  return all;
+}
+
+const parameter* find_parameter(std::string_view name) {
+  const auto all = all_parameters();
+  const auto at = std::ranges::find(all, name, &parameter::name);
+  return at == all.end() ? nullptr : &*at;
+}
+
+lidar_parameters::lidar_parameters(const common_options& how, std::string fov, scan_shaper& shaper)
+    : how_(how), shaper_(shaper) {
+  const point_filter& filter = how.filter;
+  keep("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
+  keep("range_max", std::min(static_cast<double>(filter.greatest_range_mm) / 1e3, 100.0));
+  keep("fov", std::move(fov));
+}
+
+void lidar_parameters::keep(std::string_view name, parameter_value value) {
+  const std::lock_guard lock(mutex_);
+  values_.insert_or_assign(std::string(name), std::move(value));
+}
+
+void lidar_parameters::fix(std::string_view name, parameter_value value) {
+  keep(name, std::move(value));
+}
+
+parameter_value lidar_parameters::value(const parameter& of) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = values_.find(of.name);
+  return at == values_.end() ? parameter_value() : at->second;
+}
+
+void lidar_parameters::read_device(g4lidar::lidar& device) {
+  for (const parameter& each : all_parameters()) {
+    const setting* const known = setting_of(each.setting);
+    if (known == nullptr || !known->question) continue;
+    const auto given = device.ask(*known->question);
+    if (given)
+      keep(each.name, value_of(maybe_answer(*given)));
+    else if (given.error().is_fatal())
+      return;  // the next read of the station finds it
+  }
+}
+
+std::string lidar_parameters::set_device(g4lidar::lidar* device,
+                                         std::span<const device_wish> wishes) {
+  if (!wishes.empty() && device == nullptr) return "the lidar is not connected";
+  std::vector<std::pair<const parameter*, parameter_value>> before;
+  for (const auto& [known, how] : wishes) {
+    const auto given = device->ask(how.how, while_scanning::stop_and_resume);
+    if (given) {
+      before.emplace_back(known, value(*known));
+      keep(known->name, value_of(maybe_answer(*given)));
+      continue;
+    }
+    for (const auto& [earlier, old] : before) {
+      if (old.index() == 0) continue;  // was not known
+      const wish back = wish_of(fmt::format("{}={}", earlier->setting, word_of(old)));
+      if (device->ask(back.how, while_scanning::stop_and_resume)) keep(earlier->name, old);
+    }
+    return in_tool_words(given.error().message());
+  }
+  return {};
+}
+
+std::string lidar_parameters::change(g4lidar::lidar* device, std::span<const named_value> wanted) {
+  std::map<std::string_view, parameter_value> values;  // of the filters
+  std::vector<device_wish> wishes;
+  common_options next = how_;
+  try {
+    for (const auto& [name, given] : wanted) {
+      const parameter* const known = find_parameter(name);
+      if (known == nullptr) throw bad_value("there is no such parameter");
+      if (known->kind == parameter_kind::read_only) {
+        throw bad_value(fmt::format("{}: it cannot change while the program runs", known->name));
+      }
+      const parameter_value value = converted(*known, given);
+      if (known->kind == parameter_kind::filter) {
+        values[known->name] = value;
+      } else {
+        wishes.emplace_back(known, wish_of(fmt::format("{}={}", known->setting, word_of(value))));
+      }
+    }
+    if (const auto fov = values.find("fov"); fov != values.end()) {
+      take_option(next, "--fov", word_of(fov->second));
+    }
+    if (values.contains("range_min") || values.contains("range_max")) {
+      for (const std::string_view name : {"range_min", "range_max"}) {
+        values.try_emplace(name, value(*find_parameter(name)));
+      }
+      take_option(next, "--range",
+                  word_of(values["range_min"]) + ":" + word_of(values["range_max"]));
+    }
+  } catch (const bad_value& reason) {
+    return reason.what();
+  }
+  if (std::string reason = set_device(device, wishes); !reason.empty()) return reason;
+  if (!values.empty()) {
+    shaper_.set_filters(next);
+    how_ = next;
+    for (const auto& [name, value] : values) keep(name, value);
+  }
+  return {};
+}
+
+}  // namespace g4_tool

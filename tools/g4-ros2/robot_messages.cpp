@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#include "robot_messages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include <messages.h>
+#include "g4lidar/export/ros_messages.hpp"
+#include "scan_messages.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t clock_step_ns = 10'000'000;
+
+/// Nothing for one that no robot has.
+std::optional<stamped_odometry> odometry_of(const nav_msgs_msg_dds__Odometry_& from) {
+  const auto& [place, turn] = from.pose.pose;
+  const auto& [linear, angular] = from.twist.twist;
+  const double yaw =
+      std::atan2(2.0 * (turn.w * turn.z + turn.x * turn.y),
+                 turn.w * turn.w + turn.x * turn.x - turn.y * turn.y - turn.z * turn.z);
+  const stamped_odometry made{
+      std::int64_t{from.header.stamp.sec} * second_ns + from.header.stamp.nanosec,
+      {place.x, place.y, yaw},
+      {linear.x, linear.y, angular.z}};
+  const std::array<double, 6> numbers{place.x, place.y, yaw, linear.x, linear.y, angular.z};
+  const bool is_possible = std::ranges::all_of(
+      numbers, [](double value) { return std::fabs(value) <= max_odometry_value; });
+  return is_possible ? std::optional(made) : std::nullopt;
+}
+
+}  // namespace
+
+robot_messages::robot_messages(dds::bus& on, const ros2_options& options,
+                               std::string_view name_space, bool has_clock)
+    : options_(options) {
+  odometry_ = publisher_of(on, name_space, options.topics.odometry, {.type = &dds::odometry});
+  tf_ = publisher_of(on, "", "/tf", {.type = &dds::tf_message, .depth = 100});
+  if (has_clock) clock_ = publisher_of(on, "", "/clock", {.type = &dds::clock_message});
+}
+
+void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) {
+  if (odometry_ && odometry_->is_wanted()) {
+    message_.clear();
+    put_odometry({.stamp_ns = stamp_ns,
+                  .frame_id = options_.frames.odometry,
+                  .child_frame_id = options_.frames.robot,
+                  .pose = at.pose,
+                  .twist = at.twist},
+                 message_);
+    odometry_->publish(message_);
+  }
+  if (tf_->is_wanted()) {
+    message_.clear();
+    put_tf_message({.stamp_ns = stamp_ns,
+                    .frame_id = options_.frames.odometry,
+                    .child_frame_id = options_.frames.robot,
+                    .place = {at.pose, false}},
+                   message_);
+    tf_->publish(message_);
+  }
+}
+
+void robot_messages::publish_clock(std::int64_t now_ns) {
+  if (!clock_ || !clock_->is_wanted() || std::abs(now_ns - clock_ns_) < clock_step_ns) return;
+  clock_ns_ = now_ns;
+  message_.assign({0, 1, 0, 0});
+  const auto put = [this](std::uint32_t value) {
+    for (int i = 0; i < 4; ++i) message_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+  };
+  put(static_cast<std::uint32_t>(now_ns / second_ns));
+  put(static_cast<std::uint32_t>(now_ns % second_ns));
+  clock_->publish(message_);
+}
+
+std::vector<std::uint8_t> place_message(const ros2_options& options, const std::string& frame_id,
+                                        const mounting& place) {
+  std::vector<std::uint8_t> message;
+  const bool is_turned = options.order == scan_order::time;
+  put_tf_message({.frame_id = options.frames.robot,
+                  .child_frame_id = frame_id,
+                  .place = {place.pose, place.upside_down != is_turned}},
+                 message);
+  return message;
+}
+
+odometry_subscription::odometry_subscription(dds::bus& on, std::string name)
+    : dds::endpoint(on), name_(std::move(name)) {
+  on.add(*this);
+}
+
+void odometry_subscription::open(dds_entity_t participant, int* /*handle*/) {
+  const std::lock_guard lock(mutex_);
+  // Whoever publishes: with best effort every quality of service is accepted.
+  const dds::qos wish = dds::qos_of({.type = &dds::odometry, .is_reliable = false, .depth = 100});
+  topic_ = dds::entity(dds_create_topic(participant, dds::odometry.descriptor,
+                                        dds::dds_name(name_).c_str(), nullptr, nullptr));
+  reader_ = dds::entity(dds_create_reader(participant, topic_.get(), wish.get(), nullptr));
+}
+
+void odometry_subscription::close() noexcept {
+  const std::lock_guard lock(mutex_);
+  reader_ = {};
+  topic_ = {};
+}
+
+void odometry_subscription::take(odometry_path& into, std::int64_t ahead_ns) {
+  const std::lock_guard lock(mutex_);
+  std::array<void*, 16> samples{};
+  std::array<dds_sample_info_t, 16> about{};
+  while (reader_) {
+    const dds_return_t count =
+        dds_take(reader_.get(), samples.data(), about.data(), samples.size(), samples.size());
+    if (count <= 0) return;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      if (!about[i].valid_data) continue;
+      auto odometry = odometry_of(*static_cast<const nav_msgs_msg_dds__Odometry_*>(samples[i]));
+      if (!odometry) continue;
+      odometry->time_ns -= ahead_ns;
+      into.add(*odometry);
+    }
+    static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));
+  }
+}
+
+}  // namespace g4_tool

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "scan_messages.hpp"
+
+#include <utility>
+
+#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/grid.hpp"
+
+namespace g4_tool {
+
+std::unique_ptr<dds::publisher> publisher_of(dds::bus& on, std::string_view name_space,
+                                             std::string_view name, const dds::topic& what) {
+  if (name == "off") return nullptr;
+  dds::topic named = what;
+  named.name = full_name(name_space, name);
+  return std::make_unique<dds::publisher>(on, std::move(named));
+}
+
+scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
+                             std::string frame_id)
+    : options_(options), frame_id_(std::move(frame_id)), ranges_(options.bins) {
+  const auto topic_of = [&options](const dds::message_type& type) {
+    return dds::topic{.type = &type,
+                      .is_reliable = options.transport.is_reliable,
+                      .depth = options.transport.depth};
+  };
+  scan_ = publisher_of(on, name_space, options.topics.scan, topic_of(dds::laser_scan));
+  points_ = publisher_of(on, name_space, options.topics.points, topic_of(dds::point_cloud2));
+}
+
+void scan_messages::publish(const shaped_scan& shaped, const scan_times& when) {
+  message_header header{.stamp_ns = when.first_ns + when.ahead_ns,
+                        .frame_id = frame_id_,
+                        .duration_ns = when.duration_ns,
+                        .order = options_.order};
+  if (scan_ && scan_->is_wanted()) {
+    if (options_.order == scan_order::time) {
+      header.first_bin = fill_time_grid(shaped.for_grid, when.duration_ns, ranges_);
+    } else {
+      fill_grid(shaped.for_grid, ranges_);
+    }
+    message_.clear();
+    put_laser_scan(ranges_, header, message_);
+    scan_->publish(message_);
+  }
+  if (points_ && points_->is_wanted()) {
+    if (!shaped.kept.empty()) header.stamp_ns = shaped.kept.front().time_ns + when.ahead_ns;
+    message_.clear();
+    put_point_cloud2(shaped.kept, header, message_);
+    points_->publish(message_);
+  }
+}
+
+bool scan_messages::is_wanted() const {
+  return (scan_ && scan_->is_wanted()) || (points_ && points_->is_wanted());
+}
+
+std::vector<const dds::publisher*> scan_messages::topics() const {
+  std::vector<const dds::publisher*> all;
+  for (const auto* each : {&scan_, &points_}) {
+    if (*each) all.push_back(each->get());
+  }
+  return all;
+}
+
+}  // namespace g4_tool

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Revolutions as messages on /scan and /points.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dds/bus.hpp"
+#include "io/scan_shaper.hpp"
+#include "options.hpp"
+
+namespace g4_tool {
+
+/// When a revolution was measured, in nanoseconds.
+struct scan_times {
+  std::int64_t first_ns = 0;     ///< Of its first point, by the clock of the points.
+  std::int64_t duration_ns = 0;  ///< Until the first point of the next one.
+  std::int64_t ahead_ns = 0;     ///< The wall clock minus the clock of the points.
+};
+
+/// The topics of one lidar, or of all that are merged. *Single thread* but is_wanted().
+class scan_messages {
+ public:
+  scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
+                std::string frame_id);
+
+  /// Makes the messages that somebody reads.
+  void publish(const shaped_scan& shaped, const scan_times& when);
+  /// Whether somebody reads one of them. *Any thread.*
+  [[nodiscard]] bool is_wanted() const;
+  /// Those that are published. *Any thread.*
+  [[nodiscard]] std::vector<const dds::publisher*> topics() const;
+
+ private:
+  const ros2_options& options_;
+  std::string frame_id_;
+  std::unique_ptr<dds::publisher> scan_;  // null: off
+  std::unique_ptr<dds::publisher> points_;
+  std::vector<float> ranges_;
+  std::vector<std::uint8_t> message_;
+};
+
+/// The publisher of a topic that the options name; null if it is off.
+[[nodiscard]] std::unique_ptr<dds::publisher> publisher_of(dds::bus& on,
+                                                           std::string_view name_space,
+                                                           std::string_view name,
+                                                           const dds::topic& what);
+
+}  // namespace g4_tool
