@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// What the clients of a hub get, whether they read or not.
+#include "hub.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <malloc.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host_guard.hpp"
+
+namespace {
+
+using namespace g4_tool;
+using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string text_in(const outgoing& message) {
+  return {message.payload->begin(), message.payload->end()};
+}
+
+class Hub : public ::testing::Test {
+ protected:
+  /// "op" of each text that waits, "scan" for a binary message; all are taken.
+  std::vector<std::string> take_all(hub::client& to) {
+    std::vector<std::string> all;
+    while (const auto message = center.take(to)) {
+      last = text_in(*message);
+      all.push_back(message->is_text ? json::parse(last)["op"].get<std::string>() : "scan");
+    }
+    return all;
+  }
+  hub::client& page() { return *center.connect(client_kind::page, nullptr); }
+  hub::client& foxglove() { return *center.connect(client_kind::foxglove, nullptr); }
+
+  bool allows_set = true;
+  int woken = 0;
+  std::vector<std::string> wishes;
+  std::vector<std::function<void(const std::string&)>> done;
+  int plays = 0;
+  std::string last;
+  hub center{"session",
+             true,
+             {.set =
+                  [this](const set_request& wanted, auto when_done) {
+                    wishes.push_back(wanted.name + '=' + wanted.value);
+                    done.push_back(std::move(when_done));
+                  },
+              .play = [this](const play_request&) { ++plays; }},
+             [this] { ++woken; }};
+};
+
+TEST_F(Hub, NewClients_AreGreeted) {
+  center.greet(R"({"op":"hello"})", true);
+  EXPECT_THAT(take_all(page()), ElementsAre("hello", "status"));
+  EXPECT_THAT(take_all(foxglove()), ElementsAre("serverInfo", "advertise"));
+}
+
+TEST_F(Hub, Pages_GetWhatIsPublished) {
+  hub::client& one = page();
+  hub::client& two = foxglove();
+  take_all(one);
+  take_all(two);
+  EXPECT_EQ(woken, 0);
+  center.page_scan({1, 2});
+  center.status(R"({"op":"status"})");
+  center.settings(R"({"op":"settings"})");
+  center.event(R"({"op":"event"})");
+  EXPECT_EQ(woken, 4);
+  const std::vector<std::string> got = take_all(one);
+  EXPECT_THAT(got, ::testing::UnorderedElementsAre("event", "settings", "status", "scan"));
+  EXPECT_EQ(got.front(), "event");
+  EXPECT_THAT(take_all(two), ElementsAre());
+  EXPECT_EQ(std::string(center.status()->begin(), center.status()->end()), R"({"op":"status"})");
+}
+
+TEST_F(Hub, SlowPage_GetsTheNewestScan) {
+  hub::client& slow = page();
+  take_all(slow);
+  for (std::uint8_t i = 0; i < 200; ++i) center.page_scan({i});
+  EXPECT_THAT(take_all(slow), ElementsAre("scan"));
+  EXPECT_EQ(last, std::string(1, '\xC7'));
+}
+
+TEST_F(Hub, PageThatNeverReads_HasABoundedOutbox) {
+  hub::client& deaf = page();
+  for (int i = 0; i < 1000; ++i) {
+    center.event(R"({"op":"event"})");
+    EXPECT_TRUE(center.receive(deaf, R"({"op":"dance"})"));
+    center.greet(R"({"op":"hello"})", true);
+    center.page_scan({1});
+  }
+  EXPECT_LE(take_all(deaf).size(), outbox::longest_queue + outbox::slot_count);
+}
+
+TEST_F(Hub, SlotsTakeTurns) {
+  hub::client& slow = page();
+  take_all(slow);
+  std::vector<std::string> got;
+  for (int i = 0; i < 4; ++i) {  // a scan comes whenever one message could be sent
+    center.page_scan({1});
+    center.status(R"({"op":"status"})");
+    got.push_back(center.take(slow)->is_text ? "status" : "scan");
+  }
+  EXPECT_THAT(got, ::testing::UnorderedElementsAre("status", "scan", "status", "scan"));
+}
+
+TEST_F(Hub, Set_IsPassedOnAndAnswered) {
+  hub::client& one = page();
+  hub::client& two = page();
+  take_all(one);
+  take_all(two);
+  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":9})"));
+  EXPECT_THAT(wishes, ElementsAre("freq=9"));
+  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":8})"));
+  EXPECT_THAT(take_all(one), ElementsAre("error")) << "one after the other";
+  EXPECT_TRUE(center.receive(two, R"({"op":"set","name":"freq","value":7})"));
+  done.at(0)("");
+  EXPECT_THAT(take_all(one), ElementsAre());
+  done.at(1)("refused");
+  EXPECT_THAT(take_all(two), ElementsAre("error"));
+  EXPECT_THAT(last, HasSubstr("refused"));
+  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":8})"));
+  center.disconnect(&one);
+  done.at(2)("too late");  // nobody hears it
+  EXPECT_EQ(wishes.size(), 3U);
+}
+
+TEST_F(Hub, Set_IsRefusedUnlessAllowed) {
+  hub closed("s", false, {.set = [](const set_request&, const auto&) { FAIL(); }, .play = {}},
+             [] {});
+  hub::client& one = *closed.connect(client_kind::page, nullptr);
+  EXPECT_TRUE(closed.receive(one, R"({"op":"set","name":"freq","value":9})"));
+  EXPECT_THAT(text_in(*closed.take(one)), HasSubstr("--allow-set"));
+}
+
+TEST_F(Hub, Play_IsPassedOn) {
+  EXPECT_TRUE(center.receive(page(), R"({"op":"play","paused":true})"));
+  EXPECT_EQ(plays, 1);
+}
+
+TEST_F(Hub, ClientsThatDoNotSpeakTheirProtocol_AreClosed) {
+  EXPECT_FALSE(center.receive(page(), "GET / HTTP/1.1"));
+  EXPECT_FALSE(center.receive(foxglove(), "{"));
+}
+
+TEST_F(Hub, Foxglove_GetsWhatItSubscribes) {
+  hub::client& one = foxglove();
+  take_all(one);
+  center.publish(channel::scan, 5, {1});
+  EXPECT_FALSE(center.has_more(one)) << "not subscribed";
+  EXPECT_FALSE(center.wanted().wants(channel::scan));
+  EXPECT_TRUE(center.receive(
+      one,
+      R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":1},{"id":8,"channelId":3}]})"));
+  EXPECT_TRUE(center.wanted().wants(channel::scan));
+  EXPECT_FALSE(center.wanted().page);
+  center.publish(channel::scan, 5, {42});
+  center.publish(channel::points, 5, {43});
+  const auto message = center.take(one);
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->prefix[0], 1);
+  EXPECT_EQ(message->prefix[1], 9);
+  EXPECT_EQ(message->prefix[5], 5);
+  EXPECT_EQ(text_in(*message), "*");
+  EXPECT_FALSE(center.has_more(one));
+  center.publish(channel::scan, 6, {44});
+  EXPECT_TRUE(center.receive(one, R"({"op":"unsubscribe","subscriptionIds":[9]})"));
+  EXPECT_FALSE(center.has_more(one)) << "nor what waited";
+}
+
+TEST_F(Hub, Foxglove_IsWarnedOfWhatCannotBe) {
+  hub::client& one = foxglove();
+  take_all(one);
+  const auto expect_warning = [&](const std::string& request, const std::string& why) {
+    EXPECT_TRUE(center.receive(one, request));
+    EXPECT_THAT(take_all(one), ElementsAre("status")) << request;
+    EXPECT_THAT(last, HasSubstr(why));
+  };
+  expect_warning(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":5}]})", "no channel 5");
+  EXPECT_TRUE(
+      center.receive(one, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})"));
+  expect_warning(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]})", "there already");
+  expect_warning(R"({"op":"subscribe","subscriptions":[{"id":2,"channelId":1}]})",
+                 "subscribed already");
+  expect_warning(R"({"op":"getParameters"})", "getParameters");
+}
+
+TEST_F(Hub, NumberOfClients_IsLimited) {
+  std::vector<hub::client*> all;
+  for (std::size_t i = 0; i < hub::most_clients; ++i) {
+    all.push_back(center.connect(client_kind::page, nullptr));
+    EXPECT_NE(all.back(), nullptr);
+  }
+  EXPECT_EQ(center.connect(client_kind::page, nullptr), nullptr);
+  center.disconnect(all.front());
+  EXPECT_NE(center.connect(client_kind::page, nullptr), nullptr);
+  EXPECT_EQ(center.client_count(), hub::most_clients);
+}
+
+// A day at 12 Hz: a client that reads all, one that reads now and then, one that never reads, and
+// Foxglove the same; pages come and go.
+TEST_F(Hub, ADay_InConstantMemory) {
+  struct reader {
+    hub::client* who;
+    unsigned every;  // scans; 0: never
+    std::uint64_t got = 0;
+  };
+  std::vector<reader> readers;
+  for (const unsigned every : {1U, 50U, 0U}) {
+    readers.push_back({&page(), every});
+    readers.push_back({&foxglove(), every});
+    ASSERT_TRUE(center.receive(
+        *readers.back().who,
+        R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":1,"channelId":2}]})"));
+  }
+  constexpr std::uint64_t scans_of_an_hour = 12 * 3600;
+  std::size_t after_an_hour = 0;
+  for (std::uint64_t scan = 0; scan < 24 * scans_of_an_hour; ++scan) {
+    const auto byte = static_cast<std::uint8_t>(scan);
+    const std::vector<std::uint8_t> message(200, byte);
+    center.page_scan(message);
+    center.publish(channel::scan, static_cast<std::int64_t>(scan), message);
+    center.publish(channel::points, static_cast<std::int64_t>(scan), message);
+    if (scan % 6 == 0) center.status(R"({"op":"status"})");
+    if (scan % 600 == 0) center.event(R"({"op":"event"})");
+    if (scan % 1000 == 0) center.disconnect(&page());
+    for (reader& each : readers) {
+      if (each.every == 0 || scan % each.every != 0) continue;
+      while (center.take(*each.who)) ++each.got;
+    }
+    if (scan == scans_of_an_hour) after_an_hour = ::mallinfo2().uordblks;
+  }
+  EXPECT_LE(::mallinfo2().uordblks, after_an_hour + 64 * 1024);
+  EXPECT_GE(readers[0].got, 24 * scans_of_an_hour) << "each scan";
+  EXPECT_GE(readers[1].got, 2 * 24 * scans_of_an_hour);
+  EXPECT_LE(readers[2].got, 24 * scans_of_an_hour / 50 * 4 + 100);
+}
+
+TEST(HostGuard, LoopbackKnowsItsNames) {
+  const host_guard guard("127.0.0.1", {"https://app.foxglove.dev"});
+  const auto allows = [&](const char* host, const char* origin = nullptr) {
+    return guard.allows(host == nullptr ? std::nullopt : std::optional<std::string>(host),
+                        origin == nullptr ? std::nullopt : std::optional<std::string>(origin));
+  };
+  for (const char* host : {"localhost:8765", "LOCALHOST", "127.0.0.1:8765", "[::1]:8765"}) {
+    EXPECT_TRUE(allows(host)) << host;
+  }
+  for (const char* host :
+       {"", "evil.example", "evil.example:8765", "192.168.0.1", "localhost.evil.example",
+        "localhost:", "localhost:x", "localhost:123456", "[::1", "local host", "127.0.0.1:80@evil",
+        "127.0.0.1\r\nX: y"}) {
+    EXPECT_FALSE(allows(host)) << host;
+  }
+  EXPECT_FALSE(allows(nullptr));
+  EXPECT_TRUE(allows("localhost:8765", "http://localhost:8765"));
+  EXPECT_TRUE(allows("localhost:8765", "https://app.foxglove.dev"));
+  for (const char* origin :
+       {"", "null", "http://evil.example", "http://localhost", "http://localhost:8766",
+        "http://127.0.0.1:8765", "https://localhost:8765", "https://app.foxglove.dev.evil",
+        "http://app.foxglove.dev"}) {
+    EXPECT_FALSE(allows("localhost:8765", origin)) << origin;
+  }
+}
+
+TEST(HostGuard, AllNetworksKnowAddressesInNumbers) {
+  const host_guard guard("0.0.0.0", {});
+  EXPECT_TRUE(guard.allows("192.168.0.1:8765", std::nullopt));
+  EXPECT_TRUE(guard.allows("[fe80::1]:8765", "http://[fe80::1]:8765"));
+  EXPECT_FALSE(guard.allows("evil.example:8765", std::nullopt)) << "a name can lead anywhere";
+  EXPECT_FALSE(guard.allows("192.168.0.1:8765", "http://evil.example"));
+  const host_guard one("192.168.0.7", {});
+  EXPECT_TRUE(one.allows("192.168.0.7", std::nullopt));
+  EXPECT_FALSE(one.allows("192.168.0.8", std::nullopt));
+}
+
+}  // namespace

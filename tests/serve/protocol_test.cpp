@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// The texts and messages of both protocols, and what is no request of theirs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "foxglove_protocol.hpp"
+#include "page_protocol.hpp"
+#include "support/test_scale.hpp"
+
+namespace {
+
+using namespace g4_tool;
+using nlohmann::json;
+
+TEST(PageRequest, SetTakesWordsNumbersAndFlags) {
+  const auto value_of_set = [](const std::string& value) {
+    const auto read = parse_page_request(R"({"op":"set","name":"freq","value":)" + value + "}");
+    const auto* const set = read ? std::get_if<set_request>(&*read) : nullptr;
+    return set == nullptr ? "refused" : set->name + '=' + set->value;
+  };
+  EXPECT_EQ(value_of_set("\"9k\""), "freq=9k");
+  EXPECT_EQ(value_of_set("7.5"), "freq=7.5");
+  EXPECT_EQ(value_of_set("10"), "freq=10");
+  EXPECT_EQ(value_of_set("true"), "freq=on");
+  EXPECT_EQ(value_of_set("false"), "freq=off");
+  EXPECT_EQ(value_of_set("null"), "refused");
+  EXPECT_EQ(value_of_set("[1]"), "refused");
+}
+
+TEST(PageRequest, PlayTakesWhatIsGiven) {
+  const auto read = parse_page_request(R"({"op":"play","paused":true,"seek_s":2.5})");
+  const auto& play = std::get<play_request>(read.value());
+  EXPECT_EQ(play.paused, true);
+  EXPECT_EQ(play.seek_s, 2.5);
+  EXPECT_EQ(play.speed, std::nullopt);
+  for (const char* bad :
+       {R"({"op":"play"})", R"({"op":"play","speed":"fast"})",
+        R"({"op":"play","paused":true,"more":1})", R"({"op":"play","seek_s":null})"}) {
+    EXPECT_TRUE(std::holds_alternative<bad_request>(parse_page_request(bad).value())) << bad;
+  }
+}
+
+TEST(PageRequest, WhatNoPageSendsIsRefused) {
+  const std::string deep =
+      R"({"op":"set","name":)" + std::string(200, '[') + std::string(200, ']') + "}";
+  const std::string text = R"({"op":"set","name":"freq","value":7})";
+  for (const std::string& bad :
+       {std::string(), std::string("hello"), std::string("[]"), std::string("{}"),
+        std::string(R"({"op":1})"), std::string("{\"op\":\"set\""), deep, text + "x",
+        std::string("\xFF\xFE"), std::string(R"({"op":")") + std::string(20'000, 'a') + "\"}"}) {
+    EXPECT_FALSE(parse_page_request(bad)) << bad.substr(0, 40);
+    EXPECT_FALSE(parse_foxglove_request(bad)) << bad.substr(0, 40);
+  }
+  const auto other = parse_page_request(R"({"op":"dance"})");
+  EXPECT_EQ(std::get<bad_request>(other.value()).of, "dance");
+}
+
+TEST(FoxgloveRequest, SubscribeAndUnsubscribe) {
+  const auto read = parse_foxglove_request(
+      R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":4294967295,"channelId":3}]})");
+  const auto& all = std::get<subscribe_request>(read.value()).entries;
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[1].id, 4294967295U);
+  EXPECT_EQ(all[1].channel_id, 3U);
+  const auto rest = parse_foxglove_request(R"({"op":"unsubscribe","subscriptionIds":[7]})");
+  EXPECT_EQ(std::get<unsubscribe_request>(rest.value()).ids, std::vector<std::uint32_t>{7});
+  for (const char* bad :
+       {R"({"op":"subscribe"})", R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":4294967296,"channelId":1}]})",
+        R"({"op":"subscribe","subscriptions":[{"id":1}]})",
+        R"({"op":"subscribe","subscriptions":[1]})",
+        R"({"op":"unsubscribe","subscriptionIds":["1"]})"}) {
+    EXPECT_FALSE(parse_foxglove_request(bad)) << bad;
+  }
+  const auto other = parse_foxglove_request(R"({"op":"getParameters","parameterNames":[]})");
+  EXPECT_EQ(std::get<other_request>(other.value()).op, "getParameters");
+}
+
+TEST(FoxgloveTexts, AreAsTheProtocolWants) {
+  const json info = json::parse(server_info_text("abc"));
+  EXPECT_EQ(info["op"], "serverInfo");
+  EXPECT_EQ(info["sessionId"], "abc");
+  EXPECT_TRUE(info["capabilities"].is_array());
+  const json all = json::parse(advertise_text());
+  ASSERT_EQ(all["channels"].size(), 4U);
+  EXPECT_EQ(all["channels"][0]["topic"], "/scan");
+  EXPECT_EQ(all["channels"][0]["schemaName"], "sensor_msgs/msg/LaserScan");
+  EXPECT_EQ(all["channels"][1]["schemaName"], "sensor_msgs/msg/PointCloud2");
+  EXPECT_EQ(all["channels"][2]["schemaName"], "diagnostic_msgs/msg/DiagnosticArray");
+  EXPECT_EQ(all["channels"][3]["topic"], "/g4lidar/from_device");
+  EXPECT_EQ(all["channels"][3]["schemaName"], "g4lidar_msgs/msg/RecordedBytes");
+  for (const json& each : all["channels"]) {
+    EXPECT_EQ(each["encoding"], "cdr");
+    EXPECT_EQ(each["schemaEncoding"], "ros2msg");
+    const bool has_bytes = each["schemaName"] == "g4lidar_msgs/msg/RecordedBytes";
+    EXPECT_NE(each["schema"].get<std::string>().find(has_bytes ? "uint8[] data"
+                                                               : "std_msgs/Header header"),
+              std::string::npos);
+    EXPECT_TRUE(channel_of(each["id"].get<std::uint32_t>()));
+  }
+}
+
+TEST(FoxgloveData, HasSubscriptionAndStampInFront) {
+  const outgoing made = message_data(0x01020304, 0x1112131415161718, share("x"));
+  EXPECT_FALSE(made.is_text);
+  EXPECT_EQ(made.size(), 14U);
+  const std::array<std::uint8_t, 13> wanted{1,    4,    3,    2,    1,    0x18, 0x17,
+                                            0x16, 0x15, 0x14, 0x13, 0x12, 0x11};
+  EXPECT_EQ(made.prefix, wanted);
+}
+
+template <class Number>
+Number number_at(const std::vector<std::uint8_t>& data, std::size_t at) {
+  Number value;
+  std::memcpy(&value, &data.at(at), sizeof(value));  // this processor is little-endian
+  return value;
+}
+
+TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  using g4lidar::point;
+  const std::vector<point> points{
+      {.angle_deg = 180.0F, .range_mm = 2000.0F},  // opposite the cable: ahead
+      {.angle_deg = 0.0F, .range_mm = 0.0F, .flags = g4lidar::point_flags::no_return},
+      {.angle_deg = 90.0F, .range_mm = 500.0F}};  // clockwise from the cable: left
+  std::vector<std::uint8_t> data{7};
+  put_page_scan(points, 42, true, 1.5, data);
+  data.erase(data.begin());
+  ASSERT_EQ(data.size(), 16U + 2 * 8);
+  EXPECT_EQ(data[0], 0x10);
+  EXPECT_EQ(data[1], 1);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 2), 2);
+  EXPECT_EQ(number_at<std::uint32_t>(data, 4), 42U);
+  EXPECT_EQ(number_at<double>(data, 8), 1.5);
+  EXPECT_NEAR(number_at<float>(data, 16), 2.0F, 1e-5F);
+  EXPECT_NEAR(number_at<float>(data, 20), 0.0F, 1e-5F);
+  EXPECT_NEAR(number_at<float>(data, 24), 0.0F, 1e-5F);
+  EXPECT_NEAR(number_at<float>(data, 28), 0.5F, 1e-5F);
+}
+
+TEST(PageTexts, SayWhatIsKnownAndNullElse) {
+  const json hello = json::parse(hello_text(
+      {.source = "a\"b", .device = {}, .settings = {{"freq", 7.0}}, .recording_s = 2.5}));
+  EXPECT_EQ(hello["op"], "hello");
+  EXPECT_EQ(hello["source"], "a\"b");
+  EXPECT_TRUE(hello["device"]["serial"].is_null());
+  EXPECT_EQ(hello["allow_set"], false);
+  EXPECT_EQ(hello["recording"]["length_s"], 2.5);
+  EXPECT_EQ(hello["frame"], "robot");
+  page_status status{.state = station_state::lost, .why = "gone", .loss = 0.25};
+  status.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
+  status.stages.back().find(g4lidar::diagnosis::bits_flipped);
+  status.stages.back().add("lost_percent", 3.5);
+  const json text = json::parse(status_text(status));
+  EXPECT_EQ(text["state"], "lost");
+  EXPECT_EQ(text["loss"], 0.25);
+  EXPECT_TRUE(text["scan_rate_hz"].is_null());
+  EXPECT_FALSE(text.contains("position_s"));
+  const json& stage = text["stages"][0];
+  EXPECT_EQ(stage["stage"], "loss");
+  EXPECT_EQ(stage["diagnoses"][0]["name"], "bits_flipped");
+  EXPECT_FALSE(stage["diagnoses"][0]["advice"].get<std::string>().empty());
+  EXPECT_EQ(stage["evidence"][0]["value"], 3.5);
+}
+
+// Texts that are nearly requests: whatever they are, there is an answer, and no crash.
+TEST(Requests, DamagedTexts_AreAnsweredOrRefused) {
+  const std::vector<std::string> good{
+      R"({"op":"set","name":"freq","value":7.5})",
+      R"({"op":"play","paused":true,"speed":2,"seek_s":1e300})",
+      R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":1,"channelId":2}]})",
+      R"({"op":"unsubscribe","subscriptionIds":[0,1]})"};
+  std::mt19937 random(20260101);
+  for (int i = 0; i < g4lidar::test::scaled(20'000); ++i) {
+    std::string text = good[random() % good.size()];
+    for (unsigned times = 1 + random() % 4; times > 0 && !text.empty(); --times) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 4) {
+        case 0:
+          text[at] = static_cast<char>(random());
+          break;
+        case 1:
+          text.erase(at, 1 + random() % 5);
+          break;
+        case 2:
+          text.insert(at, text.substr(random() % text.size(), random() % 20));
+          break;
+        default:
+          text.insert(at, std::string(1, "{}[],:\"0e-\\"[random() % 11]));
+      }
+    }
+    const auto page = parse_page_request(text);
+    const auto foxglove = parse_foxglove_request(text);
+    if (page && std::holds_alternative<play_request>(*page)) {
+      const auto& play = std::get<play_request>(*page);
+      EXPECT_FALSE(play.seek_s && !std::isfinite(*play.seek_s));
+    }
+    if (json::parse(text, nullptr, false).is_discarded()) {
+      EXPECT_FALSE(page) << text;
+      EXPECT_FALSE(foxglove) << text;
+    }
+  }
+}
+
+}  // namespace

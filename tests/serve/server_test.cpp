@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+// g4-serve, run by `g4-dump serve`, with clients of every kind: those that keep the rules, and those that do not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.hpp"
+#include "raw_client.hpp"
+#include "support/test_scale.hpp"
+
+namespace {
+
+using namespace std::chrono_literals;
+using cli::outcome;
+using nlohmann::json;
+using serve::raw_client;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr const char* page = "g4lidar.page.v1";
+
+class Server : public cli::scratch {
+ protected:
+  /// Starts it; returns its port.
+  std::uint16_t begin(const std::vector<std::string>& more = {},
+                      const std::string& source = "sim:") {
+    std::vector<std::string> words{"serve", source, "--port", "0"};
+    words.insert(words.end(), more.begin(), more.end());
+    running_ = std::make_unique<cli::program>(
+        words, cli::streams{{}, {}, cli::stream::of_file(path("err"))});
+    for (int i = 0; i < 3'000; ++i) {
+      const std::string text =
+          std::filesystem::exists(path("err")) ? cli::read_file(path("err")) : "";
+      const std::size_t at = text.find("http://127.0.0.1:");
+      if (at != std::string::npos && text.find('\n', at) != std::string::npos) {
+        port_ = static_cast<std::uint16_t>(std::stoi(text.substr(at + 17)));
+        break;
+      }
+      std::this_thread::sleep_for(10ms);
+    }
+    EXPECT_NE(port_, 0);
+    return port_;
+  }
+  outcome end(int signal = SIGTERM) {
+    running_->send(signal);
+    return running_->wait();
+  }
+  /// A page whose handshake is done.
+  std::unique_ptr<raw_client> open_page() const {
+    auto made = std::make_unique<raw_client>(port_);
+    EXPECT_THAT(made->upgrade(page), StartsWith("HTTP/1.1 101"));
+    return made;
+  }
+  /// Whether scans come to `client`: so many binary messages.
+  static bool gets_scans(raw_client& client, int count = 3) {
+    while (count > 0) {
+      const auto message = client.next_frame();
+      if (!message) return false;
+      count -= message->starts_with('\x10') ? 1 : 0;
+    }
+    return true;
+  }
+  /// The next text with this "op".
+  static json next(raw_client& client, const std::string& op) {
+    while (const auto message = client.next_frame()) {
+      const json text = json::parse(*message, nullptr, false);
+      if (text.is_object() && text.value("op", "") == op) return text;
+    }
+    return nullptr;
+  }
+  std::uint16_t port_ = 0;
+  std::unique_ptr<cli::program> running_;
+};
+
+TEST_F(Server, PageAndStatus) {
+  begin();
+  const std::string answer = raw_client(port_).get("/");
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(answer, HasSubstr("content-security-policy: default-src 'none'; script-src 'self'"));
+  EXPECT_THAT(answer, HasSubstr("x-content-type-options: nosniff\r\n"));
+  EXPECT_THAT(answer, HasSubstr("cache-control: no-store\r\n"));
+  EXPECT_THAT(answer, HasSubstr("<title>"));
+  const std::string script = raw_client(port_).get("/main.js");
+  EXPECT_EQ(script.substr(script.find("\r\n\r\n") + 4),
+            cli::read_file(std::string(G4LIDAR_SOURCE_DIR) + "/tools/g4-serve/page/main.js"));
+  EXPECT_THAT(raw_client(port_).get("/../main.cpp"), Not(StartsWith("HTTP/1.1 200")));
+  EXPECT_THAT(raw_client(port_).get("/nothing"), StartsWith("HTTP/1.1 404"));
+  ASSERT_TRUE(gets_scans(*open_page()));
+  const std::string text = raw_client(port_).get("/status.json");
+  const json status = json::parse(text.substr(text.find("\r\n\r\n") + 4));
+  EXPECT_EQ(status["state"], "running");
+  EXPECT_EQ(end(SIGINT).code, 130);
+}
+
+TEST_F(Server, PageProtocol_FromHelloToASetting) {
+  begin({"--allow-set"}, "sim:?serial=1111222233334444");
+  const auto client = open_page();
+  const json hello = next(*client, "hello");
+  EXPECT_EQ(hello["device"]["serial"], "1111222233334444");
+  EXPECT_EQ(hello["source"], "sim:?serial=1111222233334444");
+  EXPECT_EQ(hello["allow_set"], true);
+  EXPECT_TRUE(gets_scans(*client));
+  client->send_text(R"({"op":"set","name":"freq","value":10})");
+  EXPECT_EQ(next(*client, "settings")["settings"]["freq"], 10.0);
+  client->send_text(R"({"op":"set","name":"freq","value":100})");
+  EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("range 5 to 12"));
+  EXPECT_TRUE(gets_scans(*client)) << "it goes on";
+  EXPECT_EQ(next(*open_page(), "hello")["settings"]["freq"], 10.0);
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+TEST_F(Server, ReadOnly_UnlessAllowed) {
+  begin();
+  const auto client = open_page();
+  client->send_text(R"({"op":"set","name":"freq","value":10})");
+  EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("--allow-set"));
+}
+
+TEST_F(Server, Recording_IsPausedAndSought) {
+  ASSERT_EQ(cli::run({"sim", "--seconds", "20", "-o", path("raw.bin")}).code, 0);
+  ASSERT_EQ(cli::run({"convert", path("raw.bin"), path("walk.mcap")}).code, 0);
+  begin({"--loop"}, path("walk.mcap"));
+  const auto client = open_page();
+  const json hello = next(*client, "hello");
+  EXPECT_NEAR(hello["recording"]["length_s"].get<double>(), 20.0, 1.0);
+  ASSERT_TRUE(gets_scans(*client));
+  client->send_text(R"({"op":"play","paused":true,"seek_s":12})");
+  ASSERT_TRUE(gets_scans(*client, 1));
+  json status = json::object();
+  for (int i = 0; i < 60 && !(status.value("paused", false) && status["position_s"] > 11); ++i) {
+    status = next(*client, "status");
+  }
+  EXPECT_NEAR(status["position_s"].get<double>(), 12.2, 0.5);
+  client->send_text(R"({"op":"play","paused":false,"speed":4})");
+  EXPECT_TRUE(gets_scans(*client, 5));
+}
+
+TEST_F(Server, ForeignNamesAndOrigins_AreRefused) {
+  begin({"--allow-origin", "https://app.foxglove.dev"});
+  const std::string host = "Host: localhost\r\n";
+  for (const std::string& more :
+       {std::string("Host: evil.example\r\n"), std::string(),
+        host + "Origin: http://evil.example\r\n", host + "Origin: null\r\n",
+        std::string("Host: localhost.evil.example\r\n")}) {
+    for (const char* protocol : {page, "foxglove.websocket.v1"}) {
+      EXPECT_THAT(raw_client(port_).upgrade(protocol, more), Not(StartsWith("HTTP/1.1 101")))
+          << more;
+    }
+  }
+  for (const std::string& more : {host, host + "Origin: http://localhost\r\n",
+                                  host + "Origin: https://app.foxglove.dev\r\n"}) {
+    EXPECT_THAT(raw_client(port_).upgrade("foxglove.sdk.v1", more), StartsWith("HTTP/1.1 101"))
+        << more;
+  }
+  EXPECT_THAT(raw_client(port_).get("/", "Origin: http://evil.example\r\n"),
+              StartsWith("HTTP/1.1 403"));
+  raw_client rebound(port_);
+  rebound.send("GET / HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n");
+  EXPECT_THAT(rebound.read_to_end().value_or(""), StartsWith("HTTP/1.1 403"));
+}
+
+TEST_F(Server, UnknownSubprotocols_AreRefused) {
+  begin();
+  EXPECT_THAT(raw_client(port_).upgrade("chat"), Not(StartsWith("HTTP/1.1 101")));
+  EXPECT_THAT(raw_client(port_).upgrade("http"), Not(StartsWith("HTTP/1.1 101")));
+  EXPECT_THAT(raw_client(port_).upgrade("foxglove.sdk.v1, foxglove.websocket.v1"),
+              HasSubstr("foxglove.sdk.v1\r\n"));
+}
+
+TEST_F(Server, HostileClients_HarmNobodyElse) {
+  begin();
+  const auto good = open_page();
+  const auto deaf = open_page();  // never reads
+  // All at once: the server waits a while for the answer to its close, and for the rest of a request.
+  std::vector<std::unique_ptr<raw_client>> broken;
+  for (const std::string& bytes :
+       {raw_client::frame(1, std::string(100'000, 'x'), std::uint64_t{1} << 62U),
+        raw_client::frame(1, std::string(20'000, ' ')), raw_client::frame(2, "binary"),
+        raw_client::frame(1, "no json"), raw_client::frame(9, std::string(200, 'p')),
+        raw_client::frame(3, "an opcode that is none"), raw_client::frame(1, "\xFF\xFF")}) {
+    broken.push_back(open_page());
+    broken.back()->send(bytes);
+  }
+  std::vector<raw_client> all;
+  for (const std::string& request :
+       {std::string(100'000, 'A'), "GET / HTTP/1.1\r\nX: " + std::string(100'000, 'A'),
+        std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xFC\x03\x03", 11),
+        std::string("\r\n\r\n\r\n"),
+        std::string("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000\r\n\r\nx"),
+        std::string("GET / HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: "
+                    "Upgrade\r\n\r\n"),
+        std::string("GET /%00%2e%2e/ HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"),
+        std::string(), std::string("GET / HTTP/1.1\r\nHost: loc")}) {
+    all.emplace_back(port_);
+    all.back().send(request);
+  }
+  for (const auto& bad : broken) EXPECT_TRUE(bad->read_to_end()) << "it is closed";
+  EXPECT_TRUE(gets_scans(*good));
+  for (raw_client& bad : all) {
+    const auto answer = bad.read_to_end();
+    ASSERT_TRUE(answer) << "it is closed: number " << &bad - all.data();
+    EXPECT_THAT(*answer, Not(StartsWith("HTTP/1.1 101")));
+  }
+  EXPECT_TRUE(gets_scans(*good));
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+TEST_F(Server, RandomBytes_EndOnlyTheirConnection) {
+  begin();
+  const auto good = open_page();
+  std::mt19937 random(7);
+  for (int i = 0; i < g4lidar::test::scaled(100); ++i) {
+    const bool is_socket = i % 2 == 0;
+    raw_client bad(port_);
+    if (is_socket) bad.upgrade(i % 4 == 0 ? page : "foxglove.sdk.v1");
+    std::string bytes(1 + random() % 300, '\0');
+    for (char& each : bytes) each = static_cast<char>(random());
+    if (!is_socket) bytes.insert(0, "GET / HTTP/1.1\r\n");
+    bad.send(bytes);
+  }
+  EXPECT_TRUE(gets_scans(*good));
+  EXPECT_TRUE(gets_scans(*open_page()));
+}
+
+TEST_F(Server, TwoHundredConnections_LeaveTheFirstAlone) {
+  begin();
+  const auto good = open_page();
+  {
+    std::vector<raw_client> many;
+    for (int i = 0; i < 250; ++i) {
+      many.emplace_back(port_);
+      if (i % 2 == 0) many.back().send("GET / HTTP/1.1\r\nHost: localhost\r\n");
+    }
+    EXPECT_TRUE(gets_scans(*good, 10));
+  }
+  // The server may have to close them first.
+  bool is_open = false;
+  for (int i = 0; i < 100 && !is_open; ++i) {
+    raw_client next(port_);
+    is_open = next.upgrade(page).starts_with("HTTP/1.1 101") && gets_scans(next, 1);
+    if (!is_open) std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_TRUE(is_open);
+}
+
+TEST_F(Server, LostLidar_IsShownAndComesBack) {
+  begin({}, "sim:?fault=unplug@2s+500ms");
+  const auto client = open_page();
+  json status;
+  while (status.is_null() || status["state"] != "lost") {
+    status = next(*client, "status");
+    ASSERT_TRUE(status.is_object());
+  }
+  EXPECT_EQ(next(*client, "event")["what"], "reconnected");
+  EXPECT_TRUE(gets_scans(*client));
+}
+
+TEST_F(Server, OnLossExit_EndsAsOtherCommands) {
+  begin({"--on-loss", "exit"}, "sim:?fault=unplug@1500ms");
+  const outcome done = running_->wait();
+  EXPECT_EQ(done.code, 9) << cli::read_file(path("err"));
+}
+
+TEST_F(Server, PortInUse_IsReported) {
+  begin();
+  const outcome second = cli::run({"serve", "sim:", "--port", std::to_string(port_)});
+  EXPECT_EQ(second.code, 5);
+  EXPECT_THAT(second.err, HasSubstr("is in use by another program. Give another --port"));
+  EXPECT_EQ(cli::run({"serve", "sim:", "--address", "nowhere"}).code, 2);
+  EXPECT_EQ(cli::run({"serve", "sim:", "--address", "192.0.2.1", "--port", "0"}).code, 3);
+}
+
+TEST_F(Server, NoServerProgram_NamesThePackage) {
+  std::filesystem::copy_file(G4_DUMP, path("g4-dump"));
+  const std::string line = "PATH=/nowhere " + path("g4-dump") + " serve sim: 2> " + path("words");
+  EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 10);
+  EXPECT_THAT(cli::read_file(path("words")), HasSubstr("package g4lidar-serve"));
+}
+
+}  // namespace

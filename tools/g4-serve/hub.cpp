@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include "hub.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace g4_tool {
+namespace {
+
+// The slots of a page. Those of Foxglove are the channels.
+constexpr std::size_t settings_slot = 0;
+constexpr std::size_t status_slot = 1;
+constexpr std::size_t scan_slot = 2;
+
+outgoing text_of(shared_bytes payload) { return {.payload = std::move(payload)}; }
+outgoing text_of(std::string_view text) { return text_of(share(text)); }
+
+}  // namespace
+
+struct hub::client {
+  client_kind kind;
+  void* socket;
+  std::uint64_t id;
+  outbox waiting{};
+  std::array<std::optional<std::uint32_t>, channel_count> subscriptions{};
+  bool is_setting = false;  // a setting of it is not done yet
+};
+
+hub::hub(std::string_view session, bool allows_set, hub_actions actions, std::function<void()> wake)
+    : allows_set_(allows_set),
+      actions_(std::move(actions)),
+      wake_(std::move(wake)),
+      server_info_(share(server_info_text(session))),
+      advertise_(share(advertise_text())),
+      status_(share(status_text({}))) {}
+
+hub::~hub() = default;
+
+hub::client* hub::connect(client_kind kind, void* socket) {
+  const std::lock_guard lock(mutex_);
+  if (clients_.size() >= most_clients) return nullptr;
+  client& made = clients_.emplace_back(client{kind, socket, ++last_id_});
+  if (kind == client_kind::foxglove) {
+    made.waiting.add(text_of(server_info_));
+    made.waiting.add(text_of(advertise_));
+  } else {
+    if (hello_) made.waiting.add(text_of(hello_));
+    made.waiting.replace(status_slot, text_of(status_));
+  }
+  return &made;
+}
+
+void hub::disconnect(client* gone) {
+  const std::lock_guard lock(mutex_);
+  clients_.remove_if([gone](const client& each) { return &each == gone; });
+}
+
+bool hub::receive(client& from, std::string_view text) {
+  return from.kind == client_kind::page ? receive_page(from, text) : receive_foxglove(from, text);
+}
+
+bool hub::receive_page(client& from, std::string_view text) {
+  const auto request = parse_page_request(text);
+  if (!request) return false;
+  if (const auto* bad = std::get_if<bad_request>(&*request)) {
+    answer(from.id, bad->of, bad->message);
+  } else if (const auto* wanted = std::get_if<set_request>(&*request)) {
+    take_set(from, *wanted);
+  } else {
+    actions_.play(std::get<play_request>(*request));
+  }
+  return true;
+}
+
+void hub::take_set(client& from, const set_request& wanted) {
+  if (!allows_set_) {
+    return answer(from.id, "set", "the settings are read-only: start g4-serve with --allow-set");
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(from.is_setting, true)) {
+      from.waiting.add(text_of(error_text("set", "the setting before it is not done yet")));
+      return;
+    }
+  }
+  actions_.set(wanted, [this, id = from.id](const std::string& error) {
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = std::ranges::find(clients_, id, &client::id);
+      if (found != clients_.end()) found->is_setting = false;
+    }
+    if (!error.empty()) answer(id, "set", error);
+  });
+}
+
+bool hub::receive_foxglove(client& from, std::string_view text) {
+  const auto request = parse_foxglove_request(text);
+  if (!request) return false;
+  const std::lock_guard lock(mutex_);
+  const auto warn = [&from](const std::string& message) {
+    if (!message.empty()) from.waiting.add(text_of(foxglove_status_text(1, message)));
+  };
+  if (const auto* wanted = std::get_if<subscribe_request>(&*request)) {
+    for (const auto& entry : wanted->entries) warn(subscribe(from, entry));
+  } else if (const auto* unwanted = std::get_if<unsubscribe_request>(&*request)) {
+    for (std::size_t i = 0; i < channel_count; ++i) {
+      auto& subscription = from.subscriptions[i];
+      if (!subscription || std::ranges::count(unwanted->ids, *subscription) == 0) continue;
+      subscription.reset();
+      from.waiting.clear(i);
+    }
+  } else {
+    warn(fmt::format("this server does not know '{}'", std::get<other_request>(*request).op));
+  }
+  return true;
+}
+
+std::string hub::subscribe(client& from, const subscribe_request::entry& wanted) {
+  const auto which = channel_of(wanted.channel_id);
+  if (!which) return fmt::format("there is no channel {}", wanted.channel_id);
+  if (std::ranges::count(from.subscriptions, wanted.id) > 0) {
+    return fmt::format("the subscription {} is there already", wanted.id);
+  }
+  auto& subscription = from.subscriptions[static_cast<std::size_t>(*which)];
+  if (subscription) return fmt::format("the channel {} is subscribed already", wanted.channel_id);
+  subscription = wanted.id;
+  return {};
+}
+
+std::optional<outgoing> hub::take(client& to) {
+  const std::lock_guard lock(mutex_);
+  return to.waiting.take();
+}
+
+bool hub::has_more(const client& to) const {
+  const std::lock_guard lock(mutex_);
+  return !to.waiting.is_empty();
+}
+
+void hub::for_each_ready(const std::function<void(void*)>& use) {
+  const std::lock_guard lock(mutex_);
+  for (const client& each : clients_) {
+    if (!each.waiting.is_empty()) use(each.socket);
+  }
+}
+
+shared_bytes hub::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+hub::wishes hub::wanted() const {
+  wishes all;
+  const std::lock_guard lock(mutex_);
+  for (const client& each : clients_) {
+    all.page = all.page || each.kind == client_kind::page;
+    for (std::size_t i = 0; i < channel_count; ++i) {
+      all.channels[i] = all.channels[i] || each.subscriptions[i].has_value();
+    }
+  }
+  return all;
+}
+
+void hub::to_pages(std::size_t slot, bool is_text, const shared_bytes& payload) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (client& each : clients_) {
+      if (each.kind != client_kind::page) continue;
+      each.waiting.replace(slot, {.is_text = is_text, .payload = payload});
+    }
+  }
+  wake_();
+}
+
+void hub::answer(std::uint64_t id, std::string_view of, const std::string& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find(clients_, id, &client::id);
+    if (found == clients_.end()) return;
+    found->waiting.add(text_of(error_text(of, message)));
+  }
+  wake_();
+}
+
+void hub::greet(const std::string& hello, bool sends) {
+  {
+    const std::lock_guard lock(mutex_);
+    hello_ = share(hello);
+    for (client& each : clients_) {
+      if (sends && each.kind == client_kind::page) each.waiting.add(text_of(hello_));
+    }
+  }
+  wake_();
+}
+
+void hub::settings(const std::string& text) { to_pages(settings_slot, true, share(text)); }
+
+void hub::status(const std::string& text) {
+  const shared_bytes shared = share(text);
+  {
+    const std::lock_guard lock(mutex_);
+    status_ = shared;
+  }
+  to_pages(status_slot, true, shared);
+}
+
+void hub::event(const std::string& text) {
+  const shared_bytes shared = share(text);
+  {
+    const std::lock_guard lock(mutex_);
+    for (client& each : clients_) {
+      if (each.kind == client_kind::page) each.waiting.add(text_of(shared));
+    }
+  }
+  wake_();
+}
+
+void hub::page_scan(std::vector<std::uint8_t> message) {
+  to_pages(scan_slot, false, share(std::move(message)));
+}
+
+void hub::publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t> message) {
+  const shared_bytes payload = share(std::move(message));
+  const auto slot = static_cast<std::size_t>(which);
+  {
+    const std::lock_guard lock(mutex_);
+    for (client& each : clients_) {
+      const auto& subscription = each.subscriptions[slot];
+      if (subscription) {
+        each.waiting.replace(slot, message_data(*subscription, stamp_ns, payload));
+      }
+    }
+  }
+  wake_();
+}
+
+std::size_t hub::client_count() const {
+  const std::lock_guard lock(mutex_);
+  return clients_.size();
+}
+
+}  // namespace g4_tool

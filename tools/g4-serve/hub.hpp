@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// The clients, what waits for each of them, and what becomes of their requests. Knows no sockets.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "foxglove_protocol.hpp"
+#include "outbox.hpp"
+#include "page_protocol.hpp"
+
+namespace g4_tool {
+
+/// What a client speaks.
+enum class client_kind : std::uint8_t { page, foxglove };
+
+/// What the hub asks of the lidar. Both may be called in any thread, without a lock.
+struct hub_actions {
+  /// Sets, and calls `done` later, in any thread, with what went wrong; empty: nothing.
+  std::function<void(const set_request&, std::function<void(const std::string&)> done)> set;
+  std::function<void(const play_request&)> play;
+};
+
+/// *Any thread.* Its memory is bounded by the number of clients.
+class hub {
+ public:
+  /// A client, from connect() to disconnect(). Only its connection touches it.
+  struct client;
+
+  /// `wake` is called, in any thread, after messages were put into outboxes. `session`: see
+  /// server_info_text().
+  hub(std::string_view session, bool allows_set, hub_actions actions, std::function<void()> wake);
+  hub(const hub&) = delete;
+  hub& operator=(const hub&) = delete;
+  ~hub();
+
+  // ---- for the connections --------------------------------------------------------------------
+
+  /// `socket`: whatever for_each_ready() shall give back. Null where there are `most_clients`.
+  static constexpr std::size_t most_clients = 128;
+  [[nodiscard]] client* connect(client_kind kind, void* socket);
+  void disconnect(client* gone);
+  /// A text of a client. False if it is to be closed: it does not speak its protocol.
+  [[nodiscard]] bool receive(client& from, std::string_view text);
+  /// The next message for it; nothing if none waits.
+  [[nodiscard]] std::optional<outgoing> take(client& to);
+  [[nodiscard]] bool has_more(const client& to) const;
+  /// Calls `use` with the socket of each client for which something waits.
+  void for_each_ready(const std::function<void(void*)>& use);
+  /// The last status as JSON, for programs that ask by HTTP.
+  [[nodiscard]] shared_bytes status() const;
+
+  // ---- for the publisher ----------------------------------------------------------------------
+
+  /// What at least one client wants of the next scan.
+  struct wishes {
+    bool page = false;
+    std::array<bool, channel_count> channels{};
+    [[nodiscard]] bool wants(channel which) const noexcept {
+      return channels[static_cast<std::size_t>(which)];
+    }
+  };
+  [[nodiscard]] wishes wanted() const;
+
+  /// The first message for pages from now on, and, if `sends`, for those that are there.
+  void greet(const std::string& hello, bool sends);
+  void settings(const std::string& text);
+  void status(const std::string& text);
+  void event(const std::string& text);
+  /// A binary message to all pages.
+  void page_scan(std::vector<std::uint8_t> message);
+  void publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t> message);
+
+  [[nodiscard]] std::size_t client_count() const;
+
+ private:
+  void to_pages(std::size_t slot, bool is_text, const shared_bytes& payload);
+  void answer(std::uint64_t id, std::string_view of, const std::string& message);
+  void take_set(client& from, const set_request& wanted);
+  [[nodiscard]] bool receive_page(client& from, std::string_view text);
+  [[nodiscard]] bool receive_foxglove(client& from, std::string_view text);
+  /// What is wrong with it; empty: nothing.
+  [[nodiscard]] static std::string subscribe(client& from, const subscribe_request::entry& wanted);
+
+  const bool allows_set_;
+  const hub_actions actions_;
+  const std::function<void()> wake_;
+  const shared_bytes server_info_;
+  const shared_bytes advertise_;
+  mutable std::mutex mutex_;  // protects the following members
+  std::list<client> clients_;
+  std::uint64_t last_id_ = 0;
+  shared_bytes hello_;
+  shared_bytes status_;
+};
+
+}  // namespace g4_tool

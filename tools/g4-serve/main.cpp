@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// g4-serve: a lidar in a web page and in Foxglove, from one port.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "cli/logger.hpp"
+#include "cli/serve_verb.hpp"
+#include "cli/verbs.hpp"
+#include "hub.hpp"
+#include "io/interrupt.hpp"
+#include "io/service_watch.hpp"
+#include "io/station.hpp"
+#include "scan_publisher.hpp"
+#include "web_server.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr const char* description =
+    R"(g4-serve shows a YDLIDAR G4, a recording or a simulated lidar in a web page, and to Foxglove, from
+one TCP port. It is what g4-dump serve runs.)";
+
+std::string new_session() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}", random(), random());
+}
+
+/// All parts, in the order in which they need each other.
+class lidar_server {
+ public:
+  explicit lidar_server(const serve_options& options)
+      : options_(options),
+        hub_(new_session(), options.allows_set,
+             {.set = [this](const set_request& wanted,
+                            auto done) { publisher_.set(wanted, std::move(done)); },
+              .play = [this](const play_request& wanted) { publisher_.play(wanted); }},
+             [this] { wake(); }),
+        publisher_(options, hub_),
+        station_(options.common, publisher_.how_to_open(), publisher_,
+                 {.loops = options.loops, .speed = options.speed}) {
+    publisher_.attach(station_);
+    server_ = std::make_unique<web_server>(options.address, options.port, options.origins, hub_);
+    served_ = server_.get();
+  }
+  lidar_server(const lidar_server&) = delete;
+  lidar_server& operator=(const lidar_server&) = delete;
+  ~lidar_server() {
+    station_.stop();  // the motor first
+    served_ = nullptr;
+    server_.reset();
+  }
+
+  /// Until a signal, the end of -d, or a failure, which it throws.
+  void run() {
+    using namespace std::chrono_literals;
+    using clock = std::chrono::steady_clock;
+    logger::info(server_->url() + '\n');
+    station_.start();
+    time_limits limits(options_.common.duration, std::chrono::nanoseconds(0));
+    clock::time_point due = clock::now();
+    while (!limits.is_over()) {
+      if (wait_for_input(-1, -1, std::min(due, limits.end())) == wake::interrupt) return;
+      if (const auto why = station_.failure()) std::rethrow_exception(why);
+      publisher_.tick();
+      report();
+      due = std::max(due + 500ms, clock::now());
+    }
+  }
+
+ private:
+  void wake() {
+    if (web_server* const server = served_) server->wake();
+  }
+
+  void report() {
+    if (station_.state() != station_state::opening) watch_.ready();
+    watch_.alive();
+    watch_.status(fmt::format("{}, {} at {}", name_of(station_.state()),
+                              counted(hub_.client_count(), "client"), server_->url()));
+  }
+
+  const serve_options options_;
+  hub hub_;
+  scan_publisher publisher_;
+  station station_;
+  std::unique_ptr<web_server> server_;
+  std::atomic<web_server*> served_ = nullptr;
+  service_watch watch_;
+};
+
+int serve(const serve_options& options) {
+  lidar_server(options).run();
+  return exit_code_now();
+}
+
+std::vector<verb> verbs() { return {make_serve_verb("g4-serve", serve)}; }
+
+}  // namespace
+}  // namespace g4_tool
+
+int main(int argc, char** argv) {
+  const g4_tool::program g4_serve{.name = "g4-serve",
+                                  .title = "A YDLIDAR G4 in a web page and in Foxglove",
+                                  .description = g4_tool::description,
+                                  .verbs = g4_tool::verbs,
+                                  .default_verb = "g4-serve"};
+  return g4_tool::run_program(g4_serve, argc, argv);
+}

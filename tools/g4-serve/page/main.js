@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+// The page: connects its parts, and draws one picture per frame.
+import { Connection } from './connection.js';
+import { Controls, element } from './input.js';
+import { Playback } from './playback.js';
+import { Radar } from './radar.js';
+import { Ruler, measure } from './ruler.js';
+import { Scans } from './scans.js';
+import { Settings } from './settings.js';
+import { Panels, write } from './status.js';
+import { View } from './view.js';
+
+const frames_kept = 1024;
+/** Of the points that are visible at first: a few may be far away, through a door. */
+const first_part = 0.95;
+
+const surface = /** @type {HTMLCanvasElement} */ (element('points'));
+const grid = /** @type {HTMLCanvasElement} */ (element('grid'));
+const legend = /** @type {HTMLCanvasElement} */ (element('colours'));
+const view = new View();
+const ruler = new Ruler();
+const scans = new Scans();
+const radar = new Radar(grid, surface, view);
+const panels = new Panels();
+/** @type {any} */
+let hello = null;
+/** @type {any} */
+let status = null;
+
+const connection = new Connection({ on_message: take_message, on_data: take_data, on_change: show_state });
+const settings = new Settings(connection);
+const playback = new Playback(connection);
+const controls = new Controls(surface, view, ruler, scans, () => playback.pause());
+
+/** @param {any} message */
+function take_message(message) {
+  if (message.op === 'hello') greet(message);
+  if (message.op === 'settings') settings.show(message.settings ?? {});
+  if (message.op === 'error') fail(message);
+  if (message.op === 'event') panels.add_event(message);
+  if (message.op !== 'status') return;
+  status = message;
+  panels.show(status);
+  playback.show(status);
+  show_state();
+}
+
+/** @param {any} message */
+function greet(message) {
+  hello = message;
+  document.title = `g4lidar: ${hello.source ?? ''}`;
+  const who = hello.device ?? {};
+  const parts = [who.model && `model ${who.model}`, who.firmware && `firmware ${who.firmware}`,
+    who.serial && `serial number ${who.serial}`];
+  write(element('source'), hello.source ?? '');
+  write(element('device'), parts.filter(Boolean).join(', '));
+  write(element('frame'), hello.frame ?? 'robot');
+  settings.allow(hello.allow_set === true);
+  settings.show(hello.settings ?? {});
+  playback.use(hello.recording ?? null);
+}
+
+/** @param {any} message */
+function fail(message) {
+  if (message.of === 'set') settings.fail(message.message);
+  else panels.add_event({ what: `${message.of}: ${message.message}` });
+}
+
+/** @param {ArrayBuffer} data */
+function take_data(data) {
+  if (!scans.take(data)) return;
+  const scan = scans.newest;
+  if (!scan) return;
+  panels.show_points(scan.colours.length);
+  if (!view.is_chosen && (scan.whole || scans.received === 1)) follow();
+}
+
+/** Until a person zooms, nearly everything is visible: the picture grows, but does not shrink. */
+function follow() {
+  const shown_m = Math.min(view.width, view.height) / 2 / view.scale;
+  if (scans.range_of(first_part) > shown_m || scans.received === 1) controls.fit(first_part);
+}
+
+/** @returns {{state: string, text: string}} What is connected, and why it is not. */
+function state_now() {
+  if (connection.state === 'waiting') {
+    const seconds = Math.ceil(connection.wait_s);
+    return { state: 'waiting', text: `No connection: ${connection.why}. Next attempt in ${seconds} s` };
+  }
+  if (connection.state === 'connecting' || !status) {
+    return { state: 'waiting', text: 'Connecting to the server' };
+  }
+  const why = status.why ? `: ${status.why}` : '';
+  const texts = /** @type {Record<string, string>} */ ({
+    running: 'Running',
+    opening: `Opening the lidar${why}`,
+    resting: `The motor rests${why}`,
+    lost: `The lidar is lost${why}`,
+    ended: hello?.recording ? 'The recording has ended' : `Ended${why}`,
+  });
+  return { state: status.state, text: texts[status.state] ?? String(status.state) };
+}
+
+function show_state() {
+  if (connection.state !== 'open') status = null;
+  const { state, text } = state_now();
+  const shown = element('state');
+  // The countdown is in the banner only: it would interrupt a screen reader.
+  write(shown, state === 'waiting' ? 'No connection' : text);
+  shown.dataset.state = state;
+  const is_frozen = state === 'running' && scans.is_frozen;
+  write(element('banner'), is_frozen ? 'Frozen' : text);
+  element('banner').hidden = state === 'running' && !is_frozen;
+  surface.classList.toggle('stale', !['running', 'ended'].includes(state));
+}
+
+/** The times of the frames, in milliseconds: from frame to frame, and of the drawing. */
+const frames = {
+  count: 0,
+  drawn: 0,
+  intervals: new Float32Array(frames_kept),
+  draws: new Float32Array(frames_kept),
+  last_ms: 0,
+};
+const drawn = { view: -1, ruler: -1, scans: -1 };
+
+/** @param {number} now_ms */
+function frame(now_ms) {
+  const interval_ms = frames.last_ms ? now_ms - frames.last_ms : 0;
+  frames.last_ms = now_ms;
+  scans.advance(interval_ms / 1000);
+  const begin_ms = performance.now();
+  const view_changed = drawn.view !== view.version;
+  if (view_changed || drawn.ruler !== ruler.version) {
+    radar.draw_grid(ruler);
+    write(element('measured'), ruler.text());
+    element('measured').hidden = !ruler.is_on;
+  }
+  if (view_changed || drawn.scans !== scans.version) {
+    radar.draw_points(scans);
+    frames.drawn++;
+  }
+  drawn.view = view.version;
+  drawn.ruler = ruler.version;
+  drawn.scans = scans.version;
+  frames.intervals[frames.count % frames_kept] = interval_ms;
+  frames.draws[frames.count % frames_kept] = performance.now() - begin_ms;
+  frames.count++;
+  requestAnimationFrame(frame);
+}
+
+new ResizeObserver(() => {
+  const box = surface.getBoundingClientRect();
+  radar.resize(box.width, box.height);
+  if (!view.is_chosen) controls.fit(first_part);
+}).observe(surface);
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  radar.use_theme();
+  radar.draw_legend(legend);
+});
+radar.draw_legend(legend);
+connection.start();
+requestAnimationFrame(frame);
+
+/** What is shown, for tests and scripts; copies, in metres, seconds and CSS pixels. */
+Object.defineProperty(window, 'g4lidar', {
+  value: Object.freeze({
+    get connection() {
+      return { state: connection.state, why: connection.why, opened: connection.opened };
+    },
+    get hello() {
+      return hello;
+    },
+    get status() {
+      return status;
+    },
+    /** The newest scan that is shown, and the number of those below it. */
+    get scan() {
+      const scan = scans.newest;
+      if (!scan) return null;
+      const { revolution, stamp, whole } = scan;
+      return { revolution, stamp, whole, points: Array.from(scan.xy), trails: scans.shown.length - 1 };
+    },
+    get received() {
+      return { scans: scans.received, points: scans.points_received };
+    },
+    get view() {
+      const { x, y, scale, width, height } = view;
+      return { x, y, scale, width, height };
+    },
+    /** @param {number} x @param {number} y @returns {number[]} Column and row. */
+    pixel(x, y) {
+      return [view.column(y), view.row(x)];
+    },
+    get ruler() {
+      const { from, to, is_on } = ruler;
+      return { is_on, from, to, ...(from && to ? measure(from, to) : {}) };
+    },
+    get frozen() {
+      return scans.is_frozen;
+    },
+    get trail_s() {
+      return scans.trail_s;
+    },
+    /** Of the last frames, the oldest first. */
+    get frames() {
+      const first = Math.max(0, frames.count - frames_kept);
+      const at = Array.from({ length: frames.count - first }, (_, i) => (first + i) % frames_kept);
+      return {
+        count: frames.count,
+        drawn: frames.drawn,
+        intervals_ms: at.map((i) => frames.intervals[i]),
+        draws_ms: at.map((i) => frames.draws[i]),
+      };
+    },
+  }),
+});

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// Draws the radar: rings, robot and ruler on one canvas, and above it the points as pixels.
+import { colour_count } from './scans.js';
+
+/** @typedef {import('./view.js').View} View */
+/** @typedef {import('./scans.js').Scan} Scan */
+/** @typedef {import('./scans.js').Scans} Scans */
+/** @typedef {import('./ruler.js').Ruler} Ruler */
+
+const most_pixels_per_point = 2; // more than two pixels per CSS pixel cannot be seen
+const ring_pixels = 70;
+const newest_alpha = 255;
+const trail_alpha = 150;
+
+/** Anchors of the colours by range, near to far: readable on a light and on a dark background. */
+const on_light = [[130, 10, 20], [200, 35, 75], [160, 50, 180], [60, 90, 225], [10, 110, 130]];
+const on_dark = [[255, 240, 150], [255, 175, 70], [245, 100, 120], [190, 110, 230], [105, 150, 255]];
+
+/** @param {number[][]} anchors @returns {Uint32Array} Colours without alpha, as in ImageData. */
+function colours_between(anchors) {
+  const table = new Uint32Array(colour_count);
+  for (let i = 0; i < colour_count; i++) {
+    const at = (i / (colour_count - 1)) * (anchors.length - 1);
+    const below = Math.min(Math.floor(at), anchors.length - 2);
+    const mixed = anchors[below].map((from, c) =>
+      Math.round(from + (anchors[below + 1][c] - from) * (at - below)));
+    table[i] = mixed[0] | (mixed[1] << 8) | (mixed[2] << 16);
+  }
+  return table;
+}
+
+/** The colours of the style sheet. */
+function theme_now() {
+  const style = getComputedStyle(document.documentElement);
+  /** @param {string} name */
+  const colour = (name) => style.getPropertyValue(name).trim();
+  return {
+    background: colour('--background'),
+    ring: colour('--ring'),
+    text: colour('--ring_text'),
+    axis_x: colour('--axis_x'),
+    axis_y: colour('--axis_y'),
+    ruler: colour('--ruler'),
+    anchors: matchMedia('(prefers-color-scheme: dark)').matches ? on_dark : on_light,
+  };
+}
+
+/** @param {number} scale @returns {number} The distance between two rings, in metres. */
+export function ring_distance(scale) {
+  const wanted = ring_pixels / scale;
+  const tens = 10 ** Math.floor(Math.log10(wanted));
+  return [1, 2, 5, 10].map((n) => n * tens).find((m) => m >= wanted * 0.999) ?? wanted;
+}
+
+export class Radar {
+  /** @param {HTMLCanvasElement} grid @param {HTMLCanvasElement} points @param {View} view */
+  constructor(grid, points, view) {
+    this.grid = grid;
+    this.points = points;
+    this.view = view;
+    this.paper = /** @type {CanvasRenderingContext2D} */ (grid.getContext('2d'));
+    this.screen = /** @type {CanvasRenderingContext2D} */ (points.getContext('2d'));
+    this.picture = this.screen.createImageData(1, 1);
+    this.pixels = new Uint32Array(1);
+    this.ratio = 1;
+    this.theme = theme_now();
+    this.colours = colours_between(this.theme.anchors);
+  }
+
+  use_theme() {
+    this.theme = theme_now();
+    this.colours = colours_between(this.theme.anchors);
+    this.view.version++;
+  }
+
+  /** @param {HTMLCanvasElement} canvas  The colours from the first to the last. */
+  draw_legend(canvas) {
+    const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    const strip = context.createImageData(colour_count, 1);
+    const pixels = new Uint32Array(strip.data.buffer);
+    for (let i = 0; i < colour_count; i++) pixels[i] = this.colours[i] | (newest_alpha << 24);
+    context.putImageData(strip, 0, 0);
+  }
+
+  /** Follows the size of the window. @param {number} width @param {number} height */
+  resize(width, height) {
+    this.ratio = Math.min(window.devicePixelRatio || 1, most_pixels_per_point);
+    for (const canvas of [this.grid, this.points]) {
+      canvas.width = Math.max(1, Math.round(width * this.ratio));
+      canvas.height = Math.max(1, Math.round(height * this.ratio));
+    }
+    this.picture = this.screen.createImageData(this.points.width, this.points.height);
+    this.pixels = new Uint32Array(this.picture.data.buffer);
+    this.view.resize(width, height);
+  }
+
+  /** @param {Scans} scans  The trails, the oldest first, and the newest scan above them. */
+  draw_points(scans) {
+    this.pixels.fill(0);
+    const last = scans.shown.length - 1;
+    for (let i = 0; i < last; i++) {
+      const age = (scans.now - scans.shown[i].born) / Math.max(scans.trail_s, 0.001);
+      const alpha = trail_alpha * (1 - age);
+      if (alpha >= 1) this.#draw_scan(scans.shown[i], alpha, Math.round(2 * this.ratio));
+    }
+    if (last >= 0) this.#draw_scan(scans.shown[last], newest_alpha, Math.round(3 * this.ratio));
+    this.screen.putImageData(this.picture, 0, 0);
+  }
+
+  /** @param {Scan} scan @param {number} alpha @param {number} size  Of a point, in pixels. */
+  #draw_scan(scan, alpha, size) {
+    const { view, ratio, pixels, colours } = this;
+    const width = this.points.width;
+    const scale = view.scale * ratio;
+    const half = (size - 1) / 2;
+    const left = view.column(0) * ratio - half;
+    const top = view.row(0) * ratio - half;
+    const last_column = width - size;
+    const last_row = this.points.height - size;
+    const opaque = Math.round(alpha) << 24;
+    const { xy } = scan;
+    for (let i = 0, k = 0; k < xy.length; i++, k += 2) {
+      const column = Math.round(left - xy[k + 1] * scale);
+      const row = Math.round(top - xy[k] * scale);
+      if (column < 0 || row < 0 || column > last_column || row > last_row) continue;
+      const pixel = colours[scan.colours[i]] | opaque;
+      let at = row * width + column;
+      for (let line = 0; line < size; line++, at += width) {
+        for (let n = 0; n < size; n++) pixels[at + n] = pixel;
+      }
+    }
+  }
+
+  /** @param {Ruler} ruler  Rings, axes, robot and ruler. */
+  draw_grid(ruler) {
+    const { paper, theme, view } = this;
+    paper.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    paper.fillStyle = theme.background;
+    paper.fillRect(0, 0, view.width, view.height);
+    this.#draw_rings(view.column(0), view.row(0));
+    this.#draw_robot(view.column(0), view.row(0));
+    this.#draw_ruler(ruler);
+  }
+
+  /** @param {number} column @param {number} row  Of the lidar. */
+  #draw_rings(column, row) {
+    const { paper, theme, view } = this;
+    const step = ring_distance(view.scale);
+    const dx = Math.max(-column, column - view.width, 0);
+    const dy = Math.max(-row, row - view.height, 0);
+    const farthest = Math.hypot(Math.max(column, view.width - column),
+      Math.max(row, view.height - row));
+    // The labels are on the line from the lidar to the farthest corner, or to the middle of the picture.
+    const is_inside = dx === 0 && dy === 0;
+    const end_column = is_inside ? (column <= view.width / 2 ? view.width : 0) : view.width / 2;
+    const end_row = is_inside ? (row >= view.height / 3 ? 0 : view.height) : view.height / 2;
+    const away = Math.hypot(end_column - column, end_row - row);
+    const right = (end_column - column) / away;
+    const down = (end_row - row) / away;
+    paper.strokeStyle = theme.ring;
+    paper.lineWidth = 1;
+    paper.beginPath();
+    paper.moveTo(column, 0);
+    paper.lineTo(column, view.height);
+    paper.moveTo(0, row);
+    paper.lineTo(view.width, row);
+    paper.stroke();
+    paper.font = '12px system-ui, "DejaVu Sans", sans-serif';
+    paper.textAlign = 'center';
+    paper.textBaseline = 'middle';
+    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    for (let n = Math.max(1, Math.floor(Math.hypot(dx, dy) / view.scale / step));
+      n * step * view.scale <= farthest; n++) {
+      const radius = n * step * view.scale;
+      paper.beginPath();
+      paper.arc(column, row, radius, 0, 2 * Math.PI);
+      paper.stroke();
+      this.#label(`${(n * step).toFixed(digits)} m`, column + right * radius, row + down * radius);
+    }
+  }
+
+  /** @param {string} text @param {number} column @param {number} row */
+  #label(text, column, row) {
+    const width = this.paper.measureText(text).width + 6;
+    this.paper.fillStyle = this.theme.background;
+    this.paper.fillRect(column - width / 2, row - 8, width, 16);
+    this.paper.fillStyle = this.theme.text;
+    this.paper.fillText(text, column, row);
+  }
+
+  /** @param {number} column @param {number} row  A triangle that points ahead, and the axes. */
+  #draw_robot(column, row) {
+    const { paper, theme } = this;
+    paper.lineWidth = 2;
+    paper.strokeStyle = theme.axis_x;
+    paper.beginPath();
+    paper.moveTo(column, row);
+    paper.lineTo(column, row - 26);
+    paper.stroke();
+    paper.strokeStyle = theme.axis_y;
+    paper.beginPath();
+    paper.moveTo(column, row);
+    paper.lineTo(column - 26, row);
+    paper.stroke();
+    paper.fillStyle = theme.text;
+    paper.beginPath();
+    paper.moveTo(column, row - 10);
+    paper.lineTo(column + 7, row + 7);
+    paper.lineTo(column - 7, row + 7);
+    paper.fill();
+  }
+
+  /** @param {Ruler} ruler */
+  #draw_ruler(ruler) {
+    const { paper, theme, view } = this;
+    paper.strokeStyle = theme.ruler;
+    paper.lineWidth = 2;
+    paper.beginPath();
+    if (ruler.from && ruler.to) {
+      paper.moveTo(view.column(ruler.from.y), view.row(ruler.from.x));
+      paper.lineTo(view.column(ruler.to.y), view.row(ruler.to.x));
+    }
+    for (const end of [ruler.from, ruler.to]) {
+      if (!end) continue;
+      paper.moveTo(view.column(end.y) + 6, view.row(end.x));
+      paper.arc(view.column(end.y), view.row(end.x), 6, 0, 2 * Math.PI);
+    }
+    if (ruler.shows_middle) {
+      paper.moveTo(view.width / 2 - 12, view.height / 2);
+      paper.lineTo(view.width / 2 + 12, view.height / 2);
+      paper.moveTo(view.width / 2, view.height / 2 - 12);
+      paper.lineTo(view.width / 2, view.height / 2 + 12);
+    }
+    paper.stroke();
+  }
+}

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Which part of the robot's frame is shown: x ahead is up, y is left. Pixels are CSS pixels.
+
+const least_scale = 4;
+const largest_scale = 4000;
+const farthest_m = 60;
+
+/** @typedef {{x: number, y: number}} Place In metres. */
+
+export class View {
+  constructor() {
+    /** The place in the middle, in metres. */
+    this.x = 0;
+    this.y = 0;
+    /** Pixels per metre. */
+    this.scale = 60;
+    this.width = 1;
+    this.height = 1;
+    /** Counts changes. */
+    this.version = 0;
+    /** Whether a person has chosen the view. */
+    this.is_chosen = false;
+  }
+
+  /** @param {number} y  The column of a place. */
+  column(y) {
+    return this.width / 2 - (y - this.y) * this.scale;
+  }
+
+  /** @param {number} x  The row of a place. */
+  row(x) {
+    return this.height / 2 - (x - this.x) * this.scale;
+  }
+
+  /** @param {number} column @param {number} row @returns {Place} */
+  place(column, row) {
+    return {
+      x: this.x + (this.height / 2 - row) / this.scale,
+      y: this.y + (this.width / 2 - column) / this.scale,
+    };
+  }
+
+  /** @param {number} width @param {number} height */
+  resize(width, height) {
+    this.width = width;
+    this.height = height;
+    this.version++;
+  }
+
+  /** @param {number} columns @param {number} rows  The picture moves right and down. */
+  pan(columns, rows) {
+    this.#look_at(this.x + rows / this.scale, this.y + columns / this.scale);
+    this.is_chosen = true;
+  }
+
+  /**
+   * Zooms about a pixel, which keeps its place.
+   * @param {number} factor @param {number} [column] @param {number} [row]
+   */
+  zoom(factor, column = this.width / 2, row = this.height / 2) {
+    const kept = this.place(column, row);
+    this.scale = Math.min(largest_scale, Math.max(least_scale, this.scale * factor));
+    const moved = this.place(column, row);
+    this.#look_at(this.x + kept.x - moved.x, this.y + kept.y - moved.y);
+    this.is_chosen = true;
+  }
+
+  /** @param {number} range_m  The lidar in the middle, and everything up to this range. */
+  fit(range_m) {
+    this.scale = Math.min(this.width, this.height) / 2 / range_m;
+    this.#look_at(0, 0);
+  }
+
+  /** @param {number} x @param {number} y */
+  #look_at(x, y) {
+    this.x = Math.min(farthest_m, Math.max(-farthest_m, x));
+    this.y = Math.min(farthest_m, Math.max(-farthest_m, y));
+    this.version++;
+  }
+}

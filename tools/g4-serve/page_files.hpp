@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// The files of the web page, which the build puts into the program: see embed.cmake.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace g4_tool {
+
+struct page_file {
+  std::string_view path;  ///< "/", "/page.css".
+  std::string_view type;  ///< Its media type.
+  std::string_view content;
+};
+
+/// All of them; valid forever.
+[[nodiscard]] std::span<const page_file> page_files() noexcept;
+
+}  // namespace g4_tool

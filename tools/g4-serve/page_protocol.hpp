@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The protocol of the web page, g4lidar.page.v1: what it sends, and what it is sent. docs/serve.md
+// describes it.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/point.hpp"
+#include "io/station.hpp"
+
+namespace g4_tool {
+
+inline constexpr const char* page_subprotocol = "g4lidar.page.v1";
+
+/// {"op":"set"}.
+struct set_request {
+  std::string name;
+  std::string value;  ///< As in `g4-dump set`.
+};
+/// {"op":"play"}: what is to change.
+struct play_request {
+  std::optional<bool> paused;
+  std::optional<double> speed;
+  std::optional<double> seek_s;
+};
+/// An object that is none of them, and why.
+struct bad_request {
+  std::string of;  ///< Its "op".
+  std::string message;
+};
+using page_request = std::variant<set_request, play_request, bad_request>;
+
+/// Nothing for a text that no page sends: the client is to be closed.
+[[nodiscard]] std::optional<page_request> parse_page_request(std::string_view text);
+
+/// The contents of the first message, which is sent again when it changes.
+struct page_hello {
+  std::string source;
+  std::optional<device_information> device;
+  bool allows_set = false;
+  nlohmann::ordered_json settings;
+  std::optional<double> recording_s;  ///< The length of a recording.
+};
+[[nodiscard]] std::string hello_text(const page_hello& hello);
+[[nodiscard]] std::string settings_text(const nlohmann::ordered_json& settings);
+[[nodiscard]] std::string event_text(std::string_view what, double time_s);
+[[nodiscard]] std::string error_text(std::string_view of, std::string_view message);
+
+/// The contents of a status.
+struct page_status {
+  station_state state = station_state::opening;
+  std::string why{};
+  std::optional<double> scan_rate_hz{};    ///< Scans that came, a second.
+  std::optional<double> sample_rate_hz{};  ///< Of the last scan, as the next.
+  std::optional<double> frequency_hz{};
+  double loss = 0;  ///< The part of the samples that was lost lately.
+  lidar_counts counts{};
+  std::vector<stage_report> stages{};
+  std::optional<playback> player{};
+};
+[[nodiscard]] std::string status_text(const page_status& status);
+
+/// The binary message of a revolution: its returns in the robot's frame. Appends to `out`.
+void put_page_scan(std::span<const point> points, std::uint32_t revolution, bool is_whole,
+                   double stamp_s, std::vector<std::uint8_t>& out);
+
+}  // namespace g4_tool

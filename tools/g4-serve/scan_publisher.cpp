@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "scan_publisher.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/settings.hpp"
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/grid.hpp"
+
+namespace g4_tool {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto rate_window = 3s;
+constexpr double ns_in_s = 1e9;
+
+double seconds_of(std::int64_t ns) { return static_cast<double>(ns) / ns_in_s; }
+
+std::int64_t wall_now_ns() {
+  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+nlohmann::ordered_json unknown_settings() {
+  nlohmann::ordered_json all;
+  for (const setting& each : all_settings()) all[std::string(each.name)] = nullptr;
+  return all;
+}
+
+}  // namespace
+
+void scan_rates::add(const g4lidar::scan& scan, clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  times_.push_back(now);
+  while (now - times_.front() > rate_window) times_.pop_front();
+  sample_rate_hz_ = static_cast<double>(scan.sample_rate_hz());
+  frequency_hz_ = static_cast<double>(scan.measured_frequency_hz());
+}
+
+void scan_rates::put(page_status& into, clock::time_point now) const {
+  const std::lock_guard lock(mutex_);
+  if (times_.size() < 2 || now - times_.back() > rate_window) return;
+  const std::chrono::duration<double> took = times_.back() - times_.front();
+  if (took.count() > 0) into.scan_rate_hz = static_cast<double>(times_.size() - 1) / took.count();
+  into.sample_rate_hz = sample_rate_hz_;
+  into.frequency_hz = frequency_hz_;
+}
+
+double loss_window::add(const lidar_counts& counts) {
+  constexpr std::size_t ticks = 20;
+  const sums now{counts.stream.points, counts.samples_lost};
+  // A recording that is opened again counts from 0.
+  if (!sums_.empty() && now.points < sums_.back().points) sums_.clear();
+  sums_.push_back(now);
+  if (sums_.size() > ticks + 1) sums_.pop_front();
+  const auto points = static_cast<double>(now.points - sums_.front().points);
+  const auto lost = static_cast<double>(now.lost - sums_.front().lost);
+  return lost > 0 ? lost / (points + lost) : 0.0;
+}
+
+scan_publisher::scan_publisher(const serve_options& options, hub& to)
+    : options_(options),
+      hub_(to),
+      shaper_(options.common, mounting{}),
+      ranges_m_(options.bins),
+      settings_(unknown_settings()) {}
+
+void scan_publisher::on_open(opened_source& source) {
+  const source_kind kind = kind_of(options_.common.source);
+  if (kind == source_kind::device || kind == source_kind::simulated) {
+    for (const setting& each : all_settings()) {
+      settings_[std::string(each.name)] = json_of(read_setting(source.lidar(), each));
+    }
+  }
+  greet(true);
+}
+
+void scan_publisher::greet(bool sends) {
+  const auto player = station_->player();
+  hub_.greet(hello_text({.source = options_.common.source.empty() ? station_->name()
+                                                                  : options_.common.source,
+                         .device = station_->identity(),
+                         .allows_set = options_.allows_set,
+                         .settings = settings_,
+                         .recording_s = player ? std::optional(player->length_s) : std::nullopt}),
+             sends);
+}
+
+void scan_publisher::on_scan(const g4lidar::scan& scan) {
+  rates_.add(scan, scan_rates::clock::now());
+  const hub::wishes wanted = hub_.wanted();
+  const bool wants_scan = wanted.wants(channel::scan);
+  const bool wants_points = wanted.wants(channel::points);
+  publish_bytes(wanted.wants(channel::from_device));
+  const bool is_deskewed =
+      options_.common.deskew != deskewing::none;  // by all scans, wanted or not
+  if (!wanted.page && !wants_scan && !wants_points && !is_deskewed) return;
+  const shaped_scan shaped = shaper_.shape(scan, {});
+  const message_header header{.stamp_ns = station_->wall_ns(scan.time_ns()),
+                              .frame_id = options_.frame_id,
+                              .duration_ns = scan.duration_ns};
+  if (wanted.page) {
+    std::vector<std::uint8_t> message;
+    message.reserve(16 + 8 * shaped.kept.size());
+    put_page_scan(shaped.kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns),
+                  message);
+    hub_.page_scan(std::move(message));
+  }
+  if (wants_scan) {
+    std::vector<std::uint8_t> message;
+    fill_grid(shaped.for_grid, ranges_m_, {.to = frame::robot});
+    put_laser_scan(ranges_m_, header, message);
+    hub_.publish(channel::scan, header.stamp_ns, std::move(message));
+  }
+  if (wants_points) {
+    std::vector<std::uint8_t> message;
+    put_point_cloud2(shaped.kept, header, message);
+    hub_.publish(channel::points, header.stamp_ns, std::move(message));
+  }
+}
+
+/// One message a revolution.
+void scan_publisher::publish_bytes(bool is_wanted) {
+  if (std::vector<std::uint8_t> message = bytes_.take(); is_wanted && !message.empty()) {
+    hub_.publish(channel::from_device, station_->wall_ns(bytes_.arrival_ns()), std::move(message));
+  }
+  bytes_.want(is_wanted);
+}
+
+void scan_publisher::on_event(const lidar_event& event) {
+  const std::string what(name_of(event.what));
+  logger::info(fmt::format("{}: {}\n", station_->name(), what));
+  hub_.event(event_text(what, seconds_of(station_->wall_ns(event.time_ns))));
+}
+
+void scan_publisher::on_state(station_state state, std::string_view why) {
+  if (state == station_state::opening && !why.empty()) {
+    logger::info(fmt::format("{} Trying again.\n", why));
+  }
+}
+
+void scan_publisher::tick() {
+  page_status status{.state = station_->state(),
+                     .why = station_->why(),
+                     .counts = station_->counts(),
+                     .stages = station_->stages(),
+                     .player = station_->player()};
+  rates_.put(status, scan_rates::clock::now());
+  status.loss = loss_.add(status.counts);
+  hub_.status(status_text(status));
+  if (++ticks_ % 2 == 0 && hub_.wanted().wants(channel::diagnostics)) publish_diagnostics(status);
+}
+
+void scan_publisher::publish_diagnostics(const page_status& status) {
+  const auto identity = station_->identity();
+  const std::string serial = identity ? std::string(identity->serial_number()) : std::string();
+  const std::int64_t now_ns = wall_now_ns();
+  std::vector<std::uint8_t> message;
+  put_diagnostic_array(statuses_of(status.stages, status.counts, serial), now_ns, message);
+  hub_.publish(channel::diagnostics, now_ns, std::move(message));
+}
+
+void scan_publisher::set(const set_request& wanted, std::function<void(const std::string&)> done) {
+  std::string word = wanted.name + '=' + wanted.value;
+  try {
+    static_cast<void>(wish_of(word));
+  } catch (const bad_value& reason) {
+    return done(reason.what());
+  }
+  station_->ask([this, checked = std::move(word), then = std::move(done)](g4lidar::lidar* lidar) {
+    carry_out(lidar, checked, then);
+  });
+}
+
+void scan_publisher::carry_out(g4lidar::lidar* lidar, const std::string& word,
+                               const std::function<void(const std::string&)>& done) {
+  if (lidar == nullptr) return done("the lidar is not connected");
+  const wish wanted = wish_of(word);
+  const auto given = lidar->ask(wanted.how, while_scanning::stop_and_resume);
+  if (!given) return done(in_tool_words(given.error().message()));
+  settings_[std::string(wanted.which->name)] = json_of(maybe_answer(*given));
+  greet(false);
+  hub_.settings(settings_text(settings_));
+  done({});
+}
+
+void scan_publisher::play(const play_request& wanted) {
+  if (wanted.paused) station_->pause(*wanted.paused);
+  if (wanted.speed) station_->set_speed(*wanted.speed);
+  if (wanted.seek_s) station_->seek(*wanted.seek_s);
+}
+
+}  // namespace g4_tool
