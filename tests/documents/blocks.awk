@@ -15,7 +15,8 @@ function is_known(language, mark) {
   if (mark ~ /^not run: ...../) return 1  # with a reason
   if (mark ~ /^file [A-Za-z0-9_.\/-]+$/) return language != "sh"
   if (language == "cpp" && mark == "until ^C") return 1
-  if (language == "cpp" || language == "cmake") return mark ~ /^(|in [a-z_]+)$/
+  if (language == "python") return mark == ""
+  if (language == "c" || language == "cpp" || language == "cmake") return mark ~ /^(|in [a-z_]+)$/
   if (language == "sh") return mark ~ /^(|until \^C|the only G4|three of four|exit [0-9]+)$/
   if (language == "text") return mark ~ /^output(, but for numbers)?$/
   return 0

@@ -9,6 +9,9 @@
 # until ^C get SIGINT when they have printed something. In command lines /dev/ttyUSB0 is a simulated
 # G4, and /tmp the scratch directory. CONTRIBUTING.md describes the marks.
 #
+# Python blocks are run with PYTHON (python3 by default), if it can import g4lidar. If a document has nothing else to run,
+# its check is skipped. check_document.sh BLOCKS python runs the Python blocks only.
+#
 # Needs G4_DUMP; for command lines PROGRAMS, directories for PATH, and for projects PREFIX, the
 # prefix of the installed library. Prints errors only.
 set -euo pipefail
@@ -142,6 +145,18 @@ run_lines() {
   done <"$3"
 }
 
+# can_import_g4lidar: whether the Python module is installed.
+can_import_g4lidar() { "${PYTHON:-python3}" -c 'import g4lidar' 2>/dev/null; }
+
+# run_python <line> <file>: runs it as a program.
+run_python() {
+  local program=$scratch/block.py code=0
+  sed "s#/dev/ttyUSB0#$g4#g" "$2" >"$program"
+  if grep -q "$g4" "$program"; then need_g4; fi
+  "${PYTHON:-python3}" "$program" >"$scratch/out" 2>"$scratch/err" </dev/null || code=$?
+  if ((code != 0)); then refuse "$1" "this program ended with $code"; fi
+}
+
 # build_project <line> <file>: configures and builds it, with an empty program.
 build_project() {
   local project=$scratch/project-$1
@@ -154,7 +169,7 @@ build_project() {
 
 # go_through: all blocks except the programs.
 go_through() {
-  local number language line mark last=none
+  local number language line mark last=none ran=0 skipped=0
   export CMAKE_PREFIX_PATH=${PREFIX:-}
   while IFS=$'\t' read -r number language line mark <&3; do
     local file=$blocks/$number.$language
@@ -167,16 +182,31 @@ go_through() {
       cp "$file" "${mark#file }"
       continue
     fi
+    if [[ $language == python ]] && ! can_import_g4lidar; then
+      skipped=1 last=skipped
+      continue
+    fi
+    if [[ $only == python && $language != python && ! ($language == text && $last == python) ]]; then
+      last=skipped
+      continue
+    fi
+    if [[ $last == skipped && $language == text ]]; then continue; fi
+    if [[ $language != text ]]; then ran=1; fi
     case $language in
+      python) run_python "$line" "$file" ;;
       sh) run_lines "$line" "$mark" "$file" ;;
       cmake) build_project "$line" "$blocks/block_$number.cmake" ;;
       text)
-        if [[ $last == sh ]]; then compare "$line" "$file" "$mark"; fi
+        if [[ $last == sh || $last == python ]]; then compare "$line" "$file" "$mark"; fi
         if [[ $last == none ]]; then refuse "$line" "this output belongs to no command"; fi
         ;;
     esac
     last=$language
   done 3<"$blocks/list"
+  if ((skipped && !ran)); then
+    echo "SKIPPED: the Python module g4lidar is not installed"
+    exit 77
+  fi
 }
 
 # run_program: runs the program of the block `only`; the following text is its output.
@@ -201,4 +231,4 @@ run_program() {
   if [[ -n $shown ]]; then compare "$at" "$shown" "$how"; fi
 }
 
-if [[ -n $only ]]; then run_program "${PROGRAM:?}"; else go_through; fi
+if [[ -n $only && $only != python ]]; then run_program "${PROGRAM:?}"; else go_through; fi

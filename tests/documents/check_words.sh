@@ -24,6 +24,11 @@ for source in first_scan first_points; do
   fi
   number=$((number + 1))
 done
+block=$(awk -F '\t' '$2 == "c" { print $1 }' "$scratch/README/list")
+if ! diff "$scratch/README/block_$block.c" <(tail -n +3 examples/c/first_scan.c); then
+  echo "The program in C in README.md differs from examples/c/first_scan.c" >&2
+  missing=1
+fi
 
 # Command lines in sentences: a verb, or the beginning of an executed line.
 for document in README docs/guide docs/errors docs/sim docs/recordings; do
@@ -55,7 +60,7 @@ while IFS=: read -r document path; do
     echo "$document names $path, which is not there" >&2
     missing=1
   fi
-done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|\.ci)(/[A-Za-z0-9_./-]+)?`' \
+done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|python|\.ci)(/[A-Za-z0-9_./-]+)?`' \
   "${documents[@]}" | sort --unique)
 while IFS=: read -r document link; do
   link=${link#*](}
@@ -86,9 +91,9 @@ fi
 # words, as parts of names between underscores, and as parts of names that begin with a capital letter.
 figures='tells?|telling|told|says?|said|lives|twins?|ear|exam|rivals?|errands?|manners|portrait|noted|meanwhile|rote|pours?|poured|amid|strangers?'
 capitals=$(sed -E 's/(^|\|)(.)/\1\u\2/g' <<<"$figures")
-searched=("${documents[@]}" include src tools examples tests scripts bench fuzz cmake packaging .ci CMakeLists.txt)
-if { grep -rniE "(^|[^[:alpha:]])($figures)([^[:alpha:]]|$)|[a-z]_well\>|\<all (is|was) well" "${searched[@]}"
-  grep -rnE "[[:lower:][:digit:]]($capitals)([^[:lower:]]|$)" "${searched[@]}"; } | grep -v "^$here/check_words.sh:" >&2; then
+searched=("${documents[@]}" include src tools examples tests scripts bench fuzz cmake packaging python .ci CMakeLists.txt)
+if { grep -rniE "(^|[^[:alpha:]])($figures)([^[:alpha:]]|$)|[a-z]_well\>|\<all (is|was) well" "${searched[@]}" || true
+  grep -rnE "[[:lower:][:digit:]]($capitals)([^[:lower:]]|$)" "${searched[@]}" || true; } | grep -v "^$here/check_words.sh:" >&2; then
   echo "These lines contain figures of speech: write the term of the field" >&2
   missing=1
 fi

@@ -26,6 +26,8 @@ while IFS=$'\t' read -r number language _ mark; do
   if [[ $mark == "not run:"* ]]; then continue; fi
   case $language:$mark in
     cpp:"in "*) wrap "$here/wrappers/${mark#in }.cpp.in" "$fresh/$number.cpp" >"$fresh/block_$number.cpp" ;;
+    c:"in "*) wrap "$here/wrappers/${mark#in }.c.in" "$fresh/$number.c" >"$fresh/block_$number.c" ;;
+    c:*) cp "$fresh/$number.c" "$fresh/block_$number.c" ;;
     cpp:*) cp "$fresh/$number.cpp" "$fresh/block_$number.cpp" ;;
     cmake:"in "*) wrap "$here/wrappers/${mark#in }.cmake.in" "$fresh/$number.cmake" >"$fresh/block_$number.cmake" ;;
     cmake:*) cp "$fresh/$number.cmake" "$fresh/block_$number.cmake" ;;

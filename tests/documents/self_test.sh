@@ -7,6 +7,9 @@ here=$G4LIDAR_SOURCE_DIR/tests/documents
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 export DOCUMENT=scratch.md
+mkdir "$scratch/modules" # with a module of this name
+touch "$scratch/modules/g4lidar.py"
+export PYTHONPATH=$scratch/modules
 fence='```'
 failed=0
 
@@ -70,6 +73,12 @@ block sh 'g4-dump sim --link /tmp/g4 &' 'test -e /tmp/g4' | expect right "a devi
 block sh 'test -e /dev/ttyUSB0' | expect right "a device"
 block cpp 'int main() {}' | expect right "a program"
 block cpp 'int main() { return }' | expect wrong "a program that does not compile"
+if command -v python3 >/dev/null; then
+  block python 'import g4lidar' | expect right "a Python program"
+  block python 'import g4lidar' 'raise SystemExit(1)' | expect wrong "a Python program that fails"
+  { block python 'print("one")'; echo '<!-- test: output -->'; block text 'one'; } | expect right "the output of Python"
+  { block python 'print("one")'; echo '<!-- test: output -->'; block text 'two'; } | expect wrong "another output of Python"
+fi
 for pair in '1.5 0' '0 2' '1 0.00'; do
   { block sh "echo lost: ${pair#* } points"; echo '<!-- test: output, but for numbers -->'; block text "lost: ${pair% *} points"; } \
     | expect wrong "a zero where there is none: $pair"

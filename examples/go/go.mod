@@ -1,0 +1,3 @@
+module g4lidar-example
+
+go 1.19

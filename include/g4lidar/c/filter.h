@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * @file
+ * Filters of points: ranges, directions, masks, isolated returns and veiling points. The functions are
+ * pure: any thread may call them at any time; they never allocate, except those for masks.
+ */
+#ifndef G4LIDAR_C_FILTER_H
+#define G4LIDAR_C_FILTER_H
+
+#include "g4lidar/c/point.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The directions from one angle to another, degrees, in the sense in which the angles of the frame
+ *  grow, both ends included: 350 to 10 is 20 degrees wide, 0 to 360 is every direction. */
+typedef struct g4lidar_sector {
+  double from_deg; /**< Any finite number of turns. */
+  double to_deg;   /**< The same. */
+} g4lidar_sector;
+
+/** A corner of a polygon, in metres in G4LIDAR_ROBOT. */
+typedef struct g4lidar_corner {
+  float x_m; /**< Ahead. */
+  float y_m; /**< To the left. */
+} g4lidar_corner;
+
+/** A polygon: its corners in order, at least three, in the memory of the caller. */
+typedef struct g4lidar_polygon {
+  const g4lidar_corner* corners; /**< The last one is joined to the first one. */
+  size_t count;                  /**< Their number. */
+} g4lidar_polygon;
+
+/** Which points are kept: those that meet every condition. All by default. */
+typedef struct g4lidar_filter_options {
+  size_t struct_size;                    /**< Set by g4lidar_filter_options_init(). */
+  const g4lidar_sector* ignored_sectors; /**< Points in one of them are left out; NULL: none. */
+  size_t ignored_sector_count;           /**< Their number. */
+  const g4lidar_polygon* masks; /**< Returns inside of one of them are left out; NULL: none. */
+  size_t mask_count;            /**< Their number, at most 1000. */
+  g4lidar_sector field_of_view; /**< Points in other directions are left out; 0 to 360. */
+  float least_range_mm;         /**< Included; above 0 points without return are left out. */
+  float greatest_range_mm;      /**< Included; +infinity. */
+  int32_t frame;                /**< Of the sectors: a g4lidar_frame; G4LIDAR_VENDOR. */
+  uint32_t excluded_flags;      /**< Points with one of these g4lidar_point_flag are left out; 0. */
+  bool returns_only;            /**< Whether points without return are left out. */
+  bool trusted_only;            /**< Whether points flagged G4LIDAR_TOO_NEAR are left out. */
+  uint8_t reserved[6];          /**< 0. */
+} g4lidar_filter_options;
+
+/** Sets the defaults; `size` is sizeof(g4lidar_filter_options). */
+G4LIDAR_C_API void g4lidar_filter_options_init(g4lidar_filter_options* options, size_t size);
+
+/** Copies the points that are kept to `out`, which has room for `count`, and their number to `kept`.
+ *  `out` may be `points`. */
+G4LIDAR_C_API int g4lidar_filter_points(const g4lidar_point* points, size_t count,
+                                        const g4lidar_filter_options* options, g4lidar_point* out,
+                                        size_t* kept);
+
+/** The same for g4lidar_fill_grid(): a return that is left out stays and is flagged
+ *  G4LIDAR_TOO_NEAR, so that its bin becomes NaN and not free; points without return stay. */
+G4LIDAR_C_API int g4lidar_filter_for_grid(const g4lidar_point* points, size_t count,
+                                          const g4lidar_filter_options* options, g4lidar_point* out,
+                                          size_t* kept);
+
+/** Which returns are isolated (rain, dust, bit errors) or between two surfaces. */
+typedef struct g4lidar_outlier_options {
+  size_t struct_size;   /**< Set by g4lidar_outlier_options_init(). */
+  uint32_t window;      /**< How many samples on each side are neighbours, 1 to 16; 2. */
+  uint32_t near_count;  /**< Isolated: fewer near neighbours than this; 1. */
+  float near_m;         /**< Near: up to this distance in metres, or up to; 0.05. */
+  float near_ratio;     /**< this share of the range, if that is more; 0.05. */
+  uint32_t edge_window; /**< Veiling: how many samples on each side are neighbours; 1. */
+  float
+      least_angle_deg; /**< Veiling: below this angle to the beam a neighbour is across a jump of the
+                            range; above 0, at most 45; 5. */
+  bool is_piece;       /**< Whether the points are a piece of a revolution: the ends do not join. */
+  uint8_t reserved[7]; /**< 0. */
+} g4lidar_outlier_options;
+
+/** Sets the defaults; `size` is sizeof(g4lidar_outlier_options). */
+G4LIDAR_C_API void g4lidar_outlier_options_init(g4lidar_outlier_options* options, size_t size);
+
+/** Flags isolated returns as G4LIDAR_ISOLATED, clears that flag on all other points, and returns the
+ *  number of flagged ones in `marked`, which may be NULL. */
+G4LIDAR_C_API int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
+                                        const g4lidar_outlier_options* options, size_t* marked);
+
+/** The same for points between two surfaces and G4LIDAR_VEILING. */
+G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
+                                       const g4lidar_outlier_options* options, size_t* marked);
+
+/** Polygons that were read from a text. */
+typedef struct g4lidar_mask g4lidar_mask;
+
+/** Reads lines `polygon x1 y1 x2 y2 x3 y3 ...`, metres in G4LIDAR_ROBOT; `#` begins a comment. Fails
+ *  with bad_file; the message has the number of the line. */
+G4LIDAR_C_API int g4lidar_mask_parse(const char* text, g4lidar_mask** mask, g4lidar_error* error);
+
+/** The polygons, for g4lidar_filter_options, and their number in `count`. Valid as long as the mask. */
+G4LIDAR_C_API const g4lidar_polygon* g4lidar_mask_polygons(const g4lidar_mask* mask, size_t* count);
+
+/** Releases a mask. */
+G4LIDAR_C_API void g4lidar_mask_free(g4lidar_mask* mask);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// What is behind the handles of a lidar and of a recording.
+#pragma once
+
+#include <g4lidar/c/lidar.h>
+#include <g4lidar/c/recording.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "g4lidar/device_information.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "simulation.hpp"
+
+namespace g4lidar::c {
+
+/// How a lidar is opened: options, and what it must not outlive.
+struct opening {
+  lidar_options how;
+  std::shared_ptr<simulation> simulated;       // the device it is on
+  std::shared_ptr<recording_writer> recorder;  // what records it
+  std::string recording;                       // the file that it plays
+  replay_options played;
+};
+
+/// Fills `into`; `device` is not taken. Returns a g4lidar_result.
+int take_lidar_options(const g4lidar_options* given, opening& into, const char** device,
+                       g4lidar_error* error);
+/// Opens what `wish` describes, for the handle in `made`.
+int open_lidar(opening wish, g4lidar_lidar** made, g4lidar_error* error);
+
+[[nodiscard]] g4lidar_identity identity_of(const device_information& from) noexcept;
+[[nodiscard]] g4lidar_recording_info info_of(const recording_reader& from) noexcept;
+
+}  // namespace g4lidar::c
+
+struct g4lidar_lidar {
+  g4lidar::c::opening from;  // outlives the lidar
+  std::unique_ptr<g4lidar::lidar> made;
+  g4lidar::connector* connector = nullptr;  // the innermost one, which the lidar owns
+  std::int64_t wall_ahead_ns = 0;           // of virtual time
+  bool is_started = false;
+  std::string name;
+  g4lidar_identity identity{};
+  g4lidar_scan scan{};
+  g4lidar_counts counts{};
+  g4lidar_recording_info info{};
+};
+
+struct g4lidar_recorder {
+  std::shared_ptr<g4lidar::recording_writer> made;
+  g4lidar_recorder_counts counts{};
+};

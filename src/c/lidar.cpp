@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+// The calls of an open lidar.
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <variant>
+
+#include "border.hpp"
+#include "g4lidar/wall_clock.hpp"
+#include "handles.hpp"
+
+using namespace g4lidar;
+using namespace g4lidar::c;
+
+namespace {
+
+static_assert(static_cast<int>(lidar_event::kind::overflow) + 1 == G4LIDAR_EVENT_OVERFLOW);
+static_assert(static_cast<int>(lidar_event::kind::health_warning) + 1 ==
+              G4LIDAR_EVENT_HEALTH_WARNING);
+
+void fill(g4lidar_scan& out, const scan& from) noexcept {
+  out.points = reinterpret_cast<const g4lidar_point*>(from.data());
+  out.point_count = from.size();
+  out.time_ns = from.time_ns();
+  out.end_ns = from.end_ns();
+  out.duration_ns = from.duration_ns;
+  out.revolution = from.revolution;
+  out.flags = static_cast<std::uint32_t>(from.flags);
+  out.suspect_packets = from.suspect_packets;
+  out.suspect_samples = from.suspect_samples;
+  out.nominal_sample_rate_hz = from.nominal_sample_rate_hz;
+  out.sample_rate_hz = from.sample_rate_hz();
+  out.frequency_hz = from.measured_frequency_hz();
+  out.reported_frequency_hz = static_cast<float>(from.reported_frequency_dhz) * 0.1F;
+  out.turned_deg = from.turned_deg;
+  out.is_whole = from.is_whole();
+  out.is_piece = from.is_piece();
+}
+
+/// The value of an answer in C; nothing if it has none.
+std::optional<std::int32_t> value_of(const answer& from) noexcept {
+  if (const auto* it = std::get_if<scan_frequency>(&from)) return it->chz;
+  if (const auto* it = std::get_if<ranging_frequency>(&from)) {
+    return static_cast<std::int32_t>(samples_per_second(*it));
+  }
+  if (const auto* it = std::get_if<motor_direction>(&from)) {
+    return *it == motor_direction::clockwise ? G4LIDAR_CLOCKWISE : G4LIDAR_COUNTER_CLOCKWISE;
+  }
+  const auto shown = [](bool is_on) { return is_on ? G4LIDAR_ON : G4LIDAR_OFF; };
+  if (const auto* it = std::get_if<low_power>(&from)) return shown(*it == low_power::on);
+  if (const auto* it = std::get_if<constant_frequency>(&from)) {
+    return shown(*it == constant_frequency::on);
+  }
+  if (const auto* it = std::get_if<power_down_protection>(&from)) {
+    return shown(*it == power_down_protection::on);
+  }
+  return std::nullopt;
+}
+
+std::optional<request> query_of(int setting) noexcept {
+  switch (setting) {
+    case G4LIDAR_SCAN_FREQUENCY:
+      return requests::get_scan_frequency();
+    case G4LIDAR_RANGING_FREQUENCY:
+      return requests::get_ranging();
+    case G4LIDAR_MOTOR_DIRECTION:
+      return requests::get_direction();
+    case G4LIDAR_LOW_POWER:
+      return requests::get_low_power();
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The request that sets `wanted`; a value that is none of the setting's becomes one that the session
+/// refuses.
+std::optional<request> change_of(int setting, std::int32_t wanted) noexcept {
+  const auto choice = [wanted](auto first, auto second) {
+    using type = decltype(first);
+    return wanted == 1 ? first : wanted == 2 ? second : static_cast<type>(0xFF);
+  };
+  switch (setting) {
+    case G4LIDAR_SCAN_FREQUENCY:
+      return requests::set(
+          scan_frequency{static_cast<std::uint16_t>(std::clamp(wanted, 0, 0xFFFF))});
+    case G4LIDAR_RANGING_FREQUENCY:
+      return requests::set(wanted == 4000   ? ranging_frequency::khz_4
+                           : wanted == 8000 ? ranging_frequency::khz_8
+                           : wanted == 9000 ? ranging_frequency::khz_9
+                                            : static_cast<ranging_frequency>(0xFF));
+    case G4LIDAR_MOTOR_DIRECTION:
+      return requests::set(choice(motor_direction::clockwise, motor_direction::counter_clockwise));
+    case G4LIDAR_LOW_POWER:
+      return requests::set(choice(low_power::off, low_power::on));
+    case G4LIDAR_CONSTANT_FREQUENCY:
+      return requests::set(choice(constant_frequency::off, constant_frequency::on));
+    case G4LIDAR_POWER_DOWN_PROTECTION:
+      return requests::set(choice(power_down_protection::off, power_down_protection::on));
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<request> step_of(std::int32_t step_chz) noexcept {
+  switch (step_chz) {
+    case -100:
+      return requests::step(frequency_step::down_1_hz);
+    case -10:
+      return requests::step(frequency_step::down_0_1_hz);
+    case 10:
+      return requests::step(frequency_step::up_0_1_hz);
+    case 100:
+      return requests::step(frequency_step::up_1_hz);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Sends a request; `take` gets the answer, and returns whether it is one of the request.
+template <class Take>
+int send(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how, g4lidar_error* error,
+         Take take) noexcept {
+  return guarded(
+      error,
+      [&]() -> int {
+        if (!wanted) return refuse(error, "there is no such request");
+        if (how != G4LIDAR_REFUSE && how != G4LIDAR_STOP_AND_RESUME) {
+          return refuse(error, "how: a g4lidar_while_scanning");
+        }
+        const auto given = lidar->made->ask(*wanted, static_cast<while_scanning>(how));
+        if (!given) return fail(error, given.error());
+        if (take(*given)) return succeed(error);
+        return fail(error, g4lidar::error(task::asking, problem::wrong_answer));
+      },
+      lidar);
+}
+
+int ask_value(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how,
+              std::int32_t* value, g4lidar_error* error) noexcept {
+  return send(lidar, wanted, how, error, [value](const answer& from) {
+    const auto got = value_of(from);
+    if (got && value != nullptr) *value = *got;
+    return got.has_value();
+  });
+}
+
+}  // namespace
+
+int g4lidar_start(g4lidar_lidar* lidar, g4lidar_error* error) {
+  const int code = guarded(error, [&] { return lidar->made->start(); }, lidar);
+  if (code == G4LIDAR_OK) lidar->is_started = true;
+  return code;
+}
+
+int g4lidar_stop(g4lidar_lidar* lidar, g4lidar_error* error) {
+  if (lidar != nullptr) lidar->is_started = false;
+  return guarded(error, [&] { return lidar->made->stop(); }, lidar);
+}
+
+int g4lidar_close(g4lidar_lidar* lidar, g4lidar_error* error) {
+  if (lidar != nullptr) lidar->is_started = false;
+  return guarded(error, [&] { return lidar->made->close(); }, lidar);
+}
+
+void g4lidar_release(g4lidar_lidar* lidar) {
+  if (lidar != nullptr) lidar->made->release();
+}
+
+int g4lidar_next_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
+                      g4lidar_error* error) {
+  return guarded(
+      error,
+      [&]() -> int {
+        const auto next = lidar->made->next_scan(std::chrono::milliseconds(timeout_ms));
+        if (!next) return fail(error, next.error());
+        if (lidar->from.recorder && !next->is_piece()) lidar->from.recorder->scan(*next);
+        fill(lidar->scan, *next);
+        *scan = &lidar->scan;
+        return succeed(error);
+      },
+      lidar, scan);
+}
+
+int g4lidar_next_points(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_point** points,
+                        size_t* count, g4lidar_error* error) {
+  return guarded(
+      error,
+      [&]() -> int {
+        const auto next = lidar->made->next_points(std::chrono::milliseconds(timeout_ms));
+        if (!next) return fail(error, next.error());
+        *points = reinterpret_cast<const g4lidar_point*>(next->data());
+        *count = next->size();
+        return succeed(error);
+      },
+      lidar, points, count);
+}
+
+int g4lidar_descriptor(const g4lidar_lidar* lidar) {
+  return lidar == nullptr ? -1 : lidar->made->native_handle();
+}
+
+int64_t g4lidar_deadline_ns(const g4lidar_lidar* lidar) {
+  return lidar == nullptr ? std::numeric_limits<std::int64_t>::max()
+                          : lidar->made->next_deadline_ns();
+}
+
+int g4lidar_poll_timeout_ms(const g4lidar_lidar* lidar) {
+  const std::int64_t due_ns = g4lidar_deadline_ns(lidar);
+  if (due_ns == std::numeric_limits<std::int64_t>::max()) return -1;
+  constexpr std::int64_t most_ms = 3'600'000;
+  const std::int64_t left_ns = std::max<std::int64_t>(due_ns - g4lidar_now_ns(), 0);
+  return static_cast<int>(std::min((left_ns + 999'999) / 1'000'000, most_ms));
+}
+
+int g4lidar_process(g4lidar_lidar* lidar, g4lidar_error* error) {
+  return guarded(error, [&] { return lidar->made->process(); }, lidar);
+}
+
+void g4lidar_wake(g4lidar_lidar* lidar) {
+  if (lidar != nullptr) lidar->made->wake();
+}
+
+int g4lidar_get(g4lidar_lidar* lidar, int setting, int how, int32_t* value, g4lidar_error* error) {
+  if (value == nullptr) return refuse(error, "a required argument is NULL");
+  return ask_value(lidar, query_of(setting), how, value, error);
+}
+
+int g4lidar_set(g4lidar_lidar* lidar, int setting, int32_t wanted, int how, int32_t* reached,
+                g4lidar_error* error) {
+  return ask_value(lidar, change_of(setting, wanted), how, reached, error);
+}
+
+int g4lidar_step_frequency(g4lidar_lidar* lidar, int32_t step_chz, int how, int32_t* reached,
+                           g4lidar_error* error) {
+  return ask_value(lidar, step_of(step_chz), how, reached, error);
+}
+
+int g4lidar_restart(g4lidar_lidar* lidar, int how, g4lidar_error* error) {
+  return send(lidar, requests::restart(), how, error, [](const answer&) { return true; });
+}
+
+int g4lidar_get_health(g4lidar_lidar* lidar, int how, g4lidar_health* health,
+                       g4lidar_error* error) {
+  if (health == nullptr) return refuse(error, "a required argument is NULL");
+  return send(lidar, requests::health(), how, error, [health](const answer& from) {
+    const auto* got = std::get_if<g4lidar::health>(&from);
+    if (got != nullptr) *health = {static_cast<std::int32_t>(got->status), got->error_code};
+    return got != nullptr;
+  });
+}
+
+const g4lidar_identity* g4lidar_get_identity(const g4lidar_lidar* lidar) {
+  return lidar == nullptr ? nullptr : &lidar->identity;
+}
+
+const char* g4lidar_name(g4lidar_lidar* lidar) {
+  const int code = guarded(
+      nullptr,
+      [&] {
+        lidar->name = lidar->made->name();
+        return G4LIDAR_OK + 0;
+      },
+      lidar);
+  return code == G4LIDAR_OK ? lidar->name.c_str() : nullptr;
+}
+
+bool g4lidar_is_scanning(const g4lidar_lidar* lidar) {
+  return lidar != nullptr && lidar->made->is_scanning();
+}
+
+int g4lidar_next_event(g4lidar_lidar* lidar, g4lidar_event* event) {
+  if (lidar == nullptr || event == nullptr) return G4LIDAR_BAD_ARGUMENT;
+  const auto next = lidar->made->next_event();
+  if (!next) return G4LIDAR_NOTHING;
+  const bool is_lost = next->what == lidar_event::kind::lost;
+  *event = {static_cast<std::int32_t>(next->what) + 1, is_lost ? result_of(next->reason) : 0,
+            next->time_ns};
+  return G4LIDAR_OK;
+}
+
+const char* g4lidar_event_name(int kind) {
+  if (kind < G4LIDAR_EVENT_LOST || kind > G4LIDAR_EVENT_OVERFLOW) return "unknown";
+  return literal(name_of(static_cast<lidar_event::kind>(kind - 1)));
+}
+
+const g4lidar_counts* g4lidar_get_counts(g4lidar_lidar* lidar) {
+  if (lidar == nullptr) return nullptr;
+  const lidar_counts all = lidar->made->counts();
+  const auto skipped = [&](skip_reason why) { return all.stream.skipped(why); };
+  lidar->counts = {.bytes = all.bytes,
+                   .held = all.held,
+                   .parsed_bytes = all.stream.parsed_bytes,
+                   .skipped_noise = skipped(skip_reason::noise),
+                   .skipped_bad_header = skipped(skip_reason::bad_header),
+                   .skipped_bad_checksum = skipped(skip_reason::bad_checksum),
+                   .skipped_truncated = skipped(skip_reason::truncated),
+                   .packets = all.stream.packets,
+                   .responses = all.stream.responses,
+                   .points = all.stream.points,
+                   .suspect_packets = all.stream.suspect,
+                   .samples_lost = all.samples_lost,
+                   .scans = all.scans,
+                   .partial_scans = all.partial_scans,
+                   .scans_missed = all.scans_missed,
+                   .points_missed = all.points_missed,
+                   .command_retries = all.command_retries,
+                   .reconnects = all.reconnects,
+                   .largest_gap_ns = all.largest_gap_ns};
+  return &lidar->counts;
+}
+
+int64_t g4lidar_wall_ns(const g4lidar_lidar* lidar, int64_t time_ns) {
+  if (lidar == nullptr) return 0;
+  if (lidar->wall_ahead_ns != 0) return time_ns + lidar->wall_ahead_ns;
+  const recording_hook* const hook = lidar->connector->recording();
+  const auto ahead_ns = hook == nullptr ? std::nullopt : hook->wall_ahead_ns();
+  return time_ns + ahead_ns.value_or(wall_clock().ahead().count());
+}

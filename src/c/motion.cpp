@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Deskewing, and the twist of a lidar from its scans.
+#include <g4lidar/c/motion.h>
+
+#include <cmath>
+
+#include "border.hpp"
+#include "g4lidar/deskew.hpp"
+#include "g4lidar/twist_estimator.hpp"
+#include "motion.hpp"
+
+using namespace g4lidar;
+using namespace g4lidar::c;
+
+struct g4lidar_estimator {
+  twist_estimator made;
+};
+
+namespace {
+
+bool is_usable(double value) noexcept { return std::abs(value) <= max_odometry_value; }
+bool is_usable(const g4lidar_pose& pose) noexcept {
+  return is_usable(pose.x_m) && is_usable(pose.y_m) && is_usable(pose.yaw_rad);
+}
+bool is_usable(const g4lidar_twist& twist) noexcept {
+  return is_usable(twist.x_m_per_s) && is_usable(twist.y_m_per_s) && is_usable(twist.yaw_rad_per_s);
+}
+
+template <class Deskew>
+int deskewed_by(const g4lidar_point* points, std::size_t count, const g4lidar_mounting* mount,
+                g4lidar_point* out, std::size_t* outside, Deskew deskew_points) noexcept {
+  if (count > 0 && (points == nullptr || out == nullptr)) return G4LIDAR_BAD_ARGUMENT;
+  if (mount != nullptr && !is_usable(mount->pose)) return G4LIDAR_BAD_ARGUMENT;
+  const mounting fixed = mount == nullptr ? mounting{} : mounting_of(*mount);
+  const deskewed made = deskew_points(points_of(points, count), points_of(out, count), fixed);
+  if (outside != nullptr) *outside = made.outside;
+  return G4LIDAR_OK;
+}
+
+}  // namespace
+
+bool g4lidar::c::is_usable(const g4lidar_odometry& given) noexcept {
+  return ::is_usable(given.pose) && ::is_usable(given.twist);
+}
+
+int g4lidar_deskew_by_twist(const g4lidar_point* points, size_t count, const g4lidar_twist* twist,
+                            int64_t reference_ns, const g4lidar_mounting* mount, g4lidar_point* out,
+                            size_t* outside) {
+  if (twist == nullptr || !is_usable(*twist)) return G4LIDAR_BAD_ARGUMENT;
+  return deskewed_by(points, count, mount, out, outside,
+                     [&](std::span<const point> in, std::span<point> to, const mounting& fixed) {
+                       return deskew(in, twist_of(*twist), reference_ns, to, fixed);
+                     });
+}
+
+int g4lidar_deskew_by_path(const g4lidar_point* points, size_t count,
+                           const g4lidar_stamped_pose* path, size_t path_count,
+                           int64_t reference_ns, const g4lidar_mounting* mount, g4lidar_point* out,
+                           size_t* outside) {
+  if (path == nullptr && path_count > 0) return G4LIDAR_BAD_ARGUMENT;
+  for (std::size_t i = 0; i < path_count; ++i) {
+    const bool ascends = i == 0 || path[i - 1].time_ns <= path[i].time_ns;
+    if (!ascends || !is_usable(path[i].pose)) return G4LIDAR_BAD_ARGUMENT;
+  }
+  const std::span poses(reinterpret_cast<const stamped_pose*>(path), path_count);
+  return deskewed_by(points, count, mount, out, outside,
+                     [&](std::span<const point> in, std::span<point> to, const mounting& fixed) {
+                       return deskew(in, poses, reference_ns, to, fixed);
+                     });
+}
+
+int g4lidar_estimator_create(g4lidar_estimator** estimator, g4lidar_error* error) {
+  return created(estimator, error, [&] {
+    *estimator = new g4lidar_estimator;
+    return succeed(error);
+  });
+}
+
+int g4lidar_estimator_add(g4lidar_estimator* estimator, const g4lidar_point* points, size_t count,
+                          g4lidar_twist_estimate* estimate) {
+  if (estimator == nullptr || estimate == nullptr || (count > 0 && points == nullptr)) {
+    return G4LIDAR_BAD_ARGUMENT;
+  }
+  const twist_estimate found = estimator->made.add(points_of(points, count));
+  *estimate = {};
+  estimate->twist = {found.twist.x_m_per_s, found.twist.y_m_per_s, found.twist.yaw_rad_per_s};
+  std::copy(found.covariance.begin(), found.covariance.end(), estimate->covariance);
+  std::copy(found.known.begin(), found.known.end(), estimate->known);
+  estimate->status = static_cast<std::int32_t>(found.status);
+  return G4LIDAR_OK;
+}
+
+void g4lidar_estimator_free(g4lidar_estimator* estimator) { delete estimator; }

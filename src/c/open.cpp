@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Lidars: options, opening, and continuing a recording at another place.
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "border.hpp"
+#include "g4lidar/sim/setup.hpp"
+#include "g4lidar/wall_clock.hpp"
+#include "handles.hpp"
+
+namespace g4lidar::c {
+namespace {
+
+constexpr g4lidar_options lidar_defaults{
+    sizeof(g4lidar_options), nullptr, nullptr, 0, 230400, 0,     0,     0, 0, 0, 0,
+    G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}};
+
+/// An option that is 0 for "as it is", and 1 or 2 for the two values of a setting.
+template <class Setting>
+bool take_choice(std::int32_t given, Setting first, Setting second,
+                 std::optional<Setting>& into) noexcept {
+  if (given == 1) into = first;
+  if (given == 2) into = second;
+  return given >= 0 && given <= 2;
+}
+
+void take_time(std::int32_t given_ms, std::chrono::milliseconds& into) noexcept {
+  if (given_ms != 0) into = std::chrono::milliseconds(given_ms);
+}
+
+/// The option without a valid value, or null. Times and the baud rate are checked by the lidar.
+const char* take_settings(const g4lidar_options& given, lidar_options& into) noexcept {
+  if (given.frequency_chz < 0 || given.frequency_chz > 0xFFFF) {
+    return "frequency_chz: 500 to 1200, or 0";
+  }
+  if (given.frequency_chz != 0) {
+    into.frequency = scan_frequency{static_cast<std::uint16_t>(given.frequency_chz)};
+  }
+  if (given.ranging_hz == 4000) into.ranging = ranging_frequency::khz_4;
+  if (given.ranging_hz == 8000) into.ranging = ranging_frequency::khz_8;
+  if (given.ranging_hz == 9000) into.ranging = ranging_frequency::khz_9;
+  if (given.ranging_hz != 0 && !into.ranging) return "ranging_hz: 4000, 8000, 9000 or 0";
+  if (!take_choice(given.direction, motor_direction::clockwise, motor_direction::counter_clockwise,
+                   into.direction)) {
+    return "direction: a g4lidar_direction or 0";
+  }
+  if (!take_choice(given.low_power, low_power::off, low_power::on, into.idle)) {
+    return "low_power: a g4lidar_switch or 0";
+  }
+  if (!take_choice(given.constant_frequency, constant_frequency::off, constant_frequency::on,
+                   into.constant)) {
+    return "constant_frequency: a g4lidar_switch or 0";
+  }
+  if (!take_choice(given.protection, power_down_protection::off, power_down_protection::on,
+                   into.protection)) {
+    return "protection: a g4lidar_switch or 0";
+  }
+  if (given.pace < G4LIDAR_AUTOMATIC || given.pace > G4LIDAR_REVOLUTIONS) {
+    return "pace: a g4lidar_pace";
+  }
+  into.pace = static_cast<read_pace>(given.pace);
+  return nullptr;
+}
+
+/// What is known of a lidar, for the metadata of its recording. Nothing is changed for it.
+void describe(lidar& made, recording_writer& into) {
+  recorded_device known;
+  known.information = made.information();
+  if (const auto got = made.ask(requests::get_ranging())) known.ranging = *got;
+  if (const auto got = made.ask(requests::get_scan_frequency())) known.frequency = *got;
+  into.device(known);
+}
+
+result<std::unique_ptr<connector>> connector_of(const opening& wish) {
+  if (!wish.recording.empty()) return replay::open(wish.recording, wish.played);
+  if (wish.simulated && wish.simulated->is_virtual()) return wish.simulated->connect();
+  return connector_for(wish.how);
+}
+
+/// Opens the lidar of a handle, the first time or again.
+result<void> connect(g4lidar_lidar& handle) {
+  const opening& wish = handle.from;
+  auto from = connector_of(wish);
+  if (!from) return tl::unexpected(from.error());
+  connector* const innermost = from->get();
+  const bool has_own_time = wish.simulated && wish.simulated->is_virtual();
+  if (has_own_time) {
+    handle.wall_ahead_ns = wall_clock().ahead().count() + g4lidar_now_ns() - innermost->now_ns();
+  }
+  if (wish.recorder) {
+    if (has_own_time) wish.recorder->set_wall_clock(handle.wall_ahead_ns);
+    from = recorded(std::move(*from), *wish.recorder);
+    if (!from) return tl::unexpected(from.error());
+  }
+  auto opened = lidar::open(std::move(*from), wish.how);
+  if (!opened) return tl::unexpected(opened.error());
+  handle.made = std::make_unique<lidar>(std::move(*opened));
+  handle.connector = innermost;
+  handle.identity = identity_of(handle.made->information());
+  if (wish.recorder && wish.recording.empty()) describe(*handle.made, *wish.recorder);
+  return {};
+}
+
+}  // namespace
+
+int take_lidar_options(const g4lidar_options* given, opening& into, const char** device,
+                       g4lidar_error* error) {
+  g4lidar_options taken = lidar_defaults;
+  if (!take_options(given, taken)) return refuse(error, bad_options);
+  if (const char* const wrong = take_settings(taken, into.how)) return bad_option(error, wrong);
+  into.how.baud = taken.baud;
+  into.how.reconnect = taken.reconnect;
+  into.how.partial_scans = taken.partial_scans;
+  into.how.transport_delay = std::chrono::nanoseconds(taken.transport_delay_ns);
+  take_time(taken.longest_backoff_ms, into.how.longest_backoff);
+  take_time(taken.answer_time_ms, into.how.answer_time);
+  take_time(taken.stall_time_ms, into.how.stall_time);
+  take_time(taken.batch_ms, into.how.batch);
+  if (taken.recorder != nullptr) into.recorder = taken.recorder->made;
+  *device = taken.device;
+  return G4LIDAR_OK;
+}
+
+int open_lidar(opening wish, g4lidar_lidar** made, g4lidar_error* error) {
+  auto handle = std::make_unique<g4lidar_lidar>();
+  handle->from = std::move(wish);
+  if (const auto opened = connect(*handle); !opened) return fail(error, opened.error());
+  *made = handle.release();
+  return succeed(error);
+}
+
+g4lidar_identity identity_of(const device_information& from) noexcept {
+  g4lidar_identity made{from.model, from.firmware_major, from.firmware_minor, from.hardware, {}};
+  const std::string_view digits = from.serial_number();
+  copy_text(made.serial_number, digits.substr(0, digits.find('\0')));
+  return made;
+}
+
+}  // namespace g4lidar::c
+
+using namespace g4lidar;
+using namespace g4lidar::c;
+
+void g4lidar_options_init(g4lidar_options* options, size_t size) {
+  set_defaults(options, size, lidar_defaults);
+}
+
+int g4lidar_open(const char* device, g4lidar_lidar** lidar, g4lidar_error* error) {
+  g4lidar_options options = lidar_defaults;
+  options.device = device;
+  return g4lidar_open_with(&options, lidar, error);
+}
+
+int g4lidar_open_with(const g4lidar_options* options, g4lidar_lidar** lidar, g4lidar_error* error) {
+  return created(lidar, error, [&] {
+    opening wish;
+    const char* device = nullptr;
+    int code = take_lidar_options(options, wish, &device, error);
+    if (code != G4LIDAR_OK) return code;
+    wish.how.device = text_of(device);
+    if (sim::is_simulated(wish.how.device)) {
+      g4lidar_simulator_options simulated;
+      g4lidar_simulator_options_init(&simulated, sizeof simulated);
+      simulated.setup = device;
+      code = simulate(simulated, wish.simulated, error);
+      if (code != G4LIDAR_OK) return code;
+      wish.how.device = wish.simulated->path();
+    }
+    return open_lidar(std::move(wish), lidar, error);
+  });
+}
+
+int g4lidar_open_simulated(g4lidar_simulator* simulator, const g4lidar_options* options,
+                           g4lidar_lidar** lidar, g4lidar_error* error) {
+  return created(
+      lidar, error,
+      [&] {
+        opening wish;
+        const char* device = nullptr;
+        const int code = take_lidar_options(options, wish, &device, error);
+        if (code != G4LIDAR_OK) return code;
+        wish.simulated = simulator->made;
+        wish.how.device = simulator->path;
+        return open_lidar(std::move(wish), lidar, error);
+      },
+      simulator);
+}
+
+void g4lidar_free(g4lidar_lidar* lidar) { delete lidar; }
+
+namespace {
+
+constexpr g4lidar_playback_options playback_defaults{
+    sizeof(g4lidar_playback_options), 0.0, 0, 0, false, {}};
+
+}  // namespace
+
+void g4lidar_playback_options_init(g4lidar_playback_options* options, size_t size) {
+  set_defaults(options, size, playback_defaults);
+}
+
+int g4lidar_open_recording(const char* path, const g4lidar_playback_options* playback,
+                           const g4lidar_options* options, g4lidar_lidar** lidar,
+                           g4lidar_error* error) {
+  return created(
+      lidar, error,
+      [&] {
+        opening wish;
+        const char* device = nullptr;
+        const int code = take_lidar_options(options, wish, &device, error);
+        if (code != G4LIDAR_OK) return code;
+        g4lidar_playback_options taken = playback_defaults;
+        if (!take_options(playback, taken)) return refuse(error, bad_options);
+        wish.recording = path;
+        wish.played.rate = taken.speed;
+        wish.played.loop = taken.loop;
+        wish.played.range.from_ns = taken.from_ns;
+        if (taken.to_ns != 0) wish.played.range.to_ns = taken.to_ns;
+        return open_lidar(std::move(wish), lidar, error);
+      },
+      path);
+}
+
+int g4lidar_seek(g4lidar_lidar* lidar, int64_t from_ns, g4lidar_error* error) {
+  return guarded(
+      error,
+      [&]() -> int {
+        if (lidar->from.recording.empty()) return refuse(error, "this lidar plays no recording");
+        lidar->from.played.range.from_ns = from_ns;
+        if (const auto opened = connect(*lidar); !opened) return fail(error, opened.error());
+        if (!lidar->is_started) return succeed(error);
+        const auto started = lidar->made->start();
+        return started ? succeed(error) : fail(error, started.error());
+      },
+      lidar);
+}

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+// Coordinates, grids, filters, outliers, masks and deskewing in C, with points made by hand.
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "c_handles.hpp"
+
+namespace {
+
+using namespace g4lidar_c_test;
+
+g4lidar_point at(float angle_deg, float range_mm, std::int64_t time_ns = 1) {
+  g4lidar_point made{};
+  made.angle_deg = angle_deg;
+  made.range_mm = range_mm;
+  made.time_ns = time_ns;
+  if (range_mm == 0.0F) made.flags = G4LIDAR_NO_RETURN;
+  if (range_mm > 0.0F && range_mm < 100.0F) made.flags = G4LIDAR_TOO_NEAR;
+  return made;
+}
+
+TEST(CPoints, ToCoordinates) {
+  const std::vector<g4lidar_point> points{at(90.0F, 2000.0F), at(180.0F, 1000.0F), at(0.0F, 0.0F)};
+  std::vector<g4lidar_xy> xy(3);
+  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_VENDOR, xy.data()), G4LIDAR_OK);
+  EXPECT_NEAR(xy[0].x_m, 0.0F, 1e-6F);
+  EXPECT_NEAR(xy[0].y_m, 2.0F, 1e-6F);
+  EXPECT_NEAR(xy[1].x_m, -1.0F, 1e-6F);
+  EXPECT_TRUE(std::isnan(xy[2].x_m) && std::isnan(xy[2].y_m));
+  // The robot looks away from the cable: 180 degrees is ahead.
+  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_ROBOT, xy.data()), G4LIDAR_OK);
+  EXPECT_NEAR(xy[1].x_m, 1.0F, 1e-6F);
+  EXPECT_NEAR(xy[0].y_m, 2.0F, 1e-6F);
+  EXPECT_EQ(xy[0].time_ns, 1);
+  std::vector<g4lidar_polar> polar(3);
+  ASSERT_EQ(g4lidar_to_polar(points.data(), 3, G4LIDAR_ROBOT, polar.data()), G4LIDAR_OK);
+  EXPECT_NEAR(polar[0].bearing_rad, std::numbers::pi_v<float> / 2.0F, 1e-6F);
+  EXPECT_NEAR(polar[0].range_m, 2.0F, 1e-6F);
+  EXPECT_EQ(g4lidar_to_xy(points.data(), 3, 2, xy.data()), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_to_xy(nullptr, 0, G4LIDAR_ROBOT, nullptr), G4LIDAR_OK);
+}
+
+TEST(CPoints, FillAGrid) {
+  const std::vector<g4lidar_point> points{at(0.0F, 1000.0F), at(1.0F, 900.0F), at(90.0F, 0.0F),
+                                          at(180.0F, 50.0F)};
+  std::vector<float> ranges(4);
+  g4lidar_grid_options options;
+  g4lidar_grid_options_init(&options, sizeof options);
+  EXPECT_EQ(options.frame, G4LIDAR_ROBOT);
+  options.frame = G4LIDAR_VENDOR;
+  ASSERT_EQ(g4lidar_fill_grid(points.data(), 4, &options, ranges.data(), 4), G4LIDAR_OK);
+  EXPECT_EQ(ranges[0], 1.0F);  // the nearest to the middle
+  EXPECT_EQ(ranges[1], std::numeric_limits<float>::infinity());
+  EXPECT_TRUE(std::isnan(ranges[2]));
+  EXPECT_TRUE(std::isnan(ranges[3]));
+  options.pick = G4LIDAR_MINIMUM;
+  options.keep_too_near = true;
+  ASSERT_EQ(g4lidar_fill_grid(points.data(), 4, &options, ranges.data(), 4), G4LIDAR_OK);
+  EXPECT_NEAR(ranges[0], 0.9F, 1e-6F);
+  EXPECT_NEAR(ranges[2], 0.05F, 1e-6F);
+  // By default bin 0 is behind the robot, where the cable is.
+  ASSERT_EQ(g4lidar_fill_grid(points.data(), 4, nullptr, ranges.data(), 4), G4LIDAR_OK);
+  EXPECT_EQ(ranges[0], 1.0F);
+  options.pick = 7;
+  EXPECT_EQ(g4lidar_fill_grid(points.data(), 4, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_fill_grid(points.data(), 4, nullptr, ranges.data(), 0), G4LIDAR_BAD_ARGUMENT);
+}
+
+class CFilter : public testing::Test {
+ protected:
+  CFilter() { g4lidar_filter_options_init(&options_, sizeof options_); }
+  /// The indices of the points that are kept.
+  std::vector<std::size_t> kept() {
+    std::vector<g4lidar_point> out(points_.size());
+    std::size_t count = 99;
+    EXPECT_EQ(g4lidar_filter_points(points_.data(), points_.size(), &options_, out.data(), &count),
+              G4LIDAR_OK);
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < count; ++i) {
+      indices.push_back(static_cast<std::size_t>(out[i].time_ns));
+    }
+    return indices;
+  }
+
+  std::vector<g4lidar_point> points_{at(0.0F, 1000.0F, 0), at(90.0F, 2000.0F, 1),
+                                     at(180.0F, 0.0F, 2), at(270.0F, 50.0F, 3)};
+  g4lidar_filter_options options_;
+};
+using indices = std::vector<std::size_t>;
+
+TEST_F(CFilter, KeepsEverythingByDefault) { EXPECT_EQ(kept(), (indices{0, 1, 2, 3})); }
+
+TEST_F(CFilter, ByEachCondition) {
+  options_.least_range_mm = 100.0F;
+  EXPECT_EQ(kept(), (indices{0, 1}));
+  options_.greatest_range_mm = 1500.0F;
+  EXPECT_EQ(kept(), indices{0});
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.returns_only = true;
+  EXPECT_EQ(kept(), (indices{0, 1, 3}));
+  options_.trusted_only = true;
+  EXPECT_EQ(kept(), (indices{0, 1}));
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.excluded_flags = G4LIDAR_TOO_NEAR;
+  EXPECT_EQ(kept(), (indices{0, 1, 2}));
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.field_of_view = {80.0, 190.0};
+  EXPECT_EQ(kept(), (indices{1, 2}));
+  const g4lidar_sector ignored[2] = {{350.0, 10.0}, {260.0, 280.0}};
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.ignored_sectors = ignored;
+  options_.ignored_sector_count = 2;
+  EXPECT_EQ(kept(), (indices{1, 2}));
+  options_.frame = G4LIDAR_ROBOT;  // 0 is ahead, at 180 degrees of the device
+  EXPECT_EQ(kept(), (indices{0, 1}));
+}
+
+TEST_F(CFilter, ByMasks) {
+  g4lidar_mask* mask = nullptr;
+  g4lidar_error why;
+  // Behind the robot, around the point at 0 degrees of the device.
+  ASSERT_EQ(
+      g4lidar_mask_parse("# a mast\npolygon -1.1 -0.1 -0.9 -0.1 -0.9 0.1 -1.1 0.1\n", &mask, &why),
+      G4LIDAR_OK)
+      << why.message;
+  options_.masks = g4lidar_mask_polygons(mask, &options_.mask_count);
+  ASSERT_EQ(options_.mask_count, 1U);
+  EXPECT_EQ(options_.masks[0].count, 4U);
+  EXPECT_EQ(options_.masks[0].corners[2].y_m, 0.1F);
+  EXPECT_EQ(kept(), (indices{1, 2, 3}));
+  g4lidar_mask_free(mask);
+  EXPECT_EQ(g4lidar_mask_parse("\npolygon 1 2\n", &mask, &why), G4LIDAR_BAD_FILE);
+  EXPECT_EQ(mask, nullptr);
+  EXPECT_EQ(std::strncmp(why.message, "line 2: ", 8), 0) << why.message;
+}
+
+TEST_F(CFilter, ForAGridMarksWhatItLeavesOut) {
+  options_.least_range_mm = 1500.0F;
+  std::vector<g4lidar_point> out(points_.size());
+  std::size_t count = 0;
+  ASSERT_EQ(g4lidar_filter_for_grid(points_.data(), 4, &options_, out.data(), &count), G4LIDAR_OK);
+  ASSERT_EQ(count, 4U);
+  EXPECT_EQ(out[0].flags, G4LIDAR_TOO_NEAR);
+  EXPECT_EQ(out[1].flags, 0);
+  EXPECT_EQ(out[2].flags, G4LIDAR_NO_RETURN);
+}
+
+TEST_F(CFilter, RefusesImpossibleOptions) {
+  std::vector<g4lidar_point> out(4);
+  std::size_t count = 7;
+  const auto run = [&] {
+    return g4lidar_filter_points(points_.data(), 4, &options_, out.data(), &count);
+  };
+  options_.mask_count = 1;
+  EXPECT_EQ(run(), G4LIDAR_BAD_ARGUMENT);
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.ignored_sector_count = 1;
+  EXPECT_EQ(run(), G4LIDAR_BAD_ARGUMENT);
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.frame = 5;
+  EXPECT_EQ(run(), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(count, 7U);
+}
+
+TEST(COutliers, MarkSingleReturnsAndThoseBetweenSurfaces) {
+  // A wall 4 m away; one return in the air; later a return between 2 m and 4 m.
+  std::vector<g4lidar_point> points;
+  for (int i = 0; i < 100; ++i) {
+    points.push_back(at(static_cast<float>(i) * 0.28F, i < 60 ? 4000.0F : 2000.0F));
+  }
+  points[20].range_mm = 1000.0F;
+  points[60].range_mm = 3000.0F;
+  g4lidar_outlier_options options;
+  g4lidar_outlier_options_init(&options, sizeof options);
+  options.is_piece = true;
+  std::size_t marked = 0;
+  ASSERT_EQ(g4lidar_mark_isolated(points.data(), 100, &options, &marked), G4LIDAR_OK);
+  EXPECT_EQ(marked, 2U);
+  EXPECT_EQ(points[20].flags, G4LIDAR_ISOLATED);
+  ASSERT_EQ(g4lidar_mark_veiling(points.data(), 100, &options, &marked), G4LIDAR_OK);
+  EXPECT_EQ(marked, 1U);
+  EXPECT_EQ(points[60].flags, G4LIDAR_ISOLATED | G4LIDAR_VEILING);
+  options.window = 17;
+  EXPECT_EQ(g4lidar_mark_isolated(points.data(), 100, &options, &marked), G4LIDAR_BAD_ARGUMENT);
+  options.window = 1;
+  options.least_angle_deg = 50.0F;
+  EXPECT_EQ(g4lidar_mark_veiling(points.data(), 100, &options, nullptr), G4LIDAR_BAD_ARGUMENT);
+}
+
+constexpr std::int64_t second = 1'000'000'000;
+
+TEST(CDeskew, MovesAPointByTheWayOfTheRobot) {
+  // 1 m/s ahead. At 1 s something is 3 m ahead of the lidar; at 2 s it is 2 m ahead.
+  const g4lidar_point ahead = at(180.0F, 3000.0F, second);
+  const g4lidar_twist twist{1.0, 0.0, 0.0};
+  g4lidar_point moved{};
+  std::size_t outside = 7;
+  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, nullptr, &moved, &outside),
+            G4LIDAR_OK);
+  EXPECT_EQ(outside, 0U);
+  EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
+  EXPECT_NEAR(moved.angle_deg, 180.0F, 1e-3F);
+  // The same by a path, and with a lidar that looks back.
+  const g4lidar_stamped_pose path[2] = {{0, {0.0, 0.0, 0.0}}, {3 * second, {3.0, 0.0, 0.0}}};
+  ASSERT_EQ(g4lidar_deskew_by_path(&ahead, 1, path, 2, 2 * second, nullptr, &moved, &outside),
+            G4LIDAR_OK);
+  EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
+  g4lidar_mounting back{};
+  back.pose.yaw_rad = std::numbers::pi;
+  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, &back, &moved, &outside),
+            G4LIDAR_OK);
+  EXPECT_NEAR(moved.range_mm, 4000.0F, 0.02F);
+}
+
+TEST(CDeskew, CountsWhatIsOutsideAndRefusesImpossiblePaths) {
+  g4lidar_point points[2] = {at(180.0F, 3000.0F, 0), at(180.0F, 3000.0F, 9 * second)};
+  const g4lidar_stamped_pose path[2] = {{1, {0.0, 0.0, 0.0}}, {3 * second, {3.0, 0.0, 0.0}}};
+  std::size_t outside = 0;
+  ASSERT_EQ(g4lidar_deskew_by_path(points, 2, path, 2, second, nullptr, points, &outside),
+            G4LIDAR_OK);
+  EXPECT_EQ(outside, 2U);
+  EXPECT_EQ(points[0].flags, G4LIDAR_NOT_DESKEWED);
+  EXPECT_EQ(points[1].range_mm, 3000.0F);
+  const g4lidar_stamped_pose descending[2] = {path[1], path[0]};
+  EXPECT_EQ(g4lidar_deskew_by_path(points, 2, descending, 2, 1, nullptr, points, nullptr),
+            G4LIDAR_BAD_ARGUMENT);
+  const g4lidar_twist impossible{std::nan(""), 0.0, 0.0};
+  EXPECT_EQ(g4lidar_deskew_by_twist(points, 2, &impossible, 1, nullptr, points, nullptr),
+            G4LIDAR_BAD_ARGUMENT);
+}
+
+TEST(CDeskew, EstimatesTheTwistOfADrivingRobot) {
+  // The lidar looks ahead: its cable is behind.
+  const simulator device = simulate("sim:?seed=3", nullptr, "drive forward 1.5 0.3\n");
+  const lidar it = start_on(device);
+  g4lidar_estimator* estimator = nullptr;
+  ASSERT_EQ(g4lidar_estimator_create(&estimator, nullptr), G4LIDAR_OK);
+  g4lidar_twist_estimate estimate{};
+  double fastest = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    const g4lidar_scan* scan = next_whole(it);
+    ASSERT_NE(scan, nullptr);
+    ASSERT_EQ(g4lidar_estimator_add(estimator, scan->points, scan->point_count, &estimate),
+              G4LIDAR_OK);
+    if (i == 0) {
+      EXPECT_EQ(estimate.status, G4LIDAR_TWIST_FIRST_SCAN);
+    }
+    if (estimate.status != G4LIDAR_TWIST_KNOWN) continue;
+    EXPECT_TRUE(estimate.known[0] && estimate.known[1] && estimate.known[2]);
+    EXPECT_GT(estimate.covariance[0], 0.0);
+    fastest = std::max(fastest, std::hypot(estimate.twist.x_m_per_s, estimate.twist.y_m_per_s));
+  }
+  g4lidar_estimator_free(estimator);
+  // The speed of a smooth path is up to half above its mean.
+  EXPECT_GT(fastest, 0.2);
+  EXPECT_LT(fastest, 0.6);
+}
+
+}  // namespace
