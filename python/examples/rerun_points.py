@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: MIT
+"""Scans in Rerun (pip install rerun-sdk): python rerun_points.py [DEVICE [FILE]]
+
+Opens the viewer, or writes FILE, which `rerun FILE` opens.
+"""
+import sys
+
+import rerun as rr
+
+import g4lidar
+
+
+def main(device: str = "", file: str = "", *, scans: int | None = None) -> None:
+    rr.init("g4lidar", spawn=not file)
+    if file:
+        rr.save(file)
+    with g4lidar.open(device) as lidar:
+        lidar.start()
+        for number, scan in enumerate(lidar.scans(), 1):
+            rr.set_time("measured", timestamp=scan.stamp)
+            returns = g4lidar.filter_points(scan.points, returns_only=True)
+            rr.log("lidar/points", rr.Points2D(g4lidar.to_xy(returns), radii=0.01))
+            rr.log("lidar/frequency_hz", rr.Scalars(scan.measured_frequency_hz))
+            if number == scans:
+                return
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:3])

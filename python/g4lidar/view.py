@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+"""A live polar plot: python -m g4lidar.view [DEVICE]. Needs matplotlib: pip install g4lidar[view]"""
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import g4lidar
+
+
+def main(device: str = "", *, frames: int | None = None) -> None:
+    """Draws until the window is closed, or so many scans. Angle 0 is up, as seen from above."""
+    axes = plt.figure("g4lidar").add_subplot(projection="polar", theta_offset=np.pi / 2, theta_direction=-1)
+    (dots,) = axes.plot([], [], ".", markersize=2)
+    with g4lidar.open(device) as lidar:
+        lidar.start()
+        for number, scan in enumerate(lidar.scans(newest=True), 1):
+            points = g4lidar.filter_points(scan.points, returns_only=True)
+            dots.set_data(np.radians(points["angle_deg"]), points["range_mm"] / 1000)
+            axes.set_ylim(0, max(1.0, points["range_mm"].max(initial=0) / 1000))
+            plt.pause(0.01)
+            if not plt.fignum_exists("g4lidar") or number == frames:
+                return
+
+
+if __name__ == "__main__":
+    main("".join(sys.argv[1:2]))

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Raw bytes to arrays of points, in bulk.
+#include <nanobind/stl/optional.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "g4lidar/bulk_decoder.hpp"
+#include "scan.hpp"
+
+namespace g4lidar::python {
+
+void bind_decode(nb::module_& module);
+
+namespace {
+
+using namespace nb::literals;
+
+/// Room for the points of so many bytes, of which `held` are in the decoder: a sample has two bytes.
+std::size_t room_for(std::size_t bytes_given, const bulk_decoder& decoder) {
+  return (bytes_given + decoder.held()) / 2 + max_samples;
+}
+
+/// The room for no bytes, with the longest beginning of a packet in the decoder.
+constexpr std::size_t spare_points = max_samples + max_packet_size / 2;
+
+/// Without the GIL for long data: the memory of both arrays is held by their buffers.
+array<point> decode(bulk_decoder& decoder, nb::handle data,
+                    const std::optional<array<point>>& out) {
+  const buffer from(data);
+  bytes input = from.read();
+  const auto run = [&](std::span<point> to) {
+    const nb::gil_scoped_release free;
+    return decoder.decode(input, to).size();
+  };
+  if (!out) return make_array<point>(room_for(input.size(), decoder), run);
+  const nb::object target = contiguous(out->object, element::point);
+  if (!target.is(out->object)) {
+    throw nb::value_error("out is not contiguous, or its address is no multiple of 8");
+  }
+  std::size_t count = 0;
+  {
+    const buffer memory(target, true);
+    if (memory.as<point>().size() < input.size() / 2 + spare_points) {
+      throw nb::value_error(
+          "out is too short: it needs half as many points as there are bytes, and 165 more");
+    }
+    count = run(memory.as<point>());
+  }
+  return {target[nb::slice(nb::int_(0), nb::int_(count), nb::int_(1))]};
+}
+
+array<point> finish(bulk_decoder& decoder) {
+  return make_array<point>(room_for(0, decoder),
+                           [&](std::span<point> out) { return decoder.finish(out).size(); });
+}
+
+nb::dict counts(const bulk_decoder& decoder) {
+  nb::dict all;
+  const stream_counts& now = decoder.counts();
+  all["parsed_bytes"] = now.parsed_bytes;
+  all["held"] = decoder.held();
+  all["packets"] = now.packets;
+  all["responses"] = now.responses;
+  all["points"] = now.points;
+  all["suspect_packets"] = now.suspect;
+  for (std::size_t i = 0; i < skip_reasons; ++i) {
+    const std::string name = std::string("skipped_") + name_of(static_cast<skip_reason>(i));
+    all[nb::str(name.c_str())] = now.skipped_by_reason[i];
+  }
+  return all;
+}
+
+}  // namespace
+
+void bind_decode(nb::module_& module) {
+  nb::class_<bulk_decoder>(
+      module, "Decoder",
+      "Bytes of a lidar to points, at the full speed of the processor. Keeps the beginning of an "
+      "unfinished packet for "
+      "the next call. One thread at a time. Times are 0: a recording has them, see open().")
+      .def(nb::init<>())
+      .def("decode", &decode, "data"_a, "out"_a = nb::none(),
+           nb::sig("def decode(self, data: bytes | bytearray | memoryview | "
+                   "numpy.typing.NDArray[numpy.uint8], out: numpy.typing.NDArray[numpy.void] | "
+                   "None = None) "
+                   "-> numpy.typing.NDArray[numpy.void]"),
+           "The points of these bytes, as Scan.points; without the GIL. With `out`, an array of at "
+           "least len(data) / 2 + "
+           "165 points, they are written to its front, and the result is a view of it: this saves "
+           "new memory for each "
+           "call.")
+      .def("finish", &finish,
+           "The points of the valid packets among the held bytes: call it when no more bytes "
+           "follow.")
+      .def("counts", &counts, nb::sig("def counts(self) -> dict[str, int]"),
+           "Counts of everything found so far: 'packets', 'points', 'skipped_bad_checksum', ... "
+           "Bytes given = "
+           "'parsed_bytes' + all 'skipped_...' + 'held'.");
+  module.def(
+      "decode",
+      [](nb::handle data) {
+        const buffer from(data);
+        bulk_decoder decoder;
+        return make_array<point>(room_for(from.read().size(), decoder), [&](std::span<point> out) {
+          const nb::gil_scoped_release free;
+          bytes input = from.read();
+          const std::size_t count = decoder.decode(input, out).size();
+          return count + decoder.finish(out.subspan(count)).size();
+        });
+      },
+      "data"_a,
+      nb::sig("def decode(data: bytes | bytearray | memoryview | "
+              "numpy.typing.NDArray[numpy.uint8]) -> numpy.typing.NDArray[numpy.void]"),
+      "The points of all packets in these bytes, as Scan.points, with times 0. The memory of the "
+      "result is reserved for as "
+      "many points as the bytes can contain; copy() gives it back.");
+}
+
+}  // namespace g4lidar::python

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// The diagnostic run as data.
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "errors.hpp"
+#include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "simulator.hpp"
+#include "words.hpp"
+
+namespace g4lidar::python {
+
+void bind_doctor(nb::module_& module);
+
+namespace {
+
+using namespace nb::literals;
+using report_function = std::function<void(const stage_report&)>;
+
+/// A diagnosis with its description.
+struct explained {
+  diagnosis_info info;
+};
+
+std::vector<stage_report> examine(const std::variant<path_text, simulator*>& device,
+                                  double measuring_time, std::uint32_t baud,
+                                  const std::optional<report_function>& on_stage) {
+  if (!(measuring_time >= 0.0 && measuring_time <= 3600.0))
+    throw nb::value_error("measuring_time: 0 to 3600 s");
+  diagnostic_options how;
+  how.baud = baud;
+  how.measuring_time = std::chrono::nanoseconds(static_cast<std::int64_t>(measuring_time * 1e9));
+  // An exception of a signal handler or of on_stage ends the run.
+  std::optional<nb::python_error> raised;
+  // Held during the run in virtual time, but not by code in Python, which may use the Simulator.
+  std::unique_lock<std::timed_mutex> lock;
+  const auto call = [&](const auto& python) {
+    const bool is_held = lock.owns_lock();
+    if (is_held) lock.unlock();
+    {
+      const nb::gil_scoped_acquire held;
+      python();
+    }
+    if (is_held) lock.lock();
+  };
+  how.is_cancelled = [&] {
+    if (raised) return true;
+    call([&] {
+      if (PyErr_CheckSignals() != 0) raised.emplace();
+    });
+    return raised.has_value();
+  };
+  if (on_stage) {
+    how.on_stage = [&](const stage_report& report) {
+      if (raised) return;
+      call([&] {
+        try {
+          (*on_stage)(report);
+        } catch (nb::python_error& error) {
+          raised.emplace(std::move(error));
+        }
+      });
+    };
+  }
+  std::vector<stage_report> found;
+  const auto* given = std::get_if<simulator*>(&device);
+  if (given != nullptr && (*given)->is_virtual()) {
+    const auto alive = (*given)->in_virtual_time();
+    const auto mutex = (*given)->mutex();
+    const nb::gil_scoped_release free;
+    lock = std::unique_lock(*mutex);
+    sim::virtual_connector from(alive->device, alive->clock);
+    found = diagnose(from, how);
+    lock.unlock();
+  } else {
+    const std::string name = given != nullptr ? (*given)->path() : std::get<path_text>(device).text;
+    std::shared_ptr<sim::background_pty> served;
+    if (sim::is_simulated(name)) served = value_of(sim::serve_alone(make_device(read_setup(name))));
+    const nb::gil_scoped_release free;
+    found = diagnose(served ? served->path() : name, how);
+    served.reset();
+  }
+  if (raised) throw std::move(*raised);
+  return found;
+}
+
+nb::dict evidence_of(const stage_report& report) {
+  nb::dict all;
+  for (const evidence& each : report.measurements) {
+    all[nb::str(each.name.c_str())] =
+        std::visit([](const auto& value) { return nb::cast(value); }, each.value);
+  }
+  return all;
+}
+
+}  // namespace
+
+void bind_doctor(nb::module_& module) {
+  nb::class_<explained>(module, "Diagnosis", "What may be wrong, and what to try.")
+      .def_prop_ro(
+          "name", [](const explained& d) { return d.info.name; },
+          "'brown_out', ...; does not change.")
+      .def_prop_ro(
+          "severity", [](const explained& d) { return name_of(d.info.severity); },
+          "'warn' or 'fail'.")
+      .def_prop_ro(
+          "cause", [](const explained& d) { return d.info.cause; },
+          "The most likely cause: sentences.")
+      .def_prop_ro(
+          "advice", [](const explained& d) { return d.info.advice; }, "What to try: sentences.")
+      .def_prop_ro(
+          "alternatives",
+          [](const explained& d) {
+            std::vector<std::string_view> names;
+            for (const diagnosis each : d.info.alternatives) names.push_back(describe(each).name);
+            return names;
+          },
+          "Names of diagnoses that look the same to a host, the most likely first.")
+      .def("__repr__", [](const explained& d) {
+        return "<g4lidar.Diagnosis " + std::string(d.info.name) + ">";
+      });
+  nb::class_<stage_report>(module, "StageReport", "How one stage of doctor() ended.")
+      .def_prop_ro(
+          "stage", [](const stage_report& r) { return name_of(r.stage); },
+          "'port', 'answers', 'motor', ...")
+      .def_prop_ro(
+          "verdict", [](const stage_report& r) { return name_of(r.outcome); },
+          "'ok', 'skipped', 'warn' or 'fail'.")
+      .def_prop_ro(
+          "diagnoses",
+          [](const stage_report& r) {
+            std::vector<explained> all;
+            for (const diagnosis each : r.diagnoses) all.push_back({describe(each)});
+            return all;
+          },
+          "What may be wrong, the most likely first.")
+      .def_prop_ro("evidence", &evidence_of,
+                   nb::sig("def evidence(self) -> dict[str, int | float | str]"),
+                   "Measurements by their name, which ends in the unit: 'slowest_ms'.")
+      .def_ro("remark", &stage_report::remark, "One more sentence, or an empty text.")
+      .def("__repr__", [](const stage_report& r) {
+        return "<g4lidar.StageReport " + std::string(name_of(r.stage)) + ": " +
+               std::string(name_of(r.outcome)) + ">";
+      });
+  module.def("doctor", &examine, "device"_a = path_text{}, nb::kw_only(), "measuring_time"_a = 5.0,
+             "baud"_a = 230400, "on_stage"_a = nb::none(),
+             "Examines a lidar, its connection and its port; or a file. `device` as in open(). "
+             "Measures the running scan for "
+             "`measuring_time` seconds; takes about 3 s more with a healthy lidar. Sends queries, "
+             "one start, and stops; changes no "
+             "setting. `on_stage` is called with each stage when it ends.");
+}
+
+}  // namespace g4lidar::python

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#include "errors.hpp"
+
+namespace g4lidar::python {
+namespace {
+
+/// "no_port": the class NoPort.
+std::string class_name(std::string_view problem) {
+  std::string name;
+  bool begins = true;
+  for (const char letter : problem) {
+    if (letter != '_') {
+      name.push_back(begins && letter >= 'a' && letter <= 'z'
+                         ? static_cast<char>(letter - 'a' + 'A')
+                         : letter);
+    }
+    begins = letter == '_';
+  }
+  return name;
+}
+
+nb::str text(std::string_view from) { return nb::str(from.data(), from.size()); }
+
+}  // namespace
+
+void raise(const error& why) {
+  const std::string name = class_name(name_of(why.code()));
+  const nb::object kind = nb::module_::import_("g4lidar.errors").attr(name.c_str());
+  const std::string message = why.message();
+  using namespace nb::literals;
+  const nb::object made =
+      kind(text(message), "doing"_a = text(name_of(why.doing())), "subject"_a = text(why.subject()),
+           "system_errno"_a = why.system_errno(), "advice"_a = text(why.advice()),
+           "is_fatal"_a = why.is_fatal());
+  PyErr_SetObject(kind.ptr(), made.ptr());
+  throw nb::python_error();
+}
+
+void raise_bad_option(const std::string& sentence) {
+  const nb::object kind = nb::module_::import_("g4lidar.errors").attr("BadOption");
+  const error like(task::opening, problem::bad_option, sentence);
+  using namespace nb::literals;
+  const nb::object made = kind(text(sentence), "doing"_a = text(name_of(like.doing())),
+                               "advice"_a = text(like.advice()));
+  PyErr_SetObject(kind.ptr(), made.ptr());
+  throw nb::python_error();
+}
+
+void bind_errors(nb::module_& module) {
+  nb::dict all;
+  for (std::size_t i = 0; i < problem_count; ++i) {
+    const auto code = static_cast<problem>(i);
+    const std::string name = class_name(name_of(code));
+    all[text(name)] = text(description_of(code));
+  }
+  module.attr("_problems") = all;
+}
+
+}  // namespace g4lidar::python

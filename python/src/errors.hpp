@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Errors of the library as exceptions: one class per problem, in g4lidar/errors.py.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <string>
+#include <utility>
+
+#include "g4lidar/error.hpp"
+
+namespace g4lidar::python {
+
+namespace nb = nanobind;
+
+/// Raises the class of the problem. Needs the GIL.
+[[noreturn]] void raise(const error& why);
+/// Raises BadOption with this text, for what the library refuses by a sentence.
+[[noreturn]] void raise_bad_option(const std::string& text);
+
+/// The value, or raise().
+template <class Value>
+[[nodiscard]] Value value_of(result<Value>&& given) {
+  if (!given) raise(given.error());
+  if constexpr (!std::is_void_v<Value>) return *std::move(given);
+}
+/// Raises the error, if there is one.
+inline void check(const result<void>& given) {
+  if (!given) raise(given.error());
+}
+
+/// Defines what g4lidar/errors.py needs.
+void bind_errors(nb::module_& module);
+
+}  // namespace g4lidar::python

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+// The classes Lidar, Scans and Event.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <string>
+#include <tuple>
+
+#include "live_lidar.hpp"
+#include "settings.hpp"
+
+namespace g4lidar::python {
+namespace {
+
+using namespace nb::literals;
+
+/// The iterator of Lidar.scans().
+struct scans {
+  nb::object lidar;
+  std::optional<live_lidar::milliseconds> timeout;
+  bool newest;
+};
+
+std::optional<live_lidar::milliseconds> optional_timeout(std::optional<double> seconds) {
+  if (!seconds) return std::nullopt;
+  return in_milliseconds(*seconds);
+}
+
+/// Sends each setting that is given.
+void set(live_lidar& on, const wanted_settings& wanted, bool interrupt) {
+  const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
+  const auto send = [&](const auto& value) {
+    if (value) on.run([&](lidar& device) { return device.set(*value, how); });
+  };
+  send(wanted.ranging());
+  send(wanted.frequency());
+  send(wanted.direction);
+  send(wanted.constancy());
+  send(wanted.idle());
+  send(wanted.protecting());
+}
+
+nb::dict settings(live_lidar& on, bool interrupt) {
+  const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
+  const auto ask = [&](const auto& request) {
+    return on.run([&](lidar& device) { return device.ask(request, how); });
+  };
+  nb::dict all;
+  all["frequency_hz"] = ask(requests::get_scan_frequency()).hz();
+  all["sample_rate_hz"] = samples_per_second(ask(requests::get_ranging()));
+  all["direction"] = ask(requests::get_direction());
+  all["low_power"] = ask(requests::get_low_power()) == low_power::on;
+  return all;
+}
+
+nb::dict counts(live_lidar& on) {
+  const lidar_counts now = on.look([](lidar& device) { return device.counts(); });
+  nb::dict all;
+  all["bytes"] = now.bytes;
+  all["held"] = now.held;
+  all["parsed_bytes"] = now.stream.parsed_bytes;
+  all["packets"] = now.stream.packets;
+  all["responses"] = now.stream.responses;
+  all["points"] = now.stream.points;
+  all["suspect_packets"] = now.stream.suspect;
+  for (std::size_t i = 0; i < skip_reasons; ++i) {
+    const std::string name = std::string("skipped_") + name_of(static_cast<skip_reason>(i));
+    all[nb::str(name.c_str())] = now.stream.skipped_by_reason[i];
+  }
+  all["samples_lost"] = now.samples_lost;
+  all["scans"] = now.scans;
+  all["partial_scans"] = now.partial_scans;
+  all["scans_missed"] = now.scans_missed;
+  all["scans_dropped"] = on.dropped();
+  all["points_missed"] = now.points_missed;
+  all["command_retries"] = now.command_retries;
+  all["reconnects"] = now.reconnects;
+  all["largest_gap_ns"] = now.largest_gap_ns;
+  return all;
+}
+
+array<point> next_points(live_lidar& on, double timeout) {
+  const auto wait = in_milliseconds(timeout);
+  const auto copy = [&](lidar& device) -> result<std::vector<point>> {
+    const auto found = device.next_points(wait);
+    if (!found) return tl::unexpected(found.error());
+    return std::vector(found->begin(), found->end());
+  };
+  return on.run(copy, [](const std::vector<point>& found) {
+    return array_of(std::span<const point>(found));
+  });
+}
+
+std::vector<lidar_event> events(live_lidar& on) {
+  return on.look([](lidar& device) {
+    std::vector<lidar_event> all;
+    while (const auto event = device.next_event()) all.push_back(*event);
+    return all;
+  });
+}
+
+void bind_parts(nb::module_& module) {
+  nb::class_<lidar_event>(module, "Event", "Something that happened without a request.")
+      .def_prop_ro(
+          "kind", [](const lidar_event& e) { return name_of(e.what); },
+          "'lost', 'reconnected', 'spinning_up', 'restarted', ...: docs/errors.md describes each.")
+      .def_prop_ro(
+          "reason", [](const lidar_event& e) { return name_of(e.reason); },
+          "Of 'lost': the problem.")
+      .def_ro("time_ns", &lidar_event::time_ns, "When, in nanoseconds of the monotonic clock.")
+      .def("__repr__", [](const lidar_event& e) {
+        return "<g4lidar.Event " + std::string(name_of(e.what)) + ">";
+      });
+  nb::class_<device_information>(module, "DeviceInformation", "What a lidar reports about itself.")
+      .def_ro("model", &device_information::model, "5 is a G4.")
+      .def_prop_ro(
+          "firmware",
+          [](const device_information& i) {
+            return std::to_string(i.firmware_major) + "." + std::to_string(i.firmware_minor);
+          },
+          "The version of its firmware, 'MAJOR.MINOR'.")
+      .def_ro("hardware", &device_information::hardware, "The version of its hardware.")
+      .def_prop_ro(
+          "serial_number",
+          [](const device_information& i) { return std::string(i.serial_number()); }, "16 digits.");
+  nb::class_<scans>(module, "Scans",
+                    "The scans of a lidar, one after the other: see Lidar.scans().")
+      .def(
+          "__iter__", [](nb::handle self) { return nb::borrow(self); },
+          nb::sig("def __iter__(self) -> Scans"))
+      .def(
+          "__next__",
+          [](scans& self) {
+            nb::object found =
+                nb::cast<live_lidar&>(self.lidar).next_in_loop(self.timeout, self.newest);
+            if (found.is_none()) throw nb::stop_iteration();
+            return found;
+          },
+          nb::sig("def __next__(self) -> Scan"),
+          "The next scan. Raises Timeout, and the errors of Lidar.next_scan().");
+}
+
+template <class Class>
+void bind_control(Class& made) {
+  made.def(
+          "start",
+          [](live_lidar& on, std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
+             std::optional<motor_direction> direction, std::optional<bool> constant_frequency,
+             std::optional<bool> low_power, std::optional<bool> protection) {
+            set(on,
+                {frequency_hz, sample_rate_hz, direction, constant_frequency, low_power,
+                 protection},
+                true);
+            on.start();
+          },
+          nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
+          "direction"_a = nb::none(), "constant_frequency"_a = nb::none(),
+          "low_power"_a = nb::none(), "protection"_a = nb::none(),
+          "Sets what is given, as set() does, and starts the scan. Returns when the device has "
+          "confirmed. Blocks at most "
+          "10 s with one fault of the device, 15 s for each request if many bytes are damaged.")
+      .def(
+          "set",
+          [](live_lidar& on, std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
+             std::optional<motor_direction> direction, std::optional<bool> constant_frequency,
+             std::optional<bool> low_power, std::optional<bool> protection, bool interrupt) {
+            set(on,
+                {frequency_hz, sample_rate_hz, direction, constant_frequency, low_power,
+                 protection},
+                interrupt);
+          },
+          nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
+          "direction"_a = nb::none(), "constant_frequency"_a = nb::none(),
+          "low_power"_a = nb::none(), "protection"_a = nb::none(), "interrupt"_a = false,
+          "Sets the scan frequency (5 to 12 Hz), the measurements per second (4000, 8000 or 9000), "
+          "the direction of the "
+          "head, whether the lidar regulates its frequency, whether the motor stops when idle, "
+          "whether the lidar stops "
+          "when the host sends nothing for 3 s. They are set again at each start and after a "
+          "reconnect. During a scan "
+          "Scanning is raised, unless `interrupt` allows to stop and start again.")
+      .def("settings", &settings, nb::kw_only(), "interrupt"_a = false,
+           nb::sig("def settings(self, *, interrupt: bool = False) -> dict[str, typing.Any]"),
+           "The settings that can be queried: 'frequency_hz', 'sample_rate_hz', 'direction', "
+           "'low_power'.")
+      .def(
+          "health",
+          [](live_lidar& on, bool interrupt) {
+            const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
+            const health found =
+                on.run([&](lidar& device) { return device.ask(requests::health(), how); });
+            return std::tuple(name_of(found.status), found.error_code);
+          },
+          nb::kw_only(), "interrupt"_a = false,
+          "The health that it reports: 'ok', 'warning' or 'error', and a code.")
+      .def("stop", &live_lidar::stop,
+           "Stops the scan and the motor. Blocks at most 1.5 s if the device does not react.")
+      .def("close", &live_lidar::close,
+           "Stops the scan and closes the connection, and the recording. Any thread: a waiting "
+           "call of another thread "
+           "ends. A second call does nothing. If the handler of a signal raises, the lidar stays "
+           "open.")
+      .def("release", &live_lidar::release,
+           "Closes the connection, and leaves the device as it is. Never waits.")
+      .def("wake", &live_lidar::wake,
+           "Makes a waiting call of another thread, or the next call, raise Cancelled, once. Any "
+           "thread.")
+      .def(
+          "__enter__", [](nb::handle self) { return nb::borrow(self); },
+          nb::sig("def __enter__(self) -> Lidar"))
+      .def(
+          "__exit__", [](live_lidar& on, const nb::args&) { on.close(); },
+          nb::sig("def __exit__(self, *args: object) -> None"));
+}
+
+template <class Class>
+void bind_reading(Class& made) {
+  made.def(
+          "next_scan",
+          [](live_lidar& on, double timeout) { return on.next_scan(in_milliseconds(timeout)); },
+          "timeout"_a = 2.0, nb::sig("def next_scan(self, timeout: float = 2.0) -> Scan"),
+          "The next revolution. Waits at most `timeout` seconds, without the GIL. Raises Timeout "
+          "(try again), NotScanning, "
+          "Reconnecting, EndOfInput at the end of a recording, and the fatal errors of "
+          "docs/errors.md.")
+      .def(
+          "scans",
+          [](nb::object self, std::optional<double> timeout, bool newest) {
+            return scans{std::move(self), optional_timeout(timeout), newest};
+          },
+          "timeout"_a = 2.0, nb::kw_only(), "newest"_a = false,
+          "The scans, for a loop. It ends at the end of a recording, and when the lidar is closed. "
+          "It raises Timeout if "
+          "`timeout` seconds (None: never) pass without a scan; while the motor spins up, 10 s "
+          "more. A lidar that is "
+          "opened with `reconnect` is waited for. With `newest` only the newest complete scan is "
+          "returned; older ones are "
+          "dropped and counted in counts()['scans_dropped'].")
+      .def(
+          "scans_async",
+          [](nb::handle self, std::optional<double> timeout, bool newest) {
+            return nb::module_::import_("g4lidar._asyncio").attr("scans")(self, timeout, newest);
+          },
+          "timeout"_a = 2.0, nb::kw_only(), "newest"_a = false,
+          nb::sig("def scans_async(self, timeout: float | None = 2.0, *, newest: bool = False) -> "
+                  "collections.abc.AsyncIterator[Scan]"),
+          "The same for `async for`: it waits in the running loop of asyncio on the descriptor and "
+          "the deadline of the "
+          "lidar, without a thread. start() and close() block.")
+      .def("poll_scan", &live_lidar::poll_scan, nb::kw_only(), "newest"_a = false,
+           nb::sig("def poll_scan(self, *, newest: bool = False) -> Scan | None"),
+           "For an event loop: processes what has arrived. Never waits; None if no scan is "
+           "complete.")
+      .def(
+          "fileno",
+          [](live_lidar& on) {
+            return on.look([](lidar& device) { return device.native_handle(); });
+          },
+          "For an event loop: readable when poll_scan() has something to do; -1 if there is no "
+          "descriptor.")
+      .def("next_deadline", &live_lidar::next_deadline,
+           nb::sig("def next_deadline(self) -> float | None"),
+           "For an event loop: the latest time for the next poll_scan(), in seconds of "
+           "time.monotonic(). Ask it before "
+           "each wait. None: only the descriptor.")
+      .def("next_points", &next_points, "timeout"_a = 2.0,
+           "All points since the last call, at least one, as Scan.points. Waits and raises like "
+           "next_scan().")
+      .def("events", &events, "What happened since the last call without a request.")
+      .def("counts", &counts, nb::sig("def counts(self) -> dict[str, int]"),
+           "All counts since open(): 'bytes', 'points', 'scans', 'samples_lost', ... Docs: "
+           "lidar_counts of the library.")
+      .def_prop_ro(
+          "information",
+          [](live_lidar& on) {
+            return on.look([](lidar& device) { return device.information(); });
+          },
+          "What the device reported about itself when it was opened.")
+      .def_prop_ro(
+          "name",
+          [](live_lidar& on) {
+            return on.look([](lidar& device) { return std::string(device.name()); });
+          },
+          "The name of the connection: a path, 'tcp:host:port'.")
+      .def_prop_ro(
+          "is_scanning",
+          [](live_lidar& on) {
+            return on.look([](lidar& device) { return device.is_scanning(); });
+          },
+          "Whether a scan was started and not stopped.")
+      .def_prop_ro(
+          "is_spinning_up", &live_lidar::is_spinning_up,
+          "Whether it was started, and no scan has come yet: the motor may be spinning up.");
+}
+
+}  // namespace
+
+void bind_lidar(nb::module_& module) {
+  bind_parts(module);
+  nb::class_<live_lidar> made(
+      module, "Lidar",
+      "A lidar, a recording, or a simulated lidar: made by open(). Use it in a `with` statement, "
+      "whose end stops the "
+      "motor; at the end of the program it is stopped, too. Threads may use different lidars; "
+      "calls of several threads "
+      "for one lidar wait for each other. After os.fork() the child cannot use it.");
+  bind_control(made);
+  bind_reading(made);
+  module.def("_close_all", &live_lidar::close_all);
+}
+
+}  // namespace g4lidar::python

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// A lidar as Python uses it: from several threads, with signals, and after fork().
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "errors.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/point.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "interruption.hpp"
+#include "process.hpp"
+#include "scan.hpp"
+
+namespace g4lidar::python {
+
+/// What a lidar stands on; everything may be absent.
+struct foundation {
+  std::shared_ptr<void> simulation;             ///< Outlives the lidar.
+  std::unique_ptr<recording_writer> recording;  ///< To which the lidar is recorded; outlives it.
+  std::shared_ptr<std::timed_mutex> mutex;      ///< Shared by all users of a virtual clock.
+  std::int64_t wall_ahead_ns = 0;  ///< Wall clock minus the clock of the lidar, if `has_own_clock`.
+  bool has_own_clock = false;      ///< A recording, or virtual time.
+  bool plays_at_once = false;      ///< A recording that is read as fast as possible.
+};
+
+/// The lidar of Python's class Lidar. Calls of several threads wait for each other, without the GIL. No code in Python
+/// runs while the mutex is held: handlers of signals and finalizers may use the same lidar. In a process made by fork()
+/// every call fails with RuntimeError, and the destructor leaves the lidar as it is: it belongs to the parent.
+class live_lidar {
+ public:
+  using milliseconds = lidar::milliseconds;
+
+  live_lidar(lidar&& opened, foundation on);
+  live_lidar(const live_lidar&) = delete;
+  live_lidar& operator=(const live_lidar&) = delete;
+  ~live_lidar();
+
+  /// `then(value)` with the value of `call(lidar)`, which may wait: without the GIL, and ended by a signal whose handler
+  /// raises. Raises the error of the call. What the value refers to must be a copy: other threads may use the lidar.
+  template <class Call, class Then>
+  auto run(const Call& call, const Then& then);
+  /// The same, if there is nothing to convert.
+  template <class Call>
+  auto run(const Call& call) {
+    return run(call, [](auto&&... value) { return (value, ...); });
+  }
+  /// `call(lidar)`, which never waits.
+  template <class Call>
+  auto look(const Call& call) {
+    const auto lock = locked();
+    return call(lidar_);
+  }
+
+  void start();
+  void stop();
+  /// Ended by a signal whose handler raises; then the lidar is still open.
+  void close();
+  void release();
+  /// Wakes a waiting call of another thread.
+  void wake();
+  /// The next scan; empty at the timeout, if `may_time_out`.
+  [[nodiscard]] nb::object next_scan(milliseconds timeout, bool may_time_out = false);
+  /// For a loop: waits longer while the motor spins up; nothing at the end of a recording, and after close(). With
+  /// `newest` only the newest complete scan.
+  [[nodiscard]] nb::object next_in_loop(std::optional<milliseconds> timeout, bool newest);
+
+  /// What has arrived, without waiting: a scan, or None.
+  [[nodiscard]] nb::object poll_scan(bool newest);
+  /// The latest time for the next call, in seconds of time.monotonic(); None if only bytes are awaited.
+  [[nodiscard]] nb::object next_deadline();
+  /// Whether no scan has come since the last start, and the motor may still be spinning up.
+  [[nodiscard]] bool is_spinning_up() const noexcept { return spin_up_left_.count() > 0; }
+
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
+  [[nodiscard]] bool is_closed() const noexcept { return closed_; }
+  /// Closes every lidar of this process: at the end of the program.
+  static void close_all();
+
+ private:
+  /// A scan, whose points are not those of the lidar.
+  struct copied_scan {
+    scan about;
+    std::vector<point> points;
+  };
+
+  /// Waits without the GIL. `closes`: calls that wait are woken.
+  [[nodiscard]] std::unique_lock<std::timed_mutex> locked(bool closes = false);
+  /// `call(lidar)` with the mutex and without the GIL.
+  template <class Call>
+  auto alone(const Call& call, bool closes = false);
+  [[nodiscard]] nb::object keep(copied_scan& found);
+  [[nodiscard]] nb::object newer(nb::object found);
+
+  foundation on_;
+  lidar lidar_;
+  process process_;
+  std::atomic<bool> woken_{false};  // by wake(), not by a signal
+  std::atomic<bool> closed_{false};
+  bool may_stop_ = false;  // started, and neither stopped nor lost, in real time
+  milliseconds spin_up_left_{0};
+  std::uint64_t dropped_ = 0;
+};
+
+template <class Call>
+auto live_lidar::alone(const Call& call, bool closes) {
+  auto lock = locked(closes);
+  const nb::gil_scoped_release free;
+  auto given = call(lidar_);
+  lock.unlock();  // nobody waits for the GIL with the mutex
+  return given;
+}
+
+template <class Call, class Then>
+auto live_lidar::run(const Call& call, const Then& then) {
+  while (true) {
+    const interruption signals(lidar_);
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    auto given = alone(call);
+    if (given) {
+      if constexpr (std::is_void_v<typename decltype(given)::value_type>) {
+        return;
+      } else {
+        return then(*given);
+      }
+    }
+    // After the handler of a signal that does not raise, the call goes on.
+    const bool by_signal =
+        given.error() == problem::cancelled && !woken_.exchange(false) && !closed_;
+    if (by_signal) continue;
+    if (given.error().is_fatal()) may_stop_ = false;
+    raise(given.error());
+  }
+}
+
+/// A timeout in seconds.
+[[nodiscard]] live_lidar::milliseconds in_milliseconds(double seconds);
+
+void bind_lidar(nb::module_& module);
+void bind_opening(nb::module_& module);
+
+}  // namespace g4lidar::python

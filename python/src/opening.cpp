@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+// open(), and what is connected.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <variant>
+
+#include "g4lidar/discovery.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/transport/connector.hpp"
+#include "g4lidar/transport/serial_port.hpp"
+#include "interruptible.hpp"
+#include "live_lidar.hpp"
+#include "settings.hpp"
+#include "simulator.hpp"
+
+namespace g4lidar::python {
+namespace {
+
+using namespace nb::literals;
+using device_name = std::variant<path_text, simulator*>;
+
+/// How recordings and raw bytes are played, and whether the lidar is recorded.
+struct playing {
+  double speed;
+  bool loop;
+  double begin;
+  std::optional<double> end;
+  std::uint32_t raw_sample_rate_hz;
+};
+
+std::int64_t in_ns(double seconds) {
+  if (!(seconds >= 0.0 && seconds <= 1e9)) throw nb::value_error("a number of seconds is 0 to 1e9");
+  return static_cast<std::int64_t>(seconds * 1e9);
+}
+
+/// Wall clock minus the clock of the recording.
+std::int64_t wall_ahead_of(const std::string& path) {
+  auto reader = value_of(recording_reader::open(path));
+  const auto first = value_of(reader.next());
+  return first ? first->wall_ns - first->time_ns : 0;
+}
+
+/// The connector for a file, or null if `name` is none.
+std::unique_ptr<connector> open_file(std::string_view name, const playing& how, foundation& on) {
+  constexpr std::string_view prefix = "file:";
+  const bool is_named = name.starts_with(prefix);
+  const std::string path(is_named ? name.substr(prefix.size()) : name);
+  struct stat found{};
+  if (::stat(path.c_str(), &found) != 0 ? !is_named : !S_ISREG(found.st_mode)) return nullptr;
+  on.has_own_clock = true;
+  if (is_recording(path)) {
+    replay_options options;
+    options.rate = how.speed;
+    options.loop = how.loop;
+    options.range.from_ns = in_ns(how.begin);
+    if (how.end) options.range.to_ns = in_ns(*how.end);
+    on.plays_at_once = how.speed == 0.0;
+    auto made = value_of(replay::open(path, options));
+    on.wall_ahead_ns = wall_ahead_of(path);
+    return made;
+  }
+  on.plays_at_once = true;
+  // The clock of raw bytes begins at 1 s, and their wall clock at the time of the file.
+  on.wall_ahead_ns =
+      (std::int64_t{found.st_mtim.tv_sec} - 1) * 1'000'000'000 + found.st_mtim.tv_nsec;
+  return value_of(open_raw_bytes(path, how.raw_sample_rate_hz));
+}
+
+std::unique_ptr<connector> connect(const device_name& device, lidar_options& options,
+                                   const playing& how, foundation& on) {
+  if (const auto* given = std::get_if<simulator*>(&device)) {
+    simulator& simulated = **given;
+    if (simulated.is_virtual()) {
+      const auto& alive = simulated.in_virtual_time();
+      on.simulation = alive;
+      on.mutex = simulated.mutex();
+      on.has_own_clock = true;
+      return std::make_unique<sim::virtual_connector>(alive->device, alive->clock);
+    }
+    options.device = simulated.path();
+    on.simulation = simulated.in_real_time();
+  } else {
+    options.device = std::get<path_text>(device).text;
+    if (sim::is_simulated(options.device)) {
+      auto served = value_of(sim::serve_alone(make_device(read_setup(options.device))));
+      options.device = served->path();
+      on.simulation = std::move(served);
+    } else if (auto file = open_file(options.device, how, on)) {
+      return file;
+    }
+  }
+  return value_of(connector_for(options));
+}
+
+live_lidar* open_lidar(const device_name& device, lidar_options options, const playing& how,
+                       const std::optional<path_text>& record, bool overwrite) {
+  foundation on;
+  auto from = connect(device, options, how, on);
+  const auto signals = std::make_shared<handled_signals>();
+  // A clock of its own needs no time.
+  if (!on.has_own_clock) from = std::make_unique<interruptible_connector>(std::move(from), signals);
+  if (record) {
+    recording_options as;
+    as.overwrite = overwrite;
+    on.recording =
+        std::make_unique<recording_writer>(value_of(recording_writer::create(record->text, as)));
+    if (on.simulation && on.has_own_clock) {  // virtual time goes on from now
+      const auto now = std::chrono::system_clock::now().time_since_epoch();
+      on.recording->set_wall_clock(std::chrono::nanoseconds(now).count() - from->now_ns());
+    }
+    from = value_of(recorded(std::move(from), *on.recording));
+  }
+  auto opened = [&] {
+    const nb::gil_scoped_release free;
+    // Of a simulation in virtual time, which other lidars may use.
+    const auto lock = on.mutex ? std::unique_lock(*on.mutex) : std::unique_lock<std::timed_mutex>();
+    return lidar::open(std::move(from), options);
+  }();
+  signals->end();
+  if (!opened) raise(opened.error());
+  if (on.recording) {
+    recorded_device known;
+    known.information = opened->information();
+    on.recording->device(known);
+  }
+  return new live_lidar(*std::move(opened), std::move(on));
+}
+
+live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
+                             std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
+                             std::optional<motor_direction> direction,
+                             std::optional<bool> constant_frequency, std::optional<bool> low_power,
+                             std::optional<bool> protection, bool reconnect, bool partial_scans,
+                             double answer_time, double stall_time, double longest_backoff,
+                             double batch, double transport_delay, double speed, bool loop,
+                             double begin, std::optional<double> end,
+                             std::uint32_t raw_sample_rate_hz,
+                             const std::optional<path_text>& record, bool overwrite) {
+  const wanted_settings wanted{frequency_hz,       sample_rate_hz, direction,
+                               constant_frequency, low_power,      protection};
+  lidar_options options;
+  options.baud = baud;
+  options.ranging = wanted.ranging();
+  options.frequency = wanted.frequency();
+  options.direction = direction;
+  options.constant = wanted.constancy();
+  options.idle = wanted.idle();
+  options.protection = wanted.protecting();
+  options.reconnect = reconnect;
+  options.partial_scans = partial_scans;
+  options.answer_time = in_milliseconds(answer_time);
+  options.stall_time = in_milliseconds(stall_time);
+  options.longest_backoff = in_milliseconds(longest_backoff);
+  options.batch = in_milliseconds(batch);
+  options.transport_delay = std::chrono::nanoseconds(in_ns(transport_delay));
+  return open_lidar(device, options, {speed, loop, begin, end, raw_sample_rate_hz}, record,
+                    overwrite);
+}
+
+/// What the lidar at this port answers, if there is one.
+std::optional<device_information> ask(const port_info& port) {
+  const auto signals = std::make_shared<handled_signals>();
+  std::optional<device_information> found;
+  {
+    const nb::gil_scoped_release free;
+    if (auto opened = serial_port::open(port.path)) {
+      interruptible_transport to(std::move(*opened), signals);
+      const auto longest = std::chrono::nanoseconds(find_options().probe_timeout);
+      if (const auto device = probe(to, to.now_ns() + longest.count())) found = *device;
+    }
+  }
+  signals->end();
+  return found;
+}
+
+void bind_discovery(nb::module_& module) {
+  nb::class_<port_info>(module, "Port",
+                        "A serial port, as the system knows it. Texts are empty where not known.")
+      .def_ro("path", &port_info::path, "'/dev/ttyUSB0'.")
+      .def_ro("by_id", &port_info::by_id, "'/dev/serial/by-id/...'.")
+      .def_ro("bus_path", &port_info::bus_path, "The USB port, '1-1.4': open('usb:1-1.4').")
+      .def_ro("usb_serial", &port_info::usb_serial, "Of the USB bridge, not of the lidar.")
+      .def_ro("manufacturer", &port_info::manufacturer, "As the USB bridge reports it.")
+      .def_ro("product", &port_info::product, "As the USB bridge reports it.")
+      .def_ro("driver", &port_info::driver, "The kernel driver, 'cp210x'.")
+      .def_ro("vendor_id", &port_info::vendor_id, "USB, 0x10c4 for Silicon Labs.")
+      .def_ro("product_id", &port_info::product_id, "USB.")
+      .def_ro("may_open", &port_info::may_open, "Whether this user may read and write it.")
+      .def("__repr__", [](const port_info& p) { return "<g4lidar.Port " + p.path + ">"; });
+  module.def(
+      "list_ports",
+      [] {
+        return value_of([] {
+          const nb::gil_scoped_release free;
+          return list_ports();
+        }());
+      },
+      "Every serial port, ordered by path. Opens none.");
+  module.def(
+      "find_lidars",
+      [](bool probe_all_ports) {
+        auto ports = value_of([] {
+          const nb::gil_scoped_release free;
+          return list_ports();
+        }());
+        std::vector<std::tuple<port_info, device_information>> all;
+        for (port_info& port : ports) {
+          if (!probe_all_ports && !is_g4_bridge(port)) continue;
+          if (const auto device = ask(port)) all.emplace_back(std::move(port), *device);
+        }
+        return all;
+      },
+      nb::kw_only(), "probe_all_ports"_a = false,
+      "Every G4 that answers, with its port, ordered by path. Takes at most 2.5 s a port. Writes "
+      "only to ports with the "
+      "USB bridge of a G4, unless `probe_all_ports` is set.");
+}
+
+}  // namespace
+
+void bind_opening(nb::module_& module) {
+  bind_discovery(module);
+  const lidar_options usual;
+  const auto seconds = [](auto time) { return std::chrono::duration<double>(time).count(); };
+  module.def(
+      "open", &open_by_keywords, "device"_a = path_text{}, nb::kw_only(), "baud"_a = usual.baud,
+      "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(), "direction"_a = nb::none(),
+      "constant_frequency"_a = nb::none(), "low_power"_a = nb::none(), "protection"_a = nb::none(),
+      "reconnect"_a = usual.reconnect, "partial_scans"_a = usual.partial_scans,
+      "answer_time"_a = seconds(usual.answer_time), "stall_time"_a = seconds(usual.stall_time),
+      "longest_backoff"_a = seconds(usual.longest_backoff), "batch"_a = seconds(usual.batch),
+      "transport_delay"_a = seconds(usual.transport_delay), "speed"_a = 0.0, "loop"_a = false,
+      "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = default_sample_rate_hz,
+      "record"_a = nb::none(), "overwrite"_a = false,
+      "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
+      "`device`: '' for the only G4; "
+      "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
+      "a recording; "
+      "'file:PATH' (a recording, or raw bytes of a port); 'sim:?seed=7' (a simulated lidar in real "
+      "time); a Simulator.\n\n"
+      "Settings that are given are set at each start; None leaves them as the device has them: see "
+      "Lidar.set(). With "
+      "`reconnect` the driver reconnects after a loss. `partial_scans`: also pieces of "
+      "revolutions. All times in seconds: "
+      "`answer_time` (0.01 to 10) for an answer, `stall_time` (0.1 to 60) for a scan without data, "
+      "`longest_backoff` "
+      "(0.001 to 1) between two attempts to reconnect, `batch` (0 to 0.1) between two readings, "
+      "`transport_delay` the "
+      "least delay between measurement and arrival.\n\n"
+      "Of a recording: `speed` 1 plays it as fast as it was recorded, 0 as fast as it is read; "
+      "`loop` again and again; "
+      "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
+      "second. `record`: the "
+      "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
+      "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
+}
+
+}  // namespace g4lidar::python

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "scan.hpp"
+
+#include <nanobind/stl/string.h>
+
+#include <string>
+#include <vector>
+
+#include "g4lidar/export/ros_messages.hpp"
+#include "words.hpp"
+
+namespace g4lidar::python {
+
+kept_scan::kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns)
+    : about(from),
+      points(array_of(from.points)),
+      time_ns(from.time_ns()),
+      end_ns(from.end_ns()),
+      wall_ahead_ns(wall_minus_monotonic_ns),
+      sample_rate_hz(from.sample_rate_hz()),
+      measured_frequency_hz(from.measured_frequency_hz()) {
+  about.points = {};
+}
+
+array<float> to_xy_array(const array<point>& points, frame to) {
+  const elements<point> from(points);
+  const std::span<const point> all = from.span();
+  array<float> made{new_array(element::single, all.size(), 2)};
+  const buffer memory(made.object, true);
+  const std::span<float> out = memory.as<float>();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const xy_point place = to_xy(all[i], to);
+    out[2 * i] = place.x_m;
+    out[2 * i + 1] = place.y_m;
+  }
+  return made;
+}
+
+array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how) {
+  if (bins < 1 || bins > 65536) throw nb::value_error("a grid has 1 to 65536 ranges");
+  const elements<point> from(points);
+  if (from.span().size() > (std::size_t{1} << 24))
+    throw nb::value_error("more than 16777216 points");
+  return make_array<float>(bins, [&](std::span<float> out) { fill_grid(from.span(), out, how); });
+}
+
+namespace {
+
+nb::bytes laser_scan(const kept_scan& scan, std::size_t bins, const std::string& frame_id) {
+  const array<float> ranges = to_ranges(scan.points, bins, {});
+  std::vector<std::uint8_t> out;
+  put_laser_scan(elements<float>(ranges).span(),
+                 {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
+  return nb::bytes(out.data(), out.size());
+}
+
+nb::bytes point_cloud2(const kept_scan& scan, const std::string& frame_id) {
+  std::vector<std::uint8_t> out;
+  put_point_cloud2(elements<point>(scan.points).span(),
+                   {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
+  return nb::bytes(out.data(), out.size());
+}
+
+}  // namespace
+
+void bind_scan(nb::module_& module) {
+  using namespace nb::literals;
+  nb::class_<kept_scan>(module, "Scan",
+                        "One revolution, or a piece of one, with its points. It owns its points: "
+                        "it is valid as long as it is kept.")
+      .def_ro("points", &kept_scan::points,
+              "The points in the order of measurement: a structured array with the dtype "
+              "POINT_DTYPE. `angle_deg`: "
+              "clockwise degrees in [0, 360) from the cable exit; `range_mm`: millimetres, 0 for "
+              "no return; `time_ns`: "
+              "nanoseconds of the monotonic clock, 0 if unknown; `revolution`; `flags`: bits of "
+              "PointFlag.")
+      .def_prop_ro(
+          "revolution", [](const kept_scan& s) { return s.about.revolution; },
+          "The number of zero packets before it.")
+      .def_prop_ro(
+          "flags", [](const kept_scan& s) { return static_cast<int>(s.about.flags); },
+          "Why it is not one whole revolution: bits of ScanFlag.")
+      .def_prop_ro(
+          "is_whole", [](const kept_scan& s) { return s.about.is_whole(); },
+          "Whether it is one revolution from zero packet to zero packet without known loss.")
+      .def_prop_ro(
+          "is_piece", [](const kept_scan& s) { return s.about.is_piece(); },
+          "Whether it is only a part of a turn. All other scans are revolutions, although data may "
+          "be lost.")
+      .def_ro("time_ns", &kept_scan::time_ns,
+              "When its first point was measured, in nanoseconds of the monotonic clock "
+              "(time.monotonic_ns); 0 if "
+              "not known.")
+      .def_ro("end_ns", &kept_scan::end_ns,
+              "When the next scan began; if there is none, when the last point was measured. As "
+              "time_ns.")
+      .def_prop_ro(
+          "stamp",
+          [](const kept_scan& s) {
+            return static_cast<double>(s.time_ns + s.wall_ahead_ns) * 1e-9;
+          },
+          "When its first point was measured, in seconds since 1970 (time.time); of a recording, "
+          "the time at which "
+          "it was recorded; of a simulation in virtual time, seconds since its start.")
+      .def_prop_ro(
+          "duration",
+          [](const kept_scan& s) { return static_cast<double>(s.about.duration_ns) * 1e-9; },
+          "The time for its turn, in seconds; 0 if not known.")
+      .def_prop_ro(
+          "turned_deg", [](const kept_scan& s) { return s.about.turned_deg; },
+          "The turn from the first point to the first one of the next scan, in degrees: about 360.")
+      .def_prop_ro(
+          "reported_frequency_hz",
+          [](const kept_scan& s) { return s.about.reported_frequency_dhz * 0.1; },
+          "The rotation frequency that the device reported with this revolution, in Hz; 0 if it "
+          "did not.")
+      .def_ro("measured_frequency_hz", &kept_scan::measured_frequency_hz,
+              "The measured rotation frequency, in Hz; 0 if it cannot be determined.")
+      .def_ro("sample_rate_hz", &kept_scan::sample_rate_hz, "Samples per second.")
+      .def(
+          "xy", [](const kept_scan& s, frame to) { return to_xy_array(s.points, to); },
+          "frame"_a = frame::robot,
+          "x and y of each point in metres, an array of two columns. 'robot': x ahead (opposite "
+          "the cable exit), y to "
+          "the left. 'vendor': x at 0 degrees, y at 90 degrees clockwise. Both are NaN for a point "
+          "without return.")
+      .def(
+          "ranges",
+          [](const kept_scan& s, std::size_t n, frame to, grid_pick pick, bool keep_too_near) {
+            return to_ranges(s.points, n, {to, pick, keep_too_near});
+          },
+          "n"_a = 720, "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
+          "keep_too_near"_a = false,
+          "The scan on a grid of `n` directions (1 to 65536), in metres: inf where nothing came "
+          "back, NaN where nothing "
+          "is known. In the frame 'robot' range 0 is at -180 degrees, and the next ones follow "
+          "counter-clockwise; in "
+          "'vendor' range 0 is at 0 degrees, and the next ones follow clockwise. Of several points "
+          "in a bin it takes "
+          "the 'nearest' to the middle of the bin, or the one with the 'minimum' range.")
+      .def("laser_scan", &laser_scan, "bins"_a = 720, "frame_id"_a = "laser",
+           "The scan as a sensor_msgs/msg/LaserScan in CDR, with the ranges of ranges(bins): for "
+           "ROS 2, zenoh and MCAP.")
+      .def("point_cloud2", &point_cloud2, "frame_id"_a = "laser",
+           "The returns as a sensor_msgs/msg/PointCloud2 in CDR: x, y, z in metres, t in "
+           "nanoseconds since the stamp.")
+      .def("__len__", [](const kept_scan& s) { return nb::len(s.points.object); })
+      .def("__repr__", [](const kept_scan& s) {
+        return "<g4lidar.Scan of revolution " + std::to_string(s.about.revolution) + ": " +
+               std::to_string(nb::len(s.points.object)) + " points" +
+               (s.about.is_whole() ? ">" : ", not whole>");
+      });
+}
+
+}  // namespace g4lidar::python

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// A scan that Python keeps: its points are a NumPy array.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <cstdint>
+
+#include "arrays.hpp"
+#include "g4lidar/grid.hpp"
+#include "g4lidar/scan.hpp"
+
+namespace g4lidar::python {
+
+/// The only copy of the points is the array.
+struct kept_scan {
+  explicit kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns);
+
+  scan about;            ///< Without points.
+  array<point> points;   ///< The points.
+  std::int64_t time_ns;  ///< Of the first point.
+  std::int64_t end_ns;   ///< When the next scan began.
+  std::int64_t wall_ahead_ns;
+  float sample_rate_hz;
+  float measured_frequency_hz;
+};
+
+/// Points in frame `to`, two columns.
+[[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to);
+/// One range for each bin, in metres.
+[[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
+                                     const grid_options& how);
+
+void bind_scan(nb::module_& module);
+void bind_shaping(nb::module_& module);
+void bind_filters(nb::module_& module);
+
+}  // namespace g4lidar::python

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""Errors as exceptions."""
+import errno
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import g4lidar
+from g4lidar import _g4lidar, errors
+
+Make = Callable[..., g4lidar.Simulator]
+
+
+def test_every_problem_has_a_class() -> None:
+    classes = {
+        name: kind
+        for name, kind in vars(errors).items()
+        if isinstance(kind, type) and issubclass(kind, g4lidar.Error) and kind is not g4lidar.Error
+    }
+    assert set(classes) == set(_g4lidar._problems)
+    for name, description in _g4lidar._problems.items():
+        documented = classes[name].__doc__ or ""
+        assert documented.rstrip(".").lower() == description.lower()
+
+
+def test_an_error_states_what_was_done_and_what_to_try(tmp_path: Path) -> None:
+    missing = tmp_path / "ttyUSB7"
+    with pytest.raises(errors.NoPort) as caught:
+        g4lidar.open(missing)
+    error = caught.value
+    assert isinstance(error, g4lidar.Error)
+    assert error.doing == "opening"
+    assert error.subject == str(missing)
+    assert error.system_errno == errno.ENOENT
+    assert "data cable" in error.advice
+    assert error.is_fatal
+    assert str(error).startswith(f"opening {missing}: ") and error.advice in str(error)
+
+
+def test_each_class_is_also_that_of_python() -> None:
+    assert issubclass(errors.Timeout, TimeoutError)
+    assert issubclass(errors.Permission, PermissionError)
+    assert issubclass(errors.BadOption, ValueError)
+    made = errors.Timeout("words", doing="reading", subject="/dev/x", system_errno=5, advice="wait", is_fatal=False)
+    assert str(made) == "words" and made.system_errno == 5 and not made.is_fatal
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [({"frequency_hz": 13}, "5 to 12"), ({"sample_rate_hz": 5000}, "4000"), ({"stall_time": 0.0}, "stall_time")],
+)
+def test_bad_options(g4_simulator: Make, options: dict[str, float], words: str) -> None:
+    with pytest.raises(errors.BadOption, match=words):
+        g4lidar.open(g4_simulator(), **options)  # type: ignore[arg-type]
+
+
+def test_a_mistake_in_a_simulation() -> None:
+    with pytest.raises(errors.BadOption, match="frobnicate"):
+        g4lidar.Simulator(faults=["frobnicate@3s"])
+    with pytest.raises(errors.BadOption, match="no_such_file"):
+        g4lidar.Simulator(world="no_such_file")
+
+
+def test_setting_during_a_scan(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start()
+    g4_lidar.next_scan()
+    with pytest.raises(errors.Scanning):
+        g4_lidar.set(frequency_hz=8)
+    g4_lidar.set(frequency_hz=8, interrupt=True)
+    assert g4_lidar.is_scanning
+
+
+def test_no_scan_was_started(g4_lidar: g4lidar.Lidar) -> None:
+    with pytest.raises(errors.NotScanning):
+        g4_lidar.next_scan()
+
+
+@pytest.mark.g4(faults=["unplug@3s"])
+def test_unplug(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start()
+    with pytest.raises(errors.Gone):
+        for _ in g4_lidar.scans():
+            pass
+
+
+@pytest.mark.g4(faults=["health=2"])
+def test_defect(g4_lidar: g4lidar.Lidar) -> None:
+    with pytest.raises(errors.Unhealthy):
+        g4_lidar.start()
+
+
+def test_wrong_arrays_are_refused() -> None:
+    import numpy as np
+
+    with pytest.raises(TypeError, match="angle_deg"):
+        g4lidar.to_xy(np.zeros(3))  # type: ignore[arg-type]
+    with pytest.raises(TypeError):
+        g4lidar.to_xy([1, 2, 3])  # type: ignore[arg-type]

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""Code in Python that runs within a call: handlers of signals, finalizers. And signals that end calls."""
+import os
+import pty
+import signal
+import time
+import tty
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from test_programs import start_program
+
+import g4lidar
+
+Make = Callable[..., g4lidar.Simulator]
+
+
+def test_a_handler_uses_the_lidar_whose_call_it_interrupts() -> None:
+    # Errors are made by code in Python, before which handlers run.
+    program = start_program("""
+        import signal, time
+        lidar = g4lidar.open("sim:?silence_ns=60s", stall_time=60)
+        lidar.start()
+        seen = []
+        signal.signal(signal.SIGALRM, lambda *_: seen.append(lidar.counts()["bytes"]))
+        signal.setitimer(signal.ITIMER_REAL, 0.01, 0.0011)
+        end = time.monotonic() + 4
+        while time.monotonic() < end:
+            try:
+                lidar.next_scan(0.0)
+            except g4lidar.errors.Timeout:
+                pass
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        print(len(seen) > 20)
+    """)
+    out, err = program.communicate(timeout=60)
+    assert out == "True\n", err
+
+
+def test_the_collector_frees_another_lidar_of_the_same_simulator() -> None:
+    program = start_program("""
+        import gc
+        class Cycle:
+            pass
+        simulated = g4lidar.Simulator()
+        gc.set_threshold(1, 1, 1)
+        with g4lidar.open(simulated) as lidar:
+            lidar.start()
+            for _ in range(50):
+                cycle = Cycle()
+                cycle.me = cycle
+                cycle.lidar = g4lidar.open(simulated)
+                del cycle
+                try:
+                    lidar.start()
+                    lidar.next_scan(0.0)
+                except g4lidar.Error:
+                    pass
+        print("ended")
+    """)
+    out, err = program.communicate(timeout=60)
+    assert out == "ended\n", err
+
+
+def test_interrupt_ends_close(g4_simulator: Make) -> None:
+    # An interrupted start() is completed first, which takes some times answer_time.
+    program = start_program("""
+        lidar = g4lidar.open(sys.argv[1], answer_time=10)
+        for name, call in (("start", lidar.start), ("close", lidar.close)):
+            print(name, flush=True)
+            try:
+                call()
+            except KeyboardInterrupt:
+                print("interrupted", flush=True)
+        lidar.release()
+        lidar.close()
+    """, g4_simulator(virtual_time=False, header_ns="60s").path)
+    assert program.stdout is not None
+    for name in ("start", "close"):
+        assert program.stdout.readline() == f"{name}\n"
+        time.sleep(0.3)
+        begin = time.monotonic()
+        program.send_signal(signal.SIGINT)
+        assert program.stdout.readline() == "interrupted\n"
+        assert time.monotonic() - begin < 4  # else 5.5 s
+    _, err = program.communicate(timeout=60)
+    assert program.returncode == 0, err
+
+
+def interrupted_after(call: str, port: str) -> float:
+    """How long a program that calls this of a silent port runs after SIGINT."""
+    program = start_program(f"""
+        print("calls", flush=True)
+        try:
+            {call}
+        except KeyboardInterrupt:
+            print("interrupted", flush=True)
+    """, port)
+    assert program.stdout is not None
+    assert program.stdout.readline() == "calls\n"
+    time.sleep(0.3)
+    begin = time.monotonic()
+    program.send_signal(signal.SIGINT)
+    out, err = program.communicate(timeout=60)
+    assert out == "interrupted\n", err
+    return time.monotonic() - begin
+
+
+def test_interrupt_ends_open() -> None:
+    ends = pty.openpty()
+    tty.setraw(ends[1])
+    assert interrupted_after("g4lidar.open(sys.argv[1], answer_time=5)", os.ttyname(ends[1])) < 5
+
+
+def test_interrupt_ends_find_lidars(g4_simulator: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("G4LIDAR_SIM_DIR", str(tmp_path))
+    for number in range(5):  # 2.5 s each
+        silent = g4_simulator(virtual_time=False, faults=["deaf"])
+        (tmp_path / f"silent{number}").symlink_to(os.path.realpath(silent.path))
+    assert len([port for port in g4lidar.list_ports() if port.driver == "sim"]) == 5
+    assert interrupted_after("g4lidar.find_lidars()", "") < 5
+
+
+def test_a_handler_that_does_not_raise_leaves_open_alone(g4_simulator: Make) -> None:
+    program = start_program("""
+        import signal
+        seen = []
+        signal.signal(signal.SIGALRM, lambda *_: seen.append(True))
+        signal.setitimer(signal.ITIMER_REAL, 0.001, 0.001)
+        for _ in range(5):
+            g4lidar.open(sys.argv[1]).close()
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        print(len(seen) > 5)
+    """, g4_simulator(virtual_time=False).path)
+    out, err = program.communicate(timeout=60)
+    assert out == "True\n", err

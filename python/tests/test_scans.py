@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Opening, scans, their points, and how long they are valid."""
+import gc
+import math
+import random
+import time
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from conftest import scaled
+
+import g4lidar
+from g4lidar import errors
+
+Make = Callable[..., g4lidar.Simulator]
+
+
+def scans_of(lidar: g4lidar.Lidar, count: int) -> list[g4lidar.Scan]:
+    return [scan for scan, _ in zip(lidar.scans(timeout=0.5), range(count), strict=False)]
+
+
+def write_square_room(path: str, half_side_m: float) -> None:
+    corners = [(-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1)]
+    with open(path, "w") as file:
+        file.write("lidar 0 0 0\n")
+        for (x1, y1), (x2, y2) in zip(corners, corners[1:], strict=False):
+            file.write("wall " + " ".join(str(half_side_m * v) for v in (x1, y1, x2, y2)) + "\n")
+
+
+def test_points_are_a_structured_array(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start()
+    scan = scans_of(g4_lidar, 3)[-1]
+    assert scan.points.dtype == g4lidar.POINT_DTYPE
+    assert scan.points.dtype.names == ("angle_deg", "range_mm", "time_ns", "revolution", "flags")
+    assert scan.points.dtype.itemsize == 24
+    assert len(scan) == len(scan.points)
+    assert scan.is_whole and scan.flags == 0
+    assert (scan.points["angle_deg"] >= 0).all() and (scan.points["angle_deg"] < 360).all()
+    assert (np.diff(scan.points["time_ns"]) > 0).all()
+    assert scan.time_ns == scan.points["time_ns"][0]
+    nothing = scan.points["flags"] & g4lidar.PointFlag.NO_RETURN != 0
+    assert ((scan.points["range_mm"] == 0) == nothing).all()
+
+
+def test_ranges_are_those_of_the_room(g4_simulator: Make, tmp_path: object) -> None:
+    world = f"{tmp_path}/room.txt"
+    write_square_room(world, 2.0)
+    with g4lidar.open(g4_simulator(world=world)) as lidar:
+        lidar.start()
+        scan = scans_of(lidar, 3)[-1]
+    x, y = scan.xy("robot").T
+    # The walls are 2 m away; the format has quarters of a millimetre.
+    assert np.abs(np.maximum(np.abs(x), np.abs(y)) - 2.0).max() < 0.002
+    ranges = scan.ranges(720)
+    assert ranges.shape == (720,) and ranges.dtype == np.float32
+    for index, expected in ((0, 2.0), (90, 2.0 * math.sqrt(2.0)), (180, 2.0), (360, 2.0), (540, 2.0)):
+        assert abs(ranges[index] - expected) < 0.02
+    vendor_x, vendor_y = scan.xy("vendor").T
+    assert np.allclose(vendor_x, -x) and np.allclose(vendor_y, y)  # mirrored and turned by half a turn
+
+
+def test_frequency_is_that_of_start(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start(frequency_hz=10, sample_rate_hz=8000)
+    scan = scans_of(g4_lidar, 10)[-1]
+    assert abs(scan.measured_frequency_hz - 10) < 0.1
+    assert abs(len(scan) - 800) < 20
+    assert abs(scan.duration - 0.1) < 0.002
+    g4_lidar.stop()
+    assert g4_lidar.settings()["frequency_hz"] == pytest.approx(10, abs=0.05)
+    assert g4_lidar.settings()["sample_rate_hz"] == 8000
+    assert g4_lidar.health() == ("ok", 0)
+
+
+def test_same_seed_gives_same_points(g4_simulator: Make) -> None:
+    def points(seed: int) -> bytes:
+        with g4lidar.open(g4_simulator(seed=seed, noise_mm=5)) as lidar:
+            lidar.start()
+            return b"".join(scan.points.tobytes() for scan in scans_of(lidar, 5))
+
+    assert points(7) == points(7)
+    assert points(7) != points(8)
+
+
+def test_kept_scans_stay_valid_in_any_order(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start(frequency_hz=12, sample_rate_hz=4000)
+    kept: list[tuple[object, int]] = []
+    count = scaled(10_000)
+    for number, scan in enumerate(g4_lidar.scans(), 1):
+        all_of: tuple[object, ...] = (scan, scan.points, scan.points[10:20], scan.points["range_mm"], scan.xy())
+        what = all_of[number % 5]
+        kept.append((what, hash(as_bytes(what))))
+        if number == count:
+            break
+    g4_lidar.close()
+    random.Random(1).shuffle(kept)
+    while kept:
+        what, expected = kept.pop()
+        assert hash(as_bytes(what)) == expected
+        del what
+    gc.collect()
+
+
+def as_bytes(what: object) -> bytes:
+    array = what.points if isinstance(what, g4lidar.Scan) else what
+    assert isinstance(array, np.ndarray)
+    return array.tobytes()
+
+
+def test_points_may_be_changed_by_their_owner(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start()
+    first, second = scans_of(g4_lidar, 2)
+    before = second.points.tobytes()
+    first.points["range_mm"] = 0
+    assert second.points.tobytes() == before
+
+
+def test_newest_drops_and_counts(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(virtual_time=False)) as lidar:
+        lidar.start(frequency_hz=12)
+        scans = lidar.scans(timeout=5, newest=True)
+        next(scans)
+        time.sleep(0.5)  # the system keeps the bytes of five revolutions
+        scan = next(scans)
+        assert time.monotonic_ns() - scan.end_ns < 300_000_000
+        assert lidar.counts()["scans_dropped"] >= 3
+
+
+def test_timeout_is_raised_and_the_loop_can_go_on(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(faults=["stall@3s+0.7s"]), stall_time=10) as lidar:
+        lidar.start()
+        scans = lidar.scans(timeout=0.3)
+        with pytest.raises(g4lidar.errors.Timeout) as caught:
+            for _ in range(100):
+                next(scans)
+        assert not caught.value.is_fatal
+        assert isinstance(caught.value, TimeoutError)
+        while True:
+            try:
+                assert len(next(scans)) > 0
+                break
+            except errors.Timeout:
+                pass
+
+
+def test_spin_up_is_no_timeout(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(silence_ns="3s")) as lidar:
+        lidar.start()
+        assert lidar.is_spinning_up
+        assert next(lidar.scans(timeout=0.5)).is_whole
+        assert not lidar.is_spinning_up
+
+
+def test_reconnects_in_a_loop(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(faults=["unplug@4s+2s"]), reconnect=True) as lidar:
+        lidar.start()
+        last = 0
+        for scan in lidar.scans(timeout=None):
+            last = scan.time_ns
+            if last > 10_000_000_000:
+                break
+        assert {"lost", "reconnected"} <= {event.kind for event in lidar.events()}
+        assert lidar.counts()["reconnects"] == 1
+
+
+def test_next_points_gives_each_point_once(g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start()
+    pieces = [g4_lidar.next_points() for _ in range(200)]
+    times = np.concatenate([piece["time_ns"] for piece in pieces])
+    assert len(times) > 5000
+    assert (np.diff(times) > 0).all()
+
+
+def test_with_stops_the_motor(g4_simulator: Make) -> None:
+    simulated = g4_simulator()
+    with g4lidar.open(simulated) as lidar:
+        lidar.start()
+        scans_of(lidar, 1)
+        assert simulated.motor_turns
+    assert not simulated.is_scanning
+    with pytest.raises(errors.Gone):
+        lidar.next_scan()
+    assert list(lidar.scans()) == []
+    lidar.close()
+
+
+def test_truth_is_where_the_points_are(g4_simulator: Make) -> None:
+    simulated = g4_simulator(seed=2)
+    with g4lidar.open(simulated) as lidar:
+        lidar.start()
+        scan = scans_of(lidar, 8)[-1]
+    truth = simulated.truth()
+    first = np.searchsorted(truth["time_ns"], scan.time_ns - 1_000_000)
+    near = truth[first : first + len(scan) + 20]
+    hits = scan.points[scan.points["range_mm"] > 0][:200]
+    for point in hits:
+        off = np.abs((near["bearing_deg"] - point["angle_deg"] + 180) % 360 - 180)
+        best = near[np.argmin(off)]
+        assert abs(best["range_mm"] - point["range_mm"]) < 1.0
+
+
+def test_stamp_is_the_wall_clock(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(virtual_time=False)) as lidar:
+        lidar.start()
+        scan = lidar.next_scan(10)
+        now = time.time()
+        assert now - 10 < scan.stamp < now
