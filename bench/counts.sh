@@ -23,11 +23,11 @@ instructions() {
 }
 
 # The difference of two lengths is used, to exclude the start of the program.
-# per_sample <bytes in a burst>: instructions of the driver per sample.
+# per_sample <bytes in a burst> [judged]: instructions of the driver per sample.
 per_sample() {
   local scans counts=() samples=()
   for scans in 200 400; do
-    counts+=("$(instructions "$bench" memory "$scans" "$1")")
+    counts+=("$(instructions "$bench" memory "$scans" "$@")")
     samples+=("$(value samples "$scratch/out")")
   done
   awk -v a="${counts[0]}" -v b="${counts[1]}" -v m="${samples[0]}" -v n="${samples[1]}" \
@@ -58,6 +58,7 @@ done
 heading
 row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 60 "60"
 row "the same, bursts of 64 bytes" "$(per_sample 64)" ""
+row "bursts of 256 bytes, with a running diagnosis" "$(per_sample 256 judged)" "" 110 "110"
 row "instructions per point, convert of raw bytes to csv" "$(per_point bin)" "" 320 "320"
 row "the same of a recording with scans" "$(per_point mcap)" "" 400 "400"
 row "system calls per second, only scans taken" "$(calls scans)" "" 100 "100"

@@ -98,10 +98,10 @@ row "open and start" "$(median open_and_start_ms scans)" ms 100 "100"
 row "from open to the first whole scan" "$(median first_scan_ms scans)" ms 2500 "2500"
 "$bench" flood 10 >"$scratch/flood"
 ratio=$(value flood_ratio "$scratch/flood")
-row "bytes/s without rate limit, by a counting reader" "$ratio" "" "" "0.7"
+row "bytes/s without rate limit, relative to counting and memory" "$ratio" "" "" "0.5"
 row "scans lost without a rate limit" "$(value scans_lost "$scratch/flood")" "" 0 0
-if awk -v r="$ratio" 'BEGIN { exit !(r < 0.7) }'; then
-  echo "Missed: without a rate limit, $ratio of a counting reader, promised 0.7" >&2
+if awk -v r="$ratio" 'BEGIN { exit !(r < 0.5) }'; then
+  echo "Missed: without a rate limit, $ratio of a counting reader and the driver in memory, promised 0.5" >&2
   missed=1
 fi
 exit "$missed"

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: MIT
 # cmake --install: headers, libraries, the CMake package g4lidar with its components, and the
-# pkg-config files g4lidar-core.pc, g4lidar.pc, g4lidar-sim.pc and g4lidar-eigen.pc.
+# pkg-config files g4lidar-core.pc, g4lidar.pc, g4lidar-sim.pc, g4lidar-eigen.pc and g4lidar-c.pc. The C interface
+# is also a CMake package of its own, g4lidar-c: its users need none of the others.
 
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/g4lidar")
 
 # Each component has its own export file, so that it does not need the dependencies of another one.
+# install_component(<component> <target> [<package>])
 function(install_component component target)
+  set(directory "${package_dir}")
+  if(ARGC GREATER 2)
+    set(directory "${CMAKE_INSTALL_LIBDIR}/cmake/${ARGV2}")
+  endif()
   if(CMAKE_VERSION VERSION_LESS 3.23)
     set(headers)
   else()
@@ -24,7 +30,7 @@ function(install_component component target)
   install(
     EXPORT g4lidar-${component}
     NAMESPACE g4lidar::
-    DESTINATION "${package_dir}"
+    DESTINATION "${directory}"
   )
 endfunction()
 
@@ -36,6 +42,9 @@ if(G4LIDAR_HOSTED)
   install_component(library g4lidar)
   install_component(sim g4lidar_sim)
 endif()
+if(TARGET g4lidar_c)
+  install_component(c g4lidar_c g4lidar-c)
+endif()
 
 if(CMAKE_VERSION VERSION_LESS 3.23)
   install(
@@ -44,6 +53,15 @@ if(CMAKE_VERSION VERSION_LESS 3.23)
     FILES_MATCHING
     PATTERN "*.hpp"
   )
+  if(TARGET g4lidar_c)
+    install(FILES "${PROJECT_SOURCE_DIR}/include/g4lidar.h" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+    install(
+      DIRECTORY "${PROJECT_SOURCE_DIR}/include/g4lidar/c"
+      DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/g4lidar"
+      FILES_MATCHING
+      PATTERN "*.h"
+    )
+  endif()
 endif()
 
 write_basic_package_version_file(
@@ -63,6 +81,14 @@ install(FILES "${PROJECT_BINARY_DIR}/cmake/g4lidar-config.cmake"
               "${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake"
         DESTINATION "${package_dir}"
 )
+if(TARGET g4lidar_c)
+  set(c_package "${PROJECT_BINARY_DIR}/cmake/g4lidar-c")
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/g4lidar-c-config.cmake" "${c_package}-config.cmake" COPYONLY)
+  configure_file("${PROJECT_BINARY_DIR}/cmake/g4lidar-config-version.cmake" "${c_package}-config-version.cmake" COPYONLY)
+  install(FILES "${c_package}-config.cmake" "${c_package}-config-version.cmake"
+          DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/g4lidar-c"
+  )
+endif()
 
 # udev reads rules below /usr and /usr/local.
 if(G4LIDAR_INSTALL_UDEV_RULE)
@@ -81,6 +107,17 @@ if(G4LIDAR_INSTALL_SYSTEMD_UNIT)
     "${PROJECT_BINARY_DIR}/packaging/systemd/${unit}" @ONLY
   )
   install(FILES "${PROJECT_BINARY_DIR}/packaging/systemd/${unit}" DESTINATION lib/systemd/system)
+  if(TARGET g4-ros2)
+    set(g4_ros2 "${CMAKE_INSTALL_FULL_BINDIR}/g4-ros2")
+    set(unit "g4lidar-ros2@.service")
+    configure_file(
+      "${PROJECT_SOURCE_DIR}/packaging/systemd/${unit}.in"
+      "${PROJECT_BINARY_DIR}/packaging/systemd/${unit}" @ONLY
+    )
+    install(FILES "${PROJECT_BINARY_DIR}/packaging/systemd/${unit}"
+            DESTINATION lib/systemd/system
+    )
+  endif()
 endif()
 
 # ---- pkg-config --------------------------------------------------------------------------------
@@ -109,6 +146,9 @@ if(TARGET g4lidar_eigen)
 endif()
 if(G4LIDAR_HOSTED)
   list(APPEND pc_names g4lidar g4lidar-sim)
+endif()
+if(TARGET g4lidar_c)
+  list(APPEND pc_names g4lidar-c)
 endif()
 foreach(name IN LISTS pc_names)
   set(pc_file "${PROJECT_BINARY_DIR}/packaging/${name}.pc")

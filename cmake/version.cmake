@@ -14,4 +14,6 @@ foreach(part MAJOR MINOR PATCH)
 endforeach()
 list(JOIN version_parts "." G4LIDAR_VERSION)
 
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${version_header}")
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${version_header}")
+endif()

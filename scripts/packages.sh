@@ -7,13 +7,15 @@
 packages_demo=(
   "$(if command -v make >/dev/null && ! command -v ninja >/dev/null; then echo make; else echo ninja-build; fi)"
   cmake g++ pkg-config libudev-dev libexpected-dev
-  libcli11-dev libfmt-dev libzstd-dev nlohmann-json3-dev
+  libcli11-dev libfmt-dev libncurses-dev libzstd-dev nlohmann-json3-dev
 )
 
 # To build the tests.
 packages_test=(
   "${packages_demo[@]}"
-  binutils libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev libumockdev-dev ninja-build umockdev
+  libwebsockets-dev
+  binutils libeigen3-dev libgmock-dev libgtest-dev python3-pyte tmux librapidcheck-dev libumockdev-dev ninja-build umockdev
+  cyclonedds-dev cyclonedds-tools
 )
 
 # To build and run the benchmarks.
@@ -25,31 +27,42 @@ packages_bench=(
 # To build the Debian packages.
 packages_package=(
   "${packages_demo[@]}"
+  libwebsockets-dev
   debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev ninja-build
+  cyclonedds-dev cyclonedds-tools
 )
 
 # To make maps: scripts/slam.
 # shellcheck disable=SC2034
 packages_slam=(mrpt-apps python3-venv)
 
+# To build in a workspace of ROS: scripts/ci/colcon.
+# shellcheck disable=SC2034
+packages_colcon=(colcon python3-colcon-cmake python3-colcon-package-information python3-colcon-ros)
+
+# To test the page of g4-serve in a browser, and to make pictures of it.
+packages_browser=(chromium chromium-driver fonts-dejavu-core python3-selenium)
+
 # The contents of a sysroot for cross-building, in the architecture of the target: see
 # scripts/sysroot.
 # shellcheck disable=SC2034
 packages_sysroot=(
-  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev
+  libc6-dev libudev-dev libexpected-dev libcli11-dev libfmt-dev nlohmann-json3-dev libzstd-dev libpython3-dev
 )
 
 # Everything that .ci/run needs.
 # shellcheck disable=SC2034
 packages_ci=(
-  "${packages_test[@]}" "${packages_bench[@]}" "${packages_package[@]}"
+  "${packages_test[@]}" "${packages_bench[@]}" "${packages_package[@]}" "${packages_browser[@]}"
   ccache debootstrap doxygen git lintian pkg-config shellcheck valgrind
-  g++-11 python3-venv
+  g++-11 python3-dev python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
   fish mandoc zsh
   g++-s390x-linux-gnu g++-aarch64-linux-gnu g++-arm-linux-gnueabihf
   gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib qemu-system-arm
+  abigail-tools
+  iproute2
 )
 
 # need_packages <package>...: installs the missing ones without questions and prints what it

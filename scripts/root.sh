@@ -43,9 +43,15 @@ make_root() {
   chmod 755 "$debian_root" # as every root directory: mktemp gives it to one user
   echo "Made a minimal Debian 12 in $((SECONDS - begin)) s"
 
-  # Its apt and its name service reach the same servers as this machine.
+  # Its apt, its pip and its name service reach the same servers as this machine.
   echo "$sources" >"$debian_root/etc/apt/sources.list"
   apt-config dump Acquire >"$debian_root/etc/apt/apt.conf.d/90acquire"
+  local certificates
+  certificates=$(sed -n 's/^cert *= *//p' /etc/pip.conf 2>/dev/null || true)
+  if [[ -e $certificates ]]; then
+    cp --dereference "$certificates" "$debian_root/etc/pip.crt"
+    printf '[global]\ncert = /etc/pip.crt\n' >"$debian_root/etc/pip.conf"
+  fi
   for setting in /etc/resolv.conf /etc/hosts; do
     if [[ -e $setting ]]; then cp --dereference "$setting" "$debian_root$setting"; fi
   done

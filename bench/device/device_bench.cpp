@@ -6,9 +6,10 @@
 //                                 and delete while streaming
 // PACE is `packets`, `scans` (the default), or a batch in milliseconds; of delay also `bare`: a loop of poll and read
 // without the driver.
-//   device_bench flood MEGABYTES  bytes per second, and those of a reader that only counts
-//   device_bench memory SCANS [BURST]  scans from memory, in bursts of so many bytes, for
-//                                 counting instructions
+//   device_bench flood MEGABYTES  bytes per second from a pty, relative to a reader that only counts
+//                                 and the driver on bytes in memory, one after the other
+//   device_bench memory SCANS [BURST [judged]]  scans from memory, in bursts of so many bytes, for counting
+//                                 instructions; `judged`: with a running_diagnosis
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -26,6 +27,7 @@
 
 #include "feeder.hpp"
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -242,45 +244,64 @@ double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
   return rate;
 }
 
-/// The median of 9 ratios, each of two measurements one after the other: other load of the machine makes both
-/// slower.
-int flood(int megabytes) {
-  constexpr std::size_t runs = 9;
-  const std::size_t wanted = static_cast<std::size_t>(megabytes) * 1'000'000;
-  std::int64_t lost = 0;
-  std::array<double, runs> ratios{};
-  std::array<double, runs> counting{};
-  for (std::size_t i = 0; i < runs; ++i) {
-    std::int64_t lost_now = 0;
-    counting[i] = counting_rate(wanted);
-    ratios[i] = driver_rate(wanted, lost_now) / counting[i];
-    lost += lost_now;
-  }
-  std::sort(ratios.begin(), ratios.end());
-  std::sort(counting.begin(), counting.end());
-  std::printf("flood_ratio %.2f\ncounting_mb_per_s %.1f\nscans_lost %lld\n", ratios[runs / 2],
-              counting[runs / 2] / 1e6, static_cast<long long>(lost));
-  return 0;
-}
-
-int memory(int scans, int burst) {
-  const bench::recording revolutions = bench::record(20);
-  lidar_options options;
-  auto opened = lidar::open(
-      std::make_unique<bench::memory_connector>(revolutions, static_cast<std::size_t>(scans),
-                                                static_cast<std::size_t>(burst)),
-      options);
-  if (!opened) fail(opened.error());
-  if (auto started = opened->start(); !started) fail(started.error());
+/// What the driver took from memory, without a system call.
+struct memory_run {
   std::size_t samples = 0;
   std::size_t whole = 0;
+  double bytes_per_s = 0.0;
+};
+
+memory_run read_memory(int scans, int burst, bool is_judged = false) {
+  const bench::recording revolutions = bench::record(20);
+  running_diagnosis judge;
+  std::unique_ptr<connector> from = std::make_unique<bench::memory_connector>(
+      revolutions, static_cast<std::size_t>(scans), static_cast<std::size_t>(burst));
+  if (is_judged) from = judge.observe(std::move(from));
+  auto opened = lidar::open(std::move(from));
+  if (!opened) fail(opened.error());
+  if (auto started = opened->start(); !started) fail(started.error());
+  memory_run all;
+  const std::int64_t begin = steady_ns();
   while (true) {
     const auto scan = opened->next_scan(1000ms);
     if (!scan) break;
-    samples += scan->points.size();
-    whole += scan->is_whole();
+    all.samples += scan->points.size();
+    all.whole += scan->is_whole();
   }
-  std::printf("samples %zu\nscans %zu\n", samples, whole);
+  all.bytes_per_s =
+      static_cast<double>(opened->counts().bytes) * 1e9 / static_cast<double>(steady_ns() - begin);
+  return all;
+}
+
+int memory(int scans, int burst, bool is_judged) {
+  const memory_run all = read_memory(scans, burst, is_judged);
+  std::printf("samples %zu\nscans %zu\n", all.samples, all.whole);
+  return 0;
+}
+
+/// How much faster or slower the driver takes bytes from a pty than the system and the driver need
+/// for them one after the other: a reader that only counts, and the driver on bytes in memory. The
+/// median of 9 ratios, each of three measurements one after the other: other load of the machine
+/// makes all slower.
+int flood(int megabytes) {
+  constexpr std::size_t runs = 9;
+  const std::size_t wanted = static_cast<std::size_t>(megabytes) * 1'000'000;
+  const auto scans = static_cast<int>(wanted / 4000);  // about as many bytes
+  std::int64_t lost = 0;
+  std::array<double, runs> ratios{};
+  std::array<double, runs> rates{};
+  for (std::size_t i = 0; i < runs; ++i) {
+    std::int64_t lost_now = 0;
+    const double counting_s = 1.0 / counting_rate(wanted);
+    const double memory_s = 1.0 / read_memory(scans, 4095).bytes_per_s;
+    rates[i] = driver_rate(wanted, lost_now);
+    ratios[i] = rates[i] * (counting_s + memory_s);
+    lost += lost_now;
+  }
+  std::sort(ratios.begin(), ratios.end());
+  std::sort(rates.begin(), rates.end());
+  std::printf("flood_ratio %.2f\nflood_mb_per_s %.1f\nscans_lost %lld\n", ratios[runs / 2],
+              rates[runs / 2] / 1e6, static_cast<long long>(lost));
   return 0;
 }
 
@@ -293,7 +314,7 @@ int main(int argc, char** argv) {
   if (mode == "delay") return delay(amount, pace);
   if (mode == "stream") return stream(amount, pace);
   if (mode == "flood") return flood(amount);
-  if (mode == "memory") return memory(amount, argc > 3 ? std::atoi(argv[3]) : 256);
+  if (mode == "memory") return memory(amount, argc > 3 ? std::atoi(argv[3]) : 256, argc > 4);
   std::fprintf(stderr, "device_bench delay|stream|flood|memory AMOUNT: see the source\n");
   return 2;
 }

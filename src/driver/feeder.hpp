@@ -26,7 +26,7 @@ class feeder {
     event_queue events;
   };
 
-  feeder(parts& of, const lidar_options& options) noexcept
+  feeder(parts& of, const lidar_options& options)
       : connection_(of.link),
         pipeline_(of.pipeline),
         events_(of.events),

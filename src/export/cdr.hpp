@@ -53,4 +53,14 @@ class cdr_writer {
   std::size_t origin_ = 0;
 };
 
+/// A std_msgs/Header.
+inline void put_header(cdr_writer& message, std::int64_t stamp_ns, std::string_view frame_id) {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  // The nanoseconds count from the previous second, also before 1970.
+  const std::int64_t rest_ns = (stamp_ns % second_ns + second_ns) % second_ns;
+  message.put(static_cast<std::int32_t>((stamp_ns - rest_ns) / second_ns));
+  message.put(static_cast<std::uint32_t>(rest_ns));
+  message.put(frame_id);
+}
+
 }  // namespace g4lidar

@@ -154,16 +154,6 @@ float64 w 1
 constexpr float least_range_m = too_near_mm * 0.001F;
 constexpr float greatest_range_m = 16.38375F;
 
-constexpr std::int64_t second_ns = 1'000'000'000;
-
-void put_header(cdr_writer& message, std::int64_t stamp_ns, std::string_view frame_id) {
-  // The nanoseconds count from the previous second, also before 1970.
-  const std::int64_t rest_ns = (stamp_ns % second_ns + second_ns) % second_ns;
-  message.put(static_cast<std::int32_t>((stamp_ns - rest_ns) / second_ns));
-  message.put(static_cast<std::uint32_t>(rest_ns));
-  message.put(frame_id);
-}
-
 void put_all(cdr_writer& message, std::span<const double> values) {
   for (const double value : values) message.put(value);
 }

@@ -5,12 +5,13 @@
 #include <optional>
 
 #include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 #include "messages.hpp"
 
 namespace g4lidar::mcap {
 namespace {
 
-constexpr std::string_view recorded_bytes_schema =
+constexpr std::string_view recorded_bytes_text =
     R"(# Bytes that were read from, or sent to, a lidar together.
 int64 monotonic_ns  # when, by the steady clock of the computer; the wall clock is the message's time
 uint8[] data
@@ -41,7 +42,7 @@ std::span<const schema_words> all_schemas() noexcept {
     return schema_words{id, of.name, of.text};
   };
   static const std::array<schema_words, schema_count_of_all> schemas{{
-      {1, "g4lidar_msgs/msg/RecordedBytes", recorded_bytes_schema},
+      words(1, recorded_bytes_schema()),
       {2, "g4lidar_msgs/msg/RecordedEvent", recorded_event_schema},
       words(3, laser_scan_schema()),
       words(4, point_cloud2_schema()),
@@ -52,7 +53,7 @@ std::span<const schema_words> all_schemas() noexcept {
 }
 
 constexpr std::array<topic_words, topic_count> topics{{
-    {topic::from_device, "/g4lidar/from_device", 1},
+    {topic::from_device, recorded_bytes_topic, 1},
     {topic::to_device, "/g4lidar/to_device", 1},
     {topic::events, "/g4lidar/events", 2},
     {topic::scan, "/scan", 3},
@@ -113,3 +114,7 @@ void channel_set::put_channels(record_text& out) const {
 }
 
 }  // namespace g4lidar::mcap
+
+g4lidar::message_schema g4lidar::recorded_bytes_schema() noexcept {
+  return {"g4lidar_msgs/msg/RecordedBytes", mcap::recorded_bytes_text};
+}

@@ -9,6 +9,7 @@
 #include "export/cdr.hpp"
 #include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/response.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 
 namespace g4lidar {
 namespace {
@@ -97,9 +98,7 @@ void take_firmware(device_information& who, std::string_view text) noexcept {
 }  // namespace
 
 void put_recorded_bytes(record_text& out, bytes data, std::int64_t time_ns) {
-  cdr_writer message(out.memory());
-  message.put(time_ns);
-  message.put(data);
+  g4lidar::put_recorded_bytes(data, time_ns, out.memory());
 }
 
 void put_event(record_text& out, const recorded_event& what, std::int64_t wall_ahead_ns) {
@@ -288,4 +287,11 @@ recorded_event transport_state::as_event(std::int64_t time_ns) const noexcept {
 }
 
 }  // namespace mcap
+
+void put_recorded_bytes(bytes data, std::int64_t time_ns, std::vector<std::uint8_t>& out) {
+  cdr_writer message(out);
+  message.put(time_ns);
+  message.put(data);
+}
+
 }  // namespace g4lidar

@@ -20,7 +20,7 @@ set(larger
 function(sources variable) # <directory>...
   set(all)
   foreach(directory IN LISTS ARGN)
-    file(GLOB_RECURSE found RELATIVE "${ROOT}" "${ROOT}/${directory}/*.[ch]pp")
+    file(GLOB_RECURSE found RELATIVE "${ROOT}" "${ROOT}/${directory}/*.[ch]pp" "${ROOT}/${directory}/*.[ch]")
     list(APPEND all ${found})
   endforeach()
   if(NOT all)

@@ -33,6 +33,17 @@ struct stream_counter : stream_counts {
   constexpr void add(g4lidar::skipped gone) noexcept {
     skipped_by_reason[static_cast<std::size_t>(gone.reason)] += gone.count;
   }
+  /// what another counter counted,
+  constexpr void add(const stream_counts& other) noexcept {
+    parsed_bytes += other.parsed_bytes;
+    packets += other.packets;
+    responses += other.responses;
+    points += other.points;
+    suspect += other.suspect;
+    for (std::size_t i = 0; i < skip_reasons; ++i) {
+      skipped_by_reason[i] += other.skipped_by_reason[i];
+    }
+  }
   /// or an event with any of these.
   constexpr void add(const event& found) noexcept {
     if (const auto* packet = std::get_if<packet_view>(&found)) return add(*packet);

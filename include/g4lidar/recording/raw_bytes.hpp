@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Raw bytes of a lidar, from a file or a pipe, as a connector: with times, so that a driver can
-// decode them and a recording can be made of them.
+// decode them and a recording can be made of them; and the message in which recordings keep them.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "g4lidar/core/bytes.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/export/ros_messages.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
@@ -25,5 +29,15 @@ namespace g4lidar {
 /// Fails with system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
     const std::string& path, std::uint32_t samples_per_second);
+
+/// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
+/// whoever wrote it, is a recording.
+inline constexpr std::string_view recorded_bytes_topic = "/g4lidar/from_device";
+/// The definition of these messages.
+[[nodiscard]] G4LIDAR_API message_schema recorded_bytes_schema() noexcept;
+/// Appends such a message to `out`, in CDR: `data` was read, and its last byte arrived at `time_ns`, by
+/// the clock of the transport. Allocates beyond the capacity of `out`.
+G4LIDAR_API void put_recorded_bytes(bytes data, std::int64_t time_ns,
+                                    std::vector<std::uint8_t>& out);
 
 }  // namespace g4lidar

@@ -3,6 +3,7 @@
 #include "g4lidar/sim/virtual_port.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <new>
 #include <utility>
 
@@ -59,7 +60,7 @@ result<std::unique_ptr<transport>> virtual_connector::connect() noexcept {
     next_ = (next_ + 1) % devices_.size();
     if (!simulated.is_plugged(clock_->now_ns())) continue;
     std::unique_ptr<transport> port(new (std::nothrow) virtual_port(simulated, *clock_));
-    if (port == nullptr) break;
+    if (port == nullptr) return failure(task::opening, problem::system, "virtual:g4", ENOMEM);
     return port;
   }
   return failure(task::opening, problem::no_port, "virtual:g4");

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-# Completion of g4-dump for bash. g4-dump lists what can follow; a line / stands for names of files.
+# Completion for bash of each program, which lists what can follow; a line / stands for names of files.
 # shellcheck shell=bash
 
-_g4_dump() {
+_g4lidar() {
   local words typed word begin
   read -ra words <<<"${COMP_LINE:0:COMP_POINT}"
   if [[ ${COMP_LINE:0:COMP_POINT} == *[[:space:]] ]]; then words+=(''); fi
@@ -20,4 +20,4 @@ _g4_dump() {
   COMPREPLY=("${COMPREPLY[@]#"$begin"}")
 }
 
-complete -o filenames -F _g4_dump g4-dump
+complete -o filenames -F _g4lidar g4-dump g4-ros2 g4-serve

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-# Completion of g4-dump for fish. g4-dump lists what can follow; a line / stands for names of files.
+# Completion for fish of each program, which lists what can follow; a line / stands for names of files.
 
-function __g4_dump_words
+function __g4lidar_words
     set -l words (commandline -opc)
+    type -q $words[1]; or return
     set -l typed (commandline -ct)
     for line in ($words[1] --complete $words[2..] "$typed" 2>/dev/null)
         if test "$line" = /
@@ -13,4 +14,6 @@ function __g4_dump_words
     end
 end
 
-complete -c g4-dump -f -a '(__g4_dump_words)'
+for program in g4-dump g4-ros2 g4-serve
+    complete -c $program -f -a '(__g4lidar_words)'
+end
