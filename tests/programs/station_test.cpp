@@ -23,7 +23,6 @@
 #include "cli/exit_code.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/world.hpp"
-#include "io/playback_clock.hpp"
 #include "program.hpp"
 
 namespace {
@@ -338,22 +337,6 @@ TEST_F(Station, RawBytes_ArePlayedByTheirSamples) {
   ASSERT_TRUE(heard.wait_for_state("ended"));
   EXPECT_GE(heard.number_of_scans(), 5U);
   EXPECT_GE(std::chrono::steady_clock::now() - begun, heard.number_of_scans() * 1000ms / 7 - 200ms);
-}
-
-TEST(PlaybackClock, KeepsItsPlaceWhenSpeedAndPauseChange) {
-  constexpr std::int64_t s = 1'000'000'000;
-  g4_tool::playback_clock clock;
-  EXPECT_EQ(clock.due_ns(100 * s, 101 * s, 5 * s), 6 * s);
-  clock.set_speed(2, 7 * s);  // at 102 s
-  EXPECT_EQ(clock.due_ns(100 * s, 106 * s, 7 * s), 9 * s);
-  clock.pause(true, 8 * s);  // at 104 s
-  EXPECT_EQ(clock.due_ns(100 * s, 106 * s, 8 * s), std::nullopt);
-  clock.pause(false, 20 * s);
-  EXPECT_EQ(clock.due_ns(100 * s, 106 * s, 20 * s), 21 * s);
-  clock.set_speed(0, 20 * s);
-  EXPECT_EQ(clock.due_ns(100 * s, 206 * s, 20 * s), 20 * s);
-  clock.set_speed(1000, 20 * s);  // as 100
-  EXPECT_EQ(clock.due_ns(200 * s, 300 * s, 20 * s), 21 * s);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ constexpr std::size_t most_lidars = 32;
 }  // namespace
 
 merger::merger(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars)
-    : options_(options), messages_(on, options, options.name_space, options.frames.robot) {
+    : messages_(on, options, options.name_space, options.frames.robot) {
   if (lidars.size() > most_lidars) throw bad_value("--merge joins at most 32 lidars");
   if (options.order == scan_order::time) {
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");

@@ -47,7 +47,6 @@ class merger {
                                                      std::vector<point>& out) const;
   void follow(part& leader, const scan_times& when);
 
-  const ros2_options& options_;
   scan_messages messages_;
   std::unique_ptr<odometry_subscription> driven_;
   std::mutex mutex_;
