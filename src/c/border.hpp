@@ -40,7 +40,7 @@ int bad_option(g4lidar_error* out, std::string_view which) noexcept;
 /// The result of `body`, an int or a result<void>, whatever it throws; none of `needed` is null.
 template <class Body, class... Pointers>
 int guarded(g4lidar_error* out, Body&& body, Pointers... needed) noexcept {
-  if (((needed == nullptr) || ...)) return refuse(out, "a required argument is NULL");
+  if ((!needed || ...)) return refuse(out, "a required argument is NULL");
   try {
     if constexpr (std::is_same_v<decltype(body()), int>) {
       return body();
