@@ -30,7 +30,9 @@ template <class Deskew>
 int deskewed_by(const g4lidar_point* points, std::size_t count, const g4lidar_mounting* mount,
                 g4lidar_point* out, std::size_t* outside, Deskew deskew_points) noexcept {
   if (count > 0 && (points == nullptr || out == nullptr)) return G4LIDAR_BAD_ARGUMENT;
-  if (mount != nullptr && !is_usable(mount->pose)) return G4LIDAR_BAD_ARGUMENT;
+  if (mount != nullptr && (!is_usable(mount->pose) || !has_known_members(*mount))) {
+    return G4LIDAR_BAD_ARGUMENT;
+  }
   const mounting fixed = mount == nullptr ? mounting{} : mounting_of(*mount);
   const deskewed made = deskew_points(points_of(points, count), points_of(out, count), fixed);
   if (outside != nullptr) *outside = made.outside;

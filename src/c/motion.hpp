@@ -4,6 +4,9 @@
 
 #include <g4lidar/c/motion.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "g4lidar/motion.hpp"
 
 namespace g4lidar::c {
@@ -21,6 +24,10 @@ namespace g4lidar::c {
   return {given.time_ns,
           {given.pose.x_m, given.pose.y_m, given.pose.yaw_rad},
           {given.twist.x_m_per_s, given.twist.y_m_per_s, given.twist.yaw_rad_per_s}};
+}
+/// Whether the members that this version does not know are 0.
+[[nodiscard]] inline bool has_known_members(const g4lidar_mounting& given) noexcept {
+  return std::ranges::all_of(given.reserved, [](std::uint8_t each) { return each == 0; });
 }
 /// Whether all numbers are within their limits.
 [[nodiscard]] bool is_usable(const g4lidar_odometry& given) noexcept;

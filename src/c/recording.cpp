@@ -95,6 +95,9 @@ int g4lidar_recorder_create(const char* path, const g4lidar_recorder_options* op
       [&]() -> int {
         g4lidar_recorder_options taken = recorder_defaults;
         if (!take_options(options, taken)) return refuse(error, bad_options);
+        if (taken.mount != nullptr && !has_known_members(*taken.mount)) {
+          return refuse(error, "mount: its reserved bytes are not 0");
+        }
         auto made = recording_writer::create(path, options_of(taken));
         if (!made) return fail(error, made.error());
         auto handle = std::make_unique<g4lidar_recorder>();

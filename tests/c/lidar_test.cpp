@@ -78,6 +78,15 @@ TEST(CLidar, KnowsTheDevice) {
   EXPECT_EQ(health.error_code, 0U);
 }
 
+TEST(CLidar, ReportsTheHealthOfTheDevice) {
+  const simulator device = simulate("sim:?fault=health=warning");
+  const lidar it = open_on(device);
+  g4lidar_health health{99, 99};
+  ASSERT_EQ(g4lidar_get_health(it.get(), G4LIDAR_REFUSE, &health, nullptr), G4LIDAR_OK);
+  EXPECT_EQ(health.status, G4LIDAR_HEALTH_WARNING);
+  EXPECT_NE(health.error_code, 0U);
+}
+
 TEST(CLidar, SetsAndGetsEverySetting) {
   const simulator device = simulate();
   const lidar it = open_on(device);

@@ -89,6 +89,20 @@ TEST(COptions, ReservedBytesOfPointsAreChecked) {
       [&](auto* options) { return g4lidar_mark_isolated(&point, 1, options, nullptr); });
 }
 
+// A recording of one revolution.
+void record_briefly(const std::string& path) {
+  const simulator device = simulate();
+  g4lidar_recorder_options wish;
+  g4lidar_recorder_options_init(&wish, sizeof wish);
+  wish.overwrite = true;
+  g4lidar_recorder* made = nullptr;
+  ASSERT_EQ(g4lidar_recorder_create(path.c_str(), &wish, &made, nullptr), G4LIDAR_OK);
+  const recorder into(made);
+  g4lidar_options options = defaults();
+  options.recorder = made;
+  next_whole(start_on(device, &options));
+}
+
 TEST(COptions, ReservedBytesOfHandlesAreChecked) {
   const simulator device = simulate();
   expect_reserved_is_checked<g4lidar_options>(g4lidar_options_init, [&](auto* options) {
@@ -111,6 +125,56 @@ TEST(COptions, ReservedBytesOfHandlesAreChecked) {
     g4lidar_ports_free(made);
     return code;
   });
+  expect_reserved_is_checked<g4lidar_doctor_options>(
+      g4lidar_doctor_options_init, [&](auto* options) {
+        options->measuring_time_ns = 100'000'000;
+        g4lidar_report* made = nullptr;
+        const int code = g4lidar_diagnose_simulated(device.get(), options, &made, nullptr);
+        g4lidar_report_free(made);
+        return code;
+      });
+}
+
+TEST(COptions, ReservedBytesOfRecordingsAreChecked) {
+  const scratch directory;
+  const std::string path = directory.path("walk.mcap");
+  expect_reserved_is_checked<g4lidar_recorder_options>(
+      g4lidar_recorder_options_init, [&](auto* options) {
+        options->overwrite = true;
+        g4lidar_recorder* made = nullptr;
+        const int code = g4lidar_recorder_create(path.c_str(), options, &made, nullptr);
+        g4lidar_recorder_free(made);
+        return code;
+      });
+  record_briefly(path);
+  expect_reserved_is_checked<g4lidar_playback_options>(
+      g4lidar_playback_options_init, [&](auto* options) {
+        g4lidar_lidar* made = nullptr;
+        const int code = g4lidar_open_recording(path.c_str(), options, nullptr, &made, nullptr);
+        g4lidar_free(made);
+        return code;
+      });
+}
+
+TEST(COptions, ReservedBytesOfAMountingAreChecked) {
+  const g4lidar_point point{};
+  const g4lidar_twist twist{};
+  g4lidar_mounting mount{};
+  g4lidar_point out{};
+  const auto use = [&] {
+    return g4lidar_deskew_by_twist(&point, 1, &twist, 0, &mount, &out, nullptr);
+  };
+  EXPECT_EQ(use(), G4LIDAR_OK);
+  mount.reserved[6] = 1;
+  EXPECT_EQ(use(), G4LIDAR_BAD_ARGUMENT);
+  const scratch directory;
+  g4lidar_recorder_options options;
+  g4lidar_recorder_options_init(&options, sizeof options);
+  options.mount = &mount;
+  g4lidar_recorder* made = nullptr;
+  EXPECT_EQ(g4lidar_recorder_create(directory.path("a").c_str(), &options, &made, nullptr),
+            G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(made, nullptr);
 }
 
 }  // namespace

@@ -160,6 +160,22 @@ TEST(CDoctor, FindsAFaultAndReportsEachStage) {
   EXPECT_TRUE(is_found);
 }
 
+TEST(CDoctor, ExaminesTheSourceThatIsNamed) {
+  g4lidar_report* made = nullptr;
+  ASSERT_EQ(g4lidar_diagnose("/dev/no-such-port", nullptr, &made, nullptr), G4LIDAR_OK);
+  const report found(made);
+  const g4lidar_stage* port = g4lidar_report_at(found.get(), 0);
+  ASSERT_NE(port, nullptr);
+  EXPECT_STREQ(port->name, "port");
+  EXPECT_EQ(port->verdict, G4LIDAR_VERDICT_FAIL);
+  EXPECT_NE(std::strstr(port->remark, "/dev/no-such-port"), nullptr) << port->remark;
+  ASSERT_EQ(port->diagnosis_count, 1U);
+  EXPECT_STREQ(port->diagnoses[0].name, "no_port");
+  for (std::size_t i = 1; i < g4lidar_report_count(found.get()); ++i) {
+    EXPECT_EQ(g4lidar_report_at(found.get(), i)->verdict, G4LIDAR_VERDICT_SKIPPED);
+  }
+}
+
 TEST(CDoctor, IsCancelled) {
   g4lidar_doctor_options options;
   g4lidar_doctor_options_init(&options, sizeof options);

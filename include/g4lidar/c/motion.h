@@ -45,7 +45,7 @@ typedef struct g4lidar_odometry {
 typedef struct g4lidar_mounting {
   g4lidar_pose pose; /**< The place of the lidar's frame G4LIDAR_ROBOT in the frame of the robot. */
   bool upside_down;  /**< Whether the lidar hangs with its top down. */
-  uint8_t reserved[7]; /**< 0. */
+  uint8_t reserved[7]; /**< 0; else G4LIDAR_BAD_ARGUMENT. */
 } g4lidar_mounting;
 
 /** Deskews `count` points to `reference_ns`, while the robot moved with a constant twist, into `out`,
