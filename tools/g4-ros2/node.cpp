@@ -16,6 +16,7 @@
 #include "io/service_watch.hpp"
 #include "lidar_node.hpp"
 #include "merger.hpp"
+#include "node_announcement.hpp"
 #include "node_services.hpp"
 
 namespace g4_tool {
@@ -43,6 +44,8 @@ class node {
     for (const auto& each : lidars_) all.push_back(each.get());
     services_ = std::make_unique<node_services>(bus_, options_, all);
     lidars_.front()->also_report([this] { return services_->status(); });
+    announcement_.emplace(bus_, options_.transport.announced,
+                          full_name(options_.name_space, options_.node));
   }
 
   int run() {
@@ -99,6 +102,7 @@ class node {
   std::optional<merger> merger_;
   std::unique_ptr<node_services> services_;  // the threads of the lidars end before it
   std::vector<std::unique_ptr<lidar_node>> lidars_;
+  std::optional<node_announcement> announcement_;
   time_limits limits_{options_.common.duration, 0ns};
   service_watch service_;
   clock::time_point network_due_{};

@@ -85,7 +85,12 @@ option_rows network_rows(ros2_options& options) {
        choice_row("--qos", "Reliability of scans and points (reliable)", transport.is_reliable,
                   choices<bool>{{"reliable", true}, {"best-effort", false}}),
        number_row("--depth", "N", "Messages that wait for a slow subscriber (5)", transport.depth,
-                  1, 10'000)});
+                  1, 10'000),
+       choice_row("--announce", "Announce the node to ROS 2 up to humble, or from iron on (none)",
+                  transport.announced,
+                  choices<announced_form>{{"none", announced_form::none},
+                                          {"humble", announced_form::humble},
+                                          {"iron", announced_form::iron}})});
 }
 
 option_rows place_rows(ros2_options& options) {

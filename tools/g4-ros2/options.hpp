@@ -34,12 +34,16 @@ struct frame_names {
   std::string odometry = "odom";
 };
 
+/// The form in which the node is announced: that of releases up to Humble, or from Iron on.
+enum class announced_form : unsigned char { none, humble, iron };
+
 /// How messages travel.
 struct delivery {
   std::optional<std::uint32_t> domain;  ///< Where given, else ROS_DOMAIN_ID.
   std::string interface;
   bool is_reliable = true;
   int depth = 5;
+  announced_form announced = announced_form::none;
 };
 
 /// A place that was given for the lidar of a name, or for the only one.

@@ -87,8 +87,12 @@ void bus::open() {
     here.peers.emplace_back("localhost");
   }
   domain_ = entity(dds_create_domain(here.domain, configuration(here).c_str()));
+  // Without an enclave ROS 2 does not list the nodes of a participant.
+  constexpr std::string_view user_data = "enclave=/;";
+  const qos wish(dds_create_qos(), dds_delete_qos);
+  dds_qset_userdata(wish.get(), user_data.data(), user_data.size());
   const dds_entity_t made =
-      domain_ ? dds_create_participant(wanted_.domain, nullptr, nullptr) : DDS_RETCODE_ERROR;
+      domain_ ? dds_create_participant(wanted_.domain, wish.get(), nullptr) : DDS_RETCODE_ERROR;
   participant_ = entity(made);
   if (!participant_) {
     domain_ = {};

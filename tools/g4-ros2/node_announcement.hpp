@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The topic by which programs of ROS 2 know which node has which publishers, subscriptions and services.
+#pragma once
+
+#include <string>
+
+#include "dds/bus.hpp"
+#include "options.hpp"
+
+namespace g4_tool {
+
+/// Published each time that the domain is created, of all endpoints that were added to the bus before this one.
+class node_announcement final : public dds::endpoint {
+ public:
+  /// `node`: "/robot1/g4lidar".
+  node_announcement(dds::bus& on, announced_form form, std::string node);
+
+  void open(dds_entity_t participant, int* handle) override;
+  void close() noexcept override;
+
+ private:
+  announced_form form_;
+  std::string node_;
+  dds::entity topic_;
+  dds::entity writer_;
+};
+
+}  // namespace g4_tool
