@@ -159,9 +159,10 @@ TEST(Network, FollowsTheVariablesOfRos) {
   EXPECT_THAT(peers, HasSubstr("<Peer address=\"192.0.2.7\"/><Peer address=\"robot2\"/>"));
   EXPECT_THAT(peers, Not(HasSubstr("127.0.0.1")));  // else the other machine could not be reached
   EXPECT_THAT(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}), HasSubstr("<Tag>"));
-  EXPECT_EQ(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT"}}),
-            "<CycloneDDS><Domain><Internal><MultipleReceiveThreads>false</MultipleReceiveThreads>"
-            "</Internal></Domain></CycloneDDS>");
+  EXPECT_EQ(
+      configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT"}}),
+      "<CycloneDDS><Domain><Internal><HeartbeatInterval>10ms</HeartbeatInterval>"
+      "<MultipleReceiveThreads>false</MultipleReceiveThreads></Internal></Domain></CycloneDDS>");
   EXPECT_EQ(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "nonsense"}}), local);
   EXPECT_THAT(configured({{"CYCLONEDDS_URI", "file:///x.xml"}}),
               ::testing::EndsWith(",file:///x.xml"));

@@ -7,7 +7,6 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "merger.hpp"
 
 namespace g4_tool {
@@ -17,42 +16,6 @@ using namespace std::chrono_literals;
 
 /// So long the motor turns on when the last subscriber has gone: one that comes again need not wait.
 constexpr auto rest_delay = 3s;
-
-constexpr auto diagnostics_pulse = 1s;
-
-diagnostic_status status_of_state(const station& device, const std::string& serial) {
-  const station_state state = device.state();
-  const bool is_bad = state == station_state::opening || state == station_state::lost;
-  diagnostic_status made{.level = is_bad ? diagnostic_level::error : diagnostic_level::ok,
-                         .name = "g4lidar: state",
-                         .message = std::string(name_of(state)),
-                         .hardware_id = serial,
-                         .values = {{"device", device.name()}}};
-  if (is_bad && !device.why().empty()) made.message += ": " + in_tool_words(device.why());
-  return made;
-}
-
-/// What subscribers get of the scans, and what they did not.
-diagnostic_status status_of_topics(const scan_messages& messages, const std::string& serial) {
-  diagnostic_status made{.name = "g4lidar: topics", .message = "ok", .hardware_id = serial};
-  for (const dds::publisher* const each : messages.topics()) {
-    const dds::publisher_counts counts = each->counts();
-    const auto add = [&](const char* what, std::uint64_t count) {
-      made.values.emplace_back(each->name() + " " + what, std::to_string(count));
-    };
-    add("subscribers", counts.subscribers);
-    add("sent", counts.sent);
-    add("lost", counts.lost);
-    add("refused", counts.refused);
-    if (counts.lost > 0 || counts.refused > 0) {
-      made.level = diagnostic_level::warn;
-      made.message = counts.refused > 0
-                         ? "a subscriber wants a quality of service that is not offered: see --qos"
-                         : "messages were lost because a subscriber is too slow";
-    }
-  }
-  return made;
-}
 
 bool has_times_of_its_own(const std::string& source) {
   return kind_of(source) == source_kind::recording;
@@ -75,6 +38,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
                                      : full_name(options.name_space, which.name)),
       merger_(into),
       index_(index),
+      diagnostics_(on, options, name_space_, which.name),
       robot_(on, options, name_space_, index == 0 && has_times_of_its_own(which.source)),
       shaper_(options_of(options, which.source, into != nullptr), which.mount.value_or(mounting{})),
       parameters_(options_of(options, which.source, into != nullptr), options.fov, shaper_) {
@@ -90,8 +54,6 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
                           {.type = &dds::tf_message, .depth = 1, .is_for_late = true});
     place_->publish(place_message(options, frame_id, *which.mount));
   }
-  diagnostics_ = publisher_of(on, name_space_, options.topics.diagnostics,
-                              {.type = &dds::diagnostic_array, .depth = 10});
   const source_kind kind = kind_of(which.source);
   station_options wishes = options.station;
   wishes.starts_rested = options.is_standby;
@@ -116,31 +78,13 @@ void lidar_node::update() {
   const auto now = clock::now();
   if (!options_.is_standby || is_wanted()) wanted_ = now;
   station_->rest(!is_allowed_ || now - wanted_ > rest_delay);
-  if (!diagnostics_ || now < diagnostics_due_) return;
-  diagnostics_due_ = now + diagnostics_pulse;
-  if (diagnostics_->is_wanted()) publish_diagnostics();
+  diagnostics_.update(*station_, messages_ ? *messages_ : merger_->messages());
 }
 
 void lidar_node::change(std::vector<named_value> wanted, std::function<void(std::string)> done) {
   station_->ask([this, what = std::move(wanted), after = std::move(done)](g4lidar::lidar* lidar) {
     after(parameters_.change(lidar, what));
   });
-}
-
-void lidar_node::publish_diagnostics() {
-  const auto who = station_->identity();
-  const std::string serial(who ? who->serial_number() : "");
-  auto statuses = statuses_of(station_->stages(), station_->counts(), serial);
-  statuses.insert(statuses.begin(), status_of_state(*station_, serial));
-  statuses.push_back(status_of_topics(messages_ ? *messages_ : merger_->messages(), serial));
-  if (more_) statuses.push_back(more_());
-  if (!which_.name.empty()) {
-    for (diagnostic_status& each : statuses) each.name.insert(0, which_.name + " ");
-  }
-  std::vector<std::uint8_t> message;
-  const auto now_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
-  put_diagnostic_array(statuses, now_ns.count(), message);
-  diagnostics_->publish(message);
 }
 
 void lidar_node::on_open(opened_source& source) {

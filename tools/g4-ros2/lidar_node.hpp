@@ -21,6 +21,7 @@
 #include "io/odometry_feed.hpp"
 #include "io/scan_shaper.hpp"
 #include "io/station.hpp"
+#include "lidar_diagnostics.hpp"
 #include "options.hpp"
 #include "parameters.hpp"
 #include "robot_messages.hpp"
@@ -48,7 +49,9 @@ class lidar_node final : public station_listener {
   void change(std::vector<named_value> wanted, std::function<void(std::string)> done);
   [[nodiscard]] const lidar_parameters& parameters() const noexcept { return parameters_; }
   /// One more status for its diagnostics.
-  void also_report(std::function<diagnostic_status()> what) { more_ = std::move(what); }
+  void also_report(std::function<diagnostic_status()> what) {
+    diagnostics_.also_report(std::move(what));
+  }
 
   [[nodiscard]] const std::string& name() const noexcept { return which_.name; }
   [[nodiscard]] station& device() noexcept { return *station_; }
@@ -64,7 +67,6 @@ class lidar_node final : public station_listener {
   using clock = std::chrono::steady_clock;
 
   [[nodiscard]] bool is_wanted() const;
-  void publish_diagnostics();
   [[nodiscard]] std::int64_t ahead_ns() const { return station_->wall_ns(0); }
 
   const ros2_options& options_;
@@ -73,18 +75,16 @@ class lidar_node final : public station_listener {
   merger* merger_;
   std::size_t index_;
   std::unique_ptr<scan_messages> messages_;  // null if its scans are merged
+  lidar_diagnostics diagnostics_;
   robot_messages robot_;
   std::unique_ptr<dds::publisher> place_;
-  std::unique_ptr<dds::publisher> diagnostics_;
   std::unique_ptr<odometry_subscription> driven_;
   odometry_feed feed_;  // of the station's thread, as the next two
   odometry_path path_;
   scan_shaper shaper_;
   lidar_parameters parameters_;
-  std::function<diagnostic_status()> more_;
   std::atomic<bool> is_allowed_ = true;
-  clock::time_point wanted_{};  // last
-  clock::time_point diagnostics_due_{};
+  clock::time_point wanted_{};        // last
   std::unique_ptr<station> station_;  // ends first
 };
 

@@ -55,10 +55,10 @@ bool scan_messages::is_wanted() const {
   return (scan_ && scan_->is_wanted()) || (points_ && points_->is_wanted());
 }
 
-std::vector<const dds::publisher*> scan_messages::topics() const {
-  std::vector<const dds::publisher*> all;
+named_counts scan_messages::counts() const {
+  named_counts all;
   for (const auto* each : {&scan_, &points_}) {
-    if (*each) all.push_back(each->get());
+    if (*each) all.emplace_back((*each)->name(), (*each)->counts());
   }
   return all;
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "dds/bus.hpp"
@@ -21,7 +22,10 @@ struct scan_times {
   std::int64_t ahead_ns = 0;     ///< The wall clock minus the clock of the points.
 };
 
-/// The topics of one lidar, or of all that are merged. *Single thread* but is_wanted().
+/// The counts of topics by their names.
+using named_counts = std::vector<std::pair<std::string, dds::publisher_counts>>;
+
+/// The topics of one lidar, or of all that are merged. *Single thread* but for what says otherwise.
 class scan_messages {
  public:
   scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
@@ -31,8 +35,8 @@ class scan_messages {
   void publish(const shaped_scan& shaped, const scan_times& when);
   /// Whether somebody reads one of them. *Any thread.*
   [[nodiscard]] bool is_wanted() const;
-  /// Those that are published. *Any thread.*
-  [[nodiscard]] std::vector<const dds::publisher*> topics() const;
+  /// Of those that are published. *Any thread.*
+  [[nodiscard]] named_counts counts() const;
 
  private:
   const ros2_options& options_;

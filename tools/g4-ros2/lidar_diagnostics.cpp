@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "lidar_diagnostics.hpp"
+
+#include <utility>
+
+#include "cli/exit_code.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr std::chrono::seconds diagnostics_pulse{1};
+
+diagnostic_status status_of_state(const station& device) {
+  const station_state state = device.state();
+  const bool is_bad = state == station_state::opening || state == station_state::lost;
+  diagnostic_status made{.level = is_bad ? diagnostic_level::error : diagnostic_level::ok,
+                         .name = "g4lidar: state",
+                         .message = std::string(name_of(state)),
+                         .values = {{"device", device.name()}}};
+  if (is_bad && !device.why().empty()) made.message += ": " + in_tool_words(device.why());
+  return made;
+}
+
+}  // namespace
+
+diagnostic_status topic_report::status(const named_counts& topics) {
+  diagnostic_status made{.name = "g4lidar: topics", .message = "ok"};
+  totals now;
+  for (const auto& [name, counts] : topics) {
+    const auto add = [&made, &topic = name](const char* what, std::uint64_t count) {
+      made.values.emplace_back(topic + " " + what, std::to_string(count));
+    };
+    add("subscribers", counts.subscribers);
+    add("sent", counts.sent);
+    add("lost", counts.lost);
+    add("refused", counts.refused);
+    now.lost += counts.lost;
+    now.refused += counts.refused;
+  }
+  const totals before = std::exchange(before_, now);
+  if (now.lost > before.lost) made.message = "messages were lost because a subscriber is too slow";
+  if (now.refused > before.refused) {
+    made.message = "a subscriber wants a quality of service that is not offered: see --qos";
+  }
+  if (made.message != "ok") made.level = diagnostic_level::warn;
+  return made;
+}
+
+lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
+                                     std::string_view name_space, std::string name)
+    : name_(std::move(name)),
+      topic_(publisher_of(on, name_space, options.topics.diagnostics,
+                          {.type = &dds::diagnostic_array, .depth = 10})) {}
+
+void lidar_diagnostics::update(const station& device, const scan_messages& messages) {
+  const auto now = clock::now();
+  if (!topic_ || now < due_) return;
+  due_ = now + diagnostics_pulse;
+  if (!topic_->is_wanted()) return;
+  const auto who = device.identity();
+  const std::string serial(who ? who->serial_number() : "");
+  auto statuses = statuses_of(device.stages(), device.counts(), serial);
+  statuses.insert(statuses.begin(), status_of_state(device));
+  statuses.push_back(topics_.status(messages.counts()));
+  for (const auto& each : more_) statuses.push_back(each());
+  for (diagnostic_status& each : statuses) {
+    each.hardware_id = serial;
+    if (!name_.empty()) each.name.insert(0, name_ + " ");
+  }
+  std::vector<std::uint8_t> message;
+  const auto now_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
+  put_diagnostic_array(statuses, now_ns.count(), message);
+  topic_->publish(message);
+}
+
+}  // namespace g4_tool

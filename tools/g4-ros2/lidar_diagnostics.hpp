@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The messages of one lidar on /diagnostics.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dds/bus.hpp"
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "io/station.hpp"
+#include "options.hpp"
+#include "scan_messages.hpp"
+
+namespace g4_tool {
+
+/// What subscribers get of the scans, and what they do not. *Pure* but for its own state.
+class topic_report {
+ public:
+  /// A warning if more was lost or refused than at the last call.
+  [[nodiscard]] diagnostic_status status(const named_counts& topics);
+
+ private:
+  struct totals {
+    std::uint64_t lost = 0;
+    std::uint64_t refused = 0;
+  };
+  totals before_;
+};
+
+/// *Single thread*: that of the bus.
+class lidar_diagnostics {
+ public:
+  /// `name`: of the lidar; empty for the only one.
+  lidar_diagnostics(dds::bus& on, const ros2_options& options, std::string_view name_space,
+                    std::string name);
+
+  /// One more status in each message.
+  void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
+  /// Publishes once a second, if somebody subscribes.
+  void update(const station& device, const scan_messages& messages);
+
+ private:
+  using clock = std::chrono::steady_clock;
+
+  std::string name_;
+  std::unique_ptr<dds::publisher> topic_;  // null: off
+  topic_report topics_;
+  std::vector<std::function<diagnostic_status()>> more_;
+  clock::time_point due_{};
+};
+
+}  // namespace g4_tool
