@@ -84,9 +84,9 @@ class node {
     return nullptr;
   }
 
-  /// A service is ready when it is in the domain, and alive with each turn.
+  /// A service is ready although there is no network yet, and alive with each turn.
   void report() {
-    if (bus_.is_up()) service_.ready();
+    service_.ready();
     service_.alive();
     if (!service_.is_heard()) return;
     std::string text;

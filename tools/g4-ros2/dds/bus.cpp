@@ -7,27 +7,64 @@
 
 #include <algorithm>
 #include <mutex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "cli/logger.hpp"
+#include "cli/verbs.hpp"
 
 namespace g4_tool::dds {
 namespace {
 
+/// So many different lines are remembered.
+constexpr std::size_t most_lines = 100;
+
+/// What Cyclone DDS reports.
+struct domain_log {
+  std::mutex mutex;
+  std::set<std::string> lines;  // that were reported
+  std::string refusal;          // of the configuration, the first one
+};
+
+domain_log& the_log() {
+  static domain_log log;
+  return log;
+}
+
+/// Why a configuration is refused, if the line says so.
+std::string_view refusal_in(std::string_view line) {
+  constexpr std::string_view of_contents = "config: ";
+  if (line.starts_with(of_contents)) {
+    line.remove_prefix(of_contents.size());
+    return line.substr(0, line.find(" (CYCLONEDDS_URI"));
+  }
+  return line.starts_with("can't open configuration file") ? line : std::string_view();
+}
+
 /// What it cannot do is reported once, although it is tried again.
 void log_line(void*, const dds_log_data_t* line) {
-  static std::mutex mutex;
-  static std::string before;
   std::string_view text(line->message, line->size);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.remove_suffix(1);
   const bool is_bad = (line->priority & (DDS_LC_FATAL | DDS_LC_ERROR)) != 0;
+  domain_log& log = the_log();
+  const std::lock_guard lock(log.mutex);
+  if (const std::string_view why = refusal_in(text); is_bad && !why.empty()) {
+    if (log.refusal.empty()) log.refusal = why;
+    return;
+  }
+  if (log.lines.size() > most_lines) log.lines.clear();
+  if (!log.lines.emplace(text).second) return;
   const std::string words = fmt::format("Cyclone DDS: {}\n", text);
-  const std::lock_guard lock(mutex);
-  if (words == before) return;
-  before = words;
   is_bad ? logger::info(words) : logger::verbose(words);
+}
+
+/// Why the last configuration was refused; empty if it was not.
+std::string take_refusal() {
+  domain_log& log = the_log();
+  const std::lock_guard lock(log.mutex);
+  return std::exchange(log.refusal, {});
 }
 
 }  // namespace
@@ -96,14 +133,23 @@ void bus::open() {
   participant_ = entity(made);
   if (!participant_) {
     domain_ = {};
-    std::string problem = fmt::format(
-        "cannot join the ROS 2 domain {} now; trying again{}\n", wanted_.domain,
-        wanted_.interface.empty() ? "" : ". Is the interface " + wanted_.interface + " there?");
+    const std::string refusal = take_refusal();
+    std::string hint;
+    if (!refusal.empty()) {
+      hint = "CYCLONEDDS_URI: " + refusal + ". Correct that variable, or unset it";
+      if (is_new_) throw bad_value(hint);
+    } else if (!wanted_.interface.empty()) {
+      hint = "Is the interface " + wanted_.interface + " there?";
+    }
+    is_new_ = false;
+    std::string problem = fmt::format("cannot join the ROS 2 domain {} now; trying again{}{}\n",
+                                      wanted_.domain, hint.empty() ? "" : ". ", hint);
     if (problem != std::exchange(problem_, problem)) logger::info(problem);
     return;
   }
   logger::verbose(fmt::format("joined the ROS 2 domain {}\n", wanted_.domain));
   problem_.clear();
+  is_new_ = false;
   for (endpoint* each : endpoints_) each->open(made, &wake_);
 }
 

@@ -54,7 +54,7 @@ class bus {
   /// Does so no more. The destructor of an endpoint calls it.
   void remove(const endpoint& what) noexcept;
   /// Creates the domain if there is none, or if the network has changed; to be called about once a
-  /// second. What failed is reported once.
+  /// second. What failed is reported once. The first call throws bad_value if CYCLONEDDS_URI is refused.
   void update();
   /// Closes all, so that subscribers learn it at once.
   void close() noexcept;
@@ -74,6 +74,7 @@ class bus {
   entity domain_;
   entity participant_;
   std::string problem_;  // as it was reported
+  bool is_new_ = true;   // no domain was tried yet
 };
 
 /// What is published.

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// g4-ros2 without a network, and with a configuration that cannot be used.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/manager.hpp"
+#include "cli/program.hpp"
+#include "lidar.hpp"
+#include "subscriber.hpp"
+
+namespace ros2 {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Domain : public cli::scratch {
+ protected:
+  test_domain domain_;
+};
+
+TEST_F(Domain, AConfigurationThatIsRefusedIsAUsageError) {
+  cli::write_file(path("broken.xml"), "<CycloneDDS><Domain></General></CycloneDDS>");
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"<CycloneDDS><Domain><Foo>1</Foo></Domain></CycloneDDS>", "Foo: unknown element"},
+      {"<CycloneDDS><Domain><Foo", "Foo"},
+      {"file://" + path("broken.xml"), "General"},
+      {"file://" + path("missing.xml"), "missing.xml"}};
+  for (const auto& [value, why] : refused) {
+    ::setenv("CYCLONEDDS_URI", value.c_str(), 1);
+    cli::program tool({"sim:", "--duration", "60"});
+    const cli::outcome end = tool.wait();
+    EXPECT_EQ(end.code, 2) << value;
+    EXPECT_THAT(end.err, HasSubstr("CYCLONEDDS_URI: ")) << value;
+    EXPECT_THAT(end.err, HasSubstr(why)) << value;
+    EXPECT_THAT(end.err, HasSubstr("unset it")) << value;
+    EXPECT_EQ(std::ranges::count(end.err, '\n'), 1) << end.err;
+  }
+}
+
+TEST_F(Domain, AServiceIsReadyWithoutOne) {
+  const cli::manager systemd(path("notify"));
+  const served_lidar lidar;
+  cli::program tool({lidar.path(), "--interface", "nosuch9"});
+  std::vector<std::string> heard;
+  EXPECT_TRUE(comes_true([&] {
+    const std::vector<std::string> more = systemd.heard();
+    heard.insert(heard.end(), more.begin(), more.end());
+    return std::ranges::count(heard, "READY=1") == 1 &&
+           std::ranges::any_of(heard, [](const std::string& each) {
+             return each.find("running") != std::string::npos;
+           });
+  })) << ::testing::PrintToString(heard);
+  tool.send(SIGINT);
+  const cli::outcome end = tool.wait();
+  EXPECT_EQ(end.code, 130);
+  EXPECT_THAT(end.err, HasSubstr("Is the interface nosuch9 there"));
+  EXPECT_EQ(end.err.find("nosuch9 there"), end.err.rfind("nosuch9 there")) << end.err;
+}
+
+}  // namespace
+}  // namespace ros2
