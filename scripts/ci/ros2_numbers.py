@@ -65,7 +65,7 @@ class Truth:
             if len(returns) == len(points) and all(abs(p[4] - s.range_m) < RANGE_M for p, s in zip(points, returns)):
                 break
         else:
-            # Its time tells that it is of the first seconds; else its numbers are wrong.
+            # By its time it must be one of the first seconds; else its numbers are wrong.
             assert self.begin_ns is None or stamp_ns(cloud.header) - self.begin_ns < SETTLED_NS + 1_000_000, points[:5]
             return None
         self.check_time(cloud.header, samples[0])
