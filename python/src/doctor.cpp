@@ -16,6 +16,7 @@
 
 #include "errors.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
+#include "gil.hpp"
 #include "simulator.hpp"
 #include "words.hpp"
 
@@ -49,7 +50,7 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
     const bool is_held = lock.owns_lock();
     if (is_held) lock.unlock();
     {
-      const nb::gil_scoped_acquire held;
+      const with_gil held;
       python();
     }
     if (is_held) lock.lock();
@@ -78,7 +79,7 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
   if (given != nullptr && (*given)->is_virtual()) {
     const auto alive = (*given)->in_virtual_time();
     const auto mutex = (*given)->mutex();
-    const nb::gil_scoped_release free;
+    const without_gil free;
     lock = std::unique_lock(*mutex);
     sim::virtual_connector from(alive->device, alive->clock);
     found = diagnose(from, how);
@@ -87,7 +88,7 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
     const std::string name = given != nullptr ? (*given)->path() : std::get<path_text>(device).text;
     std::shared_ptr<sim::background_pty> served;
     if (sim::is_simulated(name)) served = value_of(sim::serve_alone(make_device(read_setup(name))));
-    const nb::gil_scoped_release free;
+    const without_gil free;
     found = diagnose(served ? served->path() : name, how);
     served.reset();
   }

@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "gil.hpp"
+
 namespace g4lidar::python {
 
 /// The process in which this was made.

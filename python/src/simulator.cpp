@@ -124,7 +124,7 @@ std::string simulator::path() const {
 void simulator::close() {
   process_.check("this simulated lidar");
   auto closed = std::move(real_->port);
-  const nb::gil_scoped_release free;
+  const without_gil free;
   closed.reset();
 }
 

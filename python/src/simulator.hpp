@@ -71,11 +71,11 @@ auto simulator::with(const Look& look) {
   process_.check("this simulated lidar");
   std::optional<decltype(look(virtual_->device, std::int64_t{}))> found;
   if (virtual_) {
-    const nb::gil_scoped_release free;
+    const without_gil free;
     const std::lock_guard lock(*mutex_);
     found = look(virtual_->device, virtual_->clock.now_ns());
   } else if (auto port = real_->port) {  // a copy: close() of another thread leaves it alone
-    const nb::gil_scoped_release free;
+    const without_gil free;
     port->with([&](sim::device& device, std::int64_t now_ns) { found = look(device, now_ns); });
     port.reset();
   } else {

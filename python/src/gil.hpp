@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// The lock of the interpreter (GIL), also for threads that still run when the program ends.
+#pragma once
+
+#include <Python.h>
+
+namespace g4lidar::python {
+
+/// Releases the GIL while it exists. A thread that wants it back when the interpreter has ended waits for ever, as in
+/// Python 3.14; earlier versions end the thread there, which ends the program, because of functions that do not throw.
+class without_gil {
+ public:
+  without_gil() : state_(PyEval_SaveThread()) {}
+  without_gil(const without_gil&) = delete;
+  without_gil& operator=(const without_gil&) = delete;
+  ~without_gil();
+
+ private:
+  PyThreadState* state_;
+};
+
+/// Takes the GIL while it exists, in a thread that may have released it; the same at the end of the program.
+class with_gil {
+ public:
+  with_gil();
+  with_gil(const with_gil&) = delete;
+  with_gil& operator=(const with_gil&) = delete;
+  ~with_gil() { PyGILState_Release(state_); }
+
+ private:
+  PyGILState_STATE state_;
+};
+
+}  // namespace g4lidar::python
