@@ -42,6 +42,8 @@ def g4_lidar(
 ) -> Iterator[g4lidar.Lidar]:
     """An open lidar on a simulator with the options of the mark `g4`; by default in virtual time."""
     marker = request.node.get_closest_marker("g4")
+    if marker and marker.args:
+        raise pytest.UsageError(f"the mark g4 takes arguments by name, not {marker.args}")
     options = dict(marker.kwargs) if marker else {}
     with g4lidar.open(g4_simulator(**options)) as lidar:
         yield lidar

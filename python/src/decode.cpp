@@ -5,8 +5,10 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "g4lidar/bulk_decoder.hpp"
+#include "gil.hpp"
 #include "scan.hpp"
 
 namespace g4lidar::python {
@@ -17,24 +19,51 @@ namespace {
 
 using namespace nb::literals;
 
+/// Python's class Decoder.
+class decoder {
+ public:
+  /// The decoder, while this exists: it is used without the GIL, by one call at a time.
+  class use {
+   public:
+    explicit use(decoder& of) : of_(of) {
+      if (std::exchange(of.is_busy_, true)) {
+        PyErr_SetString(PyExc_RuntimeError,
+                        "another thread is decoding with this Decoder: use one for each thread");
+        throw nb::python_error();
+      }
+    }
+    use(const use&) = delete;
+    use& operator=(const use&) = delete;
+    ~use() { of_.is_busy_ = false; }
+    bulk_decoder* operator->() const noexcept { return &of_.made_; }
+
+   private:
+    decoder& of_;
+  };
+
+ private:
+  bulk_decoder made_;
+  bool is_busy_ = false;  // guarded by the GIL
+};
+
 /// Room for the points of so many bytes, of which `held` are in the decoder: a sample has two bytes.
-std::size_t room_for(std::size_t bytes_given, const bulk_decoder& decoder) {
-  return (bytes_given + decoder.held()) / 2 + max_samples;
+std::size_t room_for(std::size_t bytes_given, std::size_t held) {
+  return (bytes_given + held) / 2 + max_samples;
 }
 
 /// The room for no bytes, with the longest beginning of a packet in the decoder.
 constexpr std::size_t spare_points = max_samples + max_packet_size / 2;
 
 /// Without the GIL for long data: the memory of both arrays is held by their buffers.
-array<point> decode(bulk_decoder& decoder, nb::handle data,
-                    const std::optional<array<point>>& out) {
+array<point> decode(decoder& with, nb::handle data, const std::optional<array<point>>& out) {
+  const decoder::use used(with);
   const buffer from(data);
   bytes input = from.read();
   const auto run = [&](std::span<point> to) {
-    const nb::gil_scoped_release free;
-    return decoder.decode(input, to).size();
+    const without_gil free;
+    return used->decode(input, to).size();
   };
-  if (!out) return make_array<point>(room_for(input.size(), decoder), run);
+  if (!out) return make_array<point>(room_for(input.size(), used->held()), run);
   const nb::object target = contiguous(out->object, element::point);
   if (!target.is(out->object)) {
     throw nb::value_error("out is not contiguous, or its address is no multiple of 8");
@@ -51,16 +80,18 @@ array<point> decode(bulk_decoder& decoder, nb::handle data,
   return {target[nb::slice(nb::int_(0), nb::int_(count), nb::int_(1))]};
 }
 
-array<point> finish(bulk_decoder& decoder) {
-  return make_array<point>(room_for(0, decoder),
-                           [&](std::span<point> out) { return decoder.finish(out).size(); });
+array<point> finish(decoder& with) {
+  const decoder::use used(with);
+  return make_array<point>(room_for(0, used->held()),
+                           [&](std::span<point> out) { return used->finish(out).size(); });
 }
 
-nb::dict counts(const bulk_decoder& decoder) {
+nb::dict counts(decoder& with) {
+  const decoder::use used(with);
   nb::dict all;
-  const stream_counts& now = decoder.counts();
+  const stream_counts& now = used->counts();
   all["parsed_bytes"] = now.parsed_bytes;
-  all["held"] = decoder.held();
+  all["held"] = used->held();
   all["packets"] = now.packets;
   all["responses"] = now.responses;
   all["points"] = now.points;
@@ -75,11 +106,12 @@ nb::dict counts(const bulk_decoder& decoder) {
 }  // namespace
 
 void bind_decode(nb::module_& module) {
-  nb::class_<bulk_decoder>(
+  nb::class_<decoder>(
       module, "Decoder",
       "Bytes of a lidar to points, at the full speed of the processor. Keeps the beginning of an "
       "unfinished packet for "
-      "the next call. One thread at a time. Times are 0: a recording has them, see open().")
+      "the next call. One thread at a time: else RuntimeError is raised. Times are 0: a recording "
+      "has them, see open().")
       .def(nb::init<>())
       .def("decode", &decode, "data"_a, "out"_a = nb::none(),
            nb::sig("def decode(self, data: bytes | bytearray | memoryview | "
@@ -103,8 +135,8 @@ void bind_decode(nb::module_& module) {
       [](nb::handle data) {
         const buffer from(data);
         bulk_decoder decoder;
-        return make_array<point>(room_for(from.read().size(), decoder), [&](std::span<point> out) {
-          const nb::gil_scoped_release free;
+        return make_array<point>(room_for(from.read().size(), 0), [&](std::span<point> out) {
+          const without_gil free;
           bytes input = from.read();
           const std::size_t count = decoder.decode(input, out).size();
           return count + decoder.finish(out.subspan(count)).size();

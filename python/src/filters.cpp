@@ -4,6 +4,8 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -29,17 +31,41 @@ struct owned_filter {
   std::vector<polygon> masks;
 };
 
+void require_numbers(std::initializer_list<double> values) {
+  for (const double value : values) {
+    if (std::isnan(value)) throw nb::value_error("a limit is a number, not NaN");
+  }
+}
+
+void require_finite(const angles& sector) {
+  if (!std::isfinite(sector.first) || !std::isfinite(sector.second))
+    throw nb::value_error("the angles of a sector are finite");
+}
+
 array<point> select(const array<point>& points, const std::optional<angles>& field_of_view,
                     const std::vector<angles>& ignored_sectors, const std::vector<outline>& masks,
                     float least_range_mm, float greatest_range_mm, bool returns_only,
                     bool trusted_only, unsigned excluded, frame in, bool for_grid) {
+  require_numbers({least_range_mm, greatest_range_mm});
+  if (excluded > 0xFFU) throw nb::value_error("excluded: flags of PointFlag");
   owned_filter how;
   how.made.in = in;
-  if (field_of_view) how.made.field_of_view = sector(field_of_view->first, field_of_view->second);
-  for (const auto& [from, to] : ignored_sectors) how.ignored.emplace_back(from, to);
+  if (field_of_view) {
+    require_finite(*field_of_view);
+    how.made.field_of_view = sector(field_of_view->first, field_of_view->second);
+  }
+  for (const angles& each : ignored_sectors) {
+    require_finite(each);
+    how.ignored.emplace_back(each.first, each.second);
+  }
   for (const outline& each : masks) {
+    if (each.size() < 3) throw nb::value_error("a mask has 3 corners or more");
     auto& corners = how.corners.emplace_back();
-    for (const auto& [x_m, y_m] : each) corners.push_back({x_m, y_m});
+    for (const auto& [x_m, y_m] : each) {
+      if (!std::isfinite(x_m) || !std::isfinite(y_m))
+        throw nb::value_error("the corners of a mask are finite");
+      corners.push_back({x_m, y_m});
+    }
   }
   how.masks.assign(how.corners.begin(), how.corners.end());
   how.made.ignored_sectors = how.ignored;
@@ -48,7 +74,7 @@ array<point> select(const array<point>& points, const std::optional<angles>& fie
   how.made.greatest_range_mm = greatest_range_mm;
   how.made.returns_only = returns_only;
   how.made.trusted_only = trusted_only;
-  how.made.excluded = static_cast<point_flags>(excluded & 0xFFU);
+  how.made.excluded = static_cast<point_flags>(excluded);
   const elements<point> from(points);
   return make_array<point>(from.span().size(), [&](std::span<point> out) {
     return (for_grid ? filter_for_grid(from.span(), how.made, out)
@@ -98,6 +124,7 @@ void bind_filters(nb::module_& module) {
       "mark_isolated",
       [](const array<point>& points, std::size_t window, std::size_t count, float near_m,
          float near_ratio, scan_ends ends) {
+        require_numbers({near_m, near_ratio});
         const speckle_limits limits{checked_window(window), count, near_m, near_ratio};
         return marked(points, [&](std::span<point> all) { mark_isolated(all, limits, ends); });
       },

@@ -102,10 +102,16 @@ class writer {
  public:
   explicit writer(recording_writer&& made) : file_(std::move(made)) {}
 
-  [[nodiscard]] recording_writer& file() const { return file_.get("this RecordingWriter"); }
-  /// Raises what could not be written.
-  void check() const {
-    if (const auto why = file().take_error()) raise(*why);
+  /// Raises ValueError after close(), as files of Python do.
+  [[nodiscard]] recording_writer& file() const {
+    recording_writer& found = file_.get("this RecordingWriter");
+    if (is_closed_) throw nb::value_error("this RecordingWriter is closed");
+    return found;
+  }
+  void bytes_of(nb::handle data, std::int64_t time_ns,
+                void (recording_writer::*put)(bytes, std::int64_t) noexcept) {
+    (file().*put)(buffer(data).read(), time_ns);
+    check();
   }
   void scan(const kept_scan& revolution) {
     const elements<point> points(revolution.points);
@@ -114,9 +120,31 @@ class writer {
     file().scan(whole);
     check();
   }
+  /// Raises ValueError for what the writer would leave out.
+  void odometry(const stamped_odometry& what) {
+    recording_writer& into = file();
+    const auto before = into.counts();
+    if (before.bytes_from_device + before.bytes_to_device == 0)
+      throw nb::value_error("odometry follows the first bytes of a recording");
+    into.odometry(what);
+    check();
+    if (into.counts().odometry == before.odometry)
+      throw nb::value_error("the numbers of odometry are finite, and at most 1e6");
+  }
+  void close() {
+    recording_writer& closed = file_.get("this RecordingWriter");
+    is_closed_ = true;
+    python::check(closed.close());
+  }
 
  private:
+  /// Raises what could not be written.
+  void check() const {
+    if (const auto why = file().take_error()) raise(*why);
+  }
+
   of_process<recording_writer> file_;
+  bool is_closed_ = false;
 };
 
 void bind_reader(nb::module_& module) {
@@ -215,8 +243,7 @@ void bind_recording(nb::module_& module) {
       .def(
           "from_device",
           [](writer& into, nb::handle data, std::int64_t time_ns) {
-            into.file().from_device(buffer(data).read(), time_ns);
-            into.check();
+            into.bytes_of(data, time_ns, &recording_writer::from_device);
           },
           "data"_a, "time_ns"_a,
           nb::sig("def from_device(self, data: bytes | bytearray | memoryview | "
@@ -225,8 +252,7 @@ void bind_recording(nb::module_& module) {
       .def(
           "to_device",
           [](writer& into, nb::handle data, std::int64_t time_ns) {
-            into.file().to_device(buffer(data).read(), time_ns);
-            into.check();
+            into.bytes_of(data, time_ns, &recording_writer::to_device);
           },
           "data"_a, "time_ns"_a,
           nb::sig("def to_device(self, data: bytes | bytearray | memoryview | "
@@ -236,13 +262,10 @@ void bind_recording(nb::module_& module) {
       .def(
           "odometry",
           [](writer& into, std::int64_t time_ns, double x_m, double y_m, double yaw_rad,
-             const twist_2d& twist) {
-            into.file().odometry({time_ns, {x_m, y_m, yaw_rad}, twist});
-            into.check();
-          },
+             const twist_2d& twist) { into.odometry({time_ns, {x_m, y_m, yaw_rad}, twist}); },
           "time_ns"_a, "x_m"_a, "y_m"_a, "yaw_rad"_a, "twist"_a = twist_2d{},
-          "Records the pose of the robot in a fixed frame, and its velocity. Ignored before the "
-          "first bytes.")
+          "Records the pose of the robot in a fixed frame, and its velocity. Raises ValueError "
+          "before the first bytes, and for numbers that are not finite or above 1e6.")
       .def(
           "set_wall_clock",
           [](writer& into, std::int64_t ahead_ns) { into.file().set_wall_clock(ahead_ns); },
@@ -251,14 +274,14 @@ void bind_recording(nb::module_& module) {
       .def(
           "flush", [](writer& into) { check(into.file().flush()); },
           "Passes everything to the system.")
-      .def(
-          "close", [](writer& into) { check(into.file().close()); },
-          "Ends the file with its summary.")
+      .def("close", &writer::close,
+           "Ends the file with its summary. A second call does nothing; every other call then "
+           "raises ValueError.")
       .def(
           "__enter__", [](nb::handle self) { return nb::borrow(self); },
           nb::sig("def __enter__(self) -> RecordingWriter"))
       .def(
-          "__exit__", [](writer& into, const nb::args&) { check(into.file().close()); },
+          "__exit__", [](writer& into, const nb::args&) { into.close(); },
           nb::sig("def __exit__(self, *args: object) -> None"));
 }
 

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import textwrap
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -173,3 +174,37 @@ def test_the_documented_room_of_decode_is_enough() -> None:
         decoder.decode(bytes(given), np.zeros(given // 2 + 165, g4lidar.POINT_DTYPE))
         with pytest.raises(ValueError, match="165 more"):
             decoder.decode(bytes(given), np.zeros(given // 2 + 164, g4lidar.POINT_DTYPE))
+
+
+def test_a_decoder_in_two_threads_is_refused() -> None:
+    decoder = g4lidar.Decoder()
+    zeros = bytes(20_000_000)
+    refused: list[str] = []
+    ended = threading.Event()
+
+    def use() -> None:
+        while not ended.is_set():
+            try:
+                decoder.decode(zeros)
+            except RuntimeError as error:
+                refused.append(str(error))
+                ended.set()
+
+    threads = [threading.Thread(target=use) for _ in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert refused and "one for each thread" in refused[0]
+    assert len(decoder.decode(b"")) == 0  # it can be used again
+
+
+def test_the_mark_takes_names_only(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile("""
+        import pytest
+
+        @pytest.mark.g4("unplug@3s")
+        def test_one(g4_lidar): ...
+    """)
+    result = pytester.runpytest_subprocess("-p", "no:cacheprovider")
+    result.stdout.fnmatch_lines("*takes arguments by name*")
