@@ -1,55 +1,62 @@
 # SPDX-License-Identifier: MIT
 """Scans in the loop of asyncio: Lidar.scans_async()."""
 import asyncio
+import math
+import os
 from collections.abc import AsyncIterator
 
 from ._g4lidar import Lidar, Scan
-from .errors import EndOfInput, Timeout
+from .errors import Reconnecting
 
-LONGEST_SPIN_UP = 10.0  # seconds; see Lidar.scans()
 STEP = 0.1  # seconds of a lidar without a descriptor, whose time is virtual
 
 
 async def scans(lidar: Lidar, timeout: float | None, newest: bool) -> AsyncIterator[Scan]:
     """Yields scans, and waits for the descriptor of the lidar and for its deadline."""
     loop = asyncio.get_running_loop()
+    limit = math.inf if timeout is None else timeout
     waited = 0.0  # without a scan
     while True:
-        limit = None if timeout is None else timeout + (LONGEST_SPIN_UP if lidar.is_spinning_up else 0.0)
+        descriptor = lidar.fileno()
+        step = 0.0 if descriptor >= 0 else STEP
+        left = max(0.0, limit - waited)
         try:
-            scan = lidar.poll_scan(newest=newest) if lidar.fileno() >= 0 else lidar.next_scan(STEP)
-        except Timeout:
-            scan = None
-            waited += STEP
-        except EndOfInput:
+            scan = lidar._advance(min(step, left), newest, timeout if left <= step else None)
+        except StopIteration:
             return
+        except Reconnecting:
+            scan, left = None, 0.0  # it is waited for
+        waited = 0.0 if scan is not None or left <= step else waited + step
         if scan is not None:
             yield scan
-            waited = 0.0
-        elif limit is not None and waited >= limit:
-            lidar.next_scan(0.0)  # raises Timeout, or what has happened
-        elif lidar.fileno() < 0:
+        if scan is not None or descriptor < 0:
             await asyncio.sleep(0)
-        else:
-            begin = loop.time()
-            times = [None if limit is None else begin + limit - waited, lidar.next_deadline()]
-            await _readable(loop, lidar.fileno(), min((t for t in times if t is not None), default=None))
-            waited += loop.time() - begin
+            continue
+        begin = loop.time()
+        deadline = lidar.next_deadline()
+        until = min(begin + limit - waited, math.inf if deadline is None else deadline)
+        await _readable(loop, (descriptor, lidar._notice()), until)
+        waited += loop.time() - begin
 
 
-async def _readable(loop: asyncio.AbstractEventLoop, descriptor: int, until: float | None) -> None:
-    """Waits until the descriptor is readable, or for this time of the loop."""
+async def _readable(loop: asyncio.AbstractEventLoop, descriptors: tuple[int, ...], until: float) -> None:
+    """Waits until one of the descriptors is readable, or for this time of the loop."""
     ready = loop.create_future()
 
     def end() -> None:
         if not ready.done():
             ready.set_result(None)
 
-    timer = None if until is None else loop.call_at(until, end)
-    loop.add_reader(descriptor, end)
+    timer = None if until == math.inf else loop.call_at(until, end)
+    # Copies: close() of another task closes the descriptor of the lidar, and another task may wait for it, too.
+    copies = [os.dup(each) for each in descriptors if each >= 0]
     try:
+        for each in copies:
+            loop.add_reader(each, end)
         await ready
     finally:
-        loop.remove_reader(descriptor)
+        for each in copies:
+            loop.remove_reader(each)
+            os.close(each)
         if timer is not None:
             timer.cancel()

@@ -134,10 +134,7 @@ void bind_parts(nb::module_& module) {
       .def(
           "__next__",
           [](scans& self) {
-            nb::object found =
-                nb::cast<live_lidar&>(self.lidar).next_in_loop(self.timeout, self.newest);
-            if (found.is_none()) throw nb::stop_iteration();
-            return found;
+            return nb::cast<live_lidar&>(self.lidar).next_in_loop(self.timeout, self.newest);
           },
           nb::sig("def __next__(self) -> Scan"),
           "The next scan. Raises Timeout, and the errors of Lidar.next_scan().");
@@ -205,6 +202,12 @@ void bind_control(Class& made) {
            "open.")
       .def("release", &live_lidar::release,
            "Closes the connection, and leaves the device as it is. Never waits.")
+      .def("seek", &live_lidar::seek, "seconds"_a,
+           "Continues a recording at this time since its beginning, as it began with `begin` of "
+           "open(): also after its end, "
+           "in a loop, and from another thread. Counts and events begin anew; with `loop` the "
+           "later rounds begin there. "
+           "Raises BadOption for anything else than a recording.")
       .def("wake", &live_lidar::wake,
            "Makes a waiting call of another thread, or the next call, raise Cancelled, once. Any "
            "thread.")
@@ -236,7 +239,8 @@ void bind_reading(Class& made) {
           "It raises Timeout if "
           "`timeout` seconds (None: never) pass without a scan; while the motor spins up, 10 s "
           "more. A lidar that is "
-          "opened with `reconnect` is waited for. With `newest` only the newest complete scan is "
+          "lost, and was opened with `reconnect`, is waited for. With `newest` only the newest "
+          "complete scan is "
           "returned; older ones are "
           "dropped and counted in counts()['scans_dropped'].")
       .def(
@@ -250,6 +254,15 @@ void bind_reading(Class& made) {
           "The same for `async for`: it waits in the running loop of asyncio on the descriptor and "
           "the deadline of the "
           "lidar, without a thread. start() and close() block.")
+      .def(
+          "_advance",
+          [](live_lidar& on, double wait, bool newest, std::optional<double> passed) {
+            return on.advance(in_milliseconds(wait), newest, optional_timeout(passed));
+          },
+          nb::arg(), nb::arg(), nb::arg().none(),
+          nb::sig("def _advance(self, wait: float, newest: bool, passed: float | None, /) -> Scan "
+                  "| None"))
+      .def("_notice", &live_lidar::notice_fileno)
       .def("poll_scan", &live_lidar::poll_scan, nb::kw_only(), "newest"_a = false,
            nb::sig("def poll_scan(self, *, newest: bool = False) -> Scan | None"),
            "For an event loop: processes what has arrived. Never waits; None if no scan is "

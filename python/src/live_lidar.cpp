@@ -13,10 +13,17 @@ namespace {
 constexpr live_lidar::milliseconds longest_spin_up{10'000};
 constexpr live_lidar::milliseconds a_year{std::chrono::hours(24 * 365)};
 
-/// All that were made. Guarded by the GIL.
+/// All that exist. Guarded by the GIL. Never destroyed: a lidar may be, after everything else.
 std::vector<live_lidar*>& all_lidars() {
-  static std::vector<live_lidar*> all;
-  return all;
+  static auto* const all = new std::vector<live_lidar*>;
+  return *all;
+}
+
+/// Whether the program ends, so that threads may never release what they hold. Guarded by the GIL.
+bool program_ends = false;
+
+bool is_error(const nb::python_error& raised, const char* name) {
+  return raised.matches(nb::module_::import_("g4lidar.errors").attr(name));
 }
 
 }  // namespace
@@ -28,7 +35,7 @@ live_lidar::milliseconds in_milliseconds(double seconds) {
 }
 
 live_lidar::live_lidar(lidar&& opened, foundation on)
-    : on_(std::move(on)), lidar_(std::move(opened)) {
+    : on_(std::move(on)), lidar_(std::make_shared<lidar>(std::move(opened))) {
   if (!on_.mutex) on_.mutex = std::make_shared<std::timed_mutex>();
   all_lidars().push_back(this);
 }
@@ -36,76 +43,99 @@ live_lidar::live_lidar(lidar&& opened, foundation on)
 live_lidar::~live_lidar() {
   std::erase(all_lidars(), this);
   if (process_.is_this_one()) {
-    const nb::gil_scoped_release free;
-    const std::lock_guard lock(*on_.mutex);
-    static_cast<void>(lidar_.close());
-    return;
+    lock held(*on_.mutex, std::defer_lock);
+    const without_gil free;
+    if (!program_ends) held.lock();
+    if (held || held.try_lock()) {
+      static_cast<void>(lidar_->close());
+      return;
+    }
   }
-  // The device, its port and its locks belong to the parent: nothing is stopped or restored.
-  new lidar(std::move(lidar_));
+  // The device, its port and its locks belong to the parent, or to a thread that has not ended: nothing is stopped or
+  // restored.
+  new std::shared_ptr(std::move(lidar_));
   new foundation(std::move(on_));
 }
 
-std::unique_lock<std::timed_mutex> live_lidar::locked(bool closes) {
+live_lidar::lock live_lidar::locked(bool wakes) {
   process_.check("this lidar");
-  std::unique_lock lock(*on_.mutex, std::try_to_lock);
-  while (!lock) {
+  lock held(*on_.mutex, std::try_to_lock);
+  while (!held) {
+    if (wakes) lidar_->wake();
     {
-      if (closes) lidar_.wake();
-      const nb::gil_scoped_release free;
-      static_cast<void>(lock.try_lock_for(std::chrono::milliseconds(50)));
+      const without_gil free;
+      static_cast<void>(held.try_lock_for(std::chrono::milliseconds(50)));
     }
-    if (!lock && PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (!held && PyErr_CheckSignals() != 0) throw nb::python_error();
   }
-  return lock;
+  return held;
 }
 
 void live_lidar::start() {
   may_stop_ = !on_.has_own_clock;
   run([](lidar& on) { return on.start(); });
   spin_up_left_ = longest_spin_up;
+  is_started_ = true;
 }
 
 void live_lidar::stop() {
   run([](lidar& on) { return on.stop(); });
   may_stop_ = false;
+  is_started_ = false;
 }
 
 void live_lidar::wake() {
   process_.check("this lidar");
   woken_ = true;
-  lidar_.wake();
+  lidar_->wake();
+  notice_.give();
+}
+
+void live_lidar::seek(double seconds) {
+  process_.check("this lidar");
+  if (closed_) raise(error(task::reading, problem::gone, "this lidar, which was closed"));
+  if (!on_.open_at) raise_bad_option("seek() is for recordings that are not recorded again");
+  const auto opened = std::make_shared<lidar>(on_.open_at(seconds));
+  {
+    const lock held = locked(true);
+    lidar_->release();
+    lidar_ = opened;
+    if (is_started_) static_cast<void>(lidar_->start());  // a recording starts always
+  }
+  notice_.give();
 }
 
 void live_lidar::close() {
   if (closed_.exchange(true)) return;
+  notice_.give();
   result<void> stopped;
   try {
     do {
-      const interruption signals(lidar_);
+      const std::shared_ptr<lidar> on = lidar_;
+      const interruption signals(*on);
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
-      const auto stop = [this](lidar& on) { return may_stop_ ? on.stop() : result<void>(); };
-      stopped = alone(stop, true);
+      auto held = locked(true);
+      const auto stop = [may = may_stop_](lidar& to) { return may ? to.stop() : result<void>(); };
+      stopped = alone(std::move(held), stop);
     } while (!stopped && stopped.error() == problem::cancelled);
   } catch (const nb::python_error&) {
     closed_ = false;  // close_all() stops it
     throw;
   }
-  const auto written = alone(
-      [&](lidar& on) {
-        if (stopped) stopped = on.close();
-        on.release();
-        return on_.recording ? on_.recording->close() : result<void>();
-      },
-      true);
+  const auto written = alone(locked(true), [&](lidar& on) {
+    if (stopped) stopped = on.close();
+    on.release();
+    return on_.recording ? on_.recording->close() : result<void>();
+  });
   check(written);
   if (!stopped && stopped.error() != problem::gone) raise(stopped.error());
 }
 
 void live_lidar::release() {
-  const auto lock = locked();
+  const lock held = locked();
   closed_ = true;
-  lidar_.release();
+  lidar_->release();
+  notice_.give();
 }
 
 nb::object live_lidar::keep(copied_scan& found) {
@@ -137,13 +167,18 @@ nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
              [&](std::optional<copied_scan>& found) { return found ? keep(*found) : nb::none(); });
 }
 
-/// The newest scan that has arrived; at least `found`.
+/// The newest scan that has arrived; at least `found`. What is raised meanwhile, the next call raises.
 nb::object live_lidar::newer(nb::object found) {
-  while (!on_.plays_at_once) {
-    nb::object next = next_scan(milliseconds(0), true);
-    if (next.is_none()) break;
-    found = std::move(next);
-    ++dropped_;
+  try {
+    while (!on_.plays_at_once) {
+      nb::object next = next_scan(milliseconds(0), true);
+      if (next.is_none()) break;
+      found = std::move(next);
+      ++dropped_;
+    }
+  } catch (nb::python_error& raised) {
+    if (!is_error(raised, "Error")) throw;
+    if (is_error(raised, "Cancelled")) wake();
   }
   return found;
 }
@@ -153,7 +188,7 @@ nb::object live_lidar::poll_scan(bool newest) {
     nb::object found = next_scan(milliseconds(0), true);
     return newest && !found.is_none() ? newer(std::move(found)) : found;
   } catch (nb::python_error& raised) {
-    if (!raised.matches(nb::module_::import_("g4lidar.errors").attr("Reconnecting"))) throw;
+    if (!is_error(raised, "Reconnecting")) throw;
     return nb::none();
   }
 }
@@ -164,32 +199,58 @@ nb::object live_lidar::next_deadline() {
   return nb::float_(on_.has_own_clock ? 0.0 : static_cast<double>(due_ns) * 1e-9);
 }
 
-nb::object live_lidar::next_in_loop(std::optional<milliseconds> timeout, bool newest) {
-  const milliseconds wait = timeout.value_or(a_year);
-  while (!closed_) {
-    try {
-      nb::object found = next_scan(wait);
-      return newest ? newer(std::move(found)) : found;
-    } catch (nb::python_error& raised) {
-      const nb::module_ errors = nb::module_::import_("g4lidar.errors");
-      if (on_.has_own_clock && raised.matches(errors.attr("EndOfInput"))) return nb::none();
-      if (closed_ &&
-          (raised.matches(errors.attr("Cancelled")) || raised.matches(errors.attr("Gone")))) {
-        return nb::none();
-      }
-      if (raised.matches(errors.attr("Reconnecting"))) continue;
-      if (!raised.matches(errors.attr("Timeout")) || spin_up_left_.count() <= 0) throw;
-      spin_up_left_ -= std::max(wait, milliseconds(1));
-    }
-  }
-  return nb::none();
+/// Whether no scan is expected: the lidar is lost, or the motor spins up.
+bool live_lidar::may_wait_longer(milliseconds passed) {
+  const auto [is_lost, reconnects] =
+      look([](const lidar& on) { return std::pair(!on.is_scanning(), on.counts().reconnects); });
+  const bool has_reconnected = std::exchange(reconnects_, reconnects) != reconnects;
+  if (is_lost || has_reconnected) spin_up_left_ = longest_spin_up;
+  if (!is_spinning_up()) return false;
+  if (!is_lost) spin_up_left_ -= std::max(passed, milliseconds(1));
+  return true;
 }
 
-void live_lidar::close_all() {
-  for (live_lidar* const each : std::vector(all_lidars())) {
-    if (!each->process_.is_this_one()) continue;
+nb::object live_lidar::advance(milliseconds wait, bool newest, std::optional<milliseconds> passed) {
+  try {
+    if (!closed_) {
+      notice_.take();
+      nb::object found = next_scan(wait, true);
+      if (found.is_none() && passed && !may_wait_longer(*passed))
+        found = next_scan(milliseconds(0));  // raises Timeout, unless there is one now
+      return newest && !found.is_none() ? newer(std::move(found)) : found;
+    }
+  } catch (nb::python_error& raised) {
+    const bool has_ended = on_.has_own_clock && is_error(raised, "EndOfInput");
+    const bool was_closed = closed_ && (is_error(raised, "Cancelled") || is_error(raised, "Gone"));
+    if (!has_ended && !was_closed) throw;
+  }
+  throw nb::stop_iteration();
+}
+
+nb::object live_lidar::next_in_loop(std::optional<milliseconds> timeout, bool newest) {
+  const milliseconds wait = timeout.value_or(a_year);
+  while (true) {
     try {
-      each->close();
+      nb::object found = advance(wait, newest, wait);
+      if (!found.is_none()) return found;
+    } catch (nb::python_error& raised) {
+      if (!is_error(raised, "Reconnecting")) throw;
+    }
+  }
+}
+
+/// The references keep the lidars, although other code runs meanwhile.
+void live_lidar::close_all() {
+  program_ends = true;
+  std::vector<nb::object> all;
+  for (live_lidar* const each : all_lidars()) {
+    if (nb::object found = nb::find(each); found.is_valid()) all.push_back(std::move(found));
+  }
+  for (const nb::object& each : all) {
+    auto& closed = nb::cast<live_lidar&>(each);
+    if (!closed.process_.is_this_one()) continue;
+    try {
+      closed.close();
     } catch (nb::python_error& raised) {
       raised.discard_as_unraisable("g4lidar at the end of the program");
     }

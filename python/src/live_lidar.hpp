@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -20,6 +21,7 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "interruption.hpp"
+#include "notice.hpp"
 #include "process.hpp"
 #include "scan.hpp"
 
@@ -28,8 +30,9 @@ namespace g4lidar::python {
 /// What a lidar stands on; everything may be absent.
 struct foundation {
   std::shared_ptr<void> simulation;             ///< Outlives the lidar.
-  std::unique_ptr<recording_writer> recording;  ///< To which the lidar is recorded; outlives it.
+  std::shared_ptr<recording_writer> recording;  ///< To which the lidar is recorded; outlives it.
   std::shared_ptr<std::timed_mutex> mutex;      ///< Shared by all users of a virtual clock.
+  std::function<lidar(double)> open_at;         ///< A recording at so many seconds; raises errors.
   std::int64_t wall_ahead_ns = 0;  ///< Wall clock minus the clock of the lidar, if `has_own_clock`.
   bool has_own_clock = false;      ///< A recording, or virtual time.
   bool plays_at_once = false;      ///< A recording that is read as fast as possible.
@@ -59,8 +62,8 @@ class live_lidar {
   /// `call(lidar)`, which never waits.
   template <class Call>
   auto look(const Call& call) {
-    const auto lock = locked();
-    return call(lidar_);
+    const lock held = locked();
+    return call(*lidar_);
   }
 
   void start();
@@ -70,11 +73,19 @@ class live_lidar {
   void release();
   /// Wakes a waiting call of another thread.
   void wake();
+  /// Continues at this time of a recording. Raises BadOption, if this is none.
+  void seek(double seconds);
   /// The next scan; empty at the timeout, if `may_time_out`.
   [[nodiscard]] nb::object next_scan(milliseconds timeout, bool may_time_out = false);
-  /// For a loop: waits longer while the motor spins up; nothing at the end of a recording, and after close(). With
-  /// `newest` only the newest complete scan.
+  /// For a loop: a scan, or None if none came within `wait`. Raises StopIteration at the end of a recording, and after
+  /// close(); Timeout, if a whole timeout has passed without a scan, `passed`, unless the motor spins up. With `newest`
+  /// only the newest complete scan.
+  [[nodiscard]] nb::object advance(milliseconds wait, bool newest,
+                                   std::optional<milliseconds> passed);
+  /// The same until there is a scan; a lidar that reconnects is waited for.
   [[nodiscard]] nb::object next_in_loop(std::optional<milliseconds> timeout, bool newest);
+  /// Readable when a loop that waits for the lidar must call advance().
+  [[nodiscard]] int notice_fileno() const noexcept { return notice_.fileno(); }
 
   /// What has arrived, without waiting: a scan, or None.
   [[nodiscard]] nb::object poll_scan(bool newest);
@@ -95,39 +106,48 @@ class live_lidar {
     std::vector<point> points;
   };
 
-  /// Waits without the GIL. `closes`: calls that wait are woken.
-  [[nodiscard]] std::unique_lock<std::timed_mutex> locked(bool closes = false);
+  using lock = std::unique_lock<std::timed_mutex>;
+
+  /// Waits without the GIL. `wakes`: calls that wait are woken.
+  [[nodiscard]] lock locked(bool wakes = false);
   /// `call(lidar)` with the mutex and without the GIL.
   template <class Call>
-  auto alone(const Call& call, bool closes = false);
+  auto alone(lock held, const Call& call);
   [[nodiscard]] nb::object keep(copied_scan& found);
   [[nodiscard]] nb::object newer(nb::object found);
+  [[nodiscard]] bool may_wait_longer(milliseconds passed);
 
   foundation on_;
-  lidar lidar_;
+  std::shared_ptr<lidar> lidar_;  // another one after seek()
   process process_;
+  notice notice_;
   std::atomic<bool> woken_{false};  // by wake(), not by a signal
   std::atomic<bool> closed_{false};
+  bool is_started_ = false;
   bool may_stop_ = false;  // started, and neither stopped nor lost, in real time
   milliseconds spin_up_left_{0};
   std::uint64_t dropped_ = 0;
+  std::uint64_t reconnects_ = 0;  // of the last timeout
 };
 
 template <class Call>
-auto live_lidar::alone(const Call& call, bool closes) {
-  auto lock = locked(closes);
-  const nb::gil_scoped_release free;
-  auto given = call(lidar_);
-  lock.unlock();  // nobody waits for the GIL with the mutex
+auto live_lidar::alone(lock held, const Call& call) {
+  const std::shared_ptr<lidar> on = lidar_;
+  const without_gil free;
+  auto given = call(*on);
+  held.unlock();  // nobody waits for the GIL with the mutex
   return given;
 }
 
 template <class Call, class Then>
 auto live_lidar::run(const Call& call, const Then& then) {
   while (true) {
-    const interruption signals(lidar_);
+    const std::shared_ptr<lidar> on = lidar_;
+    const interruption signals(*on);
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    auto given = alone(call);
+    auto held = locked();
+    if (on != lidar_) continue;  // seek() of another thread
+    auto given = alone(std::move(held), call);
     if (given) {
       if constexpr (std::is_void_v<typename decltype(given)::value_type>) {
         return;
@@ -135,10 +155,9 @@ auto live_lidar::run(const Call& call, const Then& then) {
         return then(*given);
       }
     }
-    // After the handler of a signal that does not raise, the call goes on.
-    const bool by_signal =
-        given.error() == problem::cancelled && !woken_.exchange(false) && !closed_;
-    if (by_signal) continue;
+    // After the handler of a signal that does not raise, and after seek(), the call goes on.
+    const bool goes_on = given.error() == problem::cancelled && !woken_.exchange(false) && !closed_;
+    if (goes_on) continue;
     if (given.error().is_fatal()) may_stop_ = false;
     raise(given.error());
   }

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
@@ -15,12 +16,12 @@
 #include <tuple>
 #include <variant>
 
+#include "background.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/serial_port.hpp"
-#include "interruptible.hpp"
 #include "live_lidar.hpp"
 #include "settings.hpp"
 #include "simulator.hpp"
@@ -38,6 +39,12 @@ struct playing {
   double begin;
   std::optional<double> end;
   std::uint32_t raw_sample_rate_hz;
+
+  /// Raises BadOption if anything is given that is only for recordings.
+  void refuse_for(const std::string& what) const {
+    if (speed == 0.0 && !loop && begin == 0.0 && !end) return;
+    raise_bad_option("speed, loop, begin and end are for recordings, not for " + what);
+  }
 };
 
 std::int64_t in_ns(double seconds) {
@@ -53,7 +60,8 @@ std::int64_t wall_ahead_of(const std::string& path) {
 }
 
 /// The connector for a file, or null if `name` is none.
-std::unique_ptr<connector> open_file(std::string_view name, const playing& how, foundation& on) {
+std::unique_ptr<connector> open_file(std::string_view name, const lidar_options& as,
+                                     const playing& how, foundation& on) {
   constexpr std::string_view prefix = "file:";
   const bool is_named = name.starts_with(prefix);
   const std::string path(is_named ? name.substr(prefix.size()) : name);
@@ -69,8 +77,13 @@ std::unique_ptr<connector> open_file(std::string_view name, const playing& how, 
     on.plays_at_once = how.speed == 0.0;
     auto made = value_of(replay::open(path, options));
     on.wall_ahead_ns = wall_ahead_of(path);
+    on.open_at = [path, as, options](double seconds) mutable {
+      options.range.from_ns = in_ns(seconds);
+      return value_of(lidar::open(value_of(replay::open(path, options)), as));
+    };
     return made;
   }
+  how.refuse_for("raw bytes");
   on.plays_at_once = true;
   // The clock of raw bytes begins at 1 s, and their wall clock at the time of the file.
   on.wall_ahead_ns =
@@ -81,6 +94,7 @@ std::unique_ptr<connector> open_file(std::string_view name, const playing& how, 
 std::unique_ptr<connector> connect(const device_name& device, lidar_options& options,
                                    const playing& how, foundation& on) {
   if (const auto* given = std::get_if<simulator*>(&device)) {
+    how.refuse_for("a Simulator");
     simulator& simulated = **given;
     if (simulated.is_virtual()) {
       const auto& alive = simulated.in_virtual_time();
@@ -94,11 +108,14 @@ std::unique_ptr<connector> connect(const device_name& device, lidar_options& opt
   } else {
     options.device = std::get<path_text>(device).text;
     if (sim::is_simulated(options.device)) {
+      how.refuse_for(options.device);
       auto served = value_of(sim::serve_alone(make_device(read_setup(options.device))));
       options.device = served->path();
       on.simulation = std::move(served);
-    } else if (auto file = open_file(options.device, how, on)) {
+    } else if (auto file = open_file(options.device, options, how, on)) {
       return file;
+    } else {
+      how.refuse_for(options.device.empty() ? "a device" : options.device);
     }
   }
   return value_of(connector_for(options));
@@ -108,27 +125,33 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
                        const std::optional<path_text>& record, bool overwrite) {
   foundation on;
   auto from = connect(device, options, how, on);
-  const auto signals = std::make_shared<handled_signals>();
-  // A clock of its own needs no time.
-  if (!on.has_own_clock) from = std::make_unique<interruptible_connector>(std::move(from), signals);
+  const auto opening = std::make_shared<std::atomic<progress>>(progress::running);
+  if (!on.has_own_clock) from = std::make_unique<abandonable_connector>(std::move(from), opening);
   if (record) {
     recording_options as;
     as.overwrite = overwrite;
     on.recording =
-        std::make_unique<recording_writer>(value_of(recording_writer::create(record->text, as)));
+        std::make_shared<recording_writer>(value_of(recording_writer::create(record->text, as)));
     if (on.simulation && on.has_own_clock) {  // virtual time goes on from now
       const auto now = std::chrono::system_clock::now().time_since_epoch();
       on.recording->set_wall_clock(std::chrono::nanoseconds(now).count() - from->now_ns());
     }
     from = value_of(recorded(std::move(from), *on.recording));
+    on.open_at = nullptr;  // the times of a recording do not go back
   }
   auto opened = [&] {
-    const nb::gil_scoped_release free;
-    // Of a simulation in virtual time, which other lidars may use.
-    const auto lock = on.mutex ? std::unique_lock(*on.mutex) : std::unique_lock<std::timed_mutex>();
-    return lidar::open(std::move(from), options);
+    if (on.has_own_clock) {  // it needs no time
+      const without_gil free;
+      // Of a simulation in virtual time, which other lidars may use.
+      const auto lock =
+          on.mutex ? std::unique_lock(*on.mutex) : std::unique_lock<std::timed_mutex>();
+      return lidar::open(std::move(from), options);
+    }
+    auto work = [from = std::move(from), options, recorder = on.recording]() mutable {
+      return lidar::open(std::move(from), options);
+    };
+    return in_background(std::move(work), opening);
   }();
-  signals->end();
   if (!opened) raise(opened.error());
   if (on.recording) {
     recorded_device known;
@@ -169,20 +192,26 @@ live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
                     overwrite);
 }
 
-/// What the lidar at this port answers, if there is one.
-std::optional<device_information> ask(const port_info& port) {
-  const auto signals = std::make_shared<handled_signals>();
-  std::optional<device_information> found;
-  {
-    const nb::gil_scoped_release free;
-    if (auto opened = serial_port::open(port.path)) {
-      interruptible_transport to(std::move(*opened), signals);
+using found_ports = std::vector<std::tuple<port_info, device_information>>;
+
+/// What the lidar at each port answers, as far as there are any.
+found_ports ask(std::vector<port_info> ports) {
+  const auto asking = std::make_shared<std::atomic<progress>>(progress::running);
+  const auto work = [ports = std::move(ports), asking] {
+    found_ports found;
+    for (const port_info& port : ports) {
+      if (*asking == progress::abandoned) break;
+      auto opened = serial_port::open(port.path);
+      if (!opened) continue;
+      abandonable_transport to(std::move(*opened), asking);
       const auto longest = std::chrono::nanoseconds(find_options().probe_timeout);
-      if (const auto device = probe(to, to.now_ns() + longest.count())) found = *device;
+      if (const auto device = probe(to, to.now_ns() + longest.count())) {
+        found.emplace_back(port, *device);
+      }
     }
-  }
-  signals->end();
-  return found;
+    return found;
+  };
+  return in_background(work, asking);
 }
 
 void bind_discovery(nb::module_& module) {
@@ -203,7 +232,7 @@ void bind_discovery(nb::module_& module) {
       "list_ports",
       [] {
         return value_of([] {
-          const nb::gil_scoped_release free;
+          const without_gil free;
           return list_ports();
         }());
       },
@@ -212,15 +241,12 @@ void bind_discovery(nb::module_& module) {
       "find_lidars",
       [](bool probe_all_ports) {
         auto ports = value_of([] {
-          const nb::gil_scoped_release free;
+          const without_gil free;
           return list_ports();
         }());
-        std::vector<std::tuple<port_info, device_information>> all;
-        for (port_info& port : ports) {
-          if (!probe_all_ports && !is_g4_bridge(port)) continue;
-          if (const auto device = ask(port)) all.emplace_back(std::move(port), *device);
-        }
-        return all;
+        std::erase_if(
+            ports, [&](const port_info& port) { return !probe_all_ports && !is_g4_bridge(port); });
+        return ask(std::move(ports));
       },
       nb::kw_only(), "probe_all_ports"_a = false,
       "Every G4 that answers, with its port, ordered by path. Takes at most 2.5 s a port. Writes "

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Recordings, raw bytes, filters, grids, deskewing, merging, and the doctor."""
+"""Filters, grids, deskewing, merging, and the doctor."""
 import math
-import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,110 +9,10 @@ import numpy.typing as npt
 import pytest
 
 import g4lidar
-from g4lidar import PointFlag, errors
+from g4lidar import PointFlag
 
 Make = Callable[..., g4lidar.Simulator]
 Points = npt.NDArray[np.void]
-
-
-@pytest.fixture
-def recorded(g4_simulator: Make, tmp_path: Path) -> tuple[Path, list[g4lidar.Scan]]:
-    """A recording, and the scans while it was made."""
-    path = tmp_path / "walk.mcap"
-    with g4lidar.open(g4_simulator(seed=4), record=path) as lidar:
-        lidar.start()
-        scans = [scan for scan, _ in zip(lidar.scans(), range(20), strict=False)]
-    return path, scans
-
-
-def test_a_recording_is_a_lidar(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
-    path, scans = recorded
-    with g4lidar.open(path) as lidar:
-        lidar.start()
-        again = list(lidar.scans())
-    assert len(again) >= len(scans)
-    for live, replayed in zip(scans, again, strict=False):
-        assert live.points.tobytes() == replayed.points.tobytes()
-    assert again[0].stamp == pytest.approx(os.stat(path).st_mtime, abs=600)
-    assert not again[-1].is_piece
-
-
-def test_begin_and_end_of_a_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
-    path, scans = recorded
-    duration = g4lidar.Recording(path).duration
-    assert duration is not None and duration == pytest.approx(3.3, abs=0.5)
-    with g4lidar.open(path, begin=1, end=2) as lidar:
-        lidar.start()
-        some = list(lidar.scans())
-    assert 5 <= len(some) <= 7
-
-
-def test_items_of_a_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
-    path, scans = recorded
-    recording = g4lidar.Recording(path)
-    items = list(recording)
-    assert recording.serial_number == "2021101000070073"
-    assert not recording.is_damaged and recording.bytes_skipped == 0
-    assert items[0].kind == "opened"
-    sent = b"".join(item.data for item in items if item.kind == "to_device")
-    assert b"\xa5\x60" in sent
-    received = b"".join(item.data for item in items if item.kind == "from_device")
-    assert len(g4lidar.decode(received)) >= sum(len(scan) for scan in scans)
-    times = [item.time_ns for item in items if item.kind == "from_device"]
-    assert times == sorted(times)
-    recording.seek(2.0)
-    later = next(item for item in recording if item.kind == "from_device")
-    assert abs(later.time_ns - items[0].time_ns - 2_000_000_000) < 100_000_000
-    recording.seek(0)
-    assert next(recording).time_ns == items[0].time_ns
-
-
-def test_a_written_recording_can_be_read(recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
-    path, scans = recorded
-    copy = tmp_path / "copy.mcap"
-    with g4lidar.RecordingWriter(copy) as writer:
-        for item in g4lidar.Recording(path):
-            if item.kind == "from_device":
-                writer.from_device(item.data, item.time_ns)
-            elif item.kind == "to_device":
-                writer.to_device(item.data, item.time_ns)
-        writer.scan(scans[0])
-        writer.odometry(scans[0].time_ns, 1.0, 2.0, 0.5)
-    poses = [item.pose for item in g4lidar.Recording(copy) if item.kind == "odometry"]
-    assert poses == [(1.0, 2.0, 0.5)]
-    with pytest.raises(errors.System, match="EEXIST"):
-        g4lidar.RecordingWriter(copy)
-    with pytest.raises(errors.BadFile):
-        g4lidar.Recording(__file__)
-
-
-def test_decode_gives_the_points_of_the_lidar(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
-    path, scans = recorded
-    data = b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device")
-    whole = g4lidar.decode(data)
-    wanted = np.concatenate([scan.points for scan in scans])
-    first = int(np.flatnonzero(whole["revolution"] == wanted["revolution"][0])[0])
-    found = whole[first : first + len(wanted)]
-    assert (found["range_mm"] == wanted["range_mm"]).all()
-    assert np.abs(found["angle_deg"] - wanted["angle_deg"]).max() < 1e-4
-    # In pieces, and into memory of the caller.
-    decoder = g4lidar.Decoder()
-    out = np.zeros(2000, g4lidar.POINT_DTYPE)
-    pieces = []
-    for begin in range(0, len(data), 997):
-        view = decoder.decode(memoryview(data)[begin : begin + 997], out)
-        assert np.shares_memory(view, out) or len(view) == 0
-        pieces.append(view.copy())
-    pieces.append(decoder.finish())
-    assert (np.concatenate(pieces) == whole).all()
-    counts = decoder.counts()
-    assert sum(v for k, v in counts.items() if k.startswith("skipped")) + counts["parsed_bytes"] == len(data)
-    with pytest.raises(ValueError, match="short"):
-        decoder.decode(data, np.zeros(10, g4lidar.POINT_DTYPE))
-    frozen = np.zeros(100_000, g4lidar.POINT_DTYPE)
-    frozen.flags.writeable = False
-    with pytest.raises((BufferError, ValueError)):
-        decoder.decode(b"", frozen)
 
 
 def ring(range_mm: float, count: int = 720, begin_ns: int = 1_000_000_000) -> Points:
@@ -251,15 +150,18 @@ def test_doctor_passes_on_what_its_callback_raises(g4_simulator: Make) -> None:
         g4lidar.doctor(g4_simulator(), measuring_time=1, on_stage=refuse)
 
 
-def test_raw_bytes_of_a_file(g4_simulator: Make, recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
-    path, scans = recorded
-    raw = tmp_path / "walk.bin"
-    raw.write_bytes(b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device"))
-    with g4lidar.open(raw) as lidar:
-        lidar.start()
-        again = list(lidar.scans())
-    assert len(again) >= len(scans)
-    assert 0 < again[0].stamp - os.stat(raw).st_mtime < 10
+def test_filters_refuse_what_they_would_ignore() -> None:
+    points = ring(1000)
+    wrong: list[dict[str, object]] = [
+        {"least_range_mm": math.nan}, {"greatest_range_mm": math.nan}, {"excluded": 256},
+        {"field_of_view": (0, math.nan)}, {"ignored_sectors": [(math.inf, 1)]}, {"masks": [[(0, 0), (1, 1)]]},
+        {"masks": [[(0, 0), (1, 1), (math.nan, 2)]]},
+    ]
+    for options in wrong:
+        with pytest.raises(ValueError):
+            g4lidar.filter_points(points, **options)  # type: ignore[arg-type]
+    with pytest.raises(ValueError):
+        g4lidar.mark_isolated(points, near_m=math.nan)
 
 
 def test_ports() -> None:

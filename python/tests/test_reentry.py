@@ -3,6 +3,7 @@
 import os
 import pty
 import signal
+import socket
 import time
 import tty
 from collections.abc import Callable
@@ -36,6 +37,34 @@ def test_a_handler_uses_the_lidar_whose_call_it_interrupts() -> None:
     """)
     out, err = program.communicate(timeout=60)
     assert out == "True\n", err
+
+
+@pytest.mark.parametrize("inner", ["close", "stop", "counts", "next_scan", "seek", "release", "events", "fileno"])
+def test_a_handler_calls_anything_during_anything(inner: str) -> None:
+    program = start_program("""
+        import signal, time
+        lidar = g4lidar.open("sim:?silence_ns=60s", stall_time=60)
+        calls = {"next_scan": lambda: lidar.next_scan(0.01), "seek": lambda: lidar.seek(1)}
+        inner = calls.get(sys.argv[1], getattr(lidar, sys.argv[1]))
+        handled = []
+        def handle(*_):
+            try:
+                inner()
+            except (g4lidar.Error, RuntimeError):
+                pass
+            handled.append(1)
+        signal.signal(signal.SIGALRM, handle)
+        for outer in (lidar.start, lambda: lidar.next_scan(1), lidar.stop, lidar.counts, lidar.start, lidar.close):
+            signal.setitimer(signal.ITIMER_REAL, 0.01, 0.1)
+            try:
+                outer()
+            except (g4lidar.Error, RuntimeError):
+                pass
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        print("ended", len(handled) > 0)
+    """, inner)
+    out, err = program.communicate(timeout=60)
+    assert out == "ended True\n", err
 
 
 def test_the_collector_frees_another_lidar_of_the_same_simulator() -> None:
@@ -120,6 +149,66 @@ def test_interrupt_ends_find_lidars(g4_simulator: Make, tmp_path: Path, monkeypa
         (tmp_path / f"silent{number}").symlink_to(os.path.realpath(silent.path))
     assert len([port for port in g4lidar.list_ports() if port.driver == "sim"]) == 5
     assert interrupted_after("g4lidar.find_lidars()", "") < 5
+
+
+@pytest.mark.parametrize("device", ["", "serial:2021101000070079"])
+def test_interrupt_ends_open_of_several_ports(
+    g4_simulator: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, device: str
+) -> None:
+    monkeypatch.setenv("G4LIDAR_SIM_DIR", str(tmp_path))
+    for number in range(5):
+        silent = g4_simulator(virtual_time=False, faults=["deaf"])
+        (tmp_path / f"silent{number}").symlink_to(os.path.realpath(silent.path))
+    assert interrupted_after("g4lidar.open(sys.argv[1])", device) < 5
+
+
+def test_interrupt_ends_open_of_a_network_address() -> None:
+    with socket.socket() as deaf:
+        deaf.bind(("127.0.0.1", 0))
+        deaf.listen(0)
+        port = deaf.getsockname()[1]
+        # The queue of the system is full after two connections: it answers no more.
+        held = [socket.socket() for _ in range(4)]
+        for each in held:
+            each.setblocking(False)
+            each.connect_ex(("127.0.0.1", port))
+        assert interrupted_after("g4lidar.open(sys.argv[1])", f"tcp:127.0.0.1:{port}") < 2  # else 3 s
+        for each in held:
+            each.close()
+
+
+def test_a_port_can_be_opened_after_an_interrupt(g4_simulator: Make) -> None:
+    program = start_program("""
+        import signal
+        def interrupt(*_):
+            raise LookupError
+        signal.signal(signal.SIGALRM, interrupt)
+        ends = {True: 0, False: 0}
+        for number in range(40):
+            signal.setitimer(signal.ITIMER_REAL, 0.002 * (number % 20) + 0.001)
+            try:
+                lidar = g4lidar.open(sys.argv[1])
+                signal.setitimer(signal.ITIMER_REAL, 0)
+                lidar.close()
+                ends[True] += 1
+            except LookupError:
+                ends[False] += 1
+            except g4lidar.errors.Busy:  # what was begun has not ended yet
+                pass
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        import time
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            try:
+                with g4lidar.open(sys.argv[1]) as lidar:
+                    lidar.start()
+                    print(len(lidar.next_scan(20)) > 100)
+                break
+            except g4lidar.errors.Busy:
+                time.sleep(0.05)
+    """, g4_simulator(virtual_time=False).path)
+    out, err = program.communicate(timeout=100)
+    assert out == "True\n", err
 
 
 def test_a_handler_that_does_not_raise_leaves_open_alone(g4_simulator: Make) -> None:

@@ -151,11 +151,12 @@ def test_spin_up_is_no_timeout(g4_simulator: Make) -> None:
         assert not lidar.is_spinning_up
 
 
-def test_reconnects_in_a_loop(g4_simulator: Make) -> None:
+@pytest.mark.parametrize("timeout", [None, 0.3, 1.0])
+def test_reconnects_in_a_loop(g4_simulator: Make, timeout: float | None) -> None:
     with g4lidar.open(g4_simulator(faults=["unplug@4s+2s"]), reconnect=True) as lidar:
         lidar.start()
         last = 0
-        for scan in lidar.scans(timeout=None):
+        for scan in lidar.scans(timeout=timeout):
             last = scan.time_ns
             if last > 10_000_000_000:
                 break

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Signals end open() and find_lidars() at once, although some of their waits cannot be ended: for a name server, for a
+// network address, and for the answers of ports that are asked one after the other.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <future>
+#include <memory>
+#include <span>
+#include <thread>
+#include <utility>
+
+#include "g4lidar/transport/forwarding.hpp"
+#include "gil.hpp"
+
+namespace g4lidar::python {
+
+/// What has become of a piece of work: `abandoned` if the caller has stopped waiting.
+enum class progress : std::uint8_t { running, abandoned, done };
+using shared_progress = std::shared_ptr<std::atomic<progress>>;
+
+/// The result of `work()` in a thread of its own, which owns what it uses, and uses nothing of Python. If the handler of
+/// a signal raises, that is raised at once: `of_work` becomes abandoned, and the thread ends by itself. Needs the GIL.
+template <class Work>
+auto in_background(Work work, const shared_progress& of_work) {
+  std::packaged_task<decltype(work())()> task(std::move(work));
+  auto found = task.get_future();
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are those of the other threads
+  try {
+    std::thread(std::move(task)).detach();
+  } catch (...) {
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    throw;
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  while (true) {
+    {
+      const without_gil free;
+      if (found.wait_for(std::chrono::milliseconds(20)) == std::future_status::ready) break;
+    }
+    if (PyErr_CheckSignals() == 0) continue;
+    *of_work = progress::abandoned;
+    throw nanobind::python_error();
+  }
+  *of_work = progress::done;
+  return found.get();
+}
+
+/// Its waits fail with gone when the work is abandoned.
+class abandonable_transport final : public forwarding_transport {
+ public:
+  abandonable_transport(std::unique_ptr<transport> inner, shared_progress of_work) noexcept
+      : forwarding_transport(std::move(inner)), of_work_(std::move(of_work)) {}
+  [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
+                                      std::int64_t deadline_ns) noexcept override;
+  [[nodiscard]] result<void> pause(std::int64_t deadline_ns) noexcept override;
+
+ private:
+  shared_progress of_work_;
+};
+
+/// Makes such transports.
+class abandonable_connector final : public forwarding_connector {
+ public:
+  abandonable_connector(std::unique_ptr<connector> inner, shared_progress of_work) noexcept
+      : forwarding_connector(std::move(inner)), of_work_(std::move(of_work)) {}
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
+
+ private:
+  shared_progress of_work_;
+};
+
+}  // namespace g4lidar::python

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Recordings and raw bytes: played, read, written, decoded."""
+import math
+import os
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import g4lidar
+from g4lidar import errors
+
+Make = Callable[..., g4lidar.Simulator]
+
+
+@pytest.fixture
+def recorded(g4_simulator: Make, tmp_path: Path) -> tuple[Path, list[g4lidar.Scan]]:
+    """A recording, and the scans while it was made."""
+    path = tmp_path / "walk.mcap"
+    with g4lidar.open(g4_simulator(seed=4), record=path) as lidar:
+        lidar.start()
+        scans = [scan for scan, _ in zip(lidar.scans(), range(20), strict=False)]
+    return path, scans
+
+
+def test_a_recording_is_a_lidar(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    with g4lidar.open(path) as lidar:
+        lidar.start()
+        again = list(lidar.scans())
+    assert len(again) >= len(scans)
+    for live, replayed in zip(scans, again, strict=False):
+        assert live.points.tobytes() == replayed.points.tobytes()
+    assert again[0].stamp == pytest.approx(os.stat(path).st_mtime, abs=600)
+    assert not again[-1].is_piece
+
+
+def test_begin_and_end_of_a_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    duration = g4lidar.Recording(path).duration
+    assert duration is not None and duration == pytest.approx(3.3, abs=0.5)
+    with g4lidar.open(path, begin=1, end=2) as lidar:
+        lidar.start()
+        some = list(lidar.scans())
+    assert 5 <= len(some) <= 7
+
+
+def begin_of(path: Path) -> int:
+    return next(item.time_ns for item in g4lidar.Recording(path) if item.kind == "opened")
+
+
+def test_seek_in_an_open_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    with g4lidar.open(path, end=3) as lidar:
+        lidar.seek(2)
+        with pytest.raises(errors.NotScanning):
+            lidar.next_scan()
+        lidar.start()
+        with g4lidar.open(path, begin=2, end=3) as other:
+            other.start()
+            wanted = [scan.points.tobytes() for scan in other.scans()]
+        assert [scan.points.tobytes() for scan in lidar.scans()] == wanted
+        for seconds in (2.5, 0.0, 1.5):  # after the end, back, and ahead
+            lidar.seek(seconds)
+            found = lidar.next_scan()
+            assert 0 <= found.time_ns - begin_of(path) - seconds * 1e9 < 0.8e9
+        lidar.seek(0)
+        # In a loop.
+        times = []
+        for scan in lidar.scans():
+            times.append(scan.time_ns)
+            if len(times) == 2:
+                lidar.seek(2)
+        assert times[0] < times[1] < begin_of(path) + 2_000_000_000 <= times[2] and len(times) == 2 + len(wanted)
+        for wrong in (-1.0, math.nan, 60.0):  # 60 s is after `end`
+            with pytest.raises(ValueError):
+                lidar.seek(wrong)
+    with pytest.raises(errors.Gone):
+        lidar.seek(0)
+
+
+def test_seek_wakes_another_thread(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    with g4lidar.open(path, speed=1e-6) as lidar:  # the next scan comes in hours
+        lidar.start()
+        found: list[int] = []
+        waiting = threading.Thread(target=lambda: found.extend(len(scan) for scan in lidar.scans(timeout=None)))
+        waiting.start()
+        time.sleep(0.2)
+        lidar.seek(60)
+        waiting.join(20)
+        assert not waiting.is_alive()
+
+
+def test_what_is_no_recording_refuses_what_is_for_recordings(
+    g4_simulator: Make, recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path
+) -> None:
+    path, _ = recorded
+    raw = tmp_path / "raw.bin"
+    raw.write_bytes(b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device"))
+    for device in (g4_simulator(), "sim:", raw, "/dev/ttyUSB99"):
+        wrong: list[dict[str, Any]] = [{"begin": 1.0}, {"end": 1.0}, {"speed": 1.0}, {"loop": True}]
+        for options in wrong:
+            with pytest.raises(errors.BadOption, match="recordings"):
+                g4lidar.open(device, **options)
+    for device, record in ((g4_simulator(), None), (raw, None), (path, tmp_path / "again.mcap")):
+        with g4lidar.open(device, record=record) as lidar, pytest.raises(errors.BadOption, match="recordings"):
+            lidar.seek(0)
+
+
+def test_items_of_a_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    recording = g4lidar.Recording(path)
+    items = list(recording)
+    assert recording.serial_number == "2021101000070073"
+    assert not recording.is_damaged and recording.bytes_skipped == 0
+    assert items[0].kind == "opened"
+    sent = b"".join(item.data for item in items if item.kind == "to_device")
+    assert b"\xa5\x60" in sent
+    received = b"".join(item.data for item in items if item.kind == "from_device")
+    assert len(g4lidar.decode(received)) >= sum(len(scan) for scan in scans)
+    times = [item.time_ns for item in items if item.kind == "from_device"]
+    assert times == sorted(times)
+    recording.seek(2.0)
+    later = next(item for item in recording if item.kind == "from_device")
+    assert abs(later.time_ns - items[0].time_ns - 2_000_000_000) < 100_000_000
+    recording.seek(0)
+    assert next(recording).time_ns == items[0].time_ns
+
+
+def test_a_written_recording_can_be_read(recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
+    path, scans = recorded
+    copy = tmp_path / "copy.mcap"
+    with g4lidar.RecordingWriter(copy) as writer:
+        for item in g4lidar.Recording(path):
+            if item.kind == "from_device":
+                writer.from_device(item.data, item.time_ns)
+            elif item.kind == "to_device":
+                writer.to_device(item.data, item.time_ns)
+        writer.scan(scans[0])
+        writer.odometry(scans[0].time_ns, 1.0, 2.0, 0.5)
+    poses = [item.pose for item in g4lidar.Recording(copy) if item.kind == "odometry"]
+    assert poses == [(1.0, 2.0, 0.5)]
+    with pytest.raises(errors.System, match="EEXIST"):
+        g4lidar.RecordingWriter(copy)
+    with pytest.raises(errors.BadFile):
+        g4lidar.Recording(__file__)
+
+
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, -2e6])
+@pytest.mark.parametrize("place", range(6))
+def test_a_writer_refuses_impossible_odometry(tmp_path: Path, wrong: float, place: int) -> None:
+    numbers = [0.0] * 6
+    numbers[place] = wrong
+    with g4lidar.RecordingWriter(tmp_path / "a.mcap") as writer:
+        with pytest.raises(ValueError, match="first bytes"):
+            writer.odometry(1, 0, 0, 0)
+        writer.from_device(b"first", 1)
+        with pytest.raises(ValueError, match="finite"):
+            writer.odometry(2, numbers[0], numbers[1], numbers[2], g4lidar.Twist(*numbers[3:]))
+        writer.odometry(3, 1.0, 2.0, 3.0)
+    assert [item.pose for item in g4lidar.Recording(tmp_path / "a.mcap") if item.pose] == [(1.0, 2.0, 3.0)]
+
+
+def test_a_closed_writer_refuses_more(tmp_path: Path, g4_lidar: g4lidar.Lidar) -> None:
+    g4_lidar.start()
+    scan = g4_lidar.next_scan()
+    writer = g4lidar.RecordingWriter(tmp_path / "a.mcap")
+    writer.from_device(b"first", 1)
+    writer.close()
+    writer.close()
+    calls: list[Callable[[], None]] = [
+        lambda: writer.from_device(b"more", 2), lambda: writer.to_device(b"more", 2), lambda: writer.scan(scan),
+        lambda: writer.odometry(2, 0, 0, 0), lambda: writer.set_wall_clock(0), writer.flush,
+    ]
+    for call in calls:
+        with pytest.raises(ValueError, match="closed"):
+            call()
+
+
+def test_decode_gives_the_points_of_the_lidar(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    data = b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device")
+    whole = g4lidar.decode(data)
+    wanted = np.concatenate([scan.points for scan in scans])
+    first = int(np.flatnonzero(whole["revolution"] == wanted["revolution"][0])[0])
+    found = whole[first : first + len(wanted)]
+    assert (found["range_mm"] == wanted["range_mm"]).all()
+    assert np.abs(found["angle_deg"] - wanted["angle_deg"]).max() < 1e-4
+    # In pieces, and into memory of the caller.
+    decoder = g4lidar.Decoder()
+    out = np.zeros(2000, g4lidar.POINT_DTYPE)
+    pieces = []
+    for begin in range(0, len(data), 997):
+        view = decoder.decode(memoryview(data)[begin : begin + 997], out)
+        assert np.shares_memory(view, out) or len(view) == 0
+        pieces.append(view.copy())
+    pieces.append(decoder.finish())
+    assert (np.concatenate(pieces) == whole).all()
+    counts = decoder.counts()
+    assert sum(v for k, v in counts.items() if k.startswith("skipped")) + counts["parsed_bytes"] == len(data)
+    with pytest.raises(ValueError, match="short"):
+        decoder.decode(data, np.zeros(10, g4lidar.POINT_DTYPE))
+    frozen = np.zeros(100_000, g4lidar.POINT_DTYPE)
+    frozen.flags.writeable = False
+    with pytest.raises((BufferError, ValueError)):
+        decoder.decode(b"", frozen)
+
+
+def test_raw_bytes_of_a_file(g4_simulator: Make, recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
+    path, scans = recorded
+    raw = tmp_path / "walk.bin"
+    raw.write_bytes(b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device"))
+    with g4lidar.open(raw) as lidar:
+        lidar.start()
+        again = list(lidar.scans())
+    assert len(again) >= len(scans)
+    assert 0 < again[0].stamp - os.stat(raw).st_mtime < 10
