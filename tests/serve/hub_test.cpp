@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -204,45 +203,6 @@ TEST_F(Hub, NumberOfClients_IsLimited) {
   center.disconnect(all.front());
   EXPECT_NE(center.connect(client_kind::page, nullptr), nullptr);
   EXPECT_EQ(center.client_count(), hub::most_clients);
-}
-
-// A day at 12 Hz: a client that reads all, one that reads now and then, one that never reads, and
-// Foxglove the same; pages come and go.
-TEST_F(Hub, ADay_InConstantMemory) {
-  struct reader {
-    hub::client* who;
-    unsigned every;  // scans; 0: never
-    std::uint64_t got = 0;
-  };
-  std::vector<reader> readers;
-  for (const unsigned every : {1U, 50U, 0U}) {
-    readers.push_back({&page(), every});
-    readers.push_back({&foxglove(), every});
-    ASSERT_TRUE(center.receive(
-        *readers.back().who,
-        R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":1,"channelId":2}]})"));
-  }
-  constexpr std::uint64_t scans_of_an_hour = 12 * 3600;
-  std::size_t after_an_hour = 0;
-  for (std::uint64_t scan = 0; scan < 24 * scans_of_an_hour; ++scan) {
-    const auto byte = static_cast<std::uint8_t>(scan);
-    const std::vector<std::uint8_t> message(200, byte);
-    center.page_scan(message);
-    center.publish(channel::scan, static_cast<std::int64_t>(scan), message);
-    center.publish(channel::points, static_cast<std::int64_t>(scan), message);
-    if (scan % 6 == 0) center.status(R"({"op":"status"})");
-    if (scan % 600 == 0) center.event(R"({"op":"event"})");
-    if (scan % 1000 == 0) center.disconnect(&page());
-    for (reader& each : readers) {
-      if (each.every == 0 || scan % each.every != 0) continue;
-      while (center.take(*each.who)) ++each.got;
-    }
-    if (scan == scans_of_an_hour) after_an_hour = ::mallinfo2().uordblks;
-  }
-  EXPECT_LE(::mallinfo2().uordblks, after_an_hour + 64 * 1024);
-  EXPECT_GE(readers[0].got, 24 * scans_of_an_hour) << "each scan";
-  EXPECT_GE(readers[1].got, 2 * 24 * scans_of_an_hour);
-  EXPECT_LE(readers[2].got, 24 * scans_of_an_hour / 50 * 4 + 100);
 }
 
 TEST(HostGuard, LoopbackKnowsItsNames) {
