@@ -176,6 +176,30 @@ TEST_F(Hub, Foxglove_GetsWhatItSubscribes) {
   EXPECT_FALSE(center.has_more(one)) << "nor what waited";
 }
 
+TEST_F(Hub, Foxglove_IsWarnedOfBytesThatAreLeftOut) {
+  hub::client& slow = foxglove();
+  take_all(slow);
+  EXPECT_TRUE(center.receive(
+      slow,
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":4}]})"));
+  const auto publish = [&] {
+    center.publish(channel::scan, 1, {1});
+    center.publish(channel::from_device, 1, {2});
+  };
+  for (int i = 0; i < 3; ++i) {
+    publish();
+    EXPECT_THAT(take_all(slow), ElementsAre("scan", "scan")) << "nothing was left out";
+  }
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i < 50; ++i) publish();
+    const auto warning = center.take(slow);
+    ASSERT_TRUE(warning && warning->is_text) << "before the bytes, and once";
+    EXPECT_THAT(text_in(*warning), HasSubstr("/g4lidar/from_device are left out"));
+    EXPECT_EQ(json::parse(text_in(*warning))["level"], 1);
+    EXPECT_THAT(take_all(slow), ElementsAre("scan", "scan"));
+  }
+}
+
 TEST_F(Hub, Foxglove_IsWarnedOfWhatCannotBe) {
   hub::client& one = foxglove();
   take_all(one);

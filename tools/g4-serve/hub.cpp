@@ -14,6 +14,9 @@ constexpr std::size_t settings_slot = 0;
 constexpr std::size_t status_slot = 1;
 constexpr std::size_t scan_slot = 2;
 
+constexpr std::string_view bytes_left_out =
+    "this client reads too slowly: messages of /g4lidar/from_device are left out";
+
 outgoing text_of(shared_bytes payload) { return {.payload = std::move(payload)}; }
 outgoing text_of(std::string_view text) { return text_of(share(text)); }
 
@@ -228,8 +231,11 @@ void hub::publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t
     const std::lock_guard lock(mutex_);
     for (client& each : clients_) {
       const auto& subscription = each.subscriptions[slot];
-      if (subscription) {
-        each.waiting.replace(slot, message_data(*subscription, stamp_ns, payload));
+      if (!subscription) continue;
+      const auto replaced =
+          each.waiting.replace(slot, message_data(*subscription, stamp_ns, payload));
+      if (which == channel::from_device && replaced == 1) {
+        each.waiting.add(text_of(foxglove_status_text(1, bytes_left_out)));
       }
     }
   }

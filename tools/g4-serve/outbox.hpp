@@ -2,6 +2,7 @@
 // What waits for one client: bounded, whatever the client reads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -47,12 +48,15 @@ class outbox {
     queue_.push_back(std::move(message));
     return true;
   }
-  /// To be sent once, unless it is replaced before. Slots take turns.
-  void replace(std::size_t slot, outgoing message) {
-    if (slots_.at(slot)) ++replaced_;
-    slots_[slot] = std::move(message);
+  /// To be sent once, unless it is replaced before. Slots take turns. Returns how many messages of the
+  /// slot were replaced since one was sent.
+  std::size_t replace(std::size_t slot, outgoing message) {
+    newest& into = slots_.at(slot);
+    if (into.message) ++into.replaced;
+    into.message = std::move(message);
+    return into.replaced;
   }
-  void clear(std::size_t slot) { slots_.at(slot).reset(); }
+  void clear(std::size_t slot) { slots_.at(slot) = {}; }
 
   /// The next message; nothing if none waits.
   [[nodiscard]] std::optional<outgoing> take() {
@@ -63,24 +67,24 @@ class outbox {
     }
     for (std::size_t i = 0; i < slot_count; ++i) {
       const std::size_t slot = std::exchange(turn_, (turn_ + 1) % slot_count);
-      if (slots_[slot]) return std::exchange(slots_[slot], std::nullopt);
+      if (slots_[slot].message) return std::exchange(slots_[slot], {}).message;
     }
     return std::nullopt;
   }
   [[nodiscard]] bool is_empty() const noexcept {
-    for (const auto& slot : slots_) {
-      if (slot) return false;
-    }
-    return queue_.empty();
+    return queue_.empty() && std::ranges::none_of(slots_, [](const newest& each) {
+             return each.message.has_value();
+           });
   }
-  /// How many messages were never sent because a newer one came.
-  [[nodiscard]] std::uint64_t replaced() const noexcept { return replaced_; }
 
  private:
+  struct newest {
+    std::optional<outgoing> message{};
+    std::size_t replaced = 0;
+  };
   std::deque<outgoing> queue_;
-  std::array<std::optional<outgoing>, slot_count> slots_;
+  std::array<newest, slot_count> slots_;
   std::size_t turn_ = 0;
-  std::uint64_t replaced_ = 0;
 };
 
 }  // namespace g4_tool
