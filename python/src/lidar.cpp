@@ -205,7 +205,8 @@ void bind_control(Class& made) {
       .def("seek", &live_lidar::seek, "seconds"_a,
            "Continues a recording at this time since its beginning, as it began with `begin` of "
            "open(): also after its end, "
-           "in a loop, and from another thread. Counts and events begin anew; with `loop` the "
+           "in a loop, and from another thread. Revolutions, counts and events begin anew; with "
+           "`loop` the "
            "later rounds begin there. "
            "Raises BadOption for anything else than a recording.")
       .def("wake", &live_lidar::wake,
