@@ -9,7 +9,7 @@ import g4lidar
 
 data = open(sys.argv[1], "rb").read()
 repetitions = int(sys.argv[2])
-out = np.zeros(len(data) // 2 + 120, g4lidar.POINT_DTYPE)
+out = np.zeros(len(data) // 2 + 165, g4lidar.POINT_DTYPE)
 points = len(g4lidar.Decoder().decode(data, out))
 begin = time.process_time()
 for _ in range(repetitions):

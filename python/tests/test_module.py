@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The module as a whole."""
 import inspect
+from importlib import resources
 
 import g4lidar
 
@@ -17,3 +18,9 @@ def test_everything_public_has_a_docstring() -> None:
         missing += [each for each, member in members if not (getattr(member, "__doc__", None) or "").strip()]
     assert missing == []
 
+
+
+def test_the_view_has_twenty_lines() -> None:
+    lines = [line for line in (resources.files(g4lidar) / "view.py").read_text().splitlines() if line.strip()]
+    words = [line for line in lines if line.lstrip().startswith(("#", '"""'))]
+    assert 10 < len(lines) - len(words) <= 20
