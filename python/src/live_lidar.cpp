@@ -96,12 +96,11 @@ void live_lidar::seek(double seconds) {
   if (closed_) raise(error(task::reading, problem::gone, "this lidar, which was closed"));
   if (!on_.open_at) raise_bad_option("seek() is for recordings that are not recorded again");
   const auto opened = std::make_shared<lidar>(on_.open_at(seconds));
-  {
-    const lock held = locked(true);
-    lidar_->release();
-    lidar_ = opened;
-    if (is_started_) static_cast<void>(lidar_->start());  // a recording starts always
-  }
+  const lock held = locked(true);
+  if (closed_) return;  // by another thread meanwhile
+  lidar_->release();
+  lidar_ = opened;
+  if (is_started_) static_cast<void>(lidar_->start());  // a recording starts always
   notice_.give();
 }
 
@@ -109,6 +108,7 @@ void live_lidar::close() {
   if (closed_.exchange(true)) return;
   notice_.give();
   result<void> stopped;
+  result<void> written;
   try {
     do {
       const std::shared_ptr<lidar> on = lidar_;
@@ -118,15 +118,15 @@ void live_lidar::close() {
       const auto stop = [may = may_stop_](lidar& to) { return may ? to.stop() : result<void>(); };
       stopped = alone(std::move(held), stop);
     } while (!stopped && stopped.error() == problem::cancelled);
+    written = alone(locked(true), [&](lidar& on) {
+      if (stopped) stopped = on.close();
+      on.release();
+      return on_.recording ? on_.recording->close() : result<void>();
+    });
   } catch (const nb::python_error&) {
     closed_ = false;  // close_all() stops it
     throw;
   }
-  const auto written = alone(locked(true), [&](lidar& on) {
-    if (stopped) stopped = on.close();
-    on.release();
-    return on_.recording ? on_.recording->close() : result<void>();
-  });
   check(written);
   if (!stopped && stopped.error() != problem::gone) raise(stopped.error());
 }

@@ -183,19 +183,17 @@ def test_a_port_can_be_opened_after_an_interrupt(g4_simulator: Make) -> None:
         def interrupt(*_):
             raise LookupError
         signal.signal(signal.SIGALRM, interrupt)
-        ends = {True: 0, False: 0}
-        for number in range(40):
-            signal.setitimer(signal.ITIMER_REAL, 0.002 * (number % 20) + 0.001)
+        def attempt(seconds):
             try:
-                lidar = g4lidar.open(sys.argv[1])
+                signal.setitimer(signal.ITIMER_REAL, seconds)
+                g4lidar.open(sys.argv[1]).close()
+            finally:
                 signal.setitimer(signal.ITIMER_REAL, 0)
-                lidar.close()
-                ends[True] += 1
-            except LookupError:
-                ends[False] += 1
-            except g4lidar.errors.Busy:  # what was begun has not ended yet
+        for number in range(40):
+            try:
+                attempt(0.002 * (number % 20) + 0.001)
+            except (LookupError, g4lidar.errors.Busy):  # busy: what was begun has not ended yet
                 pass
-            signal.setitimer(signal.ITIMER_REAL, 0)
         import time
         end = time.monotonic() + 30
         while time.monotonic() < end:
