@@ -3,12 +3,21 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <map>
 #include <numbers>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/program.hpp"
+#include "diagnosis.hpp"
 #include "io/scan_shaper.hpp"
 #include "lidar.hpp"
 #include "subscriber.hpp"
@@ -20,6 +29,37 @@ class Robot : public cli::scratch {
  protected:
   test_domain domain_;
 };
+
+struct place {
+  double x;
+  double y;
+};
+
+/// From -2 to 3, and from -1.5 to 1.2.
+constexpr std::string_view small_room =
+    "wall -2 -1.5 3 -1.5\nwall 3 -1.5 3 1.2\nwall 3 1.2 -2 1.2\nwall -2 1.2 -2 -1.5\n";
+
+/// Which one, and how far away.
+std::pair<int, double> nearest_wall(const place& at) {
+  const std::array<double, 4> distances{std::fabs(at.x + 2), std::fabs(at.x - 3),
+                                        std::fabs(at.y + 1.5), std::fabs(at.y - 1.2)};
+  const auto* const least = std::ranges::min_element(distances);
+  return {static_cast<int>(least - distances.begin()), *least};
+}
+
+std::vector<place> places_of(const cloud_message& cloud) {
+  std::vector<place> made;
+  for (std::size_t at = 0; at < cloud.data._length; at += cloud.point_step) {
+    std::array<float, 2> xy{};
+    std::memcpy(xy.data(), cloud.data._buffer + at, sizeof xy);
+    made.push_back({static_cast<double>(xy[0]), static_cast<double>(xy[1])});
+  }
+  return made;
+}
+
+double seconds_of(const builtin_interfaces_msg_dds__Time_& stamp) {
+  return stamp.sec + stamp.nanosec * 1e-9;
+}
 
 TEST_F(Robot, TwoLidarsInNamespacesOrAsOneScan) {
   const served_lidar front;
@@ -90,6 +130,129 @@ TEST_F(Robot, ItsWayInARecordingWithTheTime) {
   EXPECT_GT(transforms, 50U);
   EXPECT_NEAR(static_cast<double>(clock_s), static_cast<double>(scan_s), 3.0);
   tool.send(SIGINT);
+}
+
+TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {
+  // The direction of a lidar's cable is opposite to that of its mounting.
+  cli::write_file(path("front.txt"), std::string(small_room) + "lidar 0.3 0.1 -160\n");
+  cli::write_file(path("rear.txt"), std::string(small_room) + "lidar -0.4 -0.2 30\n");
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
+  diagnosis diagnostics(domain_);
+  cli::program tool({"front=sim:?world=" + path("front.txt"), "rear=sim:?world=" + path("rear.txt"),
+                     "--merge", "--mount", "front=0.3,0.1,20", "--mount", "rear=-0.4,-0.2,-150"});
+  std::vector<place> points;
+  EXPECT_TRUE(comes_true([&] {
+    clouds.take([&](const cloud_message& cloud) { points = places_of(cloud); });
+    return points.size() > 2000;
+  })) << points.size();
+  std::map<int, int> walls;
+  for (const place& at : points) {
+    const auto [wall, distance_m] = nearest_wall(at);
+    EXPECT_LT(distance_m, 0.06) << at.x << ' ' << at.y;
+    ++walls[wall];
+  }
+  for (const int wall : {0, 1, 2, 3}) EXPECT_GT(walls[wall], 100) << wall;
+  std::vector<float> ranges;
+  EXPECT_TRUE(comes_true([&] {
+    return scans.take([&](const scan_message& scan) {
+      ranges.assign(scan.ranges._buffer, scan.ranges._buffer + scan.ranges._length);
+    }) > 0;
+  }));
+  ASSERT_EQ(ranges.size(), 720U);
+  int seen = 0;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double angle = (static_cast<double>(i) - 360.0) / 360.0 * std::numbers::pi;
+    const double range = static_cast<double>(ranges[i]);
+    if (!std::isfinite(range)) continue;
+    ++seen;
+    EXPECT_LT(nearest_wall({range * std::cos(angle), range * std::sin(angle)}).second, 0.08) << i;
+  }
+  EXPECT_GT(seen, 700);
+  // A scan may be without a lidar that is still being opened; then none is.
+  EXPECT_TRUE(comes_true([&] { return diagnostics["front g4lidar: merging level"] == "0"; }));
+  EXPECT_NE(diagnostics["scans_without_front"], "");
+  EXPECT_NE(diagnostics["scans_without_rear"], "");
+  tool.send(SIGINT);
+}
+
+TEST_F(Robot, MergedLidarsFollowTheSimulatedRobot) {
+  cli::write_file(path("turn.txt"),
+                  std::string(small_room) + "lidar 0 0 0\nmount 0 0 180\ndrive turn 3600 60\n");
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
+  subscriber<odometry_message> odometry(domain_, "/odom", dds::odometry, {.depth = 1000});
+  diagnosis diagnostics(domain_);
+  cli::program tool({"front=sim:?world=" + path("turn.txt"), "--merge", "--mount", "front=0,0,0",
+                     "--deskew", "odometry"});
+  std::map<double, double> yaws;
+  double stamp_s = 0;
+  std::vector<place> points;
+  int scans = 0;
+  EXPECT_TRUE(comes_true([&] {
+    odometry.take([&](const odometry_message& at) {
+      const auto& turn = at.pose.pose.orientation;
+      yaws[seconds_of(at.header.stamp)] = 2 * std::atan2(turn.z, turn.w);
+    });
+    // Each time one that is followed by odometry.
+    if (scans > 5 && !points.empty()) return !yaws.empty() && yaws.rbegin()->first > stamp_s;
+    clouds.take([&](const cloud_message& cloud) {
+      ++scans;
+      points = places_of(cloud);
+      stamp_s = seconds_of(cloud.header.stamp);
+    });
+    return false;
+  }));
+  const auto after = yaws.lower_bound(stamp_s);
+  ASSERT_TRUE(after != yaws.end() && after != yaws.begin());
+  const auto before = std::prev(after);
+  ASSERT_LT(after->first - before->first, 0.1);
+  const double part = (stamp_s - before->first) / (after->first - before->first);
+  const double yaw =
+      before->second + part * std::remainder(after->second - before->second, 2 * std::numbers::pi);
+  std::size_t good = 0;
+  for (const place& at : points) {
+    const place turned{at.x * std::cos(yaw) - at.y * std::sin(yaw),
+                       at.x * std::sin(yaw) + at.y * std::cos(yaw)};
+    good += nearest_wall(turned).second < 0.06 ? 1U : 0U;
+  }
+  EXPECT_GT(good, points.size() * 95 / 100) << points.size();
+  EXPECT_TRUE(comes_true([&] { return diagnostics["front g4lidar: deskewing level"] == "0"; }));
+  tool.send(SIGINT);
+}
+
+TEST_F(Robot, WithoutOdometryNothingIsDeskewedAndThatIsReported) {
+  const served_lidar lidar;
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  diagnosis diagnostics(domain_);
+  cli::program tool({lidar.path(), "--deskew", "odometry"});
+  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: deskewing level"] == "1"; }));
+  EXPECT_THAT(diagnostics["g4lidar: deskewing warning"],
+              ::testing::HasSubstr("no odometry on /odom"));
+  std::size_t seen = 0;
+  EXPECT_TRUE(comes_true([&] { return (seen += scans.take()) > 10; }));
+  const publisher<odometry_message> odometry(domain_, "/odom", dds::odometry);
+  std::string name = "odom";
+  auto due = std::chrono::steady_clock::now();
+  EXPECT_TRUE(comes_true([&] {
+    if (const auto now = std::chrono::steady_clock::now(); now >= due) {
+      odometry_message here{};
+      here.header.frame_id = here.child_frame_id = name.data();
+      here.pose.pose.orientation.w = 1;
+      const auto stamp =
+          std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+      here.header.stamp = {static_cast<std::int32_t>(stamp / 1'000'000'000),
+                           static_cast<std::uint32_t>(stamp % 1'000'000'000)};
+      odometry.write(here);
+      due = now + std::chrono::milliseconds(20);
+    }
+    return diagnostics["g4lidar: deskewing level"] == "0";
+  }));
+  EXPECT_GT(std::atoi(diagnostics["points_not_deskewed"].c_str()), 5000);
+  tool.send(SIGINT);
+  const std::string err = tool.wait().err;
+  const std::size_t first = err.find("no odometry on /odom");
+  EXPECT_NE(first, std::string::npos) << err;
+  EXPECT_EQ(err.rfind("no odometry on /odom"), first) << err;
 }
 
 TEST(OdometryPath, GoesOnForALittleWithTheLastVelocity) {

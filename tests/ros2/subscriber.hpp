@@ -126,4 +126,24 @@ class subscriber {
   dds::entity reader_;
 };
 
+/// A writer with the quality of service of ROS 2.
+template <class Message>
+class publisher {
+ public:
+  publisher(const test_domain& in, const std::string& name, const dds::message_type& type)
+      : topic_(dds_create_topic(in.participant(), type.descriptor, ("rt" + name).c_str(), nullptr,
+                                nullptr)) {
+    const dds::qos wish = dds::qos_of({.name = name, .type = &type});
+    writer_ = dds::entity(dds_create_writer(in.participant(), topic_.get(), wish.get(), nullptr));
+    EXPECT_TRUE(writer_) << name;
+  }
+  void write(const Message& what) const {
+    EXPECT_EQ(dds_write(writer_.get(), &what), DDS_RETCODE_OK);
+  }
+
+ private:
+  dds::entity topic_;
+  dds::entity writer_;
+};
+
 }  // namespace ros2

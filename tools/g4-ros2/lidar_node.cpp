@@ -17,10 +17,6 @@ using namespace std::chrono_literals;
 /// So long the motor turns on when the last subscriber has gone: one that comes again need not wait.
 constexpr auto rest_delay = 3s;
 
-bool has_times_of_its_own(const std::string& source) {
-  return kind_of(source) == source_kind::recording;
-}
-
 common_options options_of(const ros2_options& options, const std::string& source, bool merges) {
   common_options made = options.common;
   made.source = source;
@@ -39,7 +35,6 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       merger_(into),
       index_(index),
       diagnostics_(on, options, name_space_, which.name),
-      robot_(on, options, name_space_, index == 0 && has_times_of_its_own(which.source)),
       shaper_(options_of(options, which.source, into != nullptr), which.mount.value_or(mounting{})),
       parameters_(options_of(options, which.source, into != nullptr), options.fov, shaper_) {
   const std::string frame_id = (which.name.empty() ? "" : which.name + "_") + options.frames.lidar;
@@ -54,16 +49,27 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
                           {.type = &dds::tf_message, .depth = 1, .is_for_late = true});
     place_->publish(place_message(options, frame_id, *which.mount));
   }
-  const source_kind kind = kind_of(which.source);
-  station_options wishes = options.station;
-  wishes.starts_rested = options.is_standby;
-  if (kind == source_kind::recording) feed_.load_recording(path_of(which.source));
-  wishes.wants_points = feed_.is_known() || kind == source_kind::simulated;
-  const bool follows = options.common.deskew == deskewing::by_path && merger_ == nullptr;
-  if (follows && !wishes.wants_points && options.topics.odometry != "off") {
+  const bool is_by_path = options.common.deskew == deskewing::by_path && merger_ == nullptr;
+  const bool is_played = kind_of(which.source) == source_kind::recording;
+  if (is_played) feed_.load_recording(path_of(which.source));
+  // The robot of all merged lidars is that of the first one.
+  if (merger_ == nullptr || index == 0) {
+    const bool is_known = feed_.is_known() || kind_of(which.source) == source_kind::simulated;
+    robot_.emplace(on, options, merger_ == nullptr ? name_space_ : options.name_space,
+                   robot_knowledge{is_known, index == 0 && is_played});
+  }
+  if (is_by_path && !feed_.is_known() && options.topics.odometry != "off") {
     driven_ = std::make_unique<odometry_subscription>(
         on, full_name(name_space_, options.topics.odometry));
   }
+  if (is_by_path) {
+    deskewing_ = std::make_unique<deskew_report>(
+        feed_.is_known() ? "in the recording" : where_odometry_is(options, name_space_));
+    also_report([this] { return deskewing_->status(); });
+  }
+  station_options wishes = options.station;
+  wishes.starts_rested = options.is_standby;
+  wishes.wants_points = is_played || (robot_ && kind_of(which.source) == source_kind::simulated);
   station_ = std::make_unique<station>(options_of(options, which.source, merger_ != nullptr),
                                        options.source, *this, wishes);
 }
@@ -103,17 +109,20 @@ void lidar_node::on_open(opened_source& source) {
 }
 
 void lidar_node::on_points(std::span<const point> points) {
+  if (!robot_ || points.empty()) return;
   feed_.follow(points, [this](const stamped_odometry& at) {
-    path_.add(at);
-    robot_.publish(at, station_->wall_ns(at.time_ns));
+    merger_ == nullptr ? path_.add(at) : merger_->add(at);
+    robot_->publish(at, station_->wall_ns(at.time_ns));
   });
-  if (!points.empty()) robot_.publish_clock(station_->wall_ns(points.back().time_ns));
+  robot_->publish_clock(station_->wall_ns(points.back().time_ns));
 }
 
 void lidar_node::on_scan(const scan& whole) {
   if (whole.is_piece()) return;
-  if (driven_) driven_->take(path_, ahead_ns());
+  if (driven_ && !feed_.is_known()) driven_->take(path_, ahead_ns());
+  const std::uint64_t before = shaper_.not_deskewed();
   const shaped_scan shaped = shaper_.shape(whole, path_.until(whole.end_ns()));
+  if (deskewing_) deskewing_->add(shaped.kept.size(), shaper_.not_deskewed() - before);
   const scan_times when{whole.time_ns(), whole.duration_ns, ahead_ns()};
   if (merger_ != nullptr) return merger_->add(index_, shaped, when);
   messages_->publish(shaped, when);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "dds/bus.hpp"
+#include "deskew_report.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/motion.hpp"
 #include "io/odometry_feed.hpp"
@@ -76,12 +77,13 @@ class lidar_node final : public station_listener {
   std::size_t index_;
   std::unique_ptr<scan_messages> messages_;  // null if its scans are merged
   lidar_diagnostics diagnostics_;
-  robot_messages robot_;
+  odometry_feed feed_;  // of the station's thread, as robot_, path_ and shaper_
+  std::optional<robot_messages> robot_;
   std::unique_ptr<dds::publisher> place_;
   std::unique_ptr<odometry_subscription> driven_;
-  odometry_feed feed_;  // of the station's thread, as the next two
   odometry_path path_;
   scan_shaper shaper_;
+  std::unique_ptr<deskew_report> deskewing_;  // null if it does not depend on odometry
   lidar_parameters parameters_;
   std::atomic<bool> is_allowed_ = true;
   clock::time_point wanted_{};        // last

@@ -2,8 +2,7 @@
 #include "merger.hpp"
 
 #include <algorithm>
-
-#include "g4lidar/merge.hpp"
+#include <utility>
 
 namespace g4_tool {
 namespace {
@@ -18,13 +17,19 @@ merger::merger(dds::bus& on, const ros2_options& options, const std::vector<name
   if (options.order == scan_order::time) {
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");
   }
-  if (options.common.deskew == deskewing::by_path && options.topics.odometry != "off") {
+  const bool is_by_path = options.common.deskew == deskewing::by_path;
+  if (is_by_path) {
+    deskewing_ = std::make_unique<deskew_report>(where_odometry_is(options, options.name_space));
+  }
+  if (is_by_path && options.topics.odometry != "off") {
     driven_ = std::make_unique<odometry_subscription>(
         on, full_name(options.name_space, options.topics.odometry));
   }
   for (const named_source& each : lidars) {
-    parts_.emplace_back().place = each.mount.value_or(mounting{});
-    if (options.common.deskew == deskewing::by_scans) parts_.back().estimator.emplace();
+    part& made = parts_.emplace_back();
+    made.name = each.name;
+    made.place = each.mount.value_or(mounting{});
+    if (options.common.deskew == deskewing::by_scans) made.estimator.emplace();
   }
 }
 
@@ -40,15 +45,25 @@ void merger::add(std::size_t index, const shaped_scan& scan, const scan_times& w
   if (!is_leader) return;
   follow(here, when);
   const std::int64_t reference_ns = here.end_ns;
-  const std::span<const stamped_pose> path = path_.until(reference_ns);
-  const shaped_scan all{merged_points(&part::for_grid, reference_ns, path, for_grid_),
-                        merged_points(&part::kept, reference_ns, path, kept_),
-                        {}};
-  messages_.publish(all, {reference_ns, when.duration_ns, when.ahead_ns});
+  const std::int64_t last_ns = std::ranges::max_element(parts_, {}, &part::end_ns)->end_ns;
+  const std::span<const stamped_pose> path = path_.until(last_ns);
+  const merged grid = merged_points(&part::for_grid, reference_ns, path, for_grid_);
+  const merged kept = merged_points(&part::kept, reference_ns, path, kept_);
+  ++scans_;
+  for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].lost += std::uint64_t{grid.is_lost(i)};
+  if (deskewing_) deskewing_->add(kept.points.size(), kept.outside);
+  messages_.publish({grid.points, kept.points, {}},
+                    {reference_ns, when.duration_ns, when.ahead_ns});
+}
+
+void merger::add(const stamped_odometry& at) {
+  const std::lock_guard lock(mutex_);
+  has_odometry_ = true;
+  path_.add(at);
 }
 
 void merger::follow(part& leader, const scan_times& when) {
-  if (driven_) driven_->take(path_, when.ahead_ns);
+  if (driven_ && !has_odometry_) driven_->take(path_, when.ahead_ns);
   if (!leader.estimator) return;
   const twist_estimate motion = leader.estimator->add(leader.for_grid);
   if (motion.is_known() || motion.status == twist_status::degenerate) {
@@ -62,10 +77,8 @@ void merger::follow(part& leader, const scan_times& when) {
   }
 }
 
-std::span<const point> merger::merged_points(std::vector<point> part::* which,
-                                             std::int64_t reference_ns,
-                                             std::span<const stamped_pose> path,
-                                             std::vector<point>& out) const {
+merged merger::merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
+                             std::span<const stamped_pose> path, std::vector<point>& out) const {
   std::vector<mounted_scan> lidars;
   std::size_t count = 0;
   for (const part& each : parts_) {
@@ -73,11 +86,31 @@ std::span<const point> merger::merged_points(std::vector<point> part::* which,
     count += (each.*which).size();
   }
   out.resize(count);
-  const merged all = driven_ ? merge_scans(lidars, path, reference_ns, out)
-                             : merge_scans(lidars, twist_.value_or(twist_2d{}), reference_ns, out);
+  const merged all = deskewing_
+                         ? merge_scans(lidars, path, reference_ns, out)
+                         : merge_scans(lidars, twist_.value_or(twist_2d{}), reference_ns, out);
   // All of them are where they would have been seen at that time.
   for (point& p : all.points) p.time_ns = reference_ns;
-  return all.points;
+  return all;
+}
+
+std::vector<std::function<diagnostic_status()>> merger::reports() {
+  std::vector<std::function<diagnostic_status()>> all{[this] { return status(); }};
+  if (deskewing_) all.emplace_back([this] { return deskewing_->status(); });
+  return all;
+}
+
+diagnostic_status merger::status() {
+  const std::lock_guard lock(mutex_);
+  diagnostic_status made{.name = "g4lidar: merging", .values = {{"scans", std::to_string(scans_)}}};
+  for (part& each : parts_) {
+    made.values.emplace_back("scans_without_" + each.name, std::to_string(each.lost));
+    if (each.lost == std::exchange(each.lost_before, each.lost)) continue;
+    made.level = diagnostic_level::warn;
+    made.message += (made.message.empty() ? "without " : ", ") + each.name;
+  }
+  if (made.message.empty()) made.message = "ok";
+  return made;
 }
 
 }  // namespace g4_tool

@@ -4,13 +4,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dds/bus.hpp"
+#include "deskew_report.hpp"
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/merge.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/twist_estimator.hpp"
@@ -29,29 +34,39 @@ class merger {
   merger(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars);
 
   void add(std::size_t index, const shaped_scan& scan, const scan_times& when);
+  /// The robot's odometry, from now on instead of that which others publish.
+  void add(const stamped_odometry& at);
+  /// Of the merged scans; more if points need odometry.
+  [[nodiscard]] std::vector<std::function<diagnostic_status()>> reports();
   [[nodiscard]] bool is_wanted() const { return messages_.is_wanted(); }
   [[nodiscard]] scan_messages& messages() noexcept { return messages_; }
 
  private:
   struct part {
+    std::string name;
     mounting place;
     std::vector<point> for_grid;
     std::vector<point> kept;
     std::int64_t end_ns = 0;
     std::optional<twist_estimator> estimator;
+    std::uint64_t lost = 0;         // so many scans were published without it
+    std::uint64_t lost_before = 0;  // as it was reported
   };
   /// `which` of all parts, as one scan at `reference_ns`.
-  [[nodiscard]] std::span<const point> merged_points(std::vector<point> part::* which,
-                                                     std::int64_t reference_ns,
-                                                     std::span<const stamped_pose> path,
-                                                     std::vector<point>& out) const;
+  [[nodiscard]] merged merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
+                                     std::span<const stamped_pose> path,
+                                     std::vector<point>& out) const;
+  [[nodiscard]] diagnostic_status status();
   void follow(part& leader, const scan_times& when);
 
   scan_messages messages_;
   std::unique_ptr<odometry_subscription> driven_;
+  std::unique_ptr<deskew_report> deskewing_;  // null if it does not depend on odometry
   std::mutex mutex_;
   std::vector<part> parts_;
   odometry_path path_;
+  bool has_odometry_ = false;  // of the robot itself
+  std::uint64_t scans_ = 0;
   std::optional<twist_2d> twist_;  // of the robot, by the scans
   std::vector<point> for_grid_;
   std::vector<point> kept_;

@@ -8,6 +8,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cli/exit_code.hpp"
@@ -44,6 +45,9 @@ class node {
     for (const auto& each : lidars_) all.push_back(each.get());
     services_ = std::make_unique<node_services>(bus_, options_, all);
     lidars_.front()->also_report([this] { return services_->status(); });
+    if (merger_) {
+      for (auto& each : merger_->reports()) lidars_.front()->also_report(std::move(each));
+    }
     announcement_.emplace(bus_, options_.transport.announced,
                           full_name(options_.name_space, options_.node));
   }

@@ -37,11 +37,13 @@ std::optional<stamped_odometry> odometry_of(const nav_msgs_msg_dds__Odometry_& f
 }  // namespace
 
 robot_messages::robot_messages(dds::bus& on, const ros2_options& options,
-                               std::string_view name_space, bool has_clock)
+                               std::string_view name_space, const robot_knowledge& known)
     : options_(options) {
-  odometry_ = publisher_of(on, name_space, options.topics.odometry, {.type = &dds::odometry});
-  tf_ = publisher_of(on, "", "/tf", {.type = &dds::tf_message, .depth = 100});
-  if (has_clock) clock_ = publisher_of(on, "", "/clock", {.type = &dds::clock_message});
+  if (known.has_odometry) {
+    odometry_ = publisher_of(on, name_space, options.topics.odometry, {.type = &dds::odometry});
+    tf_ = publisher_of(on, "", "/tf", {.type = &dds::tf_message, .depth = 100});
+  }
+  if (known.has_clock) clock_ = publisher_of(on, "", "/clock", {.type = &dds::clock_message});
 }
 
 void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) {
@@ -55,7 +57,7 @@ void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) 
                  message_);
     odometry_->publish(message_);
   }
-  if (tf_->is_wanted()) {
+  if (tf_ && tf_->is_wanted()) {
     message_.clear();
     put_tf_message({.stamp_ns = stamp_ns,
                     .frame_id = options_.frames.odometry,
@@ -78,6 +80,11 @@ void robot_messages::publish_clock(std::int64_t now_ns) {
   clock_->publish(message_);
 }
 
+std::string where_odometry_is(const ros2_options& options, std::string_view name_space) {
+  const std::string& topic = options.topics.odometry;
+  return topic == "off" ? "(--odometry-topic is off)" : "on " + full_name(name_space, topic);
+}
+
 std::vector<std::uint8_t> place_message(const ros2_options& options, const std::string& frame_id,
                                         const mounting& place) {
   std::vector<std::uint8_t> message;
@@ -98,6 +105,7 @@ void odometry_subscription::open(dds_entity_t participant, int* /*handle*/) {
   const std::lock_guard lock(mutex_);
   // Whoever publishes: with best effort every quality of service is accepted.
   const dds::qos wish = dds::qos_of({.type = &dds::odometry, .is_reliable = false, .depth = 100});
+  dds_qset_ignorelocal(wish.get(), DDS_IGNORELOCAL_PARTICIPANT);
   topic_ = dds::entity(dds_create_topic(participant, dds::odometry.descriptor,
                                         dds::dds_name(name_).c_str(), nullptr, nullptr));
   reader_ = dds::entity(dds_create_reader(participant, topic_.get(), wish.get(), nullptr));

@@ -16,12 +16,18 @@
 
 namespace g4_tool {
 
+/// What a source knows of the robot.
+struct robot_knowledge {
+  bool has_odometry = false;
+  bool has_clock = false;
+};
+
 /// The topics of the robot as a recording or the simulated G4 knows it: odom, /tf, and /clock of a
 /// recording. *Single thread.*
 class robot_messages {
  public:
   robot_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
-                 bool has_clock);
+                 const robot_knowledge& known);
 
   /// A pose, at a time since 1970.
   void publish(const stamped_odometry& at, std::int64_t stamp_ns);
@@ -30,19 +36,23 @@ class robot_messages {
 
  private:
   const ros2_options& options_;
-  std::unique_ptr<dds::publisher> odometry_;
+  std::unique_ptr<dds::publisher> odometry_;  // null where it is not known
   std::unique_ptr<dds::publisher> tf_;
   std::unique_ptr<dds::publisher> clock_;
   std::int64_t clock_ns_ = 0;  // as it was published
   std::vector<std::uint8_t> message_;
 };
 
+/// Where odometry_subscription looks: "on /odom".
+[[nodiscard]] std::string where_odometry_is(const ros2_options& options,
+                                            std::string_view name_space);
+
 /// The place of a lidar on the robot, for /tf_static. `options.order` may turn its frame.
 [[nodiscard]] std::vector<std::uint8_t> place_message(const ros2_options& options,
                                                       const std::string& frame_id,
                                                       const mounting& place);
 
-/// The odometry that others publish. *Any thread.*
+/// The odometry that others publish, not this program. *Any thread.*
 class odometry_subscription final : public dds::endpoint {
  public:
   odometry_subscription(dds::bus& on, std::string name);
