@@ -20,3 +20,9 @@ row() {
 
 # value <name> <file>: the value of a line "name value".
 value() { awk -v name="$1" '$1 == name { print $2 }' "$2"; }
+
+# ticks <process>: of processor time that it has used, in 10 ms.
+ticks() { awk '{ print $14 + $15 }' "/proc/$1/stat"; }
+
+# percent <ticks> <seconds>: of a core.
+percent() { awk -v used="$1" -v seconds="$2" 'BEGIN { printf "%.2f", used / seconds }'; }

@@ -31,19 +31,15 @@ for ((i = 0; i < 100; ++i)); do
   sleep 0.1
 done
 
-# ticks: of processor time that the server has used; 100 a second.
-ticks() { awk '{ print $14 + $15 }' "/proc/$server/stat"; }
-
 mkfifo "$scratch/clients"
 python3 bench/serve_clients.py "$port" "$pages" "$foxglove" "$seconds" >"$scratch/clients" &
 exec 3<"$scratch/clients"
 read -r <&3 # warm
-begin=$(ticks)
+begin=$(ticks "$server")
 { read -r _ page_rate && read -r _ foxglove_rate; } <&3
-used=$(($(ticks) - begin))
+used=$(($(ticks "$server") - begin))
 heading
-percent=$(awk -v used="$used" -v seconds="$seconds" 'BEGIN { printf "%.1f", used / seconds }')
-row "g4-serve, $pages pages and $foxglove Foxglove at 12 Hz" "$percent" "% of a core" 10 "at most 10 %"
+row "g4-serve, $pages pages and $foxglove Foxglove at 12 Hz" "$(percent "$used" "$seconds")" "% of a core" 10 "at most 10 %"
 row "scans that the slowest page received" "$page_rate" "1/s"
 row "scans that the slowest Foxglove received" "$foxglove_rate" "1/s"
 if awk -v a="$page_rate" -v b="$foxglove_rate" 'BEGIN { exit !(a < 11 || b < 11) }'; then

@@ -157,6 +157,19 @@ def test_signals():
         terminal.shows("state")
         terminal.child.send_signal(number)
         terminal.end(code)
+    terminal = Terminal(SOURCE)
+    terminal.shows("state")
+    terminal.press("\x03")
+    terminal.end(130)
+
+
+def test_error():
+    """An error while the picture is shown: first the terminal is as before, then the message comes."""
+    terminal = Terminal("--on-loss", "exit", "sim:?fault=unplug@2s")
+    terminal.shows("running")
+    terminal.end(9)
+    message = terminal.raw[terminal.raw.rindex(LEAVE) :]
+    assert b"unplugged" in message, message
 
 
 def test_background():

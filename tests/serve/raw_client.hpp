@@ -75,12 +75,15 @@ class raw_client {
 
   /// Asks for one; the headers of the answer.
   std::string upgrade(std::string_view subprotocol, std::string_view more = "Host: localhost\r\n") {
-    send(
-        "GET / HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: "
-        "13\r\n"
-        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " +
-        std::string(subprotocol) + "\r\n" + std::string(more) + "\r\n");
+    send(upgrade_request(subprotocol, more));
     return read_until("\r\n\r\n");
+  }
+  static std::string upgrade_request(std::string_view subprotocol,
+                                     std::string_view more = "Host: localhost\r\n") {
+    return "GET / HTTP/1.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+           "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+           "Sec-WebSocket-Protocol: " +
+           std::string(subprotocol) + "\r\n" + std::string(more) + "\r\n";
   }
   /// A masked frame, with a mask of zeros; `length`: the length in its header.
   static std::string frame(std::uint8_t opcode, std::string_view payload,

@@ -235,6 +235,38 @@ TEST_F(Server, RandomBytes_EndOnlyTheirConnection) {
   EXPECT_TRUE(gets_scans(*open_page()));
 }
 
+TEST_F(Server, DamagedHandshakesAndFrames_EndOnlyTheirConnection) {
+  begin();
+  const auto good = open_page();
+  std::mt19937 random(11);
+  const auto damage = [&random](std::string bytes) {
+    for (auto left = 1 + random() % 4; left > 0; --left) {
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    }
+    if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+    return bytes;
+  };
+  int upgraded = 0;
+  for (int i = 0; i < g4lidar::test::scaled(300); ++i) {
+    const char* const protocol = i % 4 < 2 ? page : "foxglove.sdk.v1";
+    const std::string frames =
+        raw_client::frame(1, R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1}]})") +
+        raw_client::frame(9, "ping") + raw_client::frame(1, R"({"op":"play","speed":2})") +
+        raw_client::frame(8, "\x03\xE8");
+    raw_client bad(port_);
+    if (i % 2 == 0) {
+      bad.send(damage(raw_client::upgrade_request(protocol)) + frames);
+    } else {
+      upgraded += bad.upgrade(protocol).starts_with("HTTP/1.1 101") ? 1 : 0;
+      bad.send(damage(frames));
+    }
+  }
+  EXPECT_GT(upgraded, 100);
+  EXPECT_TRUE(gets_scans(*good));
+  EXPECT_TRUE(gets_scans(*open_page()));
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
 TEST_F(Server, TwoHundredConnections_LeaveTheFirstAlone) {
   begin();
   const auto good = open_page();
