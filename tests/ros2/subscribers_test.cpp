@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <string>
@@ -41,9 +42,12 @@ TEST_F(Subscribers, TheMotorTurnsOnlyForThem) {
   ASSERT_TRUE(comes_true([&] { return diagnostics.take() > 0; }));
   EXPECT_FALSE(lidar.motor_turns());
   {
+    const auto begin = clock::now();
     subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
-    // Within a second on an idle machine: docs/ros2.md. Here other programs may run.
     EXPECT_TRUE(comes_true([&] { return lidar.motor_turns(); }));
+    // The limit is that of bench/ros2_delay: here other programs may run.
+    std::printf("subscriber to turning motor: %.0f ms\n",
+                std::chrono::duration<double, std::milli>(clock::now() - begin).count());
     EXPECT_TRUE(comes_true([&] { return scans.take() > 0; }));
   }
   EXPECT_TRUE(comes_true([&] { return !lidar.motor_turns(); }));
