@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -20,6 +21,7 @@
 #include "diagnosis.hpp"
 #include "io/scan_shaper.hpp"
 #include "lidar.hpp"
+#include "played_clock.hpp"
 #include "subscriber.hpp"
 
 namespace ros2 {
@@ -130,6 +132,45 @@ TEST_F(Robot, ItsWayInARecordingWithTheTime) {
   EXPECT_GT(transforms, 50U);
   EXPECT_NEAR(static_cast<double>(clock_s), static_cast<double>(scan_s), 3.0);
   tool.send(SIGINT);
+}
+
+TEST_F(Robot, TheTimeOfARecordingGoesOnWhereItBeginsAgain) {
+  const std::string file = path("stand.mcap");
+  make_recording(file, 3);
+  subscriber<clock_message> clock(domain_, "/clock", dds::clock_message, {.depth = 1000});
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan, {.depth = 100});
+  subscriber<diagnostic_message> diagnostics(domain_, "/diagnostics", dds::diagnostic_array);
+  cli::program tool({file, "--standby", "--loop", "--playback-speed", "20"});
+  std::vector<double> times;
+  std::vector<double> stamps;
+  std::vector<double> reports;
+  EXPECT_TRUE(comes_true(
+      [&] {
+        clock.take([&](const clock_message& now) { times.push_back(seconds_of(now.clock)); });
+        scans.take([&](const scan_message& at) { stamps.push_back(seconds_of(at.header.stamp)); });
+        diagnostics.take(
+            [&](const diagnostic_message& at) { reports.push_back(seconds_of(at.header.stamp)); });
+        return !times.empty() && times.back() - times.front() > 40 && !stamps.empty() &&
+               !reports.empty() && reports.back() - times.front() > 30;
+      },
+      std::chrono::seconds(60)));
+  EXPECT_TRUE(std::ranges::is_sorted(times, std::less_equal()));
+  EXPECT_TRUE(std::ranges::is_sorted(stamps, std::less_equal()));
+  EXPECT_TRUE(std::ranges::is_sorted(reports));
+  tool.send(SIGINT);
+}
+
+TEST(PlayedClock, GoesOnAfterTheNewestStamp) {
+  g4_tool::played_clock clock;
+  EXPECT_EQ(clock.now_ns(), 0);
+  clock.begin(5'000'000'000);
+  EXPECT_EQ(clock.now_ns(), 5'000'000'000);
+  EXPECT_EQ(clock.stamp_ns(6'000'000'000), 6'000'000'000);
+  clock.reach(8'000'000'000);
+  clock.reach(7'000'000'000);
+  clock.begin(5'000'000'000);
+  EXPECT_GT(clock.now_ns(), 8'000'000'000);
+  EXPECT_EQ(clock.stamp_ns(6'000'000'000), clock.now_ns() + 1'000'000'000);
 }
 
 TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {

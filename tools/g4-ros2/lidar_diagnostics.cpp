@@ -52,9 +52,10 @@ lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
       topic_(publisher_of(on, name_space, options.topics.diagnostics,
                           {.type = &dds::diagnostic_array, .depth = 10})) {}
 
-void lidar_diagnostics::update(const station& device, const scan_messages& messages) {
+void lidar_diagnostics::update(const station& device, const scan_messages& messages,
+                               std::int64_t stamp_ns) {
   const auto now = clock::now();
-  if (!topic_ || now < due_) return;
+  if (!topic_ || now < due_ || stamp_ns == 0) return;
   due_ = now + diagnostics_pulse;
   if (!topic_->is_wanted()) return;
   const auto who = device.identity();
@@ -68,8 +69,7 @@ void lidar_diagnostics::update(const station& device, const scan_messages& messa
     if (!name_.empty()) each.name.insert(0, name_ + " ");
   }
   std::vector<std::uint8_t> message;
-  const auto now_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
-  put_diagnostic_array(statuses, now_ns.count(), message);
+  put_diagnostic_array(statuses, stamp_ns, message);
   topic_->publish(message);
 }
 

@@ -42,8 +42,8 @@ class lidar_diagnostics {
 
   /// One more status in each message.
   void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
-  /// Publishes once a second, if somebody subscribes.
-  void update(const station& device, const scan_messages& messages);
+  /// Publishes once a second, if somebody subscribes. `stamp_ns`: the time, since 1970; not before it is known (0).
+  void update(const station& device, const scan_messages& messages, std::int64_t stamp_ns);
 
  private:
   using clock = std::chrono::steady_clock;

@@ -51,7 +51,10 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
   }
   const bool is_by_path = options.common.deskew == deskewing::by_path && merger_ == nullptr;
   const bool is_played = kind_of(which.source) == source_kind::recording;
-  if (is_played) feed_.load_recording(path_of(which.source));
+  if (is_played) {
+    feed_.load_recording(path_of(which.source));
+    time_.emplace();
+  }
   // The robot of all merged lidars is that of the first one.
   if (merger_ == nullptr || index == 0) {
     const bool is_known = feed_.is_known() || kind_of(which.source) == source_kind::simulated;
@@ -84,7 +87,9 @@ void lidar_node::update() {
   const auto now = clock::now();
   if (!options_.is_standby || is_wanted()) wanted_ = now;
   station_->rest(!is_allowed_ || now - wanted_ > rest_delay);
-  diagnostics_.update(*station_, messages_ ? *messages_ : merger_->messages());
+  const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
+  diagnostics_.update(*station_, messages_ ? *messages_ : merger_->messages(),
+                      time_ ? time_->now_ns() : wall.count());
 }
 
 void lidar_node::change(std::vector<named_value> wanted, std::function<void(std::string)> done) {
@@ -93,8 +98,16 @@ void lidar_node::change(std::vector<named_value> wanted, std::function<void(std:
   });
 }
 
+std::int64_t lidar_node::stamp_ns(std::int64_t time_ns) const {
+  const std::int64_t wall_ns = station_->wall_ns(time_ns);
+  return time_ ? time_->stamp_ns(wall_ns) : wall_ns;
+}
+
 void lidar_node::on_open(opened_source& source) {
   feed_.restart();
+  if (time_ && source.recording() != nullptr) {
+    time_->begin(station_->wall_ns(source.recording()->first_ns()));
+  }
   if (feed_.is_known() && source.robot() == nullptr) return;
   feed_.follow(source.robot());
   for (const wish& each : options_.settings) {
@@ -112,18 +125,22 @@ void lidar_node::on_points(std::span<const point> points) {
   if (!robot_ || points.empty()) return;
   feed_.follow(points, [this](const stamped_odometry& at) {
     merger_ == nullptr ? path_.add(at) : merger_->add(at);
-    robot_->publish(at, station_->wall_ns(at.time_ns));
+    const std::int64_t at_ns = stamp_ns(at.time_ns);
+    robot_->publish(at, at_ns);
+    if (time_) time_->reach(at_ns);
   });
-  robot_->publish_clock(station_->wall_ns(points.back().time_ns));
+  const std::int64_t now_ns = stamp_ns(points.back().time_ns);
+  if (time_) time_->reach(now_ns);
+  robot_->publish_clock(now_ns);
 }
 
 void lidar_node::on_scan(const scan& whole) {
   if (whole.is_piece()) return;
-  if (driven_ && !feed_.is_known()) driven_->take(path_, ahead_ns());
+  if (driven_ && !feed_.is_known()) driven_->take(path_, stamp_ns(0));
   const std::uint64_t before = shaper_.not_deskewed();
   const shaped_scan shaped = shaper_.shape(whole, path_.until(whole.end_ns()));
   if (deskewing_) deskewing_->add(shaped.kept.size(), shaper_.not_deskewed() - before);
-  const scan_times when{whole.time_ns(), whole.duration_ns, ahead_ns()};
+  const scan_times when{whole.time_ns(), whole.duration_ns, stamp_ns(0)};
   if (merger_ != nullptr) return merger_->add(index_, shaped, when);
   messages_->publish(shaped, when);
 }

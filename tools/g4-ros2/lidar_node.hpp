@@ -25,6 +25,7 @@
 #include "lidar_diagnostics.hpp"
 #include "options.hpp"
 #include "parameters.hpp"
+#include "played_clock.hpp"
 #include "robot_messages.hpp"
 #include "scan_messages.hpp"
 
@@ -68,7 +69,8 @@ class lidar_node final : public station_listener {
   using clock = std::chrono::steady_clock;
 
   [[nodiscard]] bool is_wanted() const;
-  [[nodiscard]] std::int64_t ahead_ns() const { return station_->wall_ns(0); }
+  /// The stamp of a point::time_ns. Only in the station's thread.
+  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const;
 
   const ros2_options& options_;
   named_source which_;
@@ -79,6 +81,7 @@ class lidar_node final : public station_listener {
   lidar_diagnostics diagnostics_;
   odometry_feed feed_;  // of the station's thread, as robot_, path_ and shaper_
   std::optional<robot_messages> robot_;
+  std::optional<played_clock> time_;  // of a recording
   std::unique_ptr<dds::publisher> place_;
   std::unique_ptr<odometry_subscription> driven_;
   odometry_path path_;
