@@ -52,7 +52,7 @@ measure() {
   terminal=
 }
 
-"$G4_DUMP" sim --link "$scratch/g4" >/dev/null &
+"$G4_DUMP" sim --link "$scratch/g4" &>/dev/null &
 lidar=$!
 wait_for test -e "$scratch/g4"
 heading

@@ -4,23 +4,15 @@
 #include <array>
 
 #include "export/cdr.hpp"
+#include "export/schema_text.hpp"
 
 namespace g4lidar {
 namespace {
 
-constexpr std::string_view diagnostic_array_text =
-    R"(std_msgs/Header header
+constexpr std::string_view array_text = R"(std_msgs/Header header
 diagnostic_msgs/DiagnosticStatus[] status
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: diagnostic_msgs/DiagnosticStatus
+)";
+constexpr std::string_view status_text = R"(MSG: diagnostic_msgs/DiagnosticStatus
 byte OK=0
 byte WARN=1
 byte ERROR=2
@@ -30,8 +22,8 @@ string name
 string message
 string hardware_id
 diagnostic_msgs/KeyValue[] values
-================================================================================
-MSG: diagnostic_msgs/KeyValue
+)";
+constexpr std::string_view value_text = R"(MSG: diagnostic_msgs/KeyValue
 string key
 string value
 )";
@@ -106,7 +98,8 @@ std::vector<diagnostic_status> statuses_of(std::span<const stage_report> stages,
 }
 
 message_schema diagnostic_array_schema() noexcept {
-  return {"diagnostic_msgs/msg/DiagnosticArray", diagnostic_array_text};
+  return {"diagnostic_msgs/msg/DiagnosticArray",
+          schema::text<array_text, schema::header, schema::time, status_text, value_text>};
 }
 
 void put_diagnostic_array(std::span<const diagnostic_status> statuses, std::int64_t stamp_ns,

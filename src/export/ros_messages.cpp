@@ -12,12 +12,13 @@
 #include "cdr.hpp"
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/grid.hpp"
+#include "schema_text.hpp"
 
 namespace g4lidar {
+namespace schema {
 namespace {
 
-constexpr std::string_view laser_scan_text =
-    R"(std_msgs/Header header
+constexpr std::string_view laser_scan = R"(std_msgs/Header header
 float32 angle_min
 float32 angle_max
 float32 angle_increment
@@ -27,18 +28,9 @@ float32 range_min
 float32 range_max
 float32[] ranges
 float32[] intensities
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
 )";
 
-constexpr std::string_view point_cloud2_text =
-    R"(std_msgs/Header header
+constexpr std::string_view point_cloud2 = R"(std_msgs/Header header
 uint32 height
 uint32 width
 sensor_msgs/PointField[] fields
@@ -47,16 +39,8 @@ uint32 point_step
 uint32 row_step
 uint8[] data
 bool is_dense
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: sensor_msgs/PointField
+)";
+constexpr std::string_view point_field = R"(MSG: sensor_msgs/PointField
 uint8 INT8    = 1
 uint8 UINT8   = 2
 uint8 INT16   = 3
@@ -71,84 +55,60 @@ uint8 datatype
 uint32 count
 )";
 
-constexpr std::string_view odometry_text =
-    R"(std_msgs/Header header
+constexpr std::string_view odometry = R"(std_msgs/Header header
 string child_frame_id
 geometry_msgs/PoseWithCovariance pose
 geometry_msgs/TwistWithCovariance twist
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: geometry_msgs/PoseWithCovariance
+)";
+constexpr std::string_view pose_with_covariance = R"(MSG: geometry_msgs/PoseWithCovariance
 geometry_msgs/Pose pose
 float64[36] covariance
-================================================================================
-MSG: geometry_msgs/Pose
+)";
+constexpr std::string_view pose = R"(MSG: geometry_msgs/Pose
 geometry_msgs/Point position
 geometry_msgs/Quaternion orientation
-================================================================================
-MSG: geometry_msgs/Point
+)";
+constexpr std::string_view place = R"(MSG: geometry_msgs/Point
 float64 x
 float64 y
 float64 z
-================================================================================
-MSG: geometry_msgs/Quaternion
+)";
+constexpr std::string_view quaternion = R"(MSG: geometry_msgs/Quaternion
 float64 x 0
 float64 y 0
 float64 z 0
 float64 w 1
-================================================================================
-MSG: geometry_msgs/TwistWithCovariance
+)";
+constexpr std::string_view twist_with_covariance = R"(MSG: geometry_msgs/TwistWithCovariance
 geometry_msgs/Twist twist
 float64[36] covariance
-================================================================================
-MSG: geometry_msgs/Twist
+)";
+constexpr std::string_view twist = R"(MSG: geometry_msgs/Twist
 geometry_msgs/Vector3 linear
 geometry_msgs/Vector3 angular
-================================================================================
-MSG: geometry_msgs/Vector3
+)";
+constexpr std::string_view vector3 = R"(MSG: geometry_msgs/Vector3
 float64 x
 float64 y
 float64 z
 )";
 
-constexpr std::string_view tf_message_text =
-    R"(geometry_msgs/TransformStamped[] transforms
-================================================================================
-MSG: geometry_msgs/TransformStamped
+constexpr std::string_view transforms = R"(geometry_msgs/TransformStamped[] transforms
+)";
+constexpr std::string_view transform_stamped = R"(MSG: geometry_msgs/TransformStamped
 std_msgs/Header header
 string child_frame_id
 geometry_msgs/Transform transform
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: geometry_msgs/Transform
+)";
+constexpr std::string_view transform = R"(MSG: geometry_msgs/Transform
 geometry_msgs/Vector3 translation
 geometry_msgs/Quaternion rotation
-================================================================================
-MSG: geometry_msgs/Vector3
-float64 x
-float64 y
-float64 z
-================================================================================
-MSG: geometry_msgs/Quaternion
-float64 x 0
-float64 y 0
-float64 z 0
-float64 w 1
 )";
+
+}  // namespace
+}  // namespace schema
+
+namespace {
 
 /// Reliable ranges, in metres: the maximum is that of 16 bits.
 constexpr float least_range_m = too_near_mm * 0.001F;
@@ -190,13 +150,23 @@ void put_fields(cdr_writer& message) {
 }  // namespace
 
 message_schema laser_scan_schema() noexcept {
-  return {"sensor_msgs/msg/LaserScan", laser_scan_text};
+  using namespace schema;
+  return {"sensor_msgs/msg/LaserScan", text<laser_scan, header, time>};
 }
 message_schema point_cloud2_schema() noexcept {
-  return {"sensor_msgs/msg/PointCloud2", point_cloud2_text};
+  using namespace schema;
+  return {"sensor_msgs/msg/PointCloud2", text<point_cloud2, header, time, point_field>};
 }
-message_schema odometry_schema() noexcept { return {"nav_msgs/msg/Odometry", odometry_text}; }
-message_schema tf_message_schema() noexcept { return {"tf2_msgs/msg/TFMessage", tf_message_text}; }
+message_schema odometry_schema() noexcept {
+  using namespace schema;
+  return {"nav_msgs/msg/Odometry", text<odometry, header, time, pose_with_covariance, pose, place,
+                                        quaternion, twist_with_covariance, twist, vector3>};
+}
+message_schema tf_message_schema() noexcept {
+  using namespace schema;
+  return {"tf2_msgs/msg/TFMessage",
+          text<transforms, transform_stamped, header, time, transform, vector3, quaternion>};
+}
 
 std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_ns,
                            std::span<float> ranges_m) noexcept {
