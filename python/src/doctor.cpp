@@ -79,8 +79,8 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
   if (given != nullptr && (*given)->is_virtual()) {
     const auto alive = (*given)->in_virtual_time();
     const auto mutex = (*given)->mutex();
+    lock = lock_of(*mutex);
     const without_gil free;
-    lock = std::unique_lock(*mutex);
     sim::virtual_connector from(alive->device, alive->clock);
     found = diagnose(from, how);
     lock.unlock();

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gil.hpp"
 
+#include <nanobind/nanobind.h>
 #include <unistd.h>
+
+#include <chrono>
 
 namespace g4lidar::python {
 namespace {
@@ -40,5 +43,19 @@ class last_place {
 without_gil::~without_gil() { take_back(state_); }
 
 with_gil::with_gil() : state_(take()) {}
+
+std::unique_lock<std::timed_mutex> lock_of(std::timed_mutex& mutex,
+                                           const std::function<void()>& again) {
+  std::unique_lock held(mutex, std::try_to_lock);
+  while (!held) {
+    if (again) again();
+    {
+      const without_gil free;
+      static_cast<void>(held.try_lock_for(std::chrono::milliseconds(50)));
+    }
+    if (!held && PyErr_CheckSignals() != 0) throw nanobind::python_error();
+  }
+  return held;
+}
 
 }  // namespace g4lidar::python

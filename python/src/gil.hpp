@@ -4,6 +4,9 @@
 
 #include <Python.h>
 
+#include <functional>
+#include <mutex>
+
 namespace g4lidar::python {
 
 /// Releases the GIL while it exists. A thread that wants it back when the interpreter has ended waits for ever, as in
@@ -30,5 +33,10 @@ class with_gil {
  private:
   PyGILState_STATE state_;
 };
+
+/// Locks the mutex. Other threads run meanwhile, and so do handlers of signals: raises what they raise. `again` is called
+/// before each wait of 50 ms. Needs the GIL.
+[[nodiscard]] std::unique_lock<std::timed_mutex> lock_of(std::timed_mutex& mutex,
+                                                         const std::function<void()>& again = {});
 
 }  // namespace g4lidar::python

@@ -59,16 +59,9 @@ live_lidar::~live_lidar() {
 
 live_lidar::lock live_lidar::locked(bool wakes) {
   process_.check("this lidar");
-  lock held(*on_.mutex, std::try_to_lock);
-  while (!held) {
+  return lock_of(*on_.mutex, [&] {
     if (wakes) lidar_->wake();
-    {
-      const without_gil free;
-      static_cast<void>(held.try_lock_for(std::chrono::milliseconds(50)));
-    }
-    if (!held && PyErr_CheckSignals() != 0) throw nb::python_error();
-  }
-  return held;
+  });
 }
 
 void live_lidar::start() {

@@ -141,11 +141,12 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   }
   auto opened = [&] {
     if (on.has_own_clock) {  // it needs no time
-      const without_gil free;
       // Of a simulation in virtual time, which other lidars may use.
-      const auto lock =
-          on.mutex ? std::unique_lock(*on.mutex) : std::unique_lock<std::timed_mutex>();
-      return lidar::open(std::move(from), options);
+      auto lock = on.mutex ? lock_of(*on.mutex) : std::unique_lock<std::timed_mutex>();
+      const without_gil free;
+      auto made = lidar::open(std::move(from), options);
+      if (lock) lock.unlock();  // nobody waits for the GIL with the mutex
+      return made;
     }
     auto work = [from = std::move(from), options, recorder = on.recording]() mutable {
       return lidar::open(std::move(from), options);

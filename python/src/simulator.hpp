@@ -71,8 +71,7 @@ auto simulator::with(const Look& look) {
   process_.check("this simulated lidar");
   std::optional<decltype(look(virtual_->device, std::int64_t{}))> found;
   if (virtual_) {
-    const without_gil free;
-    const std::lock_guard lock(*mutex_);
+    const auto lock = lock_of(*mutex_);
     found = look(virtual_->device, virtual_->clock.now_ns());
   } else if (auto port = real_->port) {  // a copy: close() of another thread leaves it alone
     const without_gil free;

@@ -177,6 +177,45 @@ def test_interrupt_ends_open_of_a_network_address() -> None:
             each.close()
 
 
+@pytest.mark.parametrize("call", ["simulated.now_ns", "g4lidar.open(simulated)", "g4lidar.doctor(simulated)"])
+def test_interrupt_ends_a_wait_for_another_thread(call: str) -> None:
+    # In virtual time a year of attempts to reconnect every millisecond takes hours.
+    program = start_program(f"""
+        import threading
+        simulated = g4lidar.Simulator(faults=["unplug@3s"])
+        lidar = g4lidar.open(simulated, reconnect=True, longest_backoff=0.001)
+        lidar.start()
+        begun = threading.Event()
+        def wait():
+            begun.set()
+            try:
+                for scan in lidar.scans(timeout=None):
+                    pass
+            except g4lidar.Error:
+                pass
+        thread = threading.Thread(target=wait)
+        thread.start()
+        begun.wait()
+        print("calls", flush=True)
+        try:
+            while True:
+                try:
+                    {call}
+                except g4lidar.Error:  # it is lost
+                    pass
+        except KeyboardInterrupt:
+            print("interrupted", flush=True)
+        lidar.close()
+        thread.join()
+    """)
+    assert program.stdout is not None
+    assert program.stdout.readline() == "calls\n"
+    time.sleep(0.3)
+    program.send_signal(signal.SIGINT)
+    out, err = program.communicate(timeout=60)
+    assert out == "interrupted\n", err
+
+
 def test_a_port_can_be_opened_after_an_interrupt(g4_simulator: Make) -> None:
     program = start_program("""
         import signal
