@@ -101,9 +101,14 @@ int refuse(g4lidar_error* out, std::string_view message) noexcept {
   return G4LIDAR_BAD_ARGUMENT;
 }
 
-int bad_text(g4lidar_error* out, std::size_t line, std::string_view message) {
-  std::string text = line == 0 ? "" : "line " + std::to_string(line) + ": ";
-  return fail(out, G4LIDAR_BAD_FILE, G4LIDAR_READING, text.append(message), "Correct the text.");
+int bad_text(g4lidar_error* out, std::size_t line, std::string_view message,
+             std::string_view file) {
+  std::string text = file.empty() ? "" : "reading " + std::string(file) + ": ";
+  if (line != 0) text += "line " + std::to_string(line) + ": ";
+  fail(out, G4LIDAR_BAD_FILE, G4LIDAR_READING, text.append(message),
+       file.empty() ? "Correct the text." : "Give the path of a correct file.");
+  if (out != nullptr) copy_text(out->subject, file);
+  return G4LIDAR_BAD_FILE;
 }
 
 int bad_option(g4lidar_error* out, std::string_view which) noexcept {

@@ -32,8 +32,9 @@ int fail(g4lidar_error* out, g4lidar_result code, g4lidar_task doing, std::strin
 int no_memory(g4lidar_error* out) noexcept;
 /// A mistake of the caller: what is wrong with an argument.
 int refuse(g4lidar_error* out, std::string_view message) noexcept;
-/// What is wrong with a text, in its line; 0: in none.
-int bad_text(g4lidar_error* out, std::size_t line, std::string_view message);
+/// What is wrong with a text, in its line; 0: in none. `file` is where it was read from, if from a file.
+int bad_text(g4lidar_error* out, std::size_t line, std::string_view message,
+             std::string_view file = {});
 /// An option that has no valid value, in words of this interface.
 int bad_option(g4lidar_error* out, std::string_view which) noexcept;
 

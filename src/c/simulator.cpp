@@ -44,7 +44,8 @@ int load_scene(const g4lidar_simulator_options& options, const sim::setup& wish,
   auto read =
       options.world != nullptr ? sim::parse_world(options.world) : sim::load_world(wish.world_file);
   if (const auto* wrong = std::get_if<sim::world_error>(&read)) {
-    return bad_text(error, wrong->line, wrong->message);
+    return bad_text(error, wrong->line, wrong->message,
+                    options.world != nullptr ? "" : wish.world_file);
   }
   scene = std::get<sim::world>(std::move(read));
   if (options.path != nullptr) {
@@ -56,7 +57,7 @@ int load_scene(const g4lidar_simulator_options& options, const sim::setup& wish,
     scene.lidar = scene.path.front().robot.at;
   } else if (!wish.path_file.empty()) {
     if (const auto wrong = sim::load_path(scene, wish.path_file)) {
-      return bad_text(error, wrong->line, wrong->message);
+      return bad_text(error, wrong->line, wrong->message, wish.path_file);
     }
   }
   return G4LIDAR_OK;

@@ -84,6 +84,11 @@ TEST(CSimulator, NamesTheMistakeInATextAndItsLine) {
   options.path = nullptr;
   options.setup = "sim:?world=/no/such/file";
   EXPECT_EQ(g4lidar_simulator_create(&options, &made, &why), G4LIDAR_BAD_FILE);
+  EXPECT_STREQ(why.subject, "/no/such/file");
+  EXPECT_NE(std::strstr(why.message, "/no/such/file: it cannot be read"), nullptr) << why.message;
+  options.setup = "sim:?seed=zzz";
+  EXPECT_EQ(g4lidar_simulator_create(&options, &made, &why), G4LIDAR_BAD_OPTION);
+  EXPECT_EQ(std::strncmp(why.message, "seed: 'zzz'", 11), 0) << why.message;
   EXPECT_EQ(made, nullptr);
 }
 

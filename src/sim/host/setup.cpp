@@ -146,11 +146,17 @@ std::string add_fault(std::vector<fault>& faults, std::string_view value) {
   return {};
 }
 
+// The text of read_into(), with the name of what was to be read.
+std::string named(std::string_view name, std::string wrong) {
+  return wrong.empty() ? wrong : std::string(name) + ": " + wrong;
+}
+
 std::string set_member(device_options& device, std::string_view name, std::string_view value) {
   std::string known;
   for (const auto& [each, place] : members) {
     if (each == name) {
-      return std::visit([&](auto found) { return read_into(at(device, found), value); }, place);
+      return named(
+          name, std::visit([&](auto found) { return read_into(at(device, found), value); }, place));
     }
     known.append(each).append(", ");
   }
@@ -215,8 +221,8 @@ std::string set(setup& into, std::string_view word) {
     into.path_file = value;
     return {};
   }
-  if (name == "seed") return read_into(into.device.scanner.seed, value);
-  if (name == "model") return read_into(into.device.info.model, value);
+  if (name == "seed") return named(name, read_into(into.device.scanner.seed, value));
+  if (name == "model") return named(name, read_into(into.device.info.model, value));
   if (name == "firmware") return read_firmware(into.device.info, value);
   if (name == "fault") return add_fault(into.faults, value);
   if (name != "serial") return set_member(into.device, name, value);

@@ -135,22 +135,25 @@ TEST_F(SimSetup, InvalidTexts_AreRefused) {
   EXPECT_THAT(refusal("sim:colour"),
               HasSubstr("boots_at_start, fault, firmware, model, path, seed, serial, world"));
   EXPECT_THAT(refusal("sim:?&"), StartsWith("'' is not one of baud"));
-  EXPECT_EQ(refusal("sim:?seed=-1"), "'-1' is not in the range 0 to 18446744073709551615");
-  EXPECT_EQ(refusal("sim:?seed="), "'' is not in the range 0 to 18446744073709551615");
-  EXPECT_EQ(refusal("sim:?model=256"), "'256' is not in the range 0 to 255");
-  EXPECT_EQ(refusal("sim:?baud=9600x"), "'9600x' is not in the range 0 to 4294967295");
-  EXPECT_EQ(refusal("sim:?boot_text"), "'' is not one of false, true");
+  EXPECT_EQ(refusal("sim:?seed=-1"), "seed: '-1' is not in the range 0 to 18446744073709551615");
+  EXPECT_EQ(refusal("sim:?seed="), "seed: '' is not in the range 0 to 18446744073709551615");
+  EXPECT_EQ(refusal("sim:?model=256"), "model: '256' is not in the range 0 to 255");
+  EXPECT_EQ(refusal("sim:?baud=9600x"), "baud: '9600x' is not in the range 0 to 4294967295");
+  EXPECT_EQ(refusal("sim:?boot_text"), "boot_text: '' is not one of false, true");
   EXPECT_EQ(refusal("sim:?while_scanning=never"),
-            "'never' is not one of mid_packet, between, drops, ignored");
-  EXPECT_EQ(refusal("sim:?initial_protection=true"), "'true' is not one of on, off");
-  EXPECT_EQ(refusal("sim:?highest_frequency_chz=70000"), "'70000' is not in the range 0 to 65535");
+            "while_scanning: 'never' is not one of mid_packet, between, drops, ignored");
+  EXPECT_EQ(refusal("sim:?initial_protection=true"),
+            "initial_protection: 'true' is not one of on, off");
+  EXPECT_EQ(refusal("sim:?highest_frequency_chz=70000"),
+            "highest_frequency_chz: '70000' is not in the range 0 to 65535");
   EXPECT_THAT(refusal("sim:?highest_frequency_chz=699"), HasSubstr("from the device's own"));
   for (const char* const version : {"", "3", "3.", ".2", "3.256", "3.2.1", "three"}) {
     EXPECT_EQ(refusal("sim:?firmware=" + std::string(version)),
               "'" + std::string(version) + "' is not a firmware version such as 3.2");
   }
-  EXPECT_THAT(refusal("sim:?header_ns=2parsecs"), StartsWith("'2parsecs' is not a time such as"));
-  EXPECT_THAT(refusal("sim:?header_ns="), StartsWith("'' is not a time such as"));
+  EXPECT_THAT(refusal("sim:?header_ns=2parsecs"),
+              StartsWith("header_ns: '2parsecs' is not a time such as"));
+  EXPECT_THAT(refusal("sim:?header_ns="), StartsWith("header_ns: '' is not a time such as"));
   EXPECT_THAT(refusal("sim:?header_ns=2min"), HasSubstr("must take 0 to 60 s"));
   EXPECT_THAT(refusal("sim:?serial=123"), HasSubstr("a serial number has 16 decimal digits"));
   EXPECT_THAT(refusal("sim:?serial=123456789012345x"), HasSubstr("has 16 decimal digits"));
