@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -175,6 +177,91 @@ TEST_F(CRecording, ContainsOdometryAndScans) {
   }
   EXPECT_GT(farthest_m, 0.1);
   EXPECT_LE(farthest_m, 1.001);
+}
+
+TEST_F(CRecording, IsWrittenAsItsOptionsWish) {
+  const auto run = [&](const char* name, std::int64_t seconds, auto change) {
+    g4lidar_recorder_options wish;
+    g4lidar_recorder_options_init(&wish, sizeof wish);
+    change(wish);
+    const simulator device = simulate();
+    const recorder into = record_to(scratch_.path(name), &wish);
+    g4lidar_options options = defaults();
+    options.recorder = into.get();
+    const lidar it = start_on(device, &options);
+    while (g4lidar_simulator_get_state(device.get())->time_ns < seconds * second) next_whole(it);
+    EXPECT_EQ(g4lidar_recorder_close(into.get(), nullptr), G4LIDAR_OK);
+    return *g4lidar_recorder_get_counts(into.get());
+  };
+  const auto has = [&](const char* name, const std::string& text) {
+    std::ifstream file(scratch_.path(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {}).find(text) != std::string::npos;
+  };
+  EXPECT_GT(run("named.mcap", 5,
+                [](auto& wish) {
+                  wish.topic = "/front/scan";
+                  wish.frame_id = "front_laser";
+                })
+                .scans,
+            10U);
+  EXPECT_TRUE(has("named.mcap", "/front/scan"));
+  EXPECT_TRUE(
+      has("named.mcap", std::string("front_laser", 12)));  // in a message, with its zero byte
+  EXPECT_EQ(run("bytes.mcap", 5, [](auto& wish) { wish.without_scans = true; }).scans, 0U);
+  const g4lidar_recorder_counts one = run("one.mcap", 60, [](auto&) {});
+  EXPECT_EQ(one.files, 1U);
+  EXPECT_EQ(one.bytes_lost, 0U);
+  EXPECT_EQ(one.file_bytes, std::filesystem::file_size(scratch_.path("one.mcap")));
+  const auto by_size = run("sizes.mcap", 60, [](auto& wish) { wish.rotate_bytes = 1 << 20U; });
+  EXPECT_GE(by_size.files, one.file_bytes >> 20U);
+  EXPECT_GE(run("times.mcap", 60, [](auto& wish) { wish.rotate_s = 10; }).files, 5U);
+  g4lidar_recorder_options wish;
+  g4lidar_recorder_options_init(&wish, sizeof wish);
+  wish.chunk_ms = 5;
+  g4lidar_recorder* into = nullptr;
+  EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), &wish, &into, nullptr), G4LIDAR_BAD_OPTION);
+}
+
+TEST_F(CRecording, IsPlayedAsItsOptionsWish) {
+  const auto live = record();
+  g4lidar_playback_options options;
+  g4lidar_playback_options_init(&options, sizeof options);
+  options.to_ns = second + second / 2;
+  const auto half = all_points(play(path_, &options));
+  EXPECT_GT(half.size(), live.size() / 3);
+  EXPECT_LT(half.size(), live.size() * 2 / 3);
+  options.loop = true;
+  const lidar endless = play(path_, &options);
+  const g4lidar_point* some = nullptr;
+  std::size_t count = 0;
+  std::size_t points = 0;
+  std::int64_t last_ns = 0;
+  while (points < 3 * half.size()) {
+    ASSERT_EQ(g4lidar_next_points(endless.get(), 1000, &some, &count, nullptr), G4LIDAR_OK);
+    EXPECT_GT(some->time_ns, last_ns);
+    last_ns = some[count - 1].time_ns;
+    points += count;
+  }
+  g4lidar_playback_options_init(&options, sizeof options);
+  options.speed = 10.0;  // 3 s take at least 0.25 s
+  const std::int64_t begin_ns = g4lidar_now_ns();
+  all_points(play(path_, &options));
+  EXPECT_GT(g4lidar_now_ns() - begin_ns, second / 4);
+}
+
+TEST_F(CRecording, DamageIsCounted) {
+  record();
+  {
+    std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path_) / 2));
+    file << "damage in the middle of a chunk";
+  }
+  const lidar damaged = play(path_);
+  all_points(damaged);
+  const g4lidar_recording_info info = *g4lidar_playback_info(damaged.get());
+  EXPECT_GE(info.chunks_lost, 1U);
+  EXPECT_GT(info.bytes_skipped, 1000U);
+  EXPECT_LT(info.bytes_skipped, info.size / 2);
 }
 
 TEST_F(CRecording, TheRecorderMayBeReleasedFirst) {

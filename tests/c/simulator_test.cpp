@@ -221,6 +221,9 @@ TEST(CDiscovery, RealTimeLidarIsListedFoundSelectedAndWoken) {
   ASSERT_NE(listed, nullptr);
   EXPECT_TRUE(listed->may_open && listed->is_g4_bridge);
   EXPECT_FALSE(listed->has_lidar);
+  EXPECT_EQ(listed->vendor_id, 0x10c4);  // of Silicon Labs
+  EXPECT_EQ(listed->product_id, 0xea60);
+  EXPECT_STREQ(listed->by_id, "");
   EXPECT_EQ(g4lidar_ports_at(all.get(), g4lidar_ports_count(all.get())), nullptr);
 
   ASSERT_EQ(g4lidar_find_lidars(nullptr, &list, &why), G4LIDAR_OK) << why.message;
