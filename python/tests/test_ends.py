@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The end of a program: with threads that still run, with lidars that others destroy, in any order."""
 import pytest
-from test_programs import start_program
+from conftest import start_program
 
 RUNNING = {
     "next_scan": "real.next_scan(1000)",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_programs import start_program
+from conftest import start_program
 
 import g4lidar
 

@@ -2,14 +2,13 @@
 """Threads, signals, fork, sub-interpreters, asyncio and the end of a program."""
 import asyncio
 import signal
-import subprocess
 import sys
-import textwrap
 import threading
 import time
 from collections.abc import Callable
 
 import pytest
+from conftest import start_program
 
 import g4lidar
 from g4lidar import errors
@@ -24,12 +23,6 @@ def await_true(condition: Callable[[], bool], seconds: float = 20) -> bool:
             return True
         time.sleep(0.01)
     return False
-
-
-def start_program(text: str, *words: str) -> subprocess.Popen[str]:
-    program = "import sys, g4lidar\n" + textwrap.dedent(text)
-    return subprocess.Popen([sys.executable, "-c", program, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                            text=True)
 
 
 def test_waiting_releases_the_gil(g4_simulator: Make) -> None:

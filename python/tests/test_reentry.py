@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from test_programs import start_program
+from conftest import start_program
 
 import g4lidar
 
