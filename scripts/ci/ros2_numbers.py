@@ -51,14 +51,20 @@ class Truth:
                 angle_deg = float(row["bearing_deg"]) if is_return else float(row["first_level_deg"]) + SILENT_DEG
                 revolutions.setdefault(int(row["scan"]), []).append(
                     Sample(int(row["time_ns"]), turned(180 - angle_deg), float(row["range_mm"]) / 1000, is_return))
-        del revolutions[max(revolutions)]  # not all of it was sent
+        self.end_ns = max(sample.time_ns for sample in revolutions.pop(max(revolutions)))  # not all of it was sent
         self.settled = {number: samples for number, samples in revolutions.items() if samples[0].time_ns > SETTLED_NS}
         self.begin_ns = None  # the stamp that is time 0 of the simulation
+
+    def follow(self, header):
+        """Where the recording begins again, its stamps go on a second later."""
+        if self.begin_ns is not None and stamp_ns(header) - self.begin_ns > self.end_ns + 500_000_000:
+            self.begin_ns = None
 
     def check_cloud(self, cloud):
         """The number of the revolution that it is; None for one of the first seconds."""
         assert [f.name for f in cloud.fields] == ["x", "y", "z", "t", "range", "angle"]
         assert len(cloud.data) == cloud.row_step == cloud.width * 24
+        self.follow(cloud.header)
         points = list(struct.iter_unpack("<fffIff", bytes(cloud.data)))
         for number, samples in self.settled.items():
             returns = [each for each in samples if each.is_return]
@@ -81,6 +87,7 @@ class Truth:
     def check_scan(self, scan):
         """The number of the revolution that it is; None before the first cloud, and for one of the first seconds."""
         assert scan.header.frame_id == "laser"
+        self.follow(scan.header)
         if self.begin_ns is None or stamp_ns(scan.header) - self.begin_ns < SETTLED_NS + 1_000_000:
             return None
         number, samples = min(self.settled.items(), key=lambda each: abs(
