@@ -93,14 +93,15 @@ def main(count: int, seconds: float, is_peer: bool) -> None:
         topic = Topic(participant, f"rt/robot{number}/scan", LaserScan)
         robots.append(Robot(number, DataReader(participant, topic, qos=qos)))
     diagnostics = DataReader(participant, Topic(participant, "rt/diagnostics", DiagnosticArray), qos=qos)
-    serials: set[str] = set()
+    owners: dict[str, set[str]] = {}  # the serial numbers of a status, by its name
 
     def turn(is_counted: bool = False) -> None:
         for robot in robots:
             robot.take(is_counted)
         for array in diagnostics.take(200):
             if isinstance(array, DiagnosticArray):
-                serials.update(status.hardware_id for status in array.status)
+                for status in array.status:
+                    owners.setdefault(status.name, set()).add(status.hardware_id)
         time.sleep(0.02)
 
     stages = {"matched": lambda r: r.reader.get_subscription_matched_status().current_count == 1,
@@ -114,7 +115,9 @@ def main(count: int, seconds: float, is_peer: bool) -> None:
     while time.monotonic() < end:
         turn(is_counted=True)
     print("end", flush=True)
-    print(json.dumps({"serials": sorted(serials), "robots": {r.number: r.report() for r in robots}}), flush=True)
+    shared = sorted(name for name, serials in owners.items() if len(serials - {""}) > 1)
+    print(json.dumps({"serials": sorted(set().union(*owners.values())), "shared_names": shared,
+                      "robots": {r.number: r.report() for r in robots}}), flush=True)
 
 
 if __name__ == "__main__":

@@ -175,6 +175,7 @@ def judge(name: str, seen: dict[str, Any], idle: float) -> None:
           f"{sum(r['lost'] for r in robots.values())} lost")
     expect(all(abs(rate - FREQUENCY_HZ) < 0.3 for rate in rates), f"{name}: scan rates {min(rates)} to {max(rates)}")
     missing = {serial_of(number) for number in range(1, count + 1)} - set(seen["serials"])
+    expect(not seen["shared_names"], f"{name}: statuses of several robots: {seen['shared_names'][:3]}")
     expect(not missing, f"{name}: /diagnostics without {sorted(missing)[:3]}, {len(missing)} in all")
     if idle < 0.1:
         print(f"SKIPPED: {name}: whether all scans are complete: the processors were idle for {100 * idle:.0f} %")

@@ -5,6 +5,12 @@
 #include <gmock/gmock.h>
 
 #include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+
+#include "cli/program.hpp"
+#include "subscriber.hpp"
 
 namespace ros2 {
 namespace {
@@ -36,6 +42,36 @@ TEST(TopicReport, WarnsOfWhatIsNewAndKeepsTheTotals) {
   EXPECT_THAT(status(1, 1).values, Contains(Pair("/scan refused", "1")));
   EXPECT_EQ(status(1, 0).level, g4lidar::diagnostic_level::ok);  // another network
   EXPECT_EQ(status(1, 1).level, g4lidar::diagnostic_level::warn);
+}
+
+TEST(Diagnostics, NoTwoLidarsInADomainHaveAStatusOfTheSameName) {
+  const test_domain domain;
+  subscriber<diagnostic_message> diagnostics(domain, "/diagnostics", dds::diagnostic_array);
+  cli::program one({"sim:?serial=2023060700000001", "--namespace", "robot7"});
+  cli::program two(
+      {"sim:?serial=2023060700000002", "--namespace", "/fleet/robot8", "--node-name", "lidars"});
+  cli::program pair({"front=sim:?serial=2023060700000003", "rear=sim:?serial=2023060700000004"});
+  std::map<std::string, std::set<std::string>> names;  // of each serial number
+  EXPECT_TRUE(comes_true([&] {
+    diagnostics.take([&](const diagnostic_message& message) {
+      for (std::uint32_t i = 0; i < message.status._length; ++i) {
+        const auto& status = message.status._buffer[i];
+        names[status.hardware_id].insert(status.name);
+      }
+    });
+    return names.size() - names.count("") == 4;
+  }));
+  const std::map<std::string, std::string> wanted{{"2023060700000001", "robot7/g4lidar: "},
+                                                  {"2023060700000002", "fleet/robot8/lidars: "},
+                                                  {"2023060700000003", "g4lidar: front "},
+                                                  {"2023060700000004", "g4lidar: rear "}};
+  for (const auto& [serial, prefix] : wanted) {
+    EXPECT_THAT(names[serial], ::testing::Each(::testing::StartsWith(prefix)));
+    EXPECT_THAT(names[serial], Contains(prefix + "state"));
+    EXPECT_THAT(names[serial], Contains(prefix + "topics"));
+    EXPECT_THAT(names[serial], Contains(prefix + "counts"));
+  }
+  for (cli::program* const each : {&one, &two, &pair}) each->send(SIGINT);
 }
 
 }  // namespace

@@ -76,6 +76,15 @@ TEST(Sources, RefusalsNameTheLidarsThatThereAre) {
   EXPECT_THAT(refusal({"sim:"}), HasSubstr("one without a name"));
 }
 
+TEST(Frames, HaveTheNameOfTheLidarAfterTheLastSlash) {
+  ros2_options options;
+  EXPECT_EQ(g4_tool::frame_of(options, ""), "laser");
+  EXPECT_EQ(g4_tool::frame_of(options, "front"), "front_laser");
+  options.frames.lidar = "robot7/laser";
+  EXPECT_EQ(g4_tool::frame_of(options, ""), "robot7/laser");
+  EXPECT_EQ(g4_tool::frame_of(options, "front"), "robot7/front_laser");
+}
+
 TEST(Topics, HaveOneTypeEach) {
   const auto refusal = [](const char* scan, const char* points, const char* name_space) {
     ros2_options options;

@@ -9,6 +9,8 @@ namespace g4_tool {
 namespace {
 
 constexpr std::chrono::seconds diagnostics_pulse{1};
+/// All statuses begin with it until they are published.
+constexpr std::string_view program_name = "g4lidar: ";
 
 diagnostic_status status_of_state(const station& device) {
   const station_state state = device.state();
@@ -47,10 +49,12 @@ diagnostic_status topic_report::status(const named_counts& topics) {
 }
 
 lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
-                                     std::string_view name_space, std::string name)
-    : name_(std::move(name)),
+                                     std::string_view name_space, std::string_view name)
+    : prefix_(full_name(options.name_space, options.node).substr(1) + ": "),
       topic_(publisher_of(on, name_space, options.topics.diagnostics,
-                          {.type = &dds::diagnostic_array, .depth = 10})) {}
+                          {.type = &dds::diagnostic_array, .depth = 10})) {
+  if (!name.empty()) prefix_.append(name).append(" ");
+}
 
 void lidar_diagnostics::update(const station& device, const scan_messages& messages,
                                std::int64_t stamp_ns) {
@@ -66,7 +70,7 @@ void lidar_diagnostics::update(const station& device, const scan_messages& messa
   for (const auto& each : more_) statuses.push_back(each());
   for (diagnostic_status& each : statuses) {
     each.hardware_id = serial;
-    if (!name_.empty()) each.name.insert(0, name_ + " ");
+    each.name.replace(0, program_name.size(), prefix_);
   }
   std::vector<std::uint8_t> message;
   put_diagnostic_array(statuses, stamp_ns, message);

@@ -38,9 +38,9 @@ class lidar_diagnostics {
  public:
   /// `name`: of the lidar; empty for the only one.
   lidar_diagnostics(dds::bus& on, const ros2_options& options, std::string_view name_space,
-                    std::string name);
+                    std::string_view name);
 
-  /// One more status in each message.
+  /// One more status in each message; its name begins with "g4lidar: ", which becomes the name of the node.
   void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
   /// Publishes once a second, if somebody subscribes. `stamp_ns`: the time, since 1970; not before it is known (0).
   void update(const station& device, const scan_messages& messages, std::int64_t stamp_ns);
@@ -48,7 +48,7 @@ class lidar_diagnostics {
  private:
   using clock = std::chrono::steady_clock;
 
-  std::string name_;
+  std::string prefix_;                     // of the names of statuses: node and lidar
   std::unique_ptr<dds::publisher> topic_;  // null: off
   topic_report topics_;
   std::vector<std::function<diagnostic_status()>> more_;

@@ -37,7 +37,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       diagnostics_(on, options, name_space_, which.name),
       shaper_(options_of(options, which.source, into != nullptr), which.mount.value_or(mounting{})),
       parameters_(options_of(options, which.source, into != nullptr), options.fov, shaper_) {
-  const std::string frame_id = (which.name.empty() ? "" : which.name + "_") + options.frames.lidar;
+  const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
   parameters_.fix("grid", std::int64_t{options.bins});
   parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");

@@ -50,7 +50,7 @@ class lidar_node final : public station_listener {
   /// Sets parameters of this lidar, all or none; `done` is called in another thread: why not, or empty.
   void change(std::vector<named_value> wanted, std::function<void(std::string)> done);
   [[nodiscard]] const lidar_parameters& parameters() const noexcept { return parameters_; }
-  /// One more status for its diagnostics.
+  /// One more status for its diagnostics: see lidar_diagnostics.
   void also_report(std::function<diagnostic_status()> what) {
     diagnostics_.also_report(std::move(what));
   }

@@ -48,11 +48,17 @@ option_row frame_name_row(const char* names, const char* help, std::string& into
 
 option_rows topic_rows(ros2_options& options) {
   topic_names& topics = options.topics;
+  const option_row node_row =
+      checked(text_row("--node-name", "NAME", "Name of the node, and of its services (g4lidar)",
+                       options.node, completion::nothing),
+              [](const std::string& word) {
+                if (!is_token(word))
+                  throw bad_value(in_quotes(word) + " is not the name of a node");
+              });
   return in_group(
       "Topics and frames",
       {name_row("--namespace", "Namespace of the topics and services (/)", options.name_space),
-       name_row("--node-name", "Name of the node, and of its services (g4lidar)", options.node),
-       topic_row("--scan-topic", "LaserScan messages; off: none (scan)", topics.scan),
+       node_row, topic_row("--scan-topic", "LaserScan messages; off: none (scan)", topics.scan),
        topic_row("--points-topic", "PointCloud2 messages; off: none (points)", topics.points),
        topic_row("--diagnostics-topic", "DiagnosticArray messages; off: none (/diagnostics)",
                  topics.diagnostics),
@@ -182,6 +188,12 @@ std::string full_name(std::string_view name_space, std::string_view name) {
     }
     at = end;
   }
+  return made;
+}
+
+std::string frame_of(const ros2_options& options, std::string_view lidar) {
+  std::string made = options.frames.lidar;
+  if (!lidar.empty()) made.insert(made.rfind('/') + 1, std::string(lidar) + "_");
   return made;
 }
 

@@ -82,6 +82,9 @@ struct named_source {
 /// A name of ROS 2 in a namespace: "/robot1/scan". Throws bad_value for one that ROS 2 does not allow.
 [[nodiscard]] std::string full_name(std::string_view name_space, std::string_view name);
 
+/// The frame of a lidar; the name of one of several follows the last slash: "robot1/front_laser".
+[[nodiscard]] std::string frame_of(const ros2_options& options, std::string_view lidar);
+
 /// The table of options, which writes into `options`.
 [[nodiscard]] option_rows ros2_rows(const std::shared_ptr<ros2_options>& options);
 
