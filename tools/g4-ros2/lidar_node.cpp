@@ -36,7 +36,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       index_(index),
       diagnostics_(on, options, name_space_, which.name),
       shaper_(options_of(options, which.source, into != nullptr), which.mount.value_or(mounting{})),
-      parameters_(options_of(options, which.source, into != nullptr), options.fov, shaper_) {
+      parameters_(options_of(options, which.source, into != nullptr), options.filter_words,
+                  shaper_) {
   const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
   parameters_.fix("grid", std::int64_t{options.bins});

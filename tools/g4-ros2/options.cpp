@@ -126,14 +126,17 @@ option_rows device_and_player_rows(ros2_options& options) {
                 flag_row("--loop", "Start again at the end", options.station.loops)}));
 }
 
-/// Keeps the text of --fov, too.
+/// Keeps the words of those that are parameters, too.
 option_rows filter_rows_of(ros2_options& options) {
   option_rows rows = filter_rows(options.common);
   for (option_row& row : rows) {
-    if (row.names != "--fov") continue;
-    row.take = [&into = options.fov, inner = row.take](const std::string& word) {
+    const auto at = options.filter_words.find(row.names.substr(2));
+    if (at == options.filter_words.end()) continue;
+    row.take = [&into = at->second, adds = row.repeatable,
+                inner = row.take](const std::string& word) {
       inner(word);
-      into = word;
+      if (!adds) into.clear();
+      into += (into.empty() ? "" : " ") + (word.empty() ? "on" : word);
     };
   }
   return rows;

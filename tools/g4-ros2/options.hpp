@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,7 +65,9 @@ struct ros2_options {
   delivery transport;
   scan_order order = scan_order::angle;
   std::uint32_t bins = 720;
-  std::string fov = "-180:180";  ///< As --fov has it.
+  /// Filters as their options have them, by the names of the parameters.
+  std::map<std::string, std::string> filter_words{
+      {"edges", "off"}, {"fov", "-180:180"}, {"ignore", ""}, {"speckle", "off"}};
   bool merges = false;
   bool is_standby = false;
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
@@ -26,10 +27,21 @@ std::string_view name_of_type(std::size_t type) {
   return names.at(type);
 }
 
+/// As a person writes it.
+std::string word_of(const parameter_value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  const auto* const text = std::get_if<std::string>(&value);
+  return text != nullptr ? *text : std::string();
+}
+
 /// A whole number is a double, too. Throws bad_value for another type.
 parameter_value converted(const parameter& to, const parameter_value& from) {
   const auto* const whole = std::get_if<std::int64_t>(&from);
   if (to.type == is_double && whole != nullptr) return static_cast<double>(*whole);
+  // "on" is true in the YAML of `ros2 param`.
+  if (to.type == is_string && from.index() == is_bool) return word_of(from);
   if (from.index() != to.type) {
     throw bad_value(fmt::format("{}: it is {}", to.name, name_of_type(to.type)));
   }
@@ -38,15 +50,6 @@ parameter_value converted(const parameter& to, const parameter_value& from) {
     throw bad_value(fmt::format("{}: the text is too long", to.name));
   }
   return from;
-}
-
-/// As a person writes it.
-std::string word_of(const parameter_value& value) {
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  const auto* const text = std::get_if<std::string>(&value);
-  return text != nullptr ? *text : std::string();
 }
 
 parameter_value value_of(const maybe_answer& given) {
@@ -70,6 +73,21 @@ void take_option(common_options& into, std::string_view option, const std::strin
   if (row != rows.end()) row->take(word);
 }
 
+/// Sets a filter of one text. Throws bad_value.
+void set_filter(common_options& into, std::string_view name, const std::string& word) {
+  if (name == "fov") return take_option(into, "--fov", word);
+  const bool is_off = word.empty() || word == "off";
+  if (name == "ignore") {
+    into.ignored.clear();
+    std::istringstream all(is_off ? "" : word);
+    for (std::string one; all >> one;) take_option(into, "--ignore", one);
+    return;
+  }
+  if (name == "speckle") into.speckle.reset();
+  if (name == "edges") into.edges.reset();
+  if (!is_off) take_option(into, "--" + std::string(name), word == "on" ? "" : word);
+}
+
 }  // namespace
 
 std::span<const parameter> all_parameters() {
@@ -77,11 +95,15 @@ std::span<const parameter> all_parameters() {
   static const std::vector<parameter> all{
       {"constant", is_bool, device, "constant", "Constant scan frequency", "known when it was set"},
       {"direction", is_string, device, "direction", "Sense of rotation of the motor", "cw, ccw"},
+      {"edges", is_string, filter, "", "Leave out veiling points at jumps of the range",
+       "off, on, or limits as --edges"},
       {"fov", is_string, filter, "", "Directions that are kept, degrees in the frame of the robot",
        "FROM:TO, such as -90:90"},
       {"frame_id", is_string, read_only, "", "Frame of the scans", ""},
       {"grid", is_integer, read_only, "", "Ranges of each LaserScan", ""},
       {"idle", is_bool, device, "idle", "Low power when no scan is running", ""},
+      {"ignore", is_string, filter, "", "Directions that are left out, as fov",
+       "several with spaces between them: 30:40 90:100; off: none"},
       {"order", is_string, read_only, "", "Order of the ranges of a LaserScan", "angle, time"},
       {"protection", is_bool, device, "protection", "Power-down protection",
        "known when it was set"},
@@ -96,7 +118,9 @@ std::span<const parameter> all_parameters() {
        "Revolutions per second, Hz",
        "multiples of 0.1",
        {5.0, 12.0, 0.1}},
-      {"serial_number", is_string, read_only, "", "Serial number of the lidar", ""}};
+      {"serial_number", is_string, read_only, "", "Serial number of the lidar", ""},
+      {"speckle", is_string, filter, "", "Leave out returns without another one near them",
+       "off, on, or limits as --speckle"}};
   return all;
 }
 
@@ -106,12 +130,14 @@ const parameter* find_parameter(std::string_view name) {
   return at == all.end() ? nullptr : &*at;
 }
 
-lidar_parameters::lidar_parameters(const common_options& how, std::string fov, scan_shaper& shaper)
+lidar_parameters::lidar_parameters(const common_options& how,
+                                   const std::map<std::string, std::string>& words,
+                                   scan_shaper& shaper)
     : how_(how), shaper_(shaper) {
   const point_filter& filter = how.filter;
   keep("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
   keep("range_max", std::min(static_cast<double>(filter.greatest_range_mm) / 1e3, 100.0));
-  keep("fov", std::move(fov));
+  for (const auto& [name, word] : words) keep(name, word);
 }
 
 void lidar_parameters::keep(std::string_view name, parameter_value value) {
@@ -180,8 +206,8 @@ std::string lidar_parameters::change(g4lidar::lidar* device, std::span<const nam
         wishes.emplace_back(known, wish_of(fmt::format("{}={}", known->setting, word_of(value))));
       }
     }
-    if (const auto fov = values.find("fov"); fov != values.end()) {
-      take_option(next, "--fov", word_of(fov->second));
+    for (const auto& [name, one] : values) {
+      if (!name.starts_with("range_")) set_filter(next, name, word_of(one));
     }
     if (values.contains("range_min") || values.contains("range_max")) {
       for (const std::string_view name : {"range_min", "range_max"}) {

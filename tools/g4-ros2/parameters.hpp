@@ -45,8 +45,9 @@ struct parameter {
 /// The values for one lidar.
 class lidar_parameters {
  public:
-  /// `how`: the filters at the start; `fov`: its field of view as text. `shaper` filters by them, and outlives this.
-  lidar_parameters(const common_options& how, std::string fov, scan_shaper& shaper);
+  /// `how`: the filters at the start; `words`: some of them as text. `shaper` filters by them, and outlives this.
+  lidar_parameters(const common_options& how, const std::map<std::string, std::string>& words,
+                   scan_shaper& shaper);
 
   /// What cannot change.
   void fix(std::string_view name, parameter_value value);

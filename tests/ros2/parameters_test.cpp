@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Filters as parameters, on a scan that is written here.
+#include "parameters.hpp"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/scan_shaper.hpp"
+#include "options.hpp"
+
+namespace ros2 {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A lidar with these options: walls in 2 m and, from 300 degrees on, in 4 m; a speck before the wall at 200 degrees,
+/// and a veiling point between the walls at 299.
+class filtered {
+ public:
+  explicit filtered(const std::vector<std::pair<std::string, std::string>>& given = {}) {
+    options_->common.frame = g4lidar::frame::robot;
+    for (const auto& [name, word] : given) {
+      for (const g4_tool::option_row& row : g4_tool::ros2_rows(options_)) {
+        if (row.names == name) row.take(word);
+      }
+    }
+    shaper_ = std::make_unique<g4_tool::scan_shaper>(options_->common, g4lidar::mounting{});
+    parameters_ = std::make_unique<g4_tool::lidar_parameters>(options_->common,
+                                                              options_->filter_words, *shaper_);
+    for (int i = 0; i < 360; ++i) {
+      g4lidar::point& made = points_.emplace_back();
+      made.angle_deg = static_cast<float>(i);
+      made.range_mm = i == 200 ? 1000.0F : i < 299 ? 2000.0F : i == 299 ? 3000.0F : 4000.0F;
+    }
+  }
+  /// Why not, or empty.
+  std::string set(const std::string& name, g4_tool::parameter_value to) {
+    return parameters_->change(nullptr, std::vector<g4_tool::named_value>{{name, std::move(to)}});
+  }
+  [[nodiscard]] std::string value(const char* name) const {
+    return std::get<std::string>(parameters_->value(*g4_tool::find_parameter(name)));
+  }
+  /// The angles of the device that are missing in the cloud.
+  std::set<int> missing() {
+    std::set<int> all;
+    for (int i = 0; i < 360; ++i) all.insert(i);
+    g4lidar::scan whole;
+    whole.points = points_;
+    for (const auto& each : shaper_->shape(whole, {}).kept) {
+      all.erase(static_cast<int>(each.angle_deg));
+    }
+    return all;
+  }
+
+ private:
+  std::shared_ptr<g4_tool::ros2_options> options_ = std::make_shared<g4_tool::ros2_options>();
+  std::unique_ptr<g4_tool::scan_shaper> shaper_;
+  std::unique_ptr<g4_tool::lidar_parameters> parameters_;
+  std::vector<g4lidar::point> points_;
+};
+
+TEST(FilterParameters, AreThoseOfTheCommandLine) {
+  EXPECT_EQ(filtered().value("ignore"), "");
+  EXPECT_EQ(filtered().value("speckle"), "off");
+  const filtered given(
+      {{"--ignore", "30:40"}, {"--ignore", "90:100"}, {"--speckle", ""}, {"--edges", "angle=9"}});
+  EXPECT_EQ(given.value("ignore"), "30:40 90:100");
+  EXPECT_EQ(given.value("speckle"), "on");
+  EXPECT_EQ(given.value("edges"), "angle=9");
+}
+
+TEST(FilterParameters, DirectionsAreLeftOutFromNowOn) {
+  filtered lidar;
+  EXPECT_TRUE(lidar.missing().empty());
+  EXPECT_EQ(lidar.set("ignore", "30.5:32.5 -91:-90"), "");
+  // A direction of the robot is 180 degrees minus the angle of the device.
+  EXPECT_EQ(lidar.missing(), (std::set<int>{148, 149, 270, 271}));
+  EXPECT_THAT(lidar.set("ignore", "30:40 east"), HasSubstr("east"));
+  EXPECT_EQ(lidar.value("ignore"), "30.5:32.5 -91:-90");
+  EXPECT_EQ(lidar.missing().size(), 4U);
+  EXPECT_EQ(lidar.set("ignore", "10.5:11.5"), "");
+  EXPECT_EQ(lidar.missing(), (std::set<int>{169}));
+  EXPECT_EQ(lidar.set("ignore", "off"), "");
+  EXPECT_TRUE(lidar.missing().empty());
+}
+
+TEST(FilterParameters, SpecksAreLeftOutFromNowOn) {
+  filtered lidar;
+  EXPECT_EQ(lidar.set("speckle", true), "");  // "on" in YAML
+  EXPECT_EQ(lidar.value("speckle"), "on");
+  EXPECT_EQ(lidar.missing(), (std::set<int>{200, 299}));
+  EXPECT_THAT(lidar.set("speckle", "loud"), HasSubstr("loud"));
+  EXPECT_EQ(lidar.set("speckle", "near=0.1,window=3"), "");
+  EXPECT_EQ(lidar.missing(), (std::set<int>{200, 299}));
+  EXPECT_EQ(lidar.set("speckle", "near=100"), "");
+  EXPECT_TRUE(lidar.missing().empty());
+  EXPECT_EQ(lidar.set("speckle", "on"), "");
+  EXPECT_EQ(lidar.set("speckle", "off"), "");
+  EXPECT_TRUE(lidar.missing().empty());
+}
+
+TEST(FilterParameters, VeilingPointsAreLeftOutFromNowOn) {
+  filtered lidar;
+  EXPECT_EQ(lidar.set("edges", "window=1,angle=4"), "");
+  EXPECT_EQ(lidar.value("edges"), "window=1,angle=4");
+  EXPECT_EQ(lidar.missing(), (std::set<int>{299}));
+  EXPECT_EQ(lidar.set("edges", "off"), "");
+  EXPECT_TRUE(lidar.missing().empty());
+}
+
+}  // namespace
+}  // namespace ros2
