@@ -15,7 +15,7 @@ packages_test=(
   "${packages_demo[@]}"
   libwebsockets-dev
   binutils libeigen3-dev libgmock-dev libgtest-dev python3-pyte tmux librapidcheck-dev libumockdev-dev ninja-build umockdev
-  cyclonedds-dev cyclonedds-tools
+  cyclonedds-dev cyclonedds-tools libyaml-cpp-dev
 )
 
 # To build and run the benchmarks.
@@ -29,7 +29,7 @@ packages_package=(
   "${packages_demo[@]}"
   libwebsockets-dev
   debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev ninja-build
-  cyclonedds-dev cyclonedds-tools
+  cyclonedds-dev cyclonedds-tools libyaml-cpp-dev
 )
 
 # To make maps: scripts/slam.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What /diagnostics says of the topics.
+// The status of the topics in /diagnostics.
 #include "lidar_diagnostics.hpp"
 
 #include <gmock/gmock.h>

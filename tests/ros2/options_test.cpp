@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/program.hpp"
 #include "dds/network.hpp"
 
 namespace ros2 {
@@ -130,7 +131,70 @@ TEST(RosArguments, BecomeOptions) {
   EXPECT_THROW(translated({"--ros-args", "-p", "nonsense:=1"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-r", "nonsense:=1"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-p", "grid"}), bad_value);
-  EXPECT_THROW(translated({"--ros-args", "--params-file", "x.yaml"}), bad_value);
+  EXPECT_THROW(translated({"--ros-args", "-p", "standby:=sometimes"}), bad_value);
+  EXPECT_THROW(translated({"--ros-args", "-p", "grid:=[1, 2]"}), bad_value);
+}
+
+TEST(RosArguments, HaveTheBooleansOfYamlAndTheLastValueCounts) {
+  for (const char* const yes : {"true", "True", "TRUE", "yes", "on"}) {
+    EXPECT_THAT(translated({"--ros-args", "-p", std::string("standby:=") + yes}),
+                ElementsAre("--standby"))
+        << yes;
+  }
+  for (const char* const no : {"false", "False", "no", "Off"}) {
+    EXPECT_THAT(
+        translated({"--ros-args", "-p", "standby:=true", "-p", std::string("standby:=") + no}),
+        ElementsAre())
+        << no;
+  }
+  EXPECT_THAT(translated({"--ros-args", "-p", "grid:=90", "-p", "fov:=-90:90", "-p", "grid:=180"}),
+              ElementsAre("--fov", "-90:90", "--grid", "180"));
+}
+
+TEST(RosArguments, RenameTopicsByTheirFullNames) {
+  EXPECT_THAT(translated({"--ros-args", "-r", "/scan:=/front"}),
+              ElementsAre("--scan-topic", "/front"));
+  EXPECT_THAT(translated({"--ros-args", "-r", "/robot1/points:=cloud", "-r", "__ns:=/robot1"}),
+              ElementsAre("--points-topic", "cloud", "--namespace", "/robot1"));
+  EXPECT_THROW(translated({"--ros-args", "-r", "/scan:=/front", "-r", "__ns:=/robot1"}), bad_value);
+}
+
+class ParameterFile : public cli::scratch {
+ protected:
+  std::vector<std::string> read(const std::string& text,
+                                const std::vector<std::string>& more = {}) {
+    cli::write_file(path("robot.yaml"), text);
+    std::vector<std::string> all{"--ros-args", "--params-file", path("robot.yaml")};
+    all.insert(all.end(), more.begin(), more.end());
+    return translated(all);
+  }
+};
+
+TEST_F(ParameterFile, IsReadForThisNode) {
+  const std::string all =
+      "/**:\n  ros__parameters:\n    frame_id: laser2\n    use_sim_time: true\n    standby: True\n";
+  EXPECT_THAT(read(all), ElementsAre("--frame-id", "laser2", "--standby"));
+  EXPECT_THAT(read(all, {"-p", "frame_id:=laser3", "-p", "standby:=false"}),
+              ElementsAre("--frame-id", "laser3"));
+  const std::string some =
+      "other:\n  ros__parameters:\n    nonsense: 1\n"
+      "g4lidar:\n  ros__parameters:\n    grid: 90\n    set: [freq=10, sample_rate=8000]\n"
+      "robot1:\n  front:\n    ros__parameters: {grid: 180}\n";
+  EXPECT_THAT(read(some),
+              ElementsAre("--grid", "90", "--set", "freq=10", "--set", "sample_rate=8000"));
+  EXPECT_THAT(read(some, {"-r", "__ns:=/robot1", "-r", "__node:=front"}),
+              ElementsAre("--namespace", "/robot1", "--node-name", "front", "--grid", "180"));
+}
+
+TEST_F(ParameterFile, ThatCannotBeUsedIsNamed) {
+  EXPECT_THAT(refusal_of([] { translated({"--ros-args", "--params-file", "/nosuch.yaml"}); }),
+              HasSubstr("cannot read '/nosuch.yaml'"));
+  for (const char* const text : {"/**:\n  ros__parameters: {nonsense: 1}\n", "/**: 5\n",
+                                 "/**:\n  ros__parameters: {grid: {a: 1}}\n", "a: [\n", "- 1\n",
+                                 "/**:\n  ros__parameters: {set: [[1]]}\n"}) {
+    EXPECT_NE(refusal_of([&] { read(text); }), "") << text;
+  }
+  EXPECT_THAT(read(""), ElementsAre());
 }
 
 std::string configured(const std::map<std::string, std::string>& variables,

@@ -37,8 +37,9 @@ of them in the frame of the robot instead.
 
 The domain is that of ROS_DOMAIN_ID; ROS_LOCALHOST_ONLY, ROS_AUTOMATIC_DISCOVERY_RANGE,
 ROS_STATIC_PEERS and CYCLONEDDS_URI are honoured. After --ros-args, -r renames topics, the node
-and the namespace, and -p sets any option: -p grid:=360. With --deskew odometry the robot's motion
-is that of the recording or the simulated robot, else of the subscribed odometry topic.)";
+and the namespace, -p sets any option: -p grid:=360, and --params-file reads them from a YAML file.
+With --deskew odometry the robot's motion is that of the recording or the simulated robot, else of
+the subscribed odometry topic.)";
 
 verb make_verb() {
   const auto options = std::make_shared<ros2_options>();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The arguments that `ros2 run` and launch files give to every node, as options of this program.
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <array>
-#include <span>
+#include <map>
 #include <utility>
 
 #include "cli/logger.hpp"
@@ -29,7 +31,27 @@ const option_row* row_named(const option_rows& rows, const std::string& option) 
   return found == rows.end() ? nullptr : &*found;
 }
 
-void remap(const std::string& word, words& out) {
+/// The names of the node, which other arguments depend on.
+struct node_names {
+  std::string name_space;
+  std::string node = "g4lidar";
+};
+
+node_names names_in(const words& all) {
+  node_names made;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    const std::string& value = all[i + 1];
+    if (all[i] == "--namespace") made.name_space = value;
+    if (all[i] == "--node-name") made.node = value;
+    if (value.starts_with("__ns:=")) made.name_space = assignment(value).second;
+    if (value.starts_with("__node:=") || value.starts_with("__name:=")) {
+      made.node = assignment(value).second;
+    }
+  }
+  return made;
+}
+
+void remap(const std::string& word, const node_names& names, words& out) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 7> known{
       {{"__ns", "--namespace"},
        {"__node", "--node-name"},
@@ -39,27 +61,70 @@ void remap(const std::string& word, words& out) {
        {"odom", "--odometry-topic"},
        {"/diagnostics", "--diagnostics-topic"}}};
   const auto [from, to] = assignment(word);
-  const auto* const found =
-      std::ranges::find(known, from, &std::pair<std::string_view, std::string_view>::first);
+  const auto* const found = std::ranges::find_if(known, [&, &name = from](const auto& each) {
+    const bool is_topic = !each.first.starts_with("__");
+    return each.first == name || (is_topic && full_name(names.name_space, each.first) == name);
+  });
   if (found == known.end()) {
     throw bad_value("--ros-args: there is no topic " + in_quotes(from) + " to be renamed");
   }
   out.insert(out.end(), {std::string(found->second), to});
 }
 
-void set_parameter(const std::string& word, const option_rows& rows, words& out) {
-  const auto [name, value] = assignment(word);
+/// The options for parameters, by their names; a later value replaces an earlier one.
+using parameter_words = std::map<std::string, words>;
+
+void set_parameter(const std::string& name, const YAML::Node& value, const option_rows& rows,
+                   parameter_words& out) {
   if (name == "use_sim_time") return;  // of this program only /clock depends on it
   std::string option = "--" + name;
   std::ranges::replace(option, '_', '-');
   const option_row* const row = row_named(rows, option);
   if (row == nullptr) throw bad_value("--ros-args: there is no parameter " + in_quotes(name));
-  if (!row->value.empty()) {
-    out.insert(out.end(), {option, value});
-  } else if (value == "true") {
-    out.push_back(option);
-  } else if (value != "false") {
-    throw bad_value("--ros-args: " + in_quotes(name) + " is true or false");
+  words& made = out[name];
+  made.clear();
+  if (row->value.empty()) {
+    bool is_set = false;
+    if (!YAML::convert<bool>::decode(value, is_set)) {
+      throw bad_value("--ros-args: " + in_quotes(name) + " is true or false");
+    }
+    if (is_set) made.push_back(option);
+  } else if (value.IsSequence() && row->repeatable) {
+    for (const YAML::Node& each : value) made.insert(made.end(), {option, each.as<std::string>()});
+  } else if (value.IsScalar()) {
+    made.insert(made.end(), {option, value.Scalar()});
+  } else {
+    throw bad_value("--ros-args: " + in_quotes(name) + " is one value");
+  }
+}
+
+/// The sections of a file of parameters that are of this node: those of all nodes, and those of its name.
+void read_sections(const YAML::Node& sections, const std::string& above, const node_names& names,
+                   const option_rows& rows, parameter_words& out) {
+  for (const auto& section : sections) {
+    const auto key = section.first.as<std::string>();
+    const std::string name = above + (key.starts_with('/') ? "" : "/") + key;
+    if (!section.second.IsMap()) throw bad_value(in_quotes(name) + " has no ros__parameters");
+    const YAML::Node parameters = section.second["ros__parameters"];
+    if (!parameters) {
+      read_sections(section.second, name, names, rows, out);
+    } else if (name == "/**" || name == "/*" || name == full_name(names.name_space, names.node)) {
+      for (const auto& each : parameters) {
+        set_parameter(each.first.as<std::string>(), each.second, rows, out);
+      }
+    }
+  }
+}
+
+/// `read` with what is wrong with the YAML of `what` as bad_value.
+template <class Read>
+void with_yaml(const std::string& what, Read read) {
+  try {
+    read();
+  } catch (const YAML::BadFile&) {
+    throw bad_value("--ros-args: cannot read " + in_quotes(what));
+  } catch (const YAML::Exception& reason) {
+    throw bad_value("--ros-args: " + in_quotes(what) + ": " + reason.what());
   }
 }
 
@@ -67,7 +132,9 @@ void set_parameter(const std::string& word, const option_rows& rows, words& out)
 
 words without_ros_arguments(const words& all, const option_rows& rows) {
   words out;
+  parameter_words parameters;
   bool is_ros = false;
+  const node_names names = names_in(all);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& word = all[i];
     if (!is_ros || word == "--") {
@@ -75,16 +142,24 @@ words without_ros_arguments(const words& all, const option_rows& rows) {
       is_ros = word == "--ros-args";
       continue;
     }
-    const bool has_value = word == "-r" || word == "--remap" || word == "-p" || word == "--param" ||
-                           word == "--log-level";
+    const bool is_file = word == "--params-file";
+    const bool is_parameter = word == "-p" || word == "--param";
+    const bool is_remap = word == "-r" || word == "--remap";
+    const bool has_value = is_file || is_parameter || is_remap || word == "--log-level";
     if (!has_value && (word.starts_with("--disable-") || word.starts_with("--enable-"))) continue;
     if (!has_value || i + 1 == all.size()) {
       throw bad_value("--ros-args: " + in_quotes(word) + " is not supported; see --config");
     }
     const std::string& value = all[++i];
-    if (word == "-r" || word == "--remap") remap(value, out);
-    if (word == "-p" || word == "--param") set_parameter(value, rows, out);
+    if (is_remap) remap(value, names, out);
+    if (!is_parameter && !is_file) continue;
+    with_yaml(value, [&] {
+      if (is_file) return read_sections(YAML::LoadFile(value), "", names, rows, parameters);
+      const auto [name, text] = assignment(value);
+      set_parameter(name, YAML::Load(text), rows, parameters);
+    });
   }
+  for (const auto& [name, made] : parameters) out.insert(out.end(), made.begin(), made.end());
   return out;
 }
 

@@ -25,7 +25,7 @@ struct scan_times {
 /// The counts of topics by their names.
 using named_counts = std::vector<std::pair<std::string, dds::publisher_counts>>;
 
-/// The topics of one lidar, or of all that are merged. *Single thread* but for what says otherwise.
+/// The topics of one lidar, or of all that are merged. *Single thread* but for what is marked.
 class scan_messages {
  public:
   scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,

@@ -33,7 +33,7 @@ domain_log& the_log() {
   return log;
 }
 
-/// Why a configuration is refused, if the line says so.
+/// Why a configuration is refused; empty if the line is of something else.
 std::string_view refusal_in(std::string_view line) {
   constexpr std::string_view of_contents = "config: ";
   if (line.starts_with(of_contents)) {
