@@ -243,12 +243,15 @@ TEST(Network, FollowsTheVariablesOfRos) {
   EXPECT_THROW(configured({}, "\"/><x"), bad_value);
 }
 
-TEST(Network, MovesOnlyIfAnAddressIsGoneOrTheFirstOneCame) {
+TEST(Network, MovesOnlyIfAnAddressIsGoneOrAnotherIsFirst) {
   using list = std::vector<std::string>;
   EXPECT_FALSE(dds::has_moved({}, {}));
   EXPECT_TRUE(dds::has_moved({}, {"eth0 192.0.2.2"}));
   EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, {"eth0 192.0.2.2"}));
-  EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, list{"docker0 172.17.0.1", "eth0 192.0.2.2"}));
+  EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, list{"eth0 192.0.2.2", "docker0 172.17.0.1"}));
+  EXPECT_TRUE(
+      dds::has_moved({"docker0 172.17.0.1"}, list{"wlan0 192.0.2.2", "docker0 172.17.0.1"}));
+  EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2", "wlan0 192.0.2.7"}, {"eth0 192.0.2.2"}));
   EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2"}, {"eth0 192.0.2.3"}));
   EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2"}, {}));
 }

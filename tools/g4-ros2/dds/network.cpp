@@ -128,6 +128,7 @@ std::vector<std::string> addresses(std::string_view interface) {
   if (::getifaddrs(&all) != 0) return {};
   const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owned(all, ::freeifaddrs);
   std::vector<std::string> found;
+  std::vector<std::string> without_multicast;
   for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
     const bool is_up = (each->ifa_flags & (IFF_UP | IFF_RUNNING)) == (IFF_UP | IFF_RUNNING);
     if (!is_up || each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
@@ -136,15 +137,20 @@ std::vector<std::string> addresses(std::string_view interface) {
     const auto* const address = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
     if (::inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size()) == nullptr) continue;
     if (!interface.empty() && interface != each->ifa_name && interface != text.data()) continue;
-    found.push_back(std::string(each->ifa_name) + " " + text.data());
+    const bool has_multicast = (each->ifa_flags & IFF_MULTICAST) != 0;
+    (has_multicast ? found : without_multicast)
+        .push_back(std::string(each->ifa_name) + " " + text.data());
   }
-  std::ranges::sort(found);
+  found.insert(found.end(), without_multicast.begin(), without_multicast.end());
   return found;
 }
 
 bool has_moved(const std::vector<std::string>& before, const std::vector<std::string>& now) {
-  if (before.empty()) return !now.empty();
-  return !std::ranges::includes(now, before);
+  if (before.empty() || now.empty()) return before.empty() != now.empty();
+  const auto is_there = [&now](const std::string& each) {
+    return std::ranges::find(now, each) != now.end();
+  };
+  return before.front() != now.front() || !std::ranges::all_of(before, is_there);
 }
 
 }  // namespace g4_tool::dds

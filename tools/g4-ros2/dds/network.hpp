@@ -39,12 +39,12 @@ using environment = std::function<std::string(const char*)>;
 /// be one.
 [[nodiscard]] std::string configuration(const network& wanted);
 
-/// The addresses of the interfaces that are up, and not loopback, as "eth0 192.0.2.2", sorted; of
-/// `interface` only, if it is not empty.
+/// The addresses of the interfaces that are up, and not loopback, as "eth0 192.0.2.2", the one that Cyclone DDS takes
+/// first; of `interface` only, if it is not empty.
 [[nodiscard]] std::vector<std::string> addresses(std::string_view interface = {});
 
-/// Whether a domain that was created on `before` must be created again: an address is gone, or there was
-/// none and now there is one.
+/// Whether a domain that was created on `before` must be created again: an address is gone, or another one is
+/// first now.
 [[nodiscard]] bool has_moved(const std::vector<std::string>& before,
                              const std::vector<std::string>& now);
 
