@@ -2,6 +2,11 @@
 #include "host_guard.hpp"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -96,14 +101,49 @@ bool host_guard::is_own(std::string_view name) const {
   return std::ranges::count(names_, name) > 0 || (is_any_address_ && is_numeric(name));
 }
 
-bool host_guard::allows(const std::optional<std::string>& host,
-                        const std::optional<std::string>& origin) const {
-  if (!host) return false;
+std::string host_guard::objection(const std::optional<std::string>& host,
+                                  const std::optional<std::string>& origin) const {
+  if (!host) return "refused a request without the header Host";
   const auto name = name_in_host(*host);
-  if (!name || !is_own(*name)) return false;
-  if (!origin) return true;
+  if (!name) return "refused a request whose header Host is no name";
+  if (!is_own(*name)) {
+    return fmt::format("refused a request to {}; allow it with --allow-origin http://{}", *name,
+                       *name);
+  }
+  if (!origin) return {};
   const std::string from = lowered(*origin);
-  return from == "http://" + lowered(*host) || std::ranges::count(origins_, from) > 0;
+  if (from == "http://" + lowered(*host) || std::ranges::count(origins_, from) > 0) return {};
+  if (!is_origin(from)) return "refused a web page without an origin";
+  return fmt::format("refused a web page of {}; allow it with --allow-origin {}", from, from);
+}
+
+std::vector<std::string> hosts_of(const std::string& address) {
+  const bool is_ipv6 = address.find(':') != std::string::npos;
+  if (address != "0.0.0.0" && address != "::") {
+    return {is_ipv6 ? '[' + address + ']' : address};
+  }
+  std::vector<std::string> found;
+  if (std::string name = host_name(); !name.empty()) found.push_back(std::move(name));
+  ifaddrs* all = nullptr;
+  if (::getifaddrs(&all) != 0) all = nullptr;
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    if ((each->ifa_flags & IFF_UP) == 0 || (each->ifa_flags & IFF_LOOPBACK) != 0) continue;
+    if (each->ifa_addr == nullptr) continue;
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    if (each->ifa_addr->sa_family == AF_INET) {
+      const auto* const place = reinterpret_cast<const sockaddr_in*>(each->ifa_addr);
+      ::inet_ntop(AF_INET, &place->sin_addr, text.data(), text.size());
+      found.emplace_back(text.data());
+    } else if (is_ipv6 && each->ifa_addr->sa_family == AF_INET6) {
+      const auto* const place = reinterpret_cast<const sockaddr_in6*>(each->ifa_addr);
+      if (IN6_IS_ADDR_LINKLOCAL(&place->sin6_addr)) continue;  // browsers do not take its scope
+      ::inet_ntop(AF_INET6, &place->sin6_addr, text.data(), text.size());
+      found.push_back('[' + std::string(text.data()) + ']');
+    }
+  }
+  if (all != nullptr) ::freeifaddrs(all);
+  if (found.empty()) found.emplace_back("localhost");
+  return found;
 }
 
 }  // namespace g4_tool

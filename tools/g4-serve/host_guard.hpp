@@ -20,9 +20,13 @@ class host_guard {
   host_guard(std::string_view address, std::vector<std::string> origins);
 
   /// `host` and `origin`: the headers of a request; nothing where it has none. Programs that are no
-  /// browsers send no origin.
+  /// browsers send no origin. Returns what was refused, without a full stop; empty: nothing.
+  [[nodiscard]] std::string objection(const std::optional<std::string>& host,
+                                      const std::optional<std::string>& origin) const;
   [[nodiscard]] bool allows(const std::optional<std::string>& host,
-                            const std::optional<std::string>& origin) const;
+                            const std::optional<std::string>& origin) const {
+    return objection(host, origin).empty();
+  }
 
  private:
   [[nodiscard]] bool is_own(std::string_view name) const;
@@ -32,6 +36,9 @@ class host_guard {
   std::vector<std::string> origins_;
 };
 
+/// The names under which others reach a server that listens at `address`, as they stand in a URL; with
+/// 0.0.0.0 and :: the name and the addresses of this machine. Never empty.
+[[nodiscard]] std::vector<std::string> hosts_of(const std::string& address);
 /// "[::1]" of "[::1]:8765", "localhost" of "LocalHost": in small letters, without the port; nothing if
 /// it is not well-formed.
 [[nodiscard]] std::optional<std::string> name_in_host(std::string_view host);

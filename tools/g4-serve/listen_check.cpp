@@ -51,9 +51,9 @@ void check_listening(const std::string& address, std::uint16_t port) {
     throw failure(exit_code::permission,
                   title + " is reserved for root. Give a --port above 1023.");
   }
-  throw failure(exit_code::no_device, fmt::format("cannot listen at {}: {}. Give an --address of "
-                                                  "this machine.",
-                                                  title, words));
+  throw failure(exit_code::usage, fmt::format("cannot listen at {}: {}. Give an --address of "
+                                              "this machine.",
+                                              title, words));
 }
 
 }  // namespace g4_tool

@@ -8,6 +8,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "cli/logger.hpp"
 #include "cli/serve_verb.hpp"
@@ -47,6 +48,7 @@ class lidar_server {
     publisher_.attach(station_);
     server_ = std::make_unique<web_server>(options.address, options.port, options.origins, hub_);
     served_ = server_.get();
+    urls_ = server_->urls();
   }
   lidar_server(const lidar_server&) = delete;
   lidar_server& operator=(const lidar_server&) = delete;
@@ -60,7 +62,7 @@ class lidar_server {
   void run() {
     using namespace std::chrono_literals;
     using clock = std::chrono::steady_clock;
-    logger::info(server_->url() + '\n');
+    for (const std::string& url : urls_) logger::info(url + '\n');
     station_.start();
     time_limits limits(options_.common.duration, std::chrono::nanoseconds(0));
     clock::time_point due = clock::now();
@@ -82,7 +84,7 @@ class lidar_server {
     if (station_.state() != station_state::opening) watch_.ready();
     watch_.alive();
     watch_.status(fmt::format("{}, {} at {}", name_of(station_.state()),
-                              counted(hub_.client_count(), "client"), server_->url()));
+                              counted(hub_.client_count(), "client"), urls_.front()));
   }
 
   const serve_options options_;
@@ -91,6 +93,7 @@ class lidar_server {
   station station_;
   std::unique_ptr<web_server> server_;
   std::atomic<web_server*> served_ = nullptr;
+  std::vector<std::string> urls_;
   service_watch watch_;
 };
 

@@ -14,6 +14,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "client_json.hpp"
+#include "http_head.hpp"
 #include "listen_check.hpp"
 #include "page_files.hpp"
 
@@ -37,31 +38,19 @@ namespace {
 // What a connection may cost: time for its requests, and bytes of them.
 constexpr unsigned request_seconds = 5;
 constexpr unsigned short longest_headers = 4096;
-constexpr unsigned short requests_at_once = 32;
 constexpr unsigned handles = 200;
+constexpr unsigned header_seconds = 2;
+/// Others are not logged.
+constexpr std::size_t most_refusals = 20;
 constexpr std::uint16_t ping_after_seconds = 15;
 constexpr std::uint16_t hang_up_after_seconds = 30;
+
+constexpr const char* forbidden =
+    "This name or this origin is not allowed: see --address and --allow-origin of g4-serve.\n";
 
 constexpr std::size_t page_index = 1;  // of the protocols
 /// Clients in JavaScript may begin to listen some time after the handshake.
 constexpr lws_usec_t greeting_after_us = 50'000;
-
-std::optional<std::string> header(lws* wsi, lws_token_indexes which) {
-  const int length = lws_hdr_total_length(wsi, which);
-  if (length <= 0) return std::nullopt;
-  std::string text(static_cast<std::size_t>(length) + 1, '\0');
-  const int copied = lws_hdr_copy(wsi, text.data(), length + 1, which);
-  if (copied < 0) return std::string();  // which is no valid host and no origin
-  text.resize(static_cast<std::size_t>(copied));
-  return text;
-}
-
-/// What only the page's own files may do: this keeps foreign texts from becoming programs.
-std::string policy_for(const std::string& host) {
-  return "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-         "connect-src 'self' ws://" +
-         host + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-}
 
 void log_line(int /*level*/, const char* line) {
   try {
@@ -78,19 +67,25 @@ class web_server::callbacks {
  public:
   static int http(lws* wsi, lws_callback_reasons reason, void* user, void* in, std::size_t length) {
     web_server& server = of(wsi);
-    auto*& left = *static_cast<reply**>(user);
+    auto** const left = static_cast<reply**>(user);
     switch (reason) {
+      case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+        return guarded([&] { return server.waiting_.add(wsi), 0; });
+      case LWS_CALLBACK_FILTER_HTTP_CONNECTION:
+      case LWS_CALLBACK_WSI_DESTROY:
+        server.waiting_.remove(wsi);
+        return 0;
       case LWS_CALLBACK_HTTP:
-        return guarded([&] { return answer(server, wsi, left, text_of(in, length)); });
+        return guarded([&] { return answer(server, wsi, *left, text_of(in, length)); });
       case LWS_CALLBACK_HTTP_WRITEABLE:
-        return guarded([&] { return send(server, wsi, left); });
+        return guarded([&] { return send(server, wsi, *left); });
       case LWS_CALLBACK_HTTP_BODY:  // nobody wants it
       case LWS_CALLBACK_HTTP_BODY_COMPLETION:
       case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:  // a WebSocket without a protocol of ours
         return -1;
       case LWS_CALLBACK_CLOSED_HTTP:
       case LWS_CALLBACK_HTTP_DROP_PROTOCOL:
-        if (user != nullptr) delete std::exchange(left, nullptr);
+        if (left != nullptr) delete std::exchange(*left, nullptr);
         return 0;
       case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
         if (server.has_news_.exchange(false)) {
@@ -109,7 +104,8 @@ class web_server::callbacks {
     auto*& open = *static_cast<connection**>(user);
     switch (reason) {
       case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
-        return guarded([&] { return is_allowed(server, wsi) ? 0 : -1; });
+        server.waiting_.remove(wsi);
+        return guarded([&] { return is_allowed(server, wsi) ? 0 : refuse(wsi); });
       case LWS_CALLBACK_ESTABLISHED:
         return guarded([&] { return begin(server, wsi, open); });
       case LWS_CALLBACK_TIMER:
@@ -146,60 +142,60 @@ class web_server::callbacks {
       return -1;
     }
   }
-  static bool is_allowed(const web_server& server, lws* wsi) {
-    return server.guard_.allows(header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN));
+  static bool is_allowed(web_server& server, lws* wsi) {
+    const std::string why =
+        server.guard_.objection(header(wsi, WSI_TOKEN_HOST), header(wsi, WSI_TOKEN_ORIGIN));
+    const bool is_new = server.refused_.size() < most_refusals && !why.empty();
+    if (is_new && server.refused_.insert(why).second) logger::info(why + ".\n");
+    return why.empty();
   }
 
   // ---- HTTP -----------------------------------------------------------------------------------
 
   static int answer(web_server& server, lws* wsi, reply*& left, std::string_view path) {
     if (!is_allowed(server, wsi)) {
-      return respond(wsi, left, HTTP_STATUS_FORBIDDEN, "text/plain",
-                     share("This name or this origin is not allowed: see --address and "
-                           "--allow-origin of g4-serve.\n"));
+      return respond(server, wsi, left, HTTP_STATUS_FORBIDDEN, "text/plain", share(forbidden));
     }
-    if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) == 0) {
-      return respond(wsi, left, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain", share("GET only.\n"));
+    if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) == 0 && !is_head(wsi)) {
+      return respond(server, wsi, left, HTTP_STATUS_METHOD_NOT_ALLOWED, "text/plain",
+                     share("GET and HEAD only.\n"));
     }
     if (path == "/status.json") {
-      return respond(wsi, left, HTTP_STATUS_OK, "application/json", server.clients_.status());
+      return respond(server, wsi, left, HTTP_STATUS_OK, "application/json",
+                     server.clients_.status());
     }
     const auto files = page_files();
     const auto file = std::ranges::find(files, path, &page_file::path);
     if (file == files.end()) {
-      return respond(wsi, left, HTTP_STATUS_NOT_FOUND, "text/plain", share("Not found.\n"));
+      return respond(server, wsi, left, HTTP_STATUS_NOT_FOUND, "text/plain", share("Not found.\n"));
     }
-    return respond(wsi, left, HTTP_STATUS_OK, file->type, nullptr, file->content);
+    return respond(server, wsi, left, HTTP_STATUS_OK, file->type, nullptr, file->content);
+  }
+
+  static bool is_head(lws* wsi) { return lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0; }
+
+  /// The answer to a handshake.
+  static int refuse(lws* wsi) {
+    lws_return_http_status(wsi, HTTP_STATUS_FORBIDDEN, forbidden);
+    return -1;
   }
 
   /// The header; the rest follows in send().
-  static int respond(lws* wsi, reply*& left, unsigned status, std::string_view type,
-                     const shared_bytes& owned, std::string_view content = {}) {
+  static int respond(web_server& server, lws* wsi, reply*& left, unsigned status,
+                     std::string_view type, const shared_bytes& owned,
+                     std::string_view content = {}) {
     if (owned) content = {reinterpret_cast<const char*>(owned->data()), owned->size()};
-    std::array<unsigned char, LWS_PRE + 2048> memory{};
-    unsigned char* at = memory.data() + LWS_PRE;
-    unsigned char* const begin = at;
-    unsigned char* const end = memory.data() + memory.size() - 1;
-    bool fits = lws_add_http_common_headers(wsi, status, std::string(type).c_str(), content.size(),
-                                            &at, end) == 0;
-    const auto add = [&](const char* name, const std::string& value) {
-      fits =
-          fits && lws_add_http_header_by_name(wsi, reinterpret_cast<const unsigned char*>(name),
-                                              reinterpret_cast<const unsigned char*>(value.data()),
-                                              static_cast<int>(value.size()), &at, end) == 0;
-    };
-    add("cache-control:", "no-store");
-    add("x-content-type-options:", "nosniff");
-    add("x-frame-options:", "DENY");
-    add("referrer-policy:", "no-referrer");
-    add("cross-origin-opener-policy:", "same-origin");
-    add("cross-origin-resource-policy:", "same-origin");
-    const bool is_page = status == HTTP_STATUS_OK;  // then the host is a name of ours
-    add("content-security-policy:",
-        is_page ? policy_for(header(wsi, WSI_TOKEN_HOST).value_or("")) : "default-src 'none'");
-    if (!fits || lws_finalize_write_http_header(wsi, begin, &at, end) != 0) return -1;
+    const bool is_all = is_head(wsi);
+    if (!write_head(wsi, status, std::string(type), content.size())) return -1;
+    if (is_all) return finish(server, wsi);
     delete std::exchange(left, new reply{owned, content});
     lws_callback_on_writable(wsi);
+    return 0;
+  }
+
+  static int finish(web_server& server, lws* wsi) {
+    if (lws_http_transaction_completed(wsi) != 0) return -1;
+    server.waiting_.add(wsi);
     return 0;
   }
 
@@ -219,7 +215,7 @@ class web_server::callbacks {
       return 0;
     }
     delete std::exchange(left, nullptr);
-    return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
+    return finish(server, wsi);
   }
 
   // ---- WebSockets -----------------------------------------------------------------------------
@@ -308,7 +304,8 @@ web_server::web_server(const std::string& address, std::uint16_t port,
       LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_SKIP_SERVER_CANONICAL_NAME;
   if (address.find(':') == std::string::npos) info.options |= LWS_SERVER_OPTION_DISABLE_IPV6;
   info.max_http_header_data = longest_headers;
-  info.max_http_header_pool = requests_at_once;
+  info.max_http_header_pool = handles;
+  info.timeout_secs_ah_idle = header_seconds;
   info.timeout_secs = request_seconds;
   info.keepalive_timeout = static_cast<int>(request_seconds);
   info.fd_limit_per_thread = handles;
@@ -338,9 +335,12 @@ void web_server::run() noexcept {
   while (!stops_ && lws_service(context_, 0) >= 0) continue;
 }
 
-std::string web_server::url() const {
-  const bool is_ipv6 = address_.find(':') != std::string::npos;
-  return fmt::format("http://{}{}{}:{}/", is_ipv6 ? "[" : "", address_, is_ipv6 ? "]" : "", port_);
+std::vector<std::string> web_server::urls() const {
+  std::vector<std::string> all;
+  for (const std::string& host : hosts_of(address_)) {
+    all.push_back(fmt::format("http://{}:{}/", host, port_));
+  }
+  return all;
 }
 
 void web_server::wake() noexcept {

@@ -4,17 +4,16 @@
 
 #include <atomic>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
 #include "host_guard.hpp"
+#include "http_head.hpp"
 #include "hub.hpp"
 #include "outbox.hpp"
-
-struct lws;
-struct lws_context;
 
 namespace g4_tool {
 
@@ -30,8 +29,8 @@ class web_server {
   ~web_server();
 
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
-  /// "http://127.0.0.1:8765/".
-  [[nodiscard]] std::string url() const;
+  /// "http://127.0.0.1:8765/"; with 0.0.0.0 and :: one for each name and address of this machine.
+  [[nodiscard]] std::vector<std::string> urls() const;
   /// Messages wait in the hub. *Any thread*, also after the destructor has begun.
   void wake() noexcept;
 
@@ -46,7 +45,10 @@ class web_server {
   std::uint16_t port_;
   host_guard guard_;
   hub& clients_;
-  std::vector<std::uint8_t> scratch_;  // of the thread
+  // Of the thread:
+  std::vector<std::uint8_t> scratch_;
+  std::set<std::string> refused_;  // what was logged
+  waiting_connections waiting_;
   lws_context* context_ = nullptr;
   std::atomic<bool> has_news_ = false;
   std::atomic<bool> stops_ = false;
