@@ -198,14 +198,13 @@ option_rows baud_row(common_options& options) {
 }
 
 option_rows device_rows(common_options& options) {
-  return joined(
-      in_group("Device",
-               {choice_row("--on-loss", "If the device is lost; wait: also at the start (exit)",
-                           options.on_loss,
-                           choices<loss_rule>{{"exit", loss_rule::exit},
-                                              {"wait", loss_rule::wait},
-                                              {"reconnect", loss_rule::reconnect}})}),
-      baud_row(options));
+  const choices<loss_rule> rules{
+      {"exit", loss_rule::exit}, {"wait", loss_rule::wait}, {"reconnect", loss_rule::reconnect}};
+  const auto usual =
+      std::ranges::find(rules, options.on_loss, &choices<loss_rule>::value_type::second);
+  const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
+  return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
+                baud_row(options));
 }
 
 option_row json_row(common_options& options) {

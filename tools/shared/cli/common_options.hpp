@@ -101,7 +101,7 @@ using shared_options = std::shared_ptr<common_options>;
 /// --compress.
 [[nodiscard]] option_row compress_row(packing& into);
 [[nodiscard]] option_rows baud_row(common_options& options);
-/// --on-loss and --baud.
+/// --on-loss, whose default is what `options` has now, and --baud.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool

@@ -38,27 +38,19 @@ option_rows server_rows(serve_options& options) {
       "Server",
       {number_row("--port", "PORT", "TCP port; 0: any free one (8765)", options.port,
                   std::uint16_t{0}, std::uint16_t{65535}),
-       text_row("--address", "ADDRESS", "Listen at this address of the machine (127.0.0.1)",
-                options.address, completion::nothing),
+       value_row("--address", "ADDRESS", "Listen at this address of the machine (127.0.0.1)",
+                 options.address,
+                 [](const std::string& word) {
+                   return word == "localhost" ? std::string("127.0.0.1") : word;
+                 }),
        flag_row("--allow-set", "Let clients change the settings of the lidar", options.allows_set),
        origin});
-}
-
-option_rows lidar_rows(serve_options& options) {
-  return joined(
-      in_group("Device",
-               {choice_row("--on-loss", "If the device is lost; wait: also at the start (wait)",
-                           options.common.on_loss,
-                           choices<loss_rule>{{"exit", loss_rule::exit},
-                                              {"wait", loss_rule::wait},
-                                              {"reconnect", loss_rule::reconnect}})}),
-      baud_row(options.common));
 }
 
 option_rows scan_rows(serve_options& options) {
   return in_group(
       "Scans",
-      {frame_row("--frame", "Of --fov and --ignore; robot: counter-clockwise, REP 103 (vendor)",
+      {frame_row("--frame", "Of --fov and --ignore; vendor: clockwise from the cable (robot)",
                  options.common.frame),
        choice_row("--deskew", "Deskew each revolution by the scans alone", options.common.deskew,
                   choices<deskewing>{{"scans", deskewing::by_scans}}),
@@ -83,8 +75,8 @@ verb make_serve_verb(std::string name, const std::function<int(const serve_optio
       .name = std::move(name),
       .summary = "Show the lidar in a web page, and to Foxglove",
       .arguments = {source_argument(options->common)},
-      .options = joined(server_rows(*options), lidar_rows(*options), filter_rows(options->common),
-                        scan_rows(*options), player_rows(*options),
+      .options = joined(server_rows(*options), device_rows(options->common),
+                        filter_rows(options->common), scan_rows(*options), player_rows(*options),
                         in_group("End condition", {duration_row(options->common)})),
       .details = serve_details,
       .examples = {{command, "Serve the only G4 at http://localhost:8765/"},

@@ -14,7 +14,10 @@
 namespace g4_tool {
 
 struct serve_options {
-  serve_options() { common.on_loss = loss_rule::wait; }
+  serve_options() {
+    common.on_loss = loss_rule::wait;
+    common.frame = frame::robot;  // that of the page
+  }
 
   common_options common;
   std::string address = "127.0.0.1";
