@@ -212,7 +212,7 @@ def test_failures():
 
 def test_tmux():
     if shutil.which("tmux") is None:
-        print("without tmux")
+        print("SKIPPED: tmux is not installed")  # the last test: the others have passed
         return
     tmux = ["tmux", "-L", f"g4-view-{os.getpid()}", "-f", "/dev/null"]
     environment = dict(os.environ, LC_ALL="C.UTF-8")
