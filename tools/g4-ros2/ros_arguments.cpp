@@ -103,7 +103,8 @@ void read_sections(const YAML::Node& sections, const std::string& above, const n
                    const option_rows& rows, parameter_words& out) {
   for (const auto& section : sections) {
     const auto key = section.first.as<std::string>();
-    const std::string name = above + (key.starts_with('/') ? "" : "/") + key;
+    std::string name = above;
+    name.append(key.starts_with('/') ? "" : "/").append(key);
     if (!section.second.IsMap()) throw bad_value(in_quotes(name) + " has no ros__parameters");
     const YAML::Node parameters = section.second["ros__parameters"];
     if (!parameters) {
