@@ -43,6 +43,25 @@ TEST_F(Domain, AConfigurationThatIsRefusedIsAUsageError) {
   }
 }
 
+TEST_F(Domain, TopicsAndReachAreReported) {
+  const auto report = [](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"sim:", "--duration", "1s", "--namespace", "robot7"};
+    words.insert(words.end(), more.begin(), more.end());
+    cli::program tool(words);
+    const std::string err = tool.wait().err;
+    const std::size_t at = std::min(err.find("joined"), err.size());
+    return err.substr(at, err.find('\n', at) - at);
+  };
+  const std::string domain = "joined the ROS 2 domain " + std::to_string(test_domain::number());
+  EXPECT_EQ(report({"--points-topic", "off"}),
+            domain + " (LOCALHOST): publishing /diagnostics, /robot7/odom, /robot7/scan, /tf");
+  ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", 1);
+  EXPECT_EQ(report({"--interface", "lo", "--odometry-topic", "off", "--mount", "0,0,0"}),
+            domain +
+                " (SUBNET, lo): publishing /diagnostics, /robot7/points, /robot7/scan, /tf, "
+                "/tf_static");
+}
+
 TEST_F(Domain, AServiceIsReadyWithoutOne) {
   const cli::manager systemd(path("notify"));
   const served_lidar lidar;

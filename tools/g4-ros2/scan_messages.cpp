@@ -58,7 +58,7 @@ bool scan_messages::is_wanted() const {
 named_counts scan_messages::counts() const {
   named_counts all;
   for (const auto* each : {&scan_, &points_}) {
-    if (*each) all.emplace_back((*each)->name(), (*each)->counts());
+    if (*each) all.emplace_back((*each)->published(), (*each)->counts());
   }
   return all;
 }

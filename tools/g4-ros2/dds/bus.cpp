@@ -147,7 +147,12 @@ void bus::open() {
     if (problem != std::exchange(problem_, problem)) logger::info(problem);
     return;
   }
-  logger::verbose(fmt::format("joined the ROS 2 domain {}\n", wanted_.domain));
+  std::set<std::string_view> topics;
+  for (const endpoint* each : endpoints_) topics.insert(each->published());
+  topics.erase("");
+  logger::info(fmt::format("joined the ROS 2 domain {} ({}{}{}): publishing {}\n", wanted_.domain,
+                           name_of(wanted_.range), wanted_.interface.empty() ? "" : ", ",
+                           wanted_.interface, fmt::join(topics, ", ")));
   problem_.clear();
   is_new_ = false;
   for (endpoint* each : endpoints_) each->open(made, &wake_);

@@ -32,6 +32,8 @@ class endpoint {
   /// `handle`: that of the bus, for wake(); it outlives the endpoint's entities.
   virtual void open(dds_entity_t participant, int* handle) = 0;
   virtual void close() noexcept = 0;
+  /// The topic that it publishes; empty: none.
+  [[nodiscard]] virtual std::string_view published() const noexcept { return {}; }
 
  private:
   bus& on_;
@@ -101,13 +103,13 @@ class publisher final : public endpoint {
 
   void open(dds_entity_t participant, int* handle) override;
   void close() noexcept override;
+  [[nodiscard]] std::string_view published() const noexcept override { return what_.name; }
 
   /// A message in CDR, as the library makes it.
   void publish(g4lidar::bytes message);
   /// Whether anybody reads it: else there is no need to make a message.
   [[nodiscard]] bool is_wanted() const;
   [[nodiscard]] publisher_counts counts() const;
-  [[nodiscard]] const std::string& name() const noexcept { return what_.name; }
 
  private:
   void write(g4lidar::bytes message);

@@ -26,16 +26,17 @@ constexpr int unicast_participants = 32;
 /// The ports of a domain are sufficient for so many.
 constexpr int most_participants = 119;
 
+/// In the order of their values.
+constexpr std::array<std::string_view, 4> range_names{"SUBNET", "LOCALHOST", "OFF",
+                                                      "SYSTEM_DEFAULT"};
+
 discovery_range range_of(const std::string& word) {
-  if (word.empty() || word == "SUBNET") return discovery_range::subnet;
-  if (word == "OFF") return discovery_range::off;
-  if (word == "SYSTEM_DEFAULT") return discovery_range::system_default;
-  if (word != "LOCALHOST") {
-    logger::info(fmt::format(
-        "ROS_AUTOMATIC_DISCOVERY_RANGE: {} is not SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT; "
-        "LOCALHOST is used\n",
-        in_quotes(word)));
-  }
+  if (word.empty()) return discovery_range::subnet;
+  const auto* const found = std::ranges::find(range_names, word);
+  if (found != range_names.end()) return static_cast<discovery_range>(found - range_names.begin());
+  logger::info(
+      fmt::format("ROS_AUTOMATIC_DISCOVERY_RANGE: {} is not one of {}; LOCALHOST is used\n",
+                  in_quotes(word), fmt::join(range_names, ", ")));
   return discovery_range::localhost;
 }
 
@@ -58,6 +59,10 @@ std::string checked_name(const std::string& text) {
 }
 
 }  // namespace
+
+std::string_view name_of(discovery_range range) noexcept {
+  return range_names[static_cast<std::size_t>(range)];
+}
 
 std::string variable(const char* name) {
   const char* const value = std::getenv(name);

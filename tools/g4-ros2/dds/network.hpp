@@ -14,6 +14,9 @@ namespace g4_tool::dds {
 /// Who can discover this program, as ROS_AUTOMATIC_DISCOVERY_RANGE names it.
 enum class discovery_range : unsigned char { subnet, localhost, off, system_default };
 
+/// "LOCALHOST"
+[[nodiscard]] std::string_view name_of(discovery_range range) noexcept;
+
 struct network {
   std::uint32_t domain = 0;
   discovery_range range = discovery_range::subnet;
