@@ -55,11 +55,15 @@ TEST_F(Domain, TopicsAndReachAreReported) {
   const std::string domain = "joined the ROS 2 domain " + std::to_string(test_domain::number());
   EXPECT_EQ(report({"--points-topic", "off"}),
             domain + " (LOCALHOST): publishing /diagnostics, /robot7/odom, /robot7/scan, /tf");
+  EXPECT_EQ(report({"--tf-topic", "off", "--odometry-topic", "off", "--mount", "0,0,0",
+                    "--tf-static-topic", "off"}),
+            domain + " (LOCALHOST): publishing /diagnostics, /robot7/points, /robot7/scan");
   ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", 1);
-  EXPECT_EQ(report({"--interface", "lo", "--odometry-topic", "off", "--mount", "0,0,0"}),
+  EXPECT_EQ(report({"--interface", "lo", "--odometry-topic", "off", "--mount", "0,0,0",
+                    "--tf-topic", "tf", "--tf-static-topic", "tf_static"}),
             domain +
-                " (SUBNET, lo): publishing /diagnostics, /robot7/points, /robot7/scan, /tf, "
-                "/tf_static");
+                " (SUBNET, lo): publishing /diagnostics, /robot7/points, /robot7/scan, "
+                "/robot7/tf, /robot7/tf_static");
 }
 
 TEST_F(Domain, AServiceIsReadyWithoutOne) {

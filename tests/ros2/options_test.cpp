@@ -102,6 +102,19 @@ TEST(Topics, HaveOneTypeEach) {
   EXPECT_THAT(refusal("all", "/x/rear/all", "x"), HasSubstr("/x/rear/all"));
   EXPECT_THAT(refusal("scan", "/diagnostics", ""), HasSubstr("/diagnostics"));
   EXPECT_THAT(refusal("/tf", "points", ""), HasSubstr("/tf"));
+  ros2_options options;
+  options.topics.tf = options.topics.tf_static = "off";
+  options.topics.scan = "/tf";
+  options.topics.points = "/tf_static";
+  EXPECT_EQ(g4_tool::sources_of(options).size(), 1U);
+  options.topics.scan = "scan";
+  options.topics.points = "points";
+  options.topics.tf = "tf";
+  options.topics.tf_static = "/robot1/tf";
+  EXPECT_EQ(g4_tool::sources_of(options).size(), 1U);
+  options.name_space = "robot1";
+  EXPECT_EQ(refusal_of([&] { static_cast<void>(g4_tool::sources_of(options)); }),
+            "--tf-static-topic: /robot1/tf is the topic of --tf-topic");
 }
 
 TEST(Sources, FilesAreNotMerged) {
@@ -129,7 +142,7 @@ TEST(RosArguments, BecomeOptions) {
                           "merge:=false", "--log-level", "info", "-p", "use_sim_time:=true"}),
               ElementsAre("--frame-id", "front_laser", "--standby"));
   EXPECT_THROW(translated({"--ros-args", "-p", "nonsense:=1"}), bad_value);
-  EXPECT_THROW(translated({"--ros-args", "-r", "nonsense:=1"}), bad_value);
+  EXPECT_THROW(translated({"--ros-args", "-r", "nonsense"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-p", "grid"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-p", "standby:=sometimes"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-p", "grid:=[1, 2]"}), bad_value);
@@ -156,7 +169,24 @@ TEST(RosArguments, RenameTopicsByTheirFullNames) {
               ElementsAre("--scan-topic", "/front"));
   EXPECT_THAT(translated({"--ros-args", "-r", "/robot1/points:=cloud", "-r", "__ns:=/robot1"}),
               ElementsAre("--points-topic", "cloud", "--namespace", "/robot1"));
-  EXPECT_THROW(translated({"--ros-args", "-r", "/scan:=/front", "-r", "__ns:=/robot1"}), bad_value);
+  EXPECT_THAT(translated({"--ros-args", "-r", "~/points:=cloud"}),
+              ElementsAre("--points-topic", "cloud"));
+  EXPECT_THAT(translated({"--ros-args", "-r", "/tf:=tf", "-r", "/tf_static:=tf_static"}),
+              ElementsAre("--tf-topic", "tf", "--tf-static-topic", "tf_static"));
+  EXPECT_THAT(translated({"--ros-args", "-r", "tf:=/x"}), ElementsAre("--tf-topic", "/x"));
+  EXPECT_THAT(translated({"--ros-args", "-r", "scan:=~/scan", "-r", "__ns:=/robot1"}),
+              ElementsAre("--scan-topic", "/robot1/g4lidar/scan", "--namespace", "/robot1"));
+}
+
+TEST(RosArguments, OfOtherNodesAreIgnoredWithAWarning) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_THAT(translated({"--ros-args", "-r", "/scan:=/front", "-r", "__ns:=/robot1", "-e", "/x",
+                          "--remap", "nonsense:=1", "--enclave", "/y", "-p", "grid:=90"}),
+              ElementsAre("--namespace", "/robot1", "--grid", "90"));
+  const std::string warnings = ::testing::internal::GetCapturedStderr();
+  for (const char* const each : {"'/scan:=/front'", "'-e /x'", "'nonsense:=1'", "'--enclave /y'"}) {
+    EXPECT_THAT(warnings, HasSubstr(std::string(each) + " is ignored"));
+  }
 }
 
 class ParameterFile : public cli::scratch {

@@ -46,9 +46,9 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
     messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);
   }
   if (which.mount && merger_ == nullptr) {
-    place_ = publisher_of(on, "", "/tf_static",
+    place_ = publisher_of(on, options.name_space, options.topics.tf_static,
                           {.type = &dds::tf_message, .depth = 1, .is_for_late = true});
-    place_->publish(place_message(options, frame_id, *which.mount));
+    if (place_) place_->publish(place_message(options, frame_id, *which.mount));
   }
   const bool is_by_path = options.common.deskew == deskewing::by_path && merger_ == nullptr;
   const bool is_played = kind_of(which.source) == source_kind::recording;

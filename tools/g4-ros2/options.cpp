@@ -64,6 +64,8 @@ option_rows topic_rows(ros2_options& options) {
                  topics.diagnostics),
        topic_row("--odometry-topic", "Odometry, published or subscribed; off: none (odom)",
                  topics.odometry),
+       topic_row("--tf-topic", "Frames that move; off: none (/tf)", topics.tf),
+       topic_row("--tf-static-topic", "Places of lidars; off: none (/tf_static)", topics.tf_static),
        frame_name_row("--frame-id", "Frame of the lidar (laser)", options.frames.lidar),
        frame_name_row("--base-frame", "Frame of the robot (base_link)", options.frames.robot),
        frame_name_row("--odometry-frame", "Frame of the odometry (odom)",
@@ -160,17 +162,20 @@ void check_topics(const ros2_options& options, const std::vector<named_source>& 
        {"--points-topic", topics.points},
        {"--diagnostics-topic", topics.diagnostics},
        {"--odometry-topic", topics.odometry}}};
-  std::map<std::string, std::string_view> owners{
-      {"/tf", "tf2_msgs"}, {"/tf_static", "tf2_msgs"}, {"/clock", "rosgraph_msgs"}};
+  std::map<std::string, std::string_view> owners{{"/clock", "rosgraph_msgs"}};
+  const auto own = [&owners](std::string_view option, std::string_view space,
+                             std::string_view name) {
+    if (name == "off") return;
+    const std::string topic = full_name(space, name);
+    const auto [at, is_new] = owners.emplace(topic, option);
+    if (is_new || at->second == option) return;
+    throw bad_value(fmt::format("{}: {} is the topic of {}", option, topic, at->second));
+  };
+  own("--tf-topic", options.name_space, topics.tf);
+  own("--tf-static-topic", options.name_space, topics.tf_static);
   for (const named_source& lidar : lidars) {
     const std::string space = full_name(options.name_space, lidar.name);
-    for (const auto& [option, name] : wanted) {
-      if (name == "off") continue;
-      const std::string topic = full_name(space, name);
-      const auto [at, is_new] = owners.emplace(topic, option);
-      if (is_new || at->second == option) continue;
-      throw bad_value(fmt::format("{}: {} is the topic of {}", option, topic, at->second));
-    }
+    for (const auto& [option, name] : wanted) own(option, space, name);
   }
 }
 

@@ -26,6 +26,8 @@ struct topic_names {
   std::string points = "points";
   std::string diagnostics = "/diagnostics";
   std::string odometry = "odom";
+  std::string tf = "/tf";
+  std::string tf_static = "/tf_static";
 };
 
 /// The names of coordinate frames.

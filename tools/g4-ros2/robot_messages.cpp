@@ -41,7 +41,8 @@ robot_messages::robot_messages(dds::bus& on, const ros2_options& options,
     : options_(options) {
   if (known.has_odometry) {
     odometry_ = publisher_of(on, name_space, options.topics.odometry, {.type = &dds::odometry});
-    tf_ = publisher_of(on, "", "/tf", {.type = &dds::tf_message, .depth = 100});
+    tf_ = publisher_of(on, options.name_space, options.topics.tf,
+                       {.type = &dds::tf_message, .depth = 100});
   }
   if (known.has_clock) clock_ = publisher_of(on, "", "/clock", {.type = &dds::clock_message});
 }

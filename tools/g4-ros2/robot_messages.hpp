@@ -36,7 +36,7 @@ class robot_messages {
 
  private:
   const ros2_options& options_;
-  std::unique_ptr<dds::publisher> odometry_;  // null where it is not known
+  std::unique_ptr<dds::publisher> odometry_;  // null where it is not known, or off
   std::unique_ptr<dds::publisher> tf_;
   std::unique_ptr<dds::publisher> clock_;
   std::int64_t clock_ns_ = 0;  // as it was published

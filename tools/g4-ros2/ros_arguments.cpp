@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The arguments that `ros2 run` and launch files give to every node, as options of this program.
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -51,24 +52,37 @@ node_names names_in(const words& all) {
   return made;
 }
 
+/// As in ROS, what is not for this node does not end it.
+void ignored(const std::string& word, std::string_view why) {
+  logger::info(fmt::format("--ros-args: {} is ignored: {}\n", in_quotes(word), why));
+}
+
 void remap(const std::string& word, const node_names& names, words& out) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> known{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> known{
       {{"__ns", "--namespace"},
        {"__node", "--node-name"},
        {"__name", "--node-name"},
        {"scan", "--scan-topic"},
        {"points", "--points-topic"},
        {"odom", "--odometry-topic"},
-       {"/diagnostics", "--diagnostics-topic"}}};
-  const auto [from, to] = assignment(word);
+       {"/diagnostics", "--diagnostics-topic"},
+       {"/tf", "--tf-topic"},
+       {"/tf_static", "--tf-static-topic"}}};
+  constexpr std::string_view is_private = "~/";
+  auto [from, to] = assignment(word);
+  if (from.starts_with(is_private)) from.erase(0, is_private.size());
+  if (to.starts_with(is_private)) to.replace(0, 1, full_name(names.name_space, names.node));
+  const std::string full =
+      (from.starts_with('/') ? "" : full_name(names.name_space, "") + "/") + from;
   const auto* const found = std::ranges::find_if(known, [&, &name = from](const auto& each) {
     const bool is_topic = !each.first.starts_with("__");
-    return each.first == name || (is_topic && full_name(names.name_space, each.first) == name);
+    return is_topic ? full_name(names.name_space, each.first) == full : each.first == name;
   });
   if (found == known.end()) {
-    throw bad_value("--ros-args: there is no topic " + in_quotes(from) + " to be renamed");
+    ignored(word, "there is no such topic");
+  } else {
+    out.insert(out.end(), {std::string(found->second), to});
   }
-  out.insert(out.end(), {std::string(found->second), to});
 }
 
 /// The options for parameters, by their names; a later value replaces an earlier one.
@@ -146,13 +160,16 @@ words without_ros_arguments(const words& all, const option_rows& rows) {
     const bool is_file = word == "--params-file";
     const bool is_parameter = word == "-p" || word == "--param";
     const bool is_remap = word == "-r" || word == "--remap";
-    const bool has_value = is_file || is_parameter || is_remap || word == "--log-level";
+    const bool is_enclave = word == "-e" || word == "--enclave";
+    const bool has_value =
+        is_file || is_parameter || is_remap || is_enclave || word == "--log-level";
     if (!has_value && (word.starts_with("--disable-") || word.starts_with("--enable-"))) continue;
     if (!has_value || i + 1 == all.size()) {
       throw bad_value("--ros-args: " + in_quotes(word) + " is not supported; see --config");
     }
     const std::string& value = all[++i];
     if (is_remap) remap(value, names, out);
+    if (is_enclave) ignored(word + " " + value, "there is no security");
     if (!is_parameter && !is_file) continue;
     with_yaml(value, [&] {
       if (is_file) return read_sections(YAML::LoadFile(value), "", names, rows, parameters);
