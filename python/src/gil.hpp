@@ -34,8 +34,8 @@ class with_gil {
   PyGILState_STATE state_;
 };
 
-/// Locks the mutex. Other threads run meanwhile, and so do handlers of signals: raises what they raise. `again` is called
-/// before each wait of 50 ms. Needs the GIL.
+/// Locks the mutex. Other threads run during the wait, and so do handlers of signals: raises what they raise. `again` is
+/// called before each wait of 50 ms. Needs the GIL.
 [[nodiscard]] std::unique_lock<std::timed_mutex> lock_of(std::timed_mutex& mutex,
                                                          const std::function<void()>& again = {});
 

@@ -90,7 +90,7 @@ void live_lidar::seek(double seconds) {
   if (!on_.open_at) raise_bad_option("seek() is for recordings that are not recorded again");
   const auto opened = std::make_shared<lidar>(on_.open_at(seconds));
   const lock held = locked(true);
-  if (closed_) return;  // by another thread meanwhile
+  if (closed_) return;  // by another thread during the wait
   lidar_->release();
   lidar_ = opened;
   if (is_started_) static_cast<void>(lidar_->start());  // a recording starts always
@@ -160,7 +160,7 @@ nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
              [&](std::optional<copied_scan>& found) { return found ? keep(*found) : nb::none(); });
 }
 
-/// The newest scan that has arrived; at least `found`. What is raised meanwhile, the next call raises.
+/// The newest scan that has arrived; at least `found`. What is raised during that is raised by the next call.
 nb::object live_lidar::newer(nb::object found) {
   try {
     while (!on_.plays_at_once) {
@@ -232,7 +232,7 @@ nb::object live_lidar::next_in_loop(std::optional<milliseconds> timeout, bool ne
   }
 }
 
-/// The references keep the lidars, although other code runs meanwhile.
+/// The references keep the lidars, although other code runs at the same time.
 void live_lidar::close_all() {
   program_ends = true;
   std::vector<nb::object> all;

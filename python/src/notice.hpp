@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A descriptor that tells event loops to look again.
+// A descriptor that wakes event loops.
 #pragma once
 
 #include <sys/eventfd.h>

@@ -146,7 +146,7 @@ TEST_F(Listening, Fov_IsInTheFrameOfThePage) {
   EXPECT_NEAR(farthest_m, 2.0F, 0.1F);
 }
 
-// As each program says of itself: the default in the help is the one that holds.
+// The help of each program names the default of that program.
 TEST_F(Listening, Help_HasTheDefaultOfOnLoss) {
   EXPECT_THAT(cli::run({"serve", "--help"}).out, HasSubstr("wait: also at the start (wait)"));
   EXPECT_THAT(cli::run({"view", "--help"}).out, HasSubstr("also at the start (reconnect)"));
