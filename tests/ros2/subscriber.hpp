@@ -56,11 +56,12 @@ class test_domain {
     participant_ = dds::entity(dds_create_participant(number(), nullptr, nullptr));
     EXPECT_TRUE(participant_);
   }
-  /// Its own, or that of the test which has started this one.
+  /// Its own, or that of the test which has started this one. The ports of higher domains may be in use: the system gives
+  /// them to any program.
   [[nodiscard]] static std::uint32_t number() {
     const char* const given = std::getenv("G4_ROS2_TEST_DOMAIN");
     return given != nullptr ? static_cast<std::uint32_t>(std::atoi(given))
-                            : static_cast<std::uint32_t>(::getpid()) % 200U + 1U;
+                            : static_cast<std::uint32_t>(::getpid()) % 100U + 1U;
   }
   [[nodiscard]] dds_entity_t participant() const noexcept { return participant_.get(); }
 
