@@ -24,7 +24,7 @@ LEAVE = b"\x1b[?1049l"  # xterm: back from the screen of full-screen programs
 class Terminal:
     """A pseudo-terminal, a program in it, and what it shows."""
 
-    def __init__(self, *words, columns=80, rows=24, locale="C.UTF-8", shell=None):
+    def __init__(self, *words, columns=80, rows=24, locale="C.UTF-8", shell=None, kind="xterm-256color"):
         self.raw = b""
         self.columns, self.rows = columns, rows
         self.screen = pyte.Screen(columns, rows)
@@ -32,7 +32,7 @@ class Terminal:
         self.master, slave = pty.openpty()
         self.resize_kernel()
         self.before = termios.tcgetattr(slave)
-        environment = dict(os.environ, TERM="xterm-256color", LC_ALL=locale)
+        environment = dict(os.environ, TERM=kind, LC_ALL=locale)
         self.child = subprocess.Popen(
             [*shell, TOOL, *words] if shell else [TOOL, "view", *words], stdin=slave, stdout=slave, stderr=slave, env=environment, start_new_session=True,
             preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),
@@ -208,6 +208,20 @@ def test_failures():
         done = subprocess.run([TOOL, "view", *words], stdin=subprocess.DEVNULL, capture_output=True, check=False)
         assert done.returncode in (2, 3, 10), done
         assert b"\x1b" not in done.stdout + done.stderr
+
+
+def test_terminals_that_cannot_show_it():
+    for kind, size, words in (("dumb", 80, b"cannot move its cursor"), ("no-such-type", 80, b"is not known"),
+                              ("xterm", 65000, b"Make it smaller")):
+        terminal = Terminal(SOURCE, kind=kind, columns=size, rows=size)
+        end = time.monotonic() + PATIENCE_S
+        while terminal.child.poll() is None and time.monotonic() < end:
+            terminal.read(0.1)
+        terminal.read(0.2)
+        terminal.child.kill()
+        assert terminal.child.wait() == 2, terminal.raw[-300:]
+        assert words in terminal.raw and len(terminal.raw) < 300, terminal.raw[-300:]
+        assert termios.tcgetattr(terminal.slave) == terminal.before
 
 
 def test_tmux():

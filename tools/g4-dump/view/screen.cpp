@@ -39,10 +39,15 @@ restoring saved{};
 volatile std::sig_atomic_t is_ending = 0;
 sigset_t mask_before{};
 
-void add_word(const char* capability) {
+/// Empty: the terminal has none.
+std::string_view word_for(const char* capability) {
   const char* const word = ::tigetstr(capability);
-  if (word == nullptr || word == reinterpret_cast<const char*>(-1)) return;  // NOLINT: of terminfo
-  const std::string_view text(word);
+  const bool is_none = word == nullptr || word == reinterpret_cast<const char*>(-1);  // NOLINT
+  return is_none ? std::string_view() : std::string_view(word);
+}
+
+void add_word(const char* capability) {
+  const std::string_view text = word_for(capability);
   if (saved.size + text.size() > saved.words.size()) return;
   std::ranges::copy(text, saved.words.begin() + static_cast<std::ptrdiff_t>(saved.size));
   saved.size += text.size();
@@ -110,9 +115,19 @@ screen::screen(bool colored) {
     throw failure(exit_code::usage,
                   "view needs a terminal. With --once it prints one picture to any output.");
   }
-  if (name == nullptr || ::newterm(name, stdout, stdin) == nullptr) {
+  SCREEN* const made = name == nullptr ? nullptr : ::newterm(name, stdout, stdin);
+  const bool can_move = name != nullptr && !word_for("cup").empty();  // also if newterm() failed
+  if (made == nullptr) {
     throw failure(exit_code::usage,
-                  "the type of this terminal is not known. Set TERM, or use --once.");
+                  can_move ? "the screen cannot be prepared: is the terminal too large? Make it "
+                             "smaller, or use --once."
+                           : "the type of this terminal is not known. Set TERM, or use --once.");
+  }
+  if (!can_move) {
+    ::endwin();
+    ::delscreen(made);
+    throw failure(exit_code::usage, "a terminal of the type " + std::string(name) +
+                                        " cannot move its cursor. Set TERM, or use --once.");
   }
   saved.size = 0;
   for (const char* word : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_word(word);
