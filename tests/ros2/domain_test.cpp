@@ -66,6 +66,24 @@ TEST_F(Domain, TopicsAndReachAreReported) {
                 "/robot7/tf, /robot7/tf_static");
 }
 
+TEST_F(Domain, AFileOfConfigThatIsNotToml_IsExplained) {
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"grid: 360", "'grid: 360' is YAML; --config reads TOML: grid = 360. See"},
+      {"# robot\nloop: true", "'loop: true' is YAML; --config reads TOML: loop = true. See"},
+      {"frame-id: laser", "--config reads TOML: frame-id = \"laser\". See"},
+      {"fov: \"-60:60\"", "--config reads TOML: fov = \"-60:60\". See"},
+      {"g4lidar:\n  ros__parameters:\n    grid: 360",
+       "'g4lidar:' is YAML; --config reads TOML. See"},
+      {"colour = 3", "unknown option 'colour' in the file of --config"},
+      {"[robot]\ngrid = 360", "unknown option 'robot' in the file of --config"}};
+  for (const auto& [text, why] : refused) {
+    cli::write_file(path("options"), text + "\n");
+    const cli::outcome end = cli::program({"sim:", "--config", path("options")}).wait();
+    EXPECT_EQ(end.code, 2) << text;
+    EXPECT_THAT(end.err, HasSubstr(why)) << text;
+  }
+}
+
 TEST_F(Domain, AServiceIsReadyWithoutOne) {
   const cli::manager systemd(path("notify"));
   const served_lidar lidar;

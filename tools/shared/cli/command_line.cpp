@@ -122,6 +122,24 @@ std::string known_verbs() {
   return fmt::format("{}", fmt::join(verbs | std::views::transform(&verb::name), ", "));
 }
 
+/// What is wrong with a line of the file of --config that is no option.
+std::string problem_in_file(std::string line) {
+  constexpr std::string_view section = ".++";
+  if (line.ends_with(section)) line.resize(line.size() - section.size());
+  const std::size_t colon = line.find(':');
+  if (colon == std::string::npos || (colon + 1 < line.size() && line[colon + 1] != ' ')) {
+    return "unknown option " + in_quotes(line) + " in the file of --config";
+  }
+  const std::string name = line.substr(0, colon);
+  const std::size_t begin = line.find_first_not_of(' ', colon + 1);
+  if (begin == std::string::npos) return in_quotes(line) + " is YAML; --config reads TOML";
+  const std::string value = line.substr(begin);
+  const bool is_word = value.find_first_not_of("0123456789.+-") != std::string::npos &&
+                       value != "true" && value != "false" && value.front() != '"';
+  return fmt::format("{} is YAML; --config reads TOML: {} = {}{}{}", in_quotes(line), name,
+                     is_word ? "\"" : "", value, is_word ? "\"" : "");
+}
+
 /// What is wrong with the command line, without a full stop.
 std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   const bool has_verb = !app.get_subcommands().empty() || app.get_subcommands({}).empty();
@@ -145,8 +163,7 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   }
   constexpr std::string_view unknown = "INI was not able to parse ";
   if (words.starts_with(unknown)) {
-    words =
-        "unknown option " + in_quotes(words.substr(unknown.size())) + " in the file of --config";
+    words = problem_in_file(words.substr(unknown.size()));
   }
   constexpr std::string_view unreadable = " was not readable (missing?)";
   if (words.ends_with(unreadable)) {
