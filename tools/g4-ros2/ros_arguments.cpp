@@ -169,7 +169,7 @@ words without_ros_arguments(const words& all, const option_rows& rows) {
     }
     const std::string& value = all[++i];
     if (is_remap) remap(value, names, out);
-    if (is_enclave) ignored(word + " " + value, "there is no security");
+    if (is_enclave) ignored(fmt::format("{} {}", word, value), "there is no security");
     if (!is_parameter && !is_file) continue;
     with_yaml(value, [&] {
       if (is_file) return read_sections(YAML::LoadFile(value), "", names, rows, parameters);
