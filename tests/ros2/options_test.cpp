@@ -117,6 +117,16 @@ TEST(Topics, HaveOneTypeEach) {
             "--tf-static-topic: /robot1/tf is the topic of --tf-topic");
 }
 
+TEST(Topics, HaveNames) {
+  int seen = 0;
+  for (const auto& row : ros2_rows(std::make_shared<ros2_options>())) {
+    if (!row.names.ends_with("-topic")) continue;
+    EXPECT_THROW(row.take(""), bad_value) << row.names;
+    ++seen;
+  }
+  EXPECT_EQ(seen, 6);
+}
+
 TEST(Sources, FilesAreNotMerged) {
   ros2_options options;
   options.sources = {"front=sim:", "rear=file:/tmp/walk.bin"};
@@ -141,6 +151,8 @@ TEST(RosArguments, BecomeOptions) {
   EXPECT_THAT(translated({"--ros-args", "-p", "frame_id:=front_laser", "-p", "standby:=true", "-p",
                           "merge:=false", "--log-level", "info", "-p", "use_sim_time:=true"}),
               ElementsAre("--frame-id", "front_laser", "--standby"));
+  EXPECT_THAT(translated({"--ros-args", "-p", "speckle:=near=100,count=2", "-p", "edges:=true"}),
+              ElementsAre("--edges", "--speckle=near=100,count=2"));
   EXPECT_THROW(translated({"--ros-args", "-p", "nonsense:=1"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-r", "nonsense"}), bad_value);
   EXPECT_THROW(translated({"--ros-args", "-p", "grid"}), bad_value);

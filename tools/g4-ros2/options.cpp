@@ -36,7 +36,9 @@ option_row name_row(const char* names, const char* help, std::string& into) {
 }
 
 option_row topic_row(const char* names, const char* help, std::string& into) {
-  return name_row(names, help, into);
+  return checked(name_row(names, help, into), [](const std::string& word) {
+    if (word.empty()) throw bad_value("a topic needs a name; 'off' is for none");
+  });
 }
 
 option_row frame_name_row(const char* names, const char* help, std::string& into) {

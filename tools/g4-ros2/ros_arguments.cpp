@@ -99,10 +99,13 @@ void set_parameter(const std::string& name, const YAML::Node& value, const optio
   made.clear();
   if (row->value.empty()) {
     bool is_set = false;
-    if (!YAML::convert<bool>::decode(value, is_set)) {
+    if (YAML::convert<bool>::decode(value, is_set)) {
+      if (is_set) made.push_back(option);
+    } else if (!row->optional_value.empty() && value.IsScalar()) {
+      made.push_back(option + "=" + value.Scalar());
+    } else {
       throw bad_value("--ros-args: " + in_quotes(name) + " is true or false");
     }
-    if (is_set) made.push_back(option);
   } else if (value.IsSequence() && row->repeatable) {
     for (const YAML::Node& each : value) made.insert(made.end(), {option, each.as<std::string>()});
   } else if (value.IsScalar()) {
