@@ -236,7 +236,23 @@ TEST_F(ParameterFile, ThatCannotBeUsedIsNamed) {
                                  "/**:\n  ros__parameters: {set: [[1]]}\n"}) {
     EXPECT_NE(refusal_of([&] { read(text); }), "") << text;
   }
+  EXPECT_THAT(refusal_of([] { translated({"--ros-args", "--params-file", "/"}); }),
+              HasSubstr("cannot read '/'"));
+  EXPECT_THAT(refusal_of([&] { read("/**:\n  ros__parameters: [1]\n"); }),
+              HasSubstr("needs names"));
   EXPECT_THAT(read(""), ElementsAre());
+  EXPECT_THAT(read("/**:\n  ros__parameters:\n"), ElementsAre());
+}
+
+TEST_F(ParameterFile, ThatContainsItselfIsRefused) {
+  EXPECT_THAT(refusal_of([&] { read("a: &a\n  b: *a\n"); }), HasSubstr("too many sections"));
+  std::string text = "a0: &a0 {x: {ros__parameters: {}}}\n";
+  for (int i = 1; i < 30; ++i) {
+    const std::string below = "*a" + std::to_string(i - 1);
+    const std::string name = "a" + std::to_string(i);
+    text.append(name + ": &" + name + " {p: " + below + ", q: " + below + "}\n");
+  }
+  EXPECT_THAT(refusal_of([&] { read(text); }), HasSubstr("too many sections"));
 }
 
 std::string configured(const std::map<std::string, std::string>& variables,

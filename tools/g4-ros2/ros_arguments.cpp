@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ios>
 #include <map>
 #include <utility>
 
@@ -115,18 +116,23 @@ void set_parameter(const std::string& name, const YAML::Node& value, const optio
   }
 }
 
-/// The sections of a file of parameters that are of this node: those of all nodes, and those of its name.
+/// The sections of a file of parameters that are of this node: those of all nodes, and those of its name. At most `left`
+/// sections in all: a section may contain itself, or many others several times, by the aliases of YAML.
 void read_sections(const YAML::Node& sections, const std::string& above, const node_names& names,
-                   const option_rows& rows, parameter_words& out) {
+                   const option_rows& rows, parameter_words& out, int& left) {
   for (const auto& section : sections) {
+    if (--left < 0) throw bad_value("--ros-args: a file of parameters has too many sections");
     const auto key = section.first.as<std::string>();
     std::string name = above;
     name.append(key.starts_with('/') ? "" : "/").append(key);
     if (!section.second.IsMap()) throw bad_value(in_quotes(name) + " has no ros__parameters");
     const YAML::Node parameters = section.second["ros__parameters"];
     if (!parameters) {
-      read_sections(section.second, name, names, rows, out);
+      read_sections(section.second, name, names, rows, out, left);
     } else if (name == "/**" || name == "/*" || name == full_name(names.name_space, names.node)) {
+      if (parameters.IsSequence() || parameters.IsScalar()) {
+        throw bad_value(in_quotes(name) + ": ros__parameters needs names and values");
+      }
       for (const auto& each : parameters) {
         set_parameter(each.first.as<std::string>(), each.second, rows, out);
       }
@@ -143,6 +149,8 @@ void with_yaml(const std::string& what, Read read) {
     throw bad_value("--ros-args: cannot read " + in_quotes(what));
   } catch (const YAML::Exception& reason) {
     throw bad_value("--ros-args: " + in_quotes(what) + ": " + reason.what());
+  } catch (const std::ios_base::failure&) {  // a directory
+    throw bad_value("--ros-args: cannot read " + in_quotes(what));
   }
 }
 
@@ -175,7 +183,9 @@ words without_ros_arguments(const words& all, const option_rows& rows) {
     if (is_enclave) ignored(fmt::format("{} {}", word, value), "there is no security");
     if (!is_parameter && !is_file) continue;
     with_yaml(value, [&] {
-      if (is_file) return read_sections(YAML::LoadFile(value), "", names, rows, parameters);
+      int sections = 1000;
+      if (is_file)
+        return read_sections(YAML::LoadFile(value), "", names, rows, parameters, sections);
       const auto [name, text] = assignment(value);
       set_parameter(name, YAML::Load(text), rows, parameters);
     });
