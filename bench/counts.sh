@@ -56,11 +56,11 @@ for seconds in 5 10; do
   "$g4_dump" convert -q "$scratch/$seconds.bin" "$scratch/$seconds.mcap"
 done
 heading
-row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 60 "60"
+row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 61 "61"
 row "the same, bursts of 64 bytes" "$(per_sample 64)" ""
 row "bursts of 256 bytes, with a running diagnosis" "$(per_sample 256 judged)" "" 110 "110"
 row "instructions per point, convert of raw bytes to csv" "$(per_point bin)" "" 320 "320"
-row "the same of a recording with scans" "$(per_point mcap)" "" 400 "400"
+row "the same of a recording with scans" "$(per_point mcap)" "" 410 "410"
 row "system calls per second, only scans taken" "$(calls scans)" "" 100 "100"
 row "the same with batches of 20 ms" "$(calls 20)" "" 110 "110"
 row "heap calls while streaming" "$(value heap_calls "$scratch/stream")" "" 0 0

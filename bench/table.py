@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Reads the benchmark's JSON, prints the README's table, and with --check holds it to the targets.
+"""Reads the benchmark's JSON, prints the table of docs/speed.md, and with --check holds it to the targets.
 
 Every ratio is of two medians out of one run. With --check it fails below half of what is promised: the
 slack is for machines that do something else at the same time.

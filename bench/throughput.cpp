@@ -61,7 +61,7 @@ void count_bytes(benchmark::State& state, std::size_t each) {
 /// The correction by the formula of the manual, with libm's arctangent.
 struct libm_correction {
   double operator()(std::uint16_t raw) const noexcept {
-    if (raw == 0) return 0.0;
+    if (raw < least_range_raw) return 0.0;
     const double range_mm = raw / 4.0;
     return std::atan(21.8 * (155.3 - range_mm) / (155.3 * range_mm)) * 180.0 / std::numbers::pi;
   }

@@ -10,11 +10,14 @@ int report(const g4lidar::error& why) {
 
 int main(int count, char** words) {
   using namespace std::chrono_literals;
-  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "");  // "": the only G4
+  g4lidar::lidar_options options;
+  options.frequency = g4lidar::scan_frequency::hz(10);  // revolutions per second
+  options.reconnect = true;                             // an unplug does not end the loop
+  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "", options);  // "": the only G4
   if (!lidar) return report(lidar.error());
   if (auto started = lidar->start(); !started) return report(started.error());
   int scans_left = 5;
-  auto scans = lidar->scans(5s);
+  auto scans = lidar->scans(2s);  // 2 s for a scan that is due; it waits while the motor spins up
   for (const g4lidar::scan& scan : scans) {
     std::printf("%zu points at %.2f Hz\n", scan.size(),
                 static_cast<double>(scan.measured_frequency_hz()));

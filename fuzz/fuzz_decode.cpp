@@ -66,9 +66,10 @@ void check_point(const g4lidar::point& got, const reference::sample& wanted, boo
   expect(got.angle_deg >= 0.0F && got.angle_deg < 360.0F, "an angle outside [0, 360)");
   expect(reference::apart_deg(static_cast<double>(got.angle_deg), wanted.angle_deg) < 1e-4,
          "an angle that the formula does not give");
-  expect(static_cast<double>(got.range_mm) == wanted.range_mm, "a range that is not raw / 4");
-  expect(got.is_no_return() == (wanted.raw == 0), "a wrong mark of no return");
-  expect(got.is_too_near() == (wanted.raw > 0 && wanted.raw < 400), "a wrong mark of too near");
+  expect(static_cast<double>(got.range_mm) == wanted.range_mm,
+         "a range that is not that of the sample");
+  expect(got.is_no_return() == (wanted.range_mm == 0.0), "a wrong mark of no return");
+  expect(got.is_too_near() == (wanted.raw > 3 && wanted.raw < 400), "a wrong mark of too near");
   expect(got.is_revolution_start() == starts, "a wrong mark of a revolution's start");
   expect(got.revolution == revolution, "a wrong revolution");
   expect(got.time_ns == 0, "a time out of nowhere");

@@ -8,7 +8,7 @@
  *     const g4lidar_scan* scan;
  *     g4lidar_error error;
  *     if (g4lidar_open("", &lidar, &error) || g4lidar_start(lidar, &error)) return report(&error);
- *     while (!g4lidar_next_scan(lidar, 500, &scan, &error)) use(scan->points, scan->point_count);
+ *     while (!g4lidar_wait_scan(lidar, 500, &scan, &error)) use(scan->points, scan->point_count);
  *     g4lidar_free(lidar);
  */
 #ifndef G4LIDAR_H

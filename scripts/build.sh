@@ -3,34 +3,36 @@
 # How the scripts configure and build: quietly on success, with all output on failure.
 # Sourced by the scripts; needs bash.
 
-# show_progress <name> <log>: on a terminal, shows once a second the progress of the build that
-# writes this log.
+# show_progress <name> <log>: shows the progress of the build that writes this log: on a terminal once
+# a second, elsewhere as a line every 30 s (G4LIDAR_PROGRESS_SECONDS).
 show_progress() {
-  local begin=$SECONDS step
+  local begin=$SECONDS last=0 took step
   while kill -0 $$ 2>/dev/null; do
+    took=$((SECONDS - begin))
     step=$(grep -oE '^\[ *[0-9]+(/[0-9]+|%)\]' "$2" | tail -n 1 || true)
-    printf '\r\033[K%s ... %s %d s' "$1" "$step" "$((SECONDS - begin))"
-    sleep 1
+    if [[ -t 1 ]]; then
+      printf '\r\033[K%s ... %s %d s' "$1" "$step" "$took"
+    elif ((took >= last + ${G4LIDAR_PROGRESS_SECONDS:-30})); then
+      last=$took
+      printf '%s%d s\n%s ... ' "${step:+$step }" "$took" "$1"
+    fi
+    sleep 1 >/dev/null 2>&1 # does not keep a pipe open when this process has ended
   done
 }
 
-# run_quietly <name> <command>...: prints one line, and the output of the command only if it fails.
+# run_quietly <name> <command>...: prints one line, another one every 30 s, and the output of the
+# command only if it fails.
 run_quietly() {
-  local what=$1 log code=0 begin=$SECONDS progress=
+  local what=$1 log code=0 begin=$SECONDS progress
   shift
   log=$(mktemp)
-  if [[ -t 1 ]]; then
-    show_progress "$what" "$log" &
-    progress=$!
-  else
-    printf '%s ... ' "$what"
-  fi
+  printf '%s ... ' "$what"
+  show_progress "$what" "$log" &
+  progress=$!
   "$@" >"$log" 2>&1 || code=$?
-  if [[ $progress ]]; then
-    kill "$progress"
-    wait "$progress" 2>/dev/null || true
-    printf '\r\033[K%s ... ' "$what"
-  fi
+  kill "$progress"
+  wait "$progress" 2>/dev/null || true
+  if [[ -t 1 ]]; then printf '\r\033[K%s ... ' "$what"; fi
   if ((code == 0)); then
     printf '%d s\n' "$((SECONDS - begin))"
   else

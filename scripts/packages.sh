@@ -10,12 +10,13 @@ packages_demo=(
   libcli11-dev libfmt-dev libncurses-dev libzstd-dev nlohmann-json3-dev
 )
 
+# To build all programs.
+packages_programs=("${packages_demo[@]}" libwebsockets-dev cyclonedds-dev cyclonedds-tools libyaml-cpp-dev)
+
 # To build the tests.
 packages_test=(
-  "${packages_demo[@]}"
-  libwebsockets-dev
+  "${packages_programs[@]}"
   binutils libeigen3-dev libgmock-dev libgtest-dev python3-pyte tmux librapidcheck-dev libumockdev-dev ninja-build umockdev
-  cyclonedds-dev cyclonedds-tools libyaml-cpp-dev
 )
 
 # To build and run the benchmarks.
@@ -26,10 +27,8 @@ packages_bench=(
 
 # To build the Debian packages.
 packages_package=(
-  "${packages_demo[@]}"
-  libwebsockets-dev
-  debhelper dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev ninja-build
-  cyclonedds-dev cyclonedds-tools libyaml-cpp-dev
+  "${packages_programs[@]}"
+  build-essential debhelper doxygen dpkg-dev git libeigen3-dev libgmock-dev libgtest-dev librapidcheck-dev ninja-build
 )
 
 # To make maps: scripts/slam.
@@ -54,7 +53,7 @@ packages_sysroot=(
 # shellcheck disable=SC2034
 packages_ci=(
   "${packages_test[@]}" "${packages_bench[@]}" "${packages_package[@]}" "${packages_browser[@]}"
-  ccache debootstrap doxygen git lintian pkg-config shellcheck valgrind
+  ccache debootstrap git lintian pkg-config shellcheck valgrind
   g++-11 python3-dev python3-venv
   clang-19 clang-format-19 clang-tidy-19 libclang-rt-19-dev
   googletest qemu-user-static
@@ -86,20 +85,29 @@ need_packages() {
   fi
   if ! command -v apt-get >/dev/null; then
     echo "Missing packages: ${missing[*]}; this script installs them with apt-get of Debian only." >&2
-    echo "On other systems install the equivalent packages, and build with CMake as described in README.md." >&2
+    echo "On other systems install the equivalent packages, and build with CMake as described in docs/install.md." >&2
     return 1
   fi
 
   echo "Installing ${#missing[@]} packages: ${missing[*]}"
   local install=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
     apt-get install --yes --no-install-recommends -qq -o Dpkg::Use-Pty=0 -o Acquire::Retries=3)
-  # Existing package lists are used first, which saves the update; outdated ones fail immediately.
+  # On a terminal sudo may ask for a password; elsewhere there are lines while it takes time.
+  if [[ ! -t 1 ]] && declare -F run_quietly >/dev/null; then
+    run_quietly "Installing them" install_missing
+  else
+    install_missing
+  fi
+}
+
+# install_missing: a part of need_packages, with its variables. Existing package lists are used first,
+# which saves the update; outdated ones fail immediately.
+install_missing() {
   if "${install[@]}" --print-uris "${missing[@]}" >/dev/null 2>&1 \
     && "${install[@]}" "${missing[@]}" >/dev/null 2>&1; then
     return 0
   fi
-  "${as_root[@]}" apt-get update -qq -o Acquire::Retries=3
-  "${install[@]}" "${missing[@]}" >/dev/null
+  "${as_root[@]}" apt-get update -qq -o Acquire::Retries=3 && "${install[@]}" "${missing[@]}" >/dev/null
 }
 
 # missing_packages <package>...: those that are not installed, one per line.

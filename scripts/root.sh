@@ -1,52 +1,70 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
-# A minimal Debian 12 below a directory, to test in a system without any file of this project. It is
-# created once, as the archive build/debian-12.tar, and unpacked for each use; after a week it is
-# created again. Sourced by scripts that run as root; needs bash, and scripts/packages.sh sourced
-# before.
+# A minimal Debian 12 (bookworm) or 13 (trixie) below a directory, to test in a system without any
+# file of this project. It is created once, as an archive in build, and unpacked for each use; after a
+# week it is created again. Sourced by scripts that run as root; needs bash, and scripts/packages.sh
+# sourced before.
 
-debian_release=bookworm
 debian_root=
 
-# make_root: creates one below $debian_root, with the package sources and the name service of this
-# machine and its own pseudo-terminals; it is removed when the script ends.
-make_root() {
-  need_packages debootstrap git
-  # The mirrors are those of this machine's apt for Debian 12.
-  local sources mirror begin=$SECONDS setting
+# find_mirrors <release>: sets debian_sources, the lines for sources.list, and debian_mirror. The
+# mirrors are those of this machine's apt for Debian 12 or 13.
+find_mirrors() {
   # shellcheck disable=SC2016  # the dollars are apt's
-  sources=$(apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) main' 'Created-By: Packages' \
-    | grep -E " $debian_release(-updates|-security)? main$" | sort --unique || true)
-  mirror=$(awk -v release="$debian_release" '$3 == release { print $2; exit }' <<<"$sources")
-  if [[ -z $mirror ]]; then
-    echo "apt on this machine has no source for Debian 12 ($debian_release) to make a root from" >&2
+  debian_sources=$(apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) main' 'Created-By: Packages' \
+    | awk -v release="$1" '$3 ~ /^(bookworm|trixie)(-updates|-security)?$/ { sub(/^[a-z]+/, release, $3); print }' \
+    | sort --unique)
+  debian_mirror=$(awk -v release="$1" '$3 == release { print $2; exit }' <<<"$debian_sources")
+  if [[ -z $debian_mirror ]]; then
+    echo "apt on this machine has no source for Debian 12 or 13 to make a root from" >&2
     return 1
   fi
+}
+
+# make_root <release> [<package>...]: creates one below $debian_root, with these packages, the package
+# mirrors and the name service of this machine, and its own pseudo-terminals; it is removed when the
+# script ends.
+make_root() {
+  local release=$1 begin=$SECONDS archive=$PWD/build/debian-$1.tar
+  shift
+  if (($# > 0)); then archive=${archive%.tar}-$(cksum <<<"$*" | cut -d ' ' -f 1).tar; fi
+  need_packages debootstrap git
+  find_mirrors "$release"
 
   debian_root=$(mktemp -d -t g4lidar-clean-root.XXXXXX)
   trap remove_root EXIT
-  local archive=$PWD/build/debian-12.tar
   mkdir -p build
-  if [[ -z $(find "$archive" -mtime -7 2>/dev/null) ]]; then
-    echo "Making a minimal Debian 12 ..."
-    if ! debootstrap --variant=minbase "$debian_release" "$debian_root" "$mirror" >"$debian_root.log" 2>&1; then
+  if [[ -n $(find "$archive" -mtime -7 2>/dev/null) ]]; then
+    tar --extract --file "$archive" --directory "$debian_root" --same-permissions
+    connect_root
+  else
+    echo "Making a minimal Debian ($release) ..."
+    if ! debootstrap --variant=minbase "$release" "$debian_root" "$debian_mirror" >"$debian_root.log" 2>&1; then
       tail -n 20 "$debian_root.log" >&2
       return 1
     fi
-    # Without the directories that debootstrap has mounted.
+    connect_root
+    # shellcheck disable=SC2016  # the dollar is the other shell's
+    if (($# > 0)) && ! in_root env DEBIAN_FRONTEND=noninteractive bash -c 'apt-get update -qq &&
+      apt-get install --yes -qq --no-install-recommends -o Dpkg::Use-Pty=0 "$@" && apt-get clean' install "$@" \
+      >"$debian_root.log" 2>&1; then
+      tail -n 20 "$debian_root.log" >&2
+      return 1
+    fi
+    # Without the directories that debootstrap and connect_root have mounted.
     tar --create --file "$archive.new" --directory "$debian_root" --one-file-system --exclude='./proc/*' \
       --exclude='./sys/*' .
     mv "$archive.new" "$archive"
-  else
-    tar --extract --file "$archive" --directory "$debian_root" --same-permissions
   fi
-  chmod 755 "$debian_root" # as every root directory: mktemp gives it to one user
-  echo "Made a minimal Debian 12 in $((SECONDS - begin)) s"
+  echo "Made a minimal Debian ($release) in $((SECONDS - begin)) s"
+}
 
-  # Its apt, its pip and its name service reach the same servers as this machine.
-  echo "$sources" >"$debian_root/etc/apt/sources.list"
+# connect_root: its apt, its pip and its name service reach the same servers as this machine.
+connect_root() {
+  chmod 755 "$debian_root" # as every root directory: mktemp gives it to one user
+  echo "$debian_sources" >"$debian_root/etc/apt/sources.list"
   apt-config dump Acquire >"$debian_root/etc/apt/apt.conf.d/90acquire"
-  local certificates
+  local certificates setting
   certificates=$(sed -n 's/^cert *= *//p' /etc/pip.conf 2>/dev/null || true)
   if [[ -e $certificates ]]; then
     cp --dereference "$certificates" "$debian_root/etc/pip.crt"
@@ -73,6 +91,7 @@ remove_root() {
 in_root() {
   env --ignore-environment HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb LANG=C.UTF-8 \
     ${http_proxy:+"http_proxy=$http_proxy"} ${https_proxy:+"https_proxy=$https_proxy"} \
+    ${DEB_BUILD_OPTIONS:+"DEB_BUILD_OPTIONS=$DEB_BUILD_OPTIONS"} \
     ${G4LIDAR_TEST_SCALE:+"G4LIDAR_TEST_SCALE=$G4LIDAR_TEST_SCALE"} \
     ${G4LIDAR_TEST_SEED:+"G4LIDAR_TEST_SEED=$G4LIDAR_TEST_SEED"} \
     chroot "$debian_root" "$@"

@@ -51,9 +51,9 @@ lidar open_and_start(const std::string& path, std::string_view pace = "scans") {
   lidar_options options;
   options.device = path;
   if (pace == "packets") {
-    options.pace = read_pace::packets;
+    options.tuning.pace = read_pace::packets;
   } else if (pace != "scans") {
-    options.batch = std::chrono::milliseconds(std::atoi(pace.data()));
+    options.tuning.batch = std::chrono::milliseconds(std::atoi(pace.data()));
   }
   auto opened = lidar::open(options);
   if (!opened) fail(opened.error());

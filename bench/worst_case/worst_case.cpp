@@ -91,6 +91,8 @@ std::vector<input> inputs() {
       {"a5", "nothing but A5", {0xA5}},
       {"aa_a5", "AA and A5 in turn", {0xAA, 0xA5}},
       {"aa_55", "the start of a packet again and again", {0xAA, 0x55}},
+      {"aa_66", "the start of a time packet again and again", {0xAA, 0x66}},
+      {"time_packets", "true time packets", {0xAA, 0x66, 0xDC, 0x10, 0x20, 0x30, 0x10, 0x00}},
       {"a5_5a", "the start of a reply again and again", {0xA5, 0x5A}},
       {"noise_and_a5", "noise of one byte between false starts", {0xA5, 0x00}},
       {"reply_headers",

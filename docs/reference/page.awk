@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
 # Makes a page of the reference from a document: each heading gets the name that links use, a
-# different one in every document, and links to a heading use these names.
+# different one in every document, and links to a heading use these names. Pictures are beside the pages.
 #   awk -f page.awk DOCUMENT
+# G4LIDAR_ONLY_PAGE names the only document of a reference: its links to other documents lead to those
+# beside the reference, as a package installs them.
 
-# A README is the page of its directory, and the first one is the main page.
+# The page of a path from the directory of the project. A README is the page of its directory, and the first one is the
+# main page.
 function page_of(path,    parts, count) {
-  if (path !~ /README\.md$/) {
-    sub(/^.*\//, "", path)
-    sub(/\.md$/, "", path)
-    return tolower(path)
-  }
-  if (path == "README.md") path = document
-  count = split(path, parts, "/")
-  return count == 1 || parts[count - 1] == ".." ? "mainpage" : parts[count - 1]
+  if (path == ENVIRON["G4LIDAR_ONLY_PAGE"] || path == "README.md") return "mainpage"
+  count = split(tolower(path), parts, "/")
+  if (parts[count] == "readme.md") return parts[count - 1]
+  sub(/\.md$/, "", parts[count])
+  return parts[count]
 }
 
 # As in "When it is unplugged" -> "when-it-is-unplugged".
@@ -23,14 +23,58 @@ function name_of(heading) {
   return heading
 }
 
-# Links [words](file.md#heading) and [words](#heading).
+# A path relative to the document, from the directory of the project: "../README.md" of "docs/c.md".
+function from_project(path,    place) {
+  place = document
+  sub(/[^\/]*$/, "", place)
+  path = place path
+  while (sub(/(^|\/)[^\/.]+\/\.\.\//, "/", path)) sub(/^\//, "", path)
+  return path
+}
+
+# Links [words](file.md), [words](file.md#heading) and [words](#heading); of [words](LICENSE) the words.
 function link(line,    done, place, file) {
-  while (match(line, /\]\([A-Za-z0-9_.\/]*#[A-Za-z0-9_-]+\)/)) {
+  while (match(line, /\[[^][]*\]\(LICENSE\)/)) {
+    place = substr(line, RSTART + 1, RLENGTH - length("[](LICENSE)"))
+    line = substr(line, 1, RSTART - 1) place substr(line, RSTART + RLENGTH)
+  }
+  while (match(line, /\]\(([A-Za-z0-9_.\/-]+\.md)?(#[A-Za-z0-9_-]+)?\)/)) {
     place = substr(line, RSTART + 2, RLENGTH - 3)
-    file = substr(place, 1, index(place, "#") - 1)
-    sub(/^.*#/, "", place)
-    if (file == "") file = document
-    done = done substr(line, 1, RSTART + 1) "#" page_of(file) "_" place ")"
+    if (place == "") { # []() of C++
+      done = done substr(line, 1, RSTART + 2)
+      line = substr(line, RSTART + RLENGTH)
+      continue
+    }
+    file = place
+    sub(/#.*$/, "", file)
+    file = file == "" ? document : from_project(file)
+    place = place ~ /#/ ? "_" substr(place, index(place, "#") + 1) : ""
+    done = done substr(line, 1, RSTART + 1) "#" page_of(file) place ")"
+    line = substr(line, RSTART + RLENGTH)
+  }
+  return done line
+}
+
+# Pictures ![words](docs/scan.svg) and <img src="docs/scan.svg">.
+function picture(line,    done, found) {
+  while (match(line, /(\]\(|src=")[A-Za-z0-9_.\/-]+\.(png|svg)[)"]/)) {
+    found = substr(line, RSTART, RLENGTH)
+    sub(/\(.*\//, "(", found)
+    sub(/".*\//, "\"", found)
+    done = done substr(line, 1, RSTART - 1) found
+    line = substr(line, RSTART + RLENGTH)
+  }
+  return done line
+}
+
+# Links [words](file.md) and [words](file.md#heading) to documents that are no pages.
+function link_to_others(line,    done, words, place) {
+  while (match(line, /\[[^][]*\]\([A-Za-z0-9_.\/]+\.md(#[A-Za-z0-9_-]+)?\)/)) {
+    words = substr(line, RSTART + 1, RLENGTH - 2)
+    place = words
+    sub(/^.*\]\(/, "", place)
+    sub(/\]\(.*$/, "", words)
+    done = done substr(line, 1, RSTART - 1) "<a href=\"../" from_project(place) "\">" words "</a>"
     line = substr(line, RSTART + RLENGTH)
   }
   return done line
@@ -47,4 +91,8 @@ is_code { print; next }
   print $0 " {#" id "}"
   next
 }
-{ print link($0) }
+{
+  line = picture($0)
+  if (ENVIRON["G4LIDAR_ONLY_PAGE"] != "") line = link_to_others(line)
+  print link(line)
+}

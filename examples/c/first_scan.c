@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Five revolutions of a G4, in C: the program in docs/c.md. */
+/* Five revolutions of a G4, in C: the program in docs/install.md. */
 #include <g4lidar.h>
 #include <stdio.h>
 
@@ -18,7 +18,7 @@ int main(int count, char** words) {
   if (g4lidar_start(lidar, &why)) code = report(&why);
   while (code == 0 && scans_left > 0) {
     const g4lidar_scan* scan; /* valid until the next call */
-    if (g4lidar_next_scan(lidar, 5000, &scan, &why)) {
+    if (g4lidar_wait_scan(lidar, 2000, &scan, &why)) {
       code = report(&why);
     } else {
       printf("%zu points at %.2f Hz\n", scan->point_count, scan->frequency_hz);

@@ -9,7 +9,8 @@ static int report(const g4lidar_error* why) {
   return 1;
 }
 
-/* The nearest obstacle of a scan in metres: filtered, and in a grid as for SLAM. */
+/* The nearest obstacle of a scan in metres: filtered, and in a grid as for SLAM. No return is not free space: for an
+   alarm see g4lidar_mark_near(). */
 static float nearest_m(const g4lidar_scan* scan) {
   static g4lidar_point kept[4096];
   static float ranges_m[360];

@@ -63,16 +63,31 @@ enum class problem : std::uint8_t {
 /// The number of problems.
 inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::system) + 1;
 
+/// Distinguishes errors of one problem that need different advice.
+enum class error_detail : std::uint8_t {
+  usual,         ///< The only case of most problems.
+  spinning_up,   ///< timeout: no scan has come since the start, because the motor spins up.
+  searching,     ///< timeout: the lidar was lost, and the driver is looking for it.
+  missing_port,  ///< no_port: the port that was named does not exist.
+  missing_path,  ///< no_port: neither a port nor a file has the name that was given.
+  bad_name,      ///< bad_option: the name of a lidar that is none.
+  simulated,     ///< bad_option, bad_file: no simulated lidar can be made of what `sim:` names.
+  no_simulator,  ///< bad_option: `sim:`, in a library that was built without the simulator.
+};
+
 /// One error. Trivially copyable, never allocates.
 class G4LIDAR_API error {
  public:
-  /// `subject` is what the error is about (a path, an option and its value); cut at 95 bytes.
-  error(task doing, problem code, std::string_view subject = {}, int system_errno = 0) noexcept;
+  /// `subject` is what the error is about (a path, an option and its value); cut at 159 bytes.
+  error(task doing, problem code, std::string_view subject = {}, int system_errno = 0,
+        error_detail detail = error_detail::usual) noexcept;
 
   /// What was being done.
   [[nodiscard]] g4lidar::task doing() const noexcept { return doing_; }
   /// What went wrong.
   [[nodiscard]] problem code() const noexcept { return code_; }
+  /// Which case of that problem it is.
+  [[nodiscard]] error_detail detail() const noexcept { return detail_; }
   /// The error number of the system, or 0.
   [[nodiscard]] int system_errno() const noexcept { return errno_; }
   /// Valid as long as this error.
@@ -95,11 +110,12 @@ class G4LIDAR_API error {
   [[nodiscard]] friend bool operator==(const error& a, problem b) noexcept { return a.code_ == b; }
 
  private:
-  std::array<char, 95> subject_{};
+  std::array<char, 159> subject_{};
   std::uint8_t size_ = 0;
   int errno_ = 0;
   g4lidar::task doing_;
   problem code_;
+  error_detail detail_;
 };
 
 /// The name in tools and documents: "permission", "no_port". Valid forever.
@@ -140,8 +156,9 @@ class view_result : public result<View> {
 /// For `return failure(task::opening, problem::busy, path);` in a function that returns a result.
 [[nodiscard]] inline tl::unexpected<error> failure(task doing, problem code,
                                                    std::string_view subject = {},
-                                                   int system_errno = 0) noexcept {
-  return tl::unexpected<error>(error(doing, code, subject, system_errno));
+                                                   int system_errno = 0,
+                                                   error_detail detail = {}) noexcept {
+  return tl::unexpected<error>(error(doing, code, subject, system_errno, detail));
 }
 
 }  // namespace g4lidar

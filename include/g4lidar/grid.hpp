@@ -2,6 +2,7 @@
 // A scan on a fixed grid of directions: always the same number of ranges, as SLAM requires.
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -19,6 +20,15 @@ enum class grid_pick : std::uint8_t {
   minimum,  ///< The point with the smallest range.
 };
 
+/// What a direction without return becomes in a grid. That nothing came back does not mean that the way
+/// is free: what is nearer than the shortest range (0.28 m at 9 kHz) may give no return either. See
+/// too_near.hpp.
+enum class no_return_as : std::uint8_t {
+  infinity,  ///< +infinity, as REP 117 has it for "no return within the range".
+  nan,       ///< NaN: nothing is known.
+  max,       ///< longest_range_mm, the range_max of a LaserScan, for programs that want numbers.
+};
+
 /// How to fill a grid. The defaults are those of a ROS LaserScan that begins at -pi.
 struct grid_options {
   /// In the robot's frame bin 0 is centred at -180 degrees, in the vendor's at 0; the next bins
@@ -30,6 +40,10 @@ struct grid_options {
   /// reliable (it may be dust on the window), so a range would put an obstacle onto the robot. NaN
   /// does neither. A reliable return in the same bin takes precedence.
   bool keep_too_near = false;
+  no_return_as no_return = no_return_as::infinity;
+  /// Whether a direction flagged may_be_too_near is -infinity, as REP 117 has it for targets that are
+  /// too near. By default it is NaN. Without mark_near() no direction has this flag.
+  bool near_is_minus_infinity = false;
 };
 
 /// The bin that contains a direction (clockwise degrees in [0, 360), as in a point) in a grid of
@@ -56,9 +70,10 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   // First each bin holds the index of its best point, which a float holds exactly; then the range.
   constexpr float nothing = -1.0F;
   for (float& slot : ranges_m) slot = nothing;
-  enum : std::uint8_t { no_return, unusable, usable };  // the higher value takes the bin
+  // The higher value takes the bin. What a filter left out hides no-returns beside it.
+  enum : std::uint8_t { no_return, perhaps_near, unusable, usable };
   const auto worth = [&](const point& p) {
-    if (p.is_no_return()) return no_return;
+    if (p.is_no_return()) return p.may_be_too_near() ? perhaps_near : no_return;
     return p.is_too_near() && !options.keep_too_near ? unusable : usable;
   };
   const auto better = [&](const point& p, float off, const point& than) {
@@ -75,21 +90,32 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
       slot = static_cast<float>(i);
     }
   }
-  for (float& slot : ranges_m) {
-    const point* const best = slot < 0.0F ? nullptr : &points[static_cast<std::size_t>(slot)];
-    if (best == nullptr || worth(*best) == unusable) {
-      slot = std::numeric_limits<float>::quiet_NaN();
-    } else {
-      slot =
-          best->is_no_return() ? std::numeric_limits<float>::infinity() : best->range_mm * 0.001F;
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr std::array<float, 3> of_no_return{infinity, nan, longest_range_mm * 0.001F};
+  const auto value_of = [&](const point& p) {
+    switch (worth(p)) {
+      case no_return:
+        return of_no_return[static_cast<std::size_t>(options.no_return)];
+      case perhaps_near:
+        return options.near_is_minus_infinity ? -infinity : nan;
+      case unusable:
+        return nan;
+      default:
+        return p.range_mm * 0.001F;
     }
+  };
+  for (float& slot : ranges_m) {
+    slot = slot < 0.0F ? nan : value_of(points[static_cast<std::size_t>(slot)]);
   }
 }
 
-/// Fills every bin of `ranges_m`, which is not empty: the range in metres; +infinity if the sensor
-/// measured there and nothing came back (never instead of a return); NaN if nothing is known,
-/// because the sensor did not measure there or every return is too near to be reliable. *Never
-/// allocates.* Accepts a scan of up to 16,777,216 points. (protocol: Point packets, a sample of 0)
+/// Fills every bin of `ranges_m`, which is not empty: the range in metres; +infinity, or what
+/// grid_options::no_return sets, if the sensor measured there and nothing came back (never instead of a
+/// return); NaN if nothing is known, because the sensor did not measure there, or every return is too
+/// near to be reliable, or mark_near() has flagged the direction. +infinity is not free space: what is
+/// nearer than the shortest range may give no return. *Never allocates.* Accepts a
+/// scan of up to 16,777,216 points. (protocol: Point packets, no return)
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {}) noexcept {
   fill_grid(points, ranges_m, options, [](const point&, std::size_t) { return true; });

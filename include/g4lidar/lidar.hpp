@@ -9,113 +9,24 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <type_traits>
 #include <variant>
 
 #include "g4lidar/core/point_ring.hpp"
 #include "g4lidar/core/request.hpp"
-#include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/lidar_counts.hpp"
+#include "g4lidar/lidar_event.hpp"
+#include "g4lidar/lidar_options.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan.hpp"
-#include "g4lidar/settings.hpp"
 
 namespace g4lidar {
 
-class connector;
 class scan_range;
-
-/// When a running scan is read, and the program woken.
-enum class read_pace : std::uint8_t {
-  automatic,    ///< As `revolutions`, until next_points() or points() is called; then as `packets`.
-  packets,      ///< When a packet is complete: points arrive with little latency.
-  revolutions,  ///< When a revolution is complete: a fifth of the system calls. Scans are not later.
-};
-
-/// How a lidar is opened and used. Every option has a default. A setting that is not given stays as the
-/// device has it; one that is given is set at each start, after a reconnect, and when the device seems
-/// to have rebooted.
-struct lidar_options {
-  /// Which lidar: empty for the only G4; a path; `serial:2021101000070073` (the number of the lidar);
-  /// `usb:1-1.4` (a USB port); `tcp:host:port` (a raw bridge); `file:PATH` (a recording, or the bytes
-  /// of a port). A recording can be named by its path alone.
-  std::string device;
-  /// Bits per second, of a serial port and of the one behind `tcp:`.
-  std::uint32_t baud = 230400;
-
-  std::optional<ranging_frequency> ranging;         ///< Measurements per second.
-  std::optional<scan_frequency> frequency;          ///< Revolutions per second, 5 to 12 Hz.
-  std::optional<motor_direction> direction;         ///< In which direction the head turns.
-  std::optional<constant_frequency> constant;       ///< Whether the lidar regulates its frequency.
-  std::optional<low_power> idle;                    ///< Whether the motor stops when idle.
-  std::optional<power_down_protection> protection;  ///< Stops when the host sends nothing for 3 s.
-
-  bool reconnect = false;  ///< Whether to reconnect after a loss; see lidar::next_event().
-  std::chrono::milliseconds longest_backoff{1000};  ///< Between two attempts; 1 ms to 1 s.
-  std::chrono::milliseconds answer_time{300};  ///< The longest wait for an answer; 10 ms to 10 s.
-  std::chrono::milliseconds stall_time{1000};  ///< A scan without a packet; 100 ms to 1 min.
-  /// See read_pace. A transport that does not know how many bytes the system keeps is read by packets.
-  read_pace pace = read_pace::automatic;
-  /// Bytes are read no more often than this, for every `pace`: fewer wake-ups, more latency. 0 to
-  /// 100 ms.
-  std::chrono::milliseconds batch{0};
-  /// The least delay between measurement and arrival, that of the baud rate excluded; see sensor_clock.
-  std::chrono::nanoseconds transport_delay{0};
-  bool partial_scans = false;  ///< Whether next_scan() also gives pieces: scan::is_piece().
-};
-
-/// What is wrong with `options`, as an error that names the option; nothing if all can be used. *Pure.*
-[[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;
-
-/// The connector for the device that `options` name, for callers that wrap it; see recorded() and
-/// transport/connector.hpp. lidar::open(options) is open(connector_for(options), options). Errors:
-/// bad_option, bad_file, system.
-[[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> connector_for(
-    const lidar_options& options);
-
-/// Something that happened without a request of the caller.
-struct lidar_event {
-  /// The kinds of event; docs/errors.md describes what to do about each.
-  enum class kind : std::uint8_t {
-    lost,            ///< The connection was lost; `reason` has the cause.
-    reconnected,     ///< The same device is back, with the same settings and state as before.
-    found_scanning,  ///< It was scanning although it had not been started; it was stopped.
-    protection_starved,  ///< The keep-alive was sent too late and the protection stopped the scan; started again.
-    protection_found_on,  ///< The protection was on unexpectedly: started again, and kept alive.
-    spinning_up,          ///< Started, and no point has come yet: the motor spins up.
-    restarted,            ///< The scan had ended by itself; the device is set and started again.
-    health_warning,       ///< The device reports a warning when it is started.
-    other_lidar,  ///< While the lidar was lost, another one answered; it received no further commands.
-    long_pause,  ///< The next data of a recording follows in more than a minute.
-    overflow,    ///< Earlier events were dropped, because next_event() was not called.
-  };
-  kind what;
-  problem reason;        ///< Of `lost`; else problem::timeout, without a meaning.
-  std::int64_t time_ns;  ///< When, by the monotonic clock.
-};
-
-/// The name of the event in tools and documents. Valid forever.
-[[nodiscard]] G4LIDAR_API std::string_view name_of(lidar_event::kind what) noexcept;
-
-/// Counts since open(), over all reconnects. At every moment bytes == stream.parsed_bytes +
-/// stream.skipped_bytes() + held.
-struct lidar_counts {
-  std::uint64_t bytes = 0;          ///< Parsed.
-  std::uint64_t held = 0;           ///< Of an unfinished packet or response.
-  stream_counts stream;             ///< Packets, points, skipped bytes by reason, ...
-  std::uint64_t samples_lost = 0;   ///< Measured and never received, derived from the angles.
-  std::uint64_t scans = 0;          ///< Revolutions that were completed.
-  std::uint64_t partial_scans = 0;  ///< Pieces of revolutions.
-  std::uint64_t scans_missed = 0;   ///< Not taken by next_scan() before the next one was complete.
-  std::uint64_t points_missed = 0;  ///< Not returned by next_points(), if the program calls it.
-  std::uint64_t command_retries = 0;  ///< Commands that had to be sent again.
-  std::uint64_t reconnects = 0;       ///< How often the device was reconnected.
-  std::int64_t largest_gap_ns = 0;    ///< Between two packets of one scan.
-};
 
 /// The points of at least the last two seconds.
 using lidar_ring = point_ring<16384>;
@@ -124,14 +35,12 @@ using lidar_ring = point_ring<16384>;
 /// it reconnects. It starts no thread: it makes progress only within its calls. A moved-from lidar
 /// behaves like a closed one.
 ///
-///     auto lidar = g4lidar::lidar::open();
+///     auto lidar = g4lidar::lidar::open("/dev/ttyUSB0", {.reconnect = true});
 ///     if (!lidar) return report(lidar.error());
 ///     if (auto started = lidar->start(); !started) return report(started.error());
-///     while (running) {
-///       auto scan = lidar->next_scan(500ms);
-///       if (scan) use(*scan);
-///       else if (scan.error().is_fatal()) return report(scan.error());
-///     }
+///     auto scans = lidar->scans(500ms);
+///     for (const auto& scan : scans) use(scan);
+///     return report(*scans.why_ended());
 ///
 /// stop(), close() and the destructor stop the motor, unless release() was called before. The
 /// library installs no signal handlers.
@@ -140,13 +49,16 @@ class G4LIDAR_API lidar {
   /// The unit of timeouts. A value below zero counts as zero; the longest is a year.
   using milliseconds = std::chrono::milliseconds;
 
-  /// Opens the device and queries its identity. A device that is scanning is stopped first. Takes
+  /// Opens the source that `options.device` names (source.hpp) and queries the identity of the lidar. A
+  /// device that is scanning is stopped first. For at most options.device_wait it waits, and begins again, until
+  /// a lidar answers or options.is_cancelled() ends it; the times below are those of an attempt. Takes
   /// about 60 ms with a healthy device, and at most 3 s with one fault; if many bytes are damaged, at
   /// most 15 s. If ports are queried first (see select_port()), each of them adds at most 2.5 s.
   /// Errors: all of docs/errors.md except those of a running scan.
   [[nodiscard]] static result<lidar> open(const lidar_options& options = {});
-  /// The same by name; see lidar_options::device.
-  [[nodiscard]] static result<lidar> open(std::string_view device);
+  /// The same by name, which takes the place of lidar_options::device.
+  [[nodiscard]] static result<lidar> open(std::string_view device,
+                                          const lidar_options& options = {});
   /// The same through another connector: a simulation, a test.
   [[nodiscard]] static result<lidar> open(std::unique_ptr<connector> from,
                                           const lidar_options& options = {});
@@ -176,13 +88,24 @@ class G4LIDAR_API lidar {
   /// power-down protection the device stops 3 s after the last keep-alive.) Never waits.
   void release() noexcept;
 
-  /// The next revolution; valid until the next call of any function except counts(). Errors:
-  /// timeout (try again), not_scanning, reconnecting. A fatal error ends the scan. With
-  /// reconnecting on, a loss is not fatal: next_event() reports it, and scans continue when the
-  /// device is back.
+  /// The next revolution; valid until the next call of any function except counts(). Returns within
+  /// the timeout, also while the motor spins up or a lost lidar is looked for: error::detail() is
+  /// then spinning_up or searching. Errors: timeout (try again), not_scanning, reconnecting. A fatal
+  /// error ends the scan. With reconnecting on, a loss is not fatal: the waiting call returns
+  /// reconnecting at once, next_event() reports the loss, and scans continue when the device is back.
   [[nodiscard]] view_result<scan> next_scan(milliseconds timeout);
-  /// The same for a loop: `for (const auto& scan : lidar.scans(500ms))`; see scan_range.
+  /// The same for a loop: it waits longer while no scan is due. While the motor spins up after a
+  /// start, a restart or a reconnect, it waits until the first scan, at most 10 s or the timeout, if
+  /// that is longer. With reconnecting on it waits without limit while the lidar is lost. So it
+  /// returns an error only at the end of a file (end_of_input), at a fatal error, when it is woken
+  /// (cancelled), when the lidar is not scanning, and when a scan that is due does not come within
+  /// the timeout. A recording counts as it was recorded: what is due in it is due.
+  [[nodiscard]] view_result<scan> wait_scan(milliseconds timeout);
+  /// The same as a range: `for (const auto& scan : lidar.scans(500ms))`; see scan_range.
   [[nodiscard]] scan_range scans(milliseconds timeout) & noexcept;
+  /// For event loops that wait like wait_scan(): for how long from now no scan is due. 0: one is
+  /// due, and a wait ends at its timeout; milliseconds::max() while a lost lidar is looked for.
+  [[nodiscard]] milliseconds scan_due_in() const noexcept;
   /// All points since the last call, at least one; valid until the next call. The first call begins
   /// with the current revolution; earlier points count as missed. Errors: as next_scan().
   [[nodiscard]] view_result<std::span<const point>> next_points(milliseconds timeout);
@@ -257,15 +180,16 @@ class G4LIDAR_API lidar {
   std::unique_ptr<driver> driver_;
 };
 
-/// The scans of a lidar as an input range. It ends at the first error of next_scan(), also at a
-/// timeout; why_ended() returns that error. *Single thread*; valid as long as the lidar.
+/// The scans of a lidar as an input range. It ends at the first error of lidar::wait_scan(), whose
+/// rule it follows: not while the motor spins up, and not at an unplug if reconnecting is on.
+/// why_ended() returns that error. *Single thread*; valid as long as the lidar.
 ///
 ///     auto scans = lidar->scans(500ms);
 ///     for (const g4lidar::scan& scan : scans) use(scan);  // each valid until the next one
 ///     return report(*scans.why_ended());
 class scan_range {
  public:
-  /// One position in the range: the last scan of next_scan().
+  /// One position in the range: the last scan of lidar::wait_scan().
   class iterator {
    public:
     using value_type = scan;                 ///< For std::input_iterator.
@@ -308,7 +232,7 @@ class scan_range {
  private:
   friend class lidar;
   scan_range(lidar& from, lidar::milliseconds timeout) noexcept : from_(&from), timeout_(timeout) {}
-  void advance() { current_ = from_->next_scan(timeout_); }
+  void advance() { current_ = from_->wait_scan(timeout_); }
 
   lidar* from_;
   lidar::milliseconds timeout_;

@@ -20,13 +20,14 @@ namespace g4lidar {
 /// Properties of a point; a set of bits.
 enum class point_flags : std::uint8_t {
   none = 0,
-  no_return = 1,         ///< Nothing came back: `range_mm` is 0 and not a range.
-  too_near = 2,          ///< Below 100 mm, where range and correction are not reliable.
-  revolution_start = 4,  ///< The sample of a zero packet, the first one of its revolution.
-  not_deskewed = 8,      ///< deskew() left it where it was: its time or the motion is not known.
-  unlikely = 16,         ///< Its packet or its neighbours contradict it; see plausibility.hpp.
-  isolated = 32,         ///< No other return is near; set by mark_isolated().
-  veiling = 64,          ///< Between two surfaces, where nothing is; set by mark_veiling().
+  no_return = 1,  ///< Nothing came back: `range_mm` is 0 and not a range, and the way not free.
+  too_near = 2,   ///< Below 100 mm, where range and correction are not reliable.
+  revolution_start = 4,   ///< The sample of a zero packet, the first one of its revolution.
+  not_deskewed = 8,       ///< deskew() left it where it was: its time or the motion is not known.
+  unlikely = 16,          ///< Its packet or its neighbours contradict it; see plausibility.hpp.
+  isolated = 32,          ///< No other return is near; set by mark_isolated().
+  veiling = 64,           ///< Between two surfaces, where nothing is; set by mark_veiling().
+  may_be_too_near = 128,  ///< Without return, perhaps of something too near; set by mark_near().
 };
 
 /// All flags of both. *Pure.*
@@ -45,14 +46,16 @@ enum class point_flags : std::uint8_t {
 
 /// Ranges below this are flagged too_near, in millimetres. (protocol: Point packets)
 inline constexpr float too_near_mm = 100.0F;
+/// The longest range that a sample can contain, in millimetres. (protocol: Point packets)
+inline constexpr float longest_range_mm = 16383.75F;
 
 /// One measured point in the device's own frame. Trivially copyable, 24 bytes, no padding.
 struct point {
   /// The direction in which the sensor looked, in [0, 360), never 360: clockwise seen from above, 0
   /// at the cable exit. For a point without return: the direction of an infinitely distant target,
-  /// 7.9906 degrees less than the first-level angle. (protocol: Point packets, a sample of 0)
+  /// 7.9906 degrees less than the first-level angle. (protocol: Point packets, no return)
   float angle_deg = 0.0F;
-  /// The distance in millimetres, 0 for no return.
+  /// The distance in millimetres, 0 for no return, which does not mean that the way is free.
   float range_mm = 0.0F;
   /// When the point was measured, in nanoseconds of the monotonic clock; 0 where it is not known.
   std::int64_t time_ns = 0;
@@ -62,13 +65,19 @@ struct point {
   /// Zeros: the structure has no padding, so equal points have equal bytes.
   std::array<std::uint8_t, 3> reserved{};
 
-  /// Whether nothing came back; then `range_mm` is not a range.
+  /// Whether nothing came back; then `range_mm` is not a range. The way is not free for it: a target
+  /// that is too near gives no return either, nor does one that is too far, black, or a mirror. See
+  /// too_near.hpp.
   [[nodiscard]] constexpr bool is_no_return() const noexcept {
     return (flags & point_flags::no_return) != point_flags::none;
   }
   /// Whether the return came from below 100 mm: an object is there, but its range is not reliable.
   [[nodiscard]] constexpr bool is_too_near() const noexcept {
     return (flags & point_flags::too_near) != point_flags::none;
+  }
+  /// Whether nothing came back, perhaps because a target is nearer than the shortest range.
+  [[nodiscard]] constexpr bool may_be_too_near() const noexcept {
+    return (flags & point_flags::may_be_too_near) != point_flags::none;
   }
   /// Whether this is the sample of a zero packet, which begins a revolution.
   [[nodiscard]] constexpr bool is_revolution_start() const noexcept {

@@ -28,6 +28,7 @@ enum class scan_flags : std::uint8_t {
   start_by_angle =
       16,  ///< Its zero packet was lost: it begins where the angle passes the last zero angle.
   end_by_angle = 32,  ///< The next zero packet was lost: it ends at the zero angle.
+  crc_mismatch = 64,  ///< A packet was lost by the CRC byte of devices that send one; see ct_check.
 };
 
 /// All flags of both. *Pure.*
@@ -114,7 +115,8 @@ struct scan {
   /// sufficient.
   [[nodiscard]] constexpr float sample_rate_hz() const noexcept {
     const std::int64_t taken = size() < 2 ? 0 : points.back().time_ns - time_ns();
-    if (taken <= 0 || has(scan_flags::data_lost)) return static_cast<float>(nominal_sample_rate_hz);
+    if (taken <= 0 || has(scan_flags::data_lost | scan_flags::crc_mismatch))
+      return static_cast<float>(nominal_sample_rate_hz);
     return static_cast<float>(size() - 1) * 1e9F / static_cast<float>(taken);
   }
   /// The measured rotation frequency in Hz: turns by time if the times are known, else turns by
@@ -122,7 +124,8 @@ struct scan {
   [[nodiscard]] constexpr float measured_frequency_hz() const noexcept {
     const float turns = turned_deg / 360.0F;
     if (duration_ns > 0) return turns * 1e9F / static_cast<float>(duration_ns);
-    if (empty() || has(scan_flags::data_lost | scan_flags::end_missing)) return 0.0F;
+    if (empty() || has(scan_flags::data_lost | scan_flags::crc_mismatch | scan_flags::end_missing))
+      return 0.0F;
     return turns * static_cast<float>(nominal_sample_rate_hz) / static_cast<float>(size());
   }
 };

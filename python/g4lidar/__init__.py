@@ -23,6 +23,7 @@ from ._g4lidar import (
     Event,
     Lidar,
     Mounting,
+    NearHistory,
     Port,
     RecordedItem,
     Recording,
@@ -35,6 +36,7 @@ from ._g4lidar import (
     TwistEstimate,
     TwistEstimator,
     _close_all,
+    _version,
     decode,
     deskew,
     doctor,
@@ -44,6 +46,7 @@ from ._g4lidar import (
     list_ports,
     mark_bit_errors,
     mark_isolated,
+    mark_near,
     mark_veiling,
     merge_scans,
     open,
@@ -54,11 +57,13 @@ from .errors import Error
 
 __all__ = [
     "POINT_DTYPE", "POSE_DTYPE", "Decoder", "DeviceInformation", "Diagnosis", "Error", "Event", "Lidar", "Mounting",
-    "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "Scans", "Simulator",
+    "NearHistory", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "Scans", "Simulator",
     "StageReport", "Twist", "TwistEstimate", "TwistEstimator", "decode", "deskew", "doctor", "errors", "fill_grid",
-    "filter_points", "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_veiling", "merge_scans",
-    "open", "to_xy",
+    "filter_points", "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_near", "mark_veiling",
+    "merge_scans", "open", "to_xy",
 ]
+
+__version__ = _version
 
 # A program that ends without close() leaves no motor running.
 _atexit.register(_close_all)
@@ -67,13 +72,14 @@ _atexit.register(_close_all)
 class PointFlag(_enum.IntFlag):
     """Properties of a point, the bits of `flags` in POINT_DTYPE."""
 
-    NO_RETURN = 1  # nothing came back: range_mm is 0 and not a range
+    NO_RETURN = 1  # nothing came back: range_mm is 0 and not a range, and the way not free
     TOO_NEAR = 2  # below 100 mm, where ranges are not reliable
     REVOLUTION_START = 4  # the first sample of its revolution
     NOT_DESKEWED = 8  # deskew() left it where it was
     UNLIKELY = 16  # its packet or its neighbours contradict it
     ISOLATED = 32  # set by mark_isolated()
     VEILING = 64  # set by mark_veiling()
+    MAY_BE_TOO_NEAR = 128  # without return, perhaps of something too near; set by mark_near()
 
 
 class ScanFlag(_enum.IntFlag):
@@ -85,3 +91,4 @@ class ScanFlag(_enum.IntFlag):
     TURN_SHORT = 8  # the zero packet at its end came well before a full turn
     START_BY_ANGLE = 16  # its zero packet was lost
     END_BY_ANGLE = 32  # the next zero packet was lost
+    CRC_MISMATCH = 64  # a packet was lost, by the CRC byte of devices that send one

@@ -6,7 +6,6 @@ import os
 from collections.abc import AsyncIterator
 
 from ._g4lidar import Lidar, Scan
-from .errors import Reconnecting
 
 STEP = 0.1  # seconds of a lidar without a descriptor, whose time is virtual
 
@@ -21,12 +20,10 @@ async def scans(lidar: Lidar, timeout: float | None, newest: bool) -> AsyncItera
         step = 0.0 if descriptor >= 0 else STEP
         left = max(0.0, limit - waited)
         try:
-            scan = lidar._advance(min(step, left), newest, timeout if left <= step else None)
+            scan = lidar._advance(step, left, newest)
         except StopIteration:
             return
-        except Reconnecting:
-            scan, left = None, 0.0  # it is waited for
-        waited = 0.0 if scan is not None or left <= step else waited + step
+        waited = 0.0 if scan is not None else waited + min(step, left)
         if scan is not None:
             yield scan
         if scan is not None or descriptor < 0:
@@ -34,7 +31,8 @@ async def scans(lidar: Lidar, timeout: float | None, newest: bool) -> AsyncItera
             continue
         begin = loop.time()
         deadline = lidar.next_deadline()
-        until = min(begin + limit - waited, math.inf if deadline is None else deadline)
+        until = begin + max(limit - waited, lidar._scan_due_in())
+        until = min(until, math.inf if deadline is None else deadline)
         await _readable(loop, (descriptor, lidar._notice()), until)
         waited += loop.time() - begin
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A live polar plot: python -m g4lidar.view [DEVICE]. Needs matplotlib: pip install g4lidar[view]"""
-import sys
+import argparse
 
-import matplotlib.pyplot as plt
 import numpy as np
 
 import g4lidar
@@ -10,6 +9,8 @@ import g4lidar
 
 def main(device: str = "", *, frames: int | None = None) -> None:
     """Draws until the window is closed, or so many scans. Angle 0 is up, as seen from above."""
+    import matplotlib.pyplot as plt
+
     axes = plt.figure("g4lidar").add_subplot(projection="polar", theta_offset=np.pi / 2, theta_direction=-1)
     (dots,) = axes.plot([], [], ".", markersize=2)
     with g4lidar.open(device) as lidar:
@@ -24,4 +25,6 @@ def main(device: str = "", *, frames: int | None = None) -> None:
 
 
 if __name__ == "__main__":
-    main("".join(sys.argv[1:2]))
+    words = argparse.ArgumentParser("python -m g4lidar.view", description="A live polar plot of a lidar.")
+    words.add_argument("device", nargs="?", default="", help="as in g4lidar.open(): a port, sim:, ... (the only G4)")
+    main(words.parse_args().device)

@@ -96,6 +96,9 @@ nb::dict counts(decoder& with) {
   all["responses"] = now.responses;
   all["points"] = now.points;
   all["suspect_packets"] = now.suspect;
+  all["time_packets"] = now.time_packets;
+  all["crc_matches"] = now.crc_matches;
+  all["crc_mismatches"] = now.crc_mismatches;
   for (std::size_t i = 0; i < skip_reasons; ++i) {
     const std::string name = std::string("skipped_") + name_of(static_cast<skip_reason>(i));
     all[nb::str(name.c_str())] = now.skipped_by_reason[i];

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <variant>
 #include <vector>
 
@@ -38,7 +39,7 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
                                   double measuring_time, std::uint32_t baud,
                                   const std::optional<report_function>& on_stage) {
   if (!(measuring_time >= 0.0 && measuring_time <= 3600.0))
-    throw nb::value_error("measuring_time: 0 to 3600 s");
+    raise_impossible("measuring_time: 0 to 3600 s", measuring_time);
   diagnostic_options how;
   how.baud = baud;
   how.measuring_time = std::chrono::nanoseconds(static_cast<std::int64_t>(measuring_time * 1e9));
@@ -86,11 +87,8 @@ std::vector<stage_report> examine(const std::variant<path_text, simulator*>& dev
     lock.unlock();
   } else {
     const std::string name = given != nullptr ? (*given)->path() : std::get<path_text>(device).text;
-    std::shared_ptr<sim::background_pty> served;
-    if (sim::is_simulated(name)) served = value_of(sim::serve_alone(make_device(read_setup(name))));
     const without_gil free;
-    found = diagnose(served ? served->path() : name, how);
-    served.reset();
+    found = diagnose(name, how);
   }
   if (raised) throw std::move(*raised);
   return found;

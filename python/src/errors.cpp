@@ -24,6 +24,8 @@ nb::str text(std::string_view from) { return nb::str(from.data(), from.size()); 
 }  // namespace
 
 void raise(const error& why) {
+  // A handler of a signal raised, which ended the call.
+  if (why == problem::cancelled && PyErr_Occurred() != nullptr) throw nb::python_error();
   const std::string name = class_name(name_of(why.code()));
   const nb::object kind = nb::module_::import_("g4lidar.errors").attr(name.c_str());
   const std::string message = why.message();

@@ -13,10 +13,15 @@ namespace g4lidar::python {
 
 namespace nb = nanobind;
 
-/// Raises the class of the problem. Needs the GIL.
+/// Raises the class of the problem, or what a handler of a signal has raised. Needs the GIL.
 [[noreturn]] void raise(const error& why);
 /// Raises BadOption with this text, for what the library refuses by a sentence.
 [[noreturn]] void raise_bad_option(const std::string& text);
+/// ValueError: "WHAT, not GIVEN": which values are possible, and the one that was given.
+template <class Value>
+[[noreturn]] void raise_impossible(const std::string& what, const Value& given) {
+  throw nb::value_error((what + ", not " + nb::repr(nb::cast(given)).c_str()).c_str());
+}
 
 /// The value, or raise().
 template <class Value>

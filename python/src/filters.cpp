@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "errors.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/plausibility.hpp"
+#include "g4lidar/too_near.hpp"
 #include "scan.hpp"
 #include "words.hpp"
 
@@ -39,7 +41,7 @@ void require_numbers(std::initializer_list<double> values) {
 
 void require_finite(const angles& sector) {
   if (!std::isfinite(sector.first) || !std::isfinite(sector.second))
-    throw nb::value_error("the angles of a sector are finite");
+    raise_impossible("the angles of a sector are finite", sector);
 }
 
 array<point> select(const array<point>& points, const std::optional<angles>& field_of_view,
@@ -47,7 +49,7 @@ array<point> select(const array<point>& points, const std::optional<angles>& fie
                     float least_range_mm, float greatest_range_mm, bool returns_only,
                     bool trusted_only, unsigned excluded, frame in, bool for_grid) {
   require_numbers({least_range_mm, greatest_range_mm});
-  if (excluded > 0xFFU) throw nb::value_error("excluded: flags of PointFlag");
+  if (excluded > 0xFFU) raise_impossible("excluded: flags of PointFlag", excluded);
   owned_filter how;
   how.made.in = in;
   if (field_of_view) {
@@ -59,11 +61,11 @@ array<point> select(const array<point>& points, const std::optional<angles>& fie
     how.ignored.emplace_back(each.first, each.second);
   }
   for (const outline& each : masks) {
-    if (each.size() < 3) throw nb::value_error("a mask has 3 corners or more");
+    if (each.size() < 3) raise_impossible("a mask has 3 corners or more", each.size());
     auto& corners = how.corners.emplace_back();
     for (const auto& [x_m, y_m] : each) {
       if (!std::isfinite(x_m) || !std::isfinite(y_m))
-        throw nb::value_error("the corners of a mask are finite");
+        raise_impossible("the corners of a mask are finite", std::pair(x_m, y_m));
       corners.push_back({x_m, y_m});
     }
   }
@@ -94,7 +96,7 @@ array<point> marked(const array<point>& points, const Mark& mark) {
 }
 
 std::size_t checked_window(std::size_t window) {
-  if (window < 1 || window > max_window) throw nb::value_error("window: 1 to 16");
+  if (window < 1 || window > max_window) raise_impossible("window: 1 to 16", window);
   return window;
 }
 
@@ -140,7 +142,7 @@ void bind_filters(nb::module_& module) {
       "mark_veiling",
       [](const array<point>& points, std::size_t window, float least_angle_deg, scan_ends ends) {
         if (!(least_angle_deg > 0.0F && least_angle_deg <= 45.0F)) {
-          throw nb::value_error("least_angle_deg: above 0, at most 45");
+          raise_impossible("least_angle_deg: above 0, at most 45", least_angle_deg);
         }
         const edge_limits limits{checked_window(window), least_angle_deg};
         return marked(points, [&](std::span<point> all) { mark_veiling(all, limits, ends); });
@@ -150,6 +152,28 @@ void bind_filters(nb::module_& module) {
       "A copy in which points between two surfaces, where nothing is, are flagged "
       "PointFlag.VEILING: the lines to "
       "neighbours on both sides make less than `least_angle_deg` degrees with the beam.");
+  nb::class_<near_history>(module, "NearHistory",
+                           "From which directions near returns came last, for mark_near(): one for "
+                           "each lidar. One thread at a time.")
+      .def(nb::init<>())
+      .def("reset", &near_history::reset, "Forgets all returns.");
+  const near_limits near;
+  module.def(
+      "mark_near",
+      [](const array<point>& points, near_history& history, float shortest_mm,
+         std::uint32_t revolutions) {
+        if (!(shortest_mm > 0.0F)) throw nb::value_error("shortest_mm: above 0");
+        const near_limits limits{shortest_mm, revolutions};
+        return marked(points, [&](std::span<point> all) { mark_near(all, history, limits); });
+      },
+      "points"_a, "history"_a, nb::kw_only(), "shortest_mm"_a = near.shortest_mm,
+      "revolutions"_a = near.revolutions,
+      "A copy in which points without return are flagged PointFlag.MAY_BE_TOO_NEAR if, in the last "
+      "`revolutions`, a return came from their direction from less than twice `shortest_mm` (280 "
+      "at 9 kHz, 260 at 8, 100 at 4), and none that is farther since. `revolutions` 0: until a "
+      "return comes. `points`: all points of a lidar in their order, scan by scan, before they are "
+      "filtered or deskewed. fill_grid() gives NaN there, or -inf with `near_is_minus_infinity`. "
+      "It misses some targets, and has false alarms: too_near.hpp has their numbers.");
   module.def(
       "mark_bit_errors",
       [](const array<point>& points) {

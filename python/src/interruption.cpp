@@ -46,6 +46,8 @@ void interruption::import() {
   static_cast<void>(::pthread_atfork(nullptr, nullptr, [] { main_thread = ::pthread_self(); }));
 }
 
+bool handler_raises() { return PyErr_CheckSignals() != 0; }
+
 interruption::interruption(lidar& waiting) noexcept {
   if (pthread_equal(pthread_self(), main_thread) == 0) return;
   before_ = waits.exchange(&waiting);

@@ -28,4 +28,8 @@ class interruption {
   lidar* before_ = nullptr;
 };
 
+/// For reading_options::is_cancelled, where the GIL is held: calls the handlers of signals that came; true if one
+/// raised. Then value_of() raises the same.
+[[nodiscard]] bool handler_raises();
+
 }  // namespace g4lidar::python

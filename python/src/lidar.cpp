@@ -6,6 +6,8 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <chrono>
+#include <limits>
 #include <string>
 #include <tuple>
 
@@ -66,6 +68,9 @@ nb::dict counts(live_lidar& on) {
   all["responses"] = now.stream.responses;
   all["points"] = now.stream.points;
   all["suspect_packets"] = now.stream.suspect;
+  all["time_packets"] = now.stream.time_packets;
+  all["crc_matches"] = now.stream.crc_matches;
+  all["crc_mismatches"] = now.stream.crc_mismatches;
   for (std::size_t i = 0; i < skip_reasons; ++i) {
     const std::string name = std::string("skipped_") + name_of(static_cast<skip_reason>(i));
     all[nb::str(name.c_str())] = now.stream.skipped_by_reason[i];
@@ -106,7 +111,8 @@ void bind_parts(nb::module_& module) {
   nb::class_<lidar_event>(module, "Event", "Something that happened without a request.")
       .def_prop_ro(
           "kind", [](const lidar_event& e) { return name_of(e.what); },
-          "'lost', 'reconnected', 'spinning_up', 'restarted', ...: docs/errors.md describes each.")
+          "'lost', 'reconnected', 'spinning_up', 'restarted', ...: docs/symptoms.md describes "
+          "each.")
       .def_prop_ro(
           "reason", [](const lidar_event& e) { return name_of(e.reason); },
           "Of 'lost': the problem.")
@@ -237,10 +243,13 @@ void bind_reading(Class& made) {
           },
           "timeout"_a = 2.0, nb::kw_only(), "newest"_a = false,
           "The scans, for a loop. It ends at the end of a recording, and when the lidar is closed. "
-          "It raises Timeout if "
-          "`timeout` seconds (None: never) pass without a scan; while the motor spins up, 10 s "
-          "more. A lidar that is "
-          "lost, and was opened with `reconnect`, is waited for. With `newest` only the newest "
+          "It raises Timeout if a scan that is due does not come within `timeout` seconds (None: "
+          "never). While the motor spins up after a start, a restart or a reconnect, it waits "
+          "until "
+          "the first scan, at most 10 s, or `timeout` if that is longer. A lidar that is lost, and "
+          "was opened with `reconnect`, is waited for without limit. Fatal errors are raised; "
+          "after "
+          "wake(), Cancelled. With `newest` only the newest "
           "complete scan is "
           "returned; older ones are "
           "dropped and counted in counts()['scans_dropped'].")
@@ -257,12 +266,18 @@ void bind_reading(Class& made) {
           "lidar, without a thread. start() and close() block.")
       .def(
           "_advance",
-          [](live_lidar& on, double wait, bool newest, std::optional<double> passed) {
-            return on.advance(in_milliseconds(wait), newest, optional_timeout(passed));
+          [](live_lidar& on, double step, double left, bool newest) {
+            return on.advance(in_milliseconds(step), in_milliseconds(left), newest);
           },
-          nb::arg(), nb::arg(), nb::arg().none(),
-          nb::sig("def _advance(self, wait: float, newest: bool, passed: float | None, /) -> Scan "
-                  "| None"))
+          nb::arg(), nb::arg(), nb::arg(),
+          nb::sig("def _advance(self, step: float, left: float, newest: bool, /) -> Scan | None"))
+      .def("_scan_due_in",
+           [](live_lidar& on) {
+             const auto due = on.scan_due_in();
+             return due == live_lidar::milliseconds::max()
+                        ? std::numeric_limits<double>::infinity()
+                        : std::chrono::duration<double>(due).count();
+           })
       .def("_notice", &live_lidar::notice_fileno)
       .def("poll_scan", &live_lidar::poll_scan, nb::kw_only(), "newest"_a = false,
            nb::sig("def poll_scan(self, *, newest: bool = False) -> Scan | None"),
@@ -306,7 +321,11 @@ void bind_reading(Class& made) {
           },
           "Whether a scan was started and not stopped.")
       .def_prop_ro(
-          "is_spinning_up", &live_lidar::is_spinning_up,
+          "is_spinning_up",
+          [](live_lidar& on) {
+            const auto due = on.scan_due_in();
+            return due.count() > 0 && due != live_lidar::milliseconds::max();
+          },
           "Whether it was started, and no scan has come yet: the motor may be spinning up.");
 }
 

@@ -9,8 +9,8 @@
 namespace g4lidar::python {
 namespace {
 
-/// As long as the device needs at most for its first packet.
-constexpr live_lidar::milliseconds longest_spin_up{10'000};
+/// The longest wait of a loop in one call, after which other threads may use the lidar.
+constexpr live_lidar::milliseconds slice{500};
 constexpr live_lidar::milliseconds a_year{std::chrono::hours(24 * 365)};
 
 /// All that exist. Guarded by the GIL. Never destroyed: a lidar may be, after everything else.
@@ -29,7 +29,7 @@ bool is_error(const nb::python_error& raised, const char* name) {
 }  // namespace
 
 live_lidar::milliseconds in_milliseconds(double seconds) {
-  if (!(seconds >= 0.0)) throw nb::value_error("a timeout is a number of seconds, 0 or more");
+  if (!(seconds >= 0.0)) raise_impossible("a timeout is a number of seconds, 0 or more", seconds);
   return live_lidar::milliseconds(
       static_cast<std::int64_t>(std::min(seconds * 1e3, static_cast<double>(a_year.count()))));
 }
@@ -67,7 +67,6 @@ live_lidar::lock live_lidar::locked(bool wakes) {
 void live_lidar::start() {
   may_stop_ = !on_.has_own_clock;
   run([](lidar& on) { return on.start(); });
-  spin_up_left_ = longest_spin_up;
   is_started_ = true;
 }
 
@@ -132,7 +131,6 @@ void live_lidar::release() {
 }
 
 nb::object live_lidar::keep(copied_scan& found) {
-  spin_up_left_ = milliseconds(0);
   found.about.points = found.points;
   return nb::cast(
       kept_scan(found.about, on_.has_own_clock ? on_.wall_ahead_ns : wall_clock().ahead().count()));
@@ -192,27 +190,17 @@ nb::object live_lidar::next_deadline() {
   return nb::float_(on_.has_own_clock ? 0.0 : static_cast<double>(due_ns) * 1e-9);
 }
 
-/// Whether no scan is expected: the lidar is lost, or the motor spins up.
-bool live_lidar::may_wait_longer(milliseconds passed) {
-  const auto [is_lost, reconnects] =
-      look([](const lidar& on) { return std::pair(!on.is_scanning(), on.counts().reconnects); });
-  const bool has_reconnected = std::exchange(reconnects_, reconnects) != reconnects;
-  if (is_lost || has_reconnected) spin_up_left_ = longest_spin_up;
-  if (!is_spinning_up()) return false;
-  if (!is_lost) spin_up_left_ -= std::max(passed, milliseconds(1));
-  return true;
-}
-
-nb::object live_lidar::advance(milliseconds wait, bool newest, std::optional<milliseconds> passed) {
+nb::object live_lidar::advance(milliseconds step, milliseconds left, bool newest) {
   try {
     if (!closed_) {
       notice_.take();
-      nb::object found = next_scan(wait, true);
-      if (found.is_none() && passed && !may_wait_longer(*passed))
+      nb::object found = next_scan(std::min(step, std::max(left, scan_due_in())), true);
+      if (found.is_none() && left <= step && scan_due_in().count() == 0)
         found = next_scan(milliseconds(0));  // raises Timeout, unless there is one now
       return newest && !found.is_none() ? newer(std::move(found)) : found;
     }
   } catch (nb::python_error& raised) {
+    if (is_error(raised, "Reconnecting")) return nb::none();
     const bool has_ended = on_.has_own_clock && is_error(raised, "EndOfInput");
     const bool was_closed = closed_ && (is_error(raised, "Cancelled") || is_error(raised, "Gone"));
     if (!has_ended && !was_closed) throw;
@@ -221,14 +209,14 @@ nb::object live_lidar::advance(milliseconds wait, bool newest, std::optional<mil
 }
 
 nb::object live_lidar::next_in_loop(std::optional<milliseconds> timeout, bool newest) {
-  const milliseconds wait = timeout.value_or(a_year);
+  using clock = std::chrono::steady_clock;
+  std::chrono::nanoseconds left = timeout.value_or(a_year);
   while (true) {
-    try {
-      nb::object found = advance(wait, newest, wait);
-      if (!found.is_none()) return found;
-    } catch (nb::python_error& raised) {
-      if (!is_error(raised, "Reconnecting")) throw;
-    }
+    const auto begin = clock::now();
+    const auto wait = std::max(std::chrono::ceil<milliseconds>(left), milliseconds(0));
+    nb::object found = advance(slice, wait, newest);
+    if (!found.is_none()) return found;
+    left -= on_.has_own_clock ? std::min(slice, wait) : clock::now() - begin;
   }
 }
 

@@ -77,12 +77,11 @@ class live_lidar {
   void seek(double seconds);
   /// The next scan; empty at the timeout, if `may_time_out`.
   [[nodiscard]] nb::object next_scan(milliseconds timeout, bool may_time_out = false);
-  /// For a loop: a scan, or None if none came within `wait`. Raises StopIteration at the end of a recording, and after
-  /// close(); Timeout, if a whole timeout has passed without a scan, `passed`, unless the motor spins up. With `newest`
-  /// only the newest complete scan.
-  [[nodiscard]] nb::object advance(milliseconds wait, bool newest,
-                                   std::optional<milliseconds> passed);
-  /// The same until there is a scan; a lidar that reconnects is waited for.
+  /// For a loop: a scan, or None if none came within `step`. Raises StopIteration at the end of a recording, and after
+  /// close(); Timeout, if no scan came within `left`, the rest of the timeout, and one is due: see lidar::wait_scan().
+  /// With `newest` only the newest complete scan.
+  [[nodiscard]] nb::object advance(milliseconds step, milliseconds left, bool newest);
+  /// The same until there is a scan.
   [[nodiscard]] nb::object next_in_loop(std::optional<milliseconds> timeout, bool newest);
   /// Readable when a loop that waits for the lidar must call advance().
   [[nodiscard]] int notice_fileno() const noexcept { return notice_.fileno(); }
@@ -91,8 +90,10 @@ class live_lidar {
   [[nodiscard]] nb::object poll_scan(bool newest);
   /// The latest time for the next call, in seconds of time.monotonic(); None if only bytes are awaited.
   [[nodiscard]] nb::object next_deadline();
-  /// Whether no scan has come since the last start, and the motor may still be spinning up.
-  [[nodiscard]] bool is_spinning_up() const noexcept { return spin_up_left_.count() > 0; }
+  /// See lidar::scan_due_in().
+  [[nodiscard]] milliseconds scan_due_in() {
+    return look([](const lidar& on) { return on.scan_due_in(); });
+  }
 
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
@@ -115,7 +116,6 @@ class live_lidar {
   auto alone(lock held, const Call& call);
   [[nodiscard]] nb::object keep(copied_scan& found);
   [[nodiscard]] nb::object newer(nb::object found);
-  [[nodiscard]] bool may_wait_longer(milliseconds passed);
 
   foundation on_;
   std::shared_ptr<lidar> lidar_;  // another one after seek()
@@ -125,9 +125,7 @@ class live_lidar {
   std::atomic<bool> closed_{false};
   bool is_started_ = false;
   bool may_stop_ = false;  // started, and neither stopped nor lost, in real time
-  milliseconds spin_up_left_{0};
   std::uint64_t dropped_ = 0;
-  std::uint64_t reconnects_ = 0;  // of the last timeout
 };
 
 template <class Call>

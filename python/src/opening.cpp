@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,10 +19,11 @@
 
 #include "background.hpp"
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/recording/raw_bytes.hpp"
-#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/source.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/serial_port.hpp"
+#include "interruption.hpp"
 #include "live_lidar.hpp"
 #include "settings.hpp"
 #include "simulator.hpp"
@@ -38,7 +40,6 @@ struct playing {
   bool loop;
   double begin;
   std::optional<double> end;
-  std::uint32_t raw_sample_rate_hz;
 
   /// Raises BadOption if anything is given that is only for recordings.
   void refuse_for(const std::string& what) const {
@@ -48,49 +49,52 @@ struct playing {
 };
 
 std::int64_t in_ns(double seconds) {
-  if (!(seconds >= 0.0 && seconds <= 1e9)) throw nb::value_error("a number of seconds is 0 to 1e9");
+  if (!(seconds >= 0.0 && seconds <= 1e9))
+    raise_impossible("a number of seconds is 0 to 1e9", seconds);
   return static_cast<std::int64_t>(seconds * 1e9);
 }
 
 /// Wall clock minus the clock of the recording.
 std::int64_t wall_ahead_of(const std::string& path) {
-  auto reader = value_of(recording_reader::open(path));
+  auto reader = value_of(recording_reader::open(path, {.is_cancelled = handler_raises}));
   const auto first = value_of(reader.next());
   return first ? first->wall_ns - first->time_ns : 0;
 }
 
-/// The connector for a file, or null if `name` is none.
-std::unique_ptr<connector> open_file(std::string_view name, const lidar_options& as,
-                                     const playing& how, foundation& on) {
-  constexpr std::string_view prefix = "file:";
-  const bool is_named = name.starts_with(prefix);
-  const std::string path(is_named ? name.substr(prefix.size()) : name);
+/// The connector for a file, without waiting. Signals end the opening; later they wake the lidar, which
+/// reads without the GIL.
+std::unique_ptr<connector> open_file(lidar_options options) {
+  const auto is_opening = std::make_shared<bool>(true);
+  options.is_cancelled = [is_opening] { return *is_opening && handler_raises(); };
+  auto made = value_of(connector_for(options));
+  *is_opening = false;
+  if (PyErr_Occurred() != nullptr) throw nb::python_error();
+  return made;
+}
+
+/// What a recording or raw bytes are played on.
+void follow_clock_of_file(const lidar_options& options, source_kind kind, foundation& on) {
+  const std::string path = path_of_source(options.device);
   struct stat found{};
-  if (::stat(path.c_str(), &found) != 0 ? !is_named : !S_ISREG(found.st_mode)) return nullptr;
+  if (::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode)) return;
   on.has_own_clock = true;
-  if (is_recording(path)) {
-    replay_options options;
-    options.rate = how.speed;
-    options.loop = how.loop;
-    options.range.from_ns = in_ns(how.begin);
-    if (how.end) options.range.to_ns = in_ns(*how.end);
-    on.plays_at_once = how.speed == 0.0;
-    auto made = value_of(replay::open(path, options));
+  if (kind == source_kind::recording) {
+    on.plays_at_once = options.playback.speed == 0.0;
     on.wall_ahead_ns = wall_ahead_of(path);
-    on.open_at = [path, as, options](double seconds) mutable {
-      options.range.from_ns = in_ns(seconds);
-      return value_of(lidar::open(value_of(replay::open(path, options)), as));
+    on.open_at = [how = options](double seconds) mutable {
+      how.playback.from_ns = in_ns(seconds);
+      return value_of(lidar::open(open_file(how), how));
     };
-    return made;
+    return;
   }
-  how.refuse_for("raw bytes");
   on.plays_at_once = true;
   // The clock of raw bytes begins at 1 s, and their wall clock at the time of the file.
   on.wall_ahead_ns =
       (std::int64_t{found.st_mtim.tv_sec} - 1) * 1'000'000'000 + found.st_mtim.tv_nsec;
-  return value_of(open_raw_bytes(path, how.raw_sample_rate_hz));
 }
 
+/// What needs no time to open: a file, or a simulation in virtual time. Null for all else, which
+/// `options.device` names then.
 std::unique_ptr<connector> connect(const device_name& device, lidar_options& options,
                                    const playing& how, foundation& on) {
   if (const auto* given = std::get_if<simulator*>(&device)) {
@@ -105,28 +109,25 @@ std::unique_ptr<connector> connect(const device_name& device, lidar_options& opt
     }
     options.device = simulated.path();
     on.simulation = simulated.in_real_time();
-  } else {
-    options.device = std::get<path_text>(device).text;
-    if (sim::is_simulated(options.device)) {
-      how.refuse_for(options.device);
-      auto served = value_of(sim::serve_alone(make_device(read_setup(options.device))));
-      options.device = served->path();
-      on.simulation = std::move(served);
-    } else if (auto file = open_file(options.device, options, how, on)) {
-      return file;
-    } else {
-      how.refuse_for(options.device.empty() ? "a device" : options.device);
-    }
+    return nullptr;
   }
-  return value_of(connector_for(options));
+  options.device = std::get<path_text>(device).text;
+  const source_kind kind = kind_of_source(options.device);
+  if (kind != source_kind::recording) {
+    how.refuse_for(kind == source_kind::raw_bytes ? "raw bytes"
+                   : options.device.empty()       ? "a device"
+                                                  : options.device);
+  }
+  if (kind != source_kind::recording && kind != source_kind::raw_bytes) return nullptr;
+  auto made = open_file(options);
+  follow_clock_of_file(options, kind, on);
+  return made;
 }
 
 live_lidar* open_lidar(const device_name& device, lidar_options options, const playing& how,
                        const std::optional<path_text>& record, bool overwrite) {
   foundation on;
   auto from = connect(device, options, how, on);
-  const auto opening = std::make_shared<std::atomic<progress>>(progress::running);
-  if (!on.has_own_clock) from = std::make_unique<abandonable_connector>(std::move(from), opening);
   if (record) {
     recording_options as;
     as.overwrite = overwrite;
@@ -136,22 +137,26 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
       const auto now = std::chrono::system_clock::now().time_since_epoch();
       on.recording->set_wall_clock(std::chrono::nanoseconds(now).count() - from->now_ns());
     }
-    from = value_of(recorded(std::move(from), *on.recording));
     on.open_at = nullptr;  // the times of a recording do not go back
   }
+  const auto opening = std::make_shared<std::atomic<progress>>(progress::running);
+  options.wrap = [opening, recorder = on.recording](std::unique_ptr<connector> inner) {
+    inner = std::make_unique<abandonable_connector>(std::move(inner), opening);
+    using wrapped = result<std::unique_ptr<connector>>;
+    return recorder ? recorded(std::move(inner), *recorder) : wrapped(std::move(inner));
+  };
   auto opened = [&] {
-    if (on.has_own_clock) {  // it needs no time
+    if (from) {
       // Of a simulation in virtual time, which other lidars may use.
       auto lock = on.mutex ? lock_of(*on.mutex) : std::unique_lock<std::timed_mutex>();
+      if (on.recording) from = value_of(recorded(std::move(from), *on.recording));
       const without_gil free;
       auto made = lidar::open(std::move(from), options);
       if (lock) lock.unlock();  // nobody waits for the GIL with the mutex
       return made;
     }
-    auto work = [from = std::move(from), options, recorder = on.recording]() mutable {
-      return lidar::open(std::move(from), options);
-    };
-    return in_background(std::move(work), opening);
+    options.is_cancelled = [opening] { return *opening == progress::abandoned; };
+    return in_background([options] { return lidar::open(options); }, opening);
   }();
   if (!opened) raise(opened.error());
   if (on.recording) {
@@ -162,16 +167,14 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
-live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
-                             std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
-                             std::optional<motor_direction> direction,
-                             std::optional<bool> constant_frequency, std::optional<bool> low_power,
-                             std::optional<bool> protection, bool reconnect, bool partial_scans,
-                             double answer_time, double stall_time, double longest_backoff,
-                             double batch, double transport_delay, double speed, bool loop,
-                             double begin, std::optional<double> end,
-                             std::uint32_t raw_sample_rate_hz,
-                             const std::optional<path_text>& record, bool overwrite) {
+live_lidar* open_by_keywords(
+    const device_name& device, std::uint32_t baud, std::optional<double> frequency_hz,
+    std::optional<int> sample_rate_hz, std::optional<motor_direction> direction,
+    std::optional<bool> constant_frequency, std::optional<bool> low_power,
+    std::optional<bool> protection, bool reconnect, bool partial_scans, double answer_time,
+    double stall_time, double longest_backoff, double batch, double transport_delay, double speed,
+    bool loop, double begin, std::optional<double> end, std::uint32_t raw_sample_rate_hz,
+    const std::optional<path_text>& record, bool overwrite, double device_wait) {
   const wanted_settings wanted{frequency_hz,       sample_rate_hz, direction,
                                constant_frequency, low_power,      protection};
   lidar_options options;
@@ -184,13 +187,20 @@ live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
   options.protection = wanted.protecting();
   options.reconnect = reconnect;
   options.partial_scans = partial_scans;
-  options.answer_time = in_milliseconds(answer_time);
-  options.stall_time = in_milliseconds(stall_time);
-  options.longest_backoff = in_milliseconds(longest_backoff);
-  options.batch = in_milliseconds(batch);
-  options.transport_delay = std::chrono::nanoseconds(in_ns(transport_delay));
-  return open_lidar(device, options, {speed, loop, begin, end, raw_sample_rate_hz}, record,
-                    overwrite);
+  options.tuning.answer_time = in_milliseconds(answer_time);
+  options.tuning.stall_time = in_milliseconds(stall_time);
+  options.tuning.longest_backoff = in_milliseconds(longest_backoff);
+  options.tuning.batch = in_milliseconds(batch);
+  options.tuning.transport_delay = std::chrono::nanoseconds(in_ns(transport_delay));
+  options.device_wait = device_wait == std::numeric_limits<double>::infinity()
+                            ? std::chrono::milliseconds::max()
+                            : in_milliseconds(device_wait);
+  options.playback.speed = speed;
+  options.playback.loop = loop;
+  options.playback.from_ns = in_ns(begin);
+  if (end) options.playback.to_ns = in_ns(*end);
+  options.raw_sample_rate_hz = raw_sample_rate_hz;
+  return open_lidar(device, options, {speed, loop, begin, end}, record, overwrite);
 }
 
 using found_ports = std::vector<std::tuple<port_info, device_information>>;
@@ -266,11 +276,14 @@ void bind_opening(nb::module_& module) {
       "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(), "direction"_a = nb::none(),
       "constant_frequency"_a = nb::none(), "low_power"_a = nb::none(), "protection"_a = nb::none(),
       "reconnect"_a = usual.reconnect, "partial_scans"_a = usual.partial_scans,
-      "answer_time"_a = seconds(usual.answer_time), "stall_time"_a = seconds(usual.stall_time),
-      "longest_backoff"_a = seconds(usual.longest_backoff), "batch"_a = seconds(usual.batch),
-      "transport_delay"_a = seconds(usual.transport_delay), "speed"_a = 0.0, "loop"_a = false,
-      "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = default_sample_rate_hz,
-      "record"_a = nb::none(), "overwrite"_a = false,
+      "answer_time"_a = seconds(usual.tuning.answer_time),
+      "stall_time"_a = seconds(usual.tuning.stall_time),
+      "longest_backoff"_a = seconds(usual.tuning.longest_backoff),
+      "batch"_a = seconds(usual.tuning.batch),
+      "transport_delay"_a = seconds(usual.tuning.transport_delay), "speed"_a = 0.0,
+      "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(),
+      "raw_sample_rate_hz"_a = default_sample_rate_hz, "record"_a = nb::none(),
+      "overwrite"_a = false, "device_wait"_a = 0.0,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
       "`device`: '' for the only G4; "
       "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
@@ -285,7 +298,9 @@ void bind_opening(nb::module_& module) {
       "`longest_backoff` "
       "(0.001 to 1) between two attempts to reconnect, `batch` (0 to 0.1) between two readings, "
       "`transport_delay` the "
-      "least delay between measurement and arrival.\n\n"
+      "least delay between measurement and arrival, `device_wait` how long to wait for a device "
+      "that is not there "
+      "yet (float('inf'): without limit).\n\n"
       "Of a recording: `speed` 1 plays it as fast as it was recorded, 0 as fast as it is read; "
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "

@@ -14,6 +14,7 @@
 #include "errors.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "interruption.hpp"
 #include "process.hpp"
 #include "scan.hpp"
 #include "words.hpp"
@@ -52,7 +53,8 @@ std::string_view kind_of(const recorded_item& item) {
 nb::bytes bytes_of(bytes data) { return nb::bytes(data.data(), data.size()); }
 
 std::int64_t in_ns(double seconds) {
-  if (!(seconds >= 0.0 && seconds <= 1e9)) throw nb::value_error("a number of seconds is 0 to 1e9");
+  if (!(seconds >= 0.0 && seconds <= 1e9))
+    raise_impossible("a number of seconds is 0 to 1e9", seconds);
   return static_cast<std::int64_t>(seconds * 1e9);
 }
 
@@ -73,11 +75,10 @@ class recording {
     return made;
   }
   [[nodiscard]] const recording_reader& reader() const { return used(); }
-  /// In seconds, if the file was closed.
-  [[nodiscard]] std::optional<double> duration() const {
+  /// In seconds.
+  [[nodiscard]] double duration() const {
     static_cast<void>(used());
-    const auto whole = value_of(recording_reader::open(path_));
-    if (whole.last_ns() == 0) return std::nullopt;
+    const auto whole = value_of(recording_reader::open(path_, {.is_cancelled = handler_raises}));
     return static_cast<double>(whole.last_ns() - whole.first_ns()) * 1e-9;
   }
 
@@ -85,6 +86,7 @@ class recording {
   [[nodiscard]] recording_reader open(double begin) const {
     reading_options how;
     how.from_ns = in_ns(begin);
+    how.is_cancelled = handler_raises;
     if (end_) how.to_ns = in_ns(*end_);
     return value_of(recording_reader::open(path_, how));
   }
@@ -187,7 +189,8 @@ void bind_reader(nb::module_& module) {
       .def("seek", &recording::seek, "seconds"_a,
            "Continues at this time since the beginning of the recording: by the index, if the file "
            "has one.")
-      .def_prop_ro("duration", &recording::duration, "In seconds; None if the file was cut off.")
+      .def_prop_ro("duration", &recording::duration,
+                   "In seconds; of a file that was cut off, up to the last part that can be read.")
       .def_prop_ro(
           "serial_number",
           [](const recording& from) -> std::optional<std::string> {
@@ -223,8 +226,8 @@ void bind_recording(nb::module_& module) {
       .def(
           "__init__",
           [](writer* made, const path_text& path, bool overwrite, packing packed, scan_order order,
-             const std::string& topic, const std::string& frame_id,
-             const std::string& points_topic) {
+             const std::string& topic, const std::string& frame_id, const std::string& points_topic,
+             no_return_as no_return, bool mark_near, bool near_is_minus_infinity) {
             recording_options how;
             how.overwrite = overwrite;
             how.packed = packed;
@@ -232,14 +235,19 @@ void bind_recording(nb::module_& module) {
             how.topic = topic;
             how.frame_id = frame_id;
             how.points_topic = points_topic;
+            how.grid.no_return = no_return;
+            how.grid.near_is_minus_infinity = near_is_minus_infinity;
+            if (mark_near) how.near = near_limits{};
             new (made) writer(value_of(recording_writer::create(path.text, how)));
           },
           "path"_a, nb::kw_only(), "overwrite"_a = false, "packing"_a = packing::none,
           "order"_a = scan_order::angle, "topic"_a = "/scan", "frame_id"_a = "laser",
-          "points_topic"_a = "",
+          "points_topic"_a = "", "no_return"_a = no_return_as::infinity, "mark_near"_a = false,
+          "near_is_minus_infinity"_a = false,
           "Creates the file. `packing` 'zstd' compresses it. `topic` is that of the LaserScan "
           "messages, `points_topic` "
-          "that of PointCloud2 messages ('': none).")
+          "that of PointCloud2 messages ('': none). `no_return`: what ranges without return are; "
+          "`mark_near`: whether directions are flagged as mark_near() does.")
       .def(
           "from_device",
           [](writer& into, nb::handle data, std::int64_t time_ns) {

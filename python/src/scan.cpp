@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "errors.hpp"
 #include "g4lidar/export/ros_messages.hpp"
 #include "words.hpp"
 
@@ -37,7 +38,7 @@ array<float> to_xy_array(const array<point>& points, frame to) {
 }
 
 array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how) {
-  if (bins < 1 || bins > 65536) throw nb::value_error("a grid has 1 to 65536 ranges");
+  if (bins < 1 || bins > 65536) raise_impossible("a grid has 1 to 65536 ranges", bins);
   const elements<point> from(points);
   if (from.span().size() > (std::size_t{1} << 24))
     throw nb::value_error("more than 16777216 points");
@@ -46,8 +47,9 @@ array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_
 
 namespace {
 
-nb::bytes laser_scan(const kept_scan& scan, std::size_t bins, const std::string& frame_id) {
-  const array<float> ranges = to_ranges(scan.points, bins, {});
+nb::bytes laser_scan(const kept_scan& scan, std::size_t bins, const std::string& frame_id,
+                     no_return_as no_return) {
+  const array<float> ranges = to_ranges(scan.points, bins, {.no_return = no_return});
   std::vector<std::uint8_t> out;
   put_laser_scan(elements<float>(ranges).span(),
                  {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
@@ -127,19 +129,22 @@ void bind_scan(nb::module_& module) {
           "without return.")
       .def(
           "ranges",
-          [](const kept_scan& s, std::size_t n, frame to, grid_pick pick, bool keep_too_near) {
-            return to_ranges(s.points, n, {to, pick, keep_too_near});
+          [](const kept_scan& s, std::size_t n, frame to, grid_pick pick, bool keep_too_near,
+             no_return_as no_return) {
+            return to_ranges(s.points, n, {to, pick, keep_too_near, no_return});
           },
           "n"_a = 720, "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
-          "keep_too_near"_a = false,
+          "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
           "The scan on a grid of `n` directions (1 to 65536), in metres: inf where nothing came "
-          "back, NaN where nothing "
-          "is known. In the frame 'robot' range 0 is at -180 degrees, and the next ones follow "
+          "back (or `no_return`: 'nan', 'max' for 16.38375), NaN where nothing is known. inf is "
+          "not free space: what is nearer than 0.28 m may give no return; see mark_near(). In the "
+          "frame 'robot' range 0 is at -180 degrees, and the next ones follow "
           "counter-clockwise; in "
           "'vendor' range 0 is at 0 degrees, and the next ones follow clockwise. Of several points "
           "in a bin it takes "
           "the 'nearest' to the middle of the bin, or the one with the 'minimum' range.")
       .def("laser_scan", &laser_scan, "bins"_a = 720, "frame_id"_a = "laser",
+           "no_return"_a = no_return_as::infinity,
            "The scan as a sensor_msgs/msg/LaserScan in CDR, with the ranges of ranges(bins): for "
            "ROS 2, zenoh and MCAP.")
       .def("point_cloud2", &point_cloud2, "frame_id"_a = "laser",

@@ -29,13 +29,16 @@ struct wanted_settings {
          {ranging_frequency::khz_4, ranging_frequency::khz_8, ranging_frequency::khz_9}) {
       if (static_cast<int>(samples_per_second(each)) == *sample_rate_hz) return each;
     }
-    raise(error(task::configuring, problem::bad_option, "sample_rate_hz: 4000, 8000 or 9000"));
+    raise(error(task::configuring, problem::bad_option,
+                "sample_rate_hz: 4000, 8000 or 9000, not " + std::to_string(*sample_rate_hz)));
   }
   [[nodiscard]] std::optional<scan_frequency> frequency() const {
     if (!frequency_hz) return std::nullopt;
     const auto wanted = scan_frequency::hz(*frequency_hz);
     if (!is_valid(wanted))
-      raise(error(task::configuring, problem::bad_option, "frequency_hz: 5 to 12"));
+      raise(error(
+          task::configuring, problem::bad_option,
+          std::string("frequency_hz: 5 to 12, not ") + nb::repr(nb::cast(*frequency_hz)).c_str()));
     return wanted;
   }
   [[nodiscard]] std::optional<constant_frequency> constancy() const {

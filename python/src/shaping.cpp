@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "errors.hpp"
 #include "g4lidar/deskew.hpp"
 #include "g4lidar/merge.hpp"
 #include "g4lidar/twist_estimator.hpp"
@@ -32,7 +33,7 @@ using motion = std::variant<twist_2d, array<stamped_pose>>;
 void require_finite(std::initializer_list<double> values) {
   for (const double value : values) {
     if (!(std::abs(value) <= max_odometry_value))
-      throw nb::value_error("numbers are finite, and at most 1e6");
+      raise_impossible("numbers are finite, and at most 1e6", value);
   }
 }
 
@@ -72,8 +73,8 @@ std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, c
 std::tuple<array<point>, std::size_t, std::vector<bool>> merge_arrays(
     const std::vector<std::pair<array<point>, mounting>>& lidars, const motion& how,
     std::int64_t reference_ns, double fresh) {
-  if (lidars.size() > 32) throw nb::value_error("at most 32 lidars");
-  if (!(fresh >= 0.0 && fresh <= 3600.0)) throw nb::value_error("fresh: 0 to 3600 seconds");
+  if (lidars.size() > 32) raise_impossible("at most 32 lidars", lidars.size());
+  if (!(fresh >= 0.0 && fresh <= 3600.0)) raise_impossible("fresh: 0 to 3600 seconds", fresh);
   std::deque<elements<point>> kept;
   std::vector<mounted_scan> scans;
   std::size_t count = 0;
@@ -169,11 +170,13 @@ void bind_shaping(nb::module_& module) {
              "x and y of each point in metres: see Scan.xy().");
   module.def(
       "fill_grid",
-      [](const array<point>& points, std::size_t n, frame to, grid_pick pick, bool keep_too_near) {
-        return to_ranges(points, n, {to, pick, keep_too_near});
+      [](const array<point>& points, std::size_t n, frame to, grid_pick pick, bool keep_too_near,
+         no_return_as no_return, bool near_is_minus_infinity) {
+        return to_ranges(points, n, {to, pick, keep_too_near, no_return, near_is_minus_infinity});
       },
       "points"_a, "n"_a = 720, "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
-      "keep_too_near"_a = false,
+      "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
+      "near_is_minus_infinity"_a = false,
       "The points on a grid of `n` directions, in metres: see Scan.ranges().");
   module.def("deskew", &deskew_array, "points"_a, "motion"_a, "reference_ns"_a,
              "mount"_a = mounting{},

@@ -146,8 +146,8 @@ void bind_simulator(nb::module_& module) {
                    "**options: str | float) -> None"),
            "`faults`: 'unplug@5s+2s', 'flip*0.001', ...; `options`: world='room.txt', "
            "path='way.txt', seed=7, "
-           "serial='2021101000070073', noise_mm=5, header_ns='2s', ...: docs/sim.md has all of "
-           "them.")
+           "serial='2021101000070073', noise_mm=5, header_ns='2s', ...: docs/sim_device.md has "
+           "all of them.")
       .def_prop_ro("path", &simulator::path,
                    "The name of its port; stays valid whatever faults there are. Real time only.")
       .def_prop_ro("is_virtual", &simulator::is_virtual, "Whether it is in virtual time.")

@@ -5,7 +5,9 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/string_view.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -77,6 +79,18 @@ struct nanobind::detail::type_caster<g4lidar::python::path_text> {
       return PyUnicode_FromString(static_cast<int>(from) == 0 ? first_word : second_word);         \
     }                                                                                              \
   }
+
+template <>
+struct nanobind::detail::type_caster<g4lidar::no_return_as> {
+  NB_TYPE_CASTER(g4lidar::no_return_as, const_name("typing.Literal['inf', 'nan', 'max']"))
+  bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {
+    return g4lidar::python::read_word(from, {"inf", "nan", "max"}, value);
+  }
+  static handle from_cpp(g4lidar::no_return_as from, rv_policy, cleanup_list*) noexcept {
+    constexpr std::array<const char*, 3> words{"inf", "nan", "max"};
+    return PyUnicode_FromString(words[static_cast<std::size_t>(from)]);
+  }
+};
 
 G4LIDAR_WORDS(g4lidar::frame, "vendor", "robot");
 G4LIDAR_WORDS(g4lidar::grid_pick, "nearest", "minimum");

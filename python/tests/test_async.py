@@ -6,24 +6,24 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from conftest import PATIENCE
 
 import g4lidar
 from g4lidar import errors
 
 Make = Callable[..., g4lidar.Simulator]
-LONG = 60  # seconds after which a test fails
 
 
 def in_loop(work: Callable[[], object]) -> None:
     """Runs a coroutine function, which fails if it does not end."""
 
     async def limited() -> None:
-        await asyncio.wait_for(work(), LONG)  # type: ignore[arg-type]
+        await asyncio.wait_for(work(), PATIENCE)  # type: ignore[arg-type]
 
     asyncio.run(limited())
 
 
-async def count_scans(lidar: g4lidar.Lidar, timeout: float | None = LONG) -> int:
+async def count_scans(lidar: g4lidar.Lidar, timeout: float | None = PATIENCE) -> int:
     return len([scan async for scan in lidar.scans_async(timeout=timeout)])
 
 
@@ -32,7 +32,7 @@ async def count_scans(lidar: g4lidar.Lidar, timeout: float | None = LONG) -> int
 @pytest.mark.parametrize("silence", ["60s", "0s"])
 def test_close_of_another_task_ends_the_loop(g4_simulator: Make, end: str, in_thread: bool, silence: str) -> None:
     async def work() -> None:
-        lidar = g4lidar.open(g4_simulator(virtual_time=False, silence_ns=silence), stall_time=LONG)
+        lidar = g4lidar.open(g4_simulator(virtual_time=False, silence_ns=silence), stall_time=60)
         lidar.start()
         waiting = [asyncio.create_task(count_scans(lidar, None)) for _ in range(2)]
         await asyncio.sleep(0.3)
@@ -61,7 +61,7 @@ def test_close_ends_a_loop_in_virtual_time(g4_simulator: Make) -> None:
 
 def test_wake_raises_cancelled(g4_simulator: Make) -> None:
     async def work() -> None:
-        with g4lidar.open(g4_simulator(virtual_time=False, silence_ns="60s"), stall_time=LONG) as lidar:
+        with g4lidar.open(g4_simulator(virtual_time=False, silence_ns="60s"), stall_time=60) as lidar:
             lidar.start()
             waiting = asyncio.create_task(count_scans(lidar, None))
             await asyncio.sleep(0.3)
@@ -92,7 +92,7 @@ def test_reconnects(g4_simulator: Make, virtual_time: bool) -> None:
 
     async def work() -> None:
         with g4lidar.open(g4_simulator(virtual_time=virtual_time, faults=[fault]), reconnect=True) as lidar:
-            lidar.start()
+            lidar.start(frequency_hz=12)
             async for _ in lidar.scans_async(timeout=1):
                 if lidar.counts()["reconnects"] == 1:
                     break
@@ -119,7 +119,7 @@ def test_the_same_scans_and_the_same_timeout(g4_simulator: Make, timeout: float)
 
     def make() -> tuple[g4lidar.Simulator, g4lidar.Lidar]:
         simulated = g4_simulator(seed=3, faults=["stall@9s"])
-        lidar = g4lidar.open(simulated, stall_time=LONG)
+        lidar = g4lidar.open(simulated, stall_time=60)
         lidar.start()
         return simulated, lidar
 
@@ -158,6 +158,34 @@ def test_spin_up_is_no_timeout(g4_simulator: Make) -> None:
                 async for scan in lidar.scans_async(timeout=0.3):
                     assert len(scan) > 100
                     break
+
+    in_loop(work)
+
+
+def test_a_lost_lidar_is_waited_for_without_limit(g4_simulator: Make) -> None:
+    async def work() -> None:
+        count = 0
+        with g4lidar.open(g4_simulator(faults=["unplug@4s+60s"]), reconnect=True) as lidar:
+            lidar.start()
+            async for _ in lidar.scans_async(timeout=0.3):
+                count += 1
+                if count == 40:
+                    break
+            assert lidar.counts()["reconnects"] == 1
+
+    in_loop(work)
+
+
+def test_a_motor_that_never_spins_up_ends_the_loop_after_10_s(g4_simulator: Make) -> None:
+    async def work() -> None:
+        simulated = g4_simulator(silence_ns="60s")
+        with g4lidar.open(simulated) as lidar:
+            lidar.start()
+            begin_ns = simulated.now_ns
+            with pytest.raises(errors.Timeout, match="the motor spins up"):
+                async for _ in lidar.scans_async(timeout=0.3):
+                    pass
+            assert abs(simulated.now_ns - begin_ns - 10_000_000_000) < 600_000_000
 
     in_loop(work)
 

@@ -38,6 +38,28 @@ def test_grid() -> None:
         g4lidar.fill_grid(points, 0)
 
 
+def test_no_return_is_not_free_space() -> None:
+    points = ring(2000, 3)
+    points["angle_deg"] = [90, 86.9, 180]  # the first two are on one beam: corrected by their ranges
+    points["range_mm"] = [400, 0, 0]
+    points["revolution"] = [0, 1, 1]
+    points["flags"] = [0, PointFlag.NO_RETURN, PointFlag.NO_RETURN]
+    grid = g4lidar.fill_grid(points[1:], 4, frame="vendor", no_return="max")
+    assert grid[1] == grid[2] == pytest.approx(16.38375)
+    assert np.isnan(g4lidar.fill_grid(points[1:], 4, frame="vendor", no_return="nan")).all()
+    history = g4lidar.NearHistory()
+    marked = g4lidar.mark_near(points, history)
+    assert list(marked["flags"]) == [0, PointFlag.NO_RETURN | PointFlag.MAY_BE_TOO_NEAR, PointFlag.NO_RETURN]
+    grid = g4lidar.fill_grid(marked[1:], 4, frame="vendor")
+    assert math.isnan(grid[1]) and grid[2] == math.inf
+    assert g4lidar.fill_grid(marked[1:], 4, frame="vendor", near_is_minus_infinity=True)[1] == -math.inf
+    assert (g4lidar.mark_near(points, history, shortest_mm=100)["flags"] & PointFlag.MAY_BE_TOO_NEAR == 0).all()
+    with pytest.raises(ValueError):
+        g4lidar.mark_near(points, history, shortest_mm=0)
+    with pytest.raises(TypeError):
+        g4lidar.fill_grid(points, 4, no_return="far")  # type: ignore[arg-type]
+
+
 def test_filters() -> None:
     points = ring(1000, 360)
     points["range_mm"][:10] = 5000
@@ -126,6 +148,16 @@ def test_twist_from_scans(g4_simulator: Make, tmp_path: Path) -> None:
                 break
     assert len(known) > 5
     assert abs(float(np.median(known)) - 0.5) < 0.1
+
+
+def test_doctor_takes_the_file_that_open_takes(g4_simulator: Make, tmp_path: Path) -> None:
+    path = tmp_path / "walk.mcap"
+    with g4lidar.open(g4_simulator(), record=path) as lidar:
+        lidar.start()
+        lidar.next_scan(20)
+    by_name = [(report.stage, report.verdict) for report in g4lidar.doctor(path)]
+    assert by_name == [(report.stage, report.verdict) for report in g4lidar.doctor(f"file:{path}")]
+    assert ("permission", "skipped") in by_name
 
 
 def test_doctor(g4_simulator: Make) -> None:

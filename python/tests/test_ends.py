@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The end of a program: with threads that still run, with lidars that others destroy, in any order."""
 import pytest
-from conftest import start_program
+from conftest import PATIENCE, start_program
 
 RUNNING = {
     "next_scan": "real.next_scan(1000)",
@@ -38,7 +38,7 @@ def test_threads_that_still_run(call: str) -> None:
             begun.acquire()
         time.sleep(0.1)
     """)
-    _, err = program.communicate(timeout=100)
+    _, err = program.communicate(timeout=PATIENCE)
     assert (program.returncode, err) == (0, "")
 
 
@@ -67,7 +67,7 @@ def test_lidars_are_destroyed_while_all_are_closed() -> None:
             gc.collect()
         print("ended")
     """)
-    out, err = program.communicate(timeout=100)
+    out, err = program.communicate(timeout=PATIENCE)
     assert (program.returncode, out, err) == (0, "ended\n", "")
 
 
@@ -88,7 +88,7 @@ def test_a_handler_destroys_lidars_while_all_are_closed() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0)
         print(len(kept) < 200)
     """)
-    out, err = program.communicate(timeout=100)
+    out, err = program.communicate(timeout=PATIENCE)
     assert (program.returncode, out, err) == (0, "True\n", "")
 
 
@@ -107,5 +107,5 @@ def test_a_lidar_in_a_global_that_is_destroyed_last() -> None:
             sys.late = g4lidar.open("sim:")
             sys.late.start()
     """)
-    _, err = program.communicate(timeout=100)
+    _, err = program.communicate(timeout=PATIENCE)
     assert (program.returncode, err) == (0, "")

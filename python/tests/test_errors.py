@@ -33,7 +33,8 @@ def test_an_error_states_what_was_done_and_what_to_try(tmp_path: Path) -> None:
     assert error.doing == "opening"
     assert error.subject == str(missing)
     assert error.system_errno == errno.ENOENT
-    assert "data cable" in error.advice
+    assert "a recording that exists" in error.advice
+    assert "there is no port and no file of this name" in str(error)
     assert error.is_fatal
     assert str(error).startswith(f"opening {missing}: ") and error.advice in str(error)
 
@@ -48,11 +49,28 @@ def test_each_class_is_also_that_of_python() -> None:
 
 @pytest.mark.parametrize(
     ("options", "words"),
-    [({"frequency_hz": 13}, "5 to 12"), ({"sample_rate_hz": 5000}, "4000"), ({"stall_time": 0.0}, "stall_time")],
+    [
+        ({"frequency_hz": 13}, "5 to 12, not 13"),
+        ({"sample_rate_hz": 5000}, "4000, 8000 or 9000, not 5000"),
+        ({"stall_time": 0.0}, "stall_time: 100 ms to 1 min, not 0 ms"),
+    ],
 )
 def test_bad_options(g4_simulator: Make, options: dict[str, float], words: str) -> None:
     with pytest.raises(errors.BadOption, match=words):
         g4lidar.open(g4_simulator(), **options)  # type: ignore[arg-type]
+
+
+def test_an_impossible_value_is_repeated(g4_simulator: Make) -> None:
+    points = g4lidar.decode(b"")
+    for call, words in (
+        (lambda: g4lidar.doctor(g4_simulator(), measuring_time=-7), "0 to 3600 s, not -7.0"),
+        (lambda: g4lidar.fill_grid(points, 0), "1 to 65536 ranges, not 0"),
+        (lambda: g4lidar.mark_isolated(points, window=17), "1 to 16, not 17"),
+        (lambda: g4lidar.filter_points(points, excluded=256), "not 256"),
+        (lambda: g4lidar.open(g4_simulator()).next_scan(-2), "0 or more, not -2.0"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            call()
 
 
 def test_a_mistake_in_a_simulation() -> None:

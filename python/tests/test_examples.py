@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import Any
 
 import pytest
+from conftest import PATIENCE
 
 import g4lidar
 
@@ -69,7 +70,7 @@ def test_zenoh_scan() -> None:
         samples: list[Any] = []
         held = router.declare_subscriber(f"0/scan/**/{example.HASH}", samples.append)
         example.main("sim:", "scan", "tcp/127.0.0.1:17447", scans=4)
-        end = time.monotonic() + 10
+        end = time.monotonic() + PATIENCE
         while len(samples) < 4 and time.monotonic() < end:
             time.sleep(0.05)
         held.undeclare()
@@ -100,7 +101,7 @@ def test_zenoh_scan_is_read_by_another_program() -> None:
             topic="/scan", msg_type="sensor_msgs/msg/LaserScan", callback=found.append, router_port=17448,
             msg_definition=DEFINITIONS["sensor_msgs/msg/LaserScan"], type_hash=example.HASH)
         example.main("sim:", "scan", "tcp/127.0.0.1:17448", scans=4)
-        end = time.monotonic() + 10
+        end = time.monotonic() + PATIENCE
         while len(found) < 4 and time.monotonic() < end:
             time.sleep(0.05)
         reader.close()

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import start_program
+from conftest import PATIENCE, start_program
 
 import g4lidar
 
@@ -48,7 +48,7 @@ def test_a_child_after_fork_leaves_recordings_alone(tmp_path: Path) -> None:
         items = [item.data for item in read if item.kind == "from_device"]
         print(len(items), items[-1], read.is_damaged)
     """, str(tmp_path / "both.mcap"))
-    out, err = program.communicate(timeout=60)
+    out, err = program.communicate(timeout=PATIENCE)
     assert out == "7 True\n2001 b'parent 1999' False\n", err
 
 
@@ -74,7 +74,7 @@ def test_closing_a_simulator_that_another_thread_uses() -> None:
                 user.join()
         print("ended")
     """)
-    out, err = program.communicate(timeout=120)
+    out, err = program.communicate(timeout=PATIENCE)
     assert (program.returncode, out, err) == (0, "ended\n", "")
 
 
@@ -109,7 +109,7 @@ def test_the_simulator_can_be_used_while_the_doctor_runs() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0)
         print(len(times) == len(reports) > 3, times == sorted(times), len(seen) > 0)
     """)
-    out, err = program.communicate(timeout=60)
+    out, err = program.communicate(timeout=PATIENCE)
     assert out == "True True True\n", err
 
 
@@ -129,7 +129,8 @@ def test_signals_if_another_thread_imported_the_module() -> None:
         except KeyboardInterrupt:
             print(time.monotonic() - begin < 20)
     """)
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=100, check=False)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE,
+                          check=False)
     assert done.stdout == "True\n", done.stderr
 
 
@@ -150,7 +151,7 @@ def test_a_handler_that_restores_the_default() -> None:
         os.kill(os.getpid(), signal.SIGTERM)
         print("still there")
     """)
-    out, err = program.communicate(timeout=60)
+    out, err = program.communicate(timeout=PATIENCE)
     assert (out, program.returncode) == ("first\n", -15), err
 
 
@@ -194,7 +195,7 @@ def test_a_decoder_in_two_threads_is_refused() -> None:
     for thread in threads:
         thread.start()
     for thread in threads:
-        thread.join(60)
+        thread.join(PATIENCE)
     assert refused and "one for each thread" in refused[0]
     assert len(decoder.decode(b"")) == 0  # it can be used again
 

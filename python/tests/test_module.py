@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The module as a whole."""
 import inspect
-from importlib import resources
+import subprocess
+import sys
+from importlib import metadata, resources
+
+from conftest import PATIENCE
 
 import g4lidar
 
@@ -24,3 +28,14 @@ def test_the_view_has_twenty_lines() -> None:
     lines = [line for line in (resources.files(g4lidar) / "view.py").read_text().splitlines() if line.strip()]
     words = [line for line in lines if line.lstrip().startswith(("#", '"""'))]
     assert 10 < len(lines) - len(words) <= 20
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert g4lidar.__version__ == metadata.version("g4lidar")
+
+
+def test_the_view_explains_itself() -> None:
+    command = [sys.executable, "-m", "g4lidar.view", "--help"]
+    shown = subprocess.run(command, text=True, capture_output=True, timeout=PATIENCE)
+    assert shown.returncode == 0, shown.stderr
+    assert shown.stdout.startswith("usage: python -m g4lidar.view [-h] [device]")

@@ -2,6 +2,7 @@
 """Recordings and raw bytes: played, read, written, decoded."""
 import math
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import PATIENCE, start_program
 
 import g4lidar
 from g4lidar import errors
@@ -92,7 +94,7 @@ def test_seek_wakes_another_thread(recorded: tuple[Path, list[g4lidar.Scan]]) ->
         waiting.start()
         time.sleep(0.2)
         lidar.seek(60)
-        waiting.join(20)
+        waiting.join(PATIENCE)
         assert not waiting.is_alive()
 
 
@@ -211,6 +213,16 @@ def test_decode_gives_the_points_of_the_lidar(recorded: tuple[Path, list[g4lidar
         decoder.decode(b"", frozen)
 
 
+def test_time_packets_are_counted() -> None:
+    decoder = g4lidar.Decoder()
+    assert len(decoder.decode(bytes.fromhex("AA6627E803000000" "00"))) == 0
+    counts = decoder.counts()
+    assert counts["time_packets"] == 1
+    assert counts["parsed_bytes"] == 8
+    assert counts["skipped_noise"] == 1
+    assert counts["crc_matches"] == counts["crc_mismatches"] == 0
+
+
 def test_raw_bytes_of_a_file(g4_simulator: Make, recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> None:
     path, scans = recorded
     raw = tmp_path / "walk.bin"
@@ -220,3 +232,39 @@ def test_raw_bytes_of_a_file(g4_simulator: Make, recorded: tuple[Path, list[g4li
         again = list(lidar.scans())
     assert len(again) >= len(scans)
     assert 0 < again[0].stamp - os.stat(raw).st_mtime < 10
+
+
+# Reads a recording with chunks that unpack to 64 MiB each, until a signal comes.
+READING = {
+    "Recording": "list(g4lidar.Recording(path))",
+    "open": "g4lidar.open(path)",
+}
+
+
+@pytest.mark.parametrize("how", READING)
+def test_a_signal_ends_the_reading_of_a_file(tmp_path: Path, how: str) -> None:
+    def record(kind: int, content: bytes, size: int) -> bytes:
+        return bytes([kind]) + size.to_bytes(8, "little") + content
+
+    unpacked = 64 << 20
+    begin = record(5, b"\x60\xea", unpacked - 9)  # a message of a channel that is not described
+    block = (128 << 10) << 3 | 2
+    rest = unpacked - len(begin)
+    frame = b"\x28\xb5\x2f\xfd\xa0" + unpacked.to_bytes(4, "little")
+    frame += (len(begin) << 3).to_bytes(3, "little") + begin
+    frame += (block.to_bytes(3, "little") + b"\0") * (rest >> 17)
+    frame += ((rest % (128 << 10)) << 3 | 3).to_bytes(3, "little") + b"\0"
+    fields = bytes(16) + unpacked.to_bytes(8, "little") + bytes(4) + b"\4\0\0\0zstd"
+    content = fields + len(frame).to_bytes(8, "little") + frame
+    path = tmp_path / "slow.mcap"
+    path.write_bytes(b"\x89MCAP0\r\n" + record(1, bytes(8), 8) + record(6, content, len(content)) * 10_000)
+    program = start_program(f"""
+        path = {str(path)!r}
+        print("ready", flush=True)
+        {READING[how]}
+    """)
+    assert program.stdout is not None and program.stdout.readline() == "ready\n"
+    time.sleep(1.0)
+    program.send_signal(signal.SIGINT)
+    _, err = program.communicate(timeout=PATIENCE)
+    assert err.splitlines()[-1] == "KeyboardInterrupt"

@@ -95,7 +95,7 @@ def check_hashes(participant):
     store = get_typestore(Stores.ROS2_HUMBLE)
     found = {}
     reader = BuiltinDataReader(participant, BuiltinTopicDcpsPublication)
-    end = time.monotonic() + 20
+    end = time.monotonic() + LONGEST_S
     while time.monotonic() < end and not HASHES.keys() <= found.keys():
         for each in reader.take(100):
             data = each.qos[Policy.Userdata] if each.qos and Policy.Userdata in each.qos else None

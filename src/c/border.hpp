@@ -64,7 +64,8 @@ int created(Handle** made, g4lidar_error* out, Body&& body, Pointers... needed) 
   return guarded(out, std::forward<Body>(body), made, needed...);
 }
 
-/// The same memory.
+/// The same memory: the types of C have the attribute may_alias, so that both languages may use it, and
+/// their layouts are compared in layout.cpp.
 [[nodiscard]] inline std::span<const point> points_of(const g4lidar_point* points,
                                                       std::size_t count) noexcept {
   return {reinterpret_cast<const point*>(points), count};

@@ -12,7 +12,6 @@
 #include "border.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/sim/setup.hpp"
 #include "simulation.hpp"
 
 namespace g4lidar::c {
@@ -92,9 +91,7 @@ int examined(const g4lidar_doctor_options* given, g4lidar_report** report, g4lid
         diagnostic_options options;
         options.baud = taken.baud;
         options.measuring_time = std::chrono::nanoseconds(taken.measuring_time_ns);
-        if (taken.is_cancelled != nullptr) {
-          options.is_cancelled = [&taken] { return taken.is_cancelled(taken.context); };
-        }
+        options.is_cancelled = question_of(taken);
         if (taken.on_stage != nullptr) {
           options.on_stage = [&taken](const stage_report& done) {
             taken.on_stage(&shown_stage(done).stage(), taken.context);
@@ -130,18 +127,7 @@ int g4lidar_diagnose(const char* source, const g4lidar_doctor_options* options,
                      g4lidar_report** report, g4lidar_error* error) {
   return examined(options, report, error,
                   [&](const diagnostic_options& how, std::vector<stage_report>& stages) -> int {
-                    std::string name(text_of(source));
-                    if (sim::is_simulated(name)) {
-                      g4lidar_simulator_options wish;
-                      g4lidar_simulator_options_init(&wish, sizeof wish);
-                      wish.setup = source;
-                      std::shared_ptr<simulation> simulated;
-                      if (const int code = simulate(wish, simulated, error); code != G4LIDAR_OK)
-                        return code;
-                      diagnose_simulated(*simulated, how, stages);
-                      return G4LIDAR_OK;
-                    }
-                    stages = diagnose(is_recording(name) ? "file:" + name : name, how);
+                    stages = diagnose(text_of(source), how);
                     return G4LIDAR_OK;
                   });
 }

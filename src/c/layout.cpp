@@ -7,9 +7,11 @@
 #include <type_traits>
 
 #include "g4lidar/cartesian.hpp"
+#include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/polygon.hpp"
+#include "g4lidar/too_near.hpp"
 #include "g4lidar/version.hpp"  // a different version would be a macro that is defined twice
 #include "options.hpp"
 
@@ -30,6 +32,9 @@ static_assert(offsetof(g4lidar_point, time_ns) == offsetof(point, time_ns));
 static_assert(offsetof(g4lidar_point, revolution) == offsetof(point, revolution));
 static_assert(offsetof(g4lidar_point, flags) == offsetof(point, flags));
 static_assert(static_cast<int>(point_flags::veiling) == G4LIDAR_VEILING);
+static_assert(static_cast<int>(point_flags::may_be_too_near) == G4LIDAR_MAY_BE_TOO_NEAR);
+static_assert(static_cast<int>(no_return_as::max) == G4LIDAR_NO_RETURN_AS_MAX);
+static_assert(sizeof(g4lidar_near_history) == sizeof(near_history));
 static_assert(static_cast<int>(point_flags::not_deskewed) == G4LIDAR_NOT_DESKEWED);
 static_assert(sizeof(g4lidar_xy) == sizeof(xy_point));
 static_assert(offsetof(g4lidar_xy, time_ns) == offsetof(xy_point, time_ns));
@@ -57,10 +62,15 @@ static_assert(offsetof(g4lidar_options, recorder) == 2 * word);
 static_assert(offsetof(g4lidar_options, transport_delay_ns) == aligned(3 * word));
 static_assert(offsetof(g4lidar_options, reconnect) == aligned(3 * word) + 56);
 static_assert(first_size<g4lidar_options> == aligned(3 * word) + 64);
+static_assert(offsetof(g4lidar_options, device_wait_ms) == aligned(3 * word) + 64);
 static_assert(offsetof(g4lidar_scan, time_ns) == 2 * word);
 static_assert(offsetof(g4lidar_scan, is_piece) == 2 * word + 61);
 static_assert(offsetof(g4lidar_counts, largest_gap_ns) == 144);
+static_assert(offsetof(g4lidar_counts, extras) == 152);
 static_assert(first_size<g4lidar_grid_options> == word + 16);
+static_assert(offsetof(g4lidar_grid_options, near_is_minus_infinity) == word + 20);
+static_assert(sizeof(g4lidar_near_history) == 1440);
+static_assert(first_size<g4lidar_near_options> == word + 16);
 static_assert(offsetof(g4lidar_filter_options, field_of_view) == aligned(5 * word));
 static_assert(first_size<g4lidar_filter_options> == aligned(5 * word) + 40);
 static_assert(first_size<g4lidar_outlier_options> == word + 32);
@@ -77,8 +87,11 @@ static_assert(sizeof(g4lidar_evidence) == aligned(3 * word) + 24);
 static_assert(sizeof(g4lidar_polygon) == 2 * word);
 static_assert(offsetof(g4lidar_recorder_options, rotate_bytes) == aligned(5 * word));
 static_assert(first_size<g4lidar_recorder_options> == aligned(5 * word) + 24);
+static_assert(offsetof(g4lidar_recorder_options, near_options) == aligned(5 * word) + 32);
 static_assert(offsetof(g4lidar_playback_options, from_ns) == aligned(word) + 8);
 static_assert(first_size<g4lidar_playback_options> == aligned(word) + 32);
+static_assert(offsetof(g4lidar_playback_options, is_cancelled) == aligned(word) + 32);
+static_assert(first_size<g4lidar_reader_options> == 3 * word + 8);
 static_assert(offsetof(g4lidar_item, odometry) == aligned(16 + 3 * word));
 static_assert(offsetof(g4lidar_recording_info, identity) == 50);
 static_assert(first_size<g4lidar_simulator_options> == 5 * word + 8);

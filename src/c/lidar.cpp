@@ -146,6 +146,23 @@ int ask_value(g4lidar_lidar* lidar, const std::optional<request>& wanted, int ho
   });
 }
 
+using scan_call = view_result<scan> (lidar::*)(lidar::milliseconds);
+
+int take_scan(g4lidar_lidar* lidar, scan_call call, int timeout_ms, const g4lidar_scan** scan,
+              g4lidar_error* error) noexcept {
+  return guarded(
+      error,
+      [&]() -> int {
+        const auto next = (*lidar->made.*call)(std::chrono::milliseconds(timeout_ms));
+        if (!next) return fail(error, next.error());
+        if (lidar->from.recorder && !next->is_piece()) lidar->from.recorder->scan(*next);
+        fill(lidar->scan, *next);
+        *scan = &lidar->scan;
+        return succeed(error);
+      },
+      lidar, scan);
+}
+
 }  // namespace
 
 int g4lidar_start(g4lidar_lidar* lidar, g4lidar_error* error) {
@@ -170,17 +187,12 @@ void g4lidar_release(g4lidar_lidar* lidar) {
 
 int g4lidar_next_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
                       g4lidar_error* error) {
-  return guarded(
-      error,
-      [&]() -> int {
-        const auto next = lidar->made->next_scan(std::chrono::milliseconds(timeout_ms));
-        if (!next) return fail(error, next.error());
-        if (lidar->from.recorder && !next->is_piece()) lidar->from.recorder->scan(*next);
-        fill(lidar->scan, *next);
-        *scan = &lidar->scan;
-        return succeed(error);
-      },
-      lidar, scan);
+  return take_scan(lidar, &lidar::next_scan, timeout_ms, scan, error);
+}
+
+int g4lidar_wait_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
+                      g4lidar_error* error) {
+  return take_scan(lidar, &lidar::wait_scan, timeout_ms, scan, error);
 }
 
 int g4lidar_next_points(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_point** points,
@@ -307,7 +319,10 @@ const g4lidar_counts* g4lidar_get_counts(g4lidar_lidar* lidar) {
                    .points_missed = all.points_missed,
                    .command_retries = all.command_retries,
                    .reconnects = all.reconnects,
-                   .largest_gap_ns = all.largest_gap_ns};
+                   .largest_gap_ns = all.largest_gap_ns,
+                   .extras = {.time_packets = all.stream.time_packets,
+                              .crc_matches = all.stream.crc_matches,
+                              .crc_mismatches = all.stream.crc_mismatches}};
   return &lidar->counts;
 }
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "border.hpp"
-#include "g4lidar/sim/setup.hpp"
+#include "g4lidar/source.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "handles.hpp"
 
@@ -14,8 +14,8 @@ namespace g4lidar::c {
 namespace {
 
 constexpr g4lidar_options lidar_defaults{
-    sizeof(g4lidar_options), nullptr, nullptr, 0, 230400, 0,     0,     0, 0, 0, 0,
-    G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}};
+    sizeof(g4lidar_options), nullptr, nullptr, 0, 230400, 0,     0,     0,  0, 0, 0,
+    G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}, 0};
 
 /// An option that is 0 for "as it is", and 1 or 2 for the two values of a setting.
 template <class Setting>
@@ -57,10 +57,13 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
                    into.protection)) {
     return "protection: a g4lidar_switch or 0";
   }
+  if (given.device_wait_ms < -1) return "device_wait_ms: 0 or more, or -1 for no limit";
+  into.device_wait = given.device_wait_ms < 0 ? std::chrono::milliseconds::max()
+                                              : std::chrono::milliseconds(given.device_wait_ms);
   if (given.pace < G4LIDAR_AUTOMATIC || given.pace > G4LIDAR_REVOLUTIONS) {
     return "pace: a g4lidar_pace";
   }
-  into.pace = static_cast<read_pace>(given.pace);
+  into.tuning.pace = static_cast<read_pace>(given.pace);
   return nullptr;
 }
 
@@ -73,31 +76,32 @@ void describe(lidar& made, recording_writer& into) {
   into.device(known);
 }
 
-result<std::unique_ptr<connector>> connector_of(const opening& wish) {
-  if (!wish.recording.empty()) return replay::open(wish.recording, wish.played);
-  if (wish.simulated && wish.simulated->is_virtual()) return wish.simulated->connect();
-  return connector_for(wish.how);
+/// Of a recording, or of a simulation in virtual time: what no name opens.
+result<lidar> open_unnamed(const opening& wish, const lidar_options& how) {
+  auto from = wish.recording.empty() ? wish.simulated->connect()
+                                     : replay::open(wish.recording, wish.played);
+  if (from) from = how.wrap(*std::move(from));
+  return from ? lidar::open(*std::move(from), how) : tl::unexpected(from.error());
 }
 
 /// Opens the lidar of a handle, the first time or again.
 result<void> connect(g4lidar_lidar& handle) {
   const opening& wish = handle.from;
-  auto from = connector_of(wish);
-  if (!from) return tl::unexpected(from.error());
-  connector* const innermost = from->get();
   const bool has_own_time = wish.simulated && wish.simulated->is_virtual();
-  if (has_own_time) {
-    handle.wall_ahead_ns = wall_clock().ahead().count() + g4lidar_now_ns() - innermost->now_ns();
-  }
-  if (wish.recorder) {
+  lidar_options how = wish.how;
+  how.wrap = [&](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
+    handle.connector = from.get();
+    if (has_own_time) {
+      handle.wall_ahead_ns = wall_clock().ahead().count() + g4lidar_now_ns() - from->now_ns();
+    }
+    if (!wish.recorder) return from;
     if (has_own_time) wish.recorder->set_wall_clock(handle.wall_ahead_ns);
-    from = recorded(std::move(*from), *wish.recorder);
-    if (!from) return tl::unexpected(from.error());
-  }
-  auto opened = lidar::open(std::move(*from), wish.how);
+    return recorded(std::move(from), *wish.recorder);
+  };
+  auto opened =
+      has_own_time || !wish.recording.empty() ? open_unnamed(wish, how) : lidar::open(how);
   if (!opened) return tl::unexpected(opened.error());
   handle.made = std::make_unique<lidar>(std::move(*opened));
-  handle.connector = innermost;
   handle.identity = identity_of(handle.made->information());
   if (wish.recorder && wish.recording.empty()) describe(*handle.made, *wish.recorder);
   return {};
@@ -113,11 +117,11 @@ int take_lidar_options(const g4lidar_options* given, opening& into, const char**
   into.how.baud = taken.baud;
   into.how.reconnect = taken.reconnect;
   into.how.partial_scans = taken.partial_scans;
-  into.how.transport_delay = std::chrono::nanoseconds(taken.transport_delay_ns);
-  take_time(taken.longest_backoff_ms, into.how.longest_backoff);
-  take_time(taken.answer_time_ms, into.how.answer_time);
-  take_time(taken.stall_time_ms, into.how.stall_time);
-  take_time(taken.batch_ms, into.how.batch);
+  into.how.tuning.transport_delay = std::chrono::nanoseconds(taken.transport_delay_ns);
+  take_time(taken.longest_backoff_ms, into.how.tuning.longest_backoff);
+  take_time(taken.answer_time_ms, into.how.tuning.answer_time);
+  take_time(taken.stall_time_ms, into.how.tuning.stall_time);
+  take_time(taken.batch_ms, into.how.tuning.batch);
   if (taken.recorder != nullptr) into.recorder = taken.recorder->made;
   *device = taken.device;
   return G4LIDAR_OK;
@@ -157,17 +161,9 @@ int g4lidar_open_with(const g4lidar_options* options, g4lidar_lidar** lidar, g4l
   return created(lidar, error, [&] {
     opening wish;
     const char* device = nullptr;
-    int code = take_lidar_options(options, wish, &device, error);
+    const int code = take_lidar_options(options, wish, &device, error);
     if (code != G4LIDAR_OK) return code;
     wish.how.device = text_of(device);
-    if (sim::is_simulated(wish.how.device)) {
-      g4lidar_simulator_options simulated;
-      g4lidar_simulator_options_init(&simulated, sizeof simulated);
-      simulated.setup = device;
-      code = simulate(simulated, wish.simulated, error);
-      if (code != G4LIDAR_OK) return code;
-      wish.how.device = wish.simulated->path();
-    }
     return open_lidar(std::move(wish), lidar, error);
   });
 }
@@ -193,7 +189,7 @@ void g4lidar_free(g4lidar_lidar* lidar) { delete lidar; }
 namespace {
 
 constexpr g4lidar_playback_options playback_defaults{
-    sizeof(g4lidar_playback_options), 0.0, 0, 0, false, {}};
+    sizeof(g4lidar_playback_options), 0.0, 0, 0, false, {}, nullptr, nullptr};
 
 }  // namespace
 
@@ -218,6 +214,7 @@ int g4lidar_open_recording(const char* path, const g4lidar_playback_options* pla
         wish.played.loop = taken.loop;
         wish.played.range.from_ns = taken.from_ns;
         if (taken.to_ns != 0) wish.played.range.to_ns = taken.to_ns;
+        wish.played.range.is_cancelled = question_of(taken);
         return open_lidar(std::move(wish), lidar, error);
       },
       path);

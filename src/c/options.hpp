@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <string_view>
 
 namespace g4lidar::c {
@@ -38,6 +39,13 @@ template <class Options>
   return std::all_of(bytes + offsetof(Options, reserved), bytes + first_size<Options>, is_zero) &&
          std::all_of(bytes + known, bytes + size, is_zero);
 }
+/// What the function `is_cancelled` of options asks; nothing if there is none.
+template <class Options>
+[[nodiscard]] std::function<bool()> question_of(const Options& taken) {
+  if (taken.is_cancelled == nullptr) return {};
+  return [ask = taken.is_cancelled, context = taken.context] { return ask(context); };
+}
+
 inline constexpr std::string_view bad_options =
     "options without their _init function, or of a newer version of this library";
 

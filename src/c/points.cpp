@@ -4,6 +4,7 @@
 #include <g4lidar/c/point.h>
 
 #include <array>
+#include <bit>
 #include <limits>
 #include <memory>
 #include <variant>
@@ -15,6 +16,7 @@
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/outliers.hpp"
+#include "ranges.hpp"
 
 using namespace g4lidar;
 using namespace g4lidar::c;
@@ -26,8 +28,6 @@ struct g4lidar_mask {
 
 namespace {
 
-constexpr g4lidar_grid_options grid_defaults{
-    sizeof(g4lidar_grid_options), G4LIDAR_ROBOT, G4LIDAR_NEAREST, false, {}};
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr g4lidar_filter_options filter_defaults{sizeof(g4lidar_filter_options),
                                                  nullptr,
@@ -148,13 +148,12 @@ int g4lidar_fill_grid(const g4lidar_point* points, size_t count,
   g4lidar_grid_options taken = grid_defaults;
   constexpr std::size_t most = std::size_t{1} << 24;
   if (ranges_m == nullptr || bins == 0 || (count > 0 && points == nullptr) || count > most ||
-      !take_options(options, taken) || !is_frame(taken.frame) ||
-      (taken.pick != G4LIDAR_NEAREST && taken.pick != G4LIDAR_MINIMUM)) {
+      !take_options(options, taken)) {
     return G4LIDAR_BAD_ARGUMENT;
   }
-  const auto pick = taken.pick == G4LIDAR_MINIMUM ? grid_pick::minimum : grid_pick::nearest;
-  fill_grid(points_of(points, count), {ranges_m, bins},
-            {frame_of(taken.frame), pick, taken.keep_too_near});
+  const auto how = grid_of(taken);
+  if (!how) return G4LIDAR_BAD_ARGUMENT;
+  fill_grid(points_of(points, count), {ranges_m, bins}, *how);
   return G4LIDAR_OK;
 }
 
@@ -198,6 +197,23 @@ int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
                    [](std::span<point> all, const g4lidar_outlier_options& by, scan_ends ends) {
                      return mark_veiling(all, {by.edge_window, by.least_angle_deg}, ends);
                    });
+}
+
+void g4lidar_near_options_init(g4lidar_near_options* options, size_t size) {
+  set_defaults(options, size, near_defaults);
+}
+
+int g4lidar_mark_near(g4lidar_point* points, size_t count, g4lidar_near_history* history,
+                      const g4lidar_near_options* options, size_t* marked) {
+  const auto limits = near_of(options);
+  if ((count > 0 && points == nullptr) || history == nullptr || !limits) {
+    return G4LIDAR_BAD_ARGUMENT;
+  }
+  auto known = std::bit_cast<near_history>(*history);
+  const std::size_t found = mark_near(points_of(points, count), known, *limits);
+  *history = std::bit_cast<g4lidar_near_history>(known);
+  if (marked != nullptr) *marked = found;
+  return G4LIDAR_OK;
 }
 
 int g4lidar_mask_parse(const char* text, g4lidar_mask** made, g4lidar_error* error) {

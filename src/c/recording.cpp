@@ -10,12 +10,14 @@
 #include "border.hpp"
 #include "handles.hpp"
 #include "motion.hpp"
+#include "ranges.hpp"
 
 using namespace g4lidar;
 using namespace g4lidar::c;
 
 struct g4lidar_reader {
   std::string path;
+  reading_options how;
   std::unique_ptr<recording_reader> made;
   std::string event_name;
   g4lidar_item item{};
@@ -36,9 +38,26 @@ constexpr g4lidar_recorder_options recorder_defaults{sizeof(g4lidar_recorder_opt
                                                      false,
                                                      false,
                                                      false,
-                                                     {}};
+                                                     {},
+                                                     G4LIDAR_NO_RETURN_AS_INFINITY,
+                                                     0,
+                                                     nullptr};
+
+constexpr g4lidar_reader_options reader_defaults{
+    sizeof(g4lidar_reader_options), nullptr, nullptr, {}};
 
 static_assert(static_cast<int>(recorded_item::kind::odometry) + 1 == G4LIDAR_ITEM_ODOMETRY);
+
+/// The options of a LaserScan; false if they cannot be used.
+bool take_grid(const g4lidar_recorder_options& given, recording_options& into) {
+  g4lidar_grid_options grid = grid_defaults;
+  grid.no_return = given.no_return;
+  grid.near_is_minus_infinity = given.near_is_minus_infinity;
+  const auto taken = grid_of(grid);
+  if (taken) into.grid = *taken;
+  if (given.near_options != nullptr) into.near = near_of(given.near_options);
+  return taken && (given.near_options == nullptr || into.near.has_value());
+}
 
 recording_options options_of(const g4lidar_recorder_options& given) {
   recording_options made;
@@ -98,7 +117,9 @@ int g4lidar_recorder_create(const char* path, const g4lidar_recorder_options* op
         if (taken.mount != nullptr && !has_known_members(*taken.mount)) {
           return refuse(error, "mount: its reserved bytes are not 0");
         }
-        auto made = recording_writer::create(path, options_of(taken));
+        recording_options how = options_of(taken);
+        if (!take_grid(taken, how)) return refuse(error, "no_return or near_options");
+        auto made = recording_writer::create(path, how);
         if (!made) return fail(error, made.error());
         auto handle = std::make_unique<g4lidar_recorder>();
         handle->made = std::make_shared<recording_writer>(std::move(*made));
@@ -175,13 +196,25 @@ const g4lidar_recording_info* g4lidar_playback_info(g4lidar_lidar* lidar) {
 
 bool g4lidar_is_recording(const char* path) { return path != nullptr && is_recording(path); }
 
+void g4lidar_reader_options_init(g4lidar_reader_options* options, size_t size) {
+  set_defaults(options, size, reader_defaults);
+}
+
 int g4lidar_reader_open(const char* path, g4lidar_reader** reader, g4lidar_error* error) {
+  return g4lidar_reader_open_with(path, nullptr, reader, error);
+}
+
+int g4lidar_reader_open_with(const char* path, const g4lidar_reader_options* options,
+                             g4lidar_reader** reader, g4lidar_error* error) {
   return created(
       reader, error,
       [&]() -> int {
-        auto made = recording_reader::open(path);
-        if (!made) return fail(error, made.error());
+        g4lidar_reader_options taken = reader_defaults;
+        if (!take_options(options, taken)) return refuse(error, bad_options);
         auto handle = std::make_unique<g4lidar_reader>();
+        handle->how.is_cancelled = question_of(taken);
+        auto made = recording_reader::open(path, handle->how);
+        if (!made) return fail(error, made.error());
         handle->path = path;
         handle->made = std::make_unique<recording_reader>(std::move(*made));
         *reader = handle.release();
@@ -212,7 +245,9 @@ int g4lidar_reader_seek(g4lidar_reader* reader, int64_t from_ns, g4lidar_error* 
   return guarded(
       error,
       [&]() -> int {
-        auto made = recording_reader::open(reader->path, {.from_ns = from_ns});
+        reading_options how = reader->how;
+        how.from_ns = from_ns;
+        auto made = recording_reader::open(reader->path, how);
         if (!made) return fail(error, made.error());
         *reader->made = std::move(*made);
         return succeed(error);

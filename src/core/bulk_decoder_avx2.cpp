@@ -23,7 +23,7 @@ namespace {
 using namespace avx2;
 
 /// For samples without return.
-G4LIDAR_AVX2 words none(words raw) { return equal(raw, every(0)); }
+G4LIDAR_AVX2 words none(words raw) { return less(raw, every(least_range_raw)); }
 
 /// The second-level correction of samples from 100 mm on. As in compact_correction it is computed
 /// from its middle; but the remaining corrections are within 6.3 degrees of the middle, so three
@@ -124,15 +124,18 @@ G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, Times ti
   const floats step = every(angles.step);
   per_packet<floats> angle;
   const floats far = every(static_cast<float>(far_correction_deg));
-  words nearest = every(-1);  // minus 1, as unsigned: so that no return is the farthest
+  // Less the least range, as unsigned: so that no return is the farthest.
+  words nearest = every(-1);
   for (std::size_t i = 0; i < raw.count(); ++i) {
     const floats sample = to_floats(raw[i]);
-    nearest = unsigned_min(nearest, raw[i] - every(1));
-    range[i] = sample * every(0.25F);
-    const floats correction = choose(none(raw[i]), correction_of(sample), far);
+    const words no_return = none(raw[i]);
+    nearest = unsigned_min(nearest, raw[i] - every(least_range_raw));
+    range[i] = floats_of(without(no_return, bits_of(sample * every(0.25F))));
+    const floats correction = choose(no_return, correction_of(sample), far);
     angle[i] = first + times_plus(raw.places(i), step, correction);
   }
-  if (any(equal(unsigned_min(nearest, every(static_cast<int>(nearest_raw) - 2)), nearest))) {
+  if (any(equal(unsigned_min(nearest, every(static_cast<int>(nearest_raw) - least_range_raw - 1)),
+                nearest))) {
     return false;
   }
   if (touches_zero(packet)) {

@@ -59,8 +59,7 @@ constexpr std::array<words, problem_count> all_words{{
      "Unplug it and plug it in again. If it reports the error again, have it repaired; the "
      "manufacturer knows the error code."},
     {problem::timeout, "timeout", "no data arrived in time",
-     "Try again, or wait longer: the first scan arrives about 0.7 s after the start, later with a "
-     "heavy or cold motor. If it fails again, unplug the lidar and plug it in again."},
+     "Try again, or wait longer. If it fails again, unplug the lidar and plug it in again."},
     {problem::wrong_answer, "wrong_answer", "the answers do not match the request",
      "Try again. If it fails again, check that no other program uses the lidar, and unplug it and "
      "plug it in again."},
@@ -98,6 +97,37 @@ constexpr std::array<words, problem_count> all_words{{
      "Check what the system error means; `dmesg` may show more."},
 }};
 
+// Of the details other than the usual one, in the order of their enumeration.
+struct detail_words {
+  std::string_view cause;
+  std::string_view advice;
+};
+constexpr std::array<detail_words, 7> all_details{{
+    {"no scan arrived in time, because the motor spins up",
+     "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
+     "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
+    {"no scan arrived in time, because the lidar was lost and the driver is looking for it",
+     "Check the plug, the cable and the power supply, and call again: scans continue when the "
+     "lidar is back."},
+    {"this port does not exist",
+     "Name a port that exists, or connect the lidar with a data cable and check `dmesg` for a new "
+     "ttyUSB port; in a container, pass the device through. Without a name the only G4 is opened."},
+    {"there is no port and no file of this name",
+     "Give the path of a port such as /dev/ttyUSB0, or of a recording that exists."},
+    {"this does not name a lidar",
+     "A lidar is named by a path (/dev/ttyUSB0), serial:<its number of 16 digits>, usb:<USB path, "
+     "1-1.4>, tcp:<host>:<port>, file:<path>, or sim:. Without a name the only G4 is opened."},
+    {"this describes no simulated lidar",
+     "`sim:` alone is a healthy simulated G4; docs/sim.md lists what can follow it, and the format "
+     "of "
+     "worlds and paths."},
+    {"this program has no simulated lidar",
+     "Its libg4lidar was built with G4LIDAR_SIM=OFF: use one that was built with the simulator, or "
+     "open "
+     "the port that `g4-dump sim` prints."},
+}};
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::no_simulator));
+
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {
     if (static_cast<std::size_t>(all_words[i].what) != i) return false;
@@ -107,6 +137,11 @@ constexpr bool in_order() {
 static_assert(in_order());
 
 const words& words_of(problem what) noexcept { return all_words[static_cast<std::size_t>(what)]; }
+
+detail_words words_of(problem what, error_detail detail) noexcept {
+  if (detail != error_detail::usual) return all_details[static_cast<std::size_t>(detail) - 1];
+  return {words_of(what).cause, words_of(what).advice};
+}
 
 constexpr std::array<std::string_view, 8> task_names{
     "finding", "opening", "configuring", "asking", "starting", "reading", "writing", "stopping"};
@@ -146,11 +181,13 @@ class category final : public std::error_category {
 
 }  // namespace
 
-error::error(g4lidar::task doing, problem code, std::string_view subject, int system_errno) noexcept
+error::error(g4lidar::task doing, problem code, std::string_view subject, int system_errno,
+             error_detail detail) noexcept
     : size_(static_cast<std::uint8_t>(std::min(subject.size(), subject_.size()))),
       errno_(system_errno),
       doing_(doing),
-      code_(code) {
+      code_(code),
+      detail_(detail) {
   std::copy_n(subject.begin(), size_, subject_.begin());
 }
 
@@ -160,12 +197,12 @@ bool error::is_fatal() const noexcept {
                     read_only, cancelled);
 }
 
-std::string_view error::advice() const noexcept { return words_of(code_).advice; }
+std::string_view error::advice() const noexcept { return words_of(code_, detail_).advice; }
 
 std::string error::message() const {
   std::string text(name_of(doing_));
   if (size_ > 0) text.append(" ").append(subject());
-  text.append(": ").append(words_of(code_).cause);
+  text.append(": ").append(words_of(code_, detail_).cause);
   if (errno_ != 0) {
     // Of glibc; thread-safe and independent of the locale, unlike strerror.
     const char* name = strerrorname_np(errno_);
@@ -174,7 +211,7 @@ std::string error::message() const {
       text.append(" (").append(name).append(", ").append(description).append(")");
     }
   }
-  return text.append(". ").append(words_of(code_).advice);
+  return text.append(". ").append(advice());
 }
 
 std::string_view name_of(problem code) noexcept { return words_of(code).name; }

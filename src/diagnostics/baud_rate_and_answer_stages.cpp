@@ -43,7 +43,7 @@ void live_run::run() {
   report_stream();
   report_rate(log_, measured_, device_);
   report_loss(log_, measured_);
-  report_latency(log_, measured_, baud_);
+  report_latency(log_, measured_, baud_, link_.name());
 }
 
 void live_run::add_failure(stage_report& report) {
@@ -148,6 +148,7 @@ bool live_run::scans_when_started() {
 
 void live_run::look_for_baud_rate(stage_report& baud) {
   if (garbage_ > 0) baud.add("bytes_of_no_packet", garbage_);
+  if (find_other_layout(baud, link_.layout())) return;
   std::uint32_t found = 0;
   std::string tried;
   for (const std::uint32_t rate : other_rates) {
@@ -172,7 +173,7 @@ bool live_run::interview() {
     answer_.find(diagnosis::was_scanning);
     if (make_quiet()) ask_all(link_, replies_, 0);
   }
-  if (!replies_.exchanges().empty()) replies_.judge(answer_);
+  if (!replies_.exchanges().empty()) replies_.judge(answer_, link_.host_pauses() > 0);
   if (link_.boots() > 0) answer_.add("boots", link_.boots());
   if (link_.boots() > 1) answer_.find(diagnosis::reboots);
   add_failure(answer_);

@@ -101,8 +101,9 @@ constexpr std::array rows{
         {reboots, interference}),
     row("protection_on", warn,
         "Power-down protection is on: the scan ends 3 s after the last start command.",
-        "Nothing, for programs that send a keep-alive, as this library does. Power-down protection "
-        "can be switched off."),
+        "Programs that use this library need nothing: it sends the start command again and again. "
+        "For "
+        "others, switch power-down protection off."),
     row("jolts", warn, "The angles of some packets go back at full speed: the head jerks.",
         "Fasten the lidar; check that nothing touches the head and that the supply is steady."),
     row("host_busy", warn,

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "g4lidar/discovery.hpp"
+#include "g4lidar/source.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 #include "live_run.hpp"
@@ -29,8 +30,6 @@ std::string real_path(const std::string& path) {
   std::array<char, PATH_MAX> real{};
   return ::realpath(path.c_str(), real.data()) == nullptr ? path : std::string(real.data());
 }
-
-bool is_pty(const std::string& path) { return real_path(path).starts_with("/dev/pts/"); }
 
 /// The number with so many digits in this base.
 std::string digits_of(unsigned number, unsigned base, std::size_t count) {
@@ -150,6 +149,8 @@ class port_stages {
 
 }  // namespace
 
+bool is_pty(const std::string& path) { return real_path(path).starts_with("/dev/pts/"); }
+
 std::string cause_of(const error& why) {
   std::string text = why.message();
   text.resize(text.size() - why.advice().size() - 1);
@@ -157,16 +158,31 @@ std::string cause_of(const error& why) {
 }
 
 std::vector<stage_report> diagnose(std::string_view source, const diagnostic_options& options) {
-  constexpr std::string_view file_prefix = "file:";
   diagnostic_options with_rates = options;
   stage_log log(with_rates);
-  if (source.starts_with(file_prefix)) {
-    examine_file(std::string(source.substr(file_prefix.size())), log);
-    return std::move(log.stages());
+  std::string device(source);
+  std::unique_ptr<connector> simulated;  // outlives the run
+  switch (kind_of_source(source)) {
+    case source_kind::device:
+      break;
+    case source_kind::simulated: {
+      auto made = connector_for({.device = device});
+      const auto port = made ? (*made)->connect() : tl::unexpected(made.error());
+      if (!port) {
+        report_unopened(log, {}, port.error());
+        return std::move(log.stages());
+      }
+      device = (*port)->name();
+      simulated = *std::move(made);
+      break;
+    }
+    case source_kind::recording:
+    case source_kind::raw_bytes:
+      examine_file(path_of_source(source), log);
+      return std::move(log.stages());
   }
   port_stages first(log);
-  auto opened = source.starts_with("tcp:") ? first.connect(std::string(source))
-                                           : first.open(std::string(source));
+  auto opened = device.starts_with("tcp:") ? first.connect(device) : first.open(device);
   if (!opened) return std::move(log.stages());
   const std::string path(opened->name());
   // Other baud rates make no difference on a pseudo-terminal.

@@ -30,6 +30,7 @@ class file_run {
     port_.add("path", path);
     const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
     splitter_.finish(to_);
+    layout_.finish();
     if (!is_read || measured_.arrivals().bytes() == 0) {
       port_.find(diagnosis::bad_file);
       log_.report(std::move(port_));
@@ -42,14 +43,14 @@ class file_run {
  private:
   bool read_recording(const std::string& path) {
     port_.add("format", "recording");
-    auto opened = recording_reader::open(path);
+    auto opened = recording_reader::open(path, {.is_cancelled = log_.options().is_cancelled});
     if (!opened) return fail(opened.error());
     recording_reader& reader = *opened;
     const auto read = reader.for_each([this](const recorded_item& item) {
       take(item);
       return !is_cancelled();
     });
-    if (!read) return fail(read.error());
+    if (!read && read.error() != problem::cancelled) return fail(read.error());
     const recording_damage& damage = reader.damage();
     if (damage.bytes_skipped > 0) port_.add("damaged_bytes", damage.bytes_skipped);
     if (damage.chunks_lost > 0) port_.add("lost_chunks", damage.chunks_lost);
@@ -106,6 +107,7 @@ class file_run {
     const bool follows = is_judging_ && arrival_ns > 0 && arrival_ns_ > 0;
     measured_.take(reading{data.size(), arrival_ns, follows ? arrival_ns - arrival_ns_ : 0});
     arrival_ns_ = arrival_ns;
+    layout_.take(data);
     splitter_.take(data, arrival_ns, to_);
   }
 
@@ -137,6 +139,10 @@ class file_run {
     baud.add("bytes", measured_.arrivals().bytes());
     baud.add("packets", counts.packets);
     baud.add("responses", counts.responses);
+    if (find_other_layout(baud, layout_)) {
+      log_.report(std::move(baud));
+      return log_.skip_from(diagnostic_stage::answers, "The packets are not those of a G4.");
+    }
     const auto found = diagnosis_of(counts, measured_.arrivals().bytes());
     if (found) baud.find(*found);
     if (found == diagnosis::wrong_baud_rate) {
@@ -174,6 +180,7 @@ class file_run {
   stage_log& log_;
   stage_report port_{};
   event_splitter splitter_;
+  layout_votes layout_;
   observer to_{.event = [this](const observed_event& came) { take(came); }};
   stream_statistics measured_;
   device_snapshot device_;

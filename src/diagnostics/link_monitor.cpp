@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "stream_tally.hpp"
+
 namespace g4lidar {
 namespace {
 
@@ -26,6 +28,7 @@ constexpr std::size_t text_letters = 16;
 std::size_t size_of(const event& found) noexcept {
   if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
   if (const auto* response = std::get_if<response_view>(&found)) return response->data().size();
+  if (const auto* packet = std::get_if<time_packet_view>(&found)) return packet->data().size();
   const auto* gone = std::get_if<skipped>(&found);
   return gone == nullptr ? 0 : gone->count;
 }
@@ -90,6 +93,7 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
     if (took_ns > slice_ns + host_pause_ns) {
       what.host_pause_ns = took_ns;
       ++host_pauses_;
+      if (took_ns >= arrival_statistics::stall_ns) host_paused_ns_ = read_ns_;
       has_backlog_ = true;
     }
     if (got->count > 0) {
@@ -108,6 +112,7 @@ void link_monitor::take(const received& got, reading what, const observer& to) {
   what.is_backlog = has_backlog_;
   has_backlog_ = has_backlog_ && got.count == buffer_.size();
   if (to.arrival) to.arrival(what);
+  layout_.take(bytes(buffer_).first(got.count));
   splitter_.take(bytes(buffer_).first(got.count), got.arrival_ns, to);
 }
 
@@ -200,6 +205,7 @@ void link_monitor::replace(const std::function<std::unique_ptr<transport>()>& ma
   transport_.reset();
   transport_ = make();
   splitter_ = {};
+  layout_ = {};
   silence_ns_ = 0;
   read_ns_ = -1;
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "g4lidar/core/command.hpp"
@@ -15,6 +16,7 @@
 #include "g4lidar/detail/command_channel.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "layout_votes.hpp"
 
 namespace g4lidar {
 
@@ -129,6 +131,16 @@ class link_monitor {
   /// Counts of everything observed since replace().
   [[nodiscard]] const stream_counts& counts() const noexcept { return splitter_.counts(); }
   [[nodiscard]] std::uint32_t baud() const noexcept { return transport_ ? transport_->baud() : 0; }
+  /// When the last pause of the host ended that was as long as a stall of the lidar; 0: there was none.
+  [[nodiscard]] std::int64_t host_paused_ns() const noexcept { return host_paused_ns_; }
+  /// Pauses of the host of any length.
+  [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
+  /// Of everything observed since replace().
+  [[nodiscard]] const layout_votes& layout() const noexcept { return layout_; }
+  /// The name of the transport. Empty without one.
+  [[nodiscard]] std::string_view name() const noexcept {
+    return transport_ ? transport_->name() : std::string_view{};
+  }
   /// Uses another transport from now on; calls `make` after closing the earlier one.
   void replace(const std::function<std::unique_ptr<transport>()>& make);
 
@@ -149,6 +161,8 @@ class link_monitor {
   std::int64_t cut_off_after_ns_ = 60'000'000;
   std::int64_t silence_ns_ = 0;
   std::uint64_t host_pauses_ = 0;
+  std::int64_t host_paused_ns_ = 0;
+  layout_votes layout_;
 };
 
 }  // namespace g4lidar

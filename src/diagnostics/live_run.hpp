@@ -68,6 +68,10 @@ class live_run {
   /// The scan became silent during the measurement. Returns whether it continues.
   bool revive(std::int64_t& until_ns);
   bool restart_scan(std::int64_t& until_ns);
+  /// The scan was silent for a while and continued.
+  void find_stall();
+  /// Whether this program was suspended since the start.
+  [[nodiscard]] bool is_host_busy() const noexcept;
   /// Adds the error that ended the connection, if there is one.
   void add_failure(stage_report& report);
 

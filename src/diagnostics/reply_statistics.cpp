@@ -95,7 +95,7 @@ bool reply_statistics::has_died() const {
   return answered() > 0 && sum.missing_at_end >= unanswered_of_dead_link && sum.missing_before <= 1;
 }
 
-void reply_statistics::judge(stage_report& report) const {
+void reply_statistics::judge(stage_report& report, bool host_paused) const {
   const tally sum = count();
   std::int64_t slowest_ns = 0;
   for (const exchange& e : made_) {
@@ -114,8 +114,9 @@ void reply_statistics::judge(stage_report& report) const {
   const bool is_late = sum.late >= 2;
   // The very first reply may have waited for the end of a boot.
   const bool is_held_up = sum.very_late == 1 && made_.front().latency_ns() <= very_late_ns;
-  if (is_late) report.find(diagnosis::answers_late);
-  if (died || (!is_late && is_held_up)) report.find(diagnosis::stalls);
+  const bool is_of_host = host_paused && 2 * static_cast<std::ptrdiff_t>(sum.late) < answered();
+  if (is_late) report.find(is_of_host ? diagnosis::host_busy : diagnosis::answers_late);
+  if (died || (!is_late && is_held_up && !is_of_host)) report.find(diagnosis::stalls);
   if (is_late || died) return;
   if (sum.wrong > 0 && !is_held_up) report.find(diagnosis::answers_wrong);
   if (sum.twice > 0) report.find(diagnosis::answers_twice);

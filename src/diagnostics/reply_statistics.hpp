@@ -33,8 +33,8 @@ class reply_statistics {
   [[nodiscard]] std::ptrdiff_t answered() const noexcept;
   /// From most of its replies.
   [[nodiscard]] device_snapshot snapshot() const;
-  /// Adds diagnoses and numbers.
-  void judge(stage_report& report) const;
+  /// Adds diagnoses and numbers. If the host paused, a few late replies are its own.
+  void judge(stage_report& report, bool host_paused) const;
   /// There were replies, and later none.
   [[nodiscard]] bool has_died() const;
   /// So many replies were wrong that further commands are useless.

@@ -91,7 +91,8 @@ running_state::copy running_state::take_copy() const {
             found_.since(now_ns_ - window_ns_),
             scan_.seconds(),
             baud_,
-            {}};
+            {},
+            name_};
   if (lost_ && !found_.has(*lost_, now_ns_ - window_ns_)) made.found.push_back(*lost_);
   if (!name_.empty()) made.port.add("address", name_);
   if (reconnects_ > 0) made.port.add("reconnects", reconnects_);
@@ -103,11 +104,14 @@ std::vector<stage_report> running_state::stages() const {
   copy of = take_copy();
   const diagnostic_options none;
   stage_log log(none);
-  const bool is_explained = std::ranges::any_of(of.found, [](diagnosis what) {
-    const diagnostic_stage where = stage_of(what);
-    return what != diagnosis::stalls &&
-           (where == diagnostic_stage::motor || where == diagnostic_stage::stream);
-  });
+  const bool is_explained =
+      std::ranges::any_of(of.found,
+                          [](diagnosis what) {
+                            const diagnostic_stage where = stage_of(what);
+                            return what != diagnosis::stalls && (where == diagnostic_stage::motor ||
+                                                                 where == diagnostic_stage::stream);
+                          }) ||
+      of.measured.arrivals().longest_host_pause_ns() >= arrival_statistics::stall_ns;
   if (is_explained) std::erase(of.found, diagnosis::stalls);
   const auto add_found = [&] { add_those_of(log.stages().back(), of.found); };
   log.report(std::move(of.port));
@@ -137,7 +141,7 @@ std::vector<stage_report> running_state::stages() const {
       report_rate(log, of.measured, of.known);
     }
     report_loss(log, of.measured);
-    report_latency(log, of.measured, of.baud);
+    report_latency(log, of.measured, of.baud, of.name);
     return std::move(log.stages());
   }
   const char* const why =

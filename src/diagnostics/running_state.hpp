@@ -100,6 +100,7 @@ class running_state {
     double seconds;
     std::uint32_t baud;
     stage_report port;
+    std::string name;
   };
   [[nodiscard]] copy take_copy() const;
 

@@ -106,7 +106,7 @@ bool live_run::start_motor() {
   if (state == scan_state::silent) {
     const fate what = fate_of_silent();
     if (what == fate::resumed) {
-      stream_.find(diagnosis::stalls);
+      find_stall();
       state = warm_up(measured_);
     }
     if (what == fate::booted) motor.find(diagnosis::reboots);
@@ -122,6 +122,12 @@ bool live_run::start_motor() {
   const bool runs = state == scan_state::runs && !link_.is_over();
   log_.report(std::move(motor));
   return runs;
+}
+
+bool live_run::is_host_busy() const noexcept { return link_.host_paused_ns() > started_.sent_ns; }
+
+void live_run::find_stall() {
+  stream_.find(is_host_busy() ? diagnosis::host_busy : diagnosis::stalls);
 }
 
 // It gets no command before it has had the time to continue by itself.
@@ -160,7 +166,7 @@ bool live_run::revive(std::int64_t& until_ns) {
   const std::int64_t unkept_ns = link_.heard_ns() - started_.kept_alive_ns;
   switch (fate_of_silent()) {
     case fate::resumed:
-      stream_.find(diagnosis::stalls);
+      find_stall();
       measured_.part();
       return true;
     case fate::booted:
@@ -176,7 +182,8 @@ bool live_run::revive(std::int64_t& until_ns) {
   }
   const bool may_be_protected =
       !keeps_alive_ && unkept_ns >= protection_from_ns && unkept_ns <= protection_to_ns;
-  if (!may_be_protected) stream_.find(diagnosis::scan_ends);
+  const bool is_starved = keeps_alive_ && is_host_busy();  // by the host
+  if (!may_be_protected && !is_starved) stream_.find(diagnosis::scan_ends);
   if (restarts_ == most_restarts) return false;
   keeps_alive_ = keeps_alive_ || may_be_protected;
   if (!restart_scan(until_ns)) return false;

@@ -12,11 +12,38 @@ namespace {
 
 constexpr double frequency_tolerance = 0.06;
 constexpr double sample_rate_tolerance = 0.12;
+/// Between the rates of a G4 and those of other models, 5000 and 10000.
+constexpr double other_model_tolerance = 0.06;
+/// A tenth beyond 4000 samples a second at 12 Hz, and 9000 at 5 Hz.
+constexpr double fewest_per_revolution = 300.0;
+constexpr double most_per_revolution = 1980.0;
 /// More than a USB packet of 64 bytes at 230400 baud.
 constexpr double held_back_limit_ms = 3.3;
 /// The amount of damage up to which there is only a warning.
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
+
+/// The program was suspended for as long as a stall: what depends on time is not judged.
+bool is_host_busy(const stream_statistics& measured) noexcept {
+  return measured.arrivals().longest_host_pause_ns() >= arrival_statistics::stall_ns;
+}
+
+/// Bytes without device information: a speed that no G4 has is that of another model.
+void find_other_speed(stage_report& rate, double samples_per_s, double samples_per_revolution) {
+  constexpr std::array rates{ranging_frequency::khz_4, ranging_frequency::khz_8,
+                             ranging_frequency::khz_9};
+  const auto is_near = [samples_per_s](ranging_frequency each) {
+    const double nominal = samples_per_second(each);
+    return std::abs(samples_per_s - nominal) <= other_model_tolerance * nominal;
+  };
+  const bool is_known_rate = samples_per_s <= 0.0 || std::ranges::any_of(rates, is_near);
+  const bool is_possible = samples_per_revolution >= fewest_per_revolution &&
+                           samples_per_revolution <= most_per_revolution;
+  if (is_known_rate && is_possible) return;
+  rate.find(diagnosis::other_device);
+  rate.outcome = std::min(rate.outcome, stage_verdict::warn);
+  rate.remark = "A G4 measures 4000, 8000 or 9000 samples per second at 5 to 12 Hz.";
+}
 
 /// The last diagnosis of each stage, in the order of the enumeration. An unplug belongs to the port.
 constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
@@ -88,7 +115,7 @@ void judge_stream(stage_report& stream, const stream_statistics& measured, doubl
   }
   if (arrivals.stalls() > 0) {
     stream.add("stalls", arrivals.stalls());
-    if (stream.diagnoses.empty()) stream.find(diagnosis::stalls);  // otherwise the reason is known
+    if (stream.diagnoses.empty() && !is_host_busy(measured)) stream.find(diagnosis::stalls);
   }
   if (measured.has_become_garbage()) {
     stream.add("bytes_since_last_packet", measured.bytes_since_packet());
@@ -98,9 +125,7 @@ void judge_stream(stage_report& stream, const stream_statistics& measured, doubl
   if (20 * measured.jerks() > measured.damage().changed && measured.was_steady()) {
     stream.find(diagnosis::jolts);
   }
-  if (arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns) {
-    stream.find(diagnosis::host_busy);
-  }
+  if (is_host_busy(measured)) stream.find(diagnosis::host_busy);
 }
 
 void judge_motor(stage_report& motor, const stream_statistics& measured) {
@@ -112,16 +137,19 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   const double frequency_hz = measured.frequency_hz();
   const double rate_hz = measured.sample_rate_hz();
   // A computer that is busy again and again makes arrivals late that look like another rate.
-  const bool is_certain =
-      measured.arrivals().longest_host_pause_ns() < arrival_statistics::stall_ns;
+  const bool is_certain = !is_host_busy(measured);
   stage_report rate{.stage = diagnostic_stage::rate};
   if (measured.reported_hz() > 0.0) rate.add("reported_hz", measured.reported_hz());
   if (measured.turns_per_sample() > 0.0) {
     rate.add("samples_per_revolution", 1.0 / measured.turns_per_sample());
   }
+  const bool is_unknown_model = !known.information && !known.ranging && is_certain &&
+                                measured.was_steady() && measured.turns_per_sample() > 0.0;
   if (frequency_hz <= 0.0) {
     rate.outcome = stage_verdict::skipped;
     rate.remark = "There is too little with times to measure it.";
+    const double turns = measured.turns_per_sample();
+    if (is_unknown_model) find_other_speed(rate, measured.reported_hz() / turns, 1.0 / turns);
     return log.report(std::move(rate));
   }
   rate.add("measured_hz", frequency_hz);
@@ -132,6 +160,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
   }
   rate.add("samples_per_s", rate_hz);
+  if (is_unknown_model) find_other_speed(rate, rate_hz, 1.0 / measured.turns_per_sample());
   if (known.ranging) {
     const double nominal_hz = samples_per_second(*known.ranging);
     rate.add("nominal_samples_per_s", nominal_hz);
@@ -154,7 +183,9 @@ void report_loss(stage_log& log, const stream_statistics& measured) {
   }
   const damage_counts& damage = measured.damage();
   for (const auto& [name, count] :
-       {std::pair("changed", damage.changed), std::pair("shortened", damage.shortened),
+       {std::pair("crc_matches", measured.counts().crc_matches),
+        std::pair("crc_mismatches", measured.counts().crc_mismatches),
+        std::pair("changed", damage.changed), std::pair("shortened", damage.shortened),
         std::pair("cut", damage.cut), std::pair("lengthened", damage.lengthened),
         std::pair("vanished", damage.vanished), std::pair("unclear", damage.unclear)}) {
     if (count > 0) loss.add(name, count);
@@ -173,14 +204,32 @@ void report_loss(stage_log& log, const stream_statistics& measured) {
   log.report(std::move(loss));
 }
 
-void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud) {
+bool find_other_layout(stage_report& report, const layout_votes& votes) {
+  const std::size_t size = votes.sample_bytes();
+  if (size != 3 && size != 4) return false;
+  report.add("bytes_per_sample", size);
+  report.find(diagnosis::other_device);
+  report.remark =
+      "The packets have " + std::to_string(size) + " bytes per sample; those of a G4 have 2.";
+  return true;
+}
+
+void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
+                    std::string_view name) {
+  if (name.starts_with("tcp:") || is_pty(std::string(name))) {
+    return log.skip(diagnostic_stage::usb_latency, "There is no USB bridge in this connection.");
+  }
   if (baud == 0 || !measured.arrivals().has_delays()) {
     return log.skip(diagnostic_stage::usb_latency, "There is nothing to measure it by.");
   }
   stage_report latency{.stage = diagnostic_stage::usb_latency};
   const double held_ms = measured.arrivals().held_back_ms(baud);
   latency.add("held_back_ms", held_ms);
-  if (held_ms > held_back_limit_ms) latency.find(diagnosis::usb_latency);
+  if (measured.arrivals().longest_host_pause_ns() > 0) {
+    latency.remark = "This computer was busy: that delays bytes, too.";
+  } else if (held_ms > held_back_limit_ms) {
+    latency.find(diagnosis::usb_latency);
+  }
   log.report(std::move(latency));
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -62,8 +63,13 @@ inline constexpr std::uint64_t few_packets = 30;
 void judge_motor(stage_report& motor, const stream_statistics& measured);
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known);
 void report_loss(stage_log& log, const stream_statistics& measured);
-/// `baud` 0: bytes take no time.
-void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud);
+/// `baud` 0: bytes take no time. `name` is that of the transport: not all have a USB bridge.
+void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
+                    std::string_view name);
+/// Whether the packets have samples of a size that no G4 sends; then adds this to `report`.
+bool find_other_layout(stage_report& report, const layout_votes& votes);
+/// Whether this path leads to a pseudo-terminal.
+[[nodiscard]] bool is_pty(const std::string& path);
 /// Numbers and diagnoses of the stage stream.
 void judge_stream(stage_report& stream, const stream_statistics& measured, double seconds);
 

@@ -68,7 +68,7 @@ std::optional<double> step_median::get() const {
 }
 
 void stream_statistics::begin() {
-  tally_ = {};
+  static_cast<void>(next_stretch());
   judging_ = true;
   between_ = {.size = max_between + 1, .is_unsure = true};  // the bytes before are not evaluated
   backlog_ns_ = 0;
@@ -77,7 +77,10 @@ void stream_statistics::begin() {
 
 stream_tally stream_statistics::next_stretch() {
   tally_.pace.part();
-  return std::exchange(tally_, {});
+  const ct_check crc = tally_.counts.crc;
+  stream_tally ended = std::exchange(tally_, {});
+  tally_.counts.crc = crc;
+  return ended;
 }
 
 void stream_statistics::add(const stream_tally& earlier) {
@@ -94,6 +97,7 @@ void stream_statistics::part() {
 
 void stream_statistics::suspend() {
   part();
+  tally_.counts.crc = {};
   judging_ = false;
   steps_ = {};
 }
@@ -126,6 +130,7 @@ void stream_statistics::take(const observed_event& came) {
   if (const auto* packet = std::get_if<packet_view>(&came.what)) {
     return take_packet(*packet, came.arrival_ns);
   }
+  if (std::holds_alternative<time_packet_view>(came.what)) return;
   between_.has_answers |= std::holds_alternative<response_view>(came.what);
   between_.size += came.raw.size();
   since_packet_ += came.raw.size();
@@ -253,6 +258,8 @@ std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {
     if (count == 0 || (!found.empty() && 4 * count < explained)) continue;
     found.push_back(what);
   }
+  // A revolution lost a packet where its damage cannot be evaluated.
+  if (found.empty() && measured.counts().crc_mismatches > 0) return {diagnosis::packets_lost};
   if (found.empty() && damage.unclear > 0) found.push_back(diagnosis::line_noise);
   return found;
 }

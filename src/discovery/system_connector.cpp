@@ -8,9 +8,6 @@
 #include <new>
 #include <utility>
 
-#include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/replay.hpp"
-#include "g4lidar/transport/byte_file.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 
@@ -18,7 +15,6 @@ namespace g4lidar {
 namespace {
 
 constexpr std::string_view tcp_prefix = "tcp:";
-constexpr std::string_view file_prefix = "file:";
 
 /// Whether the user named a serial port by its path: the library may write to that port, whatever
 /// is attached to it.
@@ -35,6 +31,39 @@ std::uint64_t node_of(const std::string& path) noexcept {
   return made_ns ^ static_cast<std::uint64_t>(node.st_ino) << 1U ^ 1U;
 }
 
+/// The ports of this computer, those of USB adapters first, as far as an error has room for them.
+std::string with_existing_ports(std::string_view missing) {
+  std::string all(missing);
+  auto ports = list_ports();
+  if (!ports) return all;
+  std::ranges::sort(*ports, {}, [](const port_info& port) {
+    return std::pair(port.vendor_id == 0, std::string_view(port.path));
+  });
+  std::string_view before = " (ports: ";
+  for (const port_info& port : *ports) {
+    constexpr std::size_t longest = 90;
+    if (all.size() + before.size() + port.path.size() > longest) break;
+    all.append(before).append(port.path);
+    before = ", ";
+  }
+  if (before == ", ") all.append(")");
+  return all;
+}
+
+/// What a user who named a device needs to know: that this is no name, or that nothing has it.
+error explained(const error& why, const std::string& device) {
+  if (why == problem::bad_option) {
+    return {why.doing(), why.code(), why.subject(), 0, error_detail::bad_name};
+  }
+  const bool is_missing = why.system_errno() == ENOENT || why.system_errno() == ENOTDIR;
+  if (why != problem::no_port || !is_missing || !names_path(device)) return why;
+  if (!device.starts_with("/dev/")) {
+    return {why.doing(), why.code(), device, why.system_errno(), error_detail::missing_path};
+  }
+  return {why.doing(), why.code(), with_existing_ports(device), why.system_errno(),
+          error_detail::missing_port};
+}
+
 }  // namespace
 
 system_connector::system_connector(std::string_view device, std::uint32_t baud)
@@ -42,23 +71,18 @@ system_connector::system_connector(std::string_view device, std::uint32_t baud)
 
 result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
                                                           std::uint32_t baud) {
-  std::string_view path = device;
-  if (path.starts_with(file_prefix)) path.remove_prefix(file_prefix.size());
-  if (is_recording(path)) return replay::open(path);
   return std::unique_ptr<connector>(new system_connector(device, baud));
 }
 
 /// A reconnect must not end the program if there is no memory.
 result<std::unique_ptr<transport>> system_connector::connect() noexcept {
   try {
-    return open_transport();
+    auto opened = open_transport();
+    if (!opened && first_.path.empty()) return tl::unexpected(explained(opened.error(), device_));
+    return opened;
   } catch (const std::bad_alloc&) {
     return failure(task::opening, problem::system, device_, ENOMEM);
   }
-}
-
-recording_hook* system_connector::recording() noexcept {
-  return device_.starts_with(file_prefix) ? this : nullptr;
 }
 
 result<std::unique_ptr<transport>> system_connector::open_transport() {
@@ -68,7 +92,6 @@ result<std::unique_ptr<transport>> system_connector::open_transport() {
     how.baud = baud_;
     return tcp_port::open(device.substr(tcp_prefix.size()), how);
   }
-  if (device.starts_with(file_prefix)) return byte_file::open(device.substr(file_prefix.size()));
   return first_.path.empty() ? first_connect() : connect_again();
 }
 

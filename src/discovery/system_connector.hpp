@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Opens the transports of this computer: serial ports, network bridges, files.
+// Opens the transports of this computer: serial ports and network bridges.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "path_watch.hpp"
@@ -23,7 +22,7 @@ inline constexpr std::string_view usb_prefix = "usb:";
 /// Opens the device that lidar_options::device names, repeatedly. It searches a lost lidar at its
 /// old path and at every USB bridge of a G4; the driver identifies it by its number. It opens a
 /// port only if the user named its path, or if a G4 may be attached to it: see may_be_ours().
-class system_connector final : public connector, private recording_hook {
+class system_connector final : public connector {
  public:
   /// Fails with bad_option if `device` has no known form.
   [[nodiscard]] static result<std::unique_ptr<connector>> make(std::string_view device,
@@ -36,8 +35,6 @@ class system_connector final : public connector, private recording_hook {
   void refuse() noexcept override;
   [[nodiscard]] int watch() noexcept override;
   [[nodiscard]] bool may_be_back() noexcept override;
-  /// Files do not answer.
-  [[nodiscard]] recording_hook* recording() noexcept override;
 
  private:
   /// A device node at the time when another lidar answered there. A replug creates the node again.

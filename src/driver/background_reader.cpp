@@ -33,6 +33,7 @@ struct G4LIDAR_HIDDEN background_reader::state {
   /// Waits until a scan arrives, or something is due.
   result<void> wait(lidar::milliseconds timeout) {
     const auto scan = device.next_scan(timeout);
+    detail.store(scan ? error_detail::usual : scan.error().detail(), std::memory_order_relaxed);
     if (!scan) return tl::unexpected(scan.error());
     scans.put(*scan);
     return {};
@@ -63,7 +64,8 @@ struct G4LIDAR_HIDDEN background_reader::state {
   lidar device;
   scan_queue scans;
   std::atomic<bool> stopping = false;
-  mutable std::mutex mutex;  // protects the following members
+  std::atomic<error_detail> detail = error_detail::usual;  // why no scan has come
+  mutable std::mutex mutex;                                // protects the following members
   lidar_counts counts;
   event_queue events;
   std::optional<error> failure;
@@ -109,7 +111,9 @@ view_result<scan> background_reader::next_scan(lidar::milliseconds timeout) {
   if (const auto found = state_->scans.take(std::chrono::steady_clock::now() + wait)) return *found;
   if (const auto why = failed()) return tl::unexpected(*why);
   const bool stopped = state_->stopping.load(std::memory_order_acquire);
-  return g4lidar::failure(task::reading, stopped ? problem::not_scanning : problem::timeout);
+  if (stopped) return g4lidar::failure(task::reading, problem::not_scanning);
+  return g4lidar::failure(task::reading, problem::timeout, {}, 0,
+                          state_->detail.load(std::memory_order_relaxed));
 }
 
 const lidar_ring& background_reader::points() const noexcept {

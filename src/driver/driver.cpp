@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "driver.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "live_driver.hpp"
@@ -19,7 +20,7 @@ std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& o
 
 lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options)
     : parts_{connection(std::move(from), options.device),
-             point_pipeline(options.transport_delay.count(), options.partial_scans),
+             point_pipeline(options.tuning.transport_delay.count(), options.partial_scans),
              {}},
       feeder_(make_feeder(parts_, options)),
       points_(8192) {}
@@ -42,17 +43,23 @@ void lidar::driver::release() noexcept {
   if (hands_points_over_) points_missed_ += dropped;
 }
 
-result<scan> lidar::driver::next_scan(std::int64_t timeout_ns) {
+result<scan> lidar::driver::next_scan(std::int64_t timeout_ns, bool in_loop) {
   point_pipeline& pipeline = parts_.pipeline;
   if (!pipeline.has_scan()) {
     if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
   }
-  const std::int64_t deadline_ns = feeder_->deadline_after_ns(timeout_ns);
+  const std::int64_t given_ns = feeder_->deadline_after_ns(timeout_ns);
+  const auto deadline_ns = [&] {
+    return in_loop ? std::max(given_ns, feeder_->expects().not_due_before_ns) : given_ns;
+  };
   bool last = false;
   while (!pipeline.has_scan()) {
-    if (last) return failure(task::reading, problem::timeout, name());
-    if (auto done = feeder_->step(deadline_ns); !done) return tl::unexpected(done.error());
-    last = is_over(deadline_ns);
+    if (last) return timed_out();
+    const auto done = feeder_->step(deadline_ns());
+    if (!done && !(in_loop && done.error() == problem::reconnecting)) {
+      return tl::unexpected(done.error());
+    }
+    last = is_over(deadline_ns());
   }
   return pipeline.take_scan();
 }
@@ -68,7 +75,7 @@ result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_n
     points_missed_ += read.missed;
     if (read.points > 0) return points_.all().first(read.points);
     if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
-    if (last) return failure(task::reading, problem::timeout, name());
+    if (last) return timed_out();
     parts_.pipeline.drop_scan();
     if (auto done = feeder_->step(deadline_ns); !done) return tl::unexpected(done.error());
     last = is_over(deadline_ns);

@@ -28,7 +28,14 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<answer> ask(const request& wanted, while_scanning how) {
     return feeder_->ask(wanted, how);
   }
-  result<scan> next_scan(std::int64_t timeout_ns);
+  /// `in_loop`: by the rule of lidar::scans().
+  result<scan> next_scan(std::int64_t timeout_ns, bool in_loop);
+  /// For how long from now no scan is due; never_ns without limit.
+  [[nodiscard]] std::int64_t scan_due_in_ns() const noexcept {
+    const std::int64_t due_ns = feeder_->expects().not_due_before_ns;
+    if (due_ns == never_ns) return never_ns;
+    return std::max<std::int64_t>(due_ns - parts_.link.now_ns(), 0);
+  }
   result<std::span<const point>> next_points(std::int64_t timeout_ns);
   result<void> process();
   void wake() noexcept { parts_.link.wake(); }
@@ -55,6 +62,11 @@ class G4LIDAR_HIDDEN lidar::driver {
   }
 
  private:
+  [[nodiscard]] tl::unexpected<error> timed_out() const noexcept {
+    const scan_expectation now = feeder_->expects();
+    return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
+                   now.why);
+  }
   [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
     return parts_.link.now_ns() >= deadline_ns && parts_.pipeline.is_empty();
   }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "connection.hpp"
@@ -13,8 +14,18 @@
 #include "g4lidar/detail/recorded_event.hpp"
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
+#include "spin_up.hpp"
 
 namespace g4lidar {
+
+/// What a caller that waits for a scan can expect.
+struct scan_expectation {
+  /// The time before which no scan need come, so that a loop over scans waits until then at least;
+  /// 0 if one is due.
+  std::int64_t not_due_before_ns = 0;
+  error_detail why = error_detail::usual;  ///< Of the error of a call that ends without a scan.
+  std::string_view lost{};                 ///< What is looked for; valid until it is found.
+};
 
 /// *Single thread.* The pipeline, the connection and the events must outlive it.
 class feeder {
@@ -30,7 +41,7 @@ class feeder {
       : connection_(of.link),
         pipeline_(of.pipeline),
         events_(of.events),
-        receiver_(options.batch) {}
+        receiver_(options.tuning.batch) {}
   virtual ~feeder() = default;
   feeder(const feeder&) = delete;
   feeder& operator=(const feeder&) = delete;
@@ -49,7 +60,8 @@ class feeder {
   /// this returns an error that ends the scan, all scans and points were delivered before.
   [[nodiscard]] result<void> step(std::int64_t deadline_ns) {
     auto done = advance(connection_.is_woken() ? connection_.now_ns() : deadline_ns);
-    if (done && connection_.take_wake()) {
+    const bool is_cancelled = !done && done.error() == problem::cancelled;
+    if ((done || is_cancelled) && connection_.take_wake()) {
       return failure(task::reading, problem::cancelled, connection_.name());
     }
     return done;
@@ -57,6 +69,7 @@ class feeder {
 
   /// Why nothing can be read, if so.
   [[nodiscard]] virtual result<void> can_read() const noexcept = 0;
+  [[nodiscard]] virtual scan_expectation expects() const noexcept = 0;
   /// Whether a scan is running or being set up.
   [[nodiscard]] virtual bool has_motor_on() const noexcept = 0;
   [[nodiscard]] virtual bool is_scanning() const noexcept = 0;
@@ -77,11 +90,18 @@ class feeder {
     events_.put({what, reason, now_ns()});
   }
 
+  /// The motor is started: the first scan comes when it has spun up.
+  void begin_spin_up() noexcept {
+    spin_up_.begin(deadline_after_ns(spin_up::longest_ns), pipeline_.scans());
+  }
+  [[nodiscard]] bool spins_up() const noexcept { return spin_up_.lasts(pipeline_.scans()); }
+
   connection& connection_;
   point_pipeline& pipeline_;
   event_queue& events_;
   std::atomic<bool> takes_points_ = false;
   receiver receiver_;
+  spin_up spin_up_;
   device_information information_{};
   std::uint32_t samples_per_second_ = 9000;
 };

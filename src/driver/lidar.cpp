@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string_view>
+#include <thread>
 #include <utility>
 
-#include "discovery/system_connector.hpp"
 #include "driver.hpp"
+#include "error_context.hpp"
+#include "g4lidar/source.hpp"
 
 namespace g4lidar {
 namespace {
 
+using namespace std::chrono_literals;
 using std::chrono::milliseconds;
 
 /// Limited so that its sum with a time of the clock does not overflow.
@@ -23,6 +27,15 @@ std::int64_t in_ns(milliseconds time) noexcept {
 
 error bad(std::string_view what) noexcept { return {task::configuring, problem::bad_option, what}; }
 
+/// "OPTION: LEAST to MOST, not GIVEN UNIT".
+error bad(std::string_view what, std::int64_t given, std::string_view unit) noexcept {
+  error_context words(what);
+  words.add(given < 0 ? ", not -" : ", not ");
+  constexpr std::int64_t most = UINT32_MAX;
+  const std::int64_t size = std::clamp(given, -most, most);
+  return bad(words.add(static_cast<std::uint32_t>(size < 0 ? -size : size)).add(unit));
+}
+
 }  // namespace
 
 std::optional<error> problem_with(const lidar_options& options) noexcept {
@@ -32,19 +45,31 @@ std::optional<error> problem_with(const lidar_options& options) noexcept {
   if (options.baud == 0) return bad("baud: above 0");
   const auto may_be = [](const auto& setting) { return !setting || is_valid(*setting); };
   if (!may_be(options.ranging)) return bad("ranging: khz_4, khz_8 or khz_9");
-  if (!may_be(options.frequency)) return bad("frequency: 500 to 1200 (5 to 12 Hz)");
+  if (!may_be(options.frequency)) {
+    return bad("frequency: 500 to 1200 (5 to 12 Hz)", options.frequency->chz, "");
+  }
   if (!may_be(options.direction)) return bad("direction: clockwise or counter_clockwise");
   if (!may_be(options.constant)) return bad("constant: on or off");
   if (!may_be(options.idle)) return bad("idle: on or off");
   if (!may_be(options.protection)) return bad("protection: on or off");
-  if (options.pace > read_pace::revolutions) return bad("pace: automatic, packets or revolutions");
-  using namespace std::chrono_literals;
-  if (!within(options.longest_backoff, 1ms, 1000ms)) return bad("longest_backoff: 1 ms to 1 s");
-  if (!within(options.answer_time, 10ms, 10'000ms)) return bad("answer_time: 10 ms to 10 s");
-  if (!within(options.stall_time, 100ms, 60'000ms)) return bad("stall_time: 100 ms to 1 min");
-  if (!within(options.batch, 0ms, 100ms)) return bad("batch: 0 to 100 ms");
-  if (!within(options.transport_delay, 0ns, 1'000'000'000ns)) {
-    return bad("transport_delay: 0 to 1 s");
+  if (options.tuning.pace > read_pace::revolutions)
+    return bad("pace: automatic, packets or revolutions");
+  const auto bad_time = [](std::string_view what, milliseconds given) {
+    return bad(what, given.count(), " ms");
+  };
+  if (!within(options.tuning.longest_backoff, 1ms, 1000ms))
+    return bad_time("longest_backoff: 1 ms to 1 s", options.tuning.longest_backoff);
+  if (!within(options.tuning.answer_time, 10ms, 10'000ms))
+    return bad_time("answer_time: 10 ms to 10 s", options.tuning.answer_time);
+  if (!within(options.tuning.stall_time, 100ms, 60'000ms))
+    return bad_time("stall_time: 100 ms to 1 min", options.tuning.stall_time);
+  if (!within(options.tuning.batch, 0ms, 100ms))
+    return bad_time("batch: 0 to 100 ms", options.tuning.batch);
+  if (!within(options.tuning.transport_delay, 0ns, 1'000'000'000ns)) {
+    return bad("transport_delay: 0 to 1 s", options.tuning.transport_delay.count(), " ns");
+  }
+  if (!within(options.raw_sample_rate_hz, 1U, 1'000'000U)) {
+    return bad("raw_sample_rate_hz: 1 to 1000000", options.raw_sample_rate_hz, "");
   }
   return std::nullopt;
 }
@@ -62,21 +87,48 @@ lidar::lidar(lidar&&) noexcept = default;
 lidar& lidar::operator=(lidar&&) noexcept = default;
 lidar::~lidar() = default;
 
-result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
-  if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
-  return system_connector::make(options.device, options.baud);
+namespace {
+
+/// Whether a device that is plugged in later would be opened.
+bool may_come(const error& why) noexcept {
+  using enum problem;
+  return why == no_port || why == silence || why == gone || why == cannot_connect ||
+         why == garbage || why == busy;
 }
+
+/// Waits until the next attempt to open; false if that is cancelled.
+bool waited(const lidar_options& options) {
+  constexpr int parts = 10;
+  for (int i = 0; i < parts; ++i) {
+    if (options.is_cancelled && options.is_cancelled()) return false;
+    std::this_thread::sleep_for(50ms);
+  }
+  return true;
+}
+
+}  // namespace
 
 result<lidar> lidar::open(const lidar_options& options) {
-  auto from = connector_for(options);
-  if (!from) return tl::unexpected(from.error());
-  return open(std::move(*from), options);
+  const auto begin = std::chrono::steady_clock::now();
+  lidar_options used = options;  // without what is for opening alone
+  used.wrap = nullptr;
+  used.is_cancelled = nullptr;
+  while (true) {
+    auto from = connector_for(options);
+    if (from && options.wrap) from = options.wrap(*std::move(from));
+    auto opened = from ? open(*std::move(from), used) : tl::unexpected(from.error());
+    const auto waited_for = std::chrono::steady_clock::now() - begin;
+    const bool is_late =
+        std::chrono::duration_cast<milliseconds>(waited_for) >= options.device_wait;
+    if (opened || is_late || !may_come(opened.error())) return opened;
+    if (!waited(options)) return failure(task::opening, problem::cancelled, options.device);
+  }
 }
 
-result<lidar> lidar::open(std::string_view device) {
-  lidar_options options;
-  options.device = device;
-  return open(options);
+result<lidar> lidar::open(std::string_view device, const lidar_options& options) {
+  lidar_options named = options;
+  named.device = device;
+  return open(named);
 }
 
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
@@ -94,7 +146,16 @@ void lidar::release() noexcept {
 }
 view_result<scan> lidar::next_scan(milliseconds timeout) {
   if (!driver_) return moved_from();
-  return driver_->next_scan(in_ns(timeout));
+  return driver_->next_scan(in_ns(timeout), false);
+}
+view_result<scan> lidar::wait_scan(milliseconds timeout) {
+  if (!driver_) return moved_from();
+  return driver_->next_scan(in_ns(timeout), true);
+}
+milliseconds lidar::scan_due_in() const noexcept {
+  const std::int64_t left_ns = driver_ ? driver_->scan_due_in_ns() : 0;
+  if (left_ns == never_ns) return milliseconds::max();
+  return std::chrono::ceil<milliseconds>(std::chrono::nanoseconds(left_ns));
 }
 view_result<std::span<const point>> lidar::next_points(milliseconds timeout) {
   if (!driver_) return moved_from();
@@ -117,6 +178,12 @@ void lidar::wake() noexcept {
 }
 result<answer> lidar::ask(const request& wanted, while_scanning how) {
   if (!driver_) return moved_from();
+  if (how > while_scanning::stop_and_resume) {
+    return failure(task::asking, problem::bad_option, "how: refuse or stop_and_resume");
+  }
+  if (wanted.what > g4lidar::ask::stop) {
+    return failure(task::asking, problem::bad_option, "a request that namespace requests has");
+  }
   return driver_->ask(wanted, how);
 }
 const device_information& lidar::information() const noexcept {

@@ -19,8 +19,8 @@ constexpr std::int64_t cut_off_after_ns = 30'000'000;
 
 session_times times_for(const lidar_options& options) noexcept {
   session_times times;
-  times.answer_ns = std::chrono::nanoseconds(options.answer_time).count();
-  times.stall_ns = std::chrono::nanoseconds(options.stall_time).count();
+  times.answer_ns = std::chrono::nanoseconds(options.tuning.answer_time).count();
+  times.stall_ns = std::chrono::nanoseconds(options.tuning.stall_time).count();
   return times;
 }
 
@@ -124,9 +124,9 @@ reading live_driver::how_to_read() const noexcept {
   if (stage_ != stage::scanning) return reading::at_once;
   if (receiver_.is_batched()) return reading::batched;
   if (is_waiting_for_answer()) return reading::at_once;
-  const bool by_packets = options_.pace == read_pace::automatic
+  const bool by_packets = options_.tuning.pace == read_pace::automatic
                               ? takes_points_.load(std::memory_order_relaxed)
-                              : options_.pace == read_pace::packets;
+                              : options_.tuning.pace == read_pace::packets;
   return by_packets ? reading::paced : reading::scans;
 }
 
@@ -164,6 +164,7 @@ void live_driver::follow_delivery() {
 }
 
 void live_driver::begin_points() {
+  begin_spin_up();
   pipeline_.begin(samples_per_second_);
   record(recorded_event::kind::begun);
 }
@@ -253,6 +254,7 @@ result<void> live_driver::start() {
   if (goes_on) return {};  // a start that was woken, and is complete now
   pipeline_.drop_scan();
   setup_.forgive();
+  spin_up_.forget();
   add_start();
   const auto started = run_setup();
   // If it is woken, the next calls continue it, also next_scan().
@@ -321,12 +323,6 @@ result<void> live_driver::begin_question(const request& wanted, while_scanning h
                    error_context(connection_.name()).add(wanted));
   }
   return {};
-}
-
-result<void> live_driver::can_read() const noexcept {
-  if (stage_ == stage::closed) return tl::unexpected(lost_);
-  if (wants_scan_) return {};
-  return failure(task::reading, problem::not_scanning, connection_.name());
 }
 
 void live_driver::add_to(lidar_counts& counts) const noexcept {

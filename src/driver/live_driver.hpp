@@ -41,6 +41,7 @@ class live_driver final : public feeder {
   void release() noexcept override;
 
   [[nodiscard]] result<void> can_read() const noexcept override;
+  [[nodiscard]] scan_expectation expects() const noexcept override;
   [[nodiscard]] bool has_motor_on() const noexcept override {
     return stage_ >= stage::preparing && stage_ <= stage::stopping;
   }

@@ -114,6 +114,7 @@ void live_driver::restore_settings(const outcome& done) {
   if (!wants_scan_ || (!is_wanted && done.starts <= 1)) return;
   if (is_wanted) setup_.forgive();  // requests of the caller are not limited
   static_cast<void>(set_up_again());
+  if (is_wanted) setup_.forgive();  // and a scan that never begins afterwards is started once more
 }
 
 result<void> live_driver::finish_step(const outcome& done) {

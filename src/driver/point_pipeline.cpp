@@ -51,6 +51,7 @@ void point_pipeline::add(packet_view packet) noexcept {
                           fits ? room.first<max_samples>() : std::span(spare_), lost);
   points_ += open_.points.size();
   if (auto* const made = ring_.find()) made->ring.push(open_.points);
+  if (stream_counts_.crc.last() == ct_check::result::mismatch) assembler_.crc_mismatch();
   if (lost) assembler_.lost();  // whole packets are missing, so no bytes were skipped
   is_open_ = true;
 }
@@ -77,6 +78,7 @@ ring_read point_pipeline::read(std::span<point> out) noexcept {
 void point_pipeline::begin(std::uint32_t samples_per_second) noexcept {
   end();
   decoder_.begin(samples_per_second);
+  stream_counts_.crc = {};
   assembler_.set_sample_rate(samples_per_second);
 }
 

@@ -148,6 +148,8 @@ class point_pipeline {
   [[nodiscard]] std::size_t missing() const noexcept { return parser_.missing(); }
   /// The scan begins that has_begun() is about.
   void begin_scans() noexcept { scans_at_begin_ = counts_.scans; }
+  /// How many whole revolutions were complete.
+  [[nodiscard]] std::uint64_t scans() const noexcept { return counts_.scans; }
   /// Whether a whole revolution was complete since begin_scans().
   [[nodiscard]] bool has_begun() const noexcept { return counts_.scans > scans_at_begin_; }
   /// The time from one sample to the next, as far as it is known.

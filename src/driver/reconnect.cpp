@@ -18,6 +18,7 @@ result<void> live_driver::connect() {
   pipeline_.follow(connection_.on().baud());
   setup_.clear();
   setup_.forgive();  // the session has forgotten the scans before, too
+  spin_up_.forget();
   stage_ = stage::identifying;
   record(recorded_event::kind::held);
   add_step(setup_step::identify);
@@ -70,7 +71,7 @@ result<void> live_driver::hang_up() {
   }
   stage_ = stage::lost;
   connection_.watch();
-  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.longest_backoff).count());
+  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.tuning.longest_backoff).count());
   if (was_up) return tl::unexpected(unavailable());
   return {};
 }
@@ -88,6 +89,25 @@ error live_driver::unavailable() const {
   if (stage_ == stage::closed) return lost_;
   const error_context about = error_context(lost_.subject()).add(", ").add(name_of(lost_.code()));
   return {task::reading, problem::reconnecting, about};
+}
+
+result<void> live_driver::can_read() const noexcept {
+  if (stage_ == stage::closed) return tl::unexpected(lost_);
+  if (wants_scan_) return {};
+  return failure(task::reading, problem::not_scanning, connection_.name());
+}
+
+/// A lidar that is lost or being set up sends no scan. Both end by themselves, the setup by the times
+/// of its requests.
+scan_expectation live_driver::expects() const noexcept {
+  if (stage_ == stage::closed || !wants_scan_) return {};
+  if (stage_ == stage::scanning && session_.is_scanning()) {
+    if (!spins_up()) return {};
+    return {spin_up_.ends_ns(), error_detail::spinning_up};
+  }
+  const bool is_set_up = stage_ == stage::preparing || stage_ == stage::scanning;
+  if (is_set_up && !reconnection_.is_under_way()) return {never_ns, error_detail::spinning_up};
+  return {never_ns, error_detail::searching, lost_.subject()};
 }
 
 /// Another process on the port explains more than its effects.

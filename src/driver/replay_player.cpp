@@ -14,6 +14,7 @@ replay_player::replay_player(parts& of, const lidar_options& options) : feeder(o
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
   source_ = connection_.from().recording()->events();
+  counts_time_ = connection_.from().recording()->counts_time();
   receiver_.reset(0, 0, now_ns());
   pipeline_.follow(connection_.on().baud());
   stage_ = stage::idle;
@@ -29,6 +30,8 @@ result<void> replay_player::open() {
 result<void> replay_player::start() {
   if (stage_ != stage::idle) return can_read();
   stage_ = stage::playing;
+  spin_up_.forget();
+  begin_spin_up();
   return {};
 }
 
@@ -37,6 +40,7 @@ result<void> replay_player::stop() {
   pipeline_.drop_scan();
   pipeline_.cut();
   while (digest()) pipeline_.drop_scan();
+  static_cast<void>(check());  // a wake-up ends the next call
   pipeline_.end();
   if (stage_ == stage::playing) stage_ = stage::idle;
   return {};
@@ -61,6 +65,13 @@ result<void> replay_player::can_read() const noexcept {
   return failure(task::reading, problem::not_scanning, connection_.name());
 }
 
+/// Where the recorded lidar was lost or stopped, the recording goes on later, or ends.
+scan_expectation replay_player::expects() const noexcept {
+  if (!is_scanning()) return {};
+  if (!delivers_) return {.not_due_before_ns = never_ns};
+  return {.not_due_before_ns = spins_up() ? spin_up_.ends_ns() : 0};
+}
+
 result<void> replay_player::advance(std::int64_t deadline_ns) {
   switch (stage_) {
     case stage::closed:
@@ -75,7 +86,8 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
       break;
   }
   follow_delivery();
-  if (digest()) return {};
+  const bool has_scan = digest();
+  if (auto good = check(); !good || has_scan) return good;
   if (stage_ == stage::ending) {
     pipeline_.end();
     stage_ = stage::ended;
@@ -95,7 +107,13 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   is_pause_reported_ = false;
   pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
   static_cast<void>(digest());
-  return {};
+  return check();
+}
+
+/// Whether reading the recording was not cancelled by then.
+result<void> replay_player::check() const noexcept {
+  if (source_ == nullptr || !source_->take_cancelled()) return {};
+  return failure(task::reading, problem::cancelled, connection_.name());
 }
 
 /// Once per pause.
@@ -127,7 +145,9 @@ void replay_player::follow_delivery() {
   const bool wanted = delivers_ && (is_scanning() || (ends && pipeline_.delivers()));
   if (wanted == pipeline_.delivers()) return;
   pipeline_.deliver(wanted);
-  if (wanted) pipeline_.begin(samples_per_second_);
+  if (!wanted) return;
+  begin_spin_up();
+  pipeline_.begin(samples_per_second_);
 }
 
 /// Whether the event happened when this much of the read had been processed.
@@ -182,6 +202,7 @@ void replay_player::play(const recorded_event& what) {
     case recorded_event::kind::opened:
       pipeline_.follow(what.baud);
       delivers_ = true;  // the driver's first event corrects this
+      spin_up_.forget();
       if (!std::exchange(is_lost_, false)) return;
       ++reconnects_;
       return report(lidar_event::kind::reconnected);
@@ -224,10 +245,10 @@ std::int64_t replay_player::next_deadline_ns() const noexcept {
   return stage_ >= stage::ending || !pipeline_.is_empty() ? now_ns() : never_ns;
 }
 
-/// The caller's time, converted with the playback speed.
+/// The caller's time, converted with the playback speed. Counted time passes by reading alone.
 std::int64_t replay_player::deadline_after_ns(std::int64_t timeout_ns) const noexcept {
   if (source_ != nullptr) return source_->deadline_after_ns(timeout_ns);
-  return saturating_add(now_ns(), timeout_ns);
+  return counts_time_ && timeout_ns > 0 ? never_ns : saturating_add(now_ns(), timeout_ns);
 }
 
 }  // namespace g4lidar

@@ -22,6 +22,7 @@ class replay_player final : public feeder {
   void release() noexcept override;
 
   [[nodiscard]] result<void> can_read() const noexcept override;
+  [[nodiscard]] scan_expectation expects() const noexcept override;
   [[nodiscard]] bool has_motor_on() const noexcept override { return false; }
   [[nodiscard]] bool is_scanning() const noexcept override { return stage_ == stage::playing; }
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept override;
@@ -39,6 +40,7 @@ class replay_player final : public feeder {
 
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
   [[nodiscard]] bool digest();
+  [[nodiscard]] result<void> check() const noexcept;
   void follow_delivery();
   void report_long_pause();
   [[nodiscard]] bool play_events(bool all);
@@ -47,6 +49,7 @@ class replay_player final : public feeder {
   void play_state(const recorded_event& what);
 
   recorded_event_source* source_ = nullptr;  // of a recording
+  bool counts_time_ = false;                 // raw bytes of a file
   stage stage_ = stage::closed;
   error why_{task::reading, problem::gone};  // why it ended
   std::optional<recorded_event> event_;      // the next one, whose place has not been reached yet

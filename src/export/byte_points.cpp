@@ -65,6 +65,7 @@ void byte_points::take(g4lidar::packet_view packet) {
   // clock begins with the first point.
   if (decoded.suspect && counts_.points > 0) clock_.tick(decoded.sample_count);
   if (!by_scan_) return writer_.write_points(decoded.points, out_);
+  if (counts_.crc.last() == ct_check::result::mismatch) assembler_.crc_mismatch();
   while (const auto scan = assembler_.next(decoded)) {
     writer_.write_scan(record_of(*scan), out_);
   }

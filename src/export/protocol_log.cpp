@@ -164,6 +164,10 @@ void protocol_log::take(const event& found) {
     settle();
     size = response->data().size();
     take(*response);
+  } else if (const auto* time = std::get_if<time_packet_view>(&found)) {
+    settle();
+    size = time->data().size();
+    take(*time);
   }
   taken_ += size;
   place_ += size;
@@ -177,6 +181,12 @@ void protocol_log::take(packet_view packet) {
 void protocol_log::take(response_view response) {
   if (style_.errors) return;
   write_line('<', meaning_of(response), response.data(), now_ns_, place_);
+}
+
+void protocol_log::take(time_packet_view packet) {
+  if (style_.errors) return;
+  const std::string words = "time packet: " + std::to_string(packet.milliseconds()) + " ms";
+  write_line('<', words, packet.data(), now_ns_, place_);
 }
 
 void protocol_log::take(skipped gone) {

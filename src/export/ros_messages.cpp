@@ -110,9 +110,9 @@ geometry_msgs/Quaternion rotation
 
 namespace {
 
-/// Reliable ranges, in metres: the maximum is that of 16 bits.
+/// Reliable ranges, in metres.
 constexpr float least_range_m = too_near_mm * 0.001F;
-constexpr float greatest_range_m = 16.38375F;
+constexpr float greatest_range_m = longest_range_mm * 0.001F;
 
 void put_all(cdr_writer& message, std::span<const double> values) {
   for (const double value : values) message.put(value);
@@ -169,7 +169,7 @@ message_schema tf_message_schema() noexcept {
 }
 
 std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_ns,
-                           std::span<float> ranges_m) noexcept {
+                           std::span<float> ranges_m, grid_options how) noexcept {
   // The direction at the beginning, seen from each return: the corrections differ by some degrees.
   const std::int64_t begin_ns = points.empty() ? 0 : points.front().time_ns;
   const auto part_of = [&](std::int64_t time_ns) {
@@ -194,7 +194,8 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
         static_cast<float>((bin + bins - first_bin) % bins) / static_cast<float>(bins);
     return duration_ns <= 0 || std::abs(part - part_of(p.time_ns - begin_ns)) < 0.5F;
   };
-  fill_grid(points, ranges_m, {.to = frame::vendor}, is_in_time);
+  how.to = frame::vendor;
+  fill_grid(points, ranges_m, how, is_in_time);
   return first_bin;
 }
 

@@ -20,9 +20,10 @@ uint32 nanosec
 inline constexpr std::string_view line =
     "================================================================================\n";
 
-/// The definition of a message and of the messages in it, with a line between them.
+/// The definition of a message and of the messages in it, with a line between them. Without the
+/// attribute g++ 14 exports it from a shared library in spite of -fvisibility=hidden.
 template <const std::string_view& First, const std::string_view&... Parts>
-inline constexpr auto joined = [] {
+[[gnu::visibility("hidden")]] inline constexpr auto joined = [] {
   std::array<char, (First.size() + ... + (line.size() + Parts.size()))> all{};
   auto to = std::ranges::copy(First, all.begin()).out;
   for (const std::string_view part : {Parts...}) {

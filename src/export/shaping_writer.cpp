@@ -56,6 +56,13 @@ void shaping_writer::mark(std::span<point> points, scan_ends ends) const {
   if (options_.edges) mark_veiling(points, *options_.edges, ends);
 }
 
+std::span<const point> shaping_writer::with_near(std::span<const point> points) {
+  if (!options_.near) return points;
+  marked_near_.assign(points.begin(), points.end());
+  static_cast<void>(mark_near(marked_near_, near_, *options_.near));
+  return marked_near_;
+}
+
 std::span<const point> shaping_writer::marked_stream(std::span<const point> points, bool is_end) {
   const std::size_t window = std::max(options_.speckle ? options_.speckle->window : 0,
                                       options_.edges ? options_.edges->window : 0);
@@ -98,7 +105,7 @@ std::span<const point> shaping_writer::shaped(std::span<const point> points) {
 
 void shaping_writer::write_points(std::span<const point> points, text_sink& out) {
   if (done_) return;
-  points = in_range(points);
+  points = with_near(in_range(points));
   if (looks_at_neighbours()) points = marked_stream(points, done_);
   write_shaped(points, out);
 }
@@ -139,8 +146,9 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   times_.come(record.time_ns);
   scan_times_.come(record.time_ns);
   scan_record changed = record;
+  changed.scan.points = with_near(record.scan.points);
   if (looks_at_neighbours()) {
-    marked_.assign(record.scan.points.begin(), record.scan.points.end());
+    marked_.assign(changed.scan.points.begin(), changed.scan.points.end());
     mark(marked_, record.scan.is_piece() ? scan_ends::open : scan_ends::joined);
     changed.scan.points = marked_;
   }

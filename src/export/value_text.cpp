@@ -53,13 +53,14 @@ std::size_t returns_in(std::span<const point> points) noexcept {
 std::string names_of(scan_flags flags, std::string_view before, std::string_view between,
                      std::string_view after) {
   using enum scan_flags;
-  constexpr std::array<std::pair<scan_flags, std::string_view>, 6> names{
+  constexpr std::array<std::pair<scan_flags, std::string_view>, 7> names{
       {{start_missing, "start_missing"},
        {end_missing, "end_missing"},
        {data_lost, "data_lost"},
        {turn_short, "turn_short"},
        {start_by_angle, "start_by_angle"},
-       {end_by_angle, "end_by_angle"}}};
+       {end_by_angle, "end_by_angle"},
+       {crc_mismatch, "crc_mismatch"}}};
   std::string text;
   for (const auto& [flag, name] : names) {
     if ((flags & flag) == none) continue;

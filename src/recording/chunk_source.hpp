@@ -2,55 +2,19 @@
 // The chunks of a file one after the other, also of a damaged file.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "byte_source.hpp"
+#include "chunk_contents.hpp"
 #include "format.hpp"
-#include "g4lidar/error.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/writer.hpp"
-#include "packer.hpp"
-#include "transport/owned_fd.hpp"
+#include "record_header.hpp"
 
 namespace g4lidar::mcap {
-
-/// Bytes of a file, or of a test.
-class byte_source {
- public:
-  virtual ~byte_source() = default;
-  byte_source(const byte_source&) = delete;
-  byte_source& operator=(const byte_source&) = delete;
-
-  [[nodiscard]] virtual std::uint64_t size() const noexcept = 0;
-  /// Reads up to out.size() bytes from `at` on; fewer only at the end and after a failure.
-  [[nodiscard]] std::size_t read(std::uint64_t at, std::span<std::uint8_t> out) noexcept {
-    if (trouble_) return 0;
-    const auto count = read_some(at, out);
-    if (!count) fail(count.error());
-    return count.value_or(0);
-  }
-  /// Why nothing can be read any more.
-  [[nodiscard]] const std::optional<error>& trouble() const noexcept { return trouble_; }
-  void fail(const error& why) noexcept { trouble_ = why; }
-
- protected:
-  byte_source() = default;
-
- private:
-  [[nodiscard]] virtual result<std::size_t> read_some(std::uint64_t at,
-                                                      std::span<std::uint8_t> out) noexcept = 0;
-
-  std::optional<error> trouble_;
-};
-
-[[nodiscard]] result<std::shared_ptr<byte_source>> open_file_source(std::string_view path);
-/// Whether it begins like an MCAP file.
-[[nodiscard]] bool has_magic(byte_source& file) noexcept;
 
 /// A part of the file that contains records: the contents of a chunk, or one record outside of
 /// chunks.
@@ -60,12 +24,14 @@ struct record_block {
 };
 
 /// Reads a file in sequence. Its memory: one compressed and one uncompressed chunk. Damaged parts
-/// are skipped to the next intact chunk, and counted.
+/// are skipped to the next intact chunk, and counted. The work for what contains no messages is
+/// bounded by the size of the file.
 class chunk_source {
  public:
   explicit chunk_source(std::shared_ptr<byte_source> file);
 
-  /// The next records; empty at the end, and if the file cannot be read. Valid until the next call.
+  /// The next records; empty at the end, if the file cannot be read, and if it was cancelled. Valid
+  /// until the next call.
   [[nodiscard]] record_block next();
   /// Continues with the first chunk at or behind `offset`, which may be anywhere in the file. The
   /// bytes before that chunk do not count as damage.
@@ -76,30 +42,21 @@ class chunk_source {
   [[nodiscard]] const recording_damage& damage() const noexcept { return damage_; }
   [[nodiscard]] std::uint64_t position() const noexcept { return at_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+  /// The bytes that were unpacked so far, with those that were of no use.
+  [[nodiscard]] std::uint64_t bytes_unpacked() const noexcept { return contents_.bytes_unpacked(); }
   /// Where the summary begins, 0 if there is none.
   [[nodiscard]] std::uint64_t summary_start();
   /// The first byte behind the header.
   static constexpr std::uint64_t begin_of_records = magic.size();
 
  private:
-  struct record_header {
-    opcode kind;
-    std::uint64_t length;
-  };
-  struct chunk_header {
-    std::uint64_t size;
-    std::uint32_t crc;
-    std::uint64_t stored;
-    std::size_t header_size;
-    enum class packed : std::uint8_t { no, zstd, other } how;
-  };
-
   void look_at_end();
   [[nodiscard]] bytes window(std::uint64_t at, std::size_t size);
   [[nodiscard]] bytes content(std::uint64_t at, std::size_t size);
-  [[nodiscard]] std::optional<record_header> believe(bytes begin, std::uint64_t at) const noexcept;
-  [[nodiscard]] static std::optional<chunk_header> chunk_from(bytes content,
-                                                              std::uint64_t length) noexcept;
+  [[nodiscard]] std::optional<record_header> believe_at(bytes begin,
+                                                        std::uint64_t at) const noexcept {
+    return believe(begin, limit_ - std::min(limit_, at));
+  }
   [[nodiscard]] record_block step();
   [[nodiscard]] record_block chunk_at(std::uint64_t at, std::uint64_t length);
   [[nodiscard]] std::optional<bytes> records_of(std::uint64_t at, const chunk_header& chunk);
@@ -125,8 +82,7 @@ class chunk_source {
   std::uint64_t window_at_ = 0;
   std::size_t window_size_ = 0;  // bytes in use
   std::vector<std::uint8_t> stored_;
-  std::vector<std::uint8_t> unpacked_;
-  unpacker unpacker_;
+  chunk_contents contents_;
 };
 
 }  // namespace g4lidar::mcap

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <new>
+#include <tuple>
 #include <utility>
 
 #include "core/saturating.hpp"
+#include "file_end.hpp"
+#include "summary.hpp"
 
 namespace g4lidar {
 
@@ -14,15 +17,12 @@ using mcap::chunk_source;
 using mcap::field_reader;
 using mcap::index_of;
 using mcap::opcode;
-using mcap::record_header_size;
 using mcap::topic;
 
 namespace {
 
 /// In a file without a summary, metadata are searched in this number of blocks at its front.
 constexpr int blocks_at_front = 32;
-/// The maximum number of each kind in a summary.
-constexpr int most_records = 1000;
 /// The resolution of the search for the begin; the rest is read.
 constexpr std::uint64_t near_enough = std::uint64_t{64} << 10U;
 
@@ -44,6 +44,7 @@ recording_reader::file_reader::file_reader(std::shared_ptr<mcap::byte_source> fi
 result<std::unique_ptr<recording_reader::file_reader>> recording_reader::file_reader::open(
     std::shared_ptr<mcap::byte_source> file, std::string_view path,
     const reading_options& options) {
+  file->cancel_when(options.is_cancelled);
   const bool is_mcap = mcap::has_magic(*file);
   if (const auto& why = file->trouble()) return tl::unexpected(*why);
   if (!is_mcap) return failure(task::opening, problem::bad_file, path);
@@ -56,7 +57,7 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
   read_summary();
   read_front();
   const std::optional<recorded_item> first = read();
-  if (const auto& why = file_->trouble()) return tl::unexpected(*why);
+  if (auto good = check(); !good) return good;
   const bool is_ours = std::any_of(channels_.begin(), channels_.begin() + index_of(topic::scan),
                                    [](const auto& id) { return id.has_value(); });
   if (!is_ours || (!first && damage().any())) {
@@ -72,56 +73,30 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
     return time_ns > never_ns - std::max<std::int64_t>(first_ns_, 0) ? never_ns
                                                                      : first_ns_ + time_ns;
   };
+  if (!digest_) find_end();
   to_ns_ = behind_first(std::max<std::int64_t>(options.to_ns, 0));
   if (options.from_ns <= 0) {
     waiting_ = first;
   } else {
     seek(behind_first(options.from_ns));
   }
+  return check();
+}
+
+result<void> recording_reader::file_reader::check() {
   if (const auto& why = file_->trouble()) return tl::unexpected(*why);
+  if (file_->is_cancelled()) return failure(task::reading, problem::cancelled, path_);
   return {};
 }
 
 // ---- metadata ----------------------------------------------------------------------------------
 
-/// Channels and metadata, by the groups of the summary.
+/// By the summary.
 void recording_reader::file_reader::read_summary() {
-  const auto start = chunks_->summary_start();
-  if (start == 0) return;
-  const std::uint64_t footer = size() - mcap::magic.size() - mcap::footer_size;
-  const auto content = chunks_->record_at(footer, opcode::footer);
-  if (content.size() < 16) return;
-  std::uint64_t at = load_u64(content, 8);
-  if (at < start || at > footer) return read_group(start, footer);
-  for (int i = 0; i < most_records && at < footer; ++i) {
-    const auto offset = chunks_->record_at(at, opcode::summary_offset);
-    if (offset.empty()) return;
-    field_reader fields(offset);
-    at += record_header_size + offset.size();
-    const auto kind = static_cast<opcode>(fields.take<std::uint8_t>());
-    const auto begin = fields.take<std::uint64_t>();
-    const auto length = fields.take<std::uint64_t>();
-    if (kind != opcode::channel && kind != opcode::metadata_index) continue;
-    if (begin < start || begin > footer || length > footer - begin) continue;
-    read_group(begin, begin + length);
-  }
-}
-
-void recording_reader::file_reader::read_group(std::uint64_t at, std::uint64_t end) {
-  for (int i = 0; i < most_records && at < end; ++i) {
-    const auto channel = chunks_->record_at(at, opcode::channel);
-    if (!channel.empty()) {
-      take_channel(field_reader(channel));
-      at += record_header_size + channel.size();
-      continue;
-    }
-    const auto index = chunks_->record_at(at, opcode::metadata_index);
-    if (index.empty()) return;
-    at += record_header_size + index.size();
-    const std::uint64_t offset = field_reader(index).take<std::uint64_t>();
-    const auto metadata = chunks_->record_at(offset, opcode::metadata);
-    if (!metadata.empty()) take_metadata(field_reader(metadata));
-  }
+  mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) {
+    if (kind == opcode::channel) take_channel(record);
+    if (kind == opcode::metadata) take_metadata(record);
+  });
 }
 
 /// The same where there is no summary.
@@ -185,7 +160,8 @@ std::optional<std::uint64_t> recording_reader::file_reader::chunk_before(std::in
       const auto block = probe.next();
       if (block.records.empty()) break;
       at = block.offset;
-      time_ns = first_time_in(block.records);
+      bytes records = block.records;
+      time_ns = first_time_in(records);
     }
     if (time_ns && *time_ns <= from_ns && at < high) {
       best = at;
@@ -197,11 +173,31 @@ std::optional<std::uint64_t> recording_reader::file_reader::chunk_before(std::in
   return best;
 }
 
-std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes records) noexcept {
+/// A file without a digest was cut off, or is of another program: its end is that of its last chunk.
+void recording_reader::file_reader::find_end() {
+  const auto kept = std::tuple(sequence_, is_gap_, wall_ahead_ns_);
+  last_ns_ = first_ns_;
+  for (const std::uint64_t offset : mcap::last_chunks(*file_)) {
+    chunk_source tail(file_);
+    tail.seek(offset);
+    auto block = tail.next();
+    if (block.offset != offset) continue;  // it is damaged
+    const std::int64_t before_ns = last_ns_;
+    while (const auto time_ns = first_time_in(block.records)) {
+      last_ns_ = std::max(last_ns_, *time_ns);
+    }
+    if (last_ns_ > before_ns) break;
+  }
+  std::tie(sequence_, is_gap_, wall_ahead_ns_) = kept;
+}
+
+/// Of items that are not odometry. Removes the records up to it.
+std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& records) noexcept {
   field_reader rest(records);
   while (!rest.is_at_end()) {
     const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
     const field_reader record(rest.take(rest.take<std::uint64_t>()));
+    records = rest.rest();
     if (kind == opcode::channel) take_channel(record);
     if (kind != opcode::message) continue;
     const auto item = item_in(record);
@@ -213,7 +209,8 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes r
 /// The same of the records that follow; they are not read.
 std::optional<std::int64_t> recording_reader::file_reader::first_time_ahead() noexcept {
   const auto sequence = sequence_;
-  const auto time_ns = first_time_in(records_);
+  bytes records = records_;
+  const auto time_ns = first_time_in(records);
   sequence_ = sequence;
   is_gap_ = false;
   return time_ns;
@@ -254,9 +251,10 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
 result<std::optional<recorded_item>> recording_reader::file_reader::next() noexcept {
   if (is_over_) return std::nullopt;
   try {
+    file_->resume();
     auto item = advance();
-    if (const auto& why = file_->trouble()) return tl::unexpected(*why);
-    return item;
+    if (item && !file_->trouble()) return item;
+    return check().map([] { return std::optional<recorded_item>(); });
   } catch (const std::bad_alloc&) {
     return failure(task::reading, problem::system, path_, ENOMEM);
   }

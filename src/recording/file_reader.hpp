@@ -37,12 +37,13 @@ class recording_reader::file_reader {
   file_reader(std::shared_ptr<mcap::byte_source> file, std::string_view path);
 
   [[nodiscard]] result<void> begin(const reading_options& options);
+  [[nodiscard]] result<void> check();  // why reading ended early, if so
   void read_summary();
-  void read_group(std::uint64_t at, std::uint64_t end);
   void read_front();
   void seek(std::int64_t from_ns);
   [[nodiscard]] std::optional<std::uint64_t> chunk_before(std::int64_t from_ns);
-  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes records) noexcept;
+  void find_end();
+  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes& records) noexcept;
   [[nodiscard]] std::optional<std::int64_t> first_time_ahead() noexcept;
 
   [[nodiscard]] std::optional<recorded_item> advance();

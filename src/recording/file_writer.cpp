@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "g4lidar/export/ros_messages.hpp"
-#include "g4lidar/grid.hpp"
 
 namespace g4lidar {
 namespace {
@@ -57,7 +56,7 @@ recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_vi
       first_path_(path),
       file_(std::make_unique<mcap::mcap_file>(std::move(first))),
       channels_(options),
-      ranges_(options.scan_bins) {
+      ranges_(options) {
   if (options.packed == packing::zstd) packer_.emplace(std::size_t{1} << 20U);
   counts_.files = 1;
 }
@@ -150,13 +149,9 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   };
   if (options_.scans) {
     ++counts_.scans;
-    if (options_.order == scan_order::time) {
-      header.first_bin = fill_time_grid(points, revolution.duration_ns, ranges_);
-    } else {
-      fill_grid(points, ranges_, {.to = frame::robot});
-    }
-    put_stamped(topic::scan, ranges_.size() * sizeof(float),
-                [&](auto& out) { put_laser_scan(ranges_, header, out); });
+    header.first_bin = ranges_.fill(revolution, options_);
+    put_stamped(topic::scan, options_.scan_bins * sizeof(float),
+                [&](auto& out) { put_laser_scan(ranges_.ranges_m(), header, out); });
   }
   if (channels_.has(topic::points)) {
     put_stamped(topic::points, points.size() * point_room,

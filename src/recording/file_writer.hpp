@@ -18,6 +18,7 @@
 #include "mcap_file.hpp"
 #include "messages.hpp"
 #include "packer.hpp"
+#include "scan_ranges.hpp"
 
 namespace g4lidar {
 
@@ -101,7 +102,7 @@ class recording_writer::file_writer {
   mcap::channel_set channels_;  // of the current file
   mcap::open_chunk chunk_;
   std::optional<mcap::packer> packer_;
-  std::vector<float> ranges_;
+  scan_ranges ranges_;
   bool is_closed_ = false;
 
   mcap::transport_state transport_;

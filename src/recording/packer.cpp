@@ -22,7 +22,7 @@ namespace {
 constexpr int level = 1;
 /// A larger window is not needed for chunks of 64 MiB.
 constexpr int largest_window_log = 26;
-constexpr std::size_t first_piece = std::size_t{256} << 10U;
+constexpr std::size_t piece = std::size_t{256} << 10U;
 
 }  // namespace
 
@@ -42,22 +42,24 @@ bytes packer::pack(bytes data) {
 unpacker::unpacker()
     : context_(ZSTD_createDCtx(), [](void* of) { ZSTD_freeDCtx(static_cast<ZSTD_DCtx*>(of)); }) {}
 
-bool unpacker::unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>& out) {
+bool unpacker::unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>& out,
+                      const std::function<bool(bytes)>& take) {
   auto* const context = static_cast<ZSTD_DCtx*>(context_.get());
   if (context == nullptr) return false;
   ZSTD_DCtx_reset(context, ZSTD_reset_session_and_parameters);
   ZSTD_DCtx_setParameter(context, ZSTD_d_windowLogMax, largest_window_log);
   ZSTD_inBuffer from{packed.data(), packed.size(), 0};
-  if (out.size() < std::min(size, first_piece)) out.resize(std::min(size, first_piece));
+  if (out.size() < std::min(size, piece)) out.resize(std::min(size, piece));
   std::size_t done = 0;
   std::size_t left = 1;
   while (left > 0 || from.pos < from.size) {  // there may be several frames
-    ZSTD_outBuffer to{out.data(), std::min(size, out.size()), done};
+    ZSTD_outBuffer to{out.data(), std::min({size, out.size(), done + piece}), done};
     const std::size_t taken = from.pos;
     left = ZSTD_decompressStream(context, &to, &from);
     if (ZSTD_isError(left) != 0) return false;
     const bool is_stuck = to.pos == done && from.pos == taken;
     done = to.pos;
+    if (!take(bytes(out).first(done))) return false;
     if (done == out.size() && done < size) {
       out.resize(std::min(size, 2 * out.size()));
     } else if (is_stuck) {
@@ -78,7 +80,10 @@ namespace mcap {
 packer::packer(std::size_t) : context_(nullptr, [](void*) {}) {}
 bytes packer::pack(bytes) { return {}; }
 unpacker::unpacker() : context_(nullptr, [](void*) {}) {}
-bool unpacker::unpack(bytes, std::size_t, std::vector<std::uint8_t>&) { return false; }
+bool unpacker::unpack(bytes, std::size_t, std::vector<std::uint8_t>&,
+                      const std::function<bool(bytes)>&) {
+  return false;
+}
 
 }  // namespace mcap
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,8 +33,10 @@ class packer {
 class unpacker {
  public:
   unpacker();
-  /// Uncompresses to `out`. False if the result is not exactly `size` bytes, or without zstd.
-  [[nodiscard]] bool unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>& out);
+  /// Uncompresses to `out`, in pieces: `take` gets all that there is after each, and returns whether
+  /// to go on. False if it does not, if the result is not exactly `size` bytes, or without zstd.
+  [[nodiscard]] bool unpack(bytes packed, std::size_t size, std::vector<std::uint8_t>& out,
+                            const std::function<bool(bytes)>& take);
 
  private:
   zstd_context context_;

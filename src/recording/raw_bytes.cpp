@@ -187,6 +187,7 @@ class byte_connector final : public connector, private recording_hook {
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
   [[nodiscard]] recording_hook* recording() noexcept override { return this; }
+  [[nodiscard]] bool counts_time() const noexcept override { return counted_ns_ != nullptr; }
   [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
     return wall_ahead_ns_;
   }
@@ -208,7 +209,7 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   struct stat file{};
   const bool is_known = ::fstat(fd.get(), &file) == 0;
   if (is_known && S_ISDIR(file.st_mode)) {
-    return failure(task::opening, problem::system, name, EISDIR);
+    return failure(task::opening, problem::bad_file, name, EISDIR);
   }
   std::string title = is_standard ? "standard input" : name;
   std::unique_ptr<byte_transport> port;

@@ -9,6 +9,7 @@
 #include <cassert>
 #include <cerrno>
 #include <ctime>
+#include <functional>
 #include <new>
 #include <optional>
 #include <string>
@@ -31,9 +32,10 @@ constexpr double largest_rate = 1000;
 constexpr std::int64_t loop_pause_ns = 10'000'000;
 
 /// The first device information in the bytes, if the recording has no metadata.
-std::optional<recorded_device> device_in(std::string_view path) {
+std::optional<recorded_device> device_in(std::string_view path,
+                                         const std::function<bool()>& is_cancelled) {
   constexpr std::uint64_t far_enough = std::uint64_t{64} << 10U;
-  auto reader = recording_reader::open(path);
+  auto reader = recording_reader::open(path, {.is_cancelled = is_cancelled});
   if (!reader) return std::nullopt;
   stream_parser parser;
   std::optional<recorded_device> found;
@@ -54,27 +56,28 @@ std::optional<recorded_device> device_in(std::string_view path) {
 /// The common part of the connector and its transport: the recording, its clock, and its events.
 class player final : public recorded_event_source {
  public:
-  player(recording_reader opened, std::string_view name, const replay_options& how)
+  /// A wake-up of `waits` also ends the reading of `opened`.
+  player(recording_reader opened, std::string_view name, const replay_options& how,
+         std::shared_ptr<waker> waits)
       : reader_(std::move(opened)),
         path_(name),
         options_(how),
         clock_(how.rate, begin_ns()),
-        waits_(real_system_calls()),
-        due_(make_handle()),
-        why_over_(task::reading, problem::end_of_input, name) {
+        waits_(std::move(waits)),
+        due_(make_handle()) {
     auto device = reader_.device();
-    if (!device) device = device_in(name);
+    if (!device) device = device_in(name, options_.range.is_cancelled);
     if (device) device_ = *device;
   }
 
-  [[nodiscard]] bool is_open() const noexcept { return waits_.is_open() && due_.get() >= 0; }
+  [[nodiscard]] bool is_open() const noexcept { return waits_->is_open() && due_.get() >= 0; }
   [[nodiscard]] const recording_reader& reader() const noexcept { return reader_; }
   [[nodiscard]] replay_clock& clock() noexcept { return clock_; }
   [[nodiscard]] std::string_view path() const noexcept { return path_; }
   [[nodiscard]] int native_handle() const noexcept { return due_.get(); }
   [[nodiscard]] std::uint32_t baud() const noexcept { return baud_; }
-  void wake() noexcept { waits_.wake(); }
-  [[nodiscard]] bool take_wake() noexcept { return waits_.take(); }
+  void wake() noexcept { waits_->wake(); }
+  [[nodiscard]] bool take_wake() noexcept { return waits_->take() || take_cancelled(); }
 
   // ---- recorded_event_source ----
 
@@ -113,6 +116,9 @@ class player final : public recorded_event_source {
     if (clock_.is_free() || !item_) return 0;
     return std::max<std::int64_t>(clock_.steady_ns(item_->time_ns) - steady_now_ns(), 0);
   }
+  [[nodiscard]] bool take_cancelled() noexcept override {
+    return std::exchange(is_cancelled_, false);
+  }
 
   // ---- for the transport ----
 
@@ -127,7 +133,10 @@ class player final : public recorded_event_source {
     return nullptr;
   }
   /// Why there is no next item.
-  [[nodiscard]] const error& why_over() const noexcept { return why_over_; }
+  [[nodiscard]] const error& take_why_over() noexcept {
+    is_cancelled_ = false;
+    return why_over_;
+  }
   void pop() noexcept { item_.reset(); }
   /// When the handle becomes readable.
   void set_handle(std::int64_t at_ns) noexcept {
@@ -154,13 +163,13 @@ class player final : public recorded_event_source {
   /// Waits until then by the clock of the recording, or until a wake-up.
   [[nodiscard]] result<void> wait(std::int64_t until_ns) noexcept {
     if (clock_.is_free()) {
-      if (waits_.take()) return failure(task::reading, problem::cancelled, path_);
+      if (waits_->take()) return failure(task::reading, problem::cancelled, path_);
       if (until_ns != never_ns) clock_.advance_to(until_ns);
       return {};
     }
     short found = 0;
     switch (
-        waits_.wait(-1, 0, until_ns == never_ns ? never_ns : clock_.steady_ns(until_ns), &found)) {
+        waits_->wait(-1, 0, until_ns == never_ns ? never_ns : clock_.steady_ns(until_ns), &found)) {
       case waker::ended::woken:
         return failure(task::reading, problem::cancelled, path_);
       case waker::ended::failed:
@@ -176,12 +185,14 @@ class player final : public recorded_event_source {
   }
   /// The next item, with its time in the current round.
   [[nodiscard]] recorded_item* find_item() noexcept {
-    if (!item_ && !is_over_) {
+    if (!item_ && !is_over_ && !is_cancelled_) {
       auto read = reader_.next();
       if (read && !*read && options_.loop && has_read_) read = begin_again();
-      if (!read) why_over_ = read.error();
+      why_over_ = read ? error(task::reading, problem::end_of_input, path_) : read.error();
+      is_cancelled_ = !read && why_over_ == problem::cancelled;
+      if (is_cancelled_) static_cast<void>(waits_->take());
       if (read) item_ = *read;
-      is_over_ = !item_;
+      is_over_ = !item_ && !is_cancelled_;
       if (item_) item_->time_ns = saturating_add(item_->time_ns, moved_ns_);
       if (item_) item_->wall_ns = saturating_add(item_->wall_ns, moved_ns_);
     }
@@ -217,7 +228,7 @@ class player final : public recorded_event_source {
   std::string path_;
   replay_options options_;
   replay_clock clock_;
-  waker waits_;
+  std::shared_ptr<waker> waits_;
   owned_fd due_;
   recorded_device device_{};
   std::uint32_t baud_ = 0;
@@ -229,7 +240,8 @@ class player final : public recorded_event_source {
   std::int64_t last_ns_ = 0;
   bool has_read_ = false;  // bytes were read from a device in this round
   bool is_over_ = false;
-  error why_over_;
+  bool is_cancelled_ = false;  // not reported yet
+  error why_over_{task::reading, problem::end_of_input};
 };
 
 class replay_transport final : public transport {
@@ -242,7 +254,7 @@ class replay_transport final : public transport {
     if (of_->take_wake()) return failure(task::reading, problem::cancelled, name());
     while (of_->next_event()) continue;  // for callers that do not take events
     recorded_item* const next = of_->peek();
-    if (next == nullptr) return tl::unexpected(of_->why_over());
+    if (next == nullptr) return tl::unexpected(of_->take_why_over());
     recorded_item& item = *next;
     if (!of_->clock().is_free() && of_->clock().now_ns() < item.time_ns) {
       of_->set_handle(item.time_ns);
@@ -323,9 +335,14 @@ result<std::unique_ptr<connector>> replay::open(std::string_view path,
   const bool is_rate = options.rate == 0 || options.rate >= least_rate;
   if (!is_rate || options.rate > largest_rate) return bad("rate: 0, or 0.000001 to 1000");
   if (options.range.from_ns >= options.range.to_ns) return bad("range: from before to");
-  auto reader = recording_reader::open(path, options.range);
+  auto waits = std::make_shared<waker>(real_system_calls());
+  replay_options how = options;
+  how.range.is_cancelled = [waits, asked = options.range.is_cancelled] {
+    return waits->is_woken() || (asked && asked());
+  };
+  auto reader = recording_reader::open(path, how.range);
   if (!reader) return tl::unexpected(reader.error());
-  auto of = std::make_shared<player>(std::move(*reader), path, options);
+  auto of = std::make_shared<player>(std::move(*reader), path, how, std::move(waits));
   if (!of->is_open()) return failure(task::opening, problem::system, "eventfd", errno);
   return std::make_unique<replay_connector>(std::move(of));
 }

@@ -49,6 +49,10 @@ std::string_view problem_with(const device_options& options) noexcept {
       options.motor_drift_period_ns > 1'000'000'000'000) {
     return "the motor must drift within 1 ms to 1000 s";
   }
+  if (options.time_packet_ns != 0 &&
+      (options.time_packet_ns < 1'000'000 || !is_duration(options.time_packet_ns))) {
+    return "time packets must come every 1 ms to 60 s, or never (0)";
+  }
   if (options.protection_ns < 1'000'000 || !is_duration(options.protection_ns)) {
     return "the protection must act after 1 ms to 60 s";
   }

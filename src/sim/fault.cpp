@@ -28,7 +28,7 @@ struct kind_traits {
   std::int64_t value;
 };
 
-constexpr std::array<kind_traits, 19> kinds{{
+constexpr std::array<kind_traits, 20> kinds{{
     {fault_kind::flip, "flip", true, 0.001, amount_is::nothing, 0},
     {fault_kind::drop, "drop", true, 0.001, amount_is::nothing, 0},
     {fault_kind::insert, "insert", true, 0.001, amount_is::nothing, 0},
@@ -48,6 +48,7 @@ constexpr std::array<kind_traits, 19> kinds{{
     {fault_kind::unplug, "unplug", false, 1.0, amount_is::nothing, 0},
     {fault_kind::health, "health", false, 1.0, amount_is::health, 2},
     {fault_kind::jolt, "jolt", true, 0.01, amount_is::nothing, 0},
+    {fault_kind::omit, "omit", true, 0.01, amount_is::nothing, 0},
 }};
 static_assert(kinds.back().kind == last_fault_kind);
 
@@ -55,7 +56,7 @@ constexpr bool in_order() {
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (kinds[i].kind != static_cast<fault_kind>(i)) return false;
   }
-  return kinds.back().kind == fault_kind::jolt;
+  return kinds.back().kind == last_fault_kind;
 }
 static_assert(in_order());
 

@@ -48,12 +48,16 @@ void device::machine::keep_motor() noexcept {
 void device::machine::measure() noexcept {
   const bool jolts = faults_.strike(fault_kind::jolt) != nullptr &&
                      settings.direction == motor_direction::clockwise;
-  sampler_.measure(head, jolts, options_.stray_before_zero);
+  sampler_.measure(head, jolts, options_);
 }
 
 void device::machine::packet_measured() noexcept {
   transmission* const packet = sampler_.take(now_ns_);
   if (packet == nullptr) return measure();
+  if (const auto clock = sampler_.take_time_packet(now_ns_, options_.time_packet_ns)) {
+    wire_.send(*clock, now_ns_);
+  }
+  if (faults_.strike(fault_kind::omit) != nullptr) return measure();
   if (faults_.strike(fault_kind::truncate) != nullptr) {
     const auto most = static_cast<std::uint64_t>(packet->size - packet->begin - 1);
     const std::uint64_t stays = 1 + faults_.draw(fault_kind::truncate, most);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -71,7 +72,7 @@ class world_reader {
     if (auto wrong = route_.finish(world_.lidar)) return *std::move(wrong);
     world_.path = std::move(route_).path();
     if (!world_.path.empty()) world_.lidar = world_.path.front().robot.at;
-    const pose lidar = placed(world_.lidar, world_.mount);
+    const pose lidar = placed(world_.lidar, cable_pose(world_.mounted_at));
     for (std::size_t i = 0; i < world_.walls.size(); ++i) {
       if (distance_m(world_.walls[i], lidar) < min_clearance_m) {
         return world_error{line_of_wall_[i], "the wall is within 1 cm of the lidar"};
@@ -131,10 +132,31 @@ class world_reader {
     return read_pose(rest, "lidar x y heading_deg", world_.lidar);
   }
 
+  // Worlds made before had the direction of the cable here, in a line without commas.
+  static std::optional<std::string> old_mount(const std::string& first, std::string_view rest) {
+    pose cable;
+    const std::string line = first + std::string(rest);
+    if (auto wrong = read_pose(line, "mount X,Y,DEG", cable)) return wrong;
+    std::string_view words = rest;
+    const std::string_view y = next_word(words);
+    std::array<char, 32> looks{};
+    const auto end = std::to_chars(looks.begin(), looks.end(), cable_pose(cable).heading_deg).ptr;
+    return "'mount x y heading_deg' gave the direction of the cable. It is now where the lidar "
+           "looks, as for "
+           "--mount: write 'mount " +
+           first + "," + std::string(y) + "," + std::string(looks.begin(), end) + "'";
+  }
+
   std::optional<std::string> take_mount(std::string_view rest) {
     if (has_mount_) return "there is a second line 'mount'; a world has one lidar";
     has_mount_ = true;
-    return read_pose(rest, "mount x y heading_deg", world_.mount);
+    std::string place(next_word(rest));
+    if (place.find(',') == std::string::npos) return old_mount(place, rest);
+    if (place.ends_with(",down")) return "a simulated lidar cannot be mounted top down";
+    if (!next_word(rest).empty())
+      return "expected 'mount X,Y,DEG' without blanks between the numbers";
+    std::replace(place.begin(), place.end(), ',', ' ');
+    return read_pose(place, "mount X,Y,DEG", world_.mounted_at);
   }
 
   world world_;

@@ -28,7 +28,7 @@ wall mirrored_at(const pose& lidar, wall w) noexcept {
 }
 
 world fixed_world(const world& scene, bool is_mirrored) {
-  world fixed{{}, placed(scene.lidar, scene.mount)};
+  world fixed{{}, placed(scene.lidar, cable_pose(scene.mounted_at))};
   if (!scene.path.empty()) return fixed;
   for (const wall& w : scene.walls) {
     fixed.walls.push_back(is_mirrored ? mirrored_at(fixed.lidar, w) : w);
@@ -103,8 +103,8 @@ struct G4LIDAR_HIDDEN scene_caster::way_of_beam {
 
 scene_caster::scene_caster(const world& scene)
     : path_(scene.path),
-      mount_(scene.mount),
-      fixed_(placed(scene.lidar, scene.mount)),
+      cable_(cable_pose(scene.mounted_at)),
+      fixed_(placed(scene.lidar, cable_)),
       caster_(fixed_world(scene, false)),
       mirrored_caster_(fixed_world(scene, true)),
       walls_(path_.empty() ? std::vector<wall>{} : scene.walls),
@@ -115,7 +115,7 @@ scene_caster::scene_caster(const world& scene)
 }
 
 pose scene_caster::lidar_at(std::int64_t time_ns) const noexcept {
-  return path_.empty() ? fixed_ : placed(robot_at(path_, time_ns).at, mount_);
+  return path_.empty() ? fixed_ : placed(robot_at(path_, time_ns).at, cable_);
 }
 
 std::optional<sighting> scene_caster::cast_at_walls(double first_level_deg,

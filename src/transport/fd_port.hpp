@@ -30,7 +30,9 @@ class waker {
   /// *Any thread*, and a signal handler.
   void wake() noexcept;
 
-  /// Whether there was a wake(); resets it.
+  /// Whether there was a wake().
+  [[nodiscard]] bool is_woken() const noexcept { return is_woken_.load(std::memory_order_relaxed); }
+  /// The same; resets it.
   [[nodiscard]] bool take() noexcept;
 
   enum class ended : std::uint8_t { ready, timed_out, woken, failed };

@@ -8,8 +8,11 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "fd_port.hpp"
@@ -22,8 +25,16 @@ struct host_and_port {
   std::string port;
 };
 
+/// 1 to 65535, or the name of a service, which begins with a letter.
+bool is_port(std::string_view text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (!text.empty() && is_letter(text.front())) return true;
+  std::uint16_t number = 0;
+  const auto [end, wrong] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return wrong == std::errc() && end == text.data() + text.size() && number > 0;
+}
+
 std::optional<host_and_port> parse(std::string_view address) {
-  if (address.starts_with("tcp:")) address.remove_prefix(4);
   const std::size_t colon = address.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;
   std::string_view host = address.substr(0, colon);
@@ -33,7 +44,7 @@ std::optional<host_and_port> parse(std::string_view address) {
   } else if (host.find(':') != std::string_view::npos) {
     return std::nullopt;  // an IPv6 address without brackets: the last colon is ambiguous
   }
-  if (host.empty() || port.empty()) return std::nullopt;
+  if (host.empty() || !is_port(port)) return std::nullopt;
   return host_and_port{std::string(host), std::string(port)};
 }
 
@@ -112,10 +123,11 @@ bool is_our_own(int system_errno) noexcept {
 result<std::unique_ptr<transport>> open_connection(std::string_view address,
                                                    const tcp_options& options,
                                                    const system_calls& calls) {
+  if (address.starts_with("tcp:")) address.remove_prefix(4);
   const auto wanted = parse(address);
   if (!wanted) {
     return failure(task::opening, problem::bad_option,
-                   "tcp:" + std::string(address) + ", not tcp:host:port");
+                   "tcp:" + std::string(address) + ", not tcp:host:port with a port of 1 to 65535");
   }
   std::string name = "tcp:" + wanted->host + ":" + wanted->port;
   const address_list list = addresses_of(*wanted);

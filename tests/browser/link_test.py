@@ -21,6 +21,9 @@ class ReconnectTest(PageTest):
             "the page shows the unplug")
         self.assertGreater(len(why), 5)
         self.assertIn(why, banner)
+        advice = until(lambda: page.text("advice"), "what to do")
+        self.assertIn("plug it in", advice)
+        self.assertNotRegex(advice, "--|command")
         self.assertIn("stale", classes)
         before = page.read("received.scans")
         page.runs()
@@ -121,6 +124,11 @@ class DoctorTest(PageTest):
         self.assertIn(page.text("verdict"), ("warn", "fail"))
         until(lambda: page.read("status.checksum_errors") > 0, "checksum errors")
         self.assertRegex(page.text("numbers"), r"Checksum errors[1-9][0-9]* bytes")
+
+    def test_revolutions_with_a_wrong_crc(self):
+        page = self.open(self.serve(standing("flat.txt", "ct_crc=true&fault=omit*1@4s%2b6ms"))).runs()
+        until(lambda: page.read("status.counts.crc_mismatches"), "a wrong CRC")
+        self.assertRegex(page.text("counts"), r"CRC mismatches[1-9]")
 
     def test_stages_and_evidence(self):
         page = self.open(self.serve(standing("flat.txt"))).runs()

@@ -51,6 +51,38 @@ class RadarTest(PageTest):
         self.assertIn("robot", self.page.text("orientation"))
         self.assertTrue(self.page.element("orientation").is_displayed())
 
+    def texts(self):
+        """Where the texts above the picture are: left, top, right, bottom."""
+        return self.driver.execute_script(
+            """const origin = document.getElementById('points').getBoundingClientRect();
+               return ['pointer', 'measured', 'orientation', 'legend'].map((name) => {
+                 const box = document.getElementById(name).getBoundingClientRect();
+                 return [box.left - origin.left, box.top - origin.top, box.right - origin.left, box.bottom - origin.top];
+               });""")
+
+    def test_labels_of_rings_are_beside_the_texts(self):
+        self.page.keys("r")
+        actions = self.page.pointer()
+        self.page.move_to(actions, 0.5, 0.5)
+        actions.perform()
+        until(lambda: self.page.text("pointer") and self.page.text("measured"), "the texts are shown")
+        shown = 0
+        for keys in ("0", "+", "+", "+", "0", *(Keys.ARROW_UP,) * 6, "0", *(Keys.ARROW_DOWN,) * 6, Keys.ARROW_LEFT):
+            frames = self.page.read("frames.count")
+            self.page.keys(keys)
+            until(lambda: self.page.read("frames.count") > frames + 1, "the picture is drawn")
+            for label in self.page.read("labels"):
+                right, bottom = label["left"] + label["width"], label["top"] + label["height"]
+                shown += 1
+                for box in self.texts():
+                    is_apart = right <= box[0] or label["left"] >= box[2] or bottom <= box[1] or label["top"] >= box[3]
+                    self.assertTrue(is_apart, f"{label} and {box} after {keys!r}")
+        self.assertGreater(shown, 30)
+
+    def test_legend_and_name_are_explained(self):
+        self.assertRegex(self.page.text("legend"), "(?s)Colour: range.*0.*16 m")
+        self.assertRegex(self.page.text("device"), "^G4, firmware ")
+
     def test_ruler(self):
         self.page.whole_scan()
         self.page.keys("f", "r")

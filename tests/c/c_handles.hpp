@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "support/patience.hpp"
+
 namespace g4lidar_c_test {
 
 /// Releases a handle with `Free`.
@@ -70,7 +72,7 @@ inline const g4lidar_scan* next_whole(const lidar& from) {
   const g4lidar_scan* scan = nullptr;
   g4lidar_error why;
   for (int i = 0; i < 10; ++i) {
-    if (g4lidar_next_scan(from.get(), 5000, &scan, &why) != G4LIDAR_OK) break;
+    if (g4lidar_next_scan(from.get(), g4lidar::test::patience_ms, &scan, &why) != G4LIDAR_OK) break;
     if (scan->is_whole) return scan;
   }
   ADD_FAILURE() << why.message;

@@ -63,6 +63,24 @@ TEST(CLidar, CountsEveryByte) {
   EXPECT_GT(all->packets, 500U);
 }
 
+TEST(CLidar, CountsTimePacketsAndRevolutionsWithCrc) {
+  const simulator device = simulate("sim:?ct_crc=true&time_packet_ns=100ms&fault=omit*1@6s+6ms");
+  const lidar it = start_on(device);
+  int flagged = 0;
+  const g4lidar_scan* scan = nullptr;
+  while (g4lidar_simulator_get_state(device.get())->time_ns < 9'000'000'000) {
+    ASSERT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
+    flagged += (scan->flags & G4LIDAR_CRC_MISMATCH) != 0;
+  }
+  const g4lidar_counts* all = g4lidar_get_counts(it.get());
+  EXPECT_EQ(flagged, 1);
+  EXPECT_EQ(all->extras.crc_mismatches, 1U);
+  EXPECT_GT(all->extras.crc_matches, 30U);
+  EXPECT_GT(all->extras.time_packets, 60U);
+  EXPECT_EQ(all->bytes, all->parsed_bytes + all->skipped_noise + all->skipped_bad_header +
+                            all->skipped_bad_checksum + all->skipped_truncated + all->held);
+}
+
 TEST(CLidar, KnowsTheDevice) {
   const simulator device = simulate("sim:?serial=2021101000070999&firmware=3.7");
   const lidar it = open_on(device);

@@ -87,6 +87,10 @@ TEST(COptions, ReservedBytesOfPointsAreChecked) {
   expect_reserved_is_checked<g4lidar_outlier_options>(
       g4lidar_outlier_options_init,
       [&](auto* options) { return g4lidar_mark_isolated(&point, 1, options, nullptr); });
+  g4lidar_near_history history{};
+  expect_reserved_is_checked<g4lidar_near_options>(g4lidar_near_options_init, [&](auto* options) {
+    return g4lidar_mark_near(&point, 1, &history, options, nullptr);
+  });
 }
 
 // A recording of one revolution.
@@ -152,6 +156,13 @@ TEST(COptions, ReservedBytesOfRecordingsAreChecked) {
         g4lidar_lidar* made = nullptr;
         const int code = g4lidar_open_recording(path.c_str(), options, nullptr, &made, nullptr);
         g4lidar_free(made);
+        return code;
+      });
+  expect_reserved_is_checked<g4lidar_reader_options>(
+      g4lidar_reader_options_init, [&](auto* options) {
+        g4lidar_reader* made = nullptr;
+        const int code = g4lidar_reader_open_with(path.c_str(), options, &made, nullptr);
+        g4lidar_reader_free(made);
         return code;
       });
 }

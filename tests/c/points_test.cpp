@@ -165,6 +165,46 @@ TEST_F(CFilter, RefusesImpossibleOptions) {
   EXPECT_EQ(count, 7U);
 }
 
+TEST(CPoints, NoReturnAndTooNear_AreWhatTheOptionsSet) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  // A return at 0.4 m; the same beam without return, whose direction is 3.1 degrees less; another one.
+  std::vector<g4lidar_point> points{at(90.0F, 400.0F), at(86.9F, 0.0F), at(180.0F, 0.0F)};
+  points[1].revolution = points[2].revolution = 1;
+  g4lidar_near_history history{};
+  std::size_t marked = 0;
+  ASSERT_EQ(g4lidar_mark_near(points.data(), 3, &history, nullptr, &marked), G4LIDAR_OK);
+  EXPECT_EQ(marked, 1U);
+  EXPECT_EQ(points[1].flags, G4LIDAR_NO_RETURN | G4LIDAR_MAY_BE_TOO_NEAR);
+  EXPECT_EQ(points[2].flags, G4LIDAR_NO_RETURN);
+  g4lidar_grid_options options;
+  g4lidar_grid_options_init(&options, sizeof options);
+  options.frame = G4LIDAR_VENDOR;
+  std::vector<float> ranges(4);
+  const auto fill = [&] {
+    return g4lidar_fill_grid(&points[1], 2, &options, ranges.data(), ranges.size());
+  };
+  ASSERT_EQ(fill(), G4LIDAR_OK);
+  EXPECT_TRUE(std::isnan(ranges[1]));
+  EXPECT_EQ(ranges[2], infinity);
+  options.no_return = G4LIDAR_NO_RETURN_AS_MAX;
+  options.near_is_minus_infinity = 1;
+  ASSERT_EQ(fill(), G4LIDAR_OK);
+  EXPECT_EQ(ranges[1], -infinity);
+  EXPECT_EQ(ranges[2], 16.38375F);
+  options.no_return = G4LIDAR_NO_RETURN_AS_NAN;
+  ASSERT_EQ(fill(), G4LIDAR_OK);
+  EXPECT_TRUE(std::isnan(ranges[2]));
+  options.no_return = 3;
+  EXPECT_EQ(fill(), G4LIDAR_BAD_ARGUMENT);
+  g4lidar_near_options limits;
+  g4lidar_near_options_init(&limits, sizeof limits);
+  limits.shortest_mm = 100.0F;
+  ASSERT_EQ(g4lidar_mark_near(points.data(), 3, &history, &limits, &marked), G4LIDAR_OK);
+  EXPECT_EQ(marked, 0U) << "400 mm is not near";
+  limits.shortest_mm = 0.0F;
+  EXPECT_EQ(g4lidar_mark_near(points.data(), 3, &history, &limits, &marked), G4LIDAR_BAD_ARGUMENT);
+}
+
 TEST(COutliers, MarkSingleReturnsAndThoseBetweenSurfaces) {
   // A wall 4 m away; one return in the air; later a return between 2 m and 4 m.
   std::vector<g4lidar_point> points;

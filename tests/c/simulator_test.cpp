@@ -15,6 +15,7 @@
 namespace {
 
 using namespace g4lidar_c_test;
+using g4lidar::test::patience_ms;
 
 constexpr std::int64_t second = 1'000'000'000;
 
@@ -246,7 +247,8 @@ TEST(CDiscovery, RealTimeLidarIsListedFoundSelectedAndWoken) {
   const g4lidar_scan* scan = nullptr;
   // Poll until the first scan.
   int code = G4LIDAR_TIMEOUT;
-  for (int i = 0; i < 1000 && code == G4LIDAR_TIMEOUT; ++i) {
+  const auto end = std::chrono::steady_clock::now() + g4lidar::test::patience;
+  while (code == G4LIDAR_TIMEOUT && std::chrono::steady_clock::now() < end) {
     pollfd waiting{g4lidar_descriptor(it.get()), POLLIN, 0};
     ASSERT_GE(waiting.fd, 0);
     ASSERT_GE(::poll(&waiting, 1, g4lidar_poll_timeout_ms(it.get())), 0);
@@ -255,7 +257,7 @@ TEST(CDiscovery, RealTimeLidarIsListedFoundSelectedAndWoken) {
   ASSERT_EQ(code, G4LIDAR_OK) << why.message;
   EXPECT_GT(scan->point_count, 1000U);
   ASSERT_EQ(g4lidar_simulator_unplug(device.get()), G4LIDAR_OK);
-  while (code == G4LIDAR_OK) code = g4lidar_next_scan(it.get(), 5000, &scan, &why);
+  while (code == G4LIDAR_OK) code = g4lidar_next_scan(it.get(), patience_ms, &scan, &why);
   EXPECT_EQ(code, G4LIDAR_GONE);
   EXPECT_EQ(why.is_fatal, 1);
 }
@@ -271,7 +273,7 @@ TEST(CRealTime, AnotherThreadWakesAWaitingCall) {
     g4lidar_wake(it.get());
   });
   const g4lidar_scan* scan = nullptr;
-  EXPECT_EQ(g4lidar_next_scan(it.get(), 60'000, &scan, &why), G4LIDAR_CANCELLED);
+  EXPECT_EQ(g4lidar_next_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_CANCELLED);
   other.join();
 }
 

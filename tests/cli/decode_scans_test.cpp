@@ -104,6 +104,9 @@ TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {
   expected["responses"] = 1;
   expected["points"] = 11;
   expected["suspect"] = 1;
+  expected["time_packets"] = 0;
+  expected["crc_matches"] = 0;
+  expected["crc_mismatches"] = 0;
   expected["skipped"]["noise"] = 6;
   expected["skipped"]["bad_header"] = 4;
   expected["skipped"]["bad_checksum"] = cut_off + 14;

@@ -187,10 +187,10 @@ TEST(Decode, TimeBeginsWithTheFirstPoint) {
   EXPECT_EQ(fields_of(lines[2])[3], "111111");
 }
 
-// Each first-level angle there is, each with a far, a near and an empty sample.
+// Each first-level angle there is, each with far, near and empty samples.
 TEST(Decode, AnglesAreRightAndBelow360AllAround) {
   std::string recording;
-  const std::vector<std::uint16_t> raws{0, 1, 400, 621, 622, 1120, 65535};
+  const std::vector<std::uint16_t> raws{0, 1, 3, 4, 400, 621, 622, 1120, 65535};
   for (int angle = 0; angle < 360 * 64; ++angle) {
     recording += cli::packet(angle / 64.0, angle / 64.0, raws);
   }
@@ -198,7 +198,8 @@ TEST(Decode, AnglesAreRightAndBelow360AllAround) {
   ASSERT_EQ(lines.size(), 1U + 360U * 64U * raws.size());
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const double first_level_deg = static_cast<double>((i - 1) / raws.size()) / 64.0;
-    const double range_mm = raws[(i - 1) % raws.size()] / 4.0;
+    const int raw = raws[(i - 1) % raws.size()];
+    const double range_mm = raw < 4 ? 0.0 : raw / 4.0;  // the lower two bits alone are flags
     const double angle_deg = std::stod(fields_of(lines[i])[1]);
     const double off = std::remainder(angle_deg - formula_deg(first_level_deg, range_mm), 360.0);
     ASSERT_LT(std::abs(off), 1e-4) << lines[i];

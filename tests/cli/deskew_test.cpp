@@ -23,7 +23,7 @@ class Deskew : public cli::scratch {
     // A room of 8 by 6 m, and a lidar that looks ahead.
     cli::write_file(path("room.txt"),
                     "wall -4 -3 4 -3\nwall 4 -3 4 3\nwall 4 3 -4 3\nwall -4 3 -4 -3\n"
-                    "mount 0 0 180\nlidar 0 0 0\ndrive forward 2 1\ndrive turn 180 90\n");
+                    "mount 0,0,0\nlidar 0 0 0\ndrive forward 2 1\ndrive turn 180 90\n");
     const outcome made = run({"sim", "--seconds", "6", "--world", path("room.txt"), "--odometry",
                               path("way.odo"), "-o", path("way.bin")});
     ASSERT_EQ(made.code, 0) << made.err;
@@ -31,9 +31,9 @@ class Deskew : public cli::scratch {
   /// How far from the walls the points are, in metres: the 90th percentile. The pose of each revolution is that in
   /// the TUM file; the points are those of the csv file.
   double off_the_walls(const std::vector<std::string>& options) {
-    std::vector<std::string> words{
-        "convert", path("way.bin"), path("way.csv"), "--frame",    "robot",        "--unit",
-        "m",       "--range",       "0.1:",          "--odometry", path("way.odo")};
+    std::vector<std::string> words{"convert", path("way.bin"), path("way.csv"), "--force",
+                                   "--frame", "robot",         "--unit",        "m",
+                                   "--range", "0.1:",          "--odometry",    path("way.odo")};
     words.insert(words.end(), options.begin(), options.end());
     const outcome done = run(words);
     EXPECT_EQ(done.code, 0) << done.err;

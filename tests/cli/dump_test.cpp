@@ -67,9 +67,9 @@ TEST(Dump, Metres) {
   const std::string csv = run({"dump", "-", "-f", "csv", "--unit", "m", "-q"}, all_around()).out;
   EXPECT_THAT(csv, StartsWith("scan,angle_deg,range_m,time_ns\n"));
   EXPECT_THAT(csv, HasSubstr(",16.38375,"));
-  EXPECT_THAT(csv, HasSubstr(",0.00025,"));
+  EXPECT_THAT(csv, HasSubstr(",0.00125,"));
   const std::string first =
-      lines_of(run({"dump", "-", "-f", "jsonl", "--unit", "m", "-q"}, all_around()).out).at(3);
+      lines_of(run({"dump", "-", "-f", "jsonl", "--unit", "m", "-q"}, all_around()).out).at(4);
   EXPECT_EQ(json::parse(first).at("range_m"), 0.28);
   EXPECT_THAT(run({"dump", "-", "--unit", "m", "-q"}, all_around()).out, HasSubstr("  0.28000  "));
 }

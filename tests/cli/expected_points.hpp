@@ -43,7 +43,8 @@ inline std::vector<expected_point> points_in(const std::string& bytes) {
     const double last = (word(at + 6) >> 1) / 64.0;
     const double width = std::fmod(last - first + 360.0, 360.0);
     for (int i = 0; i < count; ++i) {
-      const double range_mm = word(at + 10 + 2 * static_cast<std::size_t>(i)) / 4.0;
+      const int raw = word(at + 10 + 2 * static_cast<std::size_t>(i));
+      const double range_mm = raw < 4 ? 0.0 : raw / 4.0;  // less is flags without a return
       const double level = first + (count > 1 ? width / (count - 1) * i : 0.0);
       const double slope = range_mm == 0.0 ? -21.8 / 155.3  // as from infinitely far away
                                            : 21.8 * (155.3 - range_mm) / (155.3 * range_mm);

@@ -111,10 +111,12 @@ TEST_F(Failure, WrongCommandLine) {
     EXPECT_THAT(done.err, HasSubstr("See: g4-dump"));
     EXPECT_EQ(cli::lines_of(done.err).size(), 1U);
   };
-  expect_usage({"help", "scam"}, "'scam' is not a command. See: g4-dump --help");
+  expect_usage({"help", "scam"}, "did you mean 'scan'? See: g4-dump --help");
   expect_usage({"encode"}, "unknown command 'encode'; commands are: list, watch, ");
-  expect_usage({"--colour"}, "unknown option '--colour'. See: g4-dump dump --help");
-  expect_usage({"decode", "--colour"}, "unknown option '--colour'. See: g4-dump decode --help");
+  expect_usage({"--colour"},
+               "unknown option '--colour'; did you mean '--color'? See: g4-dump dump --help");
+  expect_usage({"decode", "--colour"},
+               "unknown option '--colour'; did you mean '--color'? See: g4-dump decode --help");
   expect_usage({"decode", "--colour", "x", "y"}, "unknown option '--colour'");
   expect_usage({"decode", "one", "two", "three"}, "unexpected argument 'two'");
   expect_usage({"sim", "room.bin"}, "unexpected argument 'room.bin'");
@@ -144,7 +146,8 @@ TEST_F(Failure, WrongCommandLine) {
 }
 
 TEST_F(Failure, InvalidSource) {
-  expect_sentence(run({"info", "serial:111"}), 2, "SOURCE or an option cannot have this value. ");
+  expect_sentence(run({"info", "serial:111"}), 2, "this does not name a lidar. ");
+  expect_sentence(run({"info", "serial:111"}), 2, "Without SOURCE the only G4 is opened");
 }
 
 TEST_F(Failure, WrongCommandLineTouchesNoFile) {

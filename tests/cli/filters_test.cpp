@@ -52,7 +52,9 @@ std::vector<double> walls_without(const std::vector<double>& left_out) {
   return ranges;
 }
 
-TEST(Filters, SpeckleAndEdges_OfPoints) {
+class Filters : public cli::scratch_here {};
+
+TEST_F(Filters, SpeckleAndEdges_OfPoints) {
   ASSERT_EQ(ranges_with({}).size(), 121U);
   EXPECT_EQ(ranges_with({"--edges"}), walls_without({3000}));
   EXPECT_EQ(ranges_with({"--speckle"}), walls_without({1000, 3000})) << "it is alone, too";
@@ -64,19 +66,19 @@ TEST(Filters, SpeckleAndEdges_OfPoints) {
   EXPECT_EQ(ranges_with({"--edges=angle=2,window=2"}), walls_without({3000}));
 }
 
-TEST(Filters, TheHelpShowsTheirOptionalValues) {
+TEST_F(Filters, TheHelpShowsTheirOptionalValues) {
   const std::string help = run({"dump", "--help"}).out;
   EXPECT_THAT(help, HasSubstr("\n  --speckle[=LIMITS]                Leave out returns"));
   EXPECT_THAT(help, HasSubstr("\n  --edges[=LIMITS]                  Leave out veiling points"));
 }
 
-TEST(Filters, OptionsBeforeTheSource_DoNotTakeIt) {
+TEST_F(Filters, OptionsBeforeTheSource_DoNotTakeIt) {
   EXPECT_EQ(run({"dump", "--speckle", "-", "-f", "csv", "-q"}, two_walls()).out,
             run({"dump", "-", "--speckle", "-f", "csv", "-q"}, two_walls()).out);
 }
 
 // The near thing is at 105.6 degrees less a correction of 6.8 degrees: 81 degrees to the left.
-TEST(Filters, Mask) {
+TEST_F(Filters, Mask) {
   write_file("mask.txt", "# the near thing\npolygon 0 0.9  0.3 0.9  0.3 1.1  -0.3 1.1 -0.3 0.9\n");
   EXPECT_EQ(ranges_with({"--mask", "mask.txt"}), walls_without({1000}));
   EXPECT_EQ(ranges_with({"--mask", "mask.txt", "--frame", "robot"}), walls_without({1000}));
@@ -99,7 +101,7 @@ std::pair<std::size_t, std::size_t> grid_with(std::vector<std::string> options) 
   return {numbers, free};
 }
 
-TEST(Filters, InAGrid_WhatIsLeftOutIsUnknown) {
+TEST_F(Filters, InAGrid_WhatIsLeftOutIsUnknown) {
   const auto all = grid_with({});
   EXPECT_GT(all.first, 115U);
   const std::pair<std::size_t, std::size_t> two_less{all.first - 2, 0};
@@ -109,7 +111,7 @@ TEST(Filters, InAGrid_WhatIsLeftOutIsUnknown) {
   EXPECT_EQ(grid_with({"--mask", "mask.txt", "--range", "0:16"}).first, all.first - 1);
 }
 
-TEST(Filters, OfConvert) {
+TEST_F(Filters, OfConvert) {
   write_file("walls.bin", two_walls());
   ASSERT_EQ(run({"convert", "walls.bin", "walls.csv", "-q"}).code, 0);
   ASSERT_EQ(run({"convert", "walls.csv", "clean.csv", "--speckle", "-q"}).code, 0);
@@ -120,7 +122,7 @@ TEST(Filters, OfConvert) {
   EXPECT_THAT(refused.err, HasSubstr("--edges"));
 }
 
-TEST(Filters, InvalidValues_AreRefused) {
+TEST_F(Filters, InvalidValues_AreRefused) {
   const auto refused = [](const std::vector<std::string>& options, const std::string& why,
                           int code = 2) {
     std::vector<std::string> arguments{"dump", "-"};

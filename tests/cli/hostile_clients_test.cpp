@@ -21,11 +21,13 @@
 #include <vector>
 
 #include "program.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
 using cli::outcome;
 using cli::run;
+using g4lidar::test::comes_true;
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
@@ -52,11 +54,11 @@ class client {
     const ssize_t count = ::send(socket_, data.data(), data.size(), MSG_NOSIGNAL);
     return count > 0 ? static_cast<std::size_t>(count) : 0;
   }
-  /// Waits for the first bytes; empty where there is none within 10 s.
+  /// Waits for the first bytes; empty where there is none within `patience`.
   [[nodiscard]] std::string receive() const {
     pollfd waiting{socket_, POLLIN, 0};
     char part[256];
-    if (::poll(&waiting, 1, 10'000) <= 0) return {};
+    if (::poll(&waiting, 1, g4lidar::test::patience_ms) <= 0) return {};
     const ssize_t count = ::recv(socket_, part, sizeof part, 0);
     return count > 0 ? std::string(part, static_cast<std::size_t>(count)) : std::string();
   }
@@ -77,10 +79,10 @@ class HostileClient : public cli::scratch {
     bridge_.emplace(std::vector<std::string>{"sim", "--tcp", "0"},
                     cli::streams{{}, {}, cli::stream::of_file(path("err"))});
     std::string output;
-    for (int i = 0; i < 4'000 && !output.ends_with('\n'); ++i) {
+    static_cast<void>(comes_true([&] {
       if (fs::exists(path("err"))) output = cli::read_file(path("err"));
-      std::this_thread::sleep_for(5ms);
-    }
+      return output.ends_with('\n');
+    }));
     const std::size_t colon = output.rfind(':');
     ASSERT_NE(colon, std::string::npos) << output;
     port_ = static_cast<std::uint16_t>(std::stoi(output.substr(colon + 1)));
@@ -91,11 +93,11 @@ class HostileClient : public cli::scratch {
   /// The next client gets the device, and points of it.
   void expect_it_serves() {
     // It refuses others until it has read all that the last one has sent before its end.
-    outcome info = run({"info", source()});
-    for (int i = 0; i < 200 && info.code == 9; ++i) {
-      std::this_thread::sleep_for(50ms);
+    outcome info;
+    static_cast<void>(comes_true([&] {
       info = run({"info", source()});
-    }
+      return info.code != 9;
+    }));
     EXPECT_EQ(info.code, 0) << info.err;
     EXPECT_THAT(info.out, HasSubstr("serial      2021101000070073\n"));
     const outcome points = run({"dump", source(), "-n", "2000", "-f", "csv"});
@@ -116,13 +118,8 @@ TEST_F(HostileClient, FloodsItWithCommands) {
     const client one(port_);
     ASSERT_TRUE(one.is_connected());
     std::size_t sent = 0;
-    const auto end = std::chrono::steady_clock::now() + 20s;
-    while (sent < 4'000'000 && std::chrono::steady_clock::now() < end) {
-      const std::size_t count = one.send(flood);
-      if (count == 0) std::this_thread::sleep_for(1ms);
-      sent += count;
-    }
-    EXPECT_GE(sent, 4'000'000U) << "it takes what it is sent";
+    EXPECT_TRUE(comes_true([&] { return (sent += one.send(flood)) >= 4'000'000; }))
+        << "it takes what it is sent: " << sent;
   }
   expect_it_serves();
 }

@@ -8,14 +8,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <csignal>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "program.hpp"
 #include "recording.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -23,20 +22,16 @@ using cli::outcome;
 using cli::program;
 using cli::run;
 using cli::stream;
+using g4lidar::test::comes_true;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 class Pipe : public cli::scratch {};
 
-// Whether it lets go of its input, which nobody closes, within 20 seconds.
+// Whether it lets go of its input, which nobody closes, within `patience`.
 bool ends_with_open_input(const program& started) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!started.input_is_dead()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return true;
+  return comes_true([&] { return started.input_is_dead(); });
 }
 
 TEST_F(Pipe, IsFollowedWhileItIsBeingWritten) {
@@ -108,6 +103,7 @@ TEST_F(Pipe, Interrupted_WritesItsDataAndTheCounts) {
     EXPECT_EQ(done.code, 128 + signal);
     EXPECT_EQ(cli::lines_of(done.out).size(), 1U + 361U);
     EXPECT_EQ(done.err, R"({"bytes":827,"packets":10,"responses":0,"points":361,"suspect":0,)"
+                        R"("time_packets":0,"crc_matches":0,"crc_mismatches":0,)"
                         R"("skipped":{"noise":0,"bad_header":0,"bad_checksum":0,"truncated":5}})"
                         "\n");
   }
@@ -121,9 +117,10 @@ TEST_F(Pipe, Interrupted_KeepsTheFileWithTheDataSoFar) {
   const int feeder = ::open(live.c_str(), O_WRONLY);
   const std::string data = cli::zero(0) + cli::turn();
   ASSERT_EQ(::write(feeder, data.data(), data.size()), static_cast<ssize_t>(data.size()));
-  for (int left = -1; left != 0; ::ioctl(feeder, FIONREAD, &left)) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // until it has read everything
-  }
+  ASSERT_TRUE(comes_true([&] {
+    int left = -1;
+    return ::ioctl(feeder, FIONREAD, &left) == 0 && left == 0;
+  })) << "it has not read everything";
   EXPECT_FALSE(std::filesystem::exists(out)) << "it appears when it is finished";
   started.send(SIGINT);
   EXPECT_EQ(started.wait().code, 130);
@@ -135,7 +132,7 @@ TEST_F(Pipe, Interrupted_KeepsTheFileWithTheDataSoFar) {
 TEST_F(Pipe, InterruptedBeforeAPacket_LeavesNoFile) {
   program started({"decode", "-", "-o", path("out.csv")});
   started.feed("boot text");
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ASSERT_TRUE(comes_true([&] { return started.has_read_its_input(); }));
   started.send(SIGINT);
   EXPECT_EQ(started.wait().code, 130);
   EXPECT_EQ(listing(), "");
@@ -143,7 +140,7 @@ TEST_F(Pipe, InterruptedBeforeAPacket_LeavesNoFile) {
 
 TEST_F(Pipe, InterruptedSimulation_LeavesNoFile) {
   program started({"sim", "--seconds", "100000000", "-o", path("x"), "--truth", path("y")});
-  while (listing().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_TRUE(comes_true([&] { return !listing().empty(); }));
   started.send(SIGINT);
   EXPECT_EQ(started.wait().code, 130);
   EXPECT_EQ(listing(), "");

@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,12 +15,18 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
+#include "support/patience.hpp"
+
 namespace cli {
 namespace {
+
+/// Ten times the longest run on an idle machine: 20 s of a simulated lidar. The time limit of a test is longer.
+constexpr std::chrono::seconds longest_run{210};
 
 [[noreturn]] void give_up(const std::string& what) { throw std::runtime_error(what); }
 
@@ -57,9 +64,14 @@ int lead(posix_spawn_file_actions_t& actions, const stream& where, int number,
 
 program::program(const std::vector<std::string>& arguments, const streams& leading) {
   ::signal(SIGPIPE, SIG_IGN);
-  std::string name = G4_DUMP;
-  std::vector<std::string> words = arguments;
-  std::vector<char*> argv{name.data()};
+  const std::string name = G4_DUMP;
+  std::vector<std::string> words;
+  if (std::getenv("VALGRIND") != nullptr) {
+    words = {"valgrind", "--quiet", "--error-exitcode=9", "--trace-children=yes"};
+  }
+  words.push_back(name);
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;
@@ -75,7 +87,7 @@ program::program(const std::vector<std::string>& arguments, const streams& leadi
   for (const int signal : {SIGPIPE, SIGINT, SIGTERM, SIGHUP}) sigaddset(&defaults, signal);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-  const int error = posix_spawn(&pid_, name.c_str(), &actions, &attributes, argv.data(), environ);
+  const int error = posix_spawnp(&pid_, argv[0], &actions, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   for (const int end : theirs) ::close(end);
@@ -108,7 +120,19 @@ bool program::input_is_dead() const {
   pollfd end{in_, 0, 0};
   return ::poll(&end, 1, 0) > 0 && (end.revents & POLLERR) != 0;
 }
+bool program::has_read_its_input() const {
+  int left = -1;
+  return ::ioctl(in_, FIONREAD, &left) == 0 && left == 0;
+}
 void program::send(int signal) const { ::kill(pid_, signal); }
+
+bool program::handles(int signal) const {
+  const std::string status = read_file("/proc/" + std::to_string(pid_) + "/status");
+  const std::string name = "SigCgt:";  // a mask in hexadecimal digits
+  const std::size_t at = status.find(name);
+  return at != std::string::npos &&
+         (std::stoull(status.substr(at + name.size()), nullptr, 16) >> (signal - 1) & 1U) != 0;
+}
 
 bool program::read_some(int timeout_ms) {
   std::array<pollfd, 2> readable{{{out_, POLLIN, 0}, {err_, POLLIN, 0}}};
@@ -126,10 +150,11 @@ bool program::read_some(int timeout_ms) {
 }
 
 std::string program::read_until(std::string_view text) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  const auto end = std::chrono::steady_clock::now() + g4lidar::test::patience;
   while (so_far_.out.find(text) == std::string::npos) {
     if (std::chrono::steady_clock::now() > end) {
-      ADD_FAILURE() << "not in its output after 20 s: " << text;
+      ADD_FAILURE() << "not in its output after " << g4lidar::test::patience.count()
+                    << " s: " << text;
       break;
     }
     if (!read_some(100)) break;
@@ -139,10 +164,10 @@ std::string program::read_until(std::string_view text) {
 
 outcome program::wait() {
   close_input();
-  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  const auto end = std::chrono::steady_clock::now() + longest_run;
   while (read_some(100)) {
     if (std::chrono::steady_clock::now() < end) continue;
-    ADD_FAILURE() << "it does not come to an end";
+    ADD_FAILURE() << "it does not end";
     ::kill(pid_, SIGKILL);
     break;
   }

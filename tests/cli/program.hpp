@@ -41,7 +41,8 @@ struct outcome {
   long max_rss_kib = 0;  ///< The most memory it had.
 };
 
-/// The program while it runs. Killed if nobody waits for it.
+/// The program while it runs. Killed if nobody waits for it. With VALGRIND in the environment under valgrind: its exit
+/// code is 9 after an error.
 class program {
  public:
   explicit program(const std::vector<std::string>& arguments, const streams& leading = {});
@@ -54,12 +55,16 @@ class program {
   void close_input();
   /// Nobody will ever read its standard input again.
   [[nodiscard]] bool input_is_dead() const;
+  /// It has read all that it was fed.
+  [[nodiscard]] bool has_read_its_input() const;
   /// Nobody reads its standard output any more.
   void close_output();
   void send(int signal) const;
-  /// Reads its standard output until `text` is there; all that was read, or fails after 20 seconds.
+  /// It has begun to handle this signal.
+  [[nodiscard]] bool handles(int signal) const;
+  /// Reads its standard output until `text` is there; all that was read, or fails after `patience`.
   std::string read_until(std::string_view text);
-  /// Closes its input, reads everything and waits for the end; fails after two minutes.
+  /// Closes its input, reads everything and waits for the end; fails after 210 seconds.
   outcome wait();
 
  private:
@@ -85,6 +90,16 @@ class scratch : public ::testing::Test {
   [[nodiscard]] std::string listing() const;
 
   std::filesystem::path directory_;
+};
+
+/// The same, as the current directory: names of files need no path.
+class scratch_here : public scratch {
+ protected:
+  scratch_here() { std::filesystem::current_path(directory_); }
+  ~scratch_here() override { std::filesystem::current_path(before_); }
+
+ private:
+  std::filesystem::path before_ = std::filesystem::current_path();
 };
 
 [[nodiscard]] std::string read_file(const std::string& name);

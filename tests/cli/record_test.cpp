@@ -4,35 +4,30 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <algorithm>
-#include <array>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <memory>
 #include <regex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "program.hpp"
 #include "recorded.hpp"
 #include "recording.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
 using cli::line_with;
 using cli::outcome;
+using cli::points_of;
 using cli::program;
 using cli::record_scans;
 using cli::run;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-using namespace std::chrono_literals;
 namespace fs = std::filesystem;
-using steady = std::chrono::steady_clock;
 
 class Record : public cli::scratch {
  protected:
@@ -46,13 +41,6 @@ class Record : public cli::scratch {
     const outcome done = run(words);
     EXPECT_EQ(done.code, code) << done.err;
     EXPECT_THAT(done.err, HasSubstr(why));
-  }
-  static std::vector<std::string> points_of(const std::string& file,
-                                            const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{"replay",           file, "-f", "csv", "--time", "mono",
-                                   "--playback-speed", "max"};
-    words.insert(words.end(), more.begin(), more.end());
-    return cli::lines_of(run(words).out);
   }
 };
 
@@ -143,7 +131,9 @@ TEST_F(Record, Pipe_CanBeRecorded) {
 TEST_F(Record, Signal_CompletesTheFile) {
   program interrupted({"record", "sim:", path("int.mcap")});
   program terminated({"record", "sim:", path("term.mcap")});
-  std::this_thread::sleep_for(2s);
+  for (const char* const name : {"int.mcap", "term.mcap"}) {
+    ASSERT_TRUE(g4lidar::test::comes_true([&] { return points_of(path(name)).size() > 1; }));
+  }
   interrupted.send(SIGINT);
   terminated.send(SIGTERM);
   for (program* const each : {&interrupted, &terminated}) {
@@ -153,31 +143,6 @@ TEST_F(Record, Signal_CompletesTheFile) {
   }
   expect_verified("int.mcap");
   expect_verified("term.mcap");
-}
-
-// The time between the last point in a file and the moment when its program was killed: the 75th percentile
-// of four recordings, side by side.
-TEST_F(Record, Killed_LosesAtMostASecond) {
-  std::vector<std::string> names;
-  std::vector<std::unique_ptr<program>> started;
-  for (const std::string name : {"a.mcap", "b.mcap", "c.mcap", "d.mcap"}) {
-    names.push_back(path(name));
-    started.push_back(
-        std::make_unique<program>(std::vector<std::string>{"record", "sim:", names.back()}));
-  }
-  std::this_thread::sleep_for(3s);
-  std::vector<double> lost_s;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::chrono::nanoseconds killed = steady::now().time_since_epoch();
-    started[i]->send(SIGKILL);
-    EXPECT_EQ(started[i]->wait().signal, SIGKILL);
-    const auto rows = points_of(names[i]);
-    ASSERT_GT(rows.size(), 1U);
-    lost_s.push_back(static_cast<double>(killed.count() - cli::number_in(rows.back(), 3)) / 1e9);
-    expect_refused({"replay", "--verify", names[i]}, 10, "was cut off");
-  }
-  std::sort(lost_s.begin(), lost_s.end());
-  EXPECT_LE(lost_s[2], 1.0);
 }
 
 TEST_F(Record, FilesAreRotated) {
@@ -192,7 +157,7 @@ TEST_F(Record, FilesAreRotated) {
   std::string bytes;
   for (const std::string& name : names) {
     if (name == "day.mcap") continue;
-    ASSERT_EQ(run({"convert", path(name), path("part.bin")}).code, 0);
+    ASSERT_EQ(run({"convert", path(name), path("part.bin"), "--force"}).code, 0);
     bytes += cli::read_file(path("part.bin"));
   }
   EXPECT_GT(bytes.size(), 20'000U);
@@ -239,31 +204,6 @@ TEST_F(Record, FullDisk_EndsItAndKeepsWrittenData) {
 }
 
 class Replay : public Record {};
-
-TEST_F(Replay, TakesAsLongAsItTook) {
-  ASSERT_EQ(record_scans(path("walk.mcap"), 7).code, 0);
-  const auto seconds = [&](const std::string& speed) {
-    const auto begin = steady::now();
-    EXPECT_EQ(run({"replay", path("walk.mcap"), "--playback-speed", speed, "--scans"}).code, 0);
-    return std::chrono::duration<double>(steady::now() - begin).count();
-  };
-  const std::vector<std::string> points = points_of(path("walk.mcap"));
-  const double recorded_s =
-      static_cast<double>(cli::number_in(points.back(), 3) - cli::number_in(points.at(1), 3)) / 1e9;
-  ASSERT_GT(recorded_s, 0.8);
-  const auto median_s = [&](const std::string& speed) {
-    std::array<double, 3> runs{seconds(speed), seconds(speed), seconds(speed)};
-    std::sort(runs.begin(), runs.end());
-    return runs[1];
-  };
-  const double overhead_s = median_s("max");  // to start, to read the file, to end
-  for (const double speed : {2.0, 1.0}) {
-    const double took_s = median_s(std::to_string(speed));
-    EXPECT_GE(took_s, recorded_s / speed);
-    // What was recorded before the first point is played, too.
-    EXPECT_LE(took_s, (recorded_s + 0.3) / speed + overhead_s + 0.3);
-  }
-}
 
 TEST_F(Replay, Loop_DoesNotEnd) {
   ASSERT_EQ(record_scans(path("walk.mcap"), 2).code, 0);

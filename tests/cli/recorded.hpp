@@ -18,6 +18,15 @@ inline outcome record_scans(const std::string& file, int scans,
   return run(words);
 }
 
+/// Its points as rows of csv, below a header, with times of the steady clock.
+inline std::vector<std::string> points_of(const std::string& file,
+                                          const std::vector<std::string>& more = {}) {
+  std::vector<std::string> words{"replay",           file, "-f", "csv", "--time", "mono",
+                                 "--playback-speed", "max"};
+  words.insert(words.end(), more.begin(), more.end());
+  return lines_of(run(words).out);
+}
+
 /// The line of `words` that begins with `begin`; empty where there is none.
 inline std::string line_with(const std::string& words, std::string_view begin) {
   for (const std::string& line : lines_of(words)) {

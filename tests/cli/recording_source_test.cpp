@@ -123,7 +123,7 @@ TEST(NoSource, MissingFileOrPort_IsReported) {
   const outcome other = run({"dump", "nowhere/at-all"});
   EXPECT_EQ(other.code, 3);
   EXPECT_THAT(other.err, StartsWith("g4-dump: there is no port or file 'nowhere/at-all'."));
-  EXPECT_THAT(run({"dump", "/dev/ttyNONE"}).err, HasSubstr("no serial port with a lidar"));
+  EXPECT_THAT(run({"dump", "/dev/ttyNONE"}).err, HasSubstr("this port does not exist"));
 }
 
 // A program that reads the object gets the same error as for every other missing port.

@@ -21,6 +21,7 @@
 
 #include "manager.hpp"
 #include "program.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -108,12 +109,13 @@ class service {
   pid_t pid_ = -1;
 };
 
+/// The path of the lidar has a space: a SOURCE is one word.
 class ServiceUnit : public cli::scratch {
  protected:
   ServiceUnit() {
     fs::create_directory(path("state"));
     ::setenv("STATE_DIRECTORY", path("state").c_str(), 1);
-    ::setenv("SOURCE", path("lidar").c_str(), 1);
+    ::setenv("SOURCE", path("a lidar").c_str(), 1);
     ::setenv("WATCHDOG_USEC", "500000", 1);
   }
   ~ServiceUnit() override {
@@ -136,8 +138,8 @@ TEST_F(ServiceUnit, Command_RecordsAndReportsThatItRuns) {
   EXPECT_NE(options, "");
   ::setenv("OPTIONS", (options + " -q").c_str(), 1);
 
-  cli::program simulator({"sim", "--link", path("lidar")});
-  for (int i = 0; i < 2'000 && !fs::exists(path("lidar")); ++i) std::this_thread::sleep_for(10ms);
+  cli::program simulator({"sim", "--link", path("a lidar")});
+  ASSERT_TRUE(g4lidar::test::comes_true([&] { return fs::exists(path("a lidar")); }));
   const cli::manager systemd(path("notify"));
   service recorder(shell_words(only(unit, "ExecStart"), "serial:2021101000070073"));
   std::vector<std::string> heard;
@@ -150,11 +152,10 @@ TEST_F(ServiceUnit, Command_RecordsAndReportsThatItRuns) {
     return size;
   };
   constexpr std::uintmax_t some_scans = 60'000;
-  for (int i = 0; i < 3'000; ++i) {
-    if (times("READY=1") > 0 && times("WATCHDOG=1") >= 3 && recorded() > some_scans) break;
-    std::this_thread::sleep_for(10ms);
+  EXPECT_TRUE(g4lidar::test::comes_true([&] {
     for (std::string& word : systemd.heard()) heard.push_back(std::move(word));
-  }
+    return times("READY=1") > 0 && times("WATCHDOG=1") >= 3 && recorded() > some_scans;
+  }));
   EXPECT_THAT(heard, Contains("READY=1"));
   EXPECT_GE(times("WATCHDOG=1"), 3);
   const int code = recorder.stop();

@@ -4,14 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "program.hpp"
+#include "support/patience.hpp"
 
 namespace cli {
 
@@ -20,14 +19,7 @@ class simulator {
  public:
   explicit simulator(const std::string& link, const std::vector<std::string>& options = {})
       : served_(arguments(link, options)) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (!std::filesystem::exists(link)) {
-      if (std::chrono::steady_clock::now() > end) {
-        ADD_FAILURE() << "no simulated device at " << link;
-        return;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
+    EXPECT_TRUE(g4lidar::test::comes_true([&] { return std::filesystem::exists(link); })) << link;
   }
 
   /// The commands that it has been sent, a line each, as `sim --log` writes them. It ends.

@@ -44,8 +44,8 @@ TEST_F(Talk, Info_PrintsIdentityAndSettings) {
   EXPECT_THAT(lines_of(done.out),
               ElementsAre("source      " + port(), "model       G4", "serial      2023000000000017",
                           "firmware    3.2", "hardware    3", "sample_rate 8k", "freq        7.0",
-                          "direction   cw", "constant    unknown", "idle        on",
-                          "protection  unknown"));
+                          "direction   cw", "constant    unknown (a G4 cannot be asked for it)",
+                          "idle        on", "protection  unknown (a G4 cannot be asked for it)"));
 }
 
 TEST_F(Talk, Info_AsJson) {
@@ -162,8 +162,8 @@ TEST_F(Talk, Info_MissingAnswer_IsUnknown) {
   const outcome done = run({"info", device.path()});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("sample_rate 9k\n"));
-  EXPECT_THAT(done.out, HasSubstr("direction   unknown\n"));
-  EXPECT_THAT(done.out, HasSubstr("idle        unknown\n"));
+  EXPECT_THAT(done.out, HasSubstr("direction   unknown (no answer)\n"));
+  EXPECT_THAT(done.out, HasSubstr("idle        unknown (no answer)\n"));
 }
 
 // ---- start, stop, restart ----------------------------------------------------------------------

@@ -43,7 +43,7 @@ inline const std::string& all_around() {
   static const std::string bytes = [] {
     std::string made;
     for (int angle = 0; angle < 360 * 64; angle += 7) {
-      made += packet(angle / 64.0, angle / 64.0, {0, 1, 400, 1120, 4000, 64000, 65535});
+      made += packet(angle / 64.0, angle / 64.0, {0, 3, 5, 400, 1120, 4000, 64000, 65535});
     }
     return made;
   }();

@@ -89,8 +89,8 @@ void expect_like_reference(const made::packet& packet, const Form& form, double 
         bound + 1e-4);
     ASSERT_LT(raw_angle_deg(p), 360.0F);
     ASSERT_EQ(static_cast<double>(p.range_mm), expected[i].range_mm);
-    ASSERT_EQ(p.is_no_return(), expected[i].raw == 0);
-    ASSERT_EQ(p.is_too_near(), expected[i].raw != 0 && expected[i].range_mm < 100.0);
+    ASSERT_EQ(p.is_no_return(), expected[i].range_mm == 0.0);
+    ASSERT_EQ(p.is_too_near(), expected[i].range_mm > 0.0 && expected[i].range_mm < 100.0);
     ASSERT_EQ(p.revolution, 3U);
     ASSERT_EQ(p.time_ns, 0);
   }
@@ -143,7 +143,7 @@ TEST(Decode, PacketAcrossTheCircle_IsDecodedCompletely) {
 
 TEST(Decode, OneSampleHasTheFirstAngle) {
   for (const int angle : {0, 1, 500, 22272, 23039}) {
-    for (const unsigned raw : {0U, 1U, 4000U, 65535U}) {
+    for (const unsigned raw : {0U, 1U, 4U, 4000U, 65535U}) {
       expect_all_forms_like_reference(made::zero(angle, static_cast<std::uint16_t>(raw)));
     }
   }
@@ -257,15 +257,34 @@ TEST(Decode, Suspect_IsBackwardsUnlessThroughZero) {
 
 TEST(Decode, FlagsByRange) {
   static_assert(flag_of(0) == point_flags::no_return);
-  static_assert(flag_of(1) == point_flags::too_near);
+  static_assert(flag_of(3) == point_flags::no_return);
+  static_assert(flag_of(4) == point_flags::too_near);
   static_assert(flag_of(399) == point_flags::too_near);
   static_assert(flag_of(400) == point_flags::none);
   static_assert(flag_of(65535) == point_flags::none);
-  for (unsigned raw = 1; raw <= 65535; ++raw) {
+  for (unsigned raw = 4; raw <= 65535; ++raw) {
     const bool near = raw / 4.0 < 100.0;
     ASSERT_EQ(flag_of(static_cast<std::uint16_t>(raw)),
               near ? point_flags::too_near : point_flags::none);
   }
+}
+
+TEST(Decode, SamplesWithFlagsOnly_AreNoReturns) {
+  made::packet packet(0, 6400, 6592, 4);  // 100 to 103 degrees
+  for (std::size_t i = 0; i < 4; ++i) packet.set(i, static_cast<std::uint16_t>(i));
+  const auto expect_no_returns = [&](const auto& form) {
+    storage out;
+    const decoded got = decode(packet.view(), form, 0, out);
+    ASSERT_EQ(got.points.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_EQ(got.points[i].flags, point_flags::no_return) << i;
+      EXPECT_EQ(got.points[i].range_mm, 0.0F) << i;
+      EXPECT_NEAR(got.points[i].angle_deg, 92.0094F + static_cast<float>(i), 1e-4F) << i;
+    }
+  };
+  expect_no_returns(exact_correction{});
+  expect_no_returns(compact_correction{});
+  expect_no_returns(table());
 }
 
 TEST(Decode, FirstSampleOfAZeroPacketStartsTheRevolution) {

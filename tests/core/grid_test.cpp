@@ -55,6 +55,41 @@ TEST(Grid, EveryScan_FillsEveryBin) {
   }
 }
 
+TEST(Grid, NoReturn_BecomesWhatTheOptionSets) {
+  const std::vector<point> points{at(0, 1500), at(90, 0), at(180, 50)};
+  const auto range_at_90 = [&](no_return_as what) {
+    const std::vector<float> ranges_m =
+        grid_of(points, 4, {.to = frame::vendor, .no_return = what});
+    EXPECT_FLOAT_EQ(ranges_m[0], 1.5F);
+    EXPECT_TRUE(std::isnan(ranges_m[2])) << "too near is not a no-return";
+    EXPECT_TRUE(std::isnan(ranges_m[3])) << "nor is a direction without samples";
+    return ranges_m[1];
+  };
+  EXPECT_EQ(range_at_90(no_return_as::infinity), infinity);
+  EXPECT_TRUE(std::isnan(range_at_90(no_return_as::nan)));
+  EXPECT_EQ(range_at_90(no_return_as::max), 16.38375F);
+  EXPECT_EQ(grid_options{}.no_return, no_return_as::infinity);
+}
+
+TEST(Grid, ADirectionThatMayBeTooNear_IsNotFree) {
+  point flagged = at(91, 0);
+  flagged.flags = flagged.flags | point_flags::may_be_too_near;
+  const auto range_of = [&](std::vector<point> points, const grid_options& options) {
+    points.push_back(flagged);
+    return grid_of(points, 4, options)[1];
+  };
+  const grid_options usual{.to = frame::vendor};
+  const grid_options minus{.to = frame::vendor, .near_is_minus_infinity = true};
+  EXPECT_TRUE(std::isnan(range_of({}, usual)));
+  EXPECT_EQ(range_of({}, minus), -infinity);
+  const grid_options max{.to = frame::vendor, .no_return = no_return_as::max};
+  EXPECT_TRUE(std::isnan(range_of({}, max)));
+  EXPECT_EQ(range_of({at(90, 0)}, minus), -infinity)
+      << "it hides no-returns that are nearer to the middle";
+  EXPECT_FLOAT_EQ(range_of({at(80, 1500)}, minus), 1.5F) << "and never a return,";
+  EXPECT_TRUE(std::isnan(range_of({at(80, 50)}, minus))) << "even one that is not reliable";
+}
+
 TEST(Grid, RobotBins_BeginBehindAndGoCounterClockwise) {
   const auto bin_of = [](float direction) {
     return place_in_grid(direction, frame::robot, 360).bin;

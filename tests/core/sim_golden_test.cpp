@@ -120,7 +120,7 @@ wall -4 3 -4 -3
 disc 0.3 2 -1.5
 disc 0.25 -3 2 5 2.5 1.3
 lidar 0 0 12.5
-mount 0.2 -0.05 -30
+mount 0.2,-0.05,150
 drive forward 1 0.8
 drive arc 1.2 100 0.6
 drive turn -200 90

@@ -26,6 +26,7 @@ inline constexpr scan_flags data_lost = scan_flags::data_lost;
 inline constexpr scan_flags turn_short = scan_flags::turn_short;
 inline constexpr scan_flags start_by_angle = scan_flags::start_by_angle;
 inline constexpr scan_flags end_by_angle = scan_flags::end_by_angle;
+inline constexpr scan_flags crc_mismatch = scan_flags::crc_mismatch;
 
 /// Feeds samples from `from_deg` on, 2 per degree and 20 per packet, up to but not including
 /// `to_deg`, both multiples of 10; they may be beyond 360.

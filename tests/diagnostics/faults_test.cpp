@@ -100,6 +100,7 @@ const std::vector<expectation> expectations{
     {"health_warning", {"health=warning"}, "health_warning", false},
     {"health_error", {"health=error"}, "health_error", true},
     {"jolt", {"jolt"}, "jolts", false},
+    {"omit", {"omit"}, "packets_lost", true},
     {"batch_and_flip", {"batch", "flip"}, "bits_flipped usb_latency", true},
     {"scanning_and_drop", {"scanning", "drop"}, "was_scanning bytes_dropped", true},
     {"twice_and_jolt", {"twice", "jolt"}, "answers_twice jolts", false},
@@ -123,7 +124,7 @@ TEST(Faults, AllKindsAreExpected) {
   for (const expectation& one : expectations) {
     for (const sim::fault& f : faults_of_case(one)) seen.insert(f.kind);
   }
-  EXPECT_EQ(seen.size(), static_cast<std::size_t>(sim::fault_kind::jolt) + 1);
+  EXPECT_EQ(seen.size(), static_cast<std::size_t>(sim::last_fault_kind) + 1);
 }
 
 // A device that is silent from the begin may have one of several faults: the diagnosis names them.

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/command.hpp"
@@ -84,6 +88,97 @@ TEST(Bytes, OfAnotherRateOrModelAreFound) {
   sim::device_options options;
   options.info.model = 4;
   EXPECT_EQ(in_file(bytes_of({}, 3, options)).diagnoses(), "other_device");
+}
+
+// A stream without device information, with so many bytes per sample: every word is counted
+// in the checksum, and the first byte of three alone. (The protocol of the family.)
+std::string stream_of(std::size_t sample_size, double samples_per_s, double turns_per_s,
+                      std::size_t packets) {
+  std::string all;
+  double angle_deg = 1.0;
+  const double step_deg = 360.0 * turns_per_s / samples_per_s;
+  bool is_zero = true;
+  std::uint32_t random = 1;
+  for (std::size_t made = 0; made < packets; ++made) {
+    std::size_t count = is_zero ? 1 : 0;
+    double last_deg = angle_deg;
+    while (!is_zero && count < 40 && angle_deg + static_cast<double>(count) * step_deg < 360.0) {
+      last_deg = angle_deg + static_cast<double>(count++) * step_deg;
+    }
+    const auto raw_angle = [](double deg) { return static_cast<unsigned>(deg * 64.0) << 1U | 1U; };
+    const unsigned type = is_zero ? static_cast<unsigned>(turns_per_s * 10.0) << 1U | 1U : 0U;
+    std::vector<unsigned> words{0x55AA, type | static_cast<unsigned>(count) << 8U,
+                                raw_angle(angle_deg), raw_angle(last_deg)};
+    std::string body;
+    unsigned checksum = words[0] ^ words[1] ^ words[2] ^ words[3];
+    for (std::size_t i = 0; i < count; ++i) {
+      random = random * 1664525U + 1013904223U;
+      const unsigned range = 4000U + (random >> 20U);
+      const unsigned bright = (random >> 8U) & 0xFFU;
+      if (sample_size > 2) {
+        checksum ^= bright;
+        body += static_cast<char>(bright);
+      }
+      if (sample_size == 4) body += '\0';
+      checksum ^= range;
+      body += static_cast<char>(range & 0xFFU);
+      body += static_cast<char>(range >> 8U);
+    }
+    words.push_back(checksum);
+    for (const unsigned word : words) {
+      all += static_cast<char>(word & 0xFFU);
+      all += static_cast<char>(word >> 8U);
+    }
+    all += body;
+    angle_deg = last_deg + step_deg;
+    is_zero = angle_deg >= 360.0;
+    if (is_zero) angle_deg -= 360.0;
+  }
+  return all;
+}
+
+TEST(Bytes, OfAnotherModelAreFoundByTheirLayout) {
+  for (const std::size_t size : {3U, 4U}) {
+    for (const std::size_t packets : {3U, 200U}) {
+      const examined done = in_file(stream_of(size, 4000.0, 7.0, packets));
+      EXPECT_EQ(done.diagnoses(), "other_device") << size << done;
+      EXPECT_EQ(
+          done.at(diagnostic_stage::baud_rate).remark,
+          "The packets have " + std::to_string(size) + " bytes per sample; those of a G4 have 2.");
+    }
+  }
+  EXPECT_EQ(in_file(stream_of(2, 4000.0, 7.0, 200)).diagnoses(), "");
+}
+
+TEST(Bytes, OfAnotherModelAreFoundByTheirSpeed) {
+  for (const double hz : {3000.0, 5000.0, 10'000.0, 18'000.0}) {
+    const examined done = in_file(stream_of(2, hz, 7.0, 400));
+    EXPECT_EQ(done.diagnoses(), "other_device") << hz << done;
+    EXPECT_EQ(done.at(diagnostic_stage::rate).outcome, stage_verdict::warn);
+  }
+  EXPECT_EQ(in_file(stream_of(2, 18'000.0, 3.0, 800)).diagnoses(), "other_device");
+  for (const double hz : {4000.0, 8000.0, 9000.0}) {
+    EXPECT_EQ(in_file(stream_of(2, hz, 7.0, 400)).diagnoses(), "") << hz;
+  }
+}
+
+TEST(Bytes, OfRealDevicesOfOtherModels) {
+  const std::string family = std::string(G4LIDAR_SOURCE_DIR) + "/../shared/family/";
+  if (!std::filesystem::exists(family)) {
+    GTEST_SKIP() << "the packets of other models are not included: they belong to others";
+  }
+  for (const std::string name :
+       {"tof3-tmini-synth", "tri3-i10-synth", "scl3-synth", "coin-d4-real"}) {
+    std::ifstream in(family + name + ".hex");
+    std::string data;
+    for (std::string line; std::getline(in, line);) {
+      for (std::size_t i = 0; i + 1 < line.size(); i += 2) {
+        data += static_cast<char>(std::stoi(line.substr(i, 2), nullptr, 16));
+      }
+    }
+    const examined done = in_file(data);
+    EXPECT_EQ(done.diagnoses(), "other_device") << name << done;
+  }
 }
 
 TEST(Bytes, OfWhichMostAreNoise) {

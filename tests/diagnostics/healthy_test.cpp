@@ -77,6 +77,8 @@ sim::device_options odd_device(std::uint64_t seed) {
   options.initial.direction = static_cast<motor_direction>(by.below(2));
   options.initial.constancy = static_cast<constant_frequency>(by.below(2));
   options.initial.idle_power = by.below(4) == 0 ? low_power::off : low_power::on;
+  options.ct_crc = by.flip();
+  options.time_packet_ns = by.flip() ? 0 : 100'000'000;
   // Packets so small that they exceed the capacity of the connection do not occur in a healthy
   // device.
   const std::uint64_t least = options.scanner.ranging == ranging_frequency::khz_4 ? 8 : 24;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A suspension of the program is not a fault of the lidar; nor is a motor that spins up slowly.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,6 +63,36 @@ TEST(HostPause, LongPauseDuringTheScan_IsReported) {
     EXPECT_GE(longest_ms, static_cast<double>(pause_ms));
     EXPECT_LE(longest_ms, static_cast<double>(pause_ms + 50));
   }
+}
+
+/// The pauses of a busy computer look like faults of the lidar and of the connection: one cause is given.
+TEST(HostPause, IsTheOnlyCauseGiven) {
+  const auto found = [](std::initializer_list<std::string_view> faults) {
+    sim::device simulated(sim::built_in_world(), {}, faults_of(faults));
+    sim::virtual_clock clock;
+    return examine(simulated, clock, {}, wrap_in<paused_host>(&clock, 5'000 * ms, 300 * ms))
+        .diagnoses();
+  };
+  EXPECT_EQ(found({"stall@6s+300ms"}), "host_busy");
+  EXPECT_EQ(found({"stall@6s+900ms"}), "host_busy");
+  EXPECT_EQ(found({"batch@5s+100s"}), "host_busy");
+  EXPECT_EQ(found({"flip"}), "host_busy bits_flipped") << "damage is no matter of time";
+}
+
+TEST(HostPause, DuringTheQueriesExplainsAFewLateReplies) {
+  int busy = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    sim::device_options options;
+    options.scanner.seed = seed;
+    sim::device simulated(sim::built_in_world(), options, faults_of({"late=200ms*0.12"}));
+    sim::virtual_clock clock;
+    const examined done =
+        examine(simulated, clock, {}, wrap_in<paused_host>(&clock, 700 * ms, 300 * ms));
+    EXPECT_THAT(done.diagnoses(), testing::Not(testing::HasSubstr("answers_late"))) << seed << done;
+    busy += done.diagnoses() == "host_busy" ? 1 : 0;
+  }
+  EXPECT_GT(busy, 10);
+  EXPECT_EQ(examine({}, faults_of({"late=200ms"})).diagnoses(), "answers_late");
 }
 
 // A device that is silent itself is not a busy host.

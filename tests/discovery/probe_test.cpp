@@ -9,6 +9,7 @@
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/transport/serial_port.hpp"
+#include "support/patience.hpp"
 #include "support/virtual_transport.hpp"
 #include "transport/port_io.hpp"
 #include "transport/pty.hpp"
@@ -19,7 +20,8 @@ namespace {
 using namespace std::chrono_literals;
 using sim::fault_kind;
 
-result<device_information> probe_at(const std::string& path, std::chrono::milliseconds time = 20s) {
+result<device_information> probe_at(const std::string& path,
+                                    std::chrono::milliseconds time = patience) {
   auto port = serial_port::open(path);
   if (!port) return tl::unexpected(port.error());
   return probe(**port, in(**port, time));
@@ -30,7 +32,7 @@ result<device_information> probe_device(const sim::device_options& options,
                                         const std::vector<sim::fault>& faults = {}) {
   virtual_bench bench(options, faults);
   virtual_transport to_device(bench);
-  return probe(to_device, in(to_device, 20s));
+  return probe(to_device, in(to_device, patience));
 }
 
 /// A device that sends the same text again and again, in virtual time.
@@ -134,7 +136,7 @@ TEST(Probe, DeadlinesAreKept) {
   ASSERT_TRUE(port);
   const std::int64_t deadline_ns = in(**port, 20ms);
   EXPECT_EQ(probe(**port, deadline_ns).error().code(), problem::silence);
-  EXPECT_LT((*port)->now_ns(), deadline_ns + std::chrono::nanoseconds(5s).count());
+  EXPECT_LT((*port)->now_ns(), deadline_ns + std::chrono::nanoseconds(patience).count());
 }
 
 TEST(Probe, Unplugged_Gone) {
@@ -142,7 +144,7 @@ TEST(Probe, Unplugged_Gone) {
   auto port = serial_port::open(device.path());
   ASSERT_TRUE(port);
   device.unplug();
-  EXPECT_EQ(probe(**port, in(**port, 20s)).error().code(), problem::gone);
+  EXPECT_EQ(probe(**port, in(**port, patience)).error().code(), problem::gone);
 }
 
 TEST(Probe, Woken_Cancelled) {
@@ -150,7 +152,7 @@ TEST(Probe, Woken_Cancelled) {
   auto port = serial_port::open(device.path());
   ASSERT_TRUE(port);
   (*port)->wake();
-  EXPECT_EQ(probe(**port, in(**port, 20s)).error().code(), problem::cancelled);
+  EXPECT_EQ(probe(**port, in(**port, patience)).error().code(), problem::cancelled);
 }
 
 TEST(SelectPort, Path_IsUsedUnchanged) {

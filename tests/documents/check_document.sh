@@ -9,8 +9,8 @@
 # until ^C get SIGINT when they have printed something. In command lines /dev/ttyUSB0 is a simulated
 # G4, and /tmp the scratch directory. CONTRIBUTING.md describes the marks.
 #
-# Python blocks are run with PYTHON (python3 by default), if it can import g4lidar. If a document has nothing else to run,
-# its check is skipped. check_document.sh BLOCKS python runs the Python blocks only.
+# Python blocks are run with PYTHON (python3 by default) and the argument sim:, if it can import g4lidar. If a document has
+# nothing else to run, its check is skipped. check_document.sh BLOCKS python runs the Python blocks only.
 #
 # Needs G4_DUMP; for command lines PROGRAMS, directories for PATH, and for projects PREFIX, the
 # prefix of the installed library. Prints errors only.
@@ -153,7 +153,7 @@ run_python() {
   local program=$scratch/block.py code=0
   sed "s#/dev/ttyUSB0#$g4#g" "$2" >"$program"
   if grep -q "$g4" "$program"; then need_g4; fi
-  "${PYTHON:-python3}" "$program" >"$scratch/out" 2>"$scratch/err" </dev/null || code=$?
+  "${PYTHON:-python3}" "$program" sim: >"$scratch/out" 2>"$scratch/err" </dev/null || code=$?
   if ((code != 0)); then refuse "$1" "this program ended with $code"; fi
 }
 

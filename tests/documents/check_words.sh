@@ -1,39 +1,43 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The two programs of the README are equal to the examples; the files and commands that the
-# documents name exist; links and the documents that the sources name exist; a command line within a
+# The programs of the README and of docs/install.md are equal to the examples; the files and commands
+# that the documents name exist, and the documents that the sources name; a command line within a
 # sentence is also in a block, and so is executed; no line of a document is too long; no figures of
-# speech stand in documents, names, comments and messages.
+# speech stand in documents, names, comments and messages. Links: check_limits.sh.
 # Needs G4_DUMP and G4LIDAR_SOURCE_DIR.
 set -euo pipefail
 cd "$G4LIDAR_SOURCE_DIR"
 here=tests/documents
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-documents=(./*.md docs/*.md docs/design/*.md)
+shopt -s nullglob
+documents=(./*.md docs/*.md docs/guide/*.md docs/design/*.md)
 missing=0
 
-# The README's programs are the sources, but for the SPDX line and the sentence below it.
-bash "$here/extract.sh" README.md "$scratch/README"
-mapfile -t programs < <(awk -F '\t' '$2 == "cpp" { print $1 }' "$scratch/README/list")
-number=0
-for source in first_scan first_points; do
-  if ! diff "$scratch/README/block_${programs[number]}.cpp" <(tail -n +3 "examples/$source.cpp"); then
-    echo "Program $((number + 1)) in README.md differs from examples/$source.cpp" >&2
+# A program of a document is the source, but for the SPDX line and the sentence below it.
+# expect_program <document> <language> <source>: the only program of the document in this language.
+expect_program() {
+  local blocks=$scratch/programs-$1-$2 block
+  mkdir -p "$blocks"
+  bash "$here/extract.sh" "$1" "$blocks"
+  block=$(awk -F '\t' -v language="$2" '$2 == language { print $1 }' "$blocks/list")
+  if ! diff "$blocks/block_$block.$2" <(tail -n +3 "$3"); then
+    echo "The program in $1 differs from $3" >&2
     missing=1
   fi
-  number=$((number + 1))
-done
-block=$(awk -F '\t' '$2 == "c" { print $1 }' "$scratch/README/list")
-if ! diff "$scratch/README/block_$block.c" <(tail -n +3 examples/c/first_scan.c); then
-  echo "The program in C in README.md differs from examples/c/first_scan.c" >&2
-  missing=1
-fi
+}
+expect_program README.md cpp examples/first_scan.cpp
+expect_program docs/install.md cpp examples/first_points.cpp
+expect_program docs/install.md c examples/c/first_scan.c
 
-# Command lines in sentences: a verb, or the beginning of an executed line.
-for document in README docs/guide docs/errors docs/sim docs/recordings; do
+# Command lines in sentences of the documents that are executed: a verb, or the beginning of an executed line. The table
+# of the README has lines that check_limits.sh executes.
+spoken=(README.md docs/{errors,install,recordings,tool}.md docs/s[iy]m*.md docs/guide/*.md)
+# shellcheck disable=SC2016 # the backquotes are those of Markdown
+grep -E '^\|' README.md | grep -oE '`g4-dump [^`]*`' | tr -d '\140' >"$scratch/lines"
+for document in "${spoken[@]}"; do
   mkdir -p "$scratch/$document"
-  bash "$here/extract.sh" "$document.md" "$scratch/$document"
+  bash "$here/extract.sh" "$document" "$scratch/$document"
   while IFS=$'\t' read -r block language _ mark; do
     if [[ $language == sh && $mark != "not run:"* ]]; then cat "$scratch/$document/$block.sh"; fi
   done <"$scratch/$document/list" >>"$scratch/lines"
@@ -50,9 +54,9 @@ while IFS=: read -r document words; do
     echo "$document speaks of '$words', which is in no block that is run" >&2
     missing=1
   fi
-done < <(grep -oE '`g4-dump [^`]*`' README.md docs/guide.md docs/errors.md docs/sim.md docs/recordings.md | sort --unique)
+done < <(grep -oE '`g4-dump [^`]*`' "${spoken[@]}" | sort --unique)
 
-# Every path that a document names exists, and every link leads to a file.
+# Every path that a document names exists.
 # shellcheck disable=SC2016 # the backquotes are those of Markdown
 while IFS=: read -r document path; do
   path=${path//\`/}
@@ -62,20 +66,13 @@ while IFS=: read -r document path; do
   fi
 done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|python|\.ci)(/[A-Za-z0-9_./-]+)?`' \
   "${documents[@]}" | sort --unique)
-while IFS=: read -r document link; do
-  link=${link#*](}
-  link=${link%%[#)]*}
-  if [[ -n $link && ! -e ${document%/*}/$link ]]; then
-    echo "$document has a link to $link, which is not there" >&2
+# The pages link to each other, so each package with one of them has all.
+for list in debian/*.docs; do
+  if ! diff debian/libg4lidar-dev.docs "$list"; then
+    echo "debian/libg4lidar-dev.docs and $list name different documents" >&2
     missing=1
   fi
-done < <(grep -oE '[^[]\]\([A-Za-z0-9_./#-]+\)' "${documents[@]}" | sort --unique)
-
-# The pages link to each other, so each package with one of them has all.
-if ! diff debian/libg4lidar-dev.docs debian/libg4lidar-c-dev.docs; then
-  echo "The packages libg4lidar-dev and libg4lidar-c-dev have different documents" >&2
-  missing=1
-fi
+done
 
 # Also every document that a header, a source or the tool names.
 while read -r path; do

@@ -165,7 +165,7 @@ TEST(FoundBySimulation, SettingsOfAsk_AreSetAgainAfterAWokenRestart) {
 /// Devices with a sample rate above or below the nominal one.
 result<lidar> open_with(virtual_bench& bench, std::chrono::milliseconds batch) {
   lidar_options options;
-  options.batch = batch;
+  options.tuning.batch = batch;
   return open_virtual(bench, options);
 }
 

@@ -53,11 +53,13 @@ TEST(ScanRange, EndsAtATimeoutAndContinuesInAnotherLoop) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   auto scans = lidar->scans(0ms);
-  for ([[maybe_unused]] const scan& one : scans) ADD_FAILURE() << "no revolution is complete yet";
+  std::uint64_t seen = 0;
+  for ([[maybe_unused]] const scan& one : scans) ++seen;
+  EXPECT_EQ(seen, 1U) << "the spin-up is waited for, and then the next revolution is not complete";
   ASSERT_TRUE(scans.why_ended());
   EXPECT_EQ(*scans.why_ended(), problem::timeout);
   for ([[maybe_unused]] const scan& one : lidar->scans(5s)) lidar->wake();
-  EXPECT_EQ(lidar->counts().scans, 1U);
+  EXPECT_EQ(lidar->counts().scans, 2U);
 }
 
 TEST(ScanRange, NotStarted_IsEmpty) {
@@ -139,6 +141,25 @@ TEST(Options, InvalidEnumerators_AreRefused) {
   EXPECT_EQ(refused([](auto& o) { o.ranging = ranging_frequency::khz_9; }), "nothing");
 }
 
+TEST(Options, AnImpossibleValue_IsRepeated) {
+  const auto subject_of = [](auto change) {
+    lidar_options options;
+    change(options);
+    const auto wrong = problem_with(options);
+    return wrong ? std::string(wrong->subject()) : "nothing";
+  };
+  EXPECT_EQ(subject_of([](lidar_options& o) { o.tuning.answer_time = 9ms; }),
+            "answer_time: 10 ms to 10 s, not 9 ms");
+  EXPECT_EQ(subject_of([](lidar_options& o) { o.tuning.stall_time = -1ms; }),
+            "stall_time: 100 ms to 1 min, not -1 ms");
+  EXPECT_EQ(subject_of([](lidar_options& o) { o.tuning.batch = milliseconds::max(); }),
+            "batch: 0 to 100 ms, not 4294967295 ms");
+  EXPECT_EQ(subject_of([](lidar_options& o) { o.tuning.transport_delay = 1'000'000'001ns; }),
+            "transport_delay: 0 to 1 s, not 1000000001 ns");
+  EXPECT_EQ(subject_of([](lidar_options& o) { o.frequency = scan_frequency{1300}; }),
+            "frequency: 500 to 1200 (5 to 12 Hz), not 1300");
+}
+
 TEST(ExtremeTimeouts, AreLimited) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
@@ -194,7 +215,7 @@ TEST(Deadline, IsTheSameAsATimePoint) {
 /// The documented time, with each kind of fault long before the stop, and shortly before.
 TEST(Stop, KeepsItsDocumentedTime) {
   std::int64_t longest_ns = 0;
-  for (int i = 0; i <= static_cast<int>(sim::fault_kind::jolt); ++i) {
+  for (int i = 0; i <= static_cast<int>(sim::last_fault_kind); ++i) {
     const auto kind = static_cast<sim::fault_kind>(i);
     for (const std::int64_t at_ns : {4000 * ms, 4050 * ms, 8000 * ms}) {
       const sim::fault faults[] = {sim::make_fault(kind, at_ns)};

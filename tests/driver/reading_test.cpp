@@ -166,7 +166,7 @@ TEST(LidarReading, Batch_SavesReads) {
   const auto readings_in_10_s = [](std::chrono::milliseconds batch) {
     virtual_bench bench;
     lidar_options options;
-    options.batch = batch;
+    options.tuning.batch = batch;
     auto lidar = open_and_start(bench, options);
     EXPECT_TRUE(lidar);
     static_cast<void>(lidar->points());  // each packet is wanted

@@ -143,5 +143,29 @@ TEST(SpinUp, SlowDeviceUnderUnknownProtection_StartsAfterEachReconnect) {
   EXPECT_GT(last_ns, 49 * second);
 }
 
+/// The same after a restart by the program, which makes the protection unknown again: the one silent scan
+/// that follows is started again, as after open().
+TEST(SpinUp, SlowDeviceUnderUnknownProtection_StartsAfterARestart) {
+  sim::device_options options;
+  options.header_ns = 1400 * ms;
+  options.silence_ns = 1900 * ms;
+  options.initial.protection = power_down_protection::on;
+  sim::device simulated(sim::built_in_world(), options);
+  sim::virtual_clock clock;
+  auto lidar = lidar::open(std::make_unique<sim::virtual_connector>(simulated, clock), {});
+  ASSERT_TRUE(lidar);
+  ASSERT_TRUE(lidar->start());
+  const auto has_scan = [&] {
+    for (int i = 0; i < 40; ++i) {
+      if (lidar->next_scan(500ms)) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(has_scan());
+  ASSERT_TRUE(lidar->ask(requests::restart(), while_scanning::stop_and_resume));
+  EXPECT_TRUE(has_scan());
+  while (const auto event = lidar->next_event()) EXPECT_NE(event->what, lidar_event::kind::lost);
+}
+
 }  // namespace
 }  // namespace g4lidar::test

@@ -141,6 +141,24 @@ trouble frequency_too_high() {
       on, [](lidar& device) { return error_in(device.ask(requests::set(scan_frequency{1200}))); });
 }
 
+trouble looked_for() {
+  bench on({make_fault(fault_kind::unplug, later)});
+  lidar_options options;
+  options.reconnect = true;
+  const auto wait = [](lidar& device) {
+    while (device.next_scan(2s)) {
+    }
+    return error_in(device.next_scan(100ms));
+  };
+  return once_scanning(on, wait, options);
+}
+
+trouble asked_how(int how) {
+  bench on;
+  return once_open(
+      on, [&](lidar& of) { return error_in(of.ask(requests::health(), while_scanning(how))); });
+}
+
 /// The error of `wanted`, which is refused before a byte is sent.
 trouble refused(const request& wanted) {
   bench on;
@@ -240,6 +258,7 @@ std::vector<scenario> device_scenarios() {
       {"DeafWhenAsked", does_not_stop, task::asking, true, "virtual:g4, health", deaf_when_asked},
       {"HealthError", unhealthy, task::starting, true, "virtual:g4, error code", health_error},
       {"NoScanYet", timeout, task::reading, false, "virtual:g4", no_scan_yet},
+      {"LostAndLookedFor", timeout, task::reading, false, "virtual:g4", looked_for},
       {"NoAnswer", timeout, task::asking, false, "virtual:g4, health",
        [] { return asking(fault_kind::mute, requests::health()); }},
       {"WrongAnswers", wrong_answer, task::asking, false, "virtual:g4, direction",
@@ -250,6 +269,7 @@ std::vector<scenario> device_scenarios() {
        [] { return refused(requests::set(scan_frequency{1500})); }},
       {"NoSuchValue", bad_setting, task::asking, false, "virtual:g4, power-down protection",
        [] { return refused(requests::set(static_cast<power_down_protection>(77))); }},
+      {"NoSuchPermission", bad_option, task::asking, true, "how: ", [] { return asked_how(9); }},
       {"AskedWhileScanning", scanning, task::asking, false, "virtual:g4, health",
        asked_while_scanning},
       {"ReadBeforeStart", not_scanning, task::reading, true, "virtual:g4", read_before_start},

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// docs/errors.md, the enumeration, the names and the scenarios contain the same set.
+// docs/errors.md, the enumeration, the names and the scenarios contain the same set; docs/symptoms.md has all events.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cstddef>
 #include <fstream>
 #include <map>
@@ -15,18 +16,21 @@
 namespace g4lidar::test {
 namespace {
 
-std::string document() {
-  const std::ifstream file(G4LIDAR_ERRORS_DOCUMENT);
+std::string text_of(const char* document) {
+  const std::ifstream file(document);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
 }
 
+std::string errors_document() { return text_of(G4LIDAR_ERRORS_DOCUMENT); }
+std::string symptoms_document() { return text_of(G4LIDAR_SYMPTOMS_DOCUMENT); }
+
 /// The sections that are named by one enumerator, and their text.
 std::map<std::string, std::string> sections() {
   std::map<std::string, std::string> found;
   std::string* current = nullptr;
-  std::istringstream lines(document());
+  std::istringstream lines(errors_document());
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("#")) {
       const std::string title = line.starts_with("## ") ? line.substr(3) : "";
@@ -93,8 +97,8 @@ TEST(ErrorsDocument, StatesWhichProblemsAreFatal) {
   }
 }
 
-TEST(ErrorsDocument, HasALineForEachEvent) {
-  const std::string text = document();
+TEST(SymptomsDocument, HasALineForEachEvent) {
+  const std::string text = symptoms_document();
   constexpr auto last = static_cast<std::size_t>(lidar_event::kind::overflow);
   for (std::size_t i = 0; i <= last; ++i) {
     const std::string name(name_of(static_cast<lidar_event::kind>(i)));
@@ -102,14 +106,42 @@ TEST(ErrorsDocument, HasALineForEachEvent) {
   }
 }
 
-TEST(ErrorsDocument, LinksLeadToItsHeadings) {
-  const std::string text = document();
-  for (std::size_t at = text.find("](#"); at != text.npos; at = text.find("](#", at + 1)) {
-    std::string title = text.substr(at + 3, text.find(')', at) - at - 3);
-    for (char& letter : title) letter = letter == '-' ? ' ' : letter;
-    if (title == "what happens by itself") title[0] = 'W';
-    EXPECT_NE(text.find("# " + title + "\n"), std::string::npos) << title;
+/// The headings of a document, as links name them.
+std::set<std::string> anchors_of(const std::string& text) {
+  std::set<std::string> found;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("#")) continue;
+    std::string name = line.substr(line.find(' ') + 1);
+    for (char& letter : name) {
+      letter =
+          letter == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    }
+    found.insert(name);
   }
+  return found;
+}
+
+void expect_links(const std::string& text, const std::string& page, const std::string& target) {
+  const std::set<std::string> anchors = anchors_of(target);
+  const std::string begin = "](" + page + "#";
+  std::size_t links = 0;
+  for (std::size_t at = text.find(begin); at != text.npos; at = text.find(begin, at + 1)) {
+    const std::size_t from = at + begin.size();
+    EXPECT_TRUE(anchors.contains(text.substr(from, text.find(')', at) - from)))
+        << text.substr(at, 60);
+    ++links;
+  }
+  EXPECT_GT(links, 0U) << begin;
+}
+
+TEST(ErrorsDocument, LinksLeadToHeadings) {
+  const std::string errors = errors_document();
+  const std::string symptoms = symptoms_document();
+  expect_links(errors, "", errors);
+  expect_links(errors, "symptoms.md", symptoms);
+  expect_links(symptoms, "", symptoms);
+  expect_links(symptoms, "errors.md", errors);
 }
 
 }  // namespace

@@ -54,5 +54,64 @@ TEST(Error, EachProblemHasAScenario) {
   }
 }
 
+/// The message of a scenario.
+std::string message_of(std::string_view name) {
+  for (const scenario& of : all_scenarios()) {
+    if (of.name == name) return of.bring_about().value().message();
+  }
+  return "no such scenario";
+}
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
+
+TEST(Text, OfATimeout_NamesWhatIsAwaited) {
+  const std::string spins_up = message_of("NoScanYet");
+  EXPECT_TRUE(has(spins_up, "the motor spins up")) << spins_up;
+  EXPECT_TRUE(has(spins_up, "wait longer")) << spins_up;
+  const std::string lost = message_of("LostAndLookedFor");
+  EXPECT_TRUE(has(lost, "lost") && has(lost, "looking for it")) << lost;
+  EXPECT_TRUE(has(lost, "Check the plug")) << lost;
+  for (const std::string_view unplugged :
+       {"LostAndLookedFor", "LostWhileWaitingForAScan", "UnpluggedWhileScanning"}) {
+    EXPECT_FALSE(has(message_of(unplugged), "unplug the lidar")) << message_of(unplugged);
+    EXPECT_FALSE(has(message_of(unplugged), "Unplug it")) << message_of(unplugged);
+  }
+}
+
+TEST(Text, OfANameThatIsNone_ShowsWhatNamesLookLike) {
+  for (const std::string_view name : {"NoSerialNumber", "NoAddress"}) {
+    const std::string text = message_of(name);
+    EXPECT_TRUE(has(text, "this does not name a lidar")) << text;
+    for (const std::string_view form :
+         {"/dev/ttyUSB0", "serial:", "usb:", "tcp:", "file:", "sim:"}) {
+      EXPECT_TRUE(has(text, form)) << text;
+    }
+  }
+  const std::string simulated = message_of("SimulatedWrongly");
+  EXPECT_TRUE(has(simulated, "describes no simulated lidar")) << simulated;
+  EXPECT_TRUE(has(simulated, "docs/sim.md")) << simulated;
+}
+
+TEST(Text, OfANamedPort_StatesThatItDoesNotExist_AndWhichDo) {
+  const std::string port = message_of("AnotherPortExists");
+  EXPECT_TRUE(has(port, "opening /dev/ttyNothing (ports: /dev/null): this port does not exist"))
+      << port;
+  EXPECT_FALSE(has(port, "no serial port with a lidar was found")) << port;
+  const std::string file = message_of("NoSuchFile");
+  EXPECT_TRUE(has(file, "opening no-such-walk.mcap: there is no port and no file of this name"))
+      << file;
+  EXPECT_TRUE(has(file, "ENOENT")) << file;
+}
+
+/// A message of the C interface has 255 characters for the cause and for the advice.
+TEST(Text, OfEachDetail_FitsIntoTheCInterface) {
+  for (auto detail = error_detail::usual; detail <= error_detail::no_simulator;
+       detail = static_cast<error_detail>(static_cast<int>(detail) + 1)) {
+    const error longest(task::configuring, problem::no_port, std::string(95, 'x'), 0, detail);
+    EXPECT_LT(longest.advice().size(), 256U);
+    EXPECT_LT(longest.message().size() - longest.advice().size(), 256U);
+  }
+}
+
 }  // namespace
 }  // namespace g4lidar::test

@@ -41,6 +41,8 @@ std::vector<scenario> place_scenarios() {
       {"NothingPlugged", no_port, task::finding, true, "", [] { return opening("", {}); }},
       {"NothingAtThatPlace", no_port, task::finding, true, "usb:1-9",
        [] { return opening("usb:1-9", bridges{{"1-1", "/dev/null"}}); }},
+      {"AnotherPortExists", no_port, task::opening, true, "/dev/ttyNothing (ports: /dev/null)",
+       [] { return opening("/dev/ttyNothing", bridges{{"1-1", "/dev/null"}}); }},
       {"AnotherLidar", no_port, task::finding, true, "serial:2021101000070999", another_lidar},
       {"NoSerialNumber", bad_option, task::finding, true, "serial:42, not 16 digits",
        [] { return opening("serial:42", {}); }},

@@ -18,6 +18,7 @@
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
 #include "scenario.hpp"
+#include "support/patience.hpp"
 #include "transport/fd_port.hpp"
 #include "transport/listener.hpp"
 #include "transport/pty.hpp"
@@ -29,6 +30,8 @@ namespace {
 using namespace std::chrono_literals;
 
 using trouble = std::optional<error>;
+
+constexpr std::int64_t patience_ns = std::chrono::nanoseconds(patience).count();
 
 trouble opening(const std::string& which) { return error_in(lidar::open(which)); }
 
@@ -138,7 +141,7 @@ trouble bytes_stolen() {
   std::array<std::uint8_t, 64> buffer{};
   for (int burst = 0; burst < 10; ++burst) {
     port.send("a burst");
-    const auto got = (*opened)->read(buffer, (*opened)->now_ns() + 1'000'000);
+    const auto got = (*opened)->read(buffer, (*opened)->now_ns() + 100'000'000);
     if (!got) return got.error();
   }
   return std::nullopt;
@@ -162,7 +165,8 @@ trouble settings_changed() {
 
 trouble a_file_as_port() {
   const temporary_file file("no port");
-  return opening(file.path());
+  const auto opened = serial_port::open(file.path());
+  return opened ? trouble() : opened.error();
 }
 
 /// A bridge that takes another rate than it is reported.
@@ -193,7 +197,7 @@ trouble pulled_out() {
   if (!opened) return opened.error();
   port.unplug();
   std::array<std::uint8_t, 64> buffer{};
-  return error_in((*opened)->read(buffer, (*opened)->now_ns() + 10'000'000'000));
+  return error_in((*opened)->read(buffer, (*opened)->now_ns() + patience_ns));
 }
 
 // ---- connections and files ----------------------------------------------------------------------
@@ -211,7 +215,7 @@ trouble bridge_closes() {
   bridge.accept();
   bridge.hang_up();
   std::array<std::uint8_t, 64> buffer{};
-  return error_in((*opened)->read(buffer, (*opened)->now_ns() + 10'000'000'000));
+  return error_in((*opened)->read(buffer, (*opened)->now_ns() + patience_ns));
 }
 
 trouble recording_ends() {
@@ -241,6 +245,10 @@ std::vector<scenario> port_scenarios() {
   return {
       {"NoSuchPort", no_port, task::opening, true, "/dev/ttyNothing",
        [] { return opening("/dev/ttyNothing"); }},
+      {"NoSuchFile", no_port, task::opening, true, "no-such-walk.mcap",
+       [] { return opening("no-such-walk.mcap"); }},
+      {"SimulatedWrongly", bad_option, task::opening, true, "sim: (seed: 'x' is not",
+       [] { return opening("sim:?seed=x"); }},
       {"NotPermitted", permission, task::opening, true, " of group ", not_permitted},
       {"OpenedTwice", busy, task::opening, true, ", held by error_tests (", opened_twice},
       {"NoTerminal", not_serial, task::opening, true, "/dev/null",
@@ -264,8 +272,7 @@ std::vector<scenario> port_scenarios() {
       {"NotARecording", bad_file, task::opening, true, "bytes-", no_recording},
       {"NoSuchRecording", system, task::opening, true, "/dev/no-recording",
        [] { return opening("file:/dev/no-recording"); }},
-      {"NoRecording", bad_option, task::opening, true, "/dev is not a file",
-       [] { return opening("file:/dev"); }},
+      {"NoRecording", bad_file, task::opening, true, "/dev", [] { return opening("file:/dev"); }},
   };
 }
 

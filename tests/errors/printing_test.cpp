@@ -49,9 +49,10 @@ TEST(Printing, OfPoints) {
   EXPECT_EQ(printed(p), "12.346 deg, no return, unlikely");
   p.range_mm = 16'383.75F;
   p.flags = point_flags::too_near | point_flags::not_deskewed | point_flags::unlikely |
-            point_flags::isolated | point_flags::veiling;
+            point_flags::isolated | point_flags::veiling | point_flags::may_be_too_near;
   EXPECT_EQ(printed(p),
-            "12.346 deg, 16383.8 mm, too near, not deskewed, unlikely, isolated, veiling");
+            "12.346 deg, 16383.8 mm, too near, not deskewed, unlikely, isolated, veiling, "
+            "may be too near");
 }
 
 TEST(Printing, OfScans) {

@@ -169,10 +169,11 @@ TEST(Jsonl, OfPointsAsTheyArrive) {
 TEST(Jsonl, OfPointsWithFlags_NamesThoseThatAreSet) {
   point p = made(359.999F, 99'999'999.0F, INT64_MIN, UINT32_MAX);
   p.flags = point_flags::not_deskewed | point_flags::unlikely | point_flags::isolated |
-            point_flags::veiling | point_flags::revolution_start;
+            point_flags::veiling | point_flags::may_be_too_near | point_flags::revolution_start;
   EXPECT_THAT(points_as({.format = text_format::jsonl, .as_they_come = true}, std::span(&p, 1)),
               EndsWith(R"("time_ns":-9223372036854775808,"no_return":false,"too_near":false,)"
-                       R"("not_deskewed":true,"unlikely":true,"isolated":true,"veiling":true})"
+                       R"("not_deskewed":true,"unlikely":true,"isolated":true,"veiling":true,)"
+                       R"("may_be_too_near":true})"
                        "\n"));
   p.flags = point_flags::unlikely;
   EXPECT_THAT(points_as({.format = text_format::jsonl, .as_they_come = true}, std::span(&p, 1)),
@@ -218,9 +219,11 @@ TEST(Text, OfPoints) {
             "4294967295     270.50      75.25     -1.500000  too near\n");
   point p = few[2];
   p.flags = p.flags | point_flags::not_deskewed | point_flags::unlikely | point_flags::isolated |
-            point_flags::veiling;
-  EXPECT_THAT(points_as({.format = text_format::text}, std::span(&p, 1)),
-              EndsWith(" -1.500000  too near, not deskewed, unlikely, isolated, veiling\n"));
+            point_flags::veiling | point_flags::may_be_too_near;
+  EXPECT_THAT(
+      points_as({.format = text_format::text}, std::span(&p, 1)),
+      EndsWith(
+          " -1.500000  too near, not deskewed, unlikely, isolated, veiling, may be too near\n"));
 }
 
 TEST(Text, OfRevolutions) {
@@ -236,9 +239,10 @@ TEST(Text, OfRevolutions) {
               EndsWith("            -            -  partial: start_missing, end_missing\n"));
 }
 
-std::string grid_as(const text_style& style, const scan_record& record) {
+std::string grid_as(const text_style& style, const scan_record& record,
+                    const grid_options& how = {}) {
   return written([&](text_sink& out) {
-    const auto writer = make_grid_writer(style, 4);
+    const auto writer = make_grid_writer(style, 4, how);
     writer->begin(out);
     writer->write_scan(record, out);
   });
@@ -260,6 +264,30 @@ TEST(Grid, OfARevolution) {
   EXPECT_EQ(grid_as({.format = text_format::text}, record),
             "  scan  4 ranges in mm\n"
             "    12  ? 1234.50 ? ?\n");
+}
+
+// A return, two directions without, of which something may be too near in one, and nothing measured.
+TEST(Grid, WritesWhatDirectionsWithoutReturnBecome) {
+  std::vector<point> points{made(1.0F, 1234.5F, 3), made(91.0F, 0.0F, 4), made(181.0F, 0.0F, 5)};
+  points[1].flags = point_flags::no_return;
+  points[2].flags = point_flags::no_return | point_flags::may_be_too_near;
+  scan_record record = whole_scan();
+  record.scan.points = points;
+  const auto line_of = [&](text_format format, const grid_options& how) {
+    const std::string all = grid_as({.format = format}, record, how);
+    return all.substr(all.rfind('\n', all.size() - 2) + 1);
+  };
+  const grid_options max{.to = frame::robot,
+                         .no_return = no_return_as::max};  // its frame is not used
+  const grid_options minus{.near_is_minus_infinity = true};
+  EXPECT_THAT(line_of(text_format::csv, {}), EndsWith("false,1234.50,inf,nan,nan\n"));
+  EXPECT_THAT(line_of(text_format::csv, max), EndsWith("false,1234.50,16383.75,nan,nan\n"));
+  EXPECT_THAT(line_of(text_format::csv, {.no_return = no_return_as::nan}),
+              EndsWith("false,1234.50,nan,nan,nan\n"));
+  EXPECT_THAT(line_of(text_format::csv, minus), EndsWith("false,1234.50,inf,-inf,nan\n"));
+  EXPECT_THAT(line_of(text_format::jsonl, minus), EndsWith(R"([1234.50,"inf","-inf",null]})"
+                                                           "\n"));
+  EXPECT_THAT(line_of(text_format::text, minus), EndsWith(" 1234.50 - < ?\n"));
 }
 
 TEST(Pcd, Ascii_ContainsTheReturns) {

@@ -172,6 +172,19 @@ TEST(TimeGrid, LeavesOutWhatWouldGetTheTimeOfTheOtherEnd) {
   EXPECT_TRUE(std::isnan(ranges[353]));
 }
 
+TEST(TimeGrid, ADirectionWithoutReturn_BecomesWhatTheOptionSets) {
+  std::vector<point> points = turned_points();
+  points[100].flags = point_flags::no_return;
+  points[200].flags = point_flags::no_return | point_flags::may_be_too_near;
+  std::vector<float> ranges(360);
+  static_cast<void>(fill_time_grid(points, turn_ns, ranges, {.no_return = no_return_as::max}));
+  EXPECT_EQ(ranges[93], 16.38375F);
+  EXPECT_TRUE(std::isnan(ranges[193]));
+  static_cast<void>(fill_time_grid(points, turn_ns, ranges, {.near_is_minus_infinity = true}));
+  EXPECT_EQ(ranges[93], std::numeric_limits<float>::infinity());
+  EXPECT_EQ(ranges[193], -std::numeric_limits<float>::infinity());
+}
+
 TEST(TimeGrid, OfNothingIsUnknown) {
   std::vector<float> ranges(4);
   EXPECT_EQ(fill_time_grid({}, 0, ranges), 0U);

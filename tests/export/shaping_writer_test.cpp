@@ -209,5 +209,58 @@ TEST_F(ShapingWriter, LeavesOutPiecesIfRequested) {
   EXPECT_EQ(writer.pieces_left_out(), 1U);
 }
 
+/// Keeps the points that it is given.
+class keeper final : public point_writer {
+ public:
+  keeper(std::vector<point>& kept, bool scans) : kept_(kept), scans_(scans) {}
+  [[nodiscard]] bool takes_scans() const noexcept override { return scans_; }
+  void write_points(std::span<const point> points, text_sink&) override {
+    kept_.insert(kept_.end(), points.begin(), points.end());
+  }
+  void write_scan(const scan_record& record, text_sink& out) override {
+    write_points(record.scan.points, out);
+  }
+
+ private:
+  std::vector<point>& kept_;
+  bool scans_;
+};
+
+// Beams near each other: a return at 0.4 m, then nothing, in each of two revolutions.
+TEST(ShapingWriterNear, FlagsAcrossRevolutions_OfScansAndOfPoints_AndLeavesNothingOut) {
+  for (const bool scans : {true, false}) {
+    for (const bool speckle : {true, false}) {
+      SCOPED_TRACE(testing::Message() << scans << speckle);
+      std::vector<point> kept;
+      shaping_options options{.near = near_limits{}};
+      if (speckle) options.speckle = speckle_limits{};
+      shaping_writer writer(std::make_unique<keeper>(kept, scans), options);
+      callback_sink sink([](std::string_view) {});
+      for (std::uint32_t revolution = 0; revolution < 2; ++revolution) {
+        std::vector<point> points(9);
+        for (point& p : points) {
+          p.angle_deg = 100.0F;
+          p.range_mm = revolution == 0 ? 400.0F : 0.0F;
+          // Without return, the same beam has a direction 3.1 degrees less.
+          if (revolution == 1) p = {.angle_deg = 96.9F, .flags = point_flags::no_return};
+          p.revolution = revolution;
+        }
+        scan_record record;
+        record.scan.points = points;
+        if (scans) {
+          writer.write_scan(record, sink);
+        } else {
+          writer.write_points(points, sink);
+        }
+      }
+      writer.finish(sink);
+      ASSERT_EQ(kept.size(), 18U);
+      for (std::size_t i = 0; i < kept.size(); ++i) {
+        EXPECT_EQ(kept[i].may_be_too_near(), i >= 9) << i;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace g4lidar::test

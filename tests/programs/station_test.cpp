@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <functional>
@@ -24,6 +26,8 @@
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/world.hpp"
 #include "program.hpp"
+#include "station_listener.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -32,82 +36,11 @@ using g4_tool::common_options;
 using g4_tool::loss_rule;
 using g4_tool::station;
 using g4_tool::station_state;
+using g4lidar::test::patience;
+using listener = g4lidar::test::station_record;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 namespace sim = g4lidar::sim;
-
-constexpr auto patience = 30s;
-
-/// Remembers what came, and waits for it.
-class listener : public g4_tool::station_listener {
- public:
-  void on_open(g4_tool::opened_source& /*source*/) override {
-    change([&] {
-      ++opened;
-      scans_since_opening = 0;
-    });
-  }
-  void on_scan(const g4lidar::scan& scan) override {
-    change([&] {
-      scans.push_back(scan.revolution);
-      ++scans_since_opening;
-      points += scan.size();
-      last_size = scan.size();
-      last_scan_wall_ns = of == nullptr ? 0 : of->wall_ns(scan.time_ns());
-    });
-  }
-  void on_points(std::span<const g4lidar::point> some) override {
-    change([&] { live_points += some.size(); });
-  }
-  void on_event(const g4lidar::lidar_event& event) override {
-    change([&] { events.emplace_back(name_of(event.what)); });
-  }
-  void on_state(station_state state, std::string_view why) override {
-    change([&] {
-      states.emplace_back(name_of(state));
-      whys.emplace_back(why);
-    });
-  }
-
-  bool wait(const std::function<bool()>& is_so) {
-    std::unique_lock lock(mutex);
-    return changed.wait_for(lock, patience, is_so);
-  }
-  /// Further scans, after all that came before.
-  bool wait_for_scans(std::size_t count) {
-    const std::size_t before = number_of_scans();
-    return wait([&] { return scans.size() >= before + count; });
-  }
-  bool wait_for_state(const std::string& name) {
-    return wait([&] { return !states.empty() && states.back() == name; });
-  }
-  std::size_t number_of_scans() {
-    const std::lock_guard lock(mutex);
-    return scans.size();
-  }
-
-  std::mutex mutex;
-  std::condition_variable changed;
-  station* of = nullptr;
-  int opened = 0;
-  std::vector<std::uint32_t> scans;
-  std::size_t scans_since_opening = 0;
-  std::size_t points = 0;
-  std::size_t last_size = 0;
-  std::size_t live_points = 0;
-  std::int64_t last_scan_wall_ns = 0;
-  std::vector<std::string> events;
-  std::vector<std::string> states;
-  std::vector<std::string> whys;
-
- private:
-  template <class Change>
-  void change(Change what) {
-    const std::lock_guard lock(mutex);
-    what();
-    changed.notify_all();
-  }
-};
 
 class Station : public cli::scratch {
  protected:
@@ -116,7 +49,7 @@ class Station : public cli::scratch {
     common_options options;
     options.source = source;
     options.on_loss = on_loss;
-    made_ = std::make_unique<station>(options, g4_tool::opening{}, heard, wishes);
+    made_ = std::make_unique<station>(options, g4lidar::lidar_options{}, heard, wishes);
     heard.of = made_.get();
     made_->start();
     return *made_;
@@ -257,7 +190,13 @@ TEST_F(Station, Exit_EndsWithTheFailure) {
 TEST_F(Station, InvalidSource_EndsEvenWhereItWouldWait) {
   const station& made = begin("sim:?colour=red", loss_rule::wait);
   ASSERT_TRUE(heard.wait_for_state("ended"));
-  EXPECT_THROW(std::rethrow_exception(made.failure()), g4_tool::bad_value);
+  EXPECT_THROW(std::rethrow_exception(made.failure()), g4_tool::failure);
+}
+
+TEST_F(Station, InvalidPortOfABridge_EndsEvenWhereItWouldWait) {
+  const station& made = begin("tcp:127.0.0.1:99999", loss_rule::wait);
+  ASSERT_TRUE(heard.wait_for_state("ended"));
+  EXPECT_THAT(made.why(), HasSubstr("with a port of 1 to 65535"));
 }
 
 TEST_F(Station, Recording_IsPlayedByItsTimesAndEnds) {

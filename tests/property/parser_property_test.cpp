@@ -109,8 +109,7 @@ TEST(ParserProperty, DeliversUndamagedPackets) {
           log.stretches().begin(), log.stretches().end(),
           [&](const reference::stretch& s) { return s.offset + s.size > unit.offset; });
       RC_ASSERT(holder != log.stretches().end());
-      RC_ASSERT(holder->what == reference::kind::packet ||
-                holder->what == reference::kind::response);
+      RC_ASSERT(holder->what <= reference::kind::time_packet);
       if (holder->offset == unit.offset) {
         RC_ASSERT(holder->size == unit.size);
       } else {

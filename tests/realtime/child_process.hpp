@@ -10,14 +10,14 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
-#include <thread>
 #include <vector>
+
+#include "support/patience.hpp"
 
 namespace g4lidar::test {
 
@@ -50,18 +50,12 @@ class child_process {
     if (pid_ > 0) ::kill(pid_, signal);
   }
 
-  /// Its exit code, 128 and more for a signal that ended it; -1 if it does not end within 30 s.
+  /// Its exit code, 128 and more for a signal that ended it; -1 if it does not end within `patience`.
   [[nodiscard]] int wait() {
-    for (int i = 0; i < 3000; ++i) {
-      int status = 0;
-      const pid_t ended = ::waitpid(pid_, &status, WNOHANG);
-      if (ended == pid_) {
-        pid_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return -1;
+    int status = 0;
+    if (!comes_true([&] { return ::waitpid(pid_, &status, WNOHANG) == pid_; })) return -1;
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
 
   /// Its output so far.
@@ -69,13 +63,9 @@ class child_process {
     std::ifstream file(output_);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
-  /// Whether its output contains this within 30 s.
+  /// Whether its output contains this within `patience`.
   [[nodiscard]] bool prints(const std::string& text) const {
-    for (int i = 0; i < 3000; ++i) {
-      if (output().find(text) != std::string::npos) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+    return comes_true([&] { return output().find(text) != std::string::npos; });
   }
 
  private:

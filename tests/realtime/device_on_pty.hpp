@@ -14,11 +14,12 @@
 #include <iterator>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/pty_port.hpp"
+#include "support/machine_watch.hpp"
+#include "support/patience.hpp"
 
 namespace g4lidar::test {
 
@@ -70,21 +71,9 @@ inline readings readings_of(const scan& seen) {
 inline lidar_options patient_options(std::string device = {}) {
   lidar_options options;
   options.device = std::move(device);
-  options.answer_time = std::chrono::seconds(10);
-  options.stall_time = std::chrono::seconds(60);
+  options.tuning.answer_time = std::chrono::seconds(10);
+  options.tuning.stall_time = std::chrono::seconds(60);
   return options;
-}
-
-/// The time that `percent` of the runs do not exceed (the nearest rank), of `runs` of them.
-template <class Measure>
-std::chrono::nanoseconds percentile(std::size_t percent, std::size_t runs, Measure&& measure) {
-  std::vector<std::chrono::nanoseconds> times;
-  for (std::size_t i = 0; i < runs && !testing::Test::HasFailure(); ++i) {
-    times.push_back(measure());
-  }
-  if (times.empty()) return std::chrono::nanoseconds::max();
-  std::sort(times.begin(), times.end());
-  return times[(times.size() * percent + 99) / 100 - 1];
 }
 
 class device_on_pty {
@@ -121,17 +110,15 @@ class device_on_pty {
   /// it happens each time.
   [[nodiscard]] std::uint64_t bytes_lost() const { return port_->bytes_lost(); }
 
-  /// Whether it becomes idle and silent within thirty seconds.
+  /// Whether it becomes idle and silent within `patience`.
   [[nodiscard]] bool becomes_idle_and_silent() {
-    for (int i = 0; i < 3000; ++i) {
+    return comes_true([&] {
       bool idle = false;
       with([&](sim::device& simulated, std::int64_t now_ns) {
         idle = simulated.is_idle_and_silent(now_ns);
       });
-      if (idle) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
+      return idle;
+    });
   }
 
   [[nodiscard]] sim::device_settings settings() {
@@ -181,16 +168,6 @@ inline std::size_t found_in_order(const std::vector<readings>& scans,
     ++found;
   }
   return found;
-}
-
-/// Passes if three of four attempts succeed; ends when the result is certain. An attempt fails if the
-/// machine delayed the reader until the pseudo-terminal was full.
-template <class Attempt>
-void expect_three_of_four(Attempt&& attempt) {
-  int held = 0;
-  int failed = 0;
-  while (held < 3 && failed < 2 && !testing::Test::HasFailure()) ++(attempt() ? held : failed);
-  EXPECT_EQ(held, 3);
 }
 
 inline void expect_identity(const lidar_counts& counts) {

@@ -42,7 +42,7 @@ template <class Between>
 std::vector<readings> whole_scans(lidar& device, int count, Between&& between) {
   std::vector<readings> all;
   for (int i = 0; i < count; ++i) {
-    const auto scan = device.next_scan(30s);
+    const auto scan = device.next_scan(test::patience);
     EXPECT_TRUE(scan) << scan.error().message() << " after " << i;
     if (!scan) break;
     if (scan->is_whole()) all.push_back(test::readings_of(*scan));
@@ -275,7 +275,7 @@ TEST(RealTime, Port_IsNotOpenedTwice) {
   const auto second = lidar::open(simulated.path());
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().code(), problem::busy) << second.error().message();
-  EXPECT_TRUE(device->next_scan(30s));
+  EXPECT_TRUE(device->next_scan(test::patience));
 }
 
 /// For each scan, the time from the transmission of the zero packet that ends it to its delivery.
@@ -290,7 +290,7 @@ std::vector<std::chrono::nanoseconds> delays_of(int count) {
   std::vector<std::int64_t> handed_ns;
   std::vector<readings> scans;
   while (device && static_cast<int>(scans.size()) < count) {
-    const auto scan = device->next_scan(30s);
+    const auto scan = device->next_scan(test::patience);
     handed_ns.push_back(clock::now().time_since_epoch().count() - offset_ns);
     EXPECT_TRUE(scan) << scan.error().message();
     if (!scan) break;
@@ -314,6 +314,7 @@ std::vector<std::chrono::nanoseconds> delays_of(int count) {
 
 // The 90th percentile of 40 scans, the first ten of four starts.
 TEST(RealTime, DeliversScansImmediately) {
+  const test::machine_watch machine;
   std::vector<std::chrono::nanoseconds> all;
   for (int start = 0; start < 4; ++start) {
     const auto delays = delays_of(10);
@@ -321,23 +322,22 @@ TEST(RealTime, DeliversScansImmediately) {
     all.insert(all.end(), delays.begin(), delays.end());
   }
   EXPECT_GE(*std::min_element(all.begin(), all.end()), 0ns);
-  std::size_t next = 0;
-  EXPECT_LT(test::percentile(90, all.size(), [&] { return all[next++]; }), 50ms);
+  const auto delay = test::percentile_of(90, all);
+  if (delay >= 50ms && machine.was_stopped()) GTEST_SKIP() << test::machine_was_stopped;
+  EXPECT_LT(delay, 50ms);
 }
 
 // A G4 with default options: its motor needs 0.6 s, a partial revolution up to 0.14 s, and the
 // first whole one as long. The vendor's SDK needs 2.5 s. The median of 3 runs.
 TEST(RealTime, FirstScan_ArrivesSoon) {
-  const auto time = test::percentile(50, 3, [] {
+  test::expect_percentile_below(2500ms, 50, 3, [] {
     device_on_pty simulated{sim::device_options{}};
     const auto begin = clock::now();
     auto device = started(simulated);
     EXPECT_TRUE(device) << device.error().message();
-    EXPECT_TRUE(device && device->next_scan(30s));
+    EXPECT_TRUE(device && device->next_scan(test::patience));
     return clock::now() - begin;
   });
-  EXPECT_LT(time, 2500ms);
-  RecordProperty("milliseconds", static_cast<int>(time / 1ms));
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(RawBytes, ReturnTheirTransportOnceAndDiscardWrites) {
 
 TEST_F(RawBytes, MissingFileOrDirectory_IsRefused) {
   EXPECT_EQ(open_raw_bytes("/nowhere/at/all", 9000).error(), problem::system);
-  EXPECT_EQ(open_raw_bytes("/", 9000).error(), problem::system);
+  EXPECT_EQ(open_raw_bytes("/", 9000).error(), problem::bad_file);
 }
 
 }  // namespace

@@ -103,6 +103,30 @@ TEST_P(Packed, DamagedInOnePlace_LosesOneChunk) {
   }
 }
 
+/// Also of a file whose end is damaged. Nothing behind the last intact chunk counts.
+TEST_P(Packed, CutOffAnywhere_EndsWithTheLastIntactChunk) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), {.packed = GetParam()});
+  record_readings(writer, 0, 1000);
+  ASSERT_TRUE(writer.close());
+  const auto whole = bytes_of(path.text());
+  std::mt19937 dice(3);
+  for (int i = 0; i < 100; ++i) {
+    auto file = whole;
+    file.resize(whole.size() / 5 + dice() % (whole.size() * 4 / 5));
+    if (i % 3 == 0)
+      file.resize(file.size() + 1 + dice() % 5'000);  // zeros: space that was allocated
+    if (i % 3 == 1) file[file.size() - 200 - dice() % 100] ^= 1U;
+    const contents found = contents_of_bytes(file);
+    ASSERT_FALSE(found.readings.empty());
+    const auto reader =
+        recording_access::open(std::make_shared<memory_source>(file), path.text(), {});
+    ASSERT_TRUE(reader);
+    EXPECT_EQ(reader->last_ns(), time_of(found.readings.back())) << i << ": " << file.size();
+    EXPECT_EQ(reader->first_ns(), time_of(0));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(With, Packed, testing::Values(packing::none, packing::zstd),
                          [](const auto& of) {
                            return of.param == packing::none ? "None" : "Zstd";

@@ -64,7 +64,7 @@ run_result live(const run_case& of, std::uint64_t seed, recording_writer& into) 
   virtual_bench bench(how, faults);
   lidar_options options;
   options.reconnect = true;
-  options.batch = of.batch;
+  options.tuning.batch = of.batch;
   if (seed % 3 == 1) options.protection = power_down_protection::on;
   into.set_wall_clock(1'700'000'000 * second);
   run_result run;

@@ -84,6 +84,21 @@ TEST_F(Domain, AFileOfConfigThatIsNotToml_IsExplained) {
   }
 }
 
+TEST_F(Domain, WordsThatAreAlmostRight_GetASuggestion) {
+  cli::write_file(path("options"), "gird = 360\n");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
+      {{"sim:", "--gird", "360"}, "--grid"},
+      {{"sim:", "--qos", "relaible"}, "reliable"},
+      {{"sim:", "--set", "feq=7"}, "freq"},
+      {{"sim:", "--ros-args", "-p", "frame_idd:=laser"}, "frame_id"},
+      {{"sim:", "--config", path("options")}, "grid"}};
+  for (const auto& [words, wanted] : refused) {
+    const cli::outcome end = cli::program(words).wait();
+    EXPECT_EQ(end.code, 2) << wanted;
+    EXPECT_THAT(end.err, HasSubstr("; did you mean '" + wanted + "'? See: g4-ros2 --help\n"));
+  }
+}
+
 TEST_F(Domain, AServiceIsReadyWithoutOne) {
   const cli::manager systemd(path("notify"));
   const served_lidar lidar;

@@ -37,6 +37,31 @@ TEST(Names, AreInTheNamespaceUnlessTheyBeginWithASlash) {
   }
 }
 
+/// A topic has at most 247 characters, with its namespace.
+TEST(Names, LongerThanRos2Allows_AreRefused) {
+  EXPECT_EQ(full_name("", std::string(246, 'a')).size(), 247U);
+  EXPECT_THROW(static_cast<void>(full_name("", std::string(247, 'a'))), bad_value);
+  EXPECT_THROW(static_cast<void>(full_name(std::string(240, 'n'), "points")), bad_value);
+  const std::string longest(66'000, 'a');
+  for (const char* const option :
+       {"--namespace", "--node-name", "--scan-topic", "--points-topic", "--diagnostics-topic",
+        "--odometry-topic", "--tf-topic", "--tf-static-topic", "--frame-id", "--base-frame",
+        "--odometry-frame"}) {
+    const cli::outcome refused = cli::run({option, longest, "sim:"});
+    EXPECT_EQ(refused.code, 2) << option << refused.signal;
+    EXPECT_THAT(refused.err, HasSubstr("at most 247 characters")) << option;
+    EXPECT_LT(refused.err.size(), 1000U) << option;
+  }
+  for (const std::string& words : {longest + "=sim:", "-r:__ns:=/" + longest,
+                                   "-r:__node:=" + longest, "-r:scan:=" + longest}) {
+    std::vector<std::string> all{words};
+    if (words.starts_with("-r:")) all = {"sim:", "--ros-args", "-r", words.substr(3)};
+    const cli::outcome refused = cli::run(all);
+    EXPECT_EQ(refused.code, 2) << words.substr(0, 20) << refused.signal;
+    EXPECT_LT(refused.err.size(), 1000U) << words.substr(0, 20);
+  }
+}
+
 std::vector<std::string> names_of(std::vector<std::string> sources, const char* mounted = nullptr) {
   ros2_options options;
   options.sources = std::move(sources);

@@ -57,6 +57,28 @@ class filtered {
     return all;
   }
 
+  /// How a grid is filled.
+  g4lidar::grid_options grid() {
+    g4lidar::scan whole;
+    whole.points = points_;
+    return shaper_->shape(whole, {}).grid;
+  }
+  /// Something at 0.4 m, in a revolution of one point.
+  void come_near() {
+    const g4lidar::point near{.angle_deg = 100.0F, .range_mm = 400.0F};
+    g4lidar::scan whole;
+    whole.points = {&near, 1};
+    static_cast<void>(shaper_->shape(whole, {}));
+  }
+  /// The flagged points of the next revolution, in which that beam has no return.
+  std::size_t flagged() {
+    const g4lidar::point none{
+        .angle_deg = 96.9F, .revolution = 1, .flags = g4lidar::point_flags::no_return};
+    g4lidar::scan whole;
+    whole.points = {&none, 1};
+    return shaper_->shape(whole, {}).for_grid.front().may_be_too_near() ? 1 : 0;
+  }
+
  private:
   std::shared_ptr<g4_tool::ros2_options> options_ = std::make_shared<g4_tool::ros2_options>();
   std::unique_ptr<g4_tool::scan_shaper> shaper_;
@@ -102,6 +124,37 @@ TEST(FilterParameters, SpecksAreLeftOutFromNowOn) {
   EXPECT_EQ(lidar.set("speckle", "on"), "");
   EXPECT_EQ(lidar.set("speckle", "off"), "");
   EXPECT_TRUE(lidar.missing().empty());
+}
+
+TEST(FilterParameters, RangesWithoutReturn_ChangeFromNowOn) {
+  using enum g4lidar::no_return_as;
+  filtered lidar({{"--no-return", "max"}, {"--near", ""}});
+  EXPECT_EQ(lidar.value("no_return"), "max");
+  EXPECT_EQ(lidar.value("near"), "on");
+  EXPECT_EQ(lidar.value("near_as"), "nan");
+  EXPECT_EQ(lidar.grid().no_return, max);
+  EXPECT_FALSE(lidar.grid().near_is_minus_infinity);
+  EXPECT_EQ(lidar.set("no_return", "nan"), "");
+  EXPECT_EQ(lidar.set("near_as", "minus-inf"), "");
+  EXPECT_EQ(lidar.grid().no_return, nan);
+  EXPECT_TRUE(lidar.grid().near_is_minus_infinity);
+  EXPECT_THAT(lidar.set("no_return", "far"), HasSubstr("far"));
+  EXPECT_EQ(lidar.grid().no_return, nan);
+}
+
+TEST(FilterParameters, WhatMayBeTooNearIsFlaggedFromNowOn) {
+  filtered lidar;
+  const auto flagged = [&] {
+    lidar.come_near();
+    return lidar.flagged();
+  };
+  EXPECT_EQ(flagged(), 0U);
+  EXPECT_EQ(lidar.set("near", "on"), "");
+  EXPECT_EQ(flagged(), 1U);
+  EXPECT_EQ(lidar.set("near", "shortest=0.1"), "");
+  EXPECT_EQ(flagged(), 0U);
+  EXPECT_EQ(lidar.set("near", "off"), "");
+  EXPECT_EQ(flagged(), 0U);
 }
 
 TEST(FilterParameters, VeilingPointsAreLeftOutFromNowOn) {

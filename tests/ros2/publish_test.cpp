@@ -51,7 +51,7 @@ TEST_F(Publish, EveryScanOfARecordingNumberByNumber) {
   // At rest it does not play, so nothing is missed before the subscriber is there.
   cli::program tool({file, "--standby", "--playback-speed", "8"});
   std::vector<std::vector<std::uint32_t>> got;
-  comes_true([&] {
+  EXPECT_TRUE(comes_true([&] {
     scans.take([&](const scan_message& message) {
       got.push_back(bits_of({message.ranges._buffer, message.ranges._length}));
       EXPECT_STREQ(message.header.frame_id, "laser");
@@ -59,7 +59,7 @@ TEST_F(Publish, EveryScanOfARecordingNumberByNumber) {
       EXPECT_FLOAT_EQ(message.angle_increment, 2 * std::numbers::pi_v<float> / 720);
     });
     return got.size() >= wanted.size();
-  });
+  }));
   EXPECT_EQ(got, wanted);
   EXPECT_EQ(tool.wait().code, 0);
 }
@@ -73,7 +73,7 @@ TEST_F(Publish, PointsWithTheirTimes) {
                      "--scan-topic", "off"});
   std::size_t compared = 0;
   std::size_t next = 0;
-  comes_true([&] {
+  EXPECT_TRUE(comes_true([&] {
     clouds.take([&](const cloud_message& message) {
       while (next < wanted.size() && wanted[next].view().is_piece()) ++next;
       ASSERT_LT(next, wanted.size());
@@ -98,7 +98,7 @@ TEST_F(Publish, PointsWithTheirTimes) {
       ++compared;
     });
     return compared > 12;
-  });
+  }));
   EXPECT_GT(compared, 12U);
   tool.send(SIGINT);
 }
@@ -157,6 +157,13 @@ TEST_F(Publish, ThePlaceOfTheLidarForWhoeverComesLate) {
   const double half = std::numbers::sqrt2 / 2;
   EXPECT_THAT(numbers, Pointwise(::testing::DoubleNear(1e-12), {0.2, -0.1, half, half}));
   tool.send(SIGINT);
+}
+
+TEST_F(Publish, AnotherModelEndsItWithTheReason) {
+  cli::program tool({"sim:?model=4"});
+  const cli::outcome end = tool.wait();
+  EXPECT_EQ(end.code, 7);
+  EXPECT_NE(end.err.find("is not a G4"), std::string::npos) << end.err;
 }
 
 TEST_F(Publish, AMissingFileIsReportedOnce) {

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -217,9 +218,33 @@ TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {
   tool.send(SIGINT);
 }
 
+TEST_F(Robot, MergedLidars_AWallThatIsTooNearForOneIsNoFreeWay) {
+  // One drives to 0.15 m before a wall. The other one stands, and sees only what is behind it.
+  cli::write_file(path("front.txt"),
+                  "wall 1 -1.5 1 1.2\nwall 1 1.2 -2 1.2\nlidar 0 0 0\nmount 0,0,0\n"
+                  "drive wait 1\ndrive forward 0.85 0.5\ndrive wait 1000\n");
+  cli::write_file(path("rear.txt"), "wall -2 -1.5 -2 1.2\nlidar 0 0 0\n");
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  cli::program tool({"front=sim:?world=" + path("front.txt"), "rear=sim:?world=" + path("rear.txt"),
+                     "--merge", "--mount", "front=0,0,0", "--mount", "rear=0,0,180",
+                     "--near=revolutions=0", "--near-as", "minus-inf"});
+  std::vector<float> ranges(720);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(comes_true([&] {
+    scans.take([&](const scan_message& scan) {
+      ranges.assign(scan.ranges._buffer, scan.ranges._buffer + scan.ranges._length);
+    });
+    return ranges[360] == -infinity && ranges[0] > 0;
+  })) << ranges[360];
+  EXPECT_NEAR(static_cast<double>(ranges[540]), 1.2, 0.05);  // left
+  EXPECT_NEAR(static_cast<double>(ranges[0]), 2.0, 0.05);    // behind
+  EXPECT_EQ(ranges[180], infinity) << "nothing is there";
+  tool.send(SIGINT);
+}
+
 TEST_F(Robot, MergedLidarsFollowTheSimulatedRobot) {
   cli::write_file(path("turn.txt"),
-                  std::string(small_room) + "lidar 0 0 0\nmount 0 0 180\ndrive turn 3600 60\n");
+                  std::string(small_room) + "lidar 0 0 0\nmount 0,0,0\ndrive turn 3600 60\n");
   subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
   subscriber<odometry_message> odometry(domain_, "/odom", dds::odometry, {.depth = 1000});
   diagnosis diagnostics(domain_);

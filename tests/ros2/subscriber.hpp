@@ -7,19 +7,19 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <string>
-#include <thread>
 
 #include <messages.h>
 #include "dds/bus.hpp"
 #include "dds/entity.hpp"
 #include "dds/message_type.hpp"
+#include "support/patience.hpp"
 
 namespace ros2 {
 
 namespace dds = g4_tool::dds;
+using g4lidar::test::comes_true;
 
 using scan_message = sensor_msgs_msg_dds__LaserScan_;
 using cloud_message = sensor_msgs_msg_dds__PointCloud2_;
@@ -27,17 +27,6 @@ using odometry_message = nav_msgs_msg_dds__Odometry_;
 using tf_message = tf2_msgs_msg_dds__TFMessage_;
 using diagnostic_message = diagnostic_msgs_msg_dds__DiagnosticArray_;
 using clock_message = rosgraph_msgs_msg_dds__Clock_;
-
-/// Until it is true; false after a time that no machine needs.
-template <class Predicate>
-bool comes_true(Predicate predicate, std::chrono::seconds longest = std::chrono::seconds(30)) {
-  const auto end = std::chrono::steady_clock::now() + longest;
-  while (!predicate()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
-}
 
 /// The variables for programs that this test starts, and for the test itself, and a participant.
 class test_domain {

@@ -150,6 +150,17 @@ TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
   EXPECT_NEAR(number_at<float>(data, 28), 0.5F, 1e-5F);
 }
 
+TEST(PageTexts, AdviceIsNotForACommandLine) {
+  g4_tool::page_status status;
+  status.stages.push_back({.stage = g4lidar::diagnostic_stage::stream});
+  status.stages.back().find(g4lidar::diagnosis::unplugged);
+  const json text = json::parse(g4_tool::status_text(status));
+  const auto advice = text["stages"][0]["diagnoses"][0]["advice"].get<std::string>();
+  EXPECT_THAT(advice, ::testing::HasSubstr("plug it in"));
+  EXPECT_THAT(advice, ::testing::Not(::testing::HasSubstr("--")));
+  EXPECT_THAT(advice, ::testing::Not(::testing::HasSubstr("command")));
+}
+
 TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   const json hello = json::parse(hello_text(
       {.source = "a\"b", .device = {}, .settings = {{"freq", 7.0}}, .recording_s = 2.5}));
@@ -163,8 +174,10 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   status.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
   status.stages.back().find(g4lidar::diagnosis::bits_flipped);
   status.stages.back().add("lost_percent", 3.5);
+  status.counts.stream.crc_mismatches = 7;
   const json text = json::parse(status_text(status));
   EXPECT_EQ(text["state"], "lost");
+  EXPECT_EQ(text["counts"]["crc_mismatches"], 7);
   EXPECT_EQ(text["loss"], 0.25);
   EXPECT_TRUE(text["scan_rate_hz"].is_null());
   EXPECT_FALSE(text.contains("position_s"));

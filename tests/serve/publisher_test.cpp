@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <sstream>
 #include <string>
@@ -17,6 +18,7 @@
 #include "io/station.hpp"
 #include "program.hpp"
 #include "scan_publisher.hpp"
+#include "support/cdr_reader.hpp"
 #include "support/test_scale.hpp"
 
 namespace {
@@ -58,8 +60,7 @@ struct reader {
 class Served : public cli::scratch, public station_listener {
  protected:
   /// Without waiting, until its end, or until read_all() returns false.
-  void play(const std::string& source, bool loops) {
-    serve_options options;
+  void play(const std::string& source, bool loops, serve_options options = {}) {
     options.common.source = source;
     scan_publisher publisher(options, center_);
     publisher_ = &publisher;
@@ -99,9 +100,9 @@ class Served : public cli::scratch, public station_listener {
   std::uint64_t scans_ = 0;
   int openings_ = 0;
   hub center_{"session", false, {.set = {}, .play = {}}, [] {}};
+  scan_publisher* publisher_ = nullptr;
 
  private:
-  scan_publisher* publisher_ = nullptr;
   std::mutex mutex_;
   std::condition_variable ended_;
   bool is_over_ = false;
@@ -187,6 +188,86 @@ TEST_F(Damaged, RevolutionsAreMarked_AndPiecesLeftOut) {
   EXPECT_EQ(are_whole_, wanted);
   EXPECT_GE(std::ranges::count(wanted, false), 10);
   EXPECT_GE(std::ranges::count(wanted, true), 10);
+}
+
+class Ranges : public Served {
+ protected:
+  Ranges() {
+    EXPECT_TRUE(center_.receive(*viewer_,
+                                R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1}]})"));
+  }
+  bool read_all() override {
+    while (const auto message = center_.take(*viewer_)) {
+      if (!message->is_text) last_.assign(message->payload->begin(), message->payload->end());
+    }
+    return true;
+  }
+  /// How many ranges of the last LaserScan equal `value`, with these options for a lidar that drives to 0.15 m
+  /// before a wall.
+  std::size_t last_with(float value, const serve_options& options) {
+    cli::write_file(path("near.txt"),
+                    "wall -4 -3 4 -3\nwall 4 -3 4 3\nwall 4 3 -4 3\nwall -4 3 -4 -3\n"
+                    "lidar 3.2 0 0\ndrive wait 1\ndrive forward 0.65 0.3\n");
+    EXPECT_EQ(
+        cli::run({"sim", "--seconds", "5", "--world", path("near.txt"), "-o", path("near.bin")})
+            .code,
+        0);
+    play(path("near.bin"), false, options);
+    g4lidar::test::cdr_reader scan(last_);
+    for (int of_stamp = 0; of_stamp < 2; ++of_stamp) static_cast<void>(scan.number<std::int32_t>());
+    static_cast<void>(scan.text());
+    for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(scan.number<float>());
+    std::vector<float> ranges(scan.number<std::uint32_t>());
+    for (float& each : ranges) each = scan.number<float>();
+    EXPECT_EQ(ranges.size(), 720U);
+    return static_cast<std::size_t>(std::ranges::count(ranges, value));
+  }
+
+  hub::client* viewer_ = center_.connect(client_kind::foxglove, nullptr);
+  std::vector<std::uint8_t> last_;
+  static constexpr float infinity = std::numeric_limits<float>::infinity();
+};
+
+// The wall is too near in 114 degrees: those within acos(0.15 / 0.28) of the way to it.
+TEST_F(Ranges, ANoReturnIsInfinite_ByDefault) { EXPECT_GE(last_with(infinity, {}), 200U); }
+TEST_F(Ranges, ANoReturnIsWhatTheOptionSets) {
+  serve_options options;
+  options.common.grid.no_return = no_return_as::max;
+  EXPECT_GE(last_with(16.38375F, options), 200U);
+}
+TEST_F(Ranges, WhatMayBeTooNearIsMinusInfinity_WithTheOption) {
+  serve_options options;
+  options.common.marks.near = near_limits{.revolutions = near_limits::until_return};
+  options.common.grid.near_is_minus_infinity = true;
+  EXPECT_GE(last_with(-infinity, options), 200U);
+}
+
+class Setting : public Served {
+ protected:
+  bool read_all() override {
+    if (scans_ == 1) {
+      publisher_->set({.name = "freq", .value = "10"}, [this](const std::string& error) {
+        EXPECT_EQ(error, "");
+        while (const auto message = center_.take(*page_)) {
+          const std::string text(message->payload->begin(), message->payload->end());
+          is_early_ = is_early_ || text.find(R"("op":"settings")") != std::string::npos;
+        }
+        is_done_ = true;
+      });
+    }
+    return !is_done_;
+  }
+
+  hub::client* page_ = center_.connect(client_kind::page, nullptr);
+  bool is_early_ = false;
+  bool is_done_ = false;
+};
+
+// Otherwise a page that sets again when it gets the settings is refused: the first one is "not done yet".
+TEST_F(Setting, IsDone_BeforePagesGetTheSettings) {
+  play("sim:", false);
+  EXPECT_TRUE(is_done_);
+  EXPECT_FALSE(is_early_);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,13 +15,13 @@
 #include <string_view>
 #include <utility>
 
+#include "support/patience.hpp"
+
 namespace serve {
 
-/// One connection to loopback. Nothing waits longer than `patience`.
+/// One connection to loopback. Nothing waits longer than `patience` for the server.
 class raw_client {
  public:
-  static constexpr auto patience = std::chrono::seconds(30);
-
   explicit raw_client(std::uint16_t port) : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in place{};
     place.sin_family = AF_INET;
@@ -44,7 +43,7 @@ class raw_client {
   void send(std::string_view data) const {
     while (!data.empty()) {
       pollfd ready{fd_, POLLOUT, 0};
-      if (::poll(&ready, 1, 1000) <= 0) return;
+      if (::poll(&ready, 1, g4lidar::test::patience_ms) <= 0) return;
       const ssize_t sent = ::send(fd_, data.data(), data.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
       if (sent <= 0) return;
       data.remove_prefix(static_cast<std::size_t>(sent));
@@ -124,8 +123,7 @@ class raw_client {
 
   bool read_some() {
     pollfd ready{fd_, POLLIN, 0};
-    const int longest = static_cast<int>(std::chrono::milliseconds(patience).count());
-    if (::poll(&ready, 1, longest) <= 0) return false;
+    if (::poll(&ready, 1, g4lidar::test::patience_ms) <= 0) return false;
     char part[16'384];
     const ssize_t count = ::recv(fd_, part, sizeof(part), 0);
     is_closed_ = count <= 0;

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
@@ -13,17 +12,16 @@
 #include <optional>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "program.hpp"
 #include "raw_client.hpp"
 #include "server.hpp"
+#include "support/patience.hpp"
 #include "support/test_scale.hpp"
 
 namespace {
 
-using namespace std::chrono_literals;
 using cli::outcome;
 using nlohmann::json;
 using serve::page;
@@ -94,6 +92,23 @@ TEST_F(Server, Recording_IsPausedAndSought) {
   EXPECT_NEAR(status["position_s"].get<double>(), 12.2, 0.5);
   client->send_text(R"({"op":"play","paused":false,"speed":4})");
   EXPECT_TRUE(gets_scans(*client, 5));
+}
+
+TEST_F(Server, RecordingThatWasCutOff_HasALength) {
+  ASSERT_EQ(cli::run({"sim", "--seconds", "20", "-o", path("raw.bin")}).code, 0);
+  ASSERT_EQ(cli::run({"convert", path("raw.bin"), path("walk.mcap")}).code, 0);
+  const auto whole = cli::read_file(path("walk.mcap"));
+  cli::write_file(path("cut.mcap"), whole.substr(0, whole.size() / 2));
+  begin({"--loop"}, path("cut.mcap"));
+  const auto client = open_page();
+  EXPECT_NEAR(next(*client, "hello")["recording"]["length_s"].get<double>(), 10.0, 2.0);
+  client->send_text(R"({"op":"play","paused":true,"seek_s":6})");
+  json status = next(*client, "status");
+  while (!status.is_null() && !(status.value("position_s", 0.0) > 5.5)) {
+    status = next(*client, "status");
+  }
+  ASSERT_FALSE(status.is_null());
+  EXPECT_NEAR(status["position_s"].get<double>(), 6.2, 0.5);
 }
 
 TEST_F(Server, ForeignNamesAndOrigins_AreRefused) {
@@ -227,23 +242,17 @@ TEST_F(Server, TwoHundredConnections_LeaveTheFirstAlone) {
     EXPECT_TRUE(gets_scans(*good, 10));
   }
   // The server may have to close them first.
-  bool is_open = false;
-  for (int i = 0; i < 100 && !is_open; ++i) {
+  EXPECT_TRUE(g4lidar::test::comes_true([&] {
     raw_client next(port_);
-    is_open = next.upgrade(page).starts_with("HTTP/1.1 101") && gets_scans(next, 1);
-    if (!is_open) std::this_thread::sleep_for(100ms);
-  }
-  EXPECT_TRUE(is_open);
+    return next.upgrade(page).starts_with("HTTP/1.1 101") && gets_scans(next, 1);
+  }));
 }
 
 TEST_F(Server, LostLidar_IsShownAndComesBack) {
-  begin({}, "sim:?fault=unplug@2s+500ms");
+  begin({}, "sim:?fault=unplug@2s+3s");
   const auto client = open_page();
-  json status;
-  while (status.is_null() || status["state"] != "lost") {
-    status = next(*client, "status");
-    ASSERT_TRUE(status.is_object());
-  }
+  ASSERT_TRUE(
+      g4lidar::test::comes_true([&] { return next(*client, "status")["state"] == "lost"; }));
   EXPECT_EQ(next(*client, "event")["what"], "reconnected");
   EXPECT_TRUE(gets_scans(*client));
 }
@@ -252,6 +261,12 @@ TEST_F(Server, OnLossExit_EndsAsOtherCommands) {
   begin({"--on-loss", "exit"}, "sim:?fault=unplug@1500ms");
   const outcome done = running_->wait();
   EXPECT_EQ(done.code, 9) << cli::read_file(path("err"));
+}
+
+TEST_F(Server, AnotherModel_EndsWithTheReason) {
+  const outcome done = cli::run({"serve", "sim:?model=4", "--port", "0"});
+  EXPECT_EQ(done.code, 7);
+  EXPECT_THAT(done.err, HasSubstr("is not a G4"));
 }
 
 TEST_F(Server, PortInUse_IsReported) {

@@ -273,7 +273,7 @@ TEST(SimFaults, Jolts_CauseSuspectPackets) {
 }
 
 TEST(SimFaults, Fault_EndsAfterItsDuration) {
-  for (int kind = 0; kind <= static_cast<int>(fault_kind::jolt); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(sim::last_fault_kind); ++kind) {
     SCOPED_TRACE(name_of(static_cast<fault_kind>(kind)));
     fault f = make_fault(static_cast<fault_kind>(kind), second, second);
     if (f.rate < 1.0) f.rate = 0.01;

@@ -29,7 +29,7 @@ std::string refusal(std::string_view text) {
 }
 
 TEST(SimFaultText, EveryKind_HasANameAndDefaults) {
-  for (int kind = 0; kind <= static_cast<int>(fault_kind::jolt); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(last_fault_kind); ++kind) {
     const auto expected = make_fault(static_cast<fault_kind>(kind));
     const fault found = read(name_of(expected.kind));
     EXPECT_EQ(found.kind, expected.kind);

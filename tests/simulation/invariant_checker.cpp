@@ -155,6 +155,7 @@ void invariant_checker::check_counts() {
                  static_cast<unsigned long long>(now.samples_lost)));
   }
   if (parameters_->healthy && now.stream.suspect > 0) fail("a suspect packet without a fault");
+  if (parameters_->healthy && now.stream.crc_mismatches > 0) fail("a CRC misfits without a fault");
   last_ = now;
 }
 
@@ -166,10 +167,10 @@ void invariant_checker::check_calls() {
       now.empty + now.pauses + now.connects + now.writes -
       (calls_then_.empty + calls_then_.pauses + calls_then_.connects + calls_then_.writes);
   const std::uint64_t of_use = now.reads - calls_then_.reads + app_calls_ - app_calls_then_;
-  const auto batch_ns = std::chrono::nanoseconds(parameters_->options.batch).count();
+  const auto batch_ns = std::chrono::nanoseconds(parameters_->options.tuning.batch).count();
   const auto for_batches = static_cast<std::uint64_t>(batch_ns == 0 ? 0 : second / batch_ns);
   const auto attempts =
-      static_cast<std::uint64_t>(1000 / parameters_->options.longest_backoff.count());
+      static_cast<std::uint64_t>(1000 / parameters_->options.tuning.longest_backoff.count());
   if (vain > 300 + 3 * of_use + 2 * for_batches + 2 * attempts) {
     fail("spins: " + std::to_string(vain) + " calls in vain in a second, and " +
          std::to_string(of_use) + " of use");

@@ -64,6 +64,7 @@ void draw_times(dice& d, sim::device_options& device) {
 void draw_questions(dice& d, sim::device_options& device) {
   device.stray_after_start = d.chance(0.5);
   device.stray_before_zero = d.chance(0.6);
+  device.ct_crc = device.stray_after_start;  // no further draw, so that seeds keep their meaning
   device.stop_truncates = d.chance(0.5);
   device.boot_text = d.chance(0.5);
   device.boot_information = d.chance(0.5);
@@ -103,6 +104,9 @@ void draw_device(dice& d, run_parameters& parameters) {
   const std::int64_t most = d.chance(0.5) ? ms : 16 * ms;
   parameters.device.batch_max_ns = parameters.device.batch_min_ns + d.between(0, most);
   parameters.device.boots_at_start = !parameters.healthy && d.chance(0.15);
+  // The truth is taken at each call of the driver, whose longest wait, for a first packet that a stall holds
+  // back, is 10 s: 93,000 samples.
+  parameters.device.truth_capacity = 100'000;
 }
 
 void draw_options(dice& d, run_parameters& parameters) {
@@ -117,12 +121,12 @@ void draw_options(dice& d, run_parameters& parameters) {
     o.protection = either(d, power_down_protection::on, power_down_protection::off, 0.8);
   }
   o.reconnect = d.chance(0.85);
-  if (d.chance(0.5)) o.longest_backoff = milliseconds(d.between(1, 1000));
-  if (d.chance(0.2)) o.answer_time = milliseconds(d.between(100, 600));
-  if (d.chance(0.3)) o.stall_time = milliseconds(d.between(300, 2000));
-  if (d.chance(0.3)) o.batch = milliseconds(d.between(1, 40));
+  if (d.chance(0.5)) o.tuning.longest_backoff = milliseconds(d.between(1, 1000));
+  if (d.chance(0.2)) o.tuning.answer_time = milliseconds(d.between(100, 600));
+  if (d.chance(0.3)) o.tuning.stall_time = milliseconds(d.between(300, 2000));
+  if (d.chance(0.3)) o.tuning.batch = milliseconds(d.between(1, 40));
   o.partial_scans = d.chance(0.3);
-  o.pace = either(d, read_pace::packets, read_pace::revolutions);
+  o.tuning.pace = either(d, read_pace::packets, read_pace::revolutions);
 }
 
 void draw_application(dice& d, run_parameters& parameters) {
@@ -147,7 +151,7 @@ std::int64_t some_duration(dice& d, std::int64_t most_ns) {
 
 sim::fault draw_fault(dice& d, std::int64_t until_ns) {
   using sim::fault_kind;
-  const auto kind = static_cast<fault_kind>(d.between(0, static_cast<int>(fault_kind::jolt)));
+  const auto kind = static_cast<fault_kind>(d.between(0, static_cast<int>(sim::last_fault_kind)));
   const std::int64_t begin_ns = d.chance(0.1) ? 0 : d.between(std::int64_t{0}, until_ns - 10 * ms);
   sim::fault f = sim::make_fault(kind, begin_ns, some_duration(d, until_ns - begin_ns));
   switch (kind) {
@@ -162,6 +166,7 @@ sim::fault draw_fault(dice& d, std::int64_t until_ns) {
       break;
     case fault_kind::truncate:
     case fault_kind::jolt:
+    case fault_kind::omit:
       f.rate = d.spread(1e-3, 0.5);
       break;
     case fault_kind::batch:
@@ -211,6 +216,11 @@ std::uint32_t slowest_chz(const run_parameters& parameters) {
              : own;
 }
 
+/// To 12 Hz.
+std::int64_t spin_up_ns(const sim::device_options& device) {
+  return device.standstill_ns + 12'000 * second / device.acceleration_mhz_per_s;
+}
+
 }  // namespace
 
 double dice::spread(double least, double most) {
@@ -236,13 +246,10 @@ run_parameters draw_run(std::uint64_t seed) {
 }
 
 std::int64_t own_time_ns(const run_parameters& parameters) {
-  const std::int64_t fastest_mhz = 12'000;
-  const std::int64_t spin_up_ns = parameters.device.standstill_ns +
-                                  fastest_mhz * second / parameters.device.acceleration_mhz_per_s;
   const std::int64_t turns_ns = 2 * 100 * second / slowest_chz(parameters);
   const sim::device_options& v = parameters.device;
   return v.stop_ns + v.boot_ns + v.first_answer_ns + most_commands * v.reaction_ns + v.header_ns +
-         std::max(v.silence_ns, spin_up_ns) + turns_ns;
+         std::max(v.silence_ns, spin_up_ns(v)) + turns_ns;
 }
 
 std::int64_t recovery_time_ns(const run_parameters& parameters) {
@@ -261,14 +268,18 @@ std::int64_t recovery_time_ns(const run_parameters& parameters) {
   const sim::device_options& v = parameters.device;
   const bool is_late = v.header_ns + v.silence_ns + v.standstill_ns > times.start_ns - second;
   const std::int64_t lost_ns = is_late ? times.start_ns + times.drain_ns : 0;
-  // Of an unknown protection is learned by the end of a scan.
+  // Of an unknown protection is learned by the end of a scan, or, where it stops the device before its
+  // first packet, by their absence.
+  const std::int64_t until_packet_ns = v.header_ns + std::max(v.silence_ns, spin_up_ns(v));
+  const std::int64_t learned_ns = until_packet_ns < times.protected_ns
+                                      ? times.protected_ns + times.stall_ns
+                                      : times.first_packet_ns;
   const bool is_protected = v.initial.protection == power_down_protection::on &&
                             parameters.options.protection != power_down_protection::on;
-  const std::int64_t starved_ns =
-      is_protected ? times.protected_ns + times.stall_ns + own_time_ns(parameters) : 0;
+  const std::int64_t starved_ns = is_protected ? learned_ns + own_time_ns(parameters) : 0;
   return died_ns + lost_ns + starved_ns + own_time_ns(parameters) + 2 * second +
-         beyond(parameters.options.stall_time, defaults.stall_time) +
-         3 * beyond(parameters.options.answer_time, defaults.answer_time);
+         beyond(parameters.options.tuning.stall_time, defaults.tuning.stall_time) +
+         3 * beyond(parameters.options.tuning.answer_time, defaults.tuning.answer_time);
 }
 
 std::string describe(const run_parameters& parameters) {
@@ -285,9 +296,9 @@ std::string describe(const run_parameters& parameters) {
   text += text_of(
       "  reconnect %d, backoff %d ms, answer %d ms, stall %d ms, batch %d ms, pace %d, protection "
       "%d\n",
-      int{o.reconnect}, static_cast<int>(o.longest_backoff.count()),
-      static_cast<int>(o.answer_time.count()), static_cast<int>(o.stall_time.count()),
-      static_cast<int>(o.batch.count()), static_cast<int>(o.pace),
+      int{o.reconnect}, static_cast<int>(o.tuning.longest_backoff.count()),
+      static_cast<int>(o.tuning.answer_time.count()), static_cast<int>(o.tuning.stall_time.count()),
+      static_cast<int>(o.tuning.batch.count()), static_cast<int>(o.tuning.pace),
       o.protection ? static_cast<int>(*o.protection) : -1);
   const sim::device_options& v = parameters.device;
   text += text_of(

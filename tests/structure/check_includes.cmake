@@ -6,8 +6,9 @@
 # - a source or header of src/<directory> includes headers of the layer of this directory and of
 #   lower ones, and of itself; some headers of src have a layer of their own;
 # - the simulator, include/g4lidar/sim and src/sim, uses layers 0 and 1 and itself; its connections
-#   to programs (sim/virtual_port, sim/pty_port, sim/setup, src/sim/host) also use error, transport and connector;
-# - the C interface, src/c, also uses the public headers of the simulator;
+#   to programs (sim/virtual_port, sim/pty_port, sim/setup, sim/simulated_source, src/sim/host) also use error,
+#   transport and connector;
+# - src/driver/source, which opens `sim:`, and the C interface, src/c, also use the public headers of the simulator;
 # - a tool includes public headers outside of detail/, and its own.
 # No header is in a circle of includes. Only eigen.hpp includes Eigen.
 
@@ -78,7 +79,7 @@ endmacro()
 macro(check_sim file other)
   if(NOT "${other}" MATCHES "^(detail/|src/)?sim/")
     set(may_see_transports OFF)
-    if("${file}" MATCHES "/sim/(virtual_port|pty_port|setup|host/[a-z_]+)\\.[ch]pp$" AND "${other}" MATCHES
+    if("${file}" MATCHES "/sim/(virtual_port|pty_port|setup|simulated_source|host/[a-z_]+)\\.[ch]pp$" AND "${other}" MATCHES
        "^(error|transport/transport|transport/connector)$")
       set(may_see_transports ON)
     endif()
@@ -138,7 +139,7 @@ foreach(source IN LISTS sources)
     continue()
   endif()
   foreach(other IN LISTS included)
-    if(directory STREQUAL "src/c" AND other MATCHES "^sim/")
+    if(other MATCHES "^sim/" AND (directory STREQUAL "src/c" OR source STREQUAL "src/driver/source.cpp"))
       continue()
     endif()
     set(of ${other})

@@ -7,7 +7,7 @@
 
 cmake_minimum_required(VERSION 3.22)
 set(include "${ROOT}/include")
-set(most_of_lidar 15)
+set(most_of_lidar 18)
 set(faults)
 
 # ---- the direct and indirect includes of lidar.hpp ---------------------------------------------
@@ -32,7 +32,7 @@ endif()
 
 # ---- files for users and developers ------------------------------------------------------------
 file(GLOB_RECURSE seen "${ROOT}/examples/*" "${ROOT}/tests/install/*" "${ROOT}/tests/documents/wrappers/*")
-file(GLOB pages "${ROOT}/README.md" "${ROOT}/docs/*.md")
+file(GLOB pages "${ROOT}/README.md" "${ROOT}/docs/*.md" "${ROOT}/docs/guide/*.md")
 foreach(file IN LISTS seen pages)
   file(STRINGS "${file}" lines REGEX "(^|[^a-z_])detail(/[a-z_/]+\\.hpp|::)")
   if(lines)

@@ -14,7 +14,7 @@ endif()
 
 # Classes that may be larger, and why.
 set(larger
-    device_options # of the simulator: one member for each property of a G4 that docs/sim.md lists
+    device_options # of the simulator: one member for each property of a G4 that docs/sim_device.md lists
 )
 
 function(sources variable) # <directory>...

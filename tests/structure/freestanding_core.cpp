@@ -33,6 +33,7 @@
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/plausibility.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/too_near.hpp"
 #include "g4lidar/version.hpp"
 
 namespace freestanding {
@@ -159,6 +160,9 @@ merged merge(std::span<const mounted_scan> lidars, const twist_2d& twist, std::s
 }
 std::size_t mark(std::span<point> points, const speckle_limits& speckle, const edge_limits& edges) {
   return mark_isolated(points, speckle) + mark_veiling(points, edges, scan_ends::open);
+}
+std::size_t mark_too_near(std::span<point> points, near_history& history) {
+  return mark_near(points, history);
 }
 bool judge(angle_check& check, packet_view packet, std::span<point> points) {
   if (check.fits(packet)) return mark_bit_errors(points) > 0;

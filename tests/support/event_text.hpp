@@ -11,6 +11,7 @@
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/core/time_packet.hpp"
 
 namespace g4lidar::transcript {
 
@@ -89,10 +90,17 @@ constexpr void write_angle(line& out, int sixty_fourths) {
   return out;
 }
 
-/// The bytes of a packet or response; none for skipped ones.
+[[nodiscard]] constexpr line text_of(time_packet_view packet) {
+  line out;
+  out << "time milliseconds=" << std::size_t{packet.milliseconds()};
+  return out;
+}
+
+/// The bytes of a packet, response or time packet; none for skipped ones.
 [[nodiscard]] constexpr bytes data_of(const event& found) {
   if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data();
   if (const auto* reply = std::get_if<response_view>(&found)) return reply->data();
+  if (const auto* time = std::get_if<time_packet_view>(&found)) return time->data();
   return {};
 }
 

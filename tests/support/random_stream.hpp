@@ -33,7 +33,7 @@ class dice {
   std::uint8_t structural_byte() {
     constexpr std::array<std::uint8_t, 16> structural{0xAA, 0x55, 0xAA, 0x55, 0xA5, 0x5A,
                                                       0x00, 0x01, 0x02, 0x03, 0x04, 0x05,
-                                                      0x14, 0x40, 0x50, 0x81};
+                                                      0x14, 0x40, 0x66, 0x81};
     return below(8) == 0 ? byte() : structural[below(structural.size())];
   }
 
@@ -44,7 +44,7 @@ class dice {
 /// The seed of a part of a stream, or of its damage: a kind, and a seed for the rest.
 using recipe = std::pair<std::uint8_t, std::uint64_t>;
 
-inline constexpr std::uint8_t part_kinds = 13;
+inline constexpr std::uint8_t part_kinds = 15;
 inline constexpr std::uint8_t damage_kinds = 6;
 
 /// A stretch of the damaged stream that is an unchanged unit.
@@ -82,6 +82,7 @@ class random_stream {
   }
   [[nodiscard]] static buffer packet(dice& random, std::size_t samples, unsigned ct);
   [[nodiscard]] static buffer response(dice& random);
+  [[nodiscard]] static buffer time_packet(dice& random);
   [[nodiscard]] static buffer false_header(dice& random, std::size_t size);
 
   std::vector<cell> cells_;
@@ -124,6 +125,15 @@ inline buffer random_stream::response(dice& random) {
                              static_cast<std::uint8_t>(hundredths / 256), 0, 0});
     }
   }
+}
+
+inline buffer random_stream::time_packet(dice& random) {
+  buffer out{0xAA, 0x66, 0xAA ^ 0x66};
+  for (int i = 0; i < 5; ++i) {
+    out.push_back(random.structural_byte());
+    out[2] = static_cast<std::uint8_t>(out[2] ^ out.back());
+  }
+  return out;
 }
 
 /// The first bytes of a possible header, without a unit behind it.
@@ -183,6 +193,14 @@ inline void random_stream::add(const recipe& part) {
       add_bytes(false_header(random, 10));
       cells_[at].seal = true;
       return;
+    }
+    case 12:
+      return add_unit(time_packet(random));
+    case 13: {  // an incomplete time packet, or one with a wrong checksum
+      buffer bad = time_packet(random);
+      bad[2] = static_cast<std::uint8_t>(bad[2] + random.below(2));
+      bad.resize(1 + random.below(8));
+      return add_bytes(bad);
     }
     default:
       return add_bytes({0x00});

@@ -14,9 +14,9 @@
 namespace reference {
 
 /// The kind of a stretch of the input.
-enum class kind { packet, response, noise, bad_header, bad_checksum, truncated };
+enum class kind { packet, response, time_packet, noise, bad_header, bad_checksum, truncated };
 
-/// A stretch of the input: a packet, a response, or neighbouring skipped bytes of one reason.
+/// A stretch of the input: a packet, a response, a time packet, or neighbouring skipped bytes of one reason.
 struct stretch {
   std::size_t offset;
   std::size_t size;
@@ -31,6 +31,8 @@ struct stretch {
       return "packet";
     case kind::response:
       return "response";
+    case kind::time_packet:
+      return "time_packet";
     case kind::noise:
       return "noise";
     case kind::bad_header:
@@ -124,7 +126,7 @@ class window {
 /// What begins at one offset of the input, without its context.
 struct start {
   enum { no_start, refused, unfinished, valid } state;
-  kind what;  ///< Of a valid one: packet or response. Refused: the reason.
+  kind what;  ///< Of a valid one: packet, response or time packet. Refused: the reason.
   std::size_t
       size;  ///< Of a valid one; refused: the bytes from the start to the first impossible one.
 };
@@ -158,8 +160,18 @@ struct start {
   return {start::refused, kind::bad_header, k};
 }
 
+/// AA 66, a checksum that is the exclusive or of the other seven bytes, four bytes of time, and one more.
+[[nodiscard]] inline start time_packet_start_at(const window& in) {
+  if (in.left() < 8) return {start::unfinished, kind::truncated, 0};
+  int sum = 0;
+  for (std::size_t i = 0; i < 8; ++i) sum ^= i == 2 ? 0 : in[i];
+  if (sum != in[2]) return {start::refused, kind::bad_checksum, 8};
+  return {start::valid, kind::time_packet, 8};
+}
+
 [[nodiscard]] inline start start_at(const std::vector<std::uint8_t>& input, std::size_t offset) {
   const window in(input, offset);
+  if (in[0] == 0xAA && in[1] == 0x66) return time_packet_start_at(in);
   if (in[0] == 0xAA) return packet_start_at(in);
   if (in[0] == 0xA5) return response_start_at(in);
   return {start::no_start, kind::noise, 1};

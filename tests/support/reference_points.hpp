@@ -12,9 +12,12 @@
 
 namespace reference {
 
+/// The upper 14 bits, without the two bits of flags, are 0 where nothing came back.
+[[nodiscard]] inline bool is_no_return(unsigned raw) { return raw / 4 == 0; }
+
 /// The second-level correction by the formula of the manual, in degrees; for no return, its limit.
 [[nodiscard]] inline double correction_deg(std::uint16_t raw) {
-  if (raw == 0) return std::atan(-21.8 / 155.3) * 180.0 / std::numbers::pi;
+  if (is_no_return(raw)) return std::atan(-21.8 / 155.3) * 180.0 / std::numbers::pi;
   const double d = raw / 4.0;
   return std::atan(21.8 * (155.3 - d) / (155.3 * d)) * 180.0 / std::numbers::pi;
 }
@@ -52,8 +55,8 @@ struct sample {
   for (int i = 0; i < count; ++i) {
     const auto raw = static_cast<std::uint16_t>(word(10 + 2 * static_cast<std::size_t>(i)));
     const double uncorrected = count == 1 ? first : first + way / (count - 1) * i;
-    result.push_back(
-        {raw, raw / 4.0, into_circle(uncorrected), into_circle(uncorrected + correction_deg(raw))});
+    result.push_back({raw, is_no_return(raw) ? 0.0 : raw / 4.0, into_circle(uncorrected),
+                      into_circle(uncorrected + correction_deg(raw))});
   }
   return result;
 }

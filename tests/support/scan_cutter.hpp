@@ -40,6 +40,7 @@ class scan_cutter {
   }
   void add(skipped gone) { assembler_.add(gone); }
   void lost() { assembler_.lost(); }
+  void crc_mismatch() { assembler_.crc_mismatch(); }
   void set_sample_rate(std::uint32_t hz) { assembler_.set_sample_rate(hz); }
   void finish() {
     while (const std::optional<scan> found = assembler_.finish()) keep(*found);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "g4lidar/core/stream_parser.hpp"
+#include "support/event_text.hpp"
 #include "support/reference_parser.hpp"
 
 namespace g4lidar::test {
@@ -22,6 +23,7 @@ using buffer = std::vector<std::uint8_t>;
 [[nodiscard]] inline reference::kind kind_of(const event& found) {
   if (std::holds_alternative<packet_view>(found)) return reference::kind::packet;
   if (std::holds_alternative<response_view>(found)) return reference::kind::response;
+  if (std::holds_alternative<time_packet_view>(found)) return reference::kind::time_packet;
   switch (std::get<skipped>(found).reason) {
     case skip_reason::noise:
       return reference::kind::noise;
@@ -38,6 +40,7 @@ using buffer = std::vector<std::uint8_t>;
 [[nodiscard]] inline std::size_t size_of(const event& found) {
   if (const auto* packet = std::get_if<packet_view>(&found)) return packet->data().size();
   if (const auto* reply = std::get_if<response_view>(&found)) return reply->data().size();
+  if (const auto* time = std::get_if<time_packet_view>(&found)) return time->data().size();
   return std::get<skipped>(found).count;
 }
 
@@ -89,8 +92,7 @@ class stream_log {
         stretches_.push_back({reported_, size, what});
       }
     } else {
-      const bytes data = what == reference::kind::packet ? std::get<packet_view>(found).data()
-                                                         : std::get<response_view>(found).data();
+      const bytes data = transcript::data_of(found);
       const auto place = whole_.begin() + static_cast<std::ptrdiff_t>(reported_);
       expect(reported_ + size <= fed_ && std::equal(data.begin(), data.end(), place),
              "a view of other bytes than those of the input");

@@ -103,6 +103,7 @@ template <class Cut, class Emit>
     const bytes data = data_of(found);
     if (const auto* packet = std::get_if<packet_view>(&found)) show(text_of(*packet));
     if (const auto* reply = std::get_if<response_view>(&found)) show(text_of(*reply));
+    if (const auto* time = std::get_if<time_packet_view>(&found)) show(text_of(*time));
     sound = sound && reported + data.size() <= input.size() &&
             std::equal(data.begin(), data.end(), input.subspan(reported).begin());
     reported += data.size();

@@ -12,6 +12,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/patience.hpp"
+
 namespace g4lidar::test {
 
 class listener {
@@ -61,7 +63,7 @@ class listener {
     std::string all;
     char piece[4096];
     pollfd polled{peer_, POLLIN, 0};
-    while (all.size() < size && ::poll(&polled, 1, 10'000) > 0) {
+    while (all.size() < size && ::poll(&polled, 1, patience_ms) > 0) {
       const ssize_t got = ::read(peer_, piece, sizeof piece);
       if (got <= 0) break;
       all.append(piece, static_cast<std::size_t>(got));

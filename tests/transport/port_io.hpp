@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "g4lidar/transport/transport.hpp"
+#include "support/patience.hpp"
 
 namespace g4lidar::test {
 
@@ -26,7 +27,7 @@ inline result<std::string> read_text(transport& port, std::size_t size) {
   std::string all;
   std::array<std::uint8_t, 64> buffer{};
   while (all.size() < size) {
-    const auto got = port.read(buffer, in(port, std::chrono::seconds(10)));
+    const auto got = port.read(buffer, in(port, patience));
     if (!got) return tl::unexpected(got.error());
     if (got->count == 0) return failure(task::reading, problem::timeout);
     EXPECT_LE(got->arrival_ns, port.now_ns());
@@ -40,7 +41,7 @@ inline result<std::string> read_text(transport& port, std::size_t size) {
 inline result<void> write_text(transport& port, std::string_view text) {
   const std::string copy(text);
   const bytes data(reinterpret_cast<const std::uint8_t*>(copy.data()), copy.size());
-  return port.write(data, in(port, std::chrono::seconds(10)));
+  return port.write(data, in(port, patience));
 }
 
 }  // namespace g4lidar::test

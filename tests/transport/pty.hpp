@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "g4lidar/transport/serial_port.hpp"
+#include "support/patience.hpp"
 
 namespace g4lidar::test {
 
@@ -56,7 +57,7 @@ class pty {
     std::string all;
     char piece[4096];
     pollfd polled{master_, POLLIN, 0};
-    while (all.size() < size && ::poll(&polled, 1, 10'000) > 0) {
+    while (all.size() < size && ::poll(&polled, 1, patience_ms) > 0) {
       const ssize_t got = ::read(master_, piece, sizeof piece);
       if (got <= 0) break;
       all.append(piece, static_cast<std::size_t>(got));

@@ -14,6 +14,7 @@
 
 #include "port_io.hpp"
 #include "pty.hpp"
+#include "support/patience.hpp"
 #include "temporary_file.hpp"
 #include "transport/custom_baud.hpp"
 #include "transport/system_calls.hpp"
@@ -120,7 +121,7 @@ TEST(SerialPort, EarlierBytes_AreDiscarded) {
   const pty device;
   device.send("old\n");
   pollfd there{device.keep(), POLLIN, 0};
-  ASSERT_EQ(::poll(&there, 1, 10'000), 1);
+  ASSERT_EQ(::poll(&there, 1, patience_ms), 1);
   const auto port = opened(device);
   device.send("new");
   EXPECT_EQ(read_text(*port, 3), "new");
@@ -220,7 +221,7 @@ TEST(SerialPort, Handle_IsReadableWhenBytesArrive) {
   pollfd polled{port->native_handle(), POLLIN, 0};
   EXPECT_EQ(::poll(&polled, 1, 0), 0);
   device.send("x");
-  EXPECT_EQ(::poll(&polled, 1, 10'000), 1);
+  EXPECT_EQ(::poll(&polled, 1, patience_ms), 1);
 }
 
 TEST(SerialPort, Wake_EndsTheNextCallOnce) {
@@ -229,13 +230,13 @@ TEST(SerialPort, Wake_EndsTheNextCallOnce) {
   std::array<std::uint8_t, 16> buffer{};
   port->wake();
   port->wake();
-  EXPECT_EQ(port->read(buffer, in(*port, 10s)).error().code(), problem::cancelled);
+  EXPECT_EQ(port->read(buffer, in(*port, patience)).error().code(), problem::cancelled);
   EXPECT_EQ(port->read(buffer, in(*port, 1ms))->count, 0U);
   port->wake();
   EXPECT_EQ(write_text(*port, "x").error().code(), problem::cancelled);
   EXPECT_TRUE(write_text(*port, "x"));
   port->wake();
-  const auto paused = port->pause(in(*port, 10s));
+  const auto paused = port->pause(in(*port, patience));
   EXPECT_EQ(paused.error().code(), problem::cancelled);
   EXPECT_FALSE(paused.error().is_fatal());
   EXPECT_TRUE(port->pause(in(*port, 1ms)));
@@ -246,10 +247,10 @@ TEST(SerialPort, WakeWithBytesWaiting_IsSeenFirst) {
   const auto port = opened(device);
   device.send("0123456789");
   std::array<std::uint8_t, 4> buffer{};
-  ASSERT_EQ(port->read(buffer, in(*port, 10s))->count, 4U);  // more is known to wait
+  ASSERT_EQ(port->read(buffer, in(*port, patience))->count, 4U);  // more is known to wait
   port->wake();
-  EXPECT_EQ(port->read(buffer, in(*port, 10s)).error().code(), problem::cancelled);
-  ASSERT_EQ(port->read(buffer, in(*port, 10s))->count, 4U);
+  EXPECT_EQ(port->read(buffer, in(*port, patience)).error().code(), problem::cancelled);
+  ASSERT_EQ(port->read(buffer, in(*port, patience))->count, 4U);
   port->wake();
   EXPECT_EQ(port->read(buffer, port->now_ns()).error().code(), problem::cancelled);
   EXPECT_EQ(port->read(buffer, port->now_ns())->count, 2U);

@@ -7,6 +7,7 @@
 #include "listener.hpp"
 #include "port_io.hpp"
 #include "pty.hpp"
+#include "support/patience.hpp"
 #include "temporary_file.hpp"
 #include "transport/fd_port.hpp"
 
@@ -229,7 +230,7 @@ TEST(SerialCalls, FullOutput_TimesOut) {
   EXPECT_EQ(sent.error().code(), problem::timeout);
   EXPECT_FALSE(sent.error().is_fatal());
   ASSERT_EQ(::tcflow(device.keep(), TCOON), 0);
-  EXPECT_TRUE((*port)->write(std::array<std::uint8_t, 2>{0xA5, 0x65}, in(**port, 10s)));
+  EXPECT_TRUE((*port)->write(std::array<std::uint8_t, 2>{0xA5, 0x65}, in(**port, patience)));
 }
 
 TEST(TcpCalls, Failing_IsReported) {
@@ -266,7 +267,7 @@ TEST(SerialCalls, Burst_TakesTwo) {
   for (int burst = 0; burst < 20; ++burst) {
     device.send("a burst of bytes");
     set_fault({});
-    const auto got = (*port)->read(buffer, in(**port, 10s));
+    const auto got = (*port)->read(buffer, in(**port, patience));
     ASSERT_TRUE(got);
     EXPECT_GT(got->count, 0U);
     EXPECT_LE(made(call::ppoll) + made(call::read), 2);
@@ -291,11 +292,11 @@ TEST(SerialCalls, FilledBuffer_ReadsAgainWithoutPoll) {
   device.send("0123456789");
   std::array<std::uint8_t, 4> buffer{};
   pollfd all_there{(*port)->native_handle(), POLLIN, 0};
-  ASSERT_EQ(::poll(&all_there, 1, 10'000), 1);
+  ASSERT_EQ(::poll(&all_there, 1, patience_ms), 1);
   set_fault({});
-  EXPECT_EQ((*port)->read(buffer, in(**port, 10s))->count, 4U);
-  EXPECT_EQ((*port)->read(buffer, in(**port, 10s))->count, 4U);
-  EXPECT_EQ((*port)->read(buffer, in(**port, 10s))->count, 2U);
+  EXPECT_EQ((*port)->read(buffer, in(**port, patience))->count, 4U);
+  EXPECT_EQ((*port)->read(buffer, in(**port, patience))->count, 4U);
+  EXPECT_EQ((*port)->read(buffer, in(**port, patience))->count, 2U);
   EXPECT_EQ(made(call::ppoll), 1);
   EXPECT_EQ(made(call::read), 3);
   EXPECT_EQ((*port)->read(buffer, in(**port, 1ms))->count, 0U);

@@ -8,6 +8,7 @@
 
 #include "port_io.hpp"
 #include "pty.hpp"
+#include "support/patience.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -19,10 +20,10 @@ TEST(SerialPort, UnpluggedDuringAWait_IsGoneImmediately) {
   const step waits[] = {
       [](transport& port) -> result<void> {
         std::array<std::uint8_t, 16> buffer{};
-        const auto got = port.read(buffer, in(port, 60s));
+        const auto got = port.read(buffer, in(port, 10 * patience));
         return got ? result<void>{} : tl::unexpected(got.error());
       },
-      [](transport& port) -> result<void> { return port.pause(in(port, 60s)); },
+      [](transport& port) -> result<void> { return port.pause(in(port, 10 * patience)); },
   };
   for (const step wait : waits) {
     pty device;
@@ -40,7 +41,7 @@ TEST(SerialPort, UnpluggedDuringAWait_IsGoneImmediately) {
     EXPECT_EQ(waited.error().code(), problem::gone);
     EXPECT_TRUE(waited.error().is_fatal());
     // The promise is 0.1 s; a loaded machine may need time to run this thread.
-    EXPECT_LT(reported_ns - unplugged_ns, std::chrono::nanoseconds(5s).count());
+    EXPECT_LT(reported_ns - unplugged_ns, std::chrono::nanoseconds(patience).count());
   }
 }
 
@@ -50,10 +51,10 @@ TEST(SerialPort, Unplugged_EveryCallIsGone) {
   device.unplug();
   std::array<std::uint8_t, 16> buffer{};
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(port->read(buffer, in(*port, 10s)).error().code(), problem::gone);
+    EXPECT_EQ(port->read(buffer, in(*port, patience)).error().code(), problem::gone);
     EXPECT_EQ(port->read(buffer, port->now_ns()).error().code(), problem::gone);
     EXPECT_EQ(write_text(*port, "x").error().code(), problem::gone);
-    EXPECT_EQ(port->pause(in(*port, 10s)).error().code(), problem::gone);
+    EXPECT_EQ(port->pause(in(*port, patience)).error().code(), problem::gone);
   }
 }
 

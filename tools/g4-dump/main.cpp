@@ -7,6 +7,7 @@ namespace {
 constexpr const char* description =
     R"(g4-dump is the console tool for the YDLIDAR G4, a 360-degree scanning lidar on a serial port.
 Without a command it prints points, and without a source it takes the only G4 that is connected.
+On a terminal, without any word, it lists the attached lidars and the commands, and sends nothing.
 
 Data goes to standard output, messages go to standard error. The tool never asks a question, and
 only the command set changes settings of the device. Control characters in what a device or a
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
                                  .title = "The console tool for the YDLIDAR G4",
                                  .description = description,
                                  .verbs = g4_tool::all_verbs,
-                                 .default_verb = "dump"};
+                                 .default_verb = "dump",
+                                 .overview = g4_tool::print_overview};
   return g4_tool::run_program(g4_dump, argc, argv);
 }

@@ -51,14 +51,15 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
     if (place_) place_->publish(place_message(options, frame_id, *which.mount));
   }
   const bool is_by_path = options.common.deskew == deskewing::by_path && merger_ == nullptr;
-  const bool is_played = kind_of(which.source) == source_kind::recording;
+  const bool is_played = kind_of_source(which.source) == source_kind::recording;
   if (is_played) {
-    feed_.load_recording(path_of(which.source));
+    feed_.load_recording(path_of_source(which.source));
     time_.emplace();
   }
   // The robot of all merged lidars is that of the first one.
   if (merger_ == nullptr || index == 0) {
-    const bool is_known = feed_.is_known() || kind_of(which.source) == source_kind::simulated;
+    const bool is_known =
+        feed_.is_known() || kind_of_source(which.source) == source_kind::simulated;
     robot_.emplace(on, options, merger_ == nullptr ? name_space_ : options.name_space,
                    robot_knowledge{is_known, index == 0 && is_played});
   }
@@ -73,7 +74,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
   }
   station_options wishes = options.station;
   wishes.starts_rested = options.is_standby;
-  wishes.wants_points = is_played || (robot_ && kind_of(which.source) == source_kind::simulated);
+  wishes.wants_points =
+      is_played || (robot_ && kind_of_source(which.source) == source_kind::simulated);
   station_ = std::make_unique<station>(options_of(options, which.source, merger_ != nullptr),
                                        options.source, *this, wishes);
 }
@@ -109,13 +111,13 @@ void lidar_node::on_open(opened_source& source) {
   if (time_ && source.recording() != nullptr) {
     time_->begin(station_->wall_ns(source.recording()->first_ns()));
   }
-  if (feed_.is_known() && source.robot() == nullptr) return;
-  feed_.follow(source.robot());
+  if (feed_.is_known() && source.simulation() == nullptr) return;
+  feed_.follow(source.simulation());
   for (const wish& each : options_.settings) {
     const auto done = source.lidar().ask(each.how);
     if (!done) logger::info(in_tool_words(done.error().message()) + "\n");
   }
-  if (const auto kind = kind_of(which_.source);
+  if (const auto kind = kind_of_source(which_.source);
       kind == source_kind::device || kind == source_kind::simulated) {
     parameters_.fix("serial_number", std::string(source.lidar().information().serial_number()));
     parameters_.read_device(source.lidar());

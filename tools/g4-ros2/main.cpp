@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   try {
     words = without_ros_arguments({argv + 1, argv + argc}, make_verb().options);
   } catch (const bad_value& reason) {
-    logger::write(std::string("g4-ros2: ") + reason.what() + ". See: g4-ros2 --help\n");
+    logger::write("g4-ros2: " + with_help(reason.what(), "g4-ros2") + "\n");
     return static_cast<int>(exit_code::usage);
   }
   std::vector<const char*> all{argv[0]};

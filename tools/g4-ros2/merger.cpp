@@ -52,7 +52,7 @@ void merger::add(std::size_t index, const shaped_scan& scan, const scan_times& w
   ++scans_;
   for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].lost += std::uint64_t{grid.is_lost(i)};
   if (deskewing_) deskewing_->add(kept.points.size(), kept.outside);
-  messages_.publish({grid.points, kept.points, {}},
+  messages_.publish({grid.points, kept.points, {}, scan.grid},
                     {reference_ns, when.duration_ns, when.ahead_ns});
 }
 

@@ -17,6 +17,15 @@ namespace {
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
+/// The longest name of ROS 2: that of a topic, with its namespace.
+constexpr std::size_t longest_name = 247;
+
+void check_length(std::string_view name) {
+  if (name.size() <= longest_name) return;
+  throw bad_value(fmt::format("a name of ROS 2 has at most {} characters; '{}...' has {}",
+                              longest_name, name.substr(0, 20), name.size()));
+}
+
 /// Whether it can stand between two slashes of a name of ROS 2.
 bool is_token(std::string_view word) {
   return !word.empty() && is_letter(word.front()) &&
@@ -45,6 +54,7 @@ option_row frame_name_row(const char* names, const char* help, std::string& into
   return checked(text_row(names, "NAME", help, into, completion::nothing),
                  [](const std::string& word) {
                    if (word.empty()) throw bad_value("a frame needs a name");
+                   check_length(word);
                  });
 }
 
@@ -54,6 +64,7 @@ option_rows topic_rows(ros2_options& options) {
       checked(text_row("--node-name", "NAME", "Name of the node, and of its services (g4lidar)",
                        options.node, completion::nothing),
               [](const std::string& word) {
+                check_length(word);
                 if (!is_token(word))
                   throw bad_value(in_quotes(word) + " is not the name of a node");
               });
@@ -130,11 +141,20 @@ option_rows device_and_player_rows(ros2_options& options) {
                 flag_row("--loop", "Start again at the end", options.station.loops)}));
 }
 
+/// "--no-return": no_return
+std::string parameter_name_of(const option_row& row) {
+  std::string name = row.names.substr(2);
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
 /// Keeps the words of those that are parameters, too.
 option_rows filter_rows_of(ros2_options& options) {
-  option_rows rows = filter_rows(options.common);
+  common_options& common = options.common;
+  option_rows rows =
+      joined(filter_rows(common), near_row(common.marks.near), grid_rows(common.grid));
   for (option_row& row : rows) {
-    const auto at = options.filter_words.find(row.names.substr(2));
+    const auto at = options.filter_words.find(parameter_name_of(row));
     if (at == options.filter_words.end()) continue;
     row.take = [&into = at->second, adds = row.repeatable,
                 inner = row.take](const std::string& word) {
@@ -189,6 +209,7 @@ std::string full_name(std::string_view name_space, std::string_view name) {
   while (made.ends_with('/')) made.pop_back();
   if (!name.empty() && !name.starts_with('/')) made += '/';
   made += name;
+  check_length(made);
   for (std::size_t at = 0; at < made.size();) {
     const std::size_t end = std::min(made.find('/', at + 1), made.size());
     const std::string_view token = std::string_view(made).substr(at + 1, end - at - 1);
@@ -224,8 +245,8 @@ std::vector<named_source> sources_of(const ros2_options& options) {
     throw bad_value("several lidars need names: front=/dev/ttyUSB0");
   }
   const auto has_own_clock = [](const named_source& each) {
-    const source_kind kind = kind_of(each.source);
-    return kind == source_kind::recording || kind == source_kind::bytes;
+    const source_kind kind = kind_of_source(each.source);
+    return kind == source_kind::recording || kind == source_kind::raw_bytes;
   };
   if (options.merges && std::ranges::any_of(made, has_own_clock)) {
     throw bad_value("--merge joins lidars; a file has a clock of its own");

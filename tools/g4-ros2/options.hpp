@@ -55,7 +55,7 @@ using named_mounting = std::pair<std::string, mounting>;
 struct ros2_options {
   /// Of every lidar, but for its source. The frame of the filters is the robot's.
   common_options common;
-  opening source;
+  lidar_options source;
   station_options station;
   std::vector<std::string> sources;  ///< "SOURCE", or "NAME=SOURCE".
   std::vector<named_mounting> mounts;
@@ -69,7 +69,8 @@ struct ros2_options {
   std::uint32_t bins = 720;
   /// Filters as their options have them, by the names of the parameters.
   std::map<std::string, std::string> filter_words{
-      {"edges", "off"}, {"fov", "-180:180"}, {"ignore", ""}, {"speckle", "off"}};
+      {"edges", "off"},   {"fov", "-180:180"},  {"ignore", ""},    {"near", "off"},
+      {"near_as", "nan"}, {"no_return", "inf"}, {"speckle", "off"}};
   bool merges = false;
   bool is_standby = false;
 };

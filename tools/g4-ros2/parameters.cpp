@@ -68,7 +68,7 @@ const setting* setting_of(std::string_view name) {
 
 /// Sets an option of the command line by its parser. Throws bad_value.
 void take_option(common_options& into, std::string_view option, const std::string& word) {
-  option_rows rows = filter_rows(into);
+  option_rows rows = joined(filter_rows(into), near_row(into.marks.near), grid_rows(into.grid));
   const auto row = std::ranges::find(rows, option, &option_row::names);
   if (row != rows.end()) row->take(word);
 }
@@ -76,6 +76,8 @@ void take_option(common_options& into, std::string_view option, const std::strin
 /// Sets a filter of one text. Throws bad_value.
 void set_filter(common_options& into, std::string_view name, const std::string& word) {
   if (name == "fov") return take_option(into, "--fov", word);
+  if (name == "no_return") return take_option(into, "--no-return", word);
+  if (name == "near_as") return take_option(into, "--near-as", word);
   const bool is_off = word.empty() || word == "off";
   if (name == "ignore") {
     into.ignored.clear();
@@ -83,8 +85,9 @@ void set_filter(common_options& into, std::string_view name, const std::string& 
     for (std::string one; all >> one;) take_option(into, "--ignore", one);
     return;
   }
-  if (name == "speckle") into.speckle.reset();
-  if (name == "edges") into.edges.reset();
+  if (name == "speckle") into.marks.speckle.reset();
+  if (name == "edges") into.marks.edges.reset();
+  if (name == "near") into.marks.near.reset();
   if (!is_off) take_option(into, "--" + std::string(name), word == "on" ? "" : word);
 }
 
@@ -104,6 +107,13 @@ std::span<const parameter> all_parameters() {
       {"idle", is_bool, device, "idle", "Low power when no scan is running", ""},
       {"ignore", is_string, filter, "", "Directions that are left out, as fov",
        "several with spaces between them: 30:40 90:100; off: none"},
+      {"near", is_string, filter, "",
+       "Flag directions where something may be too near for a return: in a LaserScan as near_as",
+       "off, on, or limits as --near"},
+      {"near_as", is_string, filter, "", "What ranges in directions that near flags become",
+       "nan, minus-inf"},
+      {"no_return", is_string, filter, "",
+       "What ranges without return become, which are not free space", "inf, nan, max"},
       {"order", is_string, read_only, "", "Order of the ranges of a LaserScan", "angle, time"},
       {"protection", is_bool, device, "protection", "Power-down protection",
        "known when it was set"},

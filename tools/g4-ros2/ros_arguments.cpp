@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "cli/logger.hpp"
+#include "cli/suggestion.hpp"
 #include "options.hpp"
 
 namespace g4_tool {
@@ -95,7 +96,15 @@ void set_parameter(const std::string& name, const YAML::Node& value, const optio
   std::string option = "--" + name;
   std::ranges::replace(option, '_', '-');
   const option_row* const row = row_named(rows, option);
-  if (row == nullptr) throw bad_value("--ros-args: there is no parameter " + in_quotes(name));
+  if (row == nullptr) {
+    std::vector<std::string> known;
+    for (const option_row& each : rows) {
+      known.push_back(each.names.substr(each.names.rfind("--") + 2));
+      std::ranges::replace(known.back(), '-', '_');
+    }
+    throw bad_value("--ros-args: there is no parameter " + in_quotes(name) +
+                    did_you_mean(name, known));
+  }
   words& made = out[name];
   made.clear();
   if (row->value.empty()) {

@@ -35,9 +35,9 @@ void scan_messages::publish(const shaped_scan& shaped, const scan_times& when) {
                         .order = options_.order};
   if (scan_ && scan_->is_wanted()) {
     if (options_.order == scan_order::time) {
-      header.first_bin = fill_time_grid(shaped.for_grid, when.duration_ns, ranges_);
+      header.first_bin = fill_time_grid(shaped.for_grid, when.duration_ns, ranges_, shaped.grid);
     } else {
-      fill_grid(shaped.for_grid, ranges_);
+      fill_grid(shaped.for_grid, ranges_, shaped.grid);
     }
     message_.clear();
     put_laser_scan(ranges_, header, message_);

@@ -26,6 +26,14 @@ void put_little(Unsigned value, std::vector<std::uint8_t>& out) {
   }
 }
 
+/// The server reconnects by itself, and a page has no command line.
+std::string in_page_words(std::string_view text) {
+  constexpr tool_word unplugged{
+      "Unless the program closed it, the lidar was unplugged: plug it in and open it again.",
+      "The lidar was unplugged: plug it in. Then the scans continue by themselves."};
+  return text == unplugged.library ? std::string(unplugged.tool) : in_tool_words(text);
+}
+
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
 /// The word of `g4-dump set` for a value; empty for what is none.
@@ -68,6 +76,7 @@ json json_of(const lidar_counts& counts) {
           {"suspect", counts.stream.suspect},
           {"skipped_bytes", counts.stream.skipped_bytes()},
           {"samples_lost", counts.samples_lost},
+          {"crc_mismatches", counts.stream.crc_mismatches},
           {"scans", counts.scans},
           {"scans_missed", counts.scans_missed},
           {"partial_scans", counts.partial_scans},
@@ -82,7 +91,7 @@ json json_of(const stage_report& stage) {
     const diagnosis_info info = describe(what);
     diagnoses.push_back({{"name", info.name},
                          {"cause", in_tool_words(info.cause)},
-                         {"advice", in_tool_words(info.advice)}});
+                         {"advice", in_page_words(info.advice)}});
   }
   json& all = made["evidence"] = json::array();
   for (const evidence& each : stage.measurements) {

@@ -71,7 +71,7 @@ scan_publisher::scan_publisher(const serve_options& options, hub& to)
       settings_(unknown_settings()) {}
 
 void scan_publisher::on_open(opened_source& source) {
-  const source_kind kind = kind_of(options_.common.source);
+  const source_kind kind = kind_of_source(options_.common.source);
   if (kind == source_kind::device || kind == source_kind::simulated) {
     for (const setting& each : all_settings()) {
       settings_[std::string(each.name)] = json_of(read_setting(source.lidar(), each));
@@ -97,9 +97,9 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   const bool wants_scan = wanted.wants(channel::scan);
   const bool wants_points = wanted.wants(channel::points);
   publish_bytes(wanted.wants(channel::from_device));
-  const bool is_deskewed =
-      options_.common.deskew != deskewing::none;  // by all scans, wanted or not
-  if (!wanted.page && !wants_scan && !wants_points && !is_deskewed) return;
+  // By all scans, wanted or not.
+  const bool has_memory = options_.common.deskew != deskewing::none || options_.common.marks.near;
+  if (!wanted.page && !wants_scan && !wants_points && !has_memory) return;
   const shaped_scan shaped = shaper_.shape(scan, {});
   const message_header header{.stamp_ns = station_->wall_ns(scan.time_ns()),
                               .frame_id = options_.frame_id,
@@ -113,7 +113,7 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   }
   if (wants_scan) {
     std::vector<std::uint8_t> message;
-    fill_grid(shaped.for_grid, ranges_m_, {.to = frame::robot});
+    fill_grid(shaped.for_grid, ranges_m_, shaped.grid);
     put_laser_scan(ranges_m_, header, message);
     hub_.publish(channel::scan, header.stamp_ns, std::move(message));
   }
@@ -185,8 +185,8 @@ void scan_publisher::carry_out(g4lidar::lidar* lidar, const std::string& word,
   if (!given) return done(in_tool_words(given.error().message()));
   settings_[std::string(wanted.which->name)] = json_of(maybe_answer(*given));
   greet(false);
+  done({});  // before pages get them: a page may set again at once
   hub_.settings(settings_text(settings_));
-  done({});
 }
 
 void scan_publisher::play(const play_request& wanted) {

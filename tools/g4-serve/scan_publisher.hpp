@@ -58,8 +58,9 @@ class scan_publisher final : public station_listener {
   /// Before it is started; `from` outlives this.
   void attach(station& from) { station_ = &from; }
   /// How the station opens the source. This outlives the station.
-  [[nodiscard]] opening how_to_open() {
-    return {.each = [this](auto inner) { return bytes_.observe(std::move(inner)); }};
+  [[nodiscard]] lidar_options how_to_open() {
+    return {.wrap = for_each_connection(
+                [this](auto inner) { return bytes_.observe(std::move(inner)); })};
   }
 
   // In the station's thread.

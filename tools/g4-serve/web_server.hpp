@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
-// The sockets: HTTP for the page, WebSockets for pages and Foxglove, in a thread of their own.
+// The web server: HTTP for the page, WebSockets for pages and Foxglove.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "host_guard.hpp"
-#include "http_head.hpp"
+#include "http_server.hpp"
 #include "hub.hpp"
-#include "outbox.hpp"
+#include "socket_server.hpp"
 
 namespace g4_tool {
 
@@ -24,35 +23,25 @@ class web_server {
   /// names the reason.
   web_server(const std::string& address, std::uint16_t port, std::vector<std::string> origins,
              hub& clients);
-  web_server(const web_server&) = delete;
-  web_server& operator=(const web_server&) = delete;
-  ~web_server();
 
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
   /// "http://127.0.0.1:8765/"; with 0.0.0.0 and :: one for each name and address of this machine.
   [[nodiscard]] std::vector<std::string> urls() const;
-  /// Messages wait in the hub. *Any thread*, also after the destructor has begun.
-  void wake() noexcept;
+  /// Messages wait in the hub. *Any thread.*
+  void wake() noexcept { sockets_.wake(); }
 
  private:
-  struct connection;
-  struct reply;
-  class callbacks;
-
-  void run() noexcept;
+  [[nodiscard]] http_answer answer(const http_request& request);
+  [[nodiscard]] http_answer answer_to_handshake(const http_request& request) const;
+  [[nodiscard]] bool is_allowed(const http_request& request);
 
   std::string address_;
-  std::uint16_t port_;
   host_guard guard_;
   hub& clients_;
-  // Of the thread:
-  std::vector<std::uint8_t> scratch_;
-  std::set<std::string> refused_;  // what was logged
-  waiting_connections waiting_;
-  lws_context* context_ = nullptr;
-  std::atomic<bool> has_news_ = false;
-  std::atomic<bool> stops_ = false;
-  std::thread thread_;
+  std::set<std::string> refused_{};  // what was logged
+  socket_server sockets_;
+  std::uint16_t port_ = 0;
+  std::optional<http_server> http_;  // ends first
 };
 
 }  // namespace g4_tool

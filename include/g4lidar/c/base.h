@@ -43,6 +43,10 @@
 /** Before each exported function. */
 #define G4LIDAR_C_API __attribute__((visibility("default")))
 
+/** Of the structures in arrays that the library also uses as its own types: a compiler assumes that
+ *  both may be in the same memory. */
+#define G4LIDAR_C_SHARED __attribute__((may_alias))
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -21,7 +21,7 @@ typedef struct g4lidar_sector {
 } g4lidar_sector;
 
 /** A corner of a polygon, in metres in G4LIDAR_ROBOT. */
-typedef struct g4lidar_corner {
+typedef struct G4LIDAR_C_SHARED g4lidar_corner {
   float x_m; /**< Ahead. */
   float y_m; /**< To the left. */
 } g4lidar_corner;
@@ -90,6 +90,33 @@ G4LIDAR_C_API int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
 /** The same for points between two surfaces and G4LIDAR_VEILING. */
 G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
                                        const g4lidar_outlier_options* options, size_t* marked);
+
+/** From which directions near returns came last, for g4lidar_mark_near(): one for each lidar, in the memory of
+ *  the caller. All bytes are 0 at first. */
+typedef struct g4lidar_near_history {
+  uint32_t revolutions[360]; /**< Not for programs. */
+} g4lidar_near_history;
+
+/** Which directions without return are flagged by g4lidar_mark_near(). */
+typedef struct g4lidar_near_options {
+  size_t struct_size; /**< Set by g4lidar_near_options_init(). */
+  float shortest_mm;  /**< A nearer target gives no return; 280, as at 9 kHz. Above 0. */
+  uint32_t
+      revolutions; /**< For how many revolutions after a near return; 0: until a return comes; 3. */
+  uint8_t reserved[8]; /**< 0. */
+} g4lidar_near_options;
+
+/** Sets the defaults; `size` is sizeof(g4lidar_near_options). */
+G4LIDAR_C_API void g4lidar_near_options_init(g4lidar_near_options* options, size_t size);
+
+/** Flags as G4LIDAR_MAY_BE_TOO_NEAR the points without return in directions where, in the last revolutions,
+ *  a return came from less than twice the shortest range, and none that is farther since; clears that flag on
+ *  all others, and returns the number of flagged ones in `marked`, which may be NULL. `points`: all points of
+ *  the lidar in their order, in pieces of any size, before they are filtered or deskewed. It misses some such
+ *  targets, and has false alarms: <g4lidar/too_near.hpp> has their numbers. `options` may be NULL. */
+G4LIDAR_C_API int g4lidar_mark_near(g4lidar_point* points, size_t count,
+                                    g4lidar_near_history* history,
+                                    const g4lidar_near_options* options, size_t* marked);
 
 /** Polygons that were read from a text. */
 typedef struct g4lidar_mask g4lidar_mask;

@@ -53,8 +53,9 @@ enum g4lidar_pace {
 typedef struct g4lidar_options {
   size_t struct_size; /**< Set by g4lidar_options_init(). */
   /** Which lidar: "" or NULL for the only G4; a path; `serial:2021101000070073`; `usb:1-1.4`;
-   *  `tcp:host:port`; a recording; `file:PATH`, a recording or the bytes of a port; `sim:` or
-   *  `sim:?NAME=VALUE&...`, a simulated G4 in real time (docs/sim.md). Copied. */
+   *  `tcp:host:port`; a recording, or the raw bytes of a port, as a path or `file:PATH`; `-`, raw bytes
+   *  from standard input; `sim:` or `sim:?NAME=VALUE&...`, a simulated G4 in real time (docs/sim.md).
+   *  Copied. */
   const char* device;
   g4lidar_recorder* recorder; /**< Records everything; see recording.h. NULL: nothing. */
   int64_t transport_delay_ns; /**< The least delay between measurement and arrival, up to 1 s. */
@@ -73,6 +74,8 @@ typedef struct g4lidar_options {
   bool reconnect;             /**< Whether to reconnect after a loss. */
   bool partial_scans;         /**< Whether g4lidar_next_scan() also gives pieces. */
   uint8_t reserved[6];        /**< 0. */
+  /** How long to wait for a device that is not there yet; -1: without limit; 0. */
+  int32_t device_wait_ms;
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */
@@ -100,8 +103,16 @@ G4LIDAR_C_API int g4lidar_close(g4lidar_lidar* lidar, g4lidar_error* error);
 G4LIDAR_C_API void g4lidar_release(g4lidar_lidar* lidar);
 
 /** The next revolution. Waits at most `timeout_ms`; below 0 counts as 0. G4LIDAR_TIMEOUT,
- *  G4LIDAR_RECONNECTING and G4LIDAR_CANCELLED are not fatal: call again. */
+ *  G4LIDAR_RECONNECTING and G4LIDAR_CANCELLED are not fatal: call again. The texts of the error state
+ *  whether the motor spins up, or a lost lidar is looked for. */
 G4LIDAR_C_API int g4lidar_next_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
+                                    g4lidar_error* error);
+/** The same for a loop: it waits longer than `timeout_ms` while no scan is due. While the motor spins
+ *  up after a start, a restart or a reconnect, it waits until the first scan, at most 10 s or
+ *  `timeout_ms`, if that is longer. With reconnecting on it waits without limit while the lidar is
+ *  lost. So a loop ends at the end of a file (G4LIDAR_END_OF_INPUT), at a fatal error, when it is
+ *  woken (G4LIDAR_CANCELLED), and when a scan that is due does not come in time (G4LIDAR_TIMEOUT). */
+G4LIDAR_C_API int g4lidar_wait_scan(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_scan** scan,
                                     g4lidar_error* error);
 /** All points since the last call, at least one, and their number in `count`. The first call begins
  *  with the current revolution. Waits and fails like g4lidar_next_scan(). */
@@ -175,7 +186,7 @@ G4LIDAR_C_API const char* g4lidar_name(g4lidar_lidar* lidar);
 /** Whether a scan was started and not stopped; false while the device is lost. */
 G4LIDAR_C_API bool g4lidar_is_scanning(const g4lidar_lidar* lidar);
 
-/** Something that happened without a request of the caller; docs/errors.md has what to do. */
+/** Something that happened without a request of the caller; docs/symptoms.md has what to do. */
 enum g4lidar_event_kind {
   G4LIDAR_EVENT_LOST = 1,                /**< The connection was lost; `reason` has the cause. */
   G4LIDAR_EVENT_RECONNECTED = 2,         /**< The same device is back. */
@@ -202,11 +213,18 @@ G4LIDAR_C_API int g4lidar_next_event(g4lidar_lidar* lidar, g4lidar_event* event)
 /** "lost", "reconnected": the name of a g4lidar_event_kind. Valid forever; never NULL. Any thread. */
 G4LIDAR_C_API const char* g4lidar_event_name(int kind);
 
+/** Counts of what newer devices of the family send in addition; all are 0 for others. */
+typedef struct g4lidar_extra_counts {
+  uint64_t time_packets;   /**< Packets with the clock of the device. */
+  uint64_t crc_matches;    /**< Revolutions that are complete by the CRC byte of the device. */
+  uint64_t crc_mismatches; /**< Revolutions that lost a packet, by that byte. */
+} g4lidar_extra_counts;
+
 /** Counts since g4lidar_open(), over all reconnects. bytes = parsed_bytes + the four skipped + held. */
 typedef struct g4lidar_counts {
   uint64_t bytes;                /**< From the device. */
   uint64_t held;                 /**< Of an unfinished packet or response. */
-  uint64_t parsed_bytes;         /**< Of packets and responses. */
+  uint64_t parsed_bytes;         /**< Of packets, responses and time packets. */
   uint64_t skipped_noise;        /**< Bytes outside of packets and responses. */
   uint64_t skipped_bad_header;   /**< Bytes of impossible headers. */
   uint64_t skipped_bad_checksum; /**< Bytes of packets with a wrong checksum. */
@@ -223,6 +241,7 @@ typedef struct g4lidar_counts {
   uint64_t command_retries;      /**< Commands that had to be sent again. */
   uint64_t reconnects;           /**< How often the device was reconnected. */
   int64_t largest_gap_ns;        /**< Between two packets of one scan. */
+  g4lidar_extra_counts extras;   /**< Of what newer devices send in addition. */
 } g4lidar_counts;
 
 /** All counts as they are now. Valid until the next call of this function; it does not end other

@@ -29,7 +29,7 @@ typedef struct g4lidar_twist {
 } g4lidar_twist;
 
 /** A pose at a time of the monotonic clock. */
-typedef struct g4lidar_stamped_pose {
+typedef struct G4LIDAR_C_SHARED g4lidar_stamped_pose {
   int64_t time_ns;   /**< As in points. */
   g4lidar_pose pose; /**< In a fixed frame. */
 } g4lidar_stamped_pose;

@@ -16,20 +16,23 @@ extern "C" {
 
 /** Properties of a point; a set of bits. */
 enum g4lidar_point_flag {
-  G4LIDAR_NO_RETURN = 1,        /**< Nothing came back: `range_mm` is 0 and not a range. */
+  G4LIDAR_NO_RETURN =
+      1, /**< Nothing came back: `range_mm` is 0 and not a range, and the way not free. */
   G4LIDAR_TOO_NEAR = 2,         /**< Below 100 mm, where range and correction are not reliable. */
   G4LIDAR_REVOLUTION_START = 4, /**< The first sample of its revolution. */
   G4LIDAR_NOT_DESKEWED = 8,     /**< Deskewing left it where it was. */
   G4LIDAR_UNLIKELY = 16,        /**< Its packet or its neighbours contradict it. */
   G4LIDAR_ISOLATED = 32,        /**< No other return is near; set by g4lidar_mark_isolated(). */
-  G4LIDAR_VEILING = 64          /**< Between two surfaces; set by g4lidar_mark_veiling(). */
+  G4LIDAR_VEILING = 64,         /**< Between two surfaces; set by g4lidar_mark_veiling(). */
+  G4LIDAR_MAY_BE_TOO_NEAR = 128 /**< Without return, perhaps of something too near; set by
+                                     g4lidar_mark_near(). */
 };
 
 /** One measured point in the device's own frame, 24 bytes. */
-typedef struct g4lidar_point {
+typedef struct G4LIDAR_C_SHARED g4lidar_point {
   /** Clockwise degrees in [0, 360) seen from above, 0 at the cable exit. */
   float angle_deg;
-  float range_mm;  /**< The distance in millimetres, 0 for no return. */
+  float range_mm;  /**< The distance in millimetres, 0 for no return, which is not free space. */
   int64_t time_ns; /**< When it was measured, by the monotonic clock; 0 where it is not known. */
   uint32_t revolution; /**< Which revolution since the start of the stream, from 0. */
   uint8_t flags;       /**< g4lidar_point_flag. */
@@ -37,14 +40,14 @@ typedef struct g4lidar_point {
 } g4lidar_point;
 
 /** A point in Cartesian coordinates, 16 bytes; both coordinates are NaN for a point without return. */
-typedef struct g4lidar_xy {
+typedef struct G4LIDAR_C_SHARED g4lidar_xy {
   float x_m;       /**< Metres. */
   float y_m;       /**< Metres. */
   int64_t time_ns; /**< As in the point. */
 } g4lidar_xy;
 
 /** A direction and a range in SI units. */
-typedef struct g4lidar_polar {
+typedef struct G4LIDAR_C_SHARED g4lidar_polar {
   float bearing_rad; /**< In [-pi, pi). */
   float range_m;     /**< 0 for no return. */
 } g4lidar_polar;
@@ -63,7 +66,8 @@ enum g4lidar_scan_flag {
   G4LIDAR_DATA_LOST = 4,       /**< Bytes were lost between its points. */
   G4LIDAR_TURN_SHORT = 8,      /**< Its end came well before a full turn. */
   G4LIDAR_START_BY_ANGLE = 16, /**< The packet that begins it was lost: cut by the angle. */
-  G4LIDAR_END_BY_ANGLE = 32    /**< The packet that ends it was lost: cut by the angle. */
+  G4LIDAR_END_BY_ANGLE = 32,   /**< The packet that ends it was lost: cut by the angle. */
+  G4LIDAR_CRC_MISMATCH = 64    /**< A packet was lost, by the CRC byte of devices that send one. */
 };
 
 /** One revolution. A view; the function that returns it defines its lifetime. */
@@ -100,6 +104,14 @@ enum g4lidar_grid_pick {
   G4LIDAR_MINIMUM = 1  /**< The point with the smallest range. */
 };
 
+/** What a direction without return becomes in a grid. That nothing came back does not mean that the way is
+ *  free: what is nearer than the shortest range (0.28 m at 9 kHz) may give no return either. */
+enum g4lidar_no_return_as {
+  G4LIDAR_NO_RETURN_AS_INFINITY = 0, /**< +infinity (REP 117). */
+  G4LIDAR_NO_RETURN_AS_NAN = 1,      /**< NaN. */
+  G4LIDAR_NO_RETURN_AS_MAX = 2       /**< 16.38375 m, the range_max of a LaserScan. */
+};
+
 /** How to fill a grid. */
 typedef struct g4lidar_grid_options {
   size_t struct_size; /**< Set by g4lidar_grid_options_init(). */
@@ -108,13 +120,16 @@ typedef struct g4lidar_grid_options {
   int32_t pick;        /**< A g4lidar_grid_pick. */
   bool keep_too_near;  /**< Whether points flagged G4LIDAR_TOO_NEAR give their range; else NaN. */
   uint8_t reserved[7]; /**< 0. */
+  int32_t no_return;   /**< A g4lidar_no_return_as; G4LIDAR_NO_RETURN_AS_INFINITY. */
+  int32_t
+      near_is_minus_infinity; /**< 1: what is flagged G4LIDAR_MAY_BE_TOO_NEAR is -infinity; 0: NaN. */
 } g4lidar_grid_options;
 
 /** Sets the defaults, those of a ROS LaserScan; `size` is sizeof(g4lidar_grid_options). */
 G4LIDAR_C_API void g4lidar_grid_options_init(g4lidar_grid_options* options, size_t size);
 
-/** Fills `bins` ranges, at least 1, in metres: +infinity where the lidar measured and nothing came
- *  back, NaN where nothing is known. At most 16,777,216 points. `options` may be NULL. */
+/** Fills `bins` ranges, at least 1, in metres: +infinity, or what the options set, where the lidar measured
+ *  and nothing came back, which is not free space; NaN where nothing is known. At most 16,777,216 points. `options` may be NULL. */
 G4LIDAR_C_API int g4lidar_fill_grid(const g4lidar_point* points, size_t count,
                                     const g4lidar_grid_options* options, float* ranges_m,
                                     size_t bins);

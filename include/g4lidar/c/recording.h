@@ -7,6 +7,7 @@
 #ifndef G4LIDAR_C_RECORDING_H
 #define G4LIDAR_C_RECORDING_H
 
+#include "g4lidar/c/filter.h"
 #include "g4lidar/c/lidar.h"
 #include "g4lidar/c/motion.h"
 
@@ -30,6 +31,10 @@ typedef struct g4lidar_recorder_options {
   bool overwrite;      /**< Whether an existing file may be replaced. */
   bool without_scans;  /**< Write no LaserScan messages: only bytes. */
   uint8_t reserved[1]; /**< 0. */
+  int32_t no_return; /**< Of a LaserScan: a g4lidar_no_return_as; G4LIDAR_NO_RETURN_AS_INFINITY. */
+  int32_t near_is_minus_infinity; /**< As in g4lidar_grid_options; 0. */
+  /** Whether g4lidar_mark_near() flags the points of a LaserScan first; NULL: it does not. */
+  const g4lidar_near_options* near_options;
 } g4lidar_recorder_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_recorder_options). */
@@ -79,6 +84,9 @@ typedef struct g4lidar_playback_options {
   int64_t to_ns;       /**< And before this; 0: to its end. */
   bool loop;           /**< Whether it begins again at its end; times continue. */
   uint8_t reserved[7]; /**< 0. */
+  /** As in g4lidar_reader_options; g4lidar_wake() does the same once the lidar is open. */
+  bool (*is_cancelled)(void* context);
+  void* context; /**< Passed to it. */
 } g4lidar_playback_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_playback_options). */
@@ -96,7 +104,7 @@ G4LIDAR_C_API int g4lidar_seek(g4lidar_lidar* lidar, int64_t from_ns, g4lidar_er
 /** What is known about a file and its damage, as far as it was read. */
 typedef struct g4lidar_recording_info {
   int64_t first_ns;       /**< The time of its first item, by the clock of the recording. */
-  int64_t last_ns;        /**< The time of the last one; 0 if the file was cut off. */
+  int64_t last_ns;        /**< The time of the last one that can be read. */
   uint64_t size;          /**< Of the file, in bytes. */
   uint64_t position;      /**< In the file, in bytes: for a progress bar. */
   uint64_t bytes_skipped; /**< Damaged bytes of the file. */
@@ -115,6 +123,25 @@ G4LIDAR_C_API bool g4lidar_is_recording(const char* path);
 /** Opens a recording for reading. Fails with bad_file, or with system. */
 G4LIDAR_C_API int g4lidar_reader_open(const char* path, g4lidar_reader** reader,
                                       g4lidar_error* error);
+
+/** How a recording is read. */
+typedef struct g4lidar_reader_options {
+  size_t struct_size; /**< Set by g4lidar_reader_options_init(). */
+  /** Called often while a function searches the file, which may take long if the file is damaged or
+   *  hostile; returning true ends that function with G4LIDAR_CANCELLED, and the next call continues.
+   *  NULL: never. It must not use the reader, nor throw C++ exceptions. */
+  bool (*is_cancelled)(void* context);
+  void* context;       /**< Passed to it; it outlives the reader. */
+  uint8_t reserved[8]; /**< 0. */
+} g4lidar_reader_options;
+
+/** Sets the defaults; `size` is sizeof(g4lidar_reader_options). */
+G4LIDAR_C_API void g4lidar_reader_options_init(g4lidar_reader_options* options, size_t size);
+
+/** Like g4lidar_reader_open(), with options, which may be NULL. Fails also with cancelled; then there
+ *  is no reader. */
+G4LIDAR_C_API int g4lidar_reader_open_with(const char* path, const g4lidar_reader_options* options,
+                                           g4lidar_reader** reader, g4lidar_error* error);
 /** Releases a reader. */
 G4LIDAR_C_API void g4lidar_reader_free(g4lidar_reader* reader);
 
@@ -141,7 +168,7 @@ typedef struct g4lidar_item {
 G4LIDAR_C_API int g4lidar_reader_next(g4lidar_reader* reader, const g4lidar_item** item,
                                       g4lidar_error* error);
 /** The next item will be the first one from `from_ns` on, nanoseconds since the beginning of the
- *  recording. */
+ *  recording. After a failure the reader is where it was. */
 G4LIDAR_C_API int g4lidar_reader_seek(g4lidar_reader* reader, int64_t from_ns,
                                       g4lidar_error* error);
 /** What is known about the file. */

@@ -18,8 +18,13 @@ namespace g4lidar {
 //     atan(21.8 * (155.3 - d) / (155.3 * d)) degrees = atan(21.8 / d - 21.8 / 155.3)
 //
 // All forms take the raw sample (quarters of a millimetre) and return degrees to be added. A sample
-// of 0 is not a range: it has the correction of an infinitely distant target, so that the angle is
-// the direction in which the sensor looked. (protocol: Point packets, second level, a sample of 0)
+// below least_range_raw is not a range: it has the correction of an infinitely distant target, so
+// that the angle is the direction in which the sensor looked. (protocol: Point packets, second
+// level, no return)
+
+/// The least raw sample that is a range. In smaller ones the 14 upper bits are 0: nothing came back,
+/// and the lower two bits are flags. (protocol: Point packets, no return)
+inline constexpr std::uint16_t least_range_raw = 4;
 
 /// The distance of the laser from the rotation axis, in millimetres. (protocol: Point packets)
 inline constexpr double correction_offset_mm = 21.8;
@@ -62,7 +67,7 @@ inline constexpr double far_correction_deg = -7.9905962679645856;
 struct exact_correction {
   /// For a raw sample, in degrees.
   [[nodiscard]] constexpr double operator()(std::uint16_t raw) const noexcept {
-    if (raw == 0) return far_correction_deg;
+    if (raw < least_range_raw) return far_correction_deg;
     const double range_mm = raw / 4.0;
     return arctangent_deg(correction_offset_mm * (correction_zero_mm - range_mm) /
                           (correction_zero_mm * range_mm));
@@ -97,7 +102,8 @@ struct compact_correction {
   [[nodiscard]] constexpr float operator()(std::uint16_t raw) const noexcept {
     // A sample without range counts as a very long range; a branch would prevent vectorization.
     const auto whole = static_cast<std::int32_t>(raw);
-    const auto sample = static_cast<float>(whole + ((whole - 1) >> 31 & 1'000'000'000));
+    const auto sample =
+        static_cast<float>(whole + ((whole - least_range_raw) >> 31 & 1'000'000'000));
     const float t = (zero_raw - sample) / (below_0 + below_1 * sample);
     return centre_deg + t * arctangent_ratio(t * t);
   }

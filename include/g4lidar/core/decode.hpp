@@ -50,8 +50,14 @@ struct decoded {
                 static_cast<int>(point_flags::no_return));
   constexpr auto too_near_raw = static_cast<std::uint16_t>(4 * too_near_mm);
   const int near = raw < too_near_raw;
-  const int no_return = raw == 0;
+  const int no_return = raw < least_range_raw;
   return static_cast<point_flags>(2 * near - no_return);
+}
+
+/// The range of a sample in millimetres, 0 for no return. *Pure*, and without a branch.
+[[nodiscard]] constexpr float range_mm_of(std::uint16_t raw) noexcept {
+  const auto whole = static_cast<std::int32_t>(raw);
+  return static_cast<float>(whole < least_range_raw ? 0 : whole) * 0.25F;
 }
 
 /// The first-level angles of a packet that is not suspect, in degrees: sample `i` is at `first` +
@@ -116,8 +122,7 @@ constexpr decoded decode(packet_view packet, const Form& correction, std::uint32
   for (std::size_t i = 0; i < count; ++i) {
     auto angle_deg = static_cast<float>(angles_deg[i]);
     if constexpr (sizeof(real) > sizeof(float)) angle_deg = wrap_once_deg(angle_deg);
-    const auto whole = static_cast<std::int32_t>(raw[i]);
-    out[i] = {angle_deg, static_cast<float>(whole) * 0.25F, 0, revolution, flag_of(raw[i]), {}};
+    out[i] = {angle_deg, range_mm_of(raw[i]), 0, revolution, flag_of(raw[i]), {}};
   }
   if (result.starts_revolution) out[0].flags = out[0].flags | point_flags::revolution_start;
   result.points = out.first(count);

@@ -94,8 +94,8 @@ class packet_view {
 
   /// LSN, 1 to 80.
   [[nodiscard]] constexpr std::size_t sample_count() const noexcept { return packet_[3]; }
-  /// Sample `i`, 0 <= i < sample_count(): the raw range in quarters of a millimetre, 0 for no
-  /// return.
+  /// Sample `i`, 0 <= i < sample_count(): the raw range in quarters of a millimetre, 0 to 3
+  /// for no return.
   [[nodiscard]] constexpr std::uint16_t sample(std::size_t i) const noexcept {
     return load_u16(packet_, packet_size(i));
   }

@@ -102,6 +102,13 @@ class scan_assembler {
     has_loss_ = true;
   }
 
+  /// Reports that the CRC byte before the zero packet that is passed next does not fit, so that the
+  /// scan which ends there is flagged. See ct_check.
+  constexpr void crc_mismatch() noexcept {
+    if (ready_) begin_next();
+    flags_ = flags_ | scan_flags::crc_mismatch;
+  }
+
   /// Returns the last piece, if there is one, when the stream has ended. After that this object is
   /// as after construction.
   [[nodiscard]] constexpr std::optional<scan> finish() noexcept {

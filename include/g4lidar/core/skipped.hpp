@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes of a stream outside packets and responses: how many, and why.
+// Bytes of a stream outside packets, responses and time packets: how many, and why.
 #pragma once
 
 #include <cstddef>
@@ -11,18 +11,19 @@ namespace g4lidar {
 
 /// Why bytes were skipped.
 enum class skip_reason : std::uint8_t {
-  noise,         ///< Nothing begins here: boot text, and the stray bytes that healthy devices send.
+  noise,  ///< Nothing begins here: boot text, and the bytes that devices send before zero packets.
   bad_header,    ///< The start of a packet or response that is impossible.
-  bad_checksum,  ///< A complete packet by its header; a byte of it is damaged or missing.
+  bad_checksum,  ///< A complete packet or time packet by its header; a byte is damaged or missing.
   truncated,     ///< A packet or response that was incomplete at the end.
 };
 /// The number of reasons for a skip.
 inline constexpr std::size_t skip_reasons = 4;
 
-/// Bytes of the stream outside packets and responses.
+/// Bytes of the stream outside packets, responses and time packets.
 struct skipped {
   std::size_t count;
   skip_reason reason;
+  std::uint8_t last = 0;  ///< The last of these bytes.
 
   friend constexpr bool operator==(const skipped&, const skipped&) = default;
 };

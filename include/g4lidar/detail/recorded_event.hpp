@@ -69,6 +69,9 @@ class G4LIDAR_API recorded_event_source {
   /// How long the caller has to wait for the next read, by its own clock. 0 if it has arrived, or
   /// if there is none.
   [[nodiscard]] virtual std::int64_t wait_for_next_ns() noexcept = 0;
+  /// Whether next_event() or a read ended early, because of a wake-up or
+  /// reading_options::is_cancelled. Resets it.
+  [[nodiscard]] virtual bool take_cancelled() noexcept = 0;
 
  protected:
   recorded_event_source() = default;
@@ -83,6 +86,8 @@ class G4LIDAR_API recording_hook {
 
   /// Whether a device answers on the transports. Nothing is written to files and recordings.
   [[nodiscard]] virtual bool answers() const noexcept { return false; }
+  /// Whether the clock is counted from the bytes that were read, so that no call waits.
+  [[nodiscard]] virtual bool counts_time() const noexcept { return false; }
   /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
   /// of a file arrived when they were recorded.
   [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {

@@ -314,7 +314,7 @@ class session_machine {
     heard_from_device& heard = outcome_.heard;
     if (const auto* noise = std::get_if<skipped>(&found)) {
       heard.skipped_bytes += static_cast<std::uint32_t>(noise->count);
-    } else {
+    } else if (std::get_if<time_packet_view>(&found) == nullptr) {
       ++(std::get_if<packet_view>(&found) != nullptr ? heard.packets : heard.responses);
     }
   }

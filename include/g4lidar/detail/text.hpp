@@ -53,12 +53,13 @@ struct doubt {
   std::string_view words;
   std::string_view name;
 };
-inline constexpr std::array<doubt, 5> doubts{{
+inline constexpr std::array<doubt, 6> doubts{{
     {point_flags::too_near, "too near", "too_near"},
     {point_flags::not_deskewed, "not deskewed", "not_deskewed"},
     {point_flags::unlikely, "unlikely", "unlikely"},
     {point_flags::isolated, "isolated", "isolated"},
     {point_flags::veiling, "veiling", "veiling"},
+    {point_flags::may_be_too_near, "may be too near", "may_be_too_near"},
 }};
 
 /// "12.345 deg, 1234.5 mm"; "12.345 deg, no return"; "12.345 deg, 60.0 mm, too near, unlikely".
@@ -90,6 +91,7 @@ inline constexpr std::array<doubt, 5> doubts{{
   flag(scan_flags::turn_short, "turn_short");
   flag(scan_flags::start_by_angle, "start_by_angle");
   flag(scan_flags::end_by_angle, "end_by_angle");
+  flag(scan_flags::crc_mismatch, "crc_mismatch");
   return text;
 }
 

@@ -41,9 +41,8 @@ struct diagnostic_options {
   std::function<std::unique_ptr<transport>(std::uint32_t)> reopen{};
 };
 
-/// Executes all stages and returns their reports: for the lidar that `source` names, as in
-/// lidar_options::device, or for "file:PATH", a recording or raw bytes. Stages that need a device
-/// are skipped for a file.
+/// Executes all stages and returns their reports, for the `source` of this name (source.hpp). Stages that
+/// need a device are skipped for a file.
 ///
 /// Takes about 3 s plus `measuring_time` with a healthy lidar, and at most 45 s plus `measuring_time`
 /// with one fault, if answers are at most 4 s late. Sends queries, one start, and stops;

@@ -10,6 +10,7 @@
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/export/text_sink.hpp"
+#include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan.hpp"
@@ -58,12 +59,12 @@ struct scan_record {
 /// |---|---|
 /// | `scan` | the number of the revolution, point::revolution |
 /// | `angle_deg` | degrees in style.to, six decimals: vendor in [0, 360), robot in [-180, 180) |
-/// | `range_mm` or `range_m` | two or five decimals; 0: no return |
+/// | `range_mm` or `range_m` | two or five decimals; 0: no return, which is not free space |
 /// | `time_ns` | point::time_ns |
 ///
 /// More columns may follow; the columns above do not change their position. jsonl has keys with the
 /// same names, and `no_return`, `too_near` and `partial` (true, false); `not_deskewed`, `unlikely`,
-/// `isolated` and `veiling` (true) only where that flag is set.
+/// `isolated`, `veiling` and `may_be_too_near` (true) only where that flag is set.
 ///
 /// csv of revolutions:
 ///
@@ -99,10 +100,11 @@ class G4LIDAR_API point_writer {
 
 /// The writer of revolutions as `bins` ranges at equal steps of 360 / `bins` degrees, the first one
 /// at 0 degrees, in the robot's frame at -180. Columns of csv: `scan`, `time_ns`, `partial`, and
-/// `range_mm_0` or `range_m_0` and so on: `inf` if nothing came back, `nan` if nothing is known
-/// (grid.hpp). jsonl: `angle_min_deg`, `angle_step_deg`, and `ranges_mm` or `ranges_m`, with "inf"
-/// and null for these. *Allocates on construction.*
-[[nodiscard]] G4LIDAR_API std::unique_ptr<point_writer> make_grid_writer(const text_style& style,
-                                                                         std::size_t bins);
+/// `range_mm_0` or `range_m_0` and so on: `inf` if nothing came back, `nan` if nothing is known, `-inf`
+/// if a target may be too near, as `how` sets (grid.hpp; its frame is that of `style`). jsonl:
+/// `angle_min_deg`, `angle_step_deg`, and `ranges_mm` or `ranges_m`, with "inf", null and "-inf" for
+/// these. *Allocates on construction.*
+[[nodiscard]] G4LIDAR_API std::unique_ptr<point_writer> make_grid_writer(
+    const text_style& style, std::size_t bins, const grid_options& how = {});
 
 }  // namespace g4lidar

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
+#include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 
@@ -48,14 +49,17 @@ struct message_schema {
 /// Fills `ranges_m`, not empty, with `points` for a LaserScan in the order of time, as fill_grid() does
 /// in the vendor's frame, and returns its first_bin: that of the mean direction from which the
 /// returns began. Points at the begin or the end of the revolution whose bin is at the other end, so that
-/// its time would be wrong by a revolution, are left out. *Never allocates.*
+/// its time would be wrong by a revolution, are left out. `how`, but for its frame, is as for
+/// fill_grid(). *Never allocates.*
 [[nodiscard]] G4LIDAR_API std::size_t fill_time_grid(std::span<const point> points,
                                                      std::int64_t duration_ns,
-                                                     std::span<float> ranges_m) noexcept;
+                                                     std::span<float> ranges_m,
+                                                     grid_options how = {}) noexcept;
 
 /// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is 0.1 m (ranges below are not reliable),
 /// range_max 16.38375 m (the maximum of the protocol), angle_increment 2 pi / bins. Without
-/// intensities. Allocates beyond the capacity of `out`.
+/// intensities. +infinity is not free space: a target nearer than the shortest range of the lidar
+/// (0.28 m at 9 kHz, more than range_min) may give no return; see too_near.hpp and grid_options. Allocates beyond the capacity of `out`.
 ///
 /// By angle, `ranges_m` are the bins that fill_grid() fills in the robot's frame, at least one:
 /// angle_min is -pi. By time, they are those that fill_time_grid() fills, and the message

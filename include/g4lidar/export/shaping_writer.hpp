@@ -18,6 +18,7 @@
 #include "g4lidar/motion.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/too_near.hpp"
 #include "g4lidar/twist_estimator.hpp"
 
 namespace g4lidar {
@@ -36,6 +37,8 @@ struct shaping_options {
   /// their neighbours: see finish().
   std::optional<speckle_limits> speckle{};
   std::optional<edge_limits> edges{};
+  /// Directions where a target may be too near are flagged by mark_near(), and stay.
+  std::optional<near_limits> near{};
   /// Each revolution is deskewed to the time of its first point, after it was filtered. Points whose motion
   /// is not known are written as they are, flagged not_deskewed. The twist_estimator takes the points as they
   /// were before the filter; where one direction is not known, the value of its last estimate is used.
@@ -91,6 +94,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   [[nodiscard]] std::span<const point> in_range(std::span<const point> points);
   [[nodiscard]] bool looks_at_neighbours() const noexcept;
   void mark(std::span<point> points, scan_ends ends) const;
+  /// A copy of `points` in `marked_near_`, marked by mark_near(); without that option `points`.
+  [[nodiscard]] std::span<const point> with_near(std::span<const point> points);
   /// The points of the stream that can be marked now, marked; `is_end`: all.
   [[nodiscard]] std::span<const point> marked_stream(std::span<const point> points, bool is_end);
   /// Deskews the points that are left of a revolution to the time of its first point.
@@ -103,6 +108,8 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   std::unique_ptr<point_writer> inner_;
   shaping_options options_;
   std::vector<point> shaped_;
+  near_history near_;
+  std::vector<point> marked_near_;
   std::vector<point> marked_;  // of a stream also the neighbours of what comes next
   std::size_t passed_on_ = 0;  // of `marked_`
   time_shift times_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "g4lidar/detail/cpp20.hpp"
 
@@ -16,8 +17,8 @@ enum class time_style : std::uint8_t {
   zero,       ///< Nanoseconds since the first record.
 };
 
-/// Converts times of the monotonic clock to those of a time_style. *Single thread, never
-/// allocates.*
+/// Converts times of the monotonic clock to those of a time_style. Results beyond 64 bits become the
+/// largest or the least value. *Single thread, never allocates.*
 class time_shift {
  public:
   /// `wall_ahead_ns`: wall clock minus monotonic clock, for time_style::absolute.
@@ -26,7 +27,8 @@ class time_shift {
 
   /// Whether of() returns its argument unchanged.
   [[nodiscard]] constexpr bool changes_nothing() const noexcept {
-    return style_ != time_style::delta && shift_ns_ == 0 && (begun_ || style_ != time_style::zero);
+    if (style_ == time_style::zero) return begun_ && before_ns_ == 0;
+    return style_ != time_style::delta && shift_ns_ == 0;
   }
 
   /// Data with this time has arrived, written or not; time_style::zero and the first delta count
@@ -34,13 +36,13 @@ class time_shift {
   constexpr void come(std::int64_t time_ns) noexcept {
     if (begun_) return;
     begun_ = true;
-    if (style_ == time_style::zero) shift_ns_ = -time_ns;
     before_ns_ = time_ns;
   }
   /// The time to write for the next record.
   [[nodiscard]] constexpr std::int64_t of(std::int64_t time_ns) noexcept {
-    if (style_ != time_style::delta) return time_ns + shift_ns_;
-    const std::int64_t since_ns = written_ ? time_ns - before_ns_ : 0;
+    if (style_ == time_style::zero) return begun_ ? difference(time_ns, before_ns_) : time_ns;
+    if (style_ != time_style::delta) return sum(time_ns, shift_ns_);
+    const std::int64_t since_ns = written_ ? difference(time_ns, before_ns_) : 0;
     written_ = true;
     before_ns_ = time_ns;
     return since_ns;
@@ -49,12 +51,25 @@ class time_shift {
   /// read at the same time, and written times should not jitter.
   constexpr void set_wall_ahead(std::int64_t wall_ahead_ns) noexcept {
     constexpr std::int64_t step_ns = 1'000'000;
-    const std::int64_t change_ns = wall_ahead_ns - shift_ns_;
+    const std::int64_t change_ns = difference(wall_ahead_ns, shift_ns_);
     if (style_ != time_style::absolute || (change_ns > -step_ns && change_ns < step_ns)) return;
     shift_ns_ = wall_ahead_ns;
   }
 
  private:
+  static constexpr std::int64_t end(bool is_least) noexcept {
+    using limits = std::numeric_limits<std::int64_t>;
+    return is_least ? limits::min() : limits::max();
+  }
+  static constexpr std::int64_t sum(std::int64_t a, std::int64_t b) noexcept {
+    std::int64_t made = 0;
+    return __builtin_add_overflow(a, b, &made) ? end(a < 0) : made;
+  }
+  static constexpr std::int64_t difference(std::int64_t a, std::int64_t b) noexcept {
+    std::int64_t made = 0;
+    return __builtin_sub_overflow(a, b, &made) ? end(a < 0) : made;
+  }
+
   time_style style_;
   bool begun_ = false;
   bool written_ = false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -57,15 +58,19 @@ struct reading_options {
   /// recording.
   std::int64_t from_ns = 0;
   std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();
+  /// Called often while a function searches the file; true ends that function with cancelled. The
+  /// next call continues there. It must not throw, and not use the reader.
+  std::function<bool()> is_cancelled{};
 };
 
 /// Reads one file. *Single thread.* Memory is bounded for every file: one compressed chunk and one
-/// uncompressed, of at most 64 MiB. With `from_ns` it begins at the right chunk, by the index if
+/// uncompressed, of at most 64 MiB. The work for chunks without messages is bounded by the size of
+/// the file, whatever they unpack to. With `from_ns` it begins at the right chunk, by the index if
 /// the file has one.
 class G4LIDAR_API recording_reader {
  public:
   /// Opens the file and finds the first recorded item. Fails with bad_file if it is not a recording
-  /// of a lidar or has no intact part; with system.
+  /// of a lidar or has no intact part; with cancelled; with system.
   [[nodiscard]] static result<recording_reader> open(std::string_view path,
                                                      const reading_options& options = {});
 
@@ -74,7 +79,7 @@ class G4LIDAR_API recording_reader {
   ~recording_reader();
 
   /// The next item; nothing at the end. Where bytes are missing it returns an event `gap`. Fails
-  /// with system if the rest of the file cannot be read.
+  /// with system if the rest of the file cannot be read, and with cancelled.
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
 
   /// Calls `take` with each item until it returns false or the recording ends. Fails like next().
@@ -95,7 +100,7 @@ class G4LIDAR_API recording_reader {
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept;
   /// The time of the first item that is not odometry.
   [[nodiscard]] std::int64_t first_ns() const noexcept;
-  /// The time of the last one; 0 if the file was cut off.
+  /// The time of the last one; of a cut-off file, of the last one that can be read. At least first_ns().
   [[nodiscard]] std::int64_t last_ns() const noexcept;
   /// The damage found so far.
   [[nodiscard]] const recording_damage& damage() const noexcept;

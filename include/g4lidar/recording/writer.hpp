@@ -17,10 +17,12 @@
 #include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/digest.hpp"
 #include "g4lidar/scan.hpp"
+#include "g4lidar/too_near.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
@@ -55,6 +57,10 @@ struct recording_options {
   bool scans = true;               ///< Whether revolutions are recorded as LaserScan messages.
   /// The order of the ranges of a LaserScan. In the order of time `frame_id` is a frame with z down.
   scan_order order = scan_order::angle;
+  /// How the ranges of a LaserScan are filled; its frame is that of `order`.
+  grid_options grid{};
+  /// Whether mark_near() flags the points of a LaserScan first, and its limits. Without it no direction is flagged.
+  std::optional<near_limits> near{};
   /// The topic of PointCloud2 messages, one for each revolution; like `topic`, and different from it.
   /// Empty: there are none.
   std::string points_topic{};

@@ -82,9 +82,12 @@ struct device_options {
   // What healthy devices send in addition to the protocol.
   bool stray_after_start = true;  ///< A 00 after the scan header.
   bool stray_before_zero = true;  ///< A random byte before every zero packet.
-  bool stop_truncates = true;     ///< A stop truncates the packet that is being sent.
-  bool boot_text = true;          ///< ASCII after a restart and after power-on.
-  bool boot_information = true;   ///< Then the device information, without a query.
+  bool ct_crc =
+      false;  ///< That byte is the CRC of the revolution, as newer devices of the family send it.
+  std::int64_t time_packet_ns = 0;  ///< The interval of time packets; 0: none, as a G4.
+  bool stop_truncates = true;       ///< A stop truncates the packet that is being sent.
+  bool boot_text = true;            ///< ASCII after a restart and after power-on.
+  bool boot_information = true;     ///< Then the device information, without a query.
   std::int64_t boot_ns = 400'000'000;
 
   // Open questions of the protocol.

@@ -37,10 +37,11 @@ enum class fault_kind : std::uint8_t {
   unplug,  ///< The device is unplugged; at the end of the fault it is plugged in again.
   health,  ///< The health is `amount`: 1 a warning, 2 an error {2}.
   jolt,  ///< The head moves back for a packet: `rate` of all packets {0.01}. Such packets are suspect.
+  omit,  ///< A packet is not sent: `rate` of all packets {0.01}.
 };
 
 /// The last kind, for loops over all kinds.
-inline constexpr fault_kind last_fault_kind = fault_kind::jolt;
+inline constexpr fault_kind last_fault_kind = fault_kind::omit;
 
 /// One fault of a device, with its time.
 struct fault {

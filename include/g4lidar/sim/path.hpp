@@ -56,4 +56,10 @@ G4LIDAR_API void smooth(std::span<path_point> path) noexcept;
 /// The pose `b`, given in the frame of `a`, in the frame in which `a` is given. *Pure.*
 [[nodiscard]] G4LIDAR_API pose placed(const pose& a, const pose& b) noexcept;
 
+/// The pose of a lidar's angle 0 (the cable's exit), if `looks` is the pose of its frame in REP 103
+/// (frame::robot), whose x axis points away from the cable. *Pure.*
+[[nodiscard]] constexpr pose cable_pose(const pose& looks) noexcept {
+  return {looks.x_m, looks.y_m, looks.heading_deg + (looks.heading_deg > 0.0 ? -180.0 : 180.0)};
+}
+
 }  // namespace g4lidar::sim

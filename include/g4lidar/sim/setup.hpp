@@ -33,7 +33,7 @@ struct setup_error {
 };
 
 /// Sets what "NAME=VALUE" names: `world`, `path`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
-/// the member of device_options of that name (docs/sim.md lists them). Returns what is wrong, a sentence
+/// the member of device_options of that name (docs/sim_device.md lists them). Returns what is wrong, a sentence
 /// without a full stop; empty if nothing is. Does not check the values against each other: see
 /// problem_with(). Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::string set(setup& into, std::string_view word);

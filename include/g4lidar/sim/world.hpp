@@ -37,13 +37,14 @@ struct disc {
 /// of parse_world() for files.
 struct world {
   std::vector<wall> walls;
-  /// Where the robot stands. With the default `mount` the lidar itself.
+  /// Where the robot stands. With the default `mounted_at` the lidar itself, its angle 0 ahead.
   pose lidar;
   std::vector<disc> discs{};
   /// How the robot moves, times ascending; empty: it stands at `lidar`.
   std::vector<path_point> path{};
-  /// The pose of the lidar in the frame of the robot: x forward, y to the left.
-  pose mount{};
+  /// The lidar's frame (frame::robot: it looks along x) in that of the robot: x forward, y to the left;
+  /// the meaning of mounting::pose. By default the cable points ahead.
+  pose mounted_at{0.0, 0.0, 180.0};
 };
 
 /// A flat with several rooms: a living room with oblique furniture, a pillar, and a post nearer

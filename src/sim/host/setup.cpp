@@ -36,7 +36,7 @@ using member =
                  bool options::*, turning options::*, at_limit options::*, disturbance options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 40> members{{
+constexpr std::array<std::pair<std::string_view, member>, 42> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -53,6 +53,8 @@ constexpr std::array<std::pair<std::string_view, member>, 40> members{{
     {"counter_clockwise", &options::counter_clockwise},
     {"stray_after_start", &options::stray_after_start},
     {"stray_before_zero", &options::stray_before_zero},
+    {"ct_crc", &options::ct_crc},
+    {"time_packet_ns", &options::time_packet_ns},
     {"stop_truncates", &options::stop_truncates},
     {"boot_text", &options::boot_text},
     {"boot_information", &options::boot_information},

@@ -80,8 +80,9 @@ double worst_error(const Form& form, const arc& over, bool& in_range) {
       const double expected = first + step * static_cast<double>(i) + corrections()[raw[i]];
       const double off = std::fabs(static_cast<double>(p.angle_deg) - expected);
       worst = std::max(worst, std::min(off, std::fabs(off - 360.0)));
-      in_range = in_range && p.angle_deg >= 0.0F && p.angle_deg < 360.0F &&
-                 static_cast<double>(p.range_mm) == raw[i] / 4.0;
+      in_range =
+          in_range && p.angle_deg >= 0.0F && p.angle_deg < 360.0F &&
+          static_cast<double>(p.range_mm) == (reference::is_no_return(raw[i]) ? 0.0 : raw[i] / 4.0);
     }
   }
   return worst;

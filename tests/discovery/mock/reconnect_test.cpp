@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "discovery/system_connector.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/pty_port.hpp"
+#include "support/machine_watch.hpp"
+#include "support/patience.hpp"
 #include "testbed.hpp"
 #include "transport/pty.hpp"
 
@@ -91,22 +94,26 @@ TEST_F(Reconnect, OtherDeviceOnTheOldPath_IsNotOpened) {
 
 TEST_F(Reconnect, PathNamedByTheUser_IsOpened) { EXPECT_TRUE(opens_other_adapter("/dev/ttyUSB0")); }
 
-/// The system keeps what comes while the driver sleeps, also at the slowest speed.
+/// The system keeps what comes while the driver sleeps, also at the slowest speed. In real time: a busy machine may
+/// delay the driver for longer.
 TEST_F(Reconnect, ScansOfAPortThatUdevFound_LoseNothing) {
   bed.plug(first);
   const auto ours = serve(first, '1');
   lidar_options options;
   options.frequency = scan_frequency{500};
-  auto device = lidar::open(options);
-  ASSERT_TRUE(device) << device.error().message();
-  ASSERT_TRUE(device->start());
-  for (int i = 0; i < 15; ++i) {
-    const auto scan = device->next_scan(3s);
-    ASSERT_TRUE(scan) << scan.error().message();
-    if (i < 3) continue;  // the motor spins up
-    EXPECT_NEAR(static_cast<double>(scan->size()), 9000 / 5.0, 20.0);
-  }
-  EXPECT_EQ(device->counts().samples_lost, 0U);
+  expect_three_of_four([&] {
+    auto device = lidar::open(options);
+    const auto started = device ? device->start() : tl::unexpected(device.error());
+    EXPECT_TRUE(started) << started.error().message();
+    bool is_whole = started.has_value();
+    for (int i = 0; is_whole && i < 15; ++i) {
+      const auto scan = device->next_scan(patience);
+      EXPECT_TRUE(scan) << scan.error().message();
+      const bool spins_up = i < 3;
+      is_whole = scan && (spins_up || std::abs(static_cast<int>(scan->size()) - 9000 / 5) <= 20);
+    }
+    return is_whole && device->counts().samples_lost == 0;
+  });
 }
 
 TEST_F(Reconnect, RefusedPort_ReturnsAfterAReplug) {
@@ -131,41 +138,43 @@ TEST_F(Reconnect, OtherLidarOnTheOldPath_IsReportedOnceAndOursIsFound) {
   auto device = lidar::open(options);
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
-  ASSERT_TRUE(device->next_scan(3s));
+  ASSERT_TRUE(device->next_scan(patience));
   ours.reset();
   bed.unplug(first);
   bed.plug(first);
   const auto spare = serve(first, '2');
   std::vector<kind> events;
-  const auto read_for = [&](std::chrono::milliseconds time) {
-    const auto end = std::chrono::steady_clock::now() + time;
-    while (std::chrono::steady_clock::now() < end) static_cast<void>(device->next_scan(50ms));
-    while (const auto event = device->next_event()) events.push_back(event->what);
+  const auto reads_until = [&](kind wanted, std::chrono::nanoseconds longest = patience) {
+    return comes_true(
+        [&] {
+          static_cast<void>(device->next_scan(50ms));
+          while (const auto event = device->next_event()) events.push_back(event->what);
+          return std::ranges::count(events, wanted) > 0;
+        },
+        longest);
   };
-  read_for(2s);
+  EXPECT_TRUE(reads_until(kind::other_lidar));
+  // It is not reported a second time, nor is the lidar used: on a busy machine this may not be seen.
+  EXPECT_FALSE(reads_until(kind::reconnected, 2s));
   EXPECT_THAT(events, testing::ElementsAre(kind::lost, kind::other_lidar));
   bed.plug(second);
   const auto moved = serve(second, '1');
   events.clear();
-  read_for(4s);
-  EXPECT_THAT(events, testing::Contains(kind::reconnected));
+  EXPECT_TRUE(reads_until(kind::reconnected));
   EXPECT_THAT(events, testing::Not(testing::Contains(kind::other_lidar)));
   EXPECT_EQ(device->name(), "/dev/ttyUSB1");
 }
 
 // At another USB port, after an outage of 3 s: without the notice, the next attempt is up to a second later. The 75th
-// percentile of 4 runs.
+// percentile of 4 runs. A real-time test, here because it needs umockdev.
 TEST_F(Reconnect, NewPort_IsNoticedAtOnce) {
-  std::vector<std::chrono::steady_clock::duration> times;
-  for (int run = 0; run < 4; ++run) {
+  expect_percentile_below(400ms, 75, 4, [&]() -> std::chrono::nanoseconds {
     bed.plug(first);
     auto ours = std::make_optional(serve(first, '1'));
     lidar_options options;
     options.reconnect = true;
     auto device = lidar::open(options);
-    ASSERT_TRUE(device) << device.error().message();
-    ASSERT_TRUE(device->start());
-    ASSERT_TRUE(device->next_scan(3s));
+    EXPECT_TRUE(device && device->start() && device->next_scan(patience));
     ours.reset();
     remove(first);
     const auto back = std::chrono::steady_clock::now() + 3s;
@@ -173,15 +182,14 @@ TEST_F(Reconnect, NewPort_IsNoticedAtOnce) {
     bed.plug(second);
     ours.emplace(serve(second, '1'));
     const auto begin = std::chrono::steady_clock::now();
-    while (!device->next_scan(100ms) && std::chrono::steady_clock::now() < begin + 10s) {
+    while (!device->next_scan(100ms) && std::chrono::steady_clock::now() < begin + patience) {
     }
-    times.push_back(std::chrono::steady_clock::now() - begin);
+    const auto took = std::chrono::steady_clock::now() - begin;
     device->release();
     ours.reset();
     remove(second);
-  }
-  std::sort(times.begin(), times.end());
-  EXPECT_LT(times[2], 400ms);
+    return took;
+  });
 }
 
 }  // namespace

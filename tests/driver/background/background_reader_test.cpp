@@ -17,28 +17,19 @@
 
 #include "g4lidar/transport/forwarding.hpp"
 #include "support/allocation_count.hpp"
+#include "support/patience.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
+using test::comes_true;
 using test::open_virtual;
 using test::virtual_bench;
 using test::virtual_connector;
 
 constexpr std::int64_t ms = 1'000'000;
-
-/// Waits for an event in the other thread; false if it does not occur within 20 s.
-template <class Condition>
-bool comes_true(Condition&& condition) {
-  const auto end = std::chrono::steady_clock::now() + 20s;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
 
 TEST(BackgroundReader, WritesToTheRing) {
   virtual_bench bench;
@@ -79,13 +70,13 @@ TEST(BackgroundReader, ProvidesScansAndCountsMissedOnes) {
     for (const point& p : one.points) EXPECT_EQ(p.revolution, one.revolution);
     ++taken;
   };
-  const auto one = reader->next_scan(20s);
+  const auto one = reader->next_scan(test::patience);
   ASSERT_TRUE(one) << one.error().message();
   take(*one);
   const std::uint64_t missed_before = reader->counts().scans_missed;
   EXPECT_TRUE(comes_true([&] { return reader->counts().scans_missed > missed_before + 3; }));
   for (int i = 0; i < 20; ++i) {
-    const auto next = reader->next_scan(20s);
+    const auto next = reader->next_scan(test::patience);
     ASSERT_TRUE(next);
     take(*next);
   }
@@ -177,9 +168,9 @@ TEST(BackgroundReader, AllocatesNothingWhileItStreams) {
   ASSERT_TRUE(lidar);
   auto reader = background_reader::start(std::move(*lidar));
   ASSERT_TRUE(reader);
-  ASSERT_TRUE(reader->next_scan(20s));
+  ASSERT_TRUE(reader->next_scan(test::patience));
   const std::size_t calls = test::allocations_in([&] {
-    for (int i = 0; i < 50; ++i) static_cast<void>(reader->next_scan(20s));
+    for (int i = 0; i < 50; ++i) static_cast<void>(reader->next_scan(test::patience));
   });
   EXPECT_EQ(calls, 0U);
 }
@@ -192,7 +183,7 @@ TEST(BackgroundReader, MovedFrom_BehavesAsStopped) {
   ASSERT_TRUE(reader);
   const background_reader taken = std::move(*reader);
   reader->stop();
-  EXPECT_EQ(reader->next_scan(20s).error(), problem::gone);
+  EXPECT_EQ(reader->next_scan(test::patience).error(), problem::gone);
   EXPECT_EQ(reader->points().written(), 0U);
   ASSERT_TRUE(reader->failed());
   EXPECT_EQ(*reader->failed(), problem::gone);
@@ -226,9 +217,9 @@ TEST(BackgroundReader, Failed_HasTheError) {
   ASSERT_TRUE(reader);
   ASSERT_TRUE(comes_true([&] { return reader->failed().has_value(); }));
   EXPECT_EQ(reader->failed()->code(), problem::gone);
-  while (reader->next_scan(20s)) {  // earlier scans
+  while (reader->next_scan(test::patience)) {  // earlier scans
   }
-  EXPECT_EQ(reader->next_scan(20s).error(), problem::gone);
+  EXPECT_EQ(reader->next_scan(test::patience).error(), problem::gone);
   const auto event = reader->next_event();
   ASSERT_TRUE(event);
   EXPECT_EQ(event->what, lidar_event::kind::lost);

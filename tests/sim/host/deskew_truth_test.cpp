@@ -109,7 +109,7 @@ double most(const std::vector<double>& all) { return test::percentile(all, 95); 
 /// Over the whole path, in pieces of five revolutions.
 errors drive(const sim::world& world, const sim::scanner_options& options) {
   const std::int64_t end_ns = world.path.back().time_ns;
-  const mounting mount{pose_of(world.mount, 180.0)};
+  const mounting mount{pose_of(world.mounted_at, 0.0)};
   const auto truth = [&](std::int64_t now) {
     return pose_of(sim::robot_at(world.path, now).at, 0.0);
   };
@@ -198,6 +198,18 @@ TEST_P(DeskewedInWorld, WithNoiseTheErrorIsAtMostHalf) {
 INSTANTIATE_TEST_SUITE_P(Worlds, DeskewedInWorld,
                          testing::Values("flat", "office", "corridor", "hall", "people"),
                          [](const auto& case_) { return std::string(case_.param); });
+
+// The place of a lidar on the robot is the same in a world and for deskew().
+TEST(DeskewedByItsMounting, IsTheSameInAWorldAndForDeskew) {
+  sim::world world = example("office");
+  world.mounted_at = {0.3, -0.2, 60.0};
+  world.path = std::get<std::vector<sim::path_point>>(
+      sim::parse_path("drive forward 4 0.8\ndrive turn 360 60\n", world.lidar));
+  const errors e = drive(world, {});
+  ASSERT_GT(e.moved, 10);
+  EXPECT_LT(most(e.by_truth), 3.0);
+  EXPECT_GT(most(e.as_measured), 30.0);
+}
 
 TEST(DeskewedAt90DegreesPerSecond, TheErrorIsAtMostHalf) {
   sim::world world = example("office");

@@ -95,7 +95,11 @@ void check(const sim::world& world, const sim::sample_truth& truth) {
   SCOPED_TRACE("time " + std::to_string(seconds) + " s, angle " +
                std::to_string(truth.first_level_deg) + ", range " + std::to_string(truth.range_mm));
   if (!world.path.empty()) {
-    EXPECT_EQ(truth.lidar, sim::placed(sim::robot_at(world.path, truth.time_ns).at, world.mount));
+    // The cable is opposite to where the lidar looks.
+    const sim::pose& at = world.mounted_at;
+    const sim::pose cable{at.x_m, at.y_m,
+                          at.heading_deg > 0 ? at.heading_deg - 180.0 : at.heading_deg + 180.0};
+    EXPECT_EQ(truth.lidar, sim::placed(sim::robot_at(world.path, truth.time_ns).at, cable));
   }
   if (truth.range_mm == 0.0) {
     EXPECT_FALSE(is_nearer(world, truth, 30.0));
@@ -280,7 +284,7 @@ TEST(Discs, AMirroredWorldMirrorsThemAndThePath) {
 TEST(Mount, TheLidarIsWhereItIsMountedOnTheRobot) {
   const std::string walls = "wall -5 4 7 4\nwall -5 -4 7 -4\n";
   const sim::world world =
-      parsed(walls + "lidar 0 0 90\nmount 0.3 -0.1 180\ndrive turn 90\ndrive forward 2\n");
+      parsed(walls + "lidar 0 0 90\nmount 0.3,-0.1,0\ndrive turn 90\ndrive forward 2\n");
   sim::scanner scanner(world, {});
   const sim::pose first = scanner.next().samples.front().lidar;
   EXPECT_NEAR(first.x_m, 0.1, 1e-12);

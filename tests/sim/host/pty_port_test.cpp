@@ -19,6 +19,7 @@
 
 #include "g4lidar/sim/pty_port.hpp"
 #include "support/host_side.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -59,10 +60,10 @@ class visitor {
     const std::array<std::uint8_t, 2> bytes{0xA5, code};
     return ::write(fd_, bytes.data(), bytes.size()) == 2;
   }
-  // Until there are so many, the port is gone, or 20 s have passed.
+  // Until there are so many, the port is gone, or `patience` has passed.
   [[nodiscard]] byte_vector read(std::size_t count) const {
     byte_vector all;
-    const auto end = std::chrono::steady_clock::now() + 20s;
+    const auto end = std::chrono::steady_clock::now() + test::patience;
     while (all.size() < count && std::chrono::steady_clock::now() < end) {
       pollfd waiting{fd_, POLLIN, 0};
       if (::poll(&waiting, 1, 1000) <= 0) continue;
@@ -85,12 +86,6 @@ class visitor {
  private:
   int fd_;
 };
-
-template <class Condition>
-bool soon(Condition condition) {
-  for (int i = 0; i < 2'000 && !condition(); ++i) std::this_thread::sleep_for(10ms);
-  return condition();
-}
 
 TEST_F(SimPty, AnswersAndScansThroughItsLink) {
   const auto port = sim::background_pty::open(simulated(), link());
@@ -153,10 +148,10 @@ TEST_F(SimPty, Unplug_HangsUp_ReplugMovesTheLink) {
   ASSERT_TRUE(before.send(0x60));
   EXPECT_EQ(before.read(1'000).size(), 1'000U);
   port.with([](sim::device& device, std::int64_t now_ns) { device.unplug(now_ns); });
-  EXPECT_TRUE(before.hangs_up(20s));
-  EXPECT_TRUE(soon([&] { return !fs::exists(fs::symlink_status(link())); }));
+  EXPECT_TRUE(before.hangs_up(test::patience));
+  EXPECT_TRUE(test::comes_true([&] { return !fs::exists(fs::symlink_status(link())); }));
   port.with([](sim::device& device, std::int64_t now_ns) { device.replug(now_ns); });
-  EXPECT_TRUE(soon([&] { return fs::exists(link()); }));
+  EXPECT_TRUE(test::comes_true([&] { return fs::exists(link()); }));
   const visitor after(link());
   EXPECT_FALSE(test::taken_apart(after.read(76)).responses.empty())
       << "it sends its device information";
@@ -172,9 +167,9 @@ TEST_F(SimPty, SlowReader_LosesBytesAndDelaysNothing) {
   port.with([](sim::device& device, std::int64_t now_ns) {
     device.write(std::array<std::uint8_t, 2>{0xA5, 0x60}, now_ns);
   });
-  EXPECT_TRUE(soon([&] { return port.bytes_lost() > 1'000; }));
+  EXPECT_TRUE(test::comes_true([&] { return port.bytes_lost() > 1'000; }));
   ASSERT_TRUE(program.send(0x65));
-  EXPECT_TRUE(soon([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     bool scanning = true;
     port.with([&](sim::device& device, std::int64_t) { scanning = device.is_scanning(); });
     return !scanning;
@@ -184,7 +179,7 @@ TEST_F(SimPty, SlowReader_LosesBytesAndDelaysNothing) {
 // Like a serial port: the next program gets neither the exclusive access nor the bytes of the
 // previous one.
 TEST_F(SimPty, IsResetForEachProgram) {
-  const auto port = sim::background_pty::open(simulated());
+  auto port = sim::background_pty::open(simulated());
   ASSERT_TRUE(port);
   {
     const visitor program(port->path());
@@ -194,9 +189,17 @@ TEST_F(SimPty, IsResetForEachProgram) {
     ASSERT_EQ(::tcsetattr(program.fd(), TCSANOW, &settings), 0);
     ASSERT_EQ(::ioctl(program.fd(), TIOCEXCL), 0);
     ASSERT_TRUE(program.send(0x60));
-    std::this_thread::sleep_for(300ms);
+    ASSERT_TRUE(test::comes_true([&] {
+      bool scans = false;
+      port->with([&](sim::device& device, std::int64_t now_ns) {
+        static_cast<void>(device.available(now_ns));
+        scans = device.is_scanning();
+      });
+      return scans;
+    }));
+    std::this_thread::sleep_for(300ms);  // it sends the header
   }
-  std::this_thread::sleep_for(300ms);
+  std::this_thread::sleep_for(1s);  // it notices within 20 ms that the program has closed it
   EXPECT_EQ(port->bytes_lost(), 0U) << "no program had it open";
   const visitor program(port->path());
   int exclusive = 1;

@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
 #include "g4lidar/sim/setup.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -226,8 +226,7 @@ TEST_F(SimSetup, ADeviceServedAlone_KeepsItsPath) {
   const std::string path = (*served)->path();
   EXPECT_THAT(path, StartsWith(directory_.native()));
   const auto is_there = [&path](bool wanted) {
-    for (int i = 0; i < 2'000 && fs::exists(path) != wanted; ++i) std::this_thread::sleep_for(1ms);
-    return fs::exists(path);
+    return test::comes_true([&] { return fs::exists(path) == wanted; }) == wanted;
   };
   EXPECT_TRUE(is_there(true));
   (*served)->with([](sim::device& simulated, std::int64_t now_ns) { simulated.unplug(now_ns); });

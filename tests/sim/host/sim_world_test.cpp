@@ -78,9 +78,18 @@ INSTANTIATE_TEST_SUITE_P(
         refusal{"disc_size", "lidar 0 0 0\ndisc 2.1 5 5", 2, "radius must be 0.01 to 2 m"},
         refusal{"disc_speed", "disc 1 5 5 6 6 -1", 1, "speed must be 0 to 10 m/s"},
         refusal{"far_disc", "disc 1 5 1001", 1, "beyond 1000 m"},
-        refusal{"two_mounts", "mount 0 0 0\nmount 0 0 0", 2, "second line 'mount'"},
-        refusal{"far_mount", "mount 0 -1001 0", 1, "beyond 1000 m"},
-        refusal{"wall_at_the_mount", "lidar 0 0 0\nmount 1 0 0\nwall 1 1 1 -1", 3, "within 1 cm"},
+        refusal{"two_mounts", "mount 0,0,0\nmount 0,0,0", 2, "second line 'mount'"},
+        refusal{"far_mount", "mount 0,-1001,0", 1, "beyond 1000 m"},
+        refusal{"mount_form", "mount 0,0", 1, "expected 'mount X,Y,DEG', found 2 numbers"},
+        refusal{"mount_number", "mount 0,0,x", 1, "'x' is not a number"},
+        refusal{"mount_with_blanks", "mount 0, 0, 0", 1, "without blanks"},
+        refusal{"mount_top_down", "mount 0,0,0,down", 1, "cannot be mounted top down"},
+        refusal{"old_mount", "mount 0 0 180", 1, "as for --mount: write 'mount 0,0,0'"},
+        refusal{"old_turned_mount", "lidar 0 0 0\nmount 0.2 -0.05 -30.5", 2,
+                "direction of the cable. It is now where the lidar looks, as for --mount: write "
+                "'mount 0.2,-0.05,149.5'"},
+        refusal{"no_mount", "mount", 1, "expected 'mount X,Y,DEG', found 0 numbers"},
+        refusal{"wall_at_the_mount", "lidar 0 0 0\nmount 1,0,0\nwall 1 1 1 -1", 3, "within 1 cm"},
         refusal{"wall_at_the_first_pose", "wall 1 1 1 -1\npose 0 1 0 0", 1, "within 1 cm"},
         refusal{"drive_without_lidar", "drive wait 1", 0, "there is no line 'lidar"},
         refusal{"pose_form", "pose 0 0 0", 1, "expected 'pose time x y heading_deg', found 3"},
@@ -154,7 +163,7 @@ TEST(SimWorld, ReadsDiscsMountAndPath) {
   const sim::world world = good(
       "disc 0.5 1 2\n"
       "disc 0.25 1 2 3 4 1.5\n"
-      "mount 0.1 -0.2 90\n"
+      "mount 0.1,-0.2,90\n"
       "pose 1.5 3 4 -90\n"
       "pose 2 3 4.5 -100\n");
   ASSERT_EQ(world.discs.size(), 2U);
@@ -163,7 +172,7 @@ TEST(SimWorld, ReadsDiscsMountAndPath) {
   EXPECT_EQ(world.discs[1].to_x_m, 3.0);
   EXPECT_EQ(world.discs[1].to_y_m, 4.0);
   EXPECT_EQ(world.discs[1].speed_m_per_s, 1.5);
-  EXPECT_EQ(world.mount, (sim::pose{0.1, -0.2, 90.0}));
+  EXPECT_EQ(world.mounted_at, (sim::pose{0.1, -0.2, 90.0}));
   EXPECT_EQ(world.lidar, (sim::pose{3.0, 4.0, -90.0}));
   ASSERT_EQ(world.path.size(), 2U);
   EXPECT_EQ(world.path[1].time_ns, 2'000'000'000);

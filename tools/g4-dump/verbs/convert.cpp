@@ -46,12 +46,13 @@ struct convert_options {
   point_job points;               ///< Its source is IN, its output OUT; also for bytes.
   std::optional<file_form> from;  ///< Else by its contents and name.
   std::optional<file_form> to;    ///< Else by its name.
+  bool overwrites = false;        ///< OUT may be a file that exists.
   bool shapes = false;            ///< An option was given that only points can have.
   recording_options made;         ///< Of a recording.
 
   [[nodiscard]] const std::string& in() const noexcept { return points.common->source; }
   [[nodiscard]] const std::string& out() const noexcept { return points.common->output; }
-  [[nodiscard]] const reading_options& range() const noexcept { return points.source.played.range; }
+  [[nodiscard]] const playback_options& range() const noexcept { return points.source.playback; }
 };
 
 /// The first four are read, and all are written; then other names of them.
@@ -74,8 +75,8 @@ std::optional<file_form> form_of_name(const std::string& name) {
 
 file_form form_of_input(const convert_options& options) {
   const std::string& name = options.in();
-  const source_kind kind = kind_of(name);
-  if (kind == source_kind::device && !std::filesystem::exists(path_of(name))) {
+  const source_kind kind = kind_of_source(name);
+  if (kind == source_kind::device && !std::filesystem::exists(path_of_source(name))) {
     throw failure(exit_code::bad_file, "there is no file " + in_quotes(name) +
                                            ". Check the name. For a lidar, use g4-dump dump or "
                                            "g4-dump record.");
@@ -124,9 +125,11 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
         "points");
   }
   const recording_options& made = options.made;
-  const bool has_messages = !made.points_topic.empty() || made.order == scan_order::time;
+  const bool has_messages = !made.points_topic.empty() || made.order == scan_order::time ||
+                            made.grid.no_return != no_return_as::infinity ||
+                            made.grid.near_is_minus_infinity;
   if (to != file_form::recording && has_messages) {
-    throw bad_value("--points and --order are for recordings");
+    throw bad_value("--points, --order, --no-return and --near-as are for recordings");
   }
   if (to == file_form::raw_bytes && !options.points.common->odometry.empty()) {
     throw bad_value("raw bytes hold no odometry: --odometry is for recordings and points");
@@ -160,11 +163,13 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (from == file_form::jsonl) job.text = text_source::jsonl;
   if (to == file_form::pcd) job.file = scan_file::pcd;
   job.point_file = point_file_of(to);
+  job.keeps_existing = !options.overwrites;
   if (to == file_form::tum) job.log = slam_log::tum;
   if (to == file_form::carmen) {
     job.log = slam_log::carmen;
     job.bins = 1440;  // a revolution has 1286 points at 7 Hz
   }
+  job.common->marks.near = options.made.near;
   job.partial = to != file_form::pcd && job.log == slam_log::none;
   job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
   return run(job);
@@ -180,15 +185,17 @@ void copy_recording(const convert_options& options, output& out) {
     }
     return !out.is_closed();
   };
-  const auto reader = read_items(path_of(options.in()), options.range(), take);
+  const auto reader =
+      read_items(path_of_source(options.in()),
+                 {.from_ns = options.range().from_ns, .to_ns = options.range().to_ns}, take);
   logger::info(
       fmt::format("{} from the lidar\n{}", counted(count, "byte"), describe(reader.damage())));
 }
 
 /// A part of raw bytes, by times that are counted.
 void copy_bytes(const convert_options& options, output& out) {
-  const auto from =
-      value_of(open_raw_bytes(path_of(options.in()), options.points.source.bytes_rate_hz));
+  const auto from = value_of(
+      open_raw_bytes(path_of_source(options.in()), options.points.source.raw_sample_rate_hz));
   const std::int64_t begin_ns = from->now_ns();
   const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;
@@ -208,7 +215,7 @@ int to_bytes(const convert_options& options, file_form from) {
   if (out.is_terminal()) {
     throw failure(exit_code::usage, "raw bytes are not for a terminal. Give a file as OUT.");
   }
-  refuse_same_file(id_of_name(path_of(options.in())), out);
+  refuse_same_file(id_of_name(path_of_source(options.in())), out);
   from == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
   out.commit();
   return exit_code_now();
@@ -216,7 +223,7 @@ int to_bytes(const convert_options& options, file_form from) {
 
 [[noreturn]] void refuse_without_packets(const convert_options& options,
                                          const recorded_result& result) {
-  input in(path_of(options.in()), "Give a recording or raw bytes.");
+  input in(path_of_source(options.in()), "Give a recording or raw bytes.");
   std::array<std::uint8_t, 4096> begin;
   const bool has_text = looks_like_text(std::span(begin).first(in.read(begin)));
   throw failure(exit_code::bad_file,
@@ -225,13 +232,14 @@ int to_bytes(const convert_options& options, file_form from) {
 
 int to_recording(const convert_options& options) {
   output out(options.out());
-  refuse_same_file(id_of_name(path_of(options.in())), out);
+  refuse_same_file(id_of_name(path_of_source(options.in())), out);
   recording_job job;
   job.common = *options.points.common;
   job.source = options.points.source;
   job.path = out.place();
   job.made = options.made;
   job.made.overwrite = true;
+  job.is_kept = false;
   job.title = options.out();
   const recorded_result result = record(job);
   if (result.lidar.stream.packets == 0 && interrupt() == 0) refuse_without_packets(options, result);
@@ -246,6 +254,10 @@ int run(const convert_options& options) {
   const file_form from = form_of_input(options);
   const file_form to = form_of_output(options);
   refuse_nonsense(options, from, to);
+  const auto in_place = id_of_name(options.out());  // the input itself is refused in other words
+  if (!options.overwrites && in_place != id_of_name(path_of_source(options.in()))) {
+    refuse_existing(options.out());
+  }
   if (to == file_form::recording) return to_recording(options);
   if (to == file_form::raw_bytes) return to_bytes(options, from);
   return to_points(options, from, to);
@@ -263,22 +275,23 @@ are. From a recording to a recording, all bytes both ways and the odometry are k
 messages are computed again: see --points, --order, --odometry and --mount of g4-dump record.
 
 --from and --to count from the beginning of IN. Of a damaged IN the undamaged part is converted,
-and the rest is counted on standard error. OUT appears, or is replaced, when everything is
-written. ^C ends the command; what was converted so far is written.)";
+and the rest is counted on standard error. OUT appears when everything is written; --force
+replaces an existing file. ^C ends the command; what was converted so far is written.)";
 
 option_rows form_rows(convert_options& options) {
   const choices<file_form> inputs(forms().begin(), forms().begin() + 4);
   const choices<file_form> outputs(forms().begin(), forms().end() - 2);
   point_job& job = options.points;
-  reading_options& range = job.source.played.range;
+  playback_options& range = job.source.playback;
   return {
       choice_row("--from-format", "Format of IN (by its contents and name)", options.from, inputs),
       choice_row("--to-format", "Format of OUT (by its name)", options.to, outputs),
+      flag_row("--force", "Replace an existing file", options.overwrites),
       moment_row("--from", "Begin at this time of IN: 10s", range.from_ns),
       moment_row("--to", "End at this time of IN: 40s", range.to_ns),
       value_row("--ascii", "", "Write pcd as text", job.data,
                 [](const std::string&) { return pcd_data::ascii; }),
-      sample_rate_row(job.source.bytes_rate_hz),
+      sample_rate_row(job.source.raw_sample_rate_hz),
       frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
       compress_row(options.made.packed)};
 }

@@ -30,7 +30,7 @@ verb make_decode_verb() {
   job->common->source = "-";
   common_options& common = *job->common;
   const auto as_file = [](const std::string& word) {
-    return kind_of(word) == source_kind::device ? "file:" + word : word;
+    return kind_of_source(word) == source_kind::device ? "file:" + word : word;
   };
   option_row file = value_row("FILE", "", "Raw bytes or a recording; - for standard input (-)",
                               common.source, as_file);
@@ -42,10 +42,11 @@ verb make_decode_verb() {
               joined(output_row(common), format_row(job->style.format, "Output format (csv)"),
                      flag_row("--scans", "A record for each revolution", job->style.scans),
                      flag_row("--valid", "Leave out points without a return", job->returns_only),
-                     sample_rate_row(job->source.bytes_rate_hz),
+                     sample_rate_row(job->source.raw_sample_rate_hz),
                      choice_row("--stats", "Form of the counts on standard error (words)",
                                 job->json_counts, choices<bool>{{"words", false}, {"json", true}}),
-                     ending_rows(common), filter_rows(common), shape_rows(common)),
+                     ending_rows(common), filter_rows(common), near_row(common.marks.near),
+                     shape_rows(common)),
           .details =
               fmt::format("{}\n\n{}\n\nWith --scans:\n\n{}", decoding, point_columns, scan_columns),
           .examples = {{"g4-dump decode walk.bin -o walk.csv", "Raw bytes to csv"},

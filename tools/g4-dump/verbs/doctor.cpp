@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ranges>
 #include <span>
 #include <string>
@@ -21,12 +22,17 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
+#include "verbs/problem_report.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
 namespace {
 
 constexpr std::size_t text_indent = 15;
+
+struct doctor_options : common_options {
+  report_options report;
+};
 
 std::string list_of(std::span<const diagnosis> all) {
   const auto name = [](diagnosis each) { return describe(each).name; };
@@ -128,40 +134,43 @@ std::string summary_of(std::span<const stage_report> stages) {
   for (const stage_report& each : stages) {
     found.insert(found.end(), each.diagnoses.begin(), each.diagnoses.end());
   }
-  return found.empty() ? "healthy: nothing is wrong\n" : "found: " + list_of(found) + "\n";
+  if (!found.empty()) return "found: " + list_of(found) + "\n";
+  const bool is_known = std::ranges::any_of(stages, [](const stage_report& each) {
+    return each.stage == diagnostic_stage::identity && each.outcome == stage_verdict::ok;
+  });
+  return is_known ? "healthy: nothing is wrong\n"
+                  : "no fault found, but these bytes do not name their model\n";
 }
 
-/// The source as the library names it; a simulated device is served as long as `served` exists.
-std::string device_of(const std::string& source, simulated_port& served) {
-  if (source == "-") throw bad_value("doctor examines a device or a file, not standard input");
-  const source_kind kind = kind_of(source);
-  if (kind == source_kind::simulated) {
-    served = serve_simulated(source);
-    return served->path();
-  }
-  return kind == source_kind::device ? source : "file:" + path_of(source);
-}
-
-int examine(const common_options& options) {
+int examine(const doctor_options& options) {
   output out(options.output);
-  simulated_port served;
-  const std::string source = device_of(options.source, served);
+  if (options.source == "-") {
+    throw bad_value("doctor examines a device or a file, not standard input");
+  }
   diagnostic_options how;
   how.baud = options.baud;
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
-  how.on_stage = [&, colored = wants_color(out.descriptor())](const stage_report& report) {
-    out.write(options.json ? json_line(json_of_report(report)) : text_of_report(report, colored));
+  std::optional<problem_report> report;
+  if (!options.report.path.empty()) report.emplace(options, options.report);
+  how.on_stage = [&, colored = wants_color(out.descriptor())](const stage_report& stage) {
+    out.write(options.json ? json_line(json_of_report(stage)) : text_of_report(stage, colored));
     out.flush();
+    if (report) report->add(text_of_report(stage, false));
   };
   how.on_activity = [&](diagnostic_activity what) {
     if (options.json || what != diagnostic_activity::spinning_up) return;
     out.write("spinning up: the lidar has started and sends nothing yet\n");
     out.flush();
   };
-  const std::vector<stage_report> stages = diagnose(source, how);
-  if (!options.json && interrupt() == 0) out.write(summary_of(stages));
+  const std::vector<stage_report> stages = diagnose(options.source, how);
+  const std::string summary = interrupt() == 0 ? summary_of(stages) : "interrupted\n";
+  if (!options.json && interrupt() == 0) out.write(summary);
   out.commit();
+  if (report) {
+    report->add(summary);
+    report->finish();
+  }
   return interrupt() != 0 ? 128 + interrupt() : static_cast<int>(exit_code_of(stages));
 }
 
@@ -171,27 +180,41 @@ loss and USB latency. It reports for each what was measured; where something is 
 likely cause and what to try. For a healthy lidar it takes about 8 seconds. No setting is changed,
 and the motor is stopped at the end. A recording or a file of raw bytes is examined as far as its
 bytes allow; stages that need a device are skipped. The exit code is that of the first stage that
-failed; a stage that only warns leaves it at 0.)";
+failed; a stage that only warns leaves it at 0.
+
+--report FILE writes the text FILE with what a report of a problem needs: versions, system, ports
+and who has them open, diagnosis, settings. Ten seconds of the lidar are recorded beside it: in
+report.mcap for report.txt. The text states what is in both. In the place of what cannot be found
+out, as without a lidar, is the reason.)";
 
 }  // namespace
 
 verb make_doctor_verb() {
-  const auto options = std::make_shared<common_options>();
+  const auto options = std::make_shared<doctor_options>();
   option_row time = duration_row(*options);
   time.help = "Listen to the scan for so long (5s)";
   option_row json = json_row(*options);
   json.help = "A JSON object for each stage, a line each";
-  return {.name = "doctor",
-          .summary = "What is wrong with a lidar, its port or a file, and what to try",
-          .arguments = {source_argument(*options)},
-          .options = joined(output_row(*options), json, time, baud_row(*options)),
-          .details = doctor_details,
-          .examples = {{"g4-dump doctor", "Examine the only G4"},
-                       {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
-                        "Listen to one port for 30 s, as JSON"},
-                       {"g4-dump doctor walk.mcap", "Examine a recording"},
-                       {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"}},
-          .run = [options] { return examine(*options); }};
+  return {
+      .name = "doctor",
+      .summary = "What is wrong with a lidar, its port or a file, and what to try",
+      .arguments = {source_argument(*options)},
+      .options = joined(
+          output_row(*options), json, time, baud_row(*options),
+          in_group("Report of a problem",
+                   {text_row("--report", "FILE",
+                             "Write a text, and a recording beside it, to attach to a report",
+                             options->report.path),
+                    flag_row("--force", "Replace existing files", options->report.overwrites)})),
+      .details = doctor_details,
+      .examples = {{"g4-dump doctor", "Examine the only G4"},
+                   {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
+                    "Listen to one port for 30 s, as JSON"},
+                   {"g4-dump doctor walk.mcap", "Examine a recording"},
+                   {"g4-dump doctor --report report.txt",
+                    "Write report.txt and report.mcap, to attach to a report of a problem"},
+                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"}},
+      .run = [options] { return examine(*options); }};
 }
 
 }  // namespace g4_tool

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 // The verb info: what a device, or a recording of one, reports about itself and its settings.
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_source.hpp"
+#include "io/input.hpp"
 #include "io/output.hpp"
+#include "verbs/device_facts.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
@@ -22,11 +27,12 @@ struct device_facts {
   std::string source;
   std::optional<device_information> information{};
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In their order.
+  std::string_view why_unknown = "no answer";  ///< Of settings that can be asked for.
 };
 
 device_facts facts_of_recording(const std::string& source) {
-  const auto reader = value_of(recording_reader::open(path_of(source)));
-  device_facts facts{.source = source};
+  const auto reader = open_recording(path_of_source(source));
+  device_facts facts{.source = source, .why_unknown = "not recorded"};
   const auto& known = reader.device();
   if (!known) return facts;
   if (known->information.model != 0) facts.information = known->information;
@@ -45,23 +51,34 @@ device_facts facts_of_device(const common_options& options) {
   return facts;
 }
 
+device_facts facts_of(const common_options& options) {
+  return kind_of_source(options.source) == source_kind::recording
+             ? facts_of_recording(options.source)
+             : facts_of_device(options);
+}
+
+/// For people: the value, or why it is not known.
+std::string words_for(const device_facts& facts, std::size_t index) {
+  std::string text = text_of(facts.settings[index]);
+  if (facts.settings[index]) return text;
+  const bool is_mute = !all_settings()[index].question;
+  return fmt::format("{} ({})", text, is_mute ? "a G4 cannot be asked for it" : facts.why_unknown);
+}
+
 void write(const device_facts& facts, bool as_json, output& out) {
   ordered_json all{{"source", facts.source}};
   all.update(json_of(facts.information));
   if (!as_json && facts.information && facts.information->model == model_g4) all["model"] = "G4";
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
-    value = as_json ? json_of(facts.settings[i]) : ordered_json(text_of(facts.settings[i]));
+    value = as_json ? json_of(facts.settings[i]) : ordered_json(words_for(facts, i));
   }
   write_object(out, all, 12, as_json);
 }
 
 exit_code info(const common_options& options) {
-  const std::string& source = options.source;
   output out(options.output);
-  const bool is_recording = kind_of(source) == source_kind::recording;
-  const device_facts facts = is_recording ? facts_of_recording(source) : facts_of_device(options);
-  write(facts, options.json, out);
+  write(facts_of(options), options.json, out);
   out.commit();
   return exit_code::ok;
 }
@@ -69,12 +86,17 @@ exit_code info(const common_options& options) {
 constexpr const char* info_details =
     R"(A line for each of: source, model, serial, firmware, hardware, and the settings by the names
 that set takes: sample_rate, freq, direction, constant, idle, protection. A G4 cannot be asked
-for constant and protection, and old firmware does not answer for direction: these are unknown.
+for constant and protection, and old firmware does not answer for direction: these are unknown,
+with the reason.
 With --json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.
 
 No setting is changed, but a device that is scanning is stopped first; that is reported.)";
 
 }  // namespace
+
+void write_facts(const common_options& options, output& out) {
+  write(facts_of(options), false, out);
+}
 
 verb make_info_verb() {
   return device_verb(

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The verb list: the serial ports, and with --probe the devices behind them.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <memory>
@@ -17,6 +19,7 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/port_row.hpp"
+#include "verbs/device_facts.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
@@ -107,13 +110,18 @@ exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
   return exit_code::no_device;
 }
 
-int list(const list_options& options) {
-  output out(options.common.output);
+std::vector<listed_port> ports_with_holders() {
   auto found = value_of(list_ports());
   find_holders(found);
   std::vector<listed_port> ports;
   ports.reserve(found.size());
   for (port_info& port : found) ports.push_back({.port = std::move(port)});
+  return ports;
+}
+
+int list(const list_options& options) {
+  output out(options.common.output);
+  std::vector<listed_port> ports = ports_with_holders();
   const bool probed = options.probe || options.all;
   if (probed) probe(ports, options);
   if (options.common.json) {
@@ -148,6 +156,30 @@ stops a lidar that is scanning. The exit code is 3 if no port has that bridge; w
 no G4 answered, that of the problem at the first such port.)";
 
 }  // namespace
+
+void write_ports(output& out) {
+  const std::vector<listed_port> ports = ports_with_holders();
+  if (ports.empty()) return out.write("no serial port found\n");
+  write_table(ports, false, out);
+}
+
+int print_overview() {
+  output out("-");
+  std::vector<listed_port> ports = ports_with_holders();
+  std::erase_if(ports, [](const listed_port& each) { return !is_g4_bridge(each.port); });
+  if (ports.empty()) {
+    out.write("No serial port has the USB bridge of a G4. A simulated one: g4-dump view sim:\n");
+  } else {
+    out.write("Ports with the USB bridge of a G4 (g4-dump list --probe asks who answers):\n\n");
+    write_table(ports, false, out);
+  }
+  out.write("\nCommands (g4-dump COMMAND --help explains one, g4-dump --help the sources):\n\n");
+  for (const verb& each : all_verbs()) {
+    out.write(fmt::format("  {:<9} {}\n", each.name, each.summary));
+  }
+  out.commit();
+  return static_cast<int>(exit_code::ok);
+}
 
 verb make_list_verb() {
   const auto options = std::make_shared<list_options>();

@@ -38,7 +38,7 @@ void list_bytes(const packets_options& options) {
   const common_options& common = *options.common;
   if (common.time)
     throw bad_value("--time: raw bytes carry no times; lines begin with the offset of the bytes");
-  input in(path_of(common.source),
+  input in(path_of_source(common.source),
            "Give a file of raw bytes from the lidar's port, or pipe them in.");
   output out(common.output, in.id() ? output::appears::whole : output::appears::growing);
   refuse_same_file(in.id(), out);
@@ -62,7 +62,7 @@ void log_event(const recorded_event& event, protocol_log& log) {
 
 void list_recording(const packets_options& options) {
   const common_options& common = *options.common;
-  const std::string path = path_of(common.source);
+  const std::string path = path_of_source(common.source);
   output out(common.output);
   refuse_same_file(id_of_name(path), out);
   const time_style wanted = common.time.value_or(time_style::absolute);
@@ -136,8 +136,9 @@ void list_lidar(const packets_options& options) {
   sink.pulse = write;
   sink.is_done = [&] { return log.is_done(); };
   try {
-    opening how;
-    how.each = [&](auto port) { return std::make_unique<logged_transport>(std::move(port), log); };
+    lidar_options how;
+    how.wrap = for_each_connection(
+        [&](auto port) { return std::make_unique<logged_transport>(std::move(port), log); });
     opened_source source(common, how);
     read_source(source, common, sink, out);
   } catch (const failure&) {  // the bytes so far show why
@@ -150,10 +151,10 @@ void list_lidar(const packets_options& options) {
 }
 
 int run(packets_options options) {
-  const source_kind kind = kind_of(options.common->source);
+  const source_kind kind = kind_of_source(options.common->source);
   options.style.lines = options.common->count;
-  options.style.has_times = kind != source_kind::bytes;
-  const auto list = kind == source_kind::bytes       ? list_bytes
+  options.style.has_times = kind != source_kind::raw_bytes;
+  const auto list = kind == source_kind::raw_bytes   ? list_bytes
                     : kind == source_kind::recording ? list_recording
                                                      : list_lidar;
   list(options);

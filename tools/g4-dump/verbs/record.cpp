@@ -109,7 +109,7 @@ option_rows scan_rows(record_options& options) {
                                    made.scans, [](const std::string&) { return false; }),
                          name("--topic", "Topic of the LaserScan messages (/scan)", made.topic),
                          name("--frame-id", "frame_id of scans and points (laser)", made.frame_id)},
-             message_rows(made), sample_rate_row(options.job.source.bytes_rate_hz));
+             message_rows(made), sample_rate_row(options.job.source.raw_sample_rate_hz));
   return joined(in_group("Contents", rows), motion_rows(options.job.common));
 }
 

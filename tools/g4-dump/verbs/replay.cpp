@@ -19,8 +19,8 @@ namespace {
 
 constexpr const char* replay_details =
     R"(The recording passes through the same code as the data of a lidar, so the points and their
-times are the same. The output is that of g4-dump dump and scan; see there for the columns. With
---loop, times and revolution numbers continue.
+times are the same. The output is that of g4-dump dump and g4-dump scan; see there for the columns.
+With --loop, times and revolution numbers continue.
 
 --verify writes no points. It checks that the bytes and points of the file are those that were
 recorded: exit code 0, or 10 if they differ or the file was cut off and has no digest.
@@ -87,16 +87,16 @@ void verify(const std::string& path) {
 
 int run(const replay_verb_options& options) {
   const std::string& name = options.job.common->source;
-  if (!std::filesystem::exists(path_of(name))) {
+  if (!std::filesystem::exists(path_of_source(name))) {
     refuse("there is no file " + in_quotes(name) + ". Check the name.");
   }
-  if (kind_of(name) != source_kind::recording) {
+  if (kind_of_source(name) != source_kind::recording) {
     refuse(
         in_quotes(name) +
         " is not a recording. Give a file made by g4-dump record; g4-dump dump reads raw bytes.");
   }
   if (!options.verify) return run(options.job);
-  verify(path_of(name));
+  verify(path_of_source(name));
   return exit_code_now();
 }
 
@@ -106,8 +106,8 @@ verb make_replay_verb() {
   const auto options = std::make_shared<replay_verb_options>();
   point_job& job = options->job;
   common_options& common = *job.common;
-  replay_options& played = job.source.played;
-  played.rate = 1.0;
+  playback_options& played = job.source.playback;
+  played.speed = 1.0;
   option_row verification =
       flag_row("--verify", "Check that the file holds what was recorded", options->verify);
   verification.excludes = {"--playback-speed", "--loop",  "--from",  "--to",      "--output",
@@ -116,18 +116,19 @@ verb make_replay_verb() {
       .name = "replay",
       .summary = "Play a recording at its own speed or another, or verify it",
       .arguments = {file_argument("FILE", "A recording", common.source)},
-      .options = joined(
-          output_row(common), format_row(job.style.format),
-          flag_row("--scans", "Whole revolutions, not points", job.style.scans),
-          value_row("--playback-speed", "1|max|FACTOR", "1: as recorded, 0.5: half as fast (1)",
-                    played.rate,
-                    [](const std::string& word) {
-                      return word == "max" ? 0.0 : number_of(word, 0.001, 1000.0);
-                    }),
-          flag_row("--loop", "Start again at the end", played.loop),
-          moment_row("--from", "Begin at this time of the recording: 10s", played.range.from_ns),
-          moment_row("--to", "End at this time of the recording: 40s", played.range.to_ns),
-          verification, ending_rows(common), filter_rows(common), shape_rows(common)),
+      .options =
+          joined(output_row(common), format_row(job.style.format),
+                 flag_row("--scans", "Whole revolutions, not points", job.style.scans),
+                 value_row("--playback-speed", "1|max|FACTOR",
+                           "1: as recorded, 0.5: half as fast (1)", played.speed,
+                           [](const std::string& word) {
+                             return word == "max" ? 0.0 : number_of(word, 0.001, 1000.0);
+                           }),
+                 flag_row("--loop", "Start again at the end", played.loop),
+                 moment_row("--from", "Begin at this time of the recording: 10s", played.from_ns),
+                 moment_row("--to", "End at this time of the recording: 40s", played.to_ns),
+                 verification, ending_rows(common), filter_rows(common),
+                 near_row(common.marks.near), shape_rows(common)),
       .details = replay_details,
       .examples = {{"g4-dump replay walk.mcap", "Print the points at the speed of the recording"},
                    {"g4-dump replay walk.mcap --playback-speed max -f csv -o walk.csv",

@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "cli/point_help.hpp"
 #include "io/point_job.hpp"
@@ -15,9 +17,11 @@ namespace {
 constexpr const char* formats_text =
     R"(--grid N writes N ranges at equal steps of 360/N degrees, from 0 degrees on, in the robot frame
 from -180. Columns of csv: scan, time_ns, partial, and range_mm_0 or range_m_0 to range_mm_N-1.
-inf: no return; nan: unknown, because the direction is left out, or the return is outside the
-range or below 100 mm (unless --range includes it). jsonl: angle_min_deg, angle_step_deg, and
-ranges_mm or ranges_m, with "inf" and null for these.
+inf: no return, or what --no-return sets; it does not mean that the way is free: what is nearer
+than 0.28 m may give no return. nan: unknown, because the direction is left out, or the return is
+outside the range or below 100 mm (unless --range includes it), or --near flags the direction, which
+is -inf with --near-as minus-inf. jsonl: angle_min_deg, angle_step_deg, and ranges_mm or ranges_m,
+with "inf", null and "-inf" for these.
 
 -f pcd writes a PCD 0.7 file with the returns of one revolution: x, y, z in meters, range_m,
 angle_deg, time_ns. In the vendor frame x points to 0 and y to 90 degrees clockwise; in the
@@ -32,10 +36,15 @@ verb make_scan_verb() {
   job->style.scans = true;
   common_options& common = *job->common;
   option_row format = format_row(job->style.format);
-  format.value = "csv|jsonl|pcd|svg|text";
-  format.take = [file = &job->file, take = format.take](const std::string& word) {
-    *file = word == "pcd" ? scan_file::pcd : word == "svg" ? scan_file::svg : scan_file::none;
-    if (*file == scan_file::none) take(word);
+  const choices<std::pair<scan_file, text_format>> forms{
+      {"csv", {scan_file::none, text_format::csv}},
+      {"jsonl", {scan_file::none, text_format::jsonl}},
+      {"pcd", {scan_file::pcd, text_format::text}},
+      {"svg", {scan_file::svg, text_format::text}},
+      {"text", {scan_file::none, text_format::text}}};
+  format.value = words_of(forms, "|");
+  format.take = [into = job.get(), known = forms](const std::string& word) {
+    std::tie(into->file, into->style.format) = choice_of(word, known);
   };
   return {
       .name = "scan",
@@ -48,8 +57,9 @@ verb make_scan_verb() {
           flag_row("--partial", "Write pieces of revolutions, too", job->partial),
           choice_row("--pcd-data", "Data of pcd files (binary)", job->data,
                      choices<pcd_data>{{"binary", pcd_data::binary}, {"ascii", pcd_data::ascii}}),
-          sample_rate_row(job->source.bytes_rate_hz), ending_rows(common), filter_rows(common),
-          shape_rows(common), device_rows(common)),
+          sample_rate_row(job->source.raw_sample_rate_hz), ending_rows(common), filter_rows(common),
+          near_row(common.marks.near), grid_rows(common.grid), shape_rows(common),
+          device_rows(common)),
       .details =
           fmt::format("{}\n\n{}\n\n{}\n\n{}", scan_columns, formats_text, shape_text, ending_text),
       .examples = {{"g4-dump scan -n 5", "Print five revolutions"},

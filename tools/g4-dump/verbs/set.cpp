@@ -88,7 +88,7 @@ constexpr const char* set_details =
   freq=5..12            revolutions per second, in steps of 0.1
   direction=cw|ccw      direction of rotation, seen from above
   constant=on|off       constant scan frequency
-  idle=on|off           stop the motor while not scanning (also low-power=)
+  idle=on|off           stop the motor while not scanning
   protection=on|off     stop 3 s after the last keep-alive of the host
 
 Nothing is changed if one of them is not valid. Each is read, set and read back: a line with

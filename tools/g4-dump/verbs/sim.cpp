@@ -260,9 +260,17 @@ option_rows served_rows(sim_options& options) {
              }),
       listed(
           "--fault", "FAULT", "KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]]; see docs/sim.md",
-          [&options](const std::string& word) { set(options.setup, "fault=" + word); },
+          [&options](const std::string& word) {
+            try {
+              set(options.setup, "fault=" + word);
+            } catch (const bad_value& reason) {
+              throw bad_value(
+                  reason.what() +
+                  did_you_mean(word.substr(0, word.find_first_of("=*@")), fault_names()));
+            }
+          },
           completion::fault),
-      listed("--device", "NAME=VALUE", "An option of the devices; see docs/sim.md",
+      listed("--device", "NAME=VALUE", "An option of the devices; see docs/sim_device.md",
              [&options](const std::string& word) { set(options.setup, word); }),
       flag_row("--log", "Write the commands to standard error", options.log)};
   for (option_row& row : of_devices) {

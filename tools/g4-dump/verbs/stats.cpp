@@ -68,20 +68,21 @@ nlohmann::ordered_json as_json(const report_line& line) {
 
 constexpr const char* columns =
     "SECONDS POINTS/S  SCANS/S        BYTES    PACKETS       POINTS    SCANS SUSPECT  SKIPPED     "
-    "LOST  GAP_MS RECONNECTS\n";
+    "LOST CRC_BAD  GAP_MS RECONNECTS\n";
 
 std::string as_row(const report_line& line) {
   const lidar_counts& now = line.now;
   return fmt::format(
-      "{:7.1f} {:8.0f} {:8.2f} {:12} {:10} {:12} {:8} {:7} {:8} {:8} {:7.1f} {:10}\n", line.seconds,
-      line.points_per_second, line.scans_per_second, now.bytes, now.stream.packets,
+      "{:7.1f} {:8.0f} {:8.2f} {:12} {:10} {:12} {:8} {:7} {:8} {:8} {:7} {:7.1f} {:10}\n",
+      line.seconds, line.points_per_second, line.scans_per_second, now.bytes, now.stream.packets,
       now.stream.points, now.scans, now.stream.suspect, now.stream.skipped_bytes(),
-      now.samples_lost, static_cast<double>(now.largest_gap_ns) / 1e6, now.reconnects);
+      now.samples_lost, now.stream.crc_mismatches, static_cast<double>(now.largest_gap_ns) / 1e6,
+      now.reconnects);
 }
 
 bool is_file(const std::string& source) {
-  const source_kind kind = kind_of(source);
-  return kind == source_kind::recording || kind == source_kind::bytes;
+  const source_kind kind = kind_of_source(source);
+  return kind == source_kind::recording || kind == source_kind::raw_bytes;
 }
 
 /// Seconds since the beginning; of a file those in which it was recorded, not those in which it is
@@ -108,7 +109,7 @@ class source_clock {
 
 common_options readable(const stats_options& options) {
   common_options how = options;
-  if (kind_of(how.source) == source_kind::bytes) {
+  if (kind_of_source(how.source) == source_kind::raw_bytes) {
     if (how.source == "-") {
       throw bad_value("stats reads a lidar or a file; for a pipe use g4-dump decode --stats json");
     }
@@ -122,8 +123,8 @@ common_options readable(const stats_options& options) {
 int stats(const stats_options& options) {
   const common_options how = readable(options);
   output out(how.output);
-  opening wish;
-  wish.how.partial_scans = true;  // for their times
+  lidar_options wish;
+  wish.partial_scans = true;  // for their times
   opened_source source(how, wish);
   if (options.is_watch() && !how.json) out.write(columns);
   source_clock time(is_file(how.source));
@@ -176,6 +177,9 @@ time since the previous line.
   points, scans       decoded, and whole revolutions; partial_scans are pieces
   suspect             packets whose angles contradict each other: they give no points
   skipped             bytes that belong to no packet: noise, bad_header, bad_checksum, truncated
+  time_packets        packets with the clock of the device; a G4 sends none
+  crc_matches         revolutions that are complete by the CRC byte of devices that send one
+  crc_mismatches      revolutions that lost a packet, by that byte; CRC_BAD in a line
   samples_lost        samples that were measured but not received, by the angles
   command_retries     commands that were sent again
   reconnects          with --on-loss reconnect

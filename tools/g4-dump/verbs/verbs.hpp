@@ -32,4 +32,8 @@ namespace g4_tool {
 /// All of them, in the order of the help.
 [[nodiscard]] std::vector<verb> all_verbs();
 
+/// The ports with a G4, as far as that can be known without sending anything, and the commands. Returns
+/// the exit code.
+[[nodiscard]] int print_overview();
+
 }  // namespace g4_tool

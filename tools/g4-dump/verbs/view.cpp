@@ -34,7 +34,7 @@ constexpr std::chrono::nanoseconds longest_wait = 20s;
 
 struct view_job {
   shared_options common = std::make_shared<common_options>();
-  opening source{};
+  lidar_options source{};
   station_options wishes{};
   view_settings settings{};
   std::optional<glyphs> how{};
@@ -308,7 +308,7 @@ verb make_view_verb() {
               flag_row("--once", "Print one revolution and end", job->once), size,
               output_row(common), duration_row(common),
               flag_row("--loop", "A recording begins again at its end", job->wishes.loops),
-              sample_rate_row(job->source.bytes_rate_hz), device),
+              sample_rate_row(job->source.raw_sample_rate_hz), device),
           .details = view_details,
           .examples = {{"g4-dump view", "The only G4"},
                        {"g4-dump view sim:", "A simulated one"},

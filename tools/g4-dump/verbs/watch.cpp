@@ -131,9 +131,10 @@ int watch(const common_options& options) {
 
 constexpr const char* watch_details =
     R"(A line for each serial port that is plugged or unplugged from now on: TIME (UTC), EVENT
-(plugged, unplugged), and PATH, USB, ID, DRIVER, BRIDGE, OPEN and BY-ID as in list. With --json
-an object for each event, with time, event, and the keys that list --json has for a port. No port
-is opened. Without udevd, as in most containers, the ports are also checked every 500 ms.)";
+(plugged, unplugged), and PATH, USB, ID, DRIVER, BRIDGE, OPEN and BY-ID as in g4-dump list. With
+--json an object for each event, with time, event, and the keys that g4-dump list --json has for a
+port. No port is opened. Without udevd, as in most containers, the ports are also checked every
+500 ms.)";
 
 }  // namespace
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "bus.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +14,7 @@
 #include <string_view>
 #include <utility>
 
+#include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/verbs.hpp"
 
@@ -65,6 +68,18 @@ std::string take_refusal() {
   domain_log& log = the_log();
   const std::lock_guard lock(log.mutex);
   return std::exchange(log.refusal, {});
+}
+
+/// Whether so many more files can be open as a domain needs. Cyclone DDS crashes where it gets none.
+bool has_descriptors() {
+  constexpr int needed = 16;
+  struct rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return true;
+  int found = 0;
+  for (int fd = 0; found < needed && static_cast<rlim_t>(fd) < limit.rlim_cur; ++fd) {
+    if (::fcntl(fd, F_GETFD) < 0) ++found;
+  }
+  return found == needed;
 }
 
 }  // namespace
@@ -123,7 +138,8 @@ void bus::open() {
   if (on_.empty() && here.range == discovery_range::subnet && here.interface.empty()) {
     here.peers.emplace_back("localhost");
   }
-  domain_ = entity(dds_create_domain(here.domain, configuration(here).c_str()));
+  const bool is_possible = has_descriptors();
+  if (is_possible) domain_ = entity(dds_create_domain(here.domain, configuration(here).c_str()));
   // Without an enclave ROS 2 does not list the nodes of a participant.
   constexpr std::string_view user_data = "enclave=/;";
   const qos wish(dds_create_qos(), dds_delete_qos);
@@ -135,7 +151,13 @@ void bus::open() {
     domain_ = {};
     const std::string refusal = take_refusal();
     std::string hint;
-    if (!refusal.empty()) {
+    if (!is_possible) {
+      hint = "Too many files are open. Raise the limit: ulimit -n 1024";
+      if (is_new_) {
+        throw failure(exit_code::bad_file,
+                      fmt::format("cannot join the ROS 2 domain {}. {}.", wanted_.domain, hint));
+      }
+    } else if (!refusal.empty()) {
       hint = "CYCLONEDDS_URI: " + refusal + ". Correct that variable, or unset it";
       if (is_new_) throw bad_value(hint);
     } else if (!wanted_.interface.empty()) {

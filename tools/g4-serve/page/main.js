@@ -14,6 +14,9 @@ const frames_kept = 1024;
 /** Of the points that are visible at first: a few may be far away, through a door. */
 const first_part = 0.95;
 
+/** By the number in the device information. @type {Record<number, string>} */
+const model_names = { 5: 'G4' };
+
 const surface = /** @type {HTMLCanvasElement} */ (element('points'));
 const grid = /** @type {HTMLCanvasElement} */ (element('grid'));
 const legend = /** @type {HTMLCanvasElement} */ (element('colours'));
@@ -29,7 +32,7 @@ let status = null;
 
 const connection = new Connection({ on_message: take_message, on_data: take_data, on_change: show_state });
 const settings = new Settings(connection);
-const playback = new Playback(connection);
+const playback = new Playback(connection, () => show_state());
 const controls = new Controls(surface, view, ruler, scans, () => playback.pause());
 
 /** @param {any} message */
@@ -50,7 +53,7 @@ function greet(message) {
   hello = message;
   document.title = `g4lidar: ${hello.source ?? ''}`;
   const who = hello.device ?? {};
-  const parts = [who.model && `model ${who.model}`, who.firmware && `firmware ${who.firmware}`,
+  const parts = [who.model && (model_names[who.model] ?? `model ${who.model}`), who.firmware && `firmware ${who.firmware}`,
     who.serial && `serial number ${who.serial}`];
   write(element('source'), hello.source ?? '');
   write(element('device'), parts.filter(Boolean).join(', '));
@@ -90,6 +93,7 @@ function state_now() {
   if (connection.state === 'connecting' || !status) {
     return { state: 'waiting', text: 'Connecting to the server' };
   }
+  if (status.state === 'running' && playback.paused) return { state: 'paused', text: 'Paused' };
   const why = status.why ? `: ${status.why}` : '';
   const texts = /** @type {Record<string, string>} */ ({
     running: 'Running',
@@ -108,10 +112,11 @@ function show_state() {
   // The countdown is in the banner only: it would interrupt a screen reader.
   write(shown, state === 'waiting' ? 'No connection' : text);
   shown.dataset.state = state;
-  const is_frozen = state === 'running' && scans.is_frozen;
+  const is_good = state === 'running' || state === 'paused';
+  const is_frozen = is_good && scans.is_frozen;
   write(element('banner'), is_frozen ? 'Frozen' : text);
-  element('banner').hidden = state === 'running' && !is_frozen;
-  surface.classList.toggle('stale', !['running', 'ended'].includes(state));
+  element('banner').hidden = is_good && !is_frozen;
+  surface.classList.toggle('stale', !is_good && state !== 'ended');
 }
 
 /** The times of the frames, in milliseconds: from frame to frame, and of the drawing. */
@@ -187,6 +192,10 @@ Object.defineProperty(window, 'g4lidar', {
     get view() {
       const { x, y, scale, width, height } = view;
       return { x, y, scale, width, height };
+    },
+    /** Of the rings. */
+    get labels() {
+      return radar.labels.map((each) => ({ ...each }));
     },
     /** @param {number} x @param {number} y @returns {number[]} Column and row. */
     pixel(x, y) {

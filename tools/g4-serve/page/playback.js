@@ -14,9 +14,10 @@ export function time_text(seconds) {
 }
 
 export class Playback {
-  /** @param {{send: (message: object) => void}} connection */
-  constructor(connection) {
+  /** @param {{send: (message: object) => void}} connection @param {() => void} on_pause  It has changed. */
+  constructor(connection, on_pause) {
     this.connection = connection;
+    this.on_pause = on_pause;
     this.form = element('playback');
     this.form.addEventListener('submit', (event) => event.preventDefault());
     this.pause_button = element('pause');
@@ -59,12 +60,13 @@ export class Playback {
     if (this.form.hidden) return;
     this.#show_pause(!this.paused);
     this.#send({ paused: this.paused });
+    this.on_pause();
   }
 
   /** @param {boolean} paused */
   #show_pause(paused) {
     this.paused = paused;
-    this.pause_button.setAttribute('aria-pressed', String(paused));
+    write(this.pause_button, paused ? 'Continue' : 'Pause');
   }
 
   #show_position() {

@@ -9,6 +9,11 @@ import { colour_count } from './scans.js';
 
 const most_pixels_per_point = 2; // more than two pixels per CSS pixel cannot be seen
 const ring_pixels = 70;
+/** The texts of the page are above and below; the labels of the rings are between them. */
+const top_pixels = 36;
+const bottom_pixels = 76;
+/** Half the height of a label. */
+const label_pixels = 8;
 const newest_alpha = 255;
 const trail_alpha = 150;
 
@@ -63,6 +68,11 @@ export class Radar {
     this.picture = this.screen.createImageData(1, 1);
     this.pixels = new Uint32Array(1);
     this.ratio = 1;
+    /**
+     * Where the labels of the rings are, in CSS pixels.
+     * @type {{text: string, left: number, top: number, width: number, height: number}[]}
+     */
+    this.labels = [];
     this.theme = theme_now();
     this.colours = colours_between(this.theme.anchors);
   }
@@ -137,6 +147,7 @@ export class Radar {
     paper.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     paper.fillStyle = theme.background;
     paper.fillRect(0, 0, view.width, view.height);
+    this.labels = [];
     this.#draw_rings(view.column(0), view.row(0));
     this.#draw_robot(view.column(0), view.row(0));
     this.#draw_ruler(ruler);
@@ -150,10 +161,12 @@ export class Radar {
     const dy = Math.max(-row, row - view.height, 0);
     const farthest = Math.hypot(Math.max(column, view.width - column),
       Math.max(row, view.height - row));
-    // The labels are on the line from the lidar to the farthest corner, or to the middle of the picture.
+    // The labels are on the line from the lidar to the end of the farther side, or to the middle of the picture.
     const is_inside = dx === 0 && dy === 0;
     const end_column = is_inside ? (column <= view.width / 2 ? view.width : 0) : view.width / 2;
-    const end_row = is_inside ? (row >= view.height / 3 ? 0 : view.height) : view.height / 2;
+    const first_row = top_pixels + label_pixels;
+    const last_row = view.height - bottom_pixels - label_pixels;
+    const end_row = is_inside ? (row >= view.height / 3 ? first_row : last_row) : view.height / 2;
     const away = Math.hypot(end_column - column, end_row - row);
     const right = (end_column - column) / away;
     const down = (end_row - row) / away;
@@ -175,7 +188,9 @@ export class Radar {
       paper.beginPath();
       paper.arc(column, row, radius, 0, 2 * Math.PI);
       paper.stroke();
-      this.#label(`${(n * step).toFixed(digits)} m`, column + right * radius, row + down * radius);
+      const label_row = row + down * radius;
+      if (label_row < first_row || label_row > last_row) continue;
+      this.#label(`${(n * step).toFixed(digits)} m`, column + right * radius, label_row);
     }
   }
 
@@ -183,9 +198,10 @@ export class Radar {
   #label(text, column, row) {
     const width = this.paper.measureText(text).width + 6;
     this.paper.fillStyle = this.theme.background;
-    this.paper.fillRect(column - width / 2, row - 8, width, 16);
+    this.paper.fillRect(column - width / 2, row - label_pixels, width, 2 * label_pixels);
     this.paper.fillStyle = this.theme.text;
     this.paper.fillText(text, column, row);
+    this.labels.push({ text, left: column - width / 2, top: row - label_pixels, width, height: 2 * label_pixels });
   }
 
   /** @param {number} column @param {number} row  A triangle that points ahead, and the axes. */

@@ -33,7 +33,7 @@ export function make(tag, text = '', ...children) {
 
 /** @param {string} name  An identifier as words. */
 export function words_of(name) {
-  const words = name.replaceAll('_', ' ').replace(/\busb\b/, 'USB');
+  const words = name.replaceAll('_', ' ').replace(/\b(usb|crc)\b/, (short) => short.toUpperCase());
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 

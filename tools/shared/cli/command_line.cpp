@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The table of verbs as CLI11 wants it; the only place that sees CLI11.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <memory>
 #include <ranges>
 #include <span>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -15,7 +17,9 @@
 #include "common_options.hpp"
 #include "exit_code.hpp"
 #include "g4lidar/version.hpp"
+#include "io/output.hpp"
 #include "logger.hpp"
+#include "suggestion.hpp"
 #include "verbs.hpp"
 
 namespace g4_tool {
@@ -27,8 +31,21 @@ std::string long_name(const std::string& names) {
   return comma == std::string::npos ? names : names.substr(comma + 1);
 }
 
-/// The value that a flag may have is shown without a space before it: --speckle[=LIMITS].
+/// The name of an option or argument for CLI11, which refuses `=` in names from version 2.4 on.
+std::string accepted_name(std::string names) {
+  std::ranges::replace(names, '=', '-');
+  return names;
+}
+
+/// The value that a flag may have is shown without a space before it: --speckle[=LIMITS]. The name of
+/// an argument is shown as it was before accepted_name: NAME=VALUE.
 class help_formatter final : public CLI::Formatter {
+  std::string make_option_name(const CLI::Option* option, bool is_argument) const override {
+    std::string name = CLI::Formatter::make_option_name(option, is_argument);
+    if (is_argument) std::ranges::replace(name, '-', '=');
+    return name;
+  }
+
   std::string make_option_opts(const CLI::Option* option) const override {
     const std::string text = CLI::Formatter::make_option_opts(option);
     return text.starts_with(" [=") ? text.substr(1) : text;
@@ -71,13 +88,14 @@ void add(CLI::App& app, const option_row& row) {
     option = app.add_flag_function(row.names, [take](std::int64_t) { take({""}); }, row.help);
   } else {
     const bool is_list = row.repeatable && !name.starts_with('-');
-    option = app.add_option_function<std::vector<std::string>>(row.names, take, row.help)
-                 ->type_name(row.value)
-                 ->expected(1, is_list ? CLI::detail::expected_max_vector_size : 1)
-                 ->allow_extra_args(is_list)
-                 ->required(row.required)
-                 ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
-                                                      : CLI::MultiOptionPolicy::Throw);
+    option =
+        app.add_option_function<std::vector<std::string>>(accepted_name(row.names), take, row.help)
+            ->type_name(row.value)
+            ->expected(1, is_list ? CLI::detail::expected_max_vector_size : 1)
+            ->allow_extra_args(is_list)
+            ->required(row.required)
+            ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
+                                                 : CLI::MultiOptionPolicy::Throw);
   }
   if (!row.group.empty()) option->group(row.group);
 }
@@ -117,18 +135,36 @@ CLI::App* add(CLI::App& app, const verb& added) {
   return made;
 }
 
-std::string known_verbs() {
+std::string unknown_verb(const std::string& word) {
   const std::vector<verb> verbs = this_program().verbs();
-  return fmt::format("{}", fmt::join(verbs | std::views::transform(&verb::name), ", "));
+  const auto names = verbs | std::views::transform(&verb::name);
+  return fmt::format("unknown command {}; commands are: {}{}", in_quotes(word),
+                     fmt::join(names, ", "), did_you_mean(word, {names.begin(), names.end()}));
+}
+
+/// The long names of the options of the command that was chosen, and of those of the program.
+std::vector<std::string> option_names(const CLI::App& app, std::string_view dashes) {
+  std::vector<const CLI::App*> both{&app};
+  for (const CLI::App* const chosen : app.get_subcommands()) both.push_back(chosen);
+  std::vector<std::string> names;
+  for (const CLI::App* const each : both) {
+    for (const CLI::Option* const option : each->get_options()) {
+      for (const std::string& name : option->get_lnames()) {
+        names.push_back(std::string(dashes) + name);
+      }
+    }
+  }
+  return names;
 }
 
 /// What is wrong with a line of the file of --config that is no option.
-std::string problem_in_file(std::string line) {
+std::string problem_in_file(std::string line, const std::vector<std::string>& options) {
   constexpr std::string_view section = ".++";
   if (line.ends_with(section)) line.resize(line.size() - section.size());
   const std::size_t colon = line.find(':');
   if (colon == std::string::npos || (colon + 1 < line.size() && line[colon + 1] != ' ')) {
-    return "unknown option " + in_quotes(line) + " in the file of --config";
+    return "unknown option " + in_quotes(line) + " in the file of --config" +
+           did_you_mean(line, options);
   }
   const std::string name = line.substr(0, colon);
   const std::size_t begin = line.find_first_not_of(' ', colon + 1);
@@ -144,14 +180,14 @@ std::string problem_in_file(std::string line) {
 std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   const bool has_verb = !app.get_subcommands().empty() || app.get_subcommands({}).empty();
   const std::vector<std::string> rest = app.remaining(has_verb);
-  if (!has_verb && rest.empty()) return "no command; commands are: " + known_verbs();
-  if (!has_verb || (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())) {
-    const bool is_option = rest.front().front() == '-';
-    const char* const what = is_option  ? "unknown option"
-                             : has_verb ? "unexpected argument"
-                                        : "unknown command";
-    return fmt::format("{} {}{}", what, in_quotes(rest.front()),
-                       has_verb ? "" : "; commands are: " + known_verbs());
+  const bool has_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (!rest.empty() && (has_extra || !has_verb)) {
+    const std::string& word = rest.front();
+    if (!word.starts_with('-')) {
+      return has_verb ? "unexpected argument " + in_quotes(word) : unknown_verb(word);
+    }
+    return "unknown option " + in_quotes(word) +
+           did_you_mean(word.substr(0, word.find('=')), option_names(app, "--"));
   }
   std::string words = error.what();
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
@@ -163,7 +199,7 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   }
   constexpr std::string_view unknown = "INI was not able to parse ";
   if (words.starts_with(unknown)) {
-    words = problem_in_file(words.substr(unknown.size()));
+    words = problem_in_file(words.substr(unknown.size()), option_names(app, ""));
   }
   constexpr std::string_view unreadable = " was not readable (missing?)";
   if (words.ends_with(unreadable)) {
@@ -177,7 +213,7 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int explain(const std::string& problem, const std::string& verb) {
-  logger::error(fmt::format("{}. See: {}{} --help", problem, this_program().name, verb),
+  logger::error(with_help(problem, fmt::format("{}{}", this_program().name, verb)),
                 exit_code::usage);
   return static_cast<int>(exit_code::usage);
 }
@@ -210,7 +246,7 @@ std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
 bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
   std::size_t at = 0;
   while (at < words.size() && own_words(words, at) > 0) at += own_words(words, at);
-  if (at >= words.size()) return true;
+  if (at >= words.size()) return this_program().overview == nullptr || ::isatty(1) == 0;
   const std::string& first = words[at];
   if (first == "-h" || first == "--help" || first == "--version") return false;
   if (first.empty() || first.front() == '-') return true;
@@ -230,17 +266,24 @@ std::string source_list() {
 
 std::string app_footer(const program& ours) {
   return fmt::format(
-      "\nThe default command is {}. The default SOURCE is the only G4. Other sources:\n{}Data goes "
-      "to "
-      "standard output, messages go to standard error.\n{}\nHelp for a command: {} COMMAND --help",
-      ours.default_verb, source_list(), exit_code_list({}), ours.name);
+      "\nThe default command is {}. On a terminal, without any word, the attached lidars and the "
+      "commands\nare listed. The default SOURCE is the only G4. Other sources:\n{}Data goes to "
+      "standard output, messages go to standard error.\n{}\nHelp for a command: {} COMMAND --help, "
+      "or man {}-COMMAND",
+      ours.default_verb, source_list(), exit_code_list({}), ours.name, ours.name);
 }
 
 }  // namespace
 
+std::string with_help(const std::string& problem, std::string_view command) {
+  return fmt::format("{}{} See: {} --help", problem, problem.ends_with('?') ? "" : ".", command);
+}
+
 std::function<int()> read_command_line(int argc, const char* const* argv) {
   std::vector<std::string> words(argv + 1, argv + argc);  // NOLINT: the length is given
-  if (words == std::vector<std::string>{"--generate", "man"}) return print_man_page;
+  if (words.size() == 3 && words[0] == "--generate" && words[1] == "man") {
+    return [directory = words[2]] { return write_man_pages(directory); };
+  }
   if (words.size() >= 2 && words[0] == "--complete") {
     return [words] { return complete(std::span(words).subspan(1)); };
   }
@@ -248,7 +291,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   const std::vector<verb> verbs = ours.verbs();
   if (!words.empty() && words.front() == "help") {
     if (words.size() > 1 && std::ranges::find(verbs, words[1], &verb::name) == verbs.end()) {
-      return [what = in_quotes(words[1])] { return explain(what + " is not a command", ""); };
+      return [what = words[1]] { return explain(unknown_verb(what), ""); };
     }
     std::ranges::rotate(words, words.begin() + 1);
     words.back() = "--help";
@@ -289,13 +332,18 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   try {
     app.parse(words);
   } catch (const CLI::Success& wanted) {  // --help, --version
-    return done(app.exit(wanted));
+    std::ostringstream text;
+    const int code = app.exit(wanted, text, text);
+    output out("-");
+    out.write(text.str());
+    out.commit();
+    return done(code);
   } catch (const CLI::ParseError& error) {
     const std::vector<CLI::App*> named = app.get_subcommands();
     return done(
         explain(problem_with(app, error), named.empty() ? "" : " " + named.back()->get_name()));
   }
-  return chosen;
+  return chosen ? chosen : ours.overview;
 }
 
 }  // namespace g4_tool

@@ -68,7 +68,7 @@ option_rows ending_rows(common_options& options, bool with_idle) {
 option_row speckle_row(common_options& options) {
   option_row row{"--speckle", "", "Leave out returns without another one near them"};
   row.optional_value = "LIMITS";
-  row.take = [&into = options.speckle](const std::string& word) {
+  row.take = [&into = options.marks.speckle](const std::string& word) {
     speckle_limits limits;
     const auto length = [](float& into_one) {
       return [&into_one](double value) { into_one = static_cast<float>(value); };
@@ -88,7 +88,7 @@ option_row speckle_row(common_options& options) {
 option_row edges_row(common_options& options) {
   option_row row{"--edges", "", "Leave out veiling points at jumps of the range"};
   row.optional_value = "LIMITS";
-  row.take = [&into = options.edges](const std::string& word) {
+  row.take = [&into = options.marks.edges](const std::string& word) {
     edge_limits limits;
     take_numbers(
         word, {{"window", 1, max_window, true,
@@ -98,6 +98,36 @@ option_row edges_row(common_options& options) {
     into = limits;
   };
   return row;
+}
+
+option_row near_row(std::optional<near_limits>& into) {
+  option_row row{"--near", "", "Flag directions where something may be too near for a return"};
+  row.group = "Filters";
+  row.optional_value = "LIMITS";
+  row.take = [&into](const std::string& word) {
+    near_limits limits;
+    take_numbers(
+        word, {{"shortest", 0.01, 16, false,
+                [&limits](double value) { limits.shortest_mm = static_cast<float>(value * 1e3); }},
+               {"revolutions", 0, 1e9, true, [&limits](double value) {
+                  limits.revolutions = static_cast<std::uint32_t>(value);
+                }}});
+    into = limits;
+  };
+  return row;
+}
+
+option_rows grid_rows(grid_options& into) {
+  return in_group(
+      "Ranges without return",
+      {choice_row("--no-return", "What the range of a direction without return becomes (inf)",
+                  into.no_return,
+                  choices<no_return_as>{{"inf", no_return_as::infinity},
+                                        {"nan", no_return_as::nan},
+                                        {"max", no_return_as::max}}),
+       choice_row("--near-as", "What the range of a direction that --near flags becomes (nan)",
+                  into.near_is_minus_infinity,
+                  choices<bool>{{"nan", false}, {"minus-inf", true}})});
 }
 
 option_rows filter_rows(common_options& options) {

@@ -15,10 +15,12 @@
 #include "g4lidar/export/shaping_writer.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
+#include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/too_near.hpp"
 #include "rows.hpp"
 #include "verbs.hpp"
 
@@ -51,6 +53,13 @@ enum class loss_rule : unsigned char {
   wait,       ///< It also waits for a device that is not connected yet.
 };
 
+/// Which points are marked by their neighbours or by earlier revolutions: those that are given.
+struct mark_limits {
+  std::optional<speckle_limits> speckle;
+  std::optional<edge_limits> edges;
+  std::optional<near_limits> near;
+};
+
 struct common_options {
   std::string source;        ///< Empty: the only G4.
   std::string output = "-";  ///< `-`: standard output.
@@ -61,8 +70,8 @@ struct common_options {
   point_filter filter;  ///< But for its frame, which is `frame`, and its ignored sectors.
   std::vector<sector> ignored;
   std::string mask;  ///< The file of --mask; empty: none.
-  std::optional<speckle_limits> speckle;
-  std::optional<edge_limits> edges;
+  mark_limits marks;
+  grid_options grid;  ///< Of --no-return and --near-as; its frame is not used.
   deskewing deskew = deskewing::none;
   std::string odometry;           ///< The file of --odometry; empty: that of the recording.
   std::optional<mounting> mount;  ///< Where it is given.
@@ -84,6 +93,10 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_rows ending_rows(common_options& options, bool with_idle = true);
 /// --range, --fov, --ignore, --mask, --speckle, --edges.
 [[nodiscard]] option_rows filter_rows(common_options& options);
+/// --near.
+[[nodiscard]] option_row near_row(std::optional<near_limits>& into);
+/// --no-return, --near-as.
+[[nodiscard]] option_rows grid_rows(grid_options& into);
 /// "X,Y,DEG" or "X,Y,DEG,down" in metres and degrees. Throws bad_value.
 [[nodiscard]] mounting mounting_of(const std::string& text);
 /// --odometry, --mount.

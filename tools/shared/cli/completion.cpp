@@ -49,10 +49,7 @@ class offer {
         for (const std::string& word : example_wishes()) add(word);
         break;
       case completion::fault:
-        using g4lidar::sim::fault_kind;
-        for (int kind = 0; kind <= static_cast<int>(sim::last_fault_kind); ++kind) {
-          add(before + std::string(name_of(static_cast<fault_kind>(kind))));
-        }
+        for (const std::string& name : fault_names()) add(before + name);
         break;
       case completion::source:
         add_sources();
@@ -93,6 +90,14 @@ const verb* find_verb(const std::vector<verb>& verbs, std::string_view name) {
 }
 
 }  // namespace
+
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (int kind = 0; kind <= static_cast<int>(sim::last_fault_kind); ++kind) {
+    names.emplace_back(name_of(static_cast<sim::fault_kind>(kind)));
+  }
+  return names;
+}
 
 int complete(std::span<const std::string> words) {
   const std::vector<verb> verbs = this_program().verbs();

@@ -52,7 +52,7 @@ exit_code exit_code_for(const g4lidar::error& why, bool was_running) noexcept {
 }
 
 std::span<const tool_word> tool_words() noexcept {
-  static constexpr std::array<tool_word, 10> words{{
+  static constexpr std::array<tool_word, 13> words{{
       {"plug it in and open it again",
        "plug it in and run the command again; --on-loss reconnect "
        "waits for it"},
@@ -60,10 +60,13 @@ std::span<const tool_word> tool_words() noexcept {
        "has closed the connection: run the command again"},
       {"Call again: the next call waits until the lidar is back.",
        "Wait, or give --on-loss reconnect."},
+      {"Call again or wait longer: the", "Wait longer: the"},
+      {", and call again: scans continue", ": scans continue"},
       {"Stop the scan first, or allow it to be interrupted", "Stop the scan first: g4-dump stop"},
       {"Start the scan first", "Start the scan first: g4-dump start"},
       {"the program called wake()", "the command was interrupted"},
       {"open the lidar itself for that", "give the lidar as SOURCE"},
+      {"Without a name the only G4", "Without SOURCE the only G4"},
       {"the option cannot have this value", "SOURCE or an option cannot have this value"},
       {"Correct the value or omit the option; every option has a default",
        "Correct it, or leave it out"},

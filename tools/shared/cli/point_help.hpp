@@ -16,6 +16,10 @@ inline constexpr const char* shape_text =
   --edges[=LIMITS]  A return is left out if, up to window samples away, a nearer one is on one side
                    and a farther one on the other, and the lines to both make an angle below angle
                    degrees with the beam. The default is window=1,angle=5.
+  --near[=LIMITS]  A direction without return is flagged may_be_too_near if in the last revolutions
+                   a return came from there from less than twice the shortest range of the lidar,
+                   and none that is farther since. The default is shortest=0.28,revolutions=3;
+                   revolutions=0: until a return comes from there.
   --frame vendor   Angles grow clockwise seen from above, 0 at the cable, in [0, 360).
   --frame robot    Angles grow counter-clockwise, 0 ahead (opposite the cable), in [-180, 180).
   --time abs       Since 1970, by the clock of the computer (default).
@@ -37,12 +41,12 @@ inline constexpr const char* point_columns =
     R"(Columns of csv:
   scan       number of the revolution
   angle_deg  direction of the point
-  range_mm   distance (range_m with --unit m); 0: no return
+  range_mm   distance (range_m with --unit m); 0: no return, which is not free space
   time_ns    time of the point
 
 More columns may follow in later versions. jsonl has the same names, and no_return and too_near
-(below 100 mm: not reliable); not_deskewed, unlikely, isolated and veiling only if they are true.
-text is for people.)";
+(below 100 mm: not reliable); not_deskewed, unlikely, isolated, veiling and may_be_too_near only if
+they are true. text is for people.)";
 
 inline constexpr const char* scan_columns =
     R"(A record is a revolution, with flags if data is missing; with --partial also a piece of one.
@@ -54,7 +58,7 @@ Columns of csv:
   returns      number of points with a return
   partial      true or false
   why          why it is partial, joined by +: start_missing, end_missing, data_lost, turn_short,
-               and where a zero packet was lost start_by_angle, end_by_angle
+               crc_mismatch, and where a zero packet was lost start_by_angle, end_by_angle
   turned_deg   angle between the first and the last point, about 360
   reported_hz  scan frequency as the lidar reports it; empty if unknown
   measured_hz  scan frequency as measured; empty if unknown

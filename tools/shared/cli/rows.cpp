@@ -78,9 +78,10 @@ void take_numbers(const std::string& text, const std::vector<named_number>& know
     const std::size_t equals = std::min(piece.find('='), piece.size());
     const auto found = std::ranges::find(known, piece.substr(0, equals), &named_number::name);
     if (found == known.end() || equals == piece.size()) {
+      const auto names = known | std::views::transform(&named_number::name);
       throw bad_value(
-          fmt::format("'{}' is not one of {}=N", piece,
-                      fmt::join(known | std::views::transform(&named_number::name), "=N, ")));
+          fmt::format("'{}' is not one of {}=N{}", piece, fmt::join(names, "=N, "),
+                      did_you_mean(piece.substr(0, equals), {names.begin(), names.end()})));
     }
     const double value =
         number_of(std::string(piece.substr(equals + 1)), found->least, found->most);

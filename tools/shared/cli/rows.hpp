@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "suggestion.hpp"
 #include "verbs.hpp"
 
 namespace g4_tool {
@@ -43,13 +44,15 @@ template <class Value>
   return fmt::format("{}", fmt::join(known | std::views::keys, between));
 }
 
-/// What a word stands for; any other is refused with the list of them.
+/// What a word stands for; any other is refused with the list of them and the nearest one.
 template <class Value>
 [[nodiscard]] Value choice_of(const std::string& word, const choices<Value>& known) {
   for (const auto& [choice, meaning] : known) {
     if (choice == word) return meaning;
   }
-  throw bad_value(fmt::format("'{}' is not one of {}", word, words_of(known, ", ")));
+  const auto words = known | std::views::keys;
+  throw bad_value(fmt::format("'{}' is not one of {}{}", word, words_of(known, ", "),
+                              did_you_mean(word, {words.begin(), words.end()})));
 }
 
 /// "10s", "500ms", "1.5min", "2h", "250us": above 0, at most ten years. A number alone: seconds.
@@ -133,6 +136,9 @@ template <class Target, class Value>
   return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (9000)", into, 1U,
                     1'000'000U);
 }
+
+/// The kinds of fault of a simulated lidar.
+[[nodiscard]] std::vector<std::string> fault_names();
 
 /// One of a few words.
 template <class Target, class Value>

@@ -58,7 +58,7 @@ const std::vector<setting>& all_settings() {
 }
 
 std::vector<std::string> example_wishes() {
-  std::vector<std::string> wishes{"low-power=on", "low-power=off"};
+  std::vector<std::string> wishes;
   for (const setting& each : all_settings()) {
     for (const auto& [word, value] : each.values) {
       wishes.push_back(fmt::format("{}={}", each.name, word));
@@ -76,10 +76,12 @@ bool is_wish(std::string_view word) noexcept {
 
 wish wish_of(const std::string& word) {
   const std::size_t equals = word.find('=');
+  std::string name = word.substr(0, equals);
+  if (name == "low-power" || name == "low_power")
+    name = "idle";  // its name in earlier versions, and in Python
   choices<const setting*> names;
   for (const setting& each : all_settings()) names.emplace_back(each.name, &each);
-  names.insert(names.end() - 1, {"low-power", names[names.size() - 2].second});
-  const setting* const which = choice_of(word.substr(0, equals), names);
+  const setting* const which = choice_of(name, names);
   const std::string wanted = word.substr(equals + 1);
   try {
     const answer value =

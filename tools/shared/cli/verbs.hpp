@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The table of verbs and options, and what the help contains beside them: the command line, the man
-// page and the completions are made from it. A program makes its verbs.
+// pages and the completions are made from it. A program makes its verbs.
 #pragma once
 
 #include <array>
@@ -67,6 +67,8 @@ struct program {
   std::vector<verb> (
       *verbs)();  ///< In the order of the help. A single one is not named on the command line.
   std::string_view default_verb;  ///< The verb that need not be named.
+  /// Runs where nothing is given and standard output is a terminal, if it is set. Returns the exit code.
+  int (*overview)() = nullptr;
   /// Its options can also stand in a TOML file, which --config names. For a program with one verb.
   bool has_config = false;
 };
@@ -119,8 +121,12 @@ inline constexpr std::array<source_form, 7> source_forms{{
 /// --version and a wrong command line nothing is left to do, and it only returns that.
 [[nodiscard]] std::function<int()> read_command_line(int argc, const char* const* argv);
 
-/// `--generate man`, which the build runs: prints the man page. Returns the exit code.
-[[nodiscard]] int print_man_page();
+/// "PROBLEM. See: COMMAND --help".
+[[nodiscard]] std::string with_help(const std::string& problem, std::string_view command);
+
+/// `--generate man DIRECTORY`, which the build runs: writes the man pages to the directory. Returns the
+/// exit code.
+[[nodiscard]] int write_man_pages(const std::string& directory);
 
 /// `--complete WORD...`, which the scripts of the shells run: prints what the last word,
 /// which may be empty, can become, each with a tab and what it means; `/` stands for the names of

@@ -19,7 +19,7 @@ namespace {
 
 /// Throws a failure where the source is a file, which cannot answer.
 void refuse_files(const common_options& options, task doing) {
-  const source_kind kind = kind_of(options.source);
+  const source_kind kind = kind_of_source(options.source);
   if (kind == source_kind::device || kind == source_kind::simulated) return;
   throw failure(error(doing, problem::read_only, options.source));
 }
@@ -44,12 +44,12 @@ bool hears_packet(transport& port, std::int64_t deadline_ns) {
 
 /// Waits for a packet before anything is sent. The driver reports a scan only where it hears a whole
 /// packet before its own stop is obeyed.
-opening listening(bool& heard) {
-  opening how;
-  how.each = [&heard](std::unique_ptr<transport> port) {
+lidar_options listening(bool& heard) {
+  lidar_options how;
+  how.wrap = for_each_connection([&heard](std::unique_ptr<transport> port) {
     if (hears_packet(*port, port->now_ns() + listen_ns)) heard = true;
     return port;
-  };
+  });
   return how;
 }
 

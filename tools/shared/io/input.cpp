@@ -116,15 +116,23 @@ void input::pump(output& out, const byte_sink& sink, const common_options& optio
   }
 }
 
+recording_reader open_recording(const std::string& path, reading_options range) {
+  if (!range.is_cancelled) range.is_cancelled = [] { return interrupt() != 0; };
+  auto opened = recording_reader::open(path, range);
+  if (!opened && opened.error() == problem::cancelled) throw interrupted();
+  return value_of(std::move(opened));
+}
+
 recording_reader read_items(const std::string& path, const reading_options& range,
                             const std::function<bool(const recorded_item&)>& take) {
-  auto reader = value_of(recording_reader::open(path, range));
+  auto reader = open_recording(path, range);
   progress_bar bar(reader.size());
-  value_of(reader.for_each([&](const recorded_item& item) {
+  const auto read = reader.for_each([&](const recorded_item& item) {
     if (interrupt() != 0 || !take(item)) return false;
     bar.show(reader.position());
     return true;
-  }));
+  });
+  if (!read && read.error() != problem::cancelled) throw failure(read.error());
   return reader;
 }
 
@@ -136,14 +144,20 @@ std::string describe(const recording_damage& damage) {
 }
 
 std::string stats_in_words(const stream_counts& counts, std::uint64_t bytes) {
+  std::string crc;
+  if (counts.crc_matches + counts.crc_mismatches > 0) {
+    crc = fmt::format("CRC of the revolutions: {} right, {} wrong\n", counts.crc_matches,
+                      counts.crc_mismatches);
+  }
   return fmt::format(
-      "{}: {} ({} suspect) with {}, {}\n"
-      "{} skipped: {} noise, {} bad header, {} bad checksum, {} truncated\n",
+      "{}: {} ({} suspect) with {}, {}{}\n"
+      "{} skipped: {} noise, {} bad header, {} bad checksum, {} truncated\n{}",
       counted(bytes, "byte"), counted(counts.packets, "packet"), counts.suspect,
       counted(counts.points, "point"), counted(counts.responses, "response"),
+      counts.time_packets > 0 ? ", " + counted(counts.time_packets, "time packet") : "",
       counted(counts.skipped_bytes(), "byte"), counts.skipped(skip_reason::noise),
       counts.skipped(skip_reason::bad_header), counts.skipped(skip_reason::bad_checksum),
-      counts.skipped(skip_reason::truncated));
+      counts.skipped(skip_reason::truncated), crc);
 }
 
 nlohmann::ordered_json counts_as_json(const stream_counts& counts, std::uint64_t bytes) {
@@ -151,8 +165,15 @@ nlohmann::ordered_json counts_as_json(const stream_counts& counts, std::uint64_t
   for (std::size_t i = 0; i < skip_reasons; ++i) {
     skipped[name_of(static_cast<skip_reason>(i))] = counts.skipped_by_reason[i];
   }
-  return {{"bytes", bytes},          {"packets", counts.packets}, {"responses", counts.responses},
-          {"points", counts.points}, {"suspect", counts.suspect}, {"skipped", skipped}};
+  return {{"bytes", bytes},
+          {"packets", counts.packets},
+          {"responses", counts.responses},
+          {"points", counts.points},
+          {"suspect", counts.suspect},
+          {"time_packets", counts.time_packets},
+          {"crc_matches", counts.crc_matches},
+          {"crc_mismatches", counts.crc_mismatches},
+          {"skipped", skipped}};
 }
 
 bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept {

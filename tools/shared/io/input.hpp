@@ -59,6 +59,11 @@ class input {
   std::uint64_t size_ = 0;
 };
 
+/// A reader that a signal ends with cancelled, if `range` names no other reason. Throws interrupted
+/// if it was ended while it opened, or a failure.
+[[nodiscard]] g4lidar::recording_reader open_recording(const std::string& path,
+                                                       g4lidar::reading_options range = {});
+
 /// Calls `take` with each item in `range` until it returns false, a signal comes, or the recording
 /// ends; with a progress bar. Returns the reader, for what it knows at the end. Throws a failure.
 g4lidar::recording_reader read_items(

@@ -9,6 +9,11 @@
 
 namespace g4_tool {
 
+void odometry_feed::follow(const sim::simulated_source* carried) {
+  robot_ = carried == nullptr ? std::nullopt : carried->robot;
+  begin_ns_ = robot_ ? carried->begin_ns : 0;
+}
+
 void odometry_feed::load(const std::string& path) {
   for (const stamped_pose& pose : load_odometry(path)) {
     twist_2d twist;
@@ -38,7 +43,7 @@ void odometry_feed::shift(std::int64_t shift_ns) {
 
 void odometry_feed::follow(std::span<const point> points, const taker& take) {
   if (points.empty()) return;
-  if (all_.empty() && robot_ != nullptr) return follow_robot(points, take);
+  if (all_.empty() && robot_) return follow_robot(points, take);
   if (all_.empty()) return;
   if (!std::exchange(has_begun_, true)) {
     const auto first =
@@ -53,10 +58,10 @@ void odometry_feed::follow(std::span<const point> points, const taker& take) {
 
 void odometry_feed::follow_robot(std::span<const point> points, const taker& take) {
   while (last_ns_ < points.back().time_ns) {
-    const sim::odometry_sample at = robot_->way.next();
-    const std::int64_t time_ns = at.time_ns + robot_->begin_ns;
+    const sim::odometry_sample at = robot_->next();
+    const std::int64_t time_ns = at.time_ns + begin_ns_;
     // What was before the first point is of no use.
-    if (has_begun_ || robot_->way.next_ns() + robot_->begin_ns > points.front().time_ns) {
+    if (has_begun_ || robot_->next_ns() + begin_ns_ > points.front().time_ns) {
       has_begun_ = true;
       take({time_ns,
             {at.x_m, at.y_m, at.yaw_rad},

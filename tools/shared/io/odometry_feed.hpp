@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ class odometry_feed {
   using taker = std::function<void(const g4lidar::stamped_odometry&)>;
 
   /// That of a file or a recording has precedence. Null: none.
-  void follow(simulated_robot* robot) { robot_ = robot; }
+  void follow(const sim::simulated_source* carried);
   /// The file of --odometry. Throws a failure.
   void load(const std::string& path);
   /// What a recording holds. Throws a failure.
@@ -31,15 +32,16 @@ class odometry_feed {
   void restart() noexcept { has_begun_ = false; }
 
   /// Whether there is any.
-  [[nodiscard]] bool is_known() const noexcept { return robot_ != nullptr || !all_.empty(); }
+  [[nodiscard]] bool is_known() const noexcept { return robot_ || !all_.empty(); }
   /// Gives what was before these points, and the pose after them, in order, each once.
   void follow(std::span<const g4lidar::point> points, const taker& take);
 
  private:
   void follow_robot(std::span<const g4lidar::point> points, const taker& take);
 
-  simulated_robot* robot_ = nullptr;
-  std::int64_t last_ns_ = 0;  // of the robot
+  std::optional<sim::odometry> robot_;
+  std::int64_t begin_ns_ = 0;  // of the robot
+  std::int64_t last_ns_ = 0;   // of the robot
   std::vector<g4lidar::stamped_odometry> all_;
   std::size_t next_ = 0;
   bool has_begun_ = false;

@@ -129,7 +129,16 @@ const char* advice_on_writing(int error) noexcept {
   return "Give another place.";
 }
 
-numbered_files numbered_files_of(const std::string& name) {
+numbered_files numbered_files_of(const std::string& name, bool keeps_existing) {
+  if (keeps_existing) {
+    numbered_files all = numbered_files_of(name);
+    if (!all) return all;
+    return [name_of = std::move(all)](std::uint64_t number) {
+      std::string made = name_of(number);
+      refuse_existing(made);
+      return made;
+    };
+  }
   std::error_code unknown;
   if (name.ends_with('/') || std::filesystem::is_directory(name, unknown)) {
     return [place = std::filesystem::path(name)](std::uint64_t number) {
@@ -150,6 +159,12 @@ numbered_files numbered_files_of(const std::string& name) {
           behind = after.substr(1)](std::uint64_t number) {
     return fmt::format("{}{:0{}}{}", before, number, digits, behind);
   };
+}
+
+void refuse_existing(const std::string& name) {
+  if (!id_of_name(name)) return;
+  throw failure(exit_code::bad_file, fmt::format("cannot write {}: it exists already. {}",
+                                                 in_quotes(name), advice_on_writing(EEXIST)));
 }
 
 void refuse_same_file(const std::optional<file_id>& from, const output& to) {

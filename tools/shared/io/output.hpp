@@ -84,11 +84,16 @@ class output : public g4lidar::text_sink {
 /// The name of each file: `scan-%04d.pcd` and a directory stand for one for each number.
 using numbered_files = std::function<std::string(std::uint64_t)>;
 
-/// Empty where `name` is the name of one file. Throws a bad_value where it makes no sense.
-[[nodiscard]] numbered_files numbered_files_of(const std::string& name);
+/// Empty where `name` is the name of one file. Throws a bad_value where it makes no sense. With
+/// `keeps_existing` the name of a file that exists is refused.
+[[nodiscard]] numbered_files numbered_files_of(const std::string& name,
+                                               bool keeps_existing = false);
 
 /// What to do where a file cannot be written.
 [[nodiscard]] const char* advice_on_writing(int error) noexcept;
+
+/// Refuses, with a sentence, to replace a file on disk.
+void refuse_existing(const std::string& name);
 
 /// Refuses, with a sentence, to read and write one and the same file.
 void refuse_same_file(const std::optional<file_id>& from, const output& to);

@@ -29,22 +29,23 @@ namespace g4_tool {
 namespace {
 
 shaping_options shape_of(const point_job& job, const common_options& common, source_kind kind) {
-  const bool is_file = kind == source_kind::bytes;
+  const bool is_file = kind == source_kind::raw_bytes;
   shaping_options shape;
   shape.filter = common.filter;
   shape.filter.in = common.frame;
   shape.filter.ignored_sectors = common.ignored;
   shape.filter.returns_only = job.returns_only;
-  shape.speckle = common.speckle;
-  shape.edges = common.edges;
+  shape.speckle = common.marks.speckle;
+  shape.edges = common.marks.edges;
+  shape.near = common.marks.near;
   shape.deskew = common.deskew;
   shape.mount = common.mount.value_or(mounting{});
   shape.for_grid = job.bins > 0;
   shape.partial_scans = job.partial;
   if (common.count > 0) shape.count = common.count;
   if (is_file) {
-    shape.from_ns = job.source.played.range.from_ns;
-    shape.to_ns = job.source.played.range.to_ns;
+    shape.from_ns = job.source.playback.from_ns;
+    shape.to_ns = job.source.playback.to_ns;
   }
   if (common.duration.count() > 0 && (is_file || kind == source_kind::recording)) {
     shape.to_ns = std::min<std::int64_t>(shape.to_ns, common.duration.count());
@@ -61,7 +62,7 @@ shaping_options shape_of(const point_job& job, const common_options& common, sou
   shape.follows_wall_clock = kind != source_kind::recording;
   shape.wall_ahead_ns = wall_clock().ahead().count();
   if (shape.follows_wall_clock) return shape;
-  read_items(path_of(common.source), {}, [&shape](const recorded_item& first) {
+  read_items(path_of_source(common.source), {}, [&shape](const recorded_item& first) {
     shape.wall_ahead_ns = first.wall_ns - first.time_ns;
     return false;
   });
@@ -100,8 +101,8 @@ class scan_file_writer final : public point_writer {
 class point_run {
  public:
   explicit point_run(const point_job& job)
-      : job_(job), common_(*job.common), kind_(kind_of(common_.source)) {
-    if (job_.text) kind_ = source_kind::bytes;
+      : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
+    if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
     shaping_options shape = shape_of(job_, common_, kind_);
     if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
@@ -111,12 +112,12 @@ class point_run {
     job_.style.unit = common_.unit;
     const bool has_long_times =
         shape.time == time_style::absolute || shape.time == time_style::monotonic;
-    if (has_long_times && kind_ != source_kind::bytes) job_.style.time_width = 10;
+    if (has_long_times && kind_ != source_kind::raw_bytes) job_.style.time_width = 10;
     writer_ = std::make_unique<shaping_writer>(make_writer(), shape);
   }
 
   int run() {
-    kind_ == source_kind::bytes ? read_file() : read_lidar();
+    kind_ == source_kind::raw_bytes ? read_file() : read_lidar();
     return exit_code_now();
   }
 
@@ -124,7 +125,7 @@ class point_run {
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
   void choose_files() {
     if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
-    files_ = numbered_files_of(common_.output);
+    files_ = numbered_files_of(common_.output, job_.keeps_existing);
     if (files_) return;
     if (common_.count > 1) {
       throw bad_value("-n: a file holds one revolution; write several with -o scan-%04d.pcd");
@@ -142,7 +143,7 @@ class point_run {
     if (!common_.odometry.empty()) {
       path_ = load_odometry(common_.odometry);
     } else if (is_needed && kind_ == source_kind::recording) {
-      read_items(path_of(common_.source), {}, [this](const recorded_item& item) {
+      read_items(path_of_source(common_.source), {}, [this](const recorded_item& item) {
         if (item.what == recorded_item::kind::odometry)
           path_.push_back({item.time_ns, item.odometry.pose});
         return true;
@@ -172,7 +173,7 @@ class point_run {
     if (job_.log == slam_log::carmen)
       return make_carmen_writer(job_.bins, common_.mount.value_or(mounting{}));
     if (job_.log == slam_log::tum) return make_tum_writer();
-    if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins);
+    if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins, common_.grid);
     return make_point_writer(job_.style);
   }
 
@@ -206,10 +207,10 @@ class point_run {
   }
 
   void read_file() {
-    input in(path_of(common_.source), job_.text
-                                          ? "Give csv or jsonl as g4-dump writes it."
-                                          : "Give a file of raw bytes from the lidar's port, or "
-                                            "pipe them in.");
+    input in(path_of_source(common_.source),
+             job_.text ? "Give csv or jsonl as g4-dump writes it."
+                       : "Give a file of raw bytes from the lidar's port, or "
+                         "pipe them in.");
     output out(output_name(), when_it_appears(in.id().has_value()));
     refuse_same_file(in.id(), out);
     const std::uint64_t found = job_.text ? read_text(in, out) : read_bytes(in, out);
@@ -218,7 +219,7 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    byte_points way(*writer_, out, job_.source.bytes_rate_hz);
+    byte_points way(*writer_, out, job_.source.raw_sample_rate_hz);
     bool has_text = false;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       if (way.bytes() == 0) has_text = looks_like_text(got);
@@ -261,9 +262,9 @@ class point_run {
   void read_lidar() {
     const bool is_recording = kind_ == source_kind::recording;
     output out(output_name(), when_it_appears(is_recording));
-    if (is_recording) refuse_same_file(id_of_name(path_of(common_.source)), out);
-    opening how = job_.source;
-    how.how.partial_scans = writer_->takes_scans();  // the writer leaves them out, and counts them
+    if (is_recording) refuse_same_file(id_of_name(path_of_source(common_.source)), out);
+    lidar_options how = job_.source;
+    how.partial_scans = writer_->takes_scans();  // the writer leaves them out, and counts them
     opened_source source(common_, how);
     try {
       run_lidar(source, out);
@@ -278,7 +279,7 @@ class point_run {
     if (!has_packets && is_recording && interrupt() == 0 && !out.is_closed()) {
       throw failure(exit_code::bad_file,
                     "there is no whole packet in " + in_quotes(common_.source) +
-                        (job_.source.played.range.from_ns > 0 ? " from that time on." : ".") +
+                        (job_.source.playback.from_ns > 0 ? " from that time on." : ".") +
                         " g4-dump packets shows what it holds; or give another file.");
     }
   }
@@ -325,7 +326,8 @@ class point_run {
     }
     if (has_scan_files() && !files_ && writer_->is_done()) {
       logger::info(
-          "the first whole revolution; OUT with %04d, or a directory, takes all of them\n");
+          "OUT has the first whole revolution. For all of them give a directory as OUT, or a name "
+          "with %04d.\n");
     }
   }
 

@@ -30,11 +30,12 @@ struct point_job {
   pcd_data data = pcd_data::binary;
   std::optional<point_file_format> point_file;  ///< One file for all points.
   slam_log log = slam_log::none;                ///< carmen: of `bins` ranges.
-  opening source{};                 ///< How it is opened; `played.range` holds for files, too.
+  lidar_options source{};  ///< How it is opened; the range of `playback` holds for files, too.
   std::optional<text_source> text;  ///< The source holds points as text, in this format.
   g4lidar::frame text_frame = g4lidar::frame::vendor;  ///< Of the angles in that text.
-  bool whole_file = false;   ///< OUT appears at the end, even where the source is a pipe.
-  bool json_counts = false;  ///< The counts of raw bytes as JSON.
+  bool keeps_existing = false;  ///< A file of a revolution does not replace another.
+  bool whole_file = false;      ///< OUT appears at the end, even where the source is a pipe.
+  bool json_counts = false;     ///< The counts of raw bytes as JSON.
 };
 
 /// Returns the exit code; throws a failure or a bad_value.

@@ -119,13 +119,16 @@ void read_source(opened_source& source, const common_options& options, const rea
 }
 
 void report_counts(const lidar_counts& counts, bool has_scans) {
+  const std::uint64_t mismatches = counts.stream.crc_mismatches;
+  const std::string crc =
+      mismatches > 0 ? counted(mismatches, "revolution") + " with a wrong CRC, " : "";
   // What was not read was not wanted: scans beside points are not missed, nor points beside scans.
   logger::info(fmt::format(
-      "{}: {} ({} suspect) with {} in {} and {}\n{} skipped, {} lost, {} missed, {}\n",
+      "{}: {} ({} suspect) with {} in {} and {}\n{} skipped, {} lost, {}{} missed, {}\n",
       counted(counts.bytes, "byte"), counted(counts.stream.packets, "packet"),
       counts.stream.suspect, counted(counts.stream.points, "point"), counted(counts.scans, "scan"),
       counted(counts.partial_scans, "piece"), counted(counts.stream.skipped_bytes(), "byte"),
-      counted(counts.samples_lost, "sample"),
+      counted(counts.samples_lost, "sample"), crc,
       counted(has_scans ? counts.scans_missed : counts.points_missed, has_scans ? "scan" : "point"),
       counted(counts.reconnects, "reconnect")));
 }

@@ -27,17 +27,18 @@ namespace g4_tool {
 namespace {
 
 /// What is wrong with the file of a recording, and what to try.
-failure file_failure(const g4lidar::error& why, const std::string& path) {
+failure file_failure(const g4lidar::error& why, const std::string& path, bool is_kept) {
   const int number = why.system_errno();
   if (why.code() == problem::bad_option) return {exit_code::usage, in_tool_words(why.message())};
   if (why.code() != problem::system || number == 0)
     return {exit_code::bad_file, in_tool_words(why.message())};
   const bool is_full = number == ENOSPC || number == EDQUOT || number == EFBIG;
-  return {exit_code::bad_file,
-          fmt::format(
-              "cannot write {}: {}. {}{}", in_quotes(path),
-              number == EEXIST ? "it exists already" : std::generic_category().message(number),
-              advice_on_writing(number), is_full ? " What was written before can be read." : "")};
+  return {
+      exit_code::bad_file,
+      fmt::format("cannot write {}: {}. {}{}", in_quotes(path),
+                  number == EEXIST ? "it exists already" : std::generic_category().message(number),
+                  advice_on_writing(number),
+                  is_full && is_kept ? " What was written before can be read." : "")};
 }
 
 /// One recording, from its beginning to its end.
@@ -51,10 +52,10 @@ class recorder {
       output nowhere("/dev/null");
       read_source(*source_, job_.common, sink(), nowhere);
       end();
-      if (const auto why = file_error_) throw file_failure(*why, title_);
+      if (const auto why = file_error_) throw file_failure(*why, title_, job_.is_kept);
     } catch (...) {
       end();
-      if (job_.shows_counts && has_run_) report_recorded(result_, title_);
+      if (job_.shows_counts && has_run_ && job_.is_kept) report_recorded(result_, title_);
       throw;
     }
     return result_;
@@ -69,18 +70,19 @@ class recorder {
       odometry_.load(job_.common.odometry);
       made.keep_odometry = false;
     }
-    opening how = job_.source;
-    how.how.partial_scans = true;  // so that points come at latest when a scan's storage is full
+    lidar_options how = job_.source;
+    how.partial_scans = true;  // so that points come at latest when a scan's storage is full
     // The ring holds the points of many readings; nobody waits for the single packet.
-    how.how.pace = read_pace::revolutions;
-    how.tap = [this, &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
+    how.tuning.pace = read_pace::revolutions;
+    how.wrap = [this,
+                &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
       if (!writer_) {
         auto file = recording_writer::create(job_.path, made);
-        if (!file) throw file_failure(file.error(), title_);
+        if (!file) throw file_failure(file.error(), title_, job_.is_kept);
         writer_ = std::make_unique<recording_writer>(std::move(*file));
         // The bytes of a file are counted from its beginning, by a clock that begins elsewhere.
         const std::string& name = job_.common.source;
-        if (kind_of(name) == source_kind::bytes && is_file(path_of(name))) {
+        if (kind_of_source(name) == source_kind::raw_bytes && is_file(path_of_source(name))) {
           odometry_.shift(from->now_ns());
         }
       }
@@ -88,15 +90,15 @@ class recorder {
     };
     source_ = std::make_unique<opened_source>(job_.common, how);
     points_ = std::make_unique<lidar_ring::reader>(source_->lidar().points().make_reader());
-    odometry_.follow(source_->robot());
+    odometry_.follow(source_->simulation());
     has_run_ = true;
     describe();
   }
 
   /// What is known of the device; nothing is changed for it. Of a recording, recorded() knows it.
   void describe() {
-    const source_kind kind = kind_of(job_.common.source);
-    if (kind == source_kind::recording || kind == source_kind::bytes) return;
+    const source_kind kind = kind_of_source(job_.common.source);
+    if (kind == source_kind::recording || kind == source_kind::raw_bytes) return;
     g4lidar::lidar& lidar = source_->lidar();
     recorded_device known;
     known.information = lidar.information();
@@ -116,7 +118,7 @@ class recorder {
   void pulse() {
     take_points();
     report_to_service();
-    if (const auto why = writer_->take_error()) throw file_failure(*why, title_);
+    if (const auto why = writer_->take_error()) throw file_failure(*why, title_, job_.is_kept);
     if (!line_.is_due()) return;
     const lidar_counts lidar = source_->lidar().counts();
     line_.draw(fmt::format(
@@ -167,7 +169,9 @@ class recorder {
     result_.digest = writer_->digest();
     std::error_code unimportant;
     // It holds an attempt to open the source, and nothing else.
-    if (!has_run_ && is_file(job_.path)) std::filesystem::remove(job_.path, unimportant);
+    const bool has_bytes = result_.file.bytes_from_device + result_.file.bytes_to_device > 0;
+    const bool is_kept = has_run_ || (job_.keeps_attempt && has_bytes);
+    if (!is_kept && is_file(job_.path)) std::filesystem::remove(job_.path, unimportant);
     writer_.reset();
   }
 
@@ -193,11 +197,14 @@ class recorder {
 }  // namespace
 
 option_rows message_rows(g4lidar::recording_options& into) {
-  return {value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
+  return joined(
+      option_rows{
+          value_row("--points", "", "Write each revolution as a PointCloud2 message, too",
                     into.points_topic, [](const std::string&) { return "/points"; }),
           choice_row(
               "--order", "Order of the ranges of a LaserScan; time: z is down (angle)", into.order,
-              choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}})};
+              choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}})},
+      near_row(into.near), grid_rows(into.grid));
 }
 
 recorded_result record(const recording_job& job) { return recorder(job).run(); }

@@ -15,11 +15,14 @@ namespace g4_tool {
 struct recording_job {
   /// The source, and when it ends; --odometry, which replaces that of a recording; --mount.
   common_options common;
-  opening source;       ///< Its tap is the recorder's.
-  std::string path;     ///< Of the recording.
-  std::string title{};  ///< Its name in messages; empty: its path.
+  lidar_options source;  ///< But for `wrap`, which is the recorder's.
+  std::string path;      ///< Of the recording.
+  std::string title{};   ///< Its name in messages; empty: its path.
   g4lidar::recording_options made;
+  bool is_kept = true;       ///< Also after a failure: what was written before it can be read.
   bool shows_counts = true;  ///< While it runs, on a terminal.
+  /// The file of a source that could not be opened stays if it holds bytes of the attempt.
+  bool keeps_attempt = false;
 };
 
 /// What a finished recording holds.

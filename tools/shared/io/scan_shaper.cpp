@@ -47,24 +47,26 @@ void scan_shaper::set_filters(const common_options& how) {
   filter_.in = how_.frame;
   filter_.ignored_sectors = how_.ignored;
   filter_.masks = mask_.polygons();
-  if (how_.speckle) filter_.excluded = filter_.excluded | point_flags::isolated;
-  if (how_.edges) filter_.excluded = filter_.excluded | point_flags::veiling;
+  if (how_.marks.speckle) filter_.excluded = filter_.excluded | point_flags::isolated;
+  if (how_.marks.edges) filter_.excluded = filter_.excluded | point_flags::veiling;
 }
 
 shaped_scan scan_shaper::shape(const scan& whole, std::span<const stamped_pose> path) {
   std::span<const point> points = whole.points;
-  if (how_.speckle || how_.edges) {
+  if (how_.marks.speckle || how_.marks.edges || how_.marks.near) {
     marked_.assign(points.begin(), points.end());
-    if (how_.speckle) mark_isolated(marked_, *how_.speckle, scan_ends::joined);
-    if (how_.edges) mark_veiling(marked_, *how_.edges, scan_ends::joined);
+    if (how_.marks.near) mark_near(marked_, near_, *how_.marks.near);
+    if (how_.marks.speckle) mark_isolated(marked_, *how_.marks.speckle, scan_ends::joined);
+    if (how_.marks.edges) mark_veiling(marked_, *how_.marks.edges, scan_ends::joined);
     points = marked_;
   }
-  if (filter_.keeps_everything() && how_.deskew == deskewing::none) return {points, points, {}};
+  if (filter_.keeps_everything() && how_.deskew == deskewing::none)
+    return {points, points, {}, how_.grid};
   for_grid_.resize(points.size());
   kept_.resize(points.size());
   const std::span<point> for_grid = filter_for_grid(points, filter_, for_grid_);
   const std::span<point> kept = filter_points(points, filter_, kept_);
-  if (how_.deskew == deskewing::none) return {for_grid, kept, {}};
+  if (how_.deskew == deskewing::none) return {for_grid, kept, {}, how_.grid};
   std::optional<twist_2d> twist;
   if (estimator_) {
     const twist_estimate motion = estimator_->add(whole.points);
@@ -77,7 +79,7 @@ shaped_scan scan_shaper::shape(const scan& whole, std::span<const stamped_pose> 
     if (!is_outside) p.time_ns = reference_ns;
     not_deskewed_ += is_outside ? 1 : 0;
   }
-  return {for_grid, kept, twist};
+  return {for_grid, kept, twist, how_.grid};
 }
 
 std::span<point> scan_shaper::deskewed_points(std::span<point> points, std::int64_t reference_ns,

@@ -9,8 +9,10 @@
 
 #include "cli/common_options.hpp"
 #include "g4lidar/export/mask.hpp"
+#include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/too_near.hpp"
 #include "g4lidar/twist_estimator.hpp"
 
 namespace g4_tool {
@@ -36,6 +38,7 @@ struct shaped_scan {
   std::span<const point> for_grid;  ///< For fill_grid(): see filter_for_grid().
   std::span<const point> kept;    ///< For a cloud. Deskewed points have the time of the first one.
   std::optional<twist_2d> twist;  ///< Of the lidar, if it was deskewed by the scans.
+  grid_options grid{};            ///< How to fill the grid.
 };
 
 /// Filters and deskews the revolutions of one lidar. *Single thread.*
@@ -61,6 +64,7 @@ class scan_shaper {
   g4lidar::mask mask_;
   point_filter filter_;
   std::optional<twist_estimator> estimator_;
+  near_history near_;
   std::vector<point> marked_;
   std::vector<point> for_grid_;
   std::vector<point> kept_;

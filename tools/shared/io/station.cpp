@@ -14,8 +14,8 @@ std::string_view name_of(station_state state) noexcept {
   return names[static_cast<std::size_t>(state)];
 }
 
-station::station(const common_options& options, const opening& how, station_listener& listener,
-                 const station_options& wishes)
+station::station(const common_options& options, const lidar_options& how,
+                 station_listener& listener, const station_options& wishes)
     : reader_(std::make_unique<station_reader>(options, how, listener, wishes)) {}
 station::~station() = default;
 

@@ -76,8 +76,8 @@ struct playback {
 /// reason of each new failure is given to on_state(), and as a verbose message.
 class station {
  public:
-  /// `listener` must outlive this. `how.tap` is called at each attempt, in the thread.
-  station(const common_options& options, const opening& how, station_listener& listener,
+  /// `listener` must outlive this. `how.wrap` is called at each attempt, in the thread.
+  station(const common_options& options, const lidar_options& how, station_listener& listener,
           const station_options& wishes = {});
   station(const station&) = delete;
   station& operator=(const station&) = delete;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <ctime>
 #include <exception>
@@ -29,7 +30,9 @@ namespace g4_tool {
 class bell {
  public:
   bell() : fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    if (fd_ < 0) throw failure(exit_code::internal, "the system gives no eventfd.");
+    if (fd_ >= 0) return;
+    if (errno != EMFILE) throw failure(exit_code::internal, "the system gives no eventfd.");
+    throw failure(exit_code::bad_file, "Too many files are open. Raise the limit: ulimit -n 1024.");
   }
   bell(const bell&) = delete;
   bell& operator=(const bell&) = delete;

@@ -24,22 +24,29 @@ std::int64_t steady_now() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Whether another attempt may succeed.
+bool may_pass(exit_code why) noexcept {
+  using enum exit_code;
+  return why != bad_file && why != internal && why != not_a_g4 && why != usage;
+}
+
 }  // namespace
 
-station_reader::station_reader(const common_options& options, const opening& how,
+station_reader::station_reader(const common_options& options, const lidar_options& how,
                                station_listener& listener, const station_options& wishes)
     : options_(options), how_(how), listener_(listener), wishes_(wishes), backoff_(first_backoff) {
-  const source_kind kind = kind_of(options_.source);
-  nature_.is_file = kind == source_kind::recording || kind == source_kind::bytes;
+  const source_kind kind = kind_of_source(options_.source);
+  nature_.is_file = kind == source_kind::recording || kind == source_kind::raw_bytes;
   // This waits, and can be stopped.
   nature_.has_patience = options_.on_loss == loss_rule::wait && !nature_.is_file;
   if (nature_.has_patience) options_.on_loss = loss_rule::reconnect;
-  how_.tap = [this, inner = how.tap](std::unique_ptr<connector> from) {
+  how_.wrap = [this, inner = how.wrap](std::unique_ptr<connector> from) {
     auto tapped =
         inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
     if (tapped) tapped = diagnosis.observe(std::move(*tapped));
     return tapped;
   };
+  how_.is_cancelled = [this] { return board.has_to_stop() || interrupt() != 0; };
   board.request([&](station_requests& all) {
     all.rests = wishes.starts_rested;
     all.speed = wishes.speed;
@@ -59,18 +66,15 @@ std::int64_t station_reader::wall_ns(std::int64_t time_ns) const noexcept {
   return time_ns + (recorded_ ? recorded_->wall_ahead_ns : wall_.ahead().count());
 }
 
-station_reader::recorded_times station_reader::times_of(const std::string& path) {
-  recording_reader read = value_of(recording_reader::open(path));
+station_reader::recorded_times station_reader::times_of(const std::string& path) const {
+  recording_reader read = open_recording(path, {.is_cancelled = how_.is_cancelled});
   recorded_times times{.first_ns = read.first_ns()};
-  std::int64_t last_ns = read.last_ns();
-  const bool is_cut_off = last_ns == 0;  // then its end is known when all of it was read
-  bool is_first = true;
-  value_of(read.for_each([&](const recorded_item& item) {
-    if (std::exchange(is_first, false)) times.wall_ahead_ns = item.wall_ns - item.time_ns;
-    if (is_cut_off && item.what != recorded_item::kind::odometry) last_ns = item.time_ns;
-    return is_cut_off;
-  }));
-  const std::int64_t length_ns = std::max(last_ns - times.first_ns, std::int64_t{0});
+  auto next = read.next();
+  if (how_.is_cancelled()) throw interrupted();
+  if (const auto first = value_of(std::move(next))) {
+    times.wall_ahead_ns = first->wall_ns - first->time_ns;
+  }
+  const std::int64_t length_ns = std::max(read.last_ns() - times.first_ns, std::int64_t{0});
   times.length_s = static_cast<double>(length_ns) / ns_per_s;
   return times;
 }
@@ -115,9 +119,7 @@ void station_reader::live() {
     while (serve() && step()) publish();
     close();
   } catch (const g4_tool::failure& reason) {
-    const bool may_help =
-        reason.code() != exit_code::bad_file && reason.code() != exit_code::internal;
-    if (!nature_.has_patience || !may_help) throw;
+    if (!nature_.has_patience || !may_pass(reason.code())) throw;
     source_.reset();
     set_state(station_state::opening, reason.what());
     const auto until = clock::now() + backoff_;
@@ -127,10 +129,10 @@ void station_reader::live() {
 }
 
 void station_reader::open() {
-  if (nature_.is_file && !recorded_ && kind_of(options_.source) == source_kind::recording) {
-    recorded_ = times_of(path_of(options_.source));
+  if (nature_.is_file && !recorded_ && kind_of_source(options_.source) == source_kind::recording) {
+    recorded_ = times_of(path_of_source(options_.source));
   }
-  how_.played.range.from_ns = static_cast<std::int64_t>(begin_s_ * ns_per_s);
+  how_.playback.from_ns = static_cast<std::int64_t>(begin_s_ * ns_per_s);
   source_.reset();  // before the next one opens the port
   source_ = std::make_unique<opened_source>(options_, how_);
   g4lidar::lidar& lidar = source_->lidar();

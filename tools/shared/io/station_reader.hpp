@@ -25,8 +25,8 @@ namespace g4_tool {
 /// All but the public part belongs to the thread; of `diagnosis`, all but stages().
 class station_reader {
  public:
-  station_reader(const common_options& options, const opening& how, station_listener& listener,
-                 const station_options& wishes);
+  station_reader(const common_options& options, const lidar_options& how,
+                 station_listener& listener, const station_options& wishes);
   station_reader(const station_reader&) = delete;
   station_reader& operator=(const station_reader&) = delete;
   ~station_reader() { stop(); }
@@ -58,7 +58,7 @@ class station_reader {
     bool is_left = false;     // it is to be opened again
   };
 
-  [[nodiscard]] static recorded_times times_of(const std::string& path);
+  [[nodiscard]] recorded_times times_of(const std::string& path) const;
 
   void run() noexcept;
   void end(const std::exception_ptr& failure, const std::string& why) noexcept;
@@ -91,7 +91,7 @@ class station_reader {
   void show_player(std::optional<double> position_s);
 
   common_options options_;
-  opening how_;
+  lidar_options how_;
   station_listener& listener_;
   station_options wishes_;
   source_nature nature_;

@@ -37,7 +37,7 @@ class G4LIDAR_API scene_caster {
       double first_level_deg, const way_of_beam& way) noexcept;
 
   std::vector<path_point> path_;
-  pose mount_;
+  pose cable_;  // of the angle 0, in the frame of the robot
   pose fixed_;  // of the lidar, without a path
   ray_caster caster_;
   ray_caster mirrored_caster_;

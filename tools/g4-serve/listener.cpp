@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "listen_check.hpp"
+#include "listener.hpp"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -10,13 +10,23 @@
 #include <cerrno>
 #include <system_error>
 
-#include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/verbs.hpp"
 
 namespace g4_tool {
 
-void check_listening(const std::string& address, std::uint16_t port) {
+socket_fd::~socket_fd() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+failure refused_by_system(std::string_view what, int why) {
+  std::string text = fmt::format("{}: {}.", what, std::generic_category().message(why));
+  if (why == EMFILE) text += " This process may open too few files: see ulimit -n.";
+  if (why == ENFILE) text += " The whole system has too many open files.";
+  return failure(exit_code::internal, text);
+}
+
+socket_fd listen_at(const std::string& address, std::uint16_t port) {
   const bool is_ipv6 = address.find(':') != std::string::npos;
   sockaddr_in6 long_place{};
   sockaddr_in place{};
@@ -30,17 +40,16 @@ void check_listening(const std::string& address, std::uint16_t port) {
     throw bad_value("--address: " + in_quotes(address) +
                     " is not an address in numbers such as 127.0.0.1, 0.0.0.0 or ::1");
   }
-  const int fd = ::socket(is_ipv6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  socket_fd made(
+      ::socket(is_ipv6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (made.get() < 0) throw refused_by_system("cannot create a socket", errno);
   const int on = 1;
-  static_cast<void>(::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)));
+  static_cast<void>(::setsockopt(made.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on)));
   const auto* const where = is_ipv6 ? reinterpret_cast<const sockaddr*>(&long_place)
                                     : reinterpret_cast<const sockaddr*>(&place);
   const socklen_t size = is_ipv6 ? sizeof(long_place) : sizeof(place);
-  const bool can = fd >= 0 && ::bind(fd, where, size) == 0 && ::listen(fd, 1) == 0;
-  const int why = can ? 0 : errno;
-  if (fd >= 0) ::close(fd);
-  if (can) return;
-  const std::string words = std::generic_category().message(why);
+  if (::bind(made.get(), where, size) == 0 && ::listen(made.get(), SOMAXCONN) == 0) return made;
+  const int why = errno;
   const std::string title = fmt::format("port {} of {}", port, address);
   if (why == EADDRINUSE) {
     throw failure(exit_code::busy, title +
@@ -51,9 +60,16 @@ void check_listening(const std::string& address, std::uint16_t port) {
     throw failure(exit_code::permission,
                   title + " is reserved for root. Give a --port above 1023.");
   }
-  throw failure(exit_code::usage, fmt::format("cannot listen at {}: {}. Give an --address of "
-                                              "this machine.",
-                                              title, words));
+  throw failure(exit_code::usage,
+                fmt::format("cannot listen at {}: {}. Give an --address of this machine.", title,
+                            std::generic_category().message(why)));
+}
+
+std::uint16_t port_of(const socket_fd& socket) {
+  sockaddr_in6 place{};  // its port is where that of IPv4 is
+  socklen_t size = sizeof(place);
+  if (::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&place), &size) != 0) return 0;
+  return ntohs(place.sin6_port);
 }
 
 }  // namespace g4_tool

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// How a lidar is opened and used.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/settings.hpp"
+
+namespace g4lidar {
+
+class connector;
+
+/// When a running scan is read, and the program woken.
+enum class read_pace : std::uint8_t {
+  automatic,    ///< As `revolutions`, until next_points() or points() is called; then as `packets`.
+  packets,      ///< When a packet is complete: points arrive with little latency.
+  revolutions,  ///< When a revolution is complete: a fifth of the system calls. Scans are not later.
+};
+
+/// Times and speeds of a lidar's connection; few programs need another value.
+struct lidar_tuning {
+  std::chrono::milliseconds longest_backoff{
+      1000};                                   ///< Between two attempts to reconnect; 1 ms to 1 s.
+  std::chrono::milliseconds answer_time{300};  ///< The longest wait for an answer; 10 ms to 10 s.
+  std::chrono::milliseconds stall_time{1000};  ///< A scan without a packet; 100 ms to 1 min.
+  /// See read_pace. A transport that does not know how many bytes the system keeps is read by packets.
+  read_pace pace = read_pace::automatic;
+  /// Bytes are read no more often than this, for every `pace`: fewer wake-ups, more latency. 0 to
+  /// 100 ms.
+  std::chrono::milliseconds batch{0};
+  /// The least delay between measurement and arrival, that of the baud rate excluded; see sensor_clock.
+  std::chrono::nanoseconds transport_delay{0};
+};
+
+/// How a recording is played.
+struct playback_options {
+  /// 1: as fast as it was recorded; 0.5: half as fast; 0: as fast as it is read. 0, or 0.000001 to 1000.
+  double speed = 0;
+  bool loop = false;  ///< Whether it begins again at its end; the times continue.
+  /// Only what was recorded from `from_ns` on and before `to_ns`, since its beginning.
+  std::int64_t from_ns = 0;
+  std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();
+};
+
+/// How a lidar is opened and used. Every option has a default. A setting that is not given stays as the
+/// device has it; one that is given is set at each start, after a reconnect, and when the device seems
+/// to have rebooted.
+struct lidar_options {
+  /// Which lidar, in the words of source.hpp: empty for the only G4; `/dev/ttyUSB0`; `sim:`; ...
+  std::string device{};
+  /// How long open() waits for a device that is not there yet: it tries again twice a second.
+  /// milliseconds::max(): without limit.
+  std::chrono::milliseconds device_wait{0};
+  /// Bits per second, of a serial port and of the one behind `tcp:`.
+  std::uint32_t baud = 230400;
+
+  std::optional<ranging_frequency> ranging{};    ///< Measurements per second.
+  std::optional<scan_frequency> frequency{};     ///< Revolutions per second, 5 to 12 Hz.
+  std::optional<motor_direction> direction{};    ///< In which direction the head turns.
+  std::optional<constant_frequency> constant{};  ///< Whether the lidar regulates its frequency.
+  std::optional<low_power> idle{};               ///< Whether the motor stops when idle.
+  std::optional<power_down_protection>
+      protection{};  ///< Stops when the host sends nothing for 3 s.
+
+  bool reconnect = false;      ///< Whether to reconnect after a loss; see lidar::next_event().
+  bool partial_scans = false;  ///< Whether next_scan() also gives pieces: scan::is_piece().
+  lidar_tuning tuning{};       ///< Times and speeds of the connection.
+
+  playback_options playback{};  ///< How a recording is played.
+  /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000.
+  std::uint32_t raw_sample_rate_hz = 9000;
+  /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it
+  /// returns is used instead; its error ends the attempt.
+  std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> wrap{};
+  /// Called often while open() reads a file, and every 50 ms between two attempts to open, if it is set;
+  /// true ends open() with cancelled. An attempt is not interrupted. Playing a recording calls it, too.
+  std::function<bool()> is_cancelled{};
+};
+
+/// What is wrong with `options`, as an error that names the option; nothing if all can be used. *Pure.*
+[[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;
+
+}  // namespace g4lidar

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// What the name of a lidar means:
+//
+// | name | lidar |
+// |---|---|
+// | empty | the only G4 that is attached |
+// | `/dev/ttyUSB0` | the one at this port |
+// | `serial:2021101000070073` | the one with this serial number |
+// | `usb:1-1.4` | the one at this USB port |
+// | `tcp:HOST:PORT` | the one behind a raw network bridge |
+// | `walk.mcap`, `file:PATH` | a recording, or the raw bytes of a port |
+// | `-` | raw bytes from standard input |
+// | `sim:`, `sim:?seed=7&fault=unplug@5s` | a simulated G4 in real time: docs/sim.md |
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/error.hpp"
+#include "g4lidar/lidar_options.hpp"
+#include "g4lidar/transport/connector.hpp"
+
+namespace g4lidar {
+
+namespace sim {
+struct simulated_source;
+}
+
+/// What is behind a name.
+enum class source_kind : std::uint8_t {
+  device,     ///< A port or a network bridge, with a lidar that answers.
+  recording,  ///< A file with times.
+  raw_bytes,  ///< Of a port, without times in a file; also of a pipe.
+  simulated,  ///< `sim:`
+};
+
+/// By the form of the name, and by what is at a path now. A path where nothing is names a device, with
+/// `file:` raw bytes.
+[[nodiscard]] G4LIDAR_API source_kind kind_of_source(std::string_view name);
+/// The path of a name that is a file, without `file:`. *Pure.*
+[[nodiscard]] G4LIDAR_API std::string path_of_source(std::string_view name);
+
+/// The connector for the source that `options.device` names, without options.wrap: for callers that
+/// open it themselves. lidar::open(options) is open(connector_for(options), options), with wrap and
+/// device_wait. Errors: bad_option, bad_file, system, cancelled.
+[[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> connector_for(
+    const lidar_options& options);
+
+/// The simulated lidar that a connector of connector_for() opens; null if it opens another one. Valid
+/// as long as the connector, or the lidar that owns it.
+[[nodiscard]] G4LIDAR_API const sim::simulated_source* simulation_of(
+    const connector& from) noexcept;
+
+}  // namespace g4lidar

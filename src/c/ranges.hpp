@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Options of grids and of mark_near(), of C as those of C++.
+#pragma once
+
+#include <g4lidar/c/filter.h>
+#include <g4lidar/c/point.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "g4lidar/grid.hpp"
+#include "g4lidar/too_near.hpp"
+#include "options.hpp"
+
+namespace g4lidar::c {
+
+inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options),
+                                                    G4LIDAR_ROBOT,
+                                                    G4LIDAR_NEAREST,
+                                                    false,
+                                                    {},
+                                                    G4LIDAR_NO_RETURN_AS_INFINITY,
+                                                    0};
+inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 280.0F, 3, {}};
+
+/// Nothing if a member has no valid value.
+[[nodiscard]] inline std::optional<grid_options> grid_of(
+    const g4lidar_grid_options& given) noexcept {
+  const auto is_up_to = [](std::int32_t value, int most) { return value >= 0 && value <= most; };
+  if (!is_up_to(given.frame, G4LIDAR_ROBOT) || !is_up_to(given.pick, G4LIDAR_MINIMUM) ||
+      !is_up_to(given.no_return, G4LIDAR_NO_RETURN_AS_MAX) ||
+      !is_up_to(given.near_is_minus_infinity, 1)) {
+    return std::nullopt;
+  }
+  return grid_options{given.frame == G4LIDAR_ROBOT ? frame::robot : frame::vendor,
+                      given.pick == G4LIDAR_MINIMUM ? grid_pick::minimum : grid_pick::nearest,
+                      given.keep_too_near, static_cast<no_return_as>(given.no_return),
+                      given.near_is_minus_infinity == 1};
+}
+
+/// Nothing if the options cannot be used; with NULL the defaults.
+[[nodiscard]] inline std::optional<near_limits> near_of(
+    const g4lidar_near_options* given) noexcept {
+  g4lidar_near_options taken = near_defaults;
+  if (!take_options(given, taken) || !(taken.shortest_mm > 0.0F)) return std::nullopt;
+  return near_limits{taken.shortest_mm, taken.revolutions};
+}
+
+}  // namespace g4lidar::c

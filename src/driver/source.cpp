@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/source.hpp"
+
+#include <sys/stat.h>
+
+#include <string>
+#include <utility>
+
+#include "discovery/system_connector.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/transport/forwarding.hpp"
+#if defined(G4LIDAR_HAS_SIM)
+#include "g4lidar/sim/simulated_source.hpp"
+#endif
+
+namespace g4lidar {
+namespace {
+
+constexpr std::string_view file_prefix = "file:";
+constexpr std::string_view sim_prefix = "sim:";
+
+#if defined(G4LIDAR_HAS_SIM)
+/// To the port of a simulated lidar, which it owns.
+class simulated_connector final : public forwarding_connector {
+ public:
+  simulated_connector(std::unique_ptr<connector> inner, sim::simulated_source of)
+      : forwarding_connector(std::move(inner)), of_(std::move(of)) {}
+
+  [[nodiscard]] const sim::simulated_source& source() const noexcept { return of_; }
+
+ private:
+  sim::simulated_source of_;
+};
+
+result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options) {
+  auto made = sim::open_simulated(options.device);
+  if (!made) return tl::unexpected(made.error());
+  auto inner = system_connector::make(made->port->path(), options.baud);
+  if (!inner) return inner;
+  return std::make_unique<simulated_connector>(*std::move(inner), *std::move(made));
+}
+#else
+result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options) {
+  return failure(task::opening, problem::bad_option, options.device, 0, error_detail::no_simulator);
+}
+#endif
+
+}  // namespace
+
+source_kind kind_of_source(std::string_view name) {
+  if (name == "-") return source_kind::raw_bytes;
+  if (name.starts_with(sim_prefix)) return source_kind::simulated;
+  const std::string path = path_of_source(name);
+  struct stat found{};
+  if (path.empty() || ::stat(path.c_str(), &found) != 0 || S_ISCHR(found.st_mode)) {
+    return name.starts_with(file_prefix) ? source_kind::raw_bytes : source_kind::device;
+  }
+  return S_ISREG(found.st_mode) && is_recording(path) ? source_kind::recording
+                                                      : source_kind::raw_bytes;
+}
+
+std::string path_of_source(std::string_view name) {
+  return std::string(name.starts_with(file_prefix) ? name.substr(file_prefix.size()) : name);
+}
+
+result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
+  if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
+  const std::string path = path_of_source(options.device);
+  switch (kind_of_source(options.device)) {
+    case source_kind::recording: {
+      const playback_options& how = options.playback;
+      const reading_options range{
+          .from_ns = how.from_ns, .to_ns = how.to_ns, .is_cancelled = options.is_cancelled};
+      return replay::open(path, {.rate = how.speed, .loop = how.loop, .range = range});
+    }
+    case source_kind::raw_bytes:
+      return open_raw_bytes(path, options.raw_sample_rate_hz);
+    case source_kind::simulated:
+      return connect_simulated(options);
+    case source_kind::device:
+      break;
+  }
+  return system_connector::make(options.device, options.baud);
+}
+
+const sim::simulated_source* simulation_of([[maybe_unused]] const connector& from) noexcept {
+#if defined(G4LIDAR_HAS_SIM)
+  const auto* const found = dynamic_cast<const simulated_connector*>(&from);
+  return found == nullptr ? nullptr : &found->source();
+#else
+  return nullptr;
+#endif
+}
+
+}  // namespace g4lidar

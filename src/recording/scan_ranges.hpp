@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// The ranges of the LaserScan messages of a recording.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/grid.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "g4lidar/scan.hpp"
+#include "g4lidar/too_near.hpp"
+
+namespace g4lidar {
+
+/// *Single thread.*
+class scan_ranges {
+ public:
+  explicit scan_ranges(const recording_options& options) : ranges_(options.scan_bins) {}
+
+  /// Fills them, and returns message_header::first_bin.
+  std::size_t fill(const scan& revolution, const recording_options& options) noexcept {
+    std::span<const point> points = revolution.points;
+    try {
+      if (options.near) {
+        marked_.assign(points.begin(), points.end());
+        static_cast<void>(mark_near(marked_, near_, *options.near));
+        points = marked_;
+      }
+    } catch (const std::bad_alloc&) {  // without the flags
+    }
+    if (options.order == scan_order::time) {
+      return fill_time_grid(points, revolution.duration_ns, ranges_, options.grid);
+    }
+    grid_options how = options.grid;
+    how.to = frame::robot;
+    fill_grid(points, ranges_, how);
+    return 0;
+  }
+  [[nodiscard]] std::span<const float> ranges_m() const noexcept { return ranges_; }
+
+ private:
+  std::vector<float> ranges_;
+  near_history near_;
+  std::vector<point> marked_;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/sim/simulated_source.hpp"
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "g4lidar/sim/setup.hpp"
+
+namespace g4lidar::sim {
+namespace {
+
+/// Where it is wrong, and why, as far as an error has room.
+tl::unexpected<error> refused(problem what, const std::string& where, const std::string& why) {
+  constexpr std::size_t longest = 159;
+  std::string text = where + " (" + why + ")";
+  if (text.size() > longest) text.replace(longest - 4, std::string::npos, "...)");
+  return failure(task::opening, what, text, 0, error_detail::simulated);
+}
+
+tl::unexpected<error> refused(const std::string& file, const world_error& wrong) {
+  const std::string line = wrong.line > 0 ? ", line " + std::to_string(wrong.line) : "";
+  return refused(problem::bad_file, file + line, wrong.message);
+}
+
+}  // namespace
+
+result<simulated_source> open_simulated(std::string_view source) {
+  auto read = parse_setup(source);
+  if (const auto* wrong = std::get_if<setup_error>(&read)) {
+    return refused(problem::bad_option, "sim:", wrong->message);
+  }
+  const setup& wish = std::get<setup>(read);
+  auto scene = load_world(wish.world_file);
+  if (const auto* wrong = std::get_if<world_error>(&scene)) return refused(wish.world_file, *wrong);
+  world& in = std::get<world>(scene);
+  if (!wish.path_file.empty()) {
+    if (const auto wrong = load_path(in, wish.path_file)) return refused(wish.path_file, *wrong);
+  }
+  auto served = serve_alone(device(in, wish.device, wish.faults));
+  if (!served) return tl::unexpected(served.error());
+  simulated_source made{*std::move(served), std::nullopt, 0};
+  made.port->with([&](const device&, std::int64_t now_ns) {
+    const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
+    made.begin_ns = now.count() - now_ns;
+  });
+  if (!in.path.empty()) made.robot.emplace(in, odometry_options{.seed = wish.device.scanner.seed});
+  return made;
+}
+
+}  // namespace g4lidar::sim

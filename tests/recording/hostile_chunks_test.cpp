@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// Small files that unpack to much: the work is bounded by the size of the file, and reading can be cancelled.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "made_recording.hpp"
+#include "recorded_run.hpp"
+#include "recording/chunk_source.hpp"
+#include "support/hostile_mcap.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+bytes bytes_of_text(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// What is unpacked to read everything.
+std::uint64_t unpacked_from(const std::string& file) {
+  mcap::chunk_source chunks(std::make_shared<memory_source>(bytes_of_text(file)));
+  while (!chunks.next().records.empty()) continue;
+  EXPECT_GT(chunks.damage().chunks_lost, 0U);
+  return chunks.bytes_unpacked();
+}
+
+class HostileChunks : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_zstd()) GTEST_SKIP() << "without zstd";
+  }
+};
+
+TEST_F(HostileChunks, WithoutMessages_CostWorkByTheSizeOfTheFile) {
+  const std::string channel = mcap_record(4, std::string(40, '\0'));
+  for (const std::string& begin :
+       {std::string(), std::string("\x10"), filling_record(0x10), filling_record(0x80),
+        channel + filling_record(3), repeated(channel, 2000),
+        mcap_record(5, std::string(30, '\0'))}) {
+    const std::string file = hostile_mcap(hostile_chunk(begin), 300);
+    ASSERT_GT(file.size(), 600'000U);
+    // They unpack to 19 GiB.
+    EXPECT_LT(unpacked_from(file), 300 * (std::uint64_t{1} << 20U) + 128 * file.size())
+        << begin.size();
+  }
+}
+
+/// A file with such chunks between its own.
+std::string file_around(const std::string& between) {
+  const temporary_path path;
+  auto writer = made_writer(path.text());
+  record_readings(writer, 0, 200);
+  EXPECT_TRUE(writer.flush());
+  const std::size_t middle = bytes_of(path.text()).size();
+  record_readings(writer, 200, 200);
+  EXPECT_TRUE(writer.flush());
+  const auto all = bytes_of(path.text());
+  std::string text(all.begin(), all.end());
+  return text.insert(middle, between);
+}
+
+TEST_F(HostileChunks, IntactChunksAroundThem_AreRead) {
+  const std::string file = file_around(repeated(hostile_chunk(), 300));
+  const contents found = contents_of_bytes(bytes_of_text(file));
+  EXPECT_EQ(found.readings, numbers(0, 400));
+  EXPECT_EQ(found.damage.chunks_lost, 300U);
+  EXPECT_EQ(found.damage.bytes_skipped, 300 * hostile_chunk().size());
+}
+
+TEST_F(HostileChunks, MessagesOfOtherPrograms_AreNoDamage) {
+  const contents found =
+      contents_of_bytes(bytes_of_text(file_around(repeated(chunk_of_a_foreign_message(), 3))));
+  EXPECT_EQ(found.readings, numbers(0, 400));
+  EXPECT_EQ(found.damage.chunks_lost, 0U);
+  EXPECT_EQ(found.damage.bytes_skipped, 0U);
+}
+
+TEST_F(HostileChunks, Cancelled_EndsSoonAndTheNextCallContinues) {
+  const std::string file = file_around(repeated(chunk_of_a_foreign_message(), 3));
+  std::uint64_t asked = 0;
+  bool is_cancelled = false;
+  reading_options how;
+  how.is_cancelled = [&] { return ++asked, is_cancelled; };
+  auto reader =
+      recording_access::open(std::make_shared<memory_source>(bytes_of_text(file)), "it", how);
+  ASSERT_TRUE(reader);
+  std::size_t readings = 0;
+  std::size_t cancelled = 0;
+  while (true) {
+    is_cancelled = cancelled < 3 && readings >= 100 * (cancelled + 1);
+    const auto item = reader->next();
+    if (!item) {
+      ASSERT_EQ(item.error(), problem::cancelled);
+      ++cancelled;
+      continue;
+    }
+    if (!*item) break;
+    if ((*item)->what == recorded_item::kind::from_device) ++readings;
+  }
+  EXPECT_EQ(readings, 400U);
+  EXPECT_EQ(cancelled, 3U);
+  EXPECT_FALSE(reader->damage().chunks_lost);
+  EXPECT_GE(asked, 3 * 64U) << "at least once for each megabyte";
+  is_cancelled = true;
+  const auto refused =
+      recording_access::open(std::make_shared<memory_source>(bytes_of_text(file)), "it", how);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), problem::cancelled);
+}
+
+TEST_F(HostileChunks, WokenReplay_ReturnsOnceWithCancelled) {
+  const temporary_path path;
+  std::ofstream(path.text(), std::ios::binary)
+      << file_around(repeated(chunk_of_a_foreign_message(), 3));
+  for (const double rate : {0.0, 1000.0}) {
+    std::optional<lidar> device;
+    int asked = 0;
+    replay_options how{.rate = rate};
+    how.range.is_cancelled = [&] {
+      if (device && ++asked == 100) device->wake();
+      return false;
+    };
+    auto from = replay::open(path.text(), how);
+    ASSERT_TRUE(from) << from.error().message();
+    device.emplace(*lidar::open(std::move(*from)));
+    ASSERT_TRUE(device->start());
+    std::size_t cancelled = 0;
+    while (true) {
+      const auto scan = device->next_scan(std::chrono::seconds(100));
+      ASSERT_FALSE(scan);
+      if (scan.error() == problem::end_of_input) break;
+      ASSERT_EQ(scan.error(), problem::cancelled);
+      ASSERT_GE(asked, 100);
+      ++cancelled;
+    }
+    EXPECT_EQ(cancelled, 1U) << rate;
+    std::size_t expected = 0;
+    for (const std::uint32_t i : numbers(0, 400)) expected += reading(i).size();
+    EXPECT_EQ(device->counts().bytes, expected) << rate;
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar::test

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// What a recording's LaserScan contains in directions without return.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "made_recording.hpp"
+#include "support/cdr_reader.hpp"
+#include "support/mcap_messages.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+/// In the bin of 90 degrees a return at 0.4 m and then none; in that of 180 degrees none.
+TEST(ScanRanges, DirectionsWithoutReturn_BecomeWhatTheOptionsSet) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  constexpr float max = 16.38375F;
+  const auto ranges_of = [](const recording_options& how) {
+    const temporary_path path;
+    auto writer = made_writer(path.text(), how);
+    record_readings(writer, 0, 10);
+    for (std::uint32_t revolution = 0; revolution < 2; ++revolution) {
+      std::array<point, 3> points{{{.angle_deg = 10.0F, .range_mm = 1000.0F},
+                                   {.angle_deg = 90.0F, .range_mm = 400.0F},
+                                   {.angle_deg = 180.0F, .flags = point_flags::no_return}}};
+      // The same beam, whose direction is 3.1 degrees less without return.
+      if (revolution == 1) points[1] = {.angle_deg = 86.9F, .flags = point_flags::no_return};
+      for (point& p : points) p.revolution = revolution;
+      scan whole;
+      whole.points = points;
+      writer.scan(whole);
+    }
+    EXPECT_TRUE(writer.close());
+    const auto file = bytes_of(path.text());
+    const auto messages = mcap_messages(std::string(file.begin(), file.end()), "/scan");
+    EXPECT_EQ(messages.size(), 2U);
+    cdr_reader last(messages.back());
+    for (int of_stamp = 0; of_stamp < 2; ++of_stamp)
+      static_cast<void>(last.number<std::uint32_t>());
+    EXPECT_EQ(last.text(), "laser");
+    for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(last.number<float>());
+    EXPECT_EQ(last.number<std::uint32_t>(), 4U);
+    std::array<float, 4> ranges{};
+    for (float& each : ranges) each = last.number<float>();
+    return ranges;
+  };
+  // From behind, which is 0 degrees of the device, against its sense.
+  constexpr std::size_t at_90 = 3;
+  constexpr std::size_t at_180 = 2;
+  const auto with = [&](const grid_options& grid, std::optional<near_limits> near = {}) {
+    return ranges_of({.scan_bins = 4, .grid = grid, .near = near});
+  };
+  EXPECT_EQ(with({})[at_180], infinity);
+  EXPECT_EQ(with({})[at_90], infinity) << "without the flag";
+  EXPECT_EQ(with({.no_return = no_return_as::max})[at_90], max);
+  EXPECT_TRUE(std::isnan(with({.no_return = no_return_as::nan})[at_180]));
+  EXPECT_TRUE(std::isnan(with({}, near_limits{})[at_90]));
+  EXPECT_EQ(with({}, near_limits{})[at_180], infinity);
+  EXPECT_EQ(with({.near_is_minus_infinity = true}, near_limits{})[at_90], -infinity);
+}
+
+}  // namespace
+}  // namespace g4lidar::test

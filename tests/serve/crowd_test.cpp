@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// More clients of g4-serve than it has places for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hub.hpp"
+#include "server.hpp"
+
+namespace {
+
+using serve::page;
+using serve::raw_client;
+using serve::Server;
+
+class Crowd : public Server {
+ protected:
+  static constexpr std::size_t places = g4_tool::hub::most_clients;
+
+  using clients = std::vector<std::unique_ptr<raw_client>>;
+  clients open_pages(std::size_t count) const {
+    clients all;
+    while (all.size() < count) all.push_back(open_page());
+    return all;
+  }
+};
+
+// RFC 6455, 7.4: 1013 is "try again later".
+const std::string refusal = "\x03\xF5the server has 128 clients already";
+
+TEST_F(Crowd, TwoHundredThatStay_TheFirst128AreServed) {
+  begin();
+  const clients all = open_pages(200);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i < places) {
+      ASSERT_TRUE(gets_scans(*all[i], 1)) << i;
+    } else {
+      ASSERT_EQ(all[i]->next_frame().value_or("closed"), refusal) << i;
+    }
+  }
+  // One that asks for something at once, and never reads.
+  const auto loud = open_page();
+  for (int i = 0; i < 100; ++i) loud->send_text(R"({"op":"play","paused":false})");
+  EXPECT_TRUE(gets_scans(*all.front(), 3));
+  EXPECT_TRUE(gets_scans(*all[places - 1], 3));
+  EXPECT_EQ(loud->next_frame().value_or("closed"), refusal);
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+TEST_F(Crowd, OnesThatEnd_MakeRoomForTheNext) {
+  begin();
+  for (int round = 0; round < 5; ++round) {
+    const clients all = open_pages(100);
+    for (const auto& each : all) ASSERT_TRUE(gets_scans(*each, 1)) << round;
+  }
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+TEST_F(Crowd, ClosedOnesThatKeepTheirSocket_MakeRoom) {
+  begin();
+  const clients all = open_pages(places);
+  for (const auto& each : all) each->send(raw_client::frame(8, "\x03\xE8"));
+  EXPECT_TRUE(gets_scans(*open_page(), 3));
+  EXPECT_EQ(end().code, 128 + SIGTERM);
+}
+
+}  // namespace

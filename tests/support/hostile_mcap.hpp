@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Small MCAP files that unpack to much, made by the formats of MCAP and zstd without the library.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace g4lidar::test {
+
+inline constexpr std::size_t hostile_chunk_size = std::size_t{64} << 20U;
+
+/// `size` bytes of `value`, little-endian.
+inline std::string little_endian(std::uint64_t value, std::size_t size) {
+  std::string text;
+  for (std::size_t i = 0; i < size; ++i) text += static_cast<char>(value >> (8 * i));
+  return text;
+}
+
+/// A record of MCAP, without the last `missing` bytes of its content.
+inline std::string mcap_record(std::uint8_t kind, const std::string& content,
+                               std::size_t missing = 0) {
+  return static_cast<char>(kind) + little_endian(content.size() + missing, 8) + content;
+}
+
+/// A zstd frame of `begin`, followed by zeros to 64 MiB: a raw block, and blocks of 128 KiB that repeat one byte.
+inline std::string zstd_zeros(const std::string& begin = {}) {
+  constexpr std::size_t largest_block = std::size_t{128} << 10U;
+  enum : std::uint32_t { raw = 0, repeated = 2 };
+  const auto block = [](std::size_t size, std::uint32_t type, bool is_last) {
+    return little_endian(size << 3U | type | (is_last ? 1U : 0U), 3);
+  };
+  // One segment, and its size in four bytes.
+  std::string frame = "\x28\xB5\x2F\xFD\xA0" + little_endian(hostile_chunk_size, 4);
+  if (!begin.empty()) frame += block(begin.size(), raw, false) + begin;
+  for (std::size_t left = hostile_chunk_size - begin.size(); left > 0;) {
+    const std::size_t size = left < largest_block ? left : largest_block;
+    left -= size;
+    frame += block(size, repeated, left == 0) + '\0';
+  }
+  return frame;
+}
+
+/// A chunk of 64 MiB, without a checksum, in about 2 kB.
+inline std::string hostile_chunk(const std::string& begin = {}) {
+  const std::string frame = zstd_zeros(begin);
+  return mcap_record(6, little_endian(0, 8) + little_endian(0, 8) +
+                            little_endian(hostile_chunk_size, 8) + little_endian(0, 4) +
+                            little_endian(4, 4) + "zstd" + little_endian(frame.size(), 8) + frame);
+}
+
+/// The begin of a record that fills the rest of such a chunk.
+inline std::string filling_record(std::uint8_t kind) {
+  return mcap_record(kind, {}, hostile_chunk_size - 9);
+}
+/// Such a chunk with one message, of a channel that is not described.
+inline std::string chunk_of_a_foreign_message() {
+  return hostile_chunk(filling_record(5) + little_endian(60'000, 2));
+}
+
+inline std::string repeated(const std::string& text, std::size_t count) {
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+inline std::string hostile_mcap(const std::string& chunk, std::size_t count) {
+  return "\x89MCAP0\r\n" + mcap_record(1, little_endian(0, 4) + little_endian(0, 4)) +
+         repeated(chunk, count);
+}
+
+}  // namespace g4lidar::test

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "verbs/problem_report.hpp"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <thread>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "cli/verbs.hpp"
+#include "g4lidar/version.hpp"
+#include "io/interrupt.hpp"
+#include "io/recorder.hpp"
+#include "io/source.hpp"
+#include "verbs/device_facts.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr auto recorded_time = std::chrono::seconds(10);
+
+/// The name of the recording beside the text. Where both may be replaced, an older recording is removed.
+std::string recording_path(const report_options& how) {
+  if (how.path == "-" || how.path.ends_with(".mcap")) {
+    throw bad_value("--report: " + in_quotes(how.path) +
+                    " cannot be the text of a report; its recording is put beside it");
+  }
+  std::string recording = std::filesystem::path(how.path).replace_extension(".mcap").string();
+  std::error_code unimportant;
+  if (how.overwrites) std::filesystem::remove(recording, unimportant);
+  for (const std::string& each : {how.path, recording}) {
+    if (how.overwrites || !std::filesystem::exists(each, unimportant)) continue;
+    throw failure(exit_code::bad_file, fmt::format("cannot write {}: it exists already. {}",
+                                                   in_quotes(each), advice_on_writing(EEXIST)));
+  }
+  return recording;
+}
+
+/// The line of `file` that begins with `name`, without it; empty where there is none.
+std::string line_after(const char* file, std::string_view name) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with(name)) return line.substr(name.size());
+  }
+  return {};
+}
+
+std::string versions() {
+  return fmt::format("g4-dump      {}.{}.{}\ncompiler     {}\n", G4LIDAR_VERSION_MAJOR,
+                     G4LIDAR_VERSION_MINOR, G4LIDAR_VERSION_PATCH, __VERSION__);
+}
+
+std::string machine() {
+  utsname names{};
+  ::uname(&names);  // not nodename: the name of the computer is nobody's business
+  std::array<double, 3> load{};
+  static_cast<void>(::getloadavg(load.data(), static_cast<int>(load.size())));
+  const char* const simulated = std::getenv("G4LIDAR_SIM_DIR");
+  std::string text = fmt::format(
+      "kernel       {} {} {}\nsystem       {}\nprocessors   {}\nload         {:.2f} {:.2f} {:.2f} "
+      "(1, 5 and 15 minutes)\n",
+      names.sysname, names.release, names.machine, line_after("/etc/os-release", "PRETTY_NAME="),
+      std::thread::hardware_concurrency(), load[0], load[1], load[2]);
+  if (simulated != nullptr) text += fmt::format("simulated    {} (G4LIDAR_SIM_DIR)\n", simulated);
+  return text;
+}
+
+/// What write() writes, or why it cannot.
+template <class Write>
+void attempt(output& out, Write write) {
+  try {
+    write();
+  } catch (const failure& why) {
+    out.write(fmt::format("{}\n", why.what()));
+  }
+}
+
+}  // namespace
+
+problem_report::problem_report(const common_options& source, const report_options& how)
+    : source_(source), recording_(recording_path(how)), text_(how.path) {
+  text_.write(fmt::format(
+      "A report of g4-dump doctor about a problem.\n\n"
+      "This file contains: this command line; the versions and the system; the serial ports with\n"
+      "their USB numbers and the programs that have them open; the diagnosis; the numbers and\n"
+      "settings of the lidar. The recording {} contains what the lidar saw: the shape of\n"
+      "the room. Read this file before you publish it, and remove what nobody should see.\n\n"
+      "Report problems here: {}\n",
+      std::filesystem::path(recording_).filename().string(), G4LIDAR_ISSUES));
+  text_.write(fmt::format("\n== command\ng4-dump {}\n", fmt::join(command_line(), " ")));
+  text_.write("\n== versions\n" + versions() + "\n== system\n" + machine() + "\n== ports\n");
+  attempt(text_, [this] { write_ports(text_); });
+  text_.write("\n== diagnosis\n");
+}
+
+void problem_report::finish() {
+  text_.write("\n== settings\n");
+  attempt(text_, [this] { write_facts(source_, text_); });
+  text_.write("\n== recording\n");
+  const source_kind kind = kind_of_source(source_.source);
+  const bool is_file = kind == source_kind::recording || kind == source_kind::raw_bytes;
+  const std::string attached = is_file ? path_of_source(source_.source) : recording_;
+  if (is_file) {
+    text_.write("The source is a file, and is not recorded again: attach it.\n");
+  } else if (interrupt() == 0) {
+    attempt(text_, [this] {
+      recording_job job;
+      job.common = source_;
+      job.path = recording_;
+      job.common.duration = recorded_time;
+      job.keeps_attempt = true;
+      job.shows_counts = false;
+      const recorded_result got = record(job);
+      text_.write(fmt::format("{}: {} from the lidar, {} to it, {}\n",
+                              std::filesystem::path(recording_).filename().string(),
+                              counted(got.file.bytes_from_device, "byte"), got.file.bytes_to_device,
+                              counted(got.file.scans, "scan")));
+    });
+  }
+  text_.commit();
+  std::error_code unimportant;
+  const bool has_recording = std::filesystem::exists(attached, unimportant);
+  logger::info(fmt::format(
+      "{0}{1}{2} {3} what a report of the problem needs. {0} states what it contains: read it, "
+      "then "
+      "attach {4}: {5}\n",
+      text_.title(), has_recording ? " and " : "", has_recording ? in_quotes(attached) : "",
+      has_recording ? "are" : "is", has_recording ? "both" : "it", G4LIDAR_ISSUES));
+}
+
+}  // namespace g4_tool

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What people who help with a problem need, in two files: a text, and a recording beside it.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "cli/common_options.hpp"
+#include "io/output.hpp"
+
+namespace g4_tool {
+
+struct report_options {
+  std::string path{};       ///< Of the text; empty: no report.
+  bool overwrites = false;  ///< Existing files, too.
+};
+
+class problem_report {
+ public:
+  /// Writes the versions, the system and the ports. Throws bad_value for a name that cannot be that of a
+  /// text, and a failure where a file exists already or cannot be made.
+  problem_report(const common_options& source, const report_options& how);
+
+  /// Adds words of the diagnosis.
+  void add(std::string_view text) { text_.write(text); }
+  /// Adds the settings and the counts of ten recorded seconds, or why there are none, and prints the names of the files.
+  void finish();
+
+ private:
+  const common_options source_;
+  const std::string recording_;
+  output text_;
+};
+
+}  // namespace g4_tool
