@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/core/session/command_channel.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/detail/command_channel.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "layout_votes.hpp"

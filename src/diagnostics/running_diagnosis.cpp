@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "read_times.hpp"
 #include "running_state.hpp"

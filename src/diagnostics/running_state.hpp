@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/detail/recorded_device.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
+#include "g4lidar/recording/recorded_device.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "running_scan.hpp"
 

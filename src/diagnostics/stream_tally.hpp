@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "g4lidar/core/clock/arrival_window.hpp"
 #include "g4lidar/core/stream_counter.hpp"
-#include "g4lidar/detail/arrival_window.hpp"
 #include "link_monitor.hpp"
 
 namespace g4lidar {

@@ -11,7 +11,7 @@
 #include "connection.hpp"
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
-#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
 #include "spin_up.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/saturating.hpp"
 #include "error_context.hpp"
-#include "g4lidar/detail/recorded_device.hpp"
+#include "g4lidar/recording/recorded_device.hpp"
 
 namespace g4lidar {
 

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/detail/recorded_device.hpp"
-#include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/recording/digest.hpp"
+#include "g4lidar/recording/recorded_device.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/scan.hpp"
 #include "record_text.hpp"
 

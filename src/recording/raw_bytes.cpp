@@ -19,7 +19,7 @@
 #include "format.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "transport/fd_port.hpp"
 

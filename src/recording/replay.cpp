@@ -17,8 +17,8 @@
 
 #include "core/saturating.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/detail/recorded_device.hpp"
-#include "g4lidar/detail/recorded_event.hpp"
+#include "g4lidar/recording/recorded_device.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 #include "replay_clock.hpp"
 #include "transport/fd_port.hpp"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Sine and cosine by a Taylor series up to 45 degrees, arctangent by a table of nine values and a
 // series.
-#include "exact.hpp"
+#include "sim/exact.hpp"
 
-#include "g4lidar/detail/sim/arithmetic.hpp"
+#include "g4lidar/sim/arithmetic.hpp"
 
 #include <array>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/random.hpp"
 
 namespace g4lidar::sim {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The line below points, compared with a sum over a grid of lines, and its arithmetic with libm.
-#include "g4lidar/detail/arrival_line.hpp"
+#include "g4lidar/core/clock/arrival_line.hpp"
 
 #include <gtest/gtest.h>
 

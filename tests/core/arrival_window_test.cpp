@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The window of earliest arrivals: what it keeps, and which part of it is used for the line.
-#include "g4lidar/detail/arrival_window.hpp"
+#include "g4lidar/core/clock/arrival_window.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lost samples, counted by the angle between packets.
-#include "g4lidar/detail/sample_counter.hpp"
+#include "g4lidar/core/clock/sample_counter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -20,7 +20,7 @@
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
 #include "support/test_scale.hpp"

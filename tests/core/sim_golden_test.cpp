@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "g4lidar/detail/sim/arithmetic.hpp"
+#include "g4lidar/sim/arithmetic.hpp"
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/scanner.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "diagnostics/doctor_bench.hpp"
-#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/random.hpp"
 #include "support/test_scale.hpp"
 
 namespace {

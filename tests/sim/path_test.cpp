@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "support/test_scale.hpp"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/detail/sim/random.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/fault.hpp"
+#include "g4lidar/sim/random.hpp"
 
 namespace g4lidar::simulation {
 

@@ -77,7 +77,7 @@ endmacro()
 
 # The rule of the simulator.
 macro(check_sim file other)
-  if(NOT "${other}" MATCHES "^(detail/|src/)?sim/")
+  if(NOT "${other}" MATCHES "^(src/)?sim/")
     set(may_see_transports OFF)
     if("${file}" MATCHES "/sim/(virtual_port|pty_port|setup|simulated_source|host/[a-z_]+)\\.[ch]pp$" AND "${other}" MATCHES
        "^(error|transport/transport|transport/connector)$")
@@ -97,7 +97,7 @@ set(all)
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "\\.hpp$" "" name "${header}")
   list(APPEND all "${name}")
-  string(REGEX MATCH "^(detail/)?sim/" in_sim "${name}")
+  string(REGEX MATCH "^sim/" in_sim "${name}")
   includes_of("include/g4lidar/${header}")
   set(below_${name} ${included})
   if(NOT in_sim AND NOT name IN_LIST names)

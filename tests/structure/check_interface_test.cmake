@@ -26,7 +26,7 @@ endfunction()
 
 expect("lidar.hpp includes 2 headers")
 foreach(file IN ITEMS README.md docs/sim.md docs/guide/scans.md examples/b/b.hpp tests/install/find/CMakeLists.txt)
-  foreach(text IN ITEMS "<g4lidar/detail/api.hpp>" "detail/api.hpp" "g4lidar::detail::api" "`detail/sim/random.hpp`")
+  foreach(text IN ITEMS "<g4lidar/detail/api.hpp>" "detail/api.hpp" "g4lidar::detail::api" "`detail/sim/api.hpp`")
     expect("names something of detail/" ${file} "${text}")
   endforeach()
   expect("lidar.hpp includes 2 headers" ${file} "in detail: details/more.hpp")

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/detail/wire_check.hpp"
+#include "g4lidar/core/wire_check.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/settings.hpp"
 

@@ -9,11 +9,11 @@
 #include <limits>
 #include <span>
 
+#include "g4lidar/core/clock/arrival_window.hpp"
+#include "g4lidar/core/clock/late_packets.hpp"
+#include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/packet.hpp"
-#include "g4lidar/detail/arrival_window.hpp"
-#include "g4lidar/detail/late_packets.hpp"
-#include "g4lidar/detail/sample_counter.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {

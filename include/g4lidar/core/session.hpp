@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "g4lidar/core/request.hpp"
+#include "g4lidar/core/session/session_machine.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/detail/session_machine.hpp"
 
 namespace g4lidar {
 

@@ -18,7 +18,7 @@
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/skipped.hpp"
 #include "g4lidar/core/time_packet.hpp"
-#include "g4lidar/detail/wire_check.hpp"
+#include "g4lidar/core/wire_check.hpp"
 
 namespace g4lidar {
 

@@ -11,11 +11,11 @@
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/detail/recorded_device.hpp"
-#include "g4lidar/detail/recorded_event.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/recording/digest.hpp"
+#include "g4lidar/recording/recorded_device.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
 
 namespace g4lidar {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {

@@ -12,9 +12,9 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/detail/api.hpp"
-#include "g4lidar/detail/sim/random.hpp"
-#include "g4lidar/detail/sim/scene_caster.hpp"
 #include "g4lidar/settings.hpp"
+#include "g4lidar/sim/random.hpp"
+#include "g4lidar/sim/scene_caster.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {

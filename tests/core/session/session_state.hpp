@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "g4lidar/detail/session_machine.hpp"
+#include "g4lidar/core/session/session_machine.hpp"
 
 namespace g4lidar::test {
 

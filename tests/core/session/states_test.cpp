@@ -15,7 +15,7 @@
 
 #include "core/session/played.hpp"
 #include "core/session/session_state.hpp"
-#include "g4lidar/detail/session_machine.hpp"
+#include "g4lidar/core/session/session_machine.hpp"
 #include "support/test_scale.hpp"
 
 namespace g4lidar::test {

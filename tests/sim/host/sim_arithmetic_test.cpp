@@ -9,9 +9,9 @@
 #include <limits>
 #include <numbers>
 
-#include "g4lidar/detail/sim/arithmetic.hpp"
-#include "g4lidar/detail/sim/random.hpp"
-#include "g4lidar/detail/sim/ray_caster.hpp"
+#include "g4lidar/sim/arithmetic.hpp"
+#include "g4lidar/sim/random.hpp"
+#include "g4lidar/sim/ray_caster.hpp"
 
 namespace {
 

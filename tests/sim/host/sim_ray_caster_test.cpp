@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "g4lidar/detail/sim/random.hpp"
-#include "g4lidar/detail/sim/ray_caster.hpp"
+#include "g4lidar/sim/random.hpp"
+#include "g4lidar/sim/ray_caster.hpp"
 
 namespace {
 

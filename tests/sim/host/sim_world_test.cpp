@@ -6,7 +6,7 @@
 #include <string_view>
 #include <variant>
 
-#include "g4lidar/detail/sim/random.hpp"
+#include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace {

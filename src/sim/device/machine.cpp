@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// The order of events, the power, and the USB plug.
+#include "sim/exact.hpp"
+
+#include "machine.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <initializer_list>
+#include <string_view>
+
+#include "sim/purpose.hpp"
+
+namespace g4lidar::sim {
+namespace {
+
+constexpr std::string_view boot_words = "G4 lidar booting\r\nmotor ok, laser ok, memory ok\r\n";
+
+bytes text_bytes(std::string_view text) noexcept {
+  // Characters are bytes.
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+}  // namespace
+
+device::machine::machine(const world& scene, const device_options& options,
+                         std::span<const fault> faults)
+    : to_host(options),
+      truths(options.truth_capacity),
+      log(options.log_capacity),
+      settings(first_settings(options)),
+      head(options),
+      options_(options),
+      faults_(faults, options.scanner.seed),
+      sampler_(scene, options.scanner),
+      wire_(options.baud),
+      garbage_(stream_for(options.scanner.seed, purpose::garbage)) {
+  assert(problem_with(options).empty());
+  assert(std::all_of(faults.begin(), faults.end(),
+                     [](const fault& f) { return problem_with(f).empty(); }));
+  use_settings();
+  if (options.boots_at_start) {
+    power_on(true);
+  } else {
+    keep_motor();
+  }
+  advance(0);
+}
+
+device::machine::event device::machine::next_event() const noexcept {
+  event first{forever_ns, happening::fault_edge};
+  const auto consider = [&first](std::int64_t at_ns, happening what) {
+    if (at_ns < first.at_ns) first = {at_ns, what};
+  };
+  consider(faults_.next_edge_ns(), happening::fault_edge);
+  consider(from_host_.next_byte_ns(), happening::host_byte);
+  consider(from_host_.next_command_ns(), happening::command_due);
+  consider(answers_.next_ns(), happening::answer_due);
+  consider(sampler_.next_ns(), happening::packet_measured);
+  consider(sampler_.end_ns(), happening::scan_end);
+  if (is_scanning() && settings.protection == power_down_protection::on) {
+    consider(fed_ns_ + options_.protection_ns, happening::protection);
+  }
+  consider(booted_ns_, happening::booted);
+  consider(death_ns_, happening::death);
+  consider(wire_.next_ns(), happening::byte_sent);
+  consider(to_host.next_ns(), happening::batch_done);
+  return first;
+}
+
+void device::machine::advance(std::int64_t to_ns) noexcept {
+  for (event next = next_event(); next.at_ns <= to_ns; next = next_event()) {
+    if (next.at_ns == forever_ns) return;
+    now_ns_ = std::max(now_ns_, next.at_ns);
+    handle(next.what);
+  }
+  now_ns_ = std::max(now_ns_, to_ns);
+}
+
+void device::machine::handle(happening what) noexcept {
+  switch (what) {
+    case happening::fault_edge:
+      return fault_edge();
+    case happening::host_byte:
+      return host_byte_arrives();
+    case happening::command_due:
+      return execute(from_host_.take_command());
+    case happening::answer_due:
+      return answers_.take_due(now_ns_, [this](const answer_bytes& due) { send(due); });
+    case happening::packet_measured:
+      return packet_measured();
+    case happening::scan_end:
+      return end_scan();
+    case happening::protection:
+      stopped_by_protection_ = true;
+      return end_scan();
+    case happening::booted:
+      return booted();
+    case happening::death:
+      return death();
+    case happening::byte_sent:
+      return byte_sent();
+    case happening::batch_done:
+      return to_host.flush(faults_);
+  }
+}
+
+// The next event for the host is a batch; if none is open, it cannot end before the next byte.
+std::int64_t device::machine::next_ns(std::int64_t now_ns) const noexcept {
+  if (to_host.available() > 0) return now_ns;
+  std::int64_t next = next_event().at_ns;
+  if (to_host.next_ns() != forever_ns && next == wire_.next_ns()) {
+    // More bytes for an open batch end no wait; anything else may.
+    next = to_host.next_ns();
+    for (const std::int64_t at : {faults_.next_edge_ns(), booted_ns_, death_ns_}) {
+      next = std::min(next, at);
+    }
+  }
+  return std::max(next, now_ns);
+}
+
+bool device::machine::is_silent() const noexcept {
+  return wire_.is_silent() && to_host.next_ns() == forever_ns && from_host_.is_empty() &&
+         answers_.next_ns() == forever_ns;
+}
+
+void device::machine::write(bytes from_host) noexcept {
+  if (plug.is_in()) from_host_.write(from_host, options_.baud, now_ns_);
+}
+
+void device::machine::fault_edge() noexcept {
+  faults_.set_time(now_ns_);
+  if (plug.update(faults_.find(fault_kind::unplug) != nullptr)) {
+    if (plug.is_in()) {
+      browned_out_ = false;
+      power_on(options_.settings_outlive_power);
+    } else {
+      power_off();
+      to_host.reset();
+      from_host_.unplug();
+    }
+  }
+  if (browned_out_ && faults_.find(fault_kind::brown_out) == nullptr) {
+    browned_out_ = false;
+    power_on(options_.settings_outlive_power);
+  }
+  if (faults_.begins(fault_kind::scanning) && state_ == state::idle) {
+    if (now_ns_ == 0) head.jump(settings.scan_frequency_chz * std::uint32_t{10}, 0);
+    begin_scan();
+  }
+}
+
+void device::machine::power_off() noexcept {
+  state_ = state::off;
+  booted_ns_ = death_ns_ = forever_ns;
+  sampler_.end();
+  answers_.clear();
+  from_host_.power_off();
+  wire_.reset();
+  stopped_by_protection_ = false;
+  keep_motor();
+}
+
+void device::machine::power_on(bool keep_settings) noexcept {
+  power_off();
+  if (!keep_settings) {
+    settings = first_settings(options_);
+    use_settings();
+  }
+  answers_.boot();
+  state_ = state::booting;
+  booted_ns_ = now_ns_ + options_.boot_ns;
+}
+
+void device::machine::booted() noexcept {
+  booted_ns_ = forever_ns;
+  state_ = state::idle;
+  if (options_.boot_text) wire_.send(text_bytes(boot_words), now_ns_);
+  if (options_.boot_information) send(answer_with(options_.info));
+  keep_motor();
+}
+
+// The motor has lowered the supply voltage too far.
+void device::machine::death() noexcept {
+  death_ns_ = forever_ns;
+  if (faults_.find(fault_kind::brown_out) != nullptr) {
+    power_off();
+    browned_out_ = true;
+  } else if (faults_.find(fault_kind::reboot) != nullptr) {
+    power_on(options_.settings_outlive_power);
+  }
+}
+
+}  // namespace g4lidar::sim

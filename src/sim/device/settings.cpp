@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// The commands of the protocol on the device's side, written from the protocol page and not from
+// the core.
+#include "sim/exact.hpp"
+
+#include "settings.hpp"
+
+#include <algorithm>
+
+namespace g4lidar::sim {
+namespace {
+
+answer_bytes answer_with_byte(std::uint8_t byte) noexcept {
+  return answer_with(response_kind::byte, std::array{byte});
+}
+
+answer_bytes answer_with_frequency(std::uint16_t chz) noexcept {
+  return answer_with(response_kind::frequency,
+                     std::array<std::uint8_t, 4>{static_cast<std::uint8_t>(chz & 0xFFU),
+                                                 static_cast<std::uint8_t>(chz >> 8), 0, 0});
+}
+
+// Sets the value, and answers with it.
+template <class Setting>
+answer_bytes set(Setting& stored, Setting wanted) noexcept {
+  stored = wanted;
+  return answer_with_byte(static_cast<std::uint8_t>(wanted));
+}
+
+answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
+                  const device_options& options) noexcept {
+  constexpr int least = min_scan_frequency_chz;
+  const int most = options.highest_frequency_chz;
+  const int wanted = frequency_chz + by_chz;
+  const bool possible = wanted >= least && wanted <= most;
+  if (possible || options.frequency_at_limit == at_limit::clamp) {
+    frequency_chz = static_cast<std::uint16_t>(std::clamp(wanted, least, most));
+  }
+  return answer_with_frequency(frequency_chz);
+}
+
+ranging_frequency next_of(ranging_frequency now) noexcept {
+  return static_cast<ranging_frequency>((static_cast<unsigned>(now) + 1U) % 3U);
+}
+
+power_down_protection other_than(power_down_protection now) noexcept {
+  return now == power_down_protection::on ? power_down_protection::off : power_down_protection::on;
+}
+
+}  // namespace
+
+answer_bytes answer_with(response_kind kind, bytes content) noexcept {
+  answer_bytes answer;
+  const response_layout& layout = response_layouts[static_cast<std::size_t>(kind)];
+  std::copy(layout.header.begin(), layout.header.end(), answer.data.begin());
+  std::copy(content.begin(), content.end(), answer.data.begin() + response_header_size);
+  answer.size = static_cast<std::uint8_t>(response_header_size + content.size());
+  return answer;
+}
+
+answer_bytes answer_with(const device_information& info) noexcept {
+  std::array<std::uint8_t, max_response_content> content{info.model, info.firmware_minor,
+                                                         info.firmware_major, info.hardware};
+  for (std::size_t i = 0; i < info.serial_digits.size(); ++i) {
+    content[4 + i] = static_cast<std::uint8_t>(info.serial_digits[i] - '0');
+  }
+  return answer_with(response_kind::device_info, content);
+}
+
+answer_bytes answer_with(const health& condition) noexcept {
+  return answer_with(
+      response_kind::health,
+      std::array<std::uint8_t, 3>{static_cast<std::uint8_t>(condition.status),
+                                  static_cast<std::uint8_t>(condition.error_code & 0xFFU),
+                                  static_cast<std::uint8_t>(condition.error_code >> 8)});
+}
+
+device_settings first_settings(const device_options& options) noexcept {
+  device_settings settings = options.initial;
+  settings.scan_frequency_chz = options.scanner.scan_frequency_chz;
+  settings.ranging = options.scanner.ranging;
+  return settings;
+}
+
+std::optional<answer_bytes> apply(command code, device_settings& now,
+                                  const device_options& options) noexcept {
+  switch (code) {
+    case command::low_power_on:
+      return set(now.idle_power, low_power::on);
+    case command::low_power_off:
+      return set(now.idle_power, low_power::off);
+    case command::low_power_query:
+      return set(now.idle_power, now.idle_power);
+    case command::motor_clockwise:
+      return set(now.direction, motor_direction::clockwise);
+    case command::motor_counter_clockwise:
+      return set(now.direction, motor_direction::counter_clockwise);
+    case command::motor_direction_query:
+      if (!options.answers_direction) return std::nullopt;
+      return set(now.direction, now.direction);
+    case command::frequency_up_0_1_hz:
+      return step(now.scan_frequency_chz, 10, options);
+    case command::frequency_down_0_1_hz:
+      return step(now.scan_frequency_chz, -10, options);
+    case command::frequency_up_1_hz:
+      return step(now.scan_frequency_chz, 100, options);
+    case command::frequency_down_1_hz:
+      return step(now.scan_frequency_chz, -100, options);
+    case command::frequency_query:
+      return answer_with_frequency(now.scan_frequency_chz);
+    case command::constant_frequency_on:
+      return set(now.constancy, constant_frequency::on);
+    case command::constant_frequency_off:
+      return set(now.constancy, constant_frequency::off);
+    case command::ranging_next:
+      return set(now.ranging, next_of(now.ranging));
+    case command::ranging_query:
+      return set(now.ranging, now.ranging);
+    case command::protection_toggle:
+      return set(now.protection, other_than(now.protection));
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace g4lidar::sim
