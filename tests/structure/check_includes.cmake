@@ -10,6 +10,7 @@
 #   transport and connector;
 # - src/driver/source, which opens `sim:`, and the C interface, src/c, also use the public headers of the simulator;
 # - a tool includes public headers outside of detail/, and its own.
+# What a public header declares without defining it (class x;) is below it, too.
 # No header is in a circle of includes. Only eigen.hpp includes Eigen.
 
 cmake_minimum_required(VERSION 3.22)
@@ -111,6 +112,34 @@ foreach(header IN LISTS headers)
       list(APPEND faults "${header} includes ${other}.hpp, which has no layer")
     elseif(NOT height_of_${other} LESS height_of_${name})
       list(APPEND faults "${header} (layer ${layer_of_${name}}) includes ${other}.hpp (layer ${layer_of_${other}}), which is not below it")
+    endif()
+  endforeach()
+endforeach()
+
+# ---- forward declarations of public headers -------------------------------------------------------
+# Where each class is defined, by its name. A class of one header that another one declares has a layer.
+file(GLOB_RECURSE inner RELATIVE "${ROOT}" "${ROOT}/src/*.hpp")
+list(TRANSFORM headers PREPEND "include/g4lidar/" OUTPUT_VARIABLE outer)
+foreach(file IN LISTS outer inner)
+  file(STRINGS "${ROOT}/${file}" lines REGEX "^(class|struct) [^;]*$")
+  string(REGEX REPLACE "^include/g4lidar/|\\.hpp$" "" name "${file}")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE " (final|:|{).*" "" type "${line}")
+    string(REGEX REPLACE ".* " "" type "${type}")
+    set(defined_${type} "${name}")
+  endforeach()
+endforeach()
+foreach(header IN LISTS headers)
+  string(REGEX REPLACE "\\.hpp$" "" name "${header}")
+  file(STRINGS "${ROOT}/include/g4lidar/${header}" lines REGEX "^(class|struct) [a-z0-9_]+.$")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^(class|struct) ([a-z0-9_]+).*" "\\2" type "${line}")
+    set(of "${defined_${type}}")
+    if(of MATCHES "^src/" AND NOT of IN_LIST names)
+      string(REGEX MATCH "^src/[a-z]+" of "${of}")
+    endif()
+    if(NOT of STREQUAL name AND DEFINED layer_of_${of} AND DEFINED layer_of_${name} AND layer_of_${of} GREATER layer_of_${name})
+      list(APPEND faults "${header} (layer ${layer_of_${name}}) declares ${type} of ${of} (layer ${layer_of_${of}}), which is not below it")
     endif()
   endforeach()
 endforeach()

@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.22)
 file(WRITE "${SCRATCH}/layers.txt" "0 ground earth src/core\n1 wall\n# cable\n1 src/attic/cable\n2 roof error src/attic\n")
 
-function(tree name) # <file> <text>...: the valid tree with these files instead
+function(tree name) # <file> <text>...: the valid tree with these files instead; | is a semicolon
   set(to "${SCRATCH}/${name}")
   file(REMOVE_RECURSE "${to}")
   foreach(header ground earth)
@@ -25,6 +25,7 @@ function(tree name) # <file> <text>...: the valid tree with these files instead
   file(WRITE "${to}/tools/dump/main.cpp" "#include \"io/in.hpp\"\n#include \"g4lidar/roof.hpp\"\n")
   while(ARGN)
     list(POP_FRONT ARGN file text)
+    string(REPLACE "|" ";" text "${text}")
     file(WRITE "${to}/${file}" "${text}\n")
   endwhile()
 endfunction()
@@ -80,6 +81,10 @@ tree(new_directory src/cellar/barrel.cpp "")
 expect(new_directory "src/cellar has no layer")
 tree(source_eigen src/attic/lamp.cpp "#include <Eigen/Core>")
 expect(source_eigen "src/attic/lamp.cpp includes Eigen.*only eigen.hpp may")
+tree(declares include/g4lidar/roof.hpp "class tile final {" include/g4lidar/wall.hpp "class tile|")
+expect(declares "wall.hpp .layer 1. declares tile of roof .layer 2., which is not below it")
+tree(declares_source src/attic/beam.hpp "struct API beam : wood {" include/g4lidar/wall.hpp "struct beam|")
+expect(declares_source "wall.hpp .layer 1. declares beam of src/attic .layer 2., which is not below it")
 tree(sim_source src/sim/world.cpp "#include \"core/stone.hpp\"")
 expect(sim_source "src/sim/world.cpp includes src/core/stone")
 tree(sim_source_above src/sim/world.cpp "#include \"g4lidar/error.hpp\"")

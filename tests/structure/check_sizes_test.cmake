@@ -5,6 +5,7 @@
 
 cmake_minimum_required(VERSION 3.22)
 
+set(most_functions 99)
 function(expect members lines message) # <file> <text>...
   file(REMOVE_RECURSE "${SCRATCH}")
   file(WRITE "${SCRATCH}/tests/test.cpp" "")
@@ -17,7 +18,7 @@ function(expect members lines message) # <file> <text>...
   endwhile()
   execute_process(
     COMMAND "${CMAKE_COMMAND}" "-DROOT=${SCRATCH}" "-DAWK=${AWK}" -DMOST_MEMBERS=${members} -DMOST_LINES=${lines}
-            -P "${SCRIPT}"
+            -DMOST_FUNCTIONS=${most_functions} -P "${SCRIPT}"
     OUTPUT_VARIABLE output ERROR_VARIABLE output
   )
   string(REGEX REPLACE "[ \n]+" " " output "${output}")
@@ -50,5 +51,16 @@ expect(3 99 "include/y.hpp: y has 4 data members" include/b.hpp "class b { int a
 )
 expect(1 99 "src/x.cpp: inner has 2 data members" src/x.cpp "void f() {\n  struct inner { int a, b| }|\n}")
 expect(3 99 "3 classes" src/x.hpp "class device_options { int a, b, c, d| }| struct y {}| class z { int e = 1'000| }|")
+
+# functions(<number> <class x>): likewise, of functions besides constructors, destructor, defaulted and deleted ones.
+function(functions number text)
+  set(most_functions ${number})
+  expect(9 99 "classes, each with at most" src/x.hpp "${text}")
+  math(EXPR most_functions "${number} - 1")
+  expect(9 99 "src/x.hpp: x has ${number} functions" src/x.hpp "${text}")
+endfunction()
+functions(1 "class x {\n  x()| explicit x(int a) : a_(a) {}\n  ~x()| x(const x&) = delete| x& operator=(const x&) = default|\n  int a() const { return a_| }\n  int a_ = f(3)|\n}|")
+functions(4 "class x {\n  ^^nodiscard~~ bool operator()(int) const { return {}| }\n  template <class T>\n  void f(T&& use) { use()| }\n  friend void g(x)|\n  static int h()| virtual void i() = 0|\n  std::function<void(int)> j| void (*k)(int)| using l = int(int)|\n}|")
+functions(2 "class x {\n  struct y { int a()| int b() { return 1| } }|\n  int a() {\n    struct z { int c() { return 2| } }|\n    return b()|\n  }\n  int b()|\n}|")
 expect(3 3 "bench/long.cpp has more than 3 lines" src/x.hpp "1\n2\n3" bench/long.cpp "1\n2\n3\n4")
 expect(3 4 "3 files of at most 4 lines" src/x.hpp "1\n2\n3" bench/long.cpp "1\n2\n3\n4")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-# awk -v most=<number> -f count_members.awk <header or source>...
+# awk -v most=<number> -v most_functions=<number> -f count_members.awk <header or source>...
 #
 # Prints "<file>: <class> has <n> data members" for each class with more than <most> of them, those
-# of its base classes in the same files included. Several declarators are several members; static
+# of its base classes in the same files included, and "<file>: <class> has <n> functions" for each class with
+# more than <most_functions> of its own, without constructors, destructor and what is defaulted or deleted. Several declarators are several members; static
 # ones, types and functions are none. A nested class counts for itself; the members of an unnamed
 # one belong to the class around it. Base classes are found by their last name.
 # Not understood: members with an elaborated type (`struct a b;`).
@@ -35,6 +36,14 @@ function is_function(text) {
   return text ~ /\(/ && text !~ /\( \*/ || text ~ /(^| )operator( |$)/
 }
 
+# 1 if it declares or defines a function of the class, which is not special.
+function functions_in(text, at) {
+  if (text ~ /^(using|typedef|friend|static_assert|enum|union|extern) / || !is_function(text)) return 0
+  if (text ~ / = (default|delete) *$/ || text ~ /~/) return 0
+  sub(/ ?\(.*/, "", text)
+  return text !~ ("(^| )" name_of[at] "$")
+}
+
 function declarators(text) {
   if (text == "") return 0
   if (text ~ /^(using|typedef|friend|static_assert|template|enum|class|struct|union|extern) /) return 0
@@ -47,6 +56,7 @@ function declarators(text) {
 # ---- tokens --------------------------------------------------------------------------------------
 function open_brace(    text, words, count, i, name) {
   text = simple(statement[depth])
+  if (kind[depth] == "class" && !pending[depth] && !is_class(text)) functions[class[depth]] += functions_in(text, class[depth])
   pending[depth] = 0
   ++depth
   kind[depth] = "block"
@@ -98,6 +108,7 @@ function end_statement(    text, at) {
       own[at] += text == "" ? 0 : declarators("a " text)
     } else {
       own[at] += declarators(text)
+      if (!pending[depth]) functions[at] += functions_in(text, at)
     }
   }
   statement[depth] = ""
@@ -189,6 +200,7 @@ END {
   for (each = 1; each <= classes; ++each) {
     members = all_members(each, 0)
     if (members > most) print file_of[each] ": " name_of[each] " has " members " data members"
+    if (functions[each] > most_functions) print file_of[each] ": " name_of[each] " has " functions[each] " functions"
   }
   print classes " classes"
 }
