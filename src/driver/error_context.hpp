@@ -41,8 +41,9 @@ class error_context {
     const std::string_view what = request_words[static_cast<std::size_t>(wanted.what)];
     if (what.empty()) return *this;
     add(", ").add(what);
-    if (wanted.what == ask::set_scan_frequency) return add(" ").add(scan_frequency{wanted.value});
-    if (wanted.what == ask::set_ranging && wanted.value < ranging_words.size()) {
+    if (wanted.what == request_kind::set_scan_frequency)
+      return add(" ").add(scan_frequency{wanted.value});
+    if (wanted.what == request_kind::set_ranging && wanted.value < ranging_words.size()) {
       return add(ranging_words[wanted.value]);
     }
     return *this;
@@ -69,7 +70,7 @@ class error_context {
                                                                   "restart",
                                                                   "",
                                                                   ""};
-  static_assert(request_words.size() == static_cast<std::size_t>(ask::stop) + 1);
+  static_assert(request_words.size() == static_cast<std::size_t>(request_kind::stop) + 1);
 
   static constexpr std::array<std::string_view, 3> ranging_words{" 4 kHz", " 8 kHz", " 9 kHz"};
 

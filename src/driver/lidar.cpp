@@ -181,7 +181,7 @@ result<answer> lidar::ask(const request& wanted, while_scanning how) {
   if (how > while_scanning::stop_and_resume) {
     return failure(task::asking, problem::bad_option, "how: refuse or stop_and_resume");
   }
-  if (wanted.what > g4lidar::ask::stop) {
+  if (wanted.what > g4lidar::request_kind::stop) {
     return failure(task::asking, problem::bad_option, "a request that namespace requests has");
   }
   return driver_->ask(wanted, how);

@@ -200,17 +200,17 @@ result<void> live_driver::take_notice() {
       break;
     case notice::protection_found_on:
       report(lidar_event::kind::protection_found_on);
-      if (wants_scan_ && !set_up_again()) return tl::unexpected(fallen_silent());
+      if (wants_scan_ && !set_up_again()) return tl::unexpected(silence_error());
       break;
     case notice::spinning_up:
       report(lidar_event::kind::spinning_up);
       return {};
     case notice::restarted:
       report(lidar_event::kind::restarted);
-      if (wants_scan_ && !set_up_again()) return tl::unexpected(fallen_silent());
+      if (wants_scan_ && !set_up_again()) return tl::unexpected(silence_error());
       break;
     case notice::stalled:
-      return tl::unexpected(fallen_silent());
+      return tl::unexpected(silence_error());
   }
   begin_points();
   return {};
@@ -253,7 +253,7 @@ result<void> live_driver::start() {
   wants_scan_ = true;
   if (goes_on) return {};  // a start that was woken, and is complete now
   pipeline_.drop_scan();
-  setup_.forgive();
+  setup_.reset_short_scans();
   spin_up_.forget();
   add_start();
   const auto started = run_setup();

@@ -113,8 +113,8 @@ class live_driver final : public feeder {
   void back_again();
   [[nodiscard]] task task_of(const request& asked) const noexcept;
   [[nodiscard]] error error_of(const outcome& done) const;
-  [[nodiscard]] error fallen_silent() const;
-  [[nodiscard]] error spoilt(const error& why) const;
+  [[nodiscard]] error silence_error() const;
+  [[nodiscard]] error error_after(const error& why) const;
 
   lidar_options options_;
   session session_;

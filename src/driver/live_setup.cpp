@@ -90,18 +90,18 @@ void live_driver::remember(const outcome& done) {
     if (const auto* value = std::get_if<Setting>(&done.value)) option = *value;
   };
   switch (done.asked.what) {
-    case ask::set_low_power:
+    case request_kind::set_low_power:
       return keep(options_.idle);
-    case ask::set_direction:
+    case request_kind::set_direction:
       return keep(options_.direction);
-    case ask::step_scan_frequency:
-    case ask::set_scan_frequency:
+    case request_kind::step_scan_frequency:
+    case request_kind::set_scan_frequency:
       return keep(options_.frequency);
-    case ask::set_constant_frequency:
+    case request_kind::set_constant_frequency:
       return keep(options_.constant);
-    case ask::set_ranging:
+    case request_kind::set_ranging:
       return keep(options_.ranging);
-    case ask::set_protection:
+    case request_kind::set_protection:
       return keep(options_.protection);
     default:
       return;
@@ -110,11 +110,12 @@ void live_driver::remember(const outcome& done) {
 
 /// The device was restarted by the caller, or perhaps by itself: its scan was not resumed at once.
 void live_driver::restore_settings(const outcome& done) {
-  const bool is_wanted = done.asked.what == ask::restart;
+  const bool is_wanted = done.asked.what == request_kind::restart;
   if (!wants_scan_ || (!is_wanted && done.starts <= 1)) return;
-  if (is_wanted) setup_.forgive();  // requests of the caller are not limited
+  if (is_wanted) setup_.reset_short_scans();  // requests of the caller are not limited
   static_cast<void>(set_up_again());
-  if (is_wanted) setup_.forgive();  // and a scan that never begins afterwards is started once more
+  if (is_wanted)
+    setup_.reset_short_scans();  // and a scan that never begins afterwards is started once more
 }
 
 result<void> live_driver::finish_step(const outcome& done) {
@@ -146,7 +147,7 @@ result<void> live_driver::give_up(const error& why) {
   const bool is_again = setup_.is_again();
   const bool is_silent = why == problem::silence || why == problem::timeout;
   setup_.clear();
-  if (is_again && is_silent) return tl::unexpected(fallen_silent());
+  if (is_again && is_silent) return tl::unexpected(silence_error());
   const bool of_use = stage_ == stage::preparing && why != problem::silence;
   const bool goes_on = wants_scan_ && (reconnection_.is_under_way() || is_again);
   if (!of_use || goes_on) return tl::unexpected(why);
@@ -190,17 +191,17 @@ void live_driver::back_again() {
 }
 
 /// A device that has ended a scan and does not continue.
-error live_driver::fallen_silent() const {
+error live_driver::silence_error() const {
   if (pipeline_.has_begun()) return {task::reading, problem::stalled, connection_.name()};
   return {task::starting, problem::brown_out, connection_.name()};
 }
 
 task live_driver::task_of(const request& asked) const noexcept {
-  if (asked.what == ask::start) return task::starting;
-  if (asked.what == ask::stop) return task::stopping;
+  if (asked.what == request_kind::start) return task::starting;
+  if (asked.what == request_kind::stop) return task::stopping;
   if (stage_ == stage::identifying) return task::opening;
   if (stage_ != stage::preparing) return task::asking;
-  return asked.what == ask::health ? task::starting : task::configuring;
+  return asked.what == request_kind::health ? task::starting : task::configuring;
 }
 
 error live_driver::error_of(const outcome& done) const {
@@ -213,11 +214,13 @@ error live_driver::error_of(const outcome& done) const {
     }
     return {doing, problem::not_reached, about};
   }
-  if (done.how == verdict::still_scanning) return spoilt({doing, problem::does_not_stop, about});
+  if (done.how == verdict::still_scanning)
+    return error_after({doing, problem::does_not_stop, about});
   const bool is_setting_up = stage_ == stage::identifying || stage_ == stage::preparing;
-  if (done.heard_nothing() && is_setting_up) return spoilt({doing, problem::silence, about});
-  if (done.heard_noise_only()) return spoilt({doing, problem::garbage, about});
-  return spoilt({doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about});
+  if (done.heard_nothing() && is_setting_up) return error_after({doing, problem::silence, about});
+  if (done.heard_noise_only()) return error_after({doing, problem::garbage, about});
+  return error_after(
+      {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about});
 }
 
 }  // namespace g4lidar

@@ -42,7 +42,7 @@ class read_schedule {
   }
 
   /// `count` bytes were read.
-  void came(std::size_t count, std::int64_t read_ns) noexcept {
+  void received(std::size_t count, std::int64_t read_ns) noexcept {
     const std::int64_t took_ns = static_cast<std::int64_t>(count) * serial_byte_ns_;
     ahead_ns_ = std::max(ahead_ns_ + took_ns - (read_ns - read_ns_), -longest_stall_ns);
     ahead_ns_ = std::min(ahead_ns_, 10 * most_ahead_ns);
@@ -57,7 +57,7 @@ class read_schedule {
 
   /// No packet was complete at next_ns(): the bytes were held back. Waits are tried again after
   /// some reads, less often after each failure.
-  void in_vain() noexcept {
+  void nothing_complete() noexcept {
     vain_ = std::min(2 * vain_ + 1, most_unpaced);
     unpaced_ = vain_;
   }

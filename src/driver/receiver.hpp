@@ -44,7 +44,7 @@ class receiver {
     read_until_ns_ = got->count == 0 ? from.now_ns() : got->arrival_ns;
     if (got->count == 0) return got;
     last_bytes_ns_ = got->arrival_ns;
-    pace_.came(got->count, got->arrival_ns);
+    pace_.received(got->count, got->arrival_ns);
     return got;
   }
   /// The bytes of the last read.
@@ -89,7 +89,7 @@ class receiver {
       if (paused || woken) {  // a transport that broke is read to its end, like any other
         const auto got = from.read({buffer_.get(), size}, at_once);
         if (woken || is_batched || until == deadline_ns || !got || got->count > 0) return got;
-        if (how == reading::paced) pace_.in_vain();
+        if (how == reading::paced) pace_.nothing_complete();
       }
     }
     return from.read({buffer_.get(), size}, is_batched ? at_once : deadline_ns);

@@ -17,7 +17,7 @@ result<void> live_driver::connect() {
   receiver_.reset(on.baud(), on.kept_bytes(), now_ns());
   pipeline_.follow(connection_.on().baud());
   setup_.clear();
-  setup_.forgive();  // the session has forgotten the scans before, too
+  setup_.reset_short_scans();  // the session has forgotten the scans before, too
   spin_up_.forget();
   stage_ = stage::identifying;
   record(recorded_event::kind::held);
@@ -28,7 +28,7 @@ result<void> live_driver::connect() {
 result<void> live_driver::wait_for_return(std::int64_t deadline_ns) {
   if (now_ns() < reconnection_.next_attempt_ns()) {
     connection_.pause(std::min(deadline_ns, reconnection_.next_attempt_ns()));
-    if (connection_.from().may_be_back()) reconnection_.hurry(now_ns());
+    if (connection_.from().may_be_back()) reconnection_.retry_now(now_ns());
     if (now_ns() < reconnection_.next_attempt_ns()) return {};
   }
   if (auto connected = connect(); !connected) return break_off(connected.error());
@@ -38,7 +38,7 @@ result<void> live_driver::wait_for_return(std::int64_t deadline_ns) {
 
 /// The connection has broken, or is of no use. The bytes received so far are still processed.
 result<void> live_driver::break_off(const error& broken) {
-  lost_ = spoilt(broken);
+  lost_ = error_after(broken);
   if (stage_ <= stage::identifying) return hang_up();
   leave_stopped(lost_);
   cut();
@@ -111,7 +111,7 @@ scan_expectation live_driver::expects() const noexcept {
 }
 
 /// Another process on the port explains more than its effects.
-error live_driver::spoilt(const error& why) const {
+error live_driver::error_after(const error& why) const {
   return connection_.is_open() ? with_port_conflict(why, connection_.on()) : why;
 }
 

@@ -21,7 +21,7 @@ class reconnection {
     backoff_ns_ = std::min(std::max(2 * backoff_ns_, first_pause_ns), longest_ns);
   }
   /// A port has changed: the next attempt is immediate, and the pauses are short again.
-  void hurry(std::int64_t now_ns) noexcept {
+  void retry_now(std::int64_t now_ns) noexcept {
     next_attempt_ns_ = now_ns;
     backoff_ns_ = first_pause_ns;
   }

@@ -57,7 +57,7 @@ class setup_sequence {
   /// Whether begin_again() was called for the steps, until clear().
   [[nodiscard]] bool is_again() const noexcept { return is_again_; }
   /// The earlier calls of begin_again() do not count any more.
-  void forgive() noexcept { short_scans_ = 0; }
+  void reset_short_scans() noexcept { short_scans_ = 0; }
   void clear() noexcept {
     left_ = 0;
     is_again_ = false;

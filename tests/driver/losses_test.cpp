@@ -199,16 +199,16 @@ TEST(SetupSequence, RepeatedSteps_NeverOverflow) {
   for (; !sequence.is_done(); sequence.finish_next()) {
     asked.push_back(request_of(sequence.next(), all).what);
   }
-  const std::vector wanted{ask::device_info,
-                           ask::stop,
-                           ask::health,
-                           ask::set_ranging,
-                           ask::set_scan_frequency,
-                           ask::set_direction,
-                           ask::set_constant_frequency,
-                           ask::set_low_power,
-                           ask::set_protection,
-                           ask::start};
+  const std::vector wanted{request_kind::device_info,
+                           request_kind::stop,
+                           request_kind::health,
+                           request_kind::set_ranging,
+                           request_kind::set_scan_frequency,
+                           request_kind::set_direction,
+                           request_kind::set_constant_frequency,
+                           request_kind::set_low_power,
+                           request_kind::set_protection,
+                           request_kind::start};
   EXPECT_EQ(asked, wanted);
 }
 
@@ -219,7 +219,8 @@ TEST(SetupSequence, NoOptions_QueriesHealthAndSampleRateOnly) {
   for (; !sequence.is_done(); sequence.finish_next()) {
     asked.push_back(request_of(sequence.next(), {}).what);
   }
-  EXPECT_EQ(asked, (std::vector{ask::health, ask::get_ranging, ask::start}));
+  EXPECT_EQ(asked,
+            (std::vector{request_kind::health, request_kind::get_ranging, request_kind::start}));
   EXPECT_FALSE(is_needed(setup_step::ranging, {}));
   EXPECT_FALSE(is_needed(setup_step::health, {}));
   EXPECT_TRUE(is_needed(setup_step::start, {}));

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hub.hpp"
+#include "client_registry.hpp"
 #include "server.hpp"
 
 namespace {
@@ -19,7 +19,7 @@ using serve::Server;
 
 class Crowd : public Server {
  protected:
-  static constexpr std::size_t places = g4_tool::hub::most_clients;
+  static constexpr std::size_t places = g4_tool::client_registry::most_clients;
 
   using clients = std::vector<std::unique_ptr<raw_client>>;
   clients open_pages(std::size_t count) const {

@@ -45,11 +45,11 @@ struct memory {
 
 /// A client that takes all that waits for it after each so many scans; 0: never.
 struct reader {
-  hub::client* who;
+  client_registry::client* who;
   unsigned every;
   std::uint64_t messages = 0;
 
-  void read(hub& from, std::uint64_t scan) {
+  void read(client_registry& from, std::uint64_t scan) {
     if (every == 0 || scan % every != 0) return;
     while (from.take(*who)) ++messages;
   }
@@ -99,7 +99,7 @@ class Served : public cli::scratch, public station_listener {
 
   std::uint64_t scans_ = 0;
   int openings_ = 0;
-  hub center_{"session", false, {.set = {}, .play = {}}, [] {}};
+  client_registry center_{"session", false, {.set = {}, .play = {}}, [] {}};
   scan_publisher* publisher_ = nullptr;
 
  private:
@@ -165,7 +165,7 @@ class Damaged : public Served {
     return true;
   }
 
-  hub::client* page_ = center_.connect(client_kind::page, nullptr);
+  client_registry::client* page_ = center_.connect(client_kind::page, nullptr);
   std::vector<bool> are_whole_;
 };
 
@@ -223,7 +223,7 @@ class Ranges : public Served {
     return static_cast<std::size_t>(std::ranges::count(ranges, value));
   }
 
-  hub::client* viewer_ = center_.connect(client_kind::foxglove, nullptr);
+  client_registry::client* viewer_ = center_.connect(client_kind::foxglove, nullptr);
   std::vector<std::uint8_t> last_;
   static constexpr float infinity = std::numeric_limits<float>::infinity();
 };
@@ -258,7 +258,7 @@ class Setting : public Served {
     return !is_done_;
   }
 
-  hub::client* page_ = center_.connect(client_kind::page, nullptr);
+  client_registry::client* page_ = center_.connect(client_kind::page, nullptr);
   bool is_early_ = false;
   bool is_done_ = false;
 };

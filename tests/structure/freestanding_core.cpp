@@ -192,7 +192,7 @@ double restart(sensor_clock& clock, std::int64_t& bound_ns) {
 
 // ---- session ---------------------------------------------------------------------------------
 std::optional<refusal> ask_device(session& talk, const request& wanted, std::int64_t now_ns) {
-  if (wanted.what == ask::restart) talk.reset();
+  if (wanted.what == request_kind::restart) talk.reset();
   return talk.begin(wanted, now_ns, while_scanning::stop_and_resume);
 }
 std::optional<outcome> hear(session& talk, const event& found, std::int64_t now_ns) {

@@ -13,7 +13,7 @@
 #include "cli/logger.hpp"
 #include "cli/serve_verb.hpp"
 #include "cli/verbs.hpp"
-#include "hub.hpp"
+#include "client_registry.hpp"
 #include "io/interrupt.hpp"
 #include "io/service_watch.hpp"
 #include "io/station.hpp"
@@ -37,16 +37,17 @@ class lidar_server {
  public:
   explicit lidar_server(const serve_options& options)
       : options_(options),
-        hub_(new_session(), options.allows_set,
-             {.set = [this](const set_request& wanted,
-                            auto done) { publisher_.set(wanted, std::move(done)); },
-              .play = [this](const play_request& wanted) { publisher_.play(wanted); }},
-             [this] { wake(); }),
-        publisher_(options, hub_),
+        registry_(new_session(), options.allows_set,
+                  {.set = [this](const set_request& wanted,
+                                 auto done) { publisher_.set(wanted, std::move(done)); },
+                   .play = [this](const play_request& wanted) { publisher_.play(wanted); }},
+                  [this] { wake(); }),
+        publisher_(options, registry_),
         station_(options.common, publisher_.how_to_open(), publisher_,
                  {.loops = options.loops, .speed = options.speed}) {
     publisher_.attach(station_);
-    server_ = std::make_unique<web_server>(options.address, options.port, options.origins, hub_);
+    server_ =
+        std::make_unique<web_server>(options.address, options.port, options.origins, registry_);
     served_ = server_.get();
     urls_ = server_->urls();
   }
@@ -84,11 +85,11 @@ class lidar_server {
     if (station_.state() != station_state::opening) watch_.ready();
     watch_.alive();
     watch_.status(fmt::format("{}, {} at {}", name_of(station_.state()),
-                              counted(hub_.client_count(), "client"), urls_.front()));
+                              counted(registry_.client_count(), "client"), urls_.front()));
   }
 
   const serve_options options_;
-  hub hub_;
+  client_registry registry_;
   scan_publisher publisher_;
   station station_;
   std::unique_ptr<web_server> server_;

@@ -63,9 +63,9 @@ double loss_window::add(const lidar_counts& counts) {
   return lost > 0 ? lost / (points + lost) : 0.0;
 }
 
-scan_publisher::scan_publisher(const serve_options& options, hub& to)
+scan_publisher::scan_publisher(const serve_options& options, client_registry& to)
     : options_(options),
-      hub_(to),
+      registry_(to),
       shaper_(options.common, mounting{}),
       ranges_m_(options.bins),
       settings_(unknown_settings()) {}
@@ -77,23 +77,24 @@ void scan_publisher::on_open(opened_source& source) {
       settings_[std::string(each.name)] = json_of(read_setting(source.lidar(), each));
     }
   }
-  greet(true);
+  send_hello(true);
 }
 
-void scan_publisher::greet(bool sends) {
+void scan_publisher::send_hello(bool sends) {
   const auto player = station_->player();
-  hub_.greet(hello_text({.source = options_.common.source.empty() ? station_->name()
-                                                                  : options_.common.source,
-                         .device = station_->identity(),
-                         .allows_set = options_.allows_set,
-                         .settings = settings_,
-                         .recording_s = player ? std::optional(player->length_s) : std::nullopt}),
-             sends);
+  registry_.send_hello(
+      hello_text(
+          {.source = options_.common.source.empty() ? station_->name() : options_.common.source,
+           .device = station_->identity(),
+           .allows_set = options_.allows_set,
+           .settings = settings_,
+           .recording_s = player ? std::optional(player->length_s) : std::nullopt}),
+      sends);
 }
 
 void scan_publisher::on_scan(const g4lidar::scan& scan) {
   rates_.add(scan, scan_rates::clock::now());
-  const hub::wishes wanted = hub_.wanted();
+  const client_registry::wishes wanted = registry_.wanted();
   const bool wants_scan = wanted.wants(channel::scan);
   const bool wants_points = wanted.wants(channel::points);
   publish_bytes(wanted.wants(channel::from_device));
@@ -109,25 +110,26 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
     message.reserve(16 + 8 * shaped.kept.size());
     put_page_scan(shaped.kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns),
                   message);
-    hub_.page_scan(std::move(message));
+    registry_.page_scan(std::move(message));
   }
   if (wants_scan) {
     std::vector<std::uint8_t> message;
     fill_grid(shaped.for_grid, ranges_m_, shaped.grid);
     put_laser_scan(ranges_m_, header, message);
-    hub_.publish(channel::scan, header.stamp_ns, std::move(message));
+    registry_.publish(channel::scan, header.stamp_ns, std::move(message));
   }
   if (wants_points) {
     std::vector<std::uint8_t> message;
     put_point_cloud2(shaped.kept, header, message);
-    hub_.publish(channel::points, header.stamp_ns, std::move(message));
+    registry_.publish(channel::points, header.stamp_ns, std::move(message));
   }
 }
 
 /// One message a revolution.
 void scan_publisher::publish_bytes(bool is_wanted) {
   if (std::vector<std::uint8_t> message = bytes_.take(); is_wanted && !message.empty()) {
-    hub_.publish(channel::from_device, station_->wall_ns(bytes_.arrival_ns()), std::move(message));
+    registry_.publish(channel::from_device, station_->wall_ns(bytes_.arrival_ns()),
+                      std::move(message));
   }
   bytes_.want(is_wanted);
 }
@@ -135,7 +137,7 @@ void scan_publisher::publish_bytes(bool is_wanted) {
 void scan_publisher::on_event(const lidar_event& event) {
   const std::string what(name_of(event.what));
   logger::info(fmt::format("{}: {}\n", station_->name(), what));
-  hub_.event(event_text(what, seconds_of(station_->wall_ns(event.time_ns))));
+  registry_.event(event_text(what, seconds_of(station_->wall_ns(event.time_ns))));
 }
 
 void scan_publisher::on_state(station_state state, std::string_view why) {
@@ -152,8 +154,9 @@ void scan_publisher::tick() {
                      .player = station_->player()};
   rates_.put(status, scan_rates::clock::now());
   status.loss = loss_.add(status.counts);
-  hub_.status(status_text(status));
-  if (++ticks_ % 2 == 0 && hub_.wanted().wants(channel::diagnostics)) publish_diagnostics(status);
+  registry_.status(status_text(status));
+  if (++ticks_ % 2 == 0 && registry_.wanted().wants(channel::diagnostics))
+    publish_diagnostics(status);
 }
 
 void scan_publisher::publish_diagnostics(const page_status& status) {
@@ -162,7 +165,7 @@ void scan_publisher::publish_diagnostics(const page_status& status) {
   const std::int64_t now_ns = wall_now_ns();
   std::vector<std::uint8_t> message;
   put_diagnostic_array(statuses_of(status.stages, status.counts, serial), now_ns, message);
-  hub_.publish(channel::diagnostics, now_ns, std::move(message));
+  registry_.publish(channel::diagnostics, now_ns, std::move(message));
 }
 
 void scan_publisher::set(const set_request& wanted, std::function<void(const std::string&)> done) {
@@ -173,20 +176,20 @@ void scan_publisher::set(const set_request& wanted, std::function<void(const std
     return done(reason.what());
   }
   station_->ask([this, checked = std::move(word), then = std::move(done)](g4lidar::lidar* lidar) {
-    carry_out(lidar, checked, then);
+    execute(lidar, checked, then);
   });
 }
 
-void scan_publisher::carry_out(g4lidar::lidar* lidar, const std::string& word,
-                               const std::function<void(const std::string&)>& done) {
+void scan_publisher::execute(g4lidar::lidar* lidar, const std::string& word,
+                             const std::function<void(const std::string&)>& done) {
   if (lidar == nullptr) return done("the lidar is not connected");
   const wish wanted = wish_of(word);
   const auto given = lidar->ask(wanted.how, while_scanning::stop_and_resume);
   if (!given) return done(in_tool_words(given.error().message()));
   settings_[std::string(wanted.which->name)] = json_of(maybe_answer(*given));
-  greet(false);
+  send_hello(false);
   done({});  // before pages get them: a page may set again at once
-  hub_.settings(settings_text(settings_));
+  registry_.settings(settings_text(settings_));
 }
 
 void scan_publisher::play(const play_request& wanted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Turns what a station gives into messages for the hub, and requests of clients into commands.
+// Turns what a station gives into messages for the client registry, and requests of clients into commands.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 #include "byte_tap.hpp"
 #include "cli/serve_verb.hpp"
-#include "hub.hpp"
+#include "client_registry.hpp"
 #include "io/scan_shaper.hpp"
 #include "io/station.hpp"
 
@@ -54,7 +54,7 @@ class loss_window {
 class scan_publisher final : public station_listener {
  public:
   /// Throws a failure for a mask that cannot be read. `to` outlives this.
-  scan_publisher(const serve_options& options, hub& to);
+  scan_publisher(const serve_options& options, client_registry& to);
   /// Before it is started; `from` outlives this.
   void attach(station& from) { station_ = &from; }
   /// How the station opens the source. This outlives the station.
@@ -77,14 +77,14 @@ class scan_publisher final : public station_listener {
   void play(const play_request& wanted);
 
  private:
-  void greet(bool sends);
-  void carry_out(g4lidar::lidar* lidar, const std::string& word,
-                 const std::function<void(const std::string&)>& done);
+  void send_hello(bool sends);
+  void execute(g4lidar::lidar* lidar, const std::string& word,
+               const std::function<void(const std::string&)>& done);
   void publish_diagnostics(const page_status& status);
   void publish_bytes(bool is_wanted);
 
   const serve_options options_;
-  hub& hub_;
+  client_registry& registry_;
   station* station_ = nullptr;
   scan_shaper shaper_;
   byte_tap bytes_;  // of the station's thread

@@ -117,7 +117,7 @@ class socket_server::callbacks {
   }
 };
 
-socket_server::socket_server(hub& clients) : clients_(clients) {
+socket_server::socket_server(client_registry& clients) : clients_(clients) {
   lws_set_log_level(LLL_ERR | LLL_WARN, log_line);
   constexpr std::size_t rx = 4096;
   static const std::array<lws_protocols, 5> protocols{{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The WebSockets of the clients of a hub, with libwebsockets, in a thread of its own.
+// The WebSockets of the clients of a client registry, with libwebsockets, in a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 #include <libwebsockets.h>
 
-#include "hub.hpp"
+#include "client_registry.hpp"
 #include "listener.hpp"
 
 namespace g4_tool {
@@ -26,7 +26,7 @@ class socket_server {
   static constexpr std::size_t most_sockets = 256;
 
   /// `clients` outlives this. Throws a failure.
-  explicit socket_server(hub& clients);
+  explicit socket_server(client_registry& clients);
   socket_server(const socket_server&) = delete;
   socket_server& operator=(const socket_server&) = delete;
   ~socket_server();
@@ -36,7 +36,7 @@ class socket_server {
   [[nodiscard]] bool is_full() const noexcept { return sockets_ >= most_sockets; }
   /// `first`: a whole request, and what the client has sent after its own. *Any thread.*
   void adopt(socket_fd socket, std::string first);
-  /// Messages wait in the hub. *Any thread.*
+  /// Messages wait in the client registry. *Any thread.*
   void wake() noexcept;
 
  private:
@@ -49,7 +49,7 @@ class socket_server {
   void run() noexcept;
   void adopt_all();
 
-  hub& clients_;
+  client_registry& clients_;
   std::vector<std::uint8_t> scratch_;  // of the thread
   lws_context* context_ = nullptr;
   lws_vhost* host_ = nullptr;

@@ -30,7 +30,7 @@ bool is_socket_key(std::string_view text) {
 }  // namespace
 
 web_server::web_server(const std::string& address, std::uint16_t port,
-                       std::vector<std::string> origins, hub& clients)
+                       std::vector<std::string> origins, client_registry& clients)
     : address_(address), guard_(address, std::move(origins)), clients_(clients), sockets_(clients) {
   socket_fd listening = listen_at(address, port);
   port_ = port_of(listening);

@@ -9,25 +9,25 @@
 #include <string_view>
 #include <vector>
 
+#include "client_registry.hpp"
 #include "host_guard.hpp"
 #include "http_server.hpp"
-#include "hub.hpp"
 #include "socket_server.hpp"
 
 namespace g4_tool {
 
-/// Listens from its construction on. Serves the files of the page, /status.json, and the clients of a hub.
+/// Listens from its construction on. Serves the files of the page, /status.json, and the clients of a client registry.
 class web_server {
  public:
   /// `port` 0: any that is free. `clients` outlives this. Throws a failure where it cannot listen, and
   /// names the reason.
   web_server(const std::string& address, std::uint16_t port, std::vector<std::string> origins,
-             hub& clients);
+             client_registry& clients);
 
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
   /// "http://127.0.0.1:8765/"; with 0.0.0.0 and :: one for each name and address of this machine.
   [[nodiscard]] std::vector<std::string> urls() const;
-  /// Messages wait in the hub. *Any thread.*
+  /// Messages wait in the client registry. *Any thread.*
   void wake() noexcept { sockets_.wake(); }
 
  private:
@@ -37,7 +37,7 @@ class web_server {
 
   std::string address_;
   host_guard guard_;
-  hub& clients_;
+  client_registry& clients_;
   std::set<std::string> refused_{};  // what was logged
   socket_server sockets_;
   std::uint16_t port_ = 0;

@@ -19,7 +19,7 @@ constexpr int most_waits = 20;
 
 }  // namespace
 
-web_socket::web_socket(hub& clients, client_kind kind, lws* wsi)
+web_socket::web_socket(client_registry& clients, client_kind kind, lws* wsi)
     : clients_(clients), kind_(kind), wsi_(wsi) {
   has_place();
   lws_set_timer_usecs(wsi_, greeting_after_us);
@@ -92,7 +92,7 @@ int web_socket::close(lws_close_status why, std::string_view words) {
 int web_socket::refuse() {
   constexpr auto try_again_later = static_cast<lws_close_status>(1013);
   return close(try_again_later,
-               fmt::format("the server has {} clients already", hub::most_clients));
+               fmt::format("the server has {} clients already", client_registry::most_clients));
 }
 
 }  // namespace g4_tool

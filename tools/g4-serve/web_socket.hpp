@@ -9,17 +9,17 @@
 
 #include <libwebsockets.h>
 
-#include "hub.hpp"
+#include "client_registry.hpp"
 
 namespace g4_tool {
 
-/// A client of the hub, if a place is free or becomes free within a second: clients that have ended may still be
+/// A client of the client registry, if a place is free or becomes free within a second: clients that have ended may still be
 /// counted when the next ones come. Otherwise it is closed with the reason. libwebsockets delivers what arrives until
 /// the connection is destroyed, also after a callback has refused it.
 /// Functions return what a callback of libwebsockets does: not 0 to close. *Single thread*: the one of libwebsockets.
 class web_socket {
  public:
-  web_socket(hub& clients, client_kind kind, lws* wsi);
+  web_socket(client_registry& clients, client_kind kind, lws* wsi);
   web_socket(const web_socket&) = delete;
   web_socket& operator=(const web_socket&) = delete;
   ~web_socket() { end(); }
@@ -29,7 +29,7 @@ class web_socket {
   [[nodiscard]] int write(std::vector<std::uint8_t>& scratch);
   /// The timer, which the constructor sets, has elapsed.
   [[nodiscard]] int check_timer();
-  /// From now on it is no client of the hub.
+  /// From now on it is no client of the client registry.
   void end();
 
  private:
@@ -37,10 +37,10 @@ class web_socket {
   int close(lws_close_status why, std::string_view words);
   int refuse();
 
-  hub& clients_;
+  client_registry& clients_;
   client_kind kind_;
   lws* wsi_;
-  hub::client* client_ = nullptr;
+  client_registry::client* client_ = nullptr;
   std::string received_;  // of a message whose end has not come
   int waits_ = 0;         // for a place
   bool is_due_ = false;   // messages may be sent

@@ -20,7 +20,7 @@ enum class frequency_step : std::uint8_t {
 };
 
 /// The kinds of request.
-enum class ask : std::uint8_t {
+enum class request_kind : std::uint8_t {
   device_info,
   health,
   get_low_power,
@@ -41,7 +41,7 @@ enum class ask : std::uint8_t {
 
 /// One request. Made by the functions of namespace requests, where each value has a type of its own.
 struct request {
-  ask what;
+  request_kind what;
   std::uint16_t value = 0;  ///< The value to set; 0 if the request sets nothing.
   friend constexpr bool operator==(const request&, const request&) noexcept = default;
 };
@@ -54,63 +54,65 @@ namespace requests {
 
 /// Answer: a device_information.
 [[nodiscard]] constexpr request_for<device_information> device_info() noexcept {
-  return {{ask::device_info}};
+  return {{request_kind::device_info}};
 }
 /// Answer: a health. Sends `91`, and `92` if `91` is not answered.
-[[nodiscard]] constexpr request_for<g4lidar::health> health() noexcept { return {{ask::health}}; }
+[[nodiscard]] constexpr request_for<g4lidar::health> health() noexcept {
+  return {{request_kind::health}};
+}
 /// Queries whether the motor stops when idle. Answer: a low_power.
 [[nodiscard]] constexpr request_for<low_power> get_low_power() noexcept {
-  return {{ask::get_low_power}};
+  return {{request_kind::get_low_power}};
 }
 /// Sets whether the motor stops when idle.
 [[nodiscard]] constexpr request_for<low_power> set(low_power wanted) noexcept {
-  return {{ask::set_low_power, static_cast<std::uint16_t>(wanted)}};
+  return {{request_kind::set_low_power, static_cast<std::uint16_t>(wanted)}};
 }
 /// Queries the direction of the motor. Answer: a motor_direction. Old firmware may not answer.
 [[nodiscard]] constexpr request_for<motor_direction> get_direction() noexcept {
-  return {{ask::get_direction}};
+  return {{request_kind::get_direction}};
 }
 /// Sets the direction of the motor.
 [[nodiscard]] constexpr request_for<motor_direction> set(motor_direction wanted) noexcept {
-  return {{ask::set_direction, static_cast<std::uint16_t>(wanted)}};
+  return {{request_kind::set_direction, static_cast<std::uint16_t>(wanted)}};
 }
 /// Queries the configured scan frequency, not the measured one. Answer: a scan_frequency.
 [[nodiscard]] constexpr request_for<scan_frequency> get_scan_frequency() noexcept {
-  return {{ask::get_scan_frequency}};
+  return {{request_kind::get_scan_frequency}};
 }
 /// One step. Answer: the configured frequency after the step; at the end of the device's range it
 /// is the same as before.
 [[nodiscard]] constexpr request_for<scan_frequency> step(frequency_step by) noexcept {
-  return {{ask::step_scan_frequency, static_cast<std::uint16_t>(by)}};
+  return {{request_kind::step_scan_frequency, static_cast<std::uint16_t>(by)}};
 }
 /// Steps until the frequency is within 0.05 Hz of `wanted` or does not change any more. Answer: the
 /// frequency that was reached.
 [[nodiscard]] constexpr request_for<scan_frequency> set(scan_frequency wanted) noexcept {
-  return {{ask::set_scan_frequency, wanted.chz}};
+  return {{request_kind::set_scan_frequency, wanted.chz}};
 }
 /// Sets whether the lidar regulates its frequency; the protocol has no query for it.
 [[nodiscard]] constexpr request_for<constant_frequency> set(constant_frequency wanted) noexcept {
-  return {{ask::set_constant_frequency, static_cast<std::uint16_t>(wanted)}};
+  return {{request_kind::set_constant_frequency, static_cast<std::uint16_t>(wanted)}};
 }
 /// Queries the sample rate. Answer: a ranging_frequency.
 [[nodiscard]] constexpr request_for<ranging_frequency> get_ranging() noexcept {
-  return {{ask::get_ranging}};
+  return {{request_kind::get_ranging}};
 }
 /// Steps through the ranging frequencies until the wanted one is set.
 [[nodiscard]] constexpr request_for<ranging_frequency> set(ranging_frequency wanted) noexcept {
-  return {{ask::set_ranging, static_cast<std::uint16_t>(wanted)}};
+  return {{request_kind::set_ranging, static_cast<std::uint16_t>(wanted)}};
 }
 /// Toggles the protection until the device reports the wanted state.
 [[nodiscard]] constexpr request_for<power_down_protection> set(
     power_down_protection wanted) noexcept {
-  return {{ask::set_protection, static_cast<std::uint16_t>(wanted)}};
+  return {{request_kind::set_protection, static_cast<std::uint16_t>(wanted)}};
 }
 /// Restarts the device. Answered when the device replies again.
-[[nodiscard]] constexpr request_for<void> restart() noexcept { return {{ask::restart}}; }
+[[nodiscard]] constexpr request_for<void> restart() noexcept { return {{request_kind::restart}}; }
 /// Answered when the device has confirmed the start, or its first packet has arrived.
-[[nodiscard]] constexpr request start() noexcept { return {ask::start}; }
+[[nodiscard]] constexpr request start() noexcept { return {request_kind::start}; }
 /// Answered when no more bytes arrive.
-[[nodiscard]] constexpr request stop() noexcept { return {ask::stop}; }
+[[nodiscard]] constexpr request stop() noexcept { return {request_kind::stop}; }
 
 }  // namespace requests
 

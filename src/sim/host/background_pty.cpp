@@ -20,8 +20,8 @@ namespace g4lidar::sim {
 
 class G4LIDAR_HIDDEN background_pty::state {
  public:
-  state(pty_port port, owned_fd bell)
-      : port_(std::move(port)), path_(port_.path()), bell_(std::move(bell)) {
+  state(pty_port port, owned_fd wake_descriptor)
+      : port_(std::move(port)), path_(port_.path()), wake_descriptor_(std::move(wake_descriptor)) {
     thread_ = std::thread([this] { run(); });
   }
   ~state() {
@@ -46,12 +46,12 @@ class G4LIDAR_HIDDEN background_pty::state {
 
  private:
   void ring() const noexcept {
-    [[maybe_unused]] const int ignored = ::eventfd_write(bell_.get(), 1);
+    [[maybe_unused]] const int ignored = ::eventfd_write(wake_descriptor_.get(), 1);
   }
 
   void run() {
     while (!ending_) {
-      std::array<pollfd, 3> waiting{{{bell_.get(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
+      std::array<pollfd, 3> waiting{{{wake_descriptor_.get(), POLLIN, 0}, {-1, 0, 0}, {-1, 0, 0}}};
       std::int64_t sleep_ns = forever_ns;
       {
         const std::lock_guard lock(mutex_);
@@ -69,14 +69,14 @@ class G4LIDAR_HIDDEN background_pty::state {
                            static_cast<long>(sleep_ns % second_ns)};
       if (::ppoll(waiting.data(), waiting.size(), &sleep, nullptr) > 0 && waiting[0].revents != 0) {
         eventfd_t rung = 0;
-        [[maybe_unused]] const int ignored = ::eventfd_read(bell_.get(), &rung);
+        [[maybe_unused]] const int ignored = ::eventfd_read(wake_descriptor_.get(), &rung);
       }
     }
   }
 
   pty_port port_;
   std::string path_;
-  owned_fd bell_;
+  owned_fd wake_descriptor_;
   std::mutex mutex_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
@@ -88,11 +88,11 @@ background_pty& background_pty::operator=(background_pty&&) noexcept = default;
 background_pty::~background_pty() = default;
 
 result<background_pty> background_pty::open(device simulated, const std::string& link) {
-  owned_fd bell(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
-  if (!bell) return failure(task::opening, problem::system, "an eventfd", errno);
+  owned_fd wake_descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!wake_descriptor) return failure(task::opening, problem::system, "an eventfd", errno);
   result<pty_port> port = pty_port::open(std::move(simulated), link);
   if (!port) return tl::unexpected<error>(port.error());
-  return background_pty(std::make_unique<state>(std::move(*port), std::move(bell)));
+  return background_pty(std::make_unique<state>(std::move(*port), std::move(wake_descriptor)));
 }
 
 const std::string& background_pty::path() const noexcept { return state_->path(); }

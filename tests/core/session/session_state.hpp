@@ -48,7 +48,7 @@ struct session_state {
     watch.is_assumed_ = watch.is_assumed_ && !watch.has_packets_;
 
     const request asked = s.outcome_.asked;
-    s.outcome_ = outcome{request{ask::device_info}};
+    s.outcome_ = outcome{request{request_kind::device_info}};
     s.steps_.moves_ = 0;  // bounds the moves of a request: see EndIfNoChangeIsKept
     s.retries_ = 0;
     s.limit_ns_ = horizon;  // never reached: an end by it would only be an earlier one

@@ -119,7 +119,7 @@ void test_with(const fault& bad, bool must_be_answered, bool in_order = true) {
     EXPECT_TRUE(done->how == verdict::answered || !must_be_answered) << word_for(done->how);
     EXPECT_TRUE(done->how == verdict::answered || done->how == verdict::timed_out);
     // The protection cannot be queried: an answer that is overtaken by later ones is accepted.
-    if (wanted.what == ask::set_protection && !in_order) continue;
+    if (wanted.what == request_kind::set_protection && !in_order) continue;
     EXPECT_TRUE(done->how == verdict::timed_out || holds(bench.device.settings()));
   }
   for (const request& wanted : others) {

@@ -124,7 +124,7 @@ struct watched {
   bool begin(const request& wanted, while_scanning how) {
     const bool was_scanning = talk.is_scanning();
     const auto refused = talk.begin(wanted, now, how);
-    const bool disturbs = wanted.what != ask::start && wanted.what != ask::stop;
+    const bool disturbs = wanted.what != request_kind::start && wanted.what != request_kind::stop;
     if (refused) {
       EXPECT_TRUE(was_scanning && disturbs && how == while_scanning::refuse);
       EXPECT_EQ(*refused, refusal::scanning);

@@ -39,7 +39,7 @@ void write_row(output& out, std::string_view name, std::string_view before,
 }
 
 /// Sets one. Where the value is not reached, the value read back is written and the command fails.
-void carry_out(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) {
+void execute(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) {
   const maybe_answer before = read_setting(lidar, *wanted.which);
   const auto given = lidar.ask(wanted.how);
   if (!given && given.error().is_fatal()) throw failure(given.error());
@@ -75,7 +75,7 @@ int set(const set_options& options) {
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
   for (const wish& each : options.wishes) {
     if (interrupt() != 0) return 128 + interrupt();
-    carry_out(source.lidar(), each, out, options.json);
+    execute(source.lidar(), each, out, options.json);
   }
   out.commit();
   report_consequences(options.wishes);

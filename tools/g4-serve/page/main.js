@@ -37,7 +37,7 @@ const controls = new Controls(surface, view, ruler, scans, () => playback.pause(
 
 /** @param {any} message */
 function take_message(message) {
-  if (message.op === 'hello') greet(message);
+  if (message.op === 'hello') send_hello(message);
   if (message.op === 'settings') settings.show(message.settings ?? {});
   if (message.op === 'error') fail(message);
   if (message.op === 'event') panels.add_event(message);
@@ -49,7 +49,7 @@ function take_message(message) {
 }
 
 /** @param {any} message */
-function greet(message) {
+function send_hello(message) {
   hello = message;
   document.title = `g4lidar: ${hello.source ?? ''}`;
   const who = hello.device ?? {};

@@ -15,13 +15,13 @@ namespace g4_tool {
 namespace {
 
 volatile std::sig_atomic_t caught = 0;
-std::array<int, 2> bell{-1, -1};
+std::array<int, 2> wake_pipe{-1, -1};
 
 void keep_signal(int number) {
   const int error = errno;
   caught = number;
   const char byte = 0;
-  [[maybe_unused]] const auto ignored = ::write(bell[1], &byte, 1);
+  [[maybe_unused]] const auto ignored = ::write(wake_pipe[1], &byte, 1);
   errno = error;
 }
 
@@ -36,7 +36,7 @@ void prepare_process() {
   }
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  if (::pipe2(bell.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
+  if (::pipe2(wake_pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) return;
   struct sigaction action{};
   action.sa_handler = keep_signal;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
@@ -51,12 +51,12 @@ int interrupt() noexcept { return caught; }
 
 int exit_code_now() noexcept { return caught == 0 ? 0 : 128 + caught; }
 
-int interrupt_handle() noexcept { return bell[0]; }
+int interrupt_handle() noexcept { return wake_pipe[0]; }
 
 wake wait_for_input(int input, int output, std::chrono::steady_clock::time_point until) noexcept {
   using namespace std::chrono_literals;
   while (interrupt() == 0) {
-    std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {bell[0], POLLIN, 0}, {output, 0, 0}}};
+    std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {wake_pipe[0], POLLIN, 0}, {output, 0, 0}}};
     const auto left = until == no_deadline ? 1h : until - std::chrono::steady_clock::now();
     // Not in milliseconds: the end of a revolution is awaited from a moment before it on.
     const std::chrono::nanoseconds time = std::clamp<std::chrono::nanoseconds>(left, 0ns, 1h);

@@ -15,20 +15,20 @@ namespace g4lidar {
 /// (protocol: Commands)
 [[nodiscard]] constexpr bool is_possible(const request& wanted) noexcept {
   switch (wanted.what) {
-    case ask::set_scan_frequency:
+    case request_kind::set_scan_frequency:
       return wanted.value >= min_scan_frequency_chz && wanted.value <= max_scan_frequency_chz;
-    case ask::step_scan_frequency:
+    case request_kind::step_scan_frequency:
       return wanted.value >= static_cast<std::uint16_t>(frequency_step::up_0_1_hz) &&
              wanted.value <= static_cast<std::uint16_t>(frequency_step::down_1_hz);
-    case ask::set_ranging:
+    case request_kind::set_ranging:
       return wanted.value <= static_cast<std::uint16_t>(ranging_frequency::khz_9);
-    case ask::set_low_power:
-    case ask::set_direction:
-    case ask::set_constant_frequency:
-    case ask::set_protection:
+    case request_kind::set_low_power:
+    case request_kind::set_direction:
+    case request_kind::set_constant_frequency:
+    case request_kind::set_protection:
       return wanted.value <= 1;
     default:
-      return wanted.what <= ask::stop && wanted.value == 0;
+      return wanted.what <= request_kind::stop && wanted.value == 0;
   }
 }
 
@@ -69,7 +69,7 @@ class request_retry {
     if (const auto info = heard.as_device_info()) return end(*info);
     if (const auto state = heard.as_health()) return end(*state);
     const std::uint16_t value = heard.as_frequency_chz().value_or(heard.as_byte().value_or(0));
-    if (wanted_.what == ask::set_protection) return toggled(value);
+    if (wanted_.what == request_kind::set_protection) return toggled(value);
     if (!is_moving()) return end(as_answer(value));
     switch (waits_for_) {
       case answer_of::query:
@@ -115,34 +115,36 @@ class request_retry {
 
   /// Whether the request needs commands that change state, and queries of that state.
   [[nodiscard]] constexpr bool is_moving() const noexcept {
-    return wanted_.what == ask::step_scan_frequency || wanted_.what == ask::set_scan_frequency ||
-           wanted_.what == ask::set_ranging;
+    return wanted_.what == request_kind::step_scan_frequency ||
+           wanted_.what == request_kind::set_scan_frequency ||
+           wanted_.what == request_kind::set_ranging;
   }
 
   /// The first command, which is also repeated after a loss.
   [[nodiscard]] constexpr command question() const noexcept {
     const bool is_one = wanted_.value == 1;
     switch (wanted_.what) {
-      case ask::health:  // alternating: a device answers one of them, and the answer may be lost
+      case request_kind::
+          health:  // alternating: a device answers one of them, and the answer may be lost
         return losses_ % 2 == 0 ? command::health : command::health_vendor;
-      case ask::get_low_power:
+      case request_kind::get_low_power:
         return command::low_power_query;
-      case ask::set_low_power:
+      case request_kind::set_low_power:
         return is_one ? command::low_power_on : command::low_power_off;
-      case ask::get_direction:
+      case request_kind::get_direction:
         return command::motor_direction_query;
-      case ask::set_direction:
+      case request_kind::set_direction:
         return is_one ? command::motor_counter_clockwise : command::motor_clockwise;
-      case ask::get_scan_frequency:
-      case ask::step_scan_frequency:
-      case ask::set_scan_frequency:
+      case request_kind::get_scan_frequency:
+      case request_kind::step_scan_frequency:
+      case request_kind::set_scan_frequency:
         return command::frequency_query;
-      case ask::set_constant_frequency:
+      case request_kind::set_constant_frequency:
         return is_one ? command::constant_frequency_on : command::constant_frequency_off;
-      case ask::get_ranging:
-      case ask::set_ranging:
+      case request_kind::get_ranging:
+      case request_kind::set_ranging:
         return command::ranging_query;
-      case ask::set_protection:
+      case request_kind::set_protection:
         return command::protection_toggle;
       default:
         return command::device_info;
@@ -153,18 +155,18 @@ class request_retry {
   [[nodiscard]] constexpr answer as_answer(std::uint16_t value) const noexcept {
     const auto byte = static_cast<std::uint8_t>(value);
     switch (wanted_.what) {
-      case ask::get_low_power:
-      case ask::set_low_power:
+      case request_kind::get_low_power:
+      case request_kind::set_low_power:
         return static_cast<low_power>(byte);
-      case ask::get_direction:
-      case ask::set_direction:
+      case request_kind::get_direction:
+      case request_kind::set_direction:
         return static_cast<motor_direction>(byte);
-      case ask::set_constant_frequency:
+      case request_kind::set_constant_frequency:
         return static_cast<constant_frequency>(byte);
-      case ask::get_ranging:
-      case ask::set_ranging:
+      case request_kind::get_ranging:
+      case request_kind::set_ranging:
         return static_cast<ranging_frequency>(byte);
-      case ask::set_protection:
+      case request_kind::set_protection:
         return static_cast<power_down_protection>(byte);
       default:
         return scan_frequency{value};
@@ -236,30 +238,32 @@ class request_retry {
     return static_cast<int>(wanted_.value) - static_cast<int>(current_);
   }
   [[nodiscard]] constexpr bool has_arrived() const noexcept {
-    if (wanted_.what == ask::step_scan_frequency) return current_ != origin_;
-    if (wanted_.what == ask::set_ranging) return missing() == 0;
+    if (wanted_.what == request_kind::step_scan_frequency) return current_ != origin_;
+    if (wanted_.what == request_kind::set_ranging) return missing() == 0;
     return missing() <= tolerance_chz && -missing() <= tolerance_chz;
   }
   [[nodiscard]] constexpr bool is_at_end() const noexcept {
-    return stuck_ || (coarse_stuck_ && wanted_.what == ask::step_scan_frequency);
+    return stuck_ || (coarse_stuck_ && wanted_.what == request_kind::step_scan_frequency);
   }
   /// A device that refuses the last step to the end of its range is as near as possible.
   [[nodiscard]] constexpr verdict verdict_at_end() const noexcept {
     const bool is_near = missing() < fine_chz && -missing() < fine_chz;
-    if (wanted_.what == ask::set_scan_frequency && is_near) return verdict::answered;
-    return wanted_.what == ask::step_scan_frequency ? verdict::answered : verdict::not_reached;
+    if (wanted_.what == request_kind::set_scan_frequency && is_near) return verdict::answered;
+    return wanted_.what == request_kind::step_scan_frequency ? verdict::answered
+                                                             : verdict::not_reached;
   }
 
   [[nodiscard]] constexpr command next_move() noexcept {
     is_coarse_ = false;
-    if (wanted_.what == ask::set_ranging) return command::ranging_next;
+    if (wanted_.what == request_kind::set_ranging) return command::ranging_next;
     const bool is_up = missing() > 0;
     const int far = is_up ? missing() : -missing();
     move_ = is_up ? command::frequency_up_0_1_hz : command::frequency_down_0_1_hz;
     if (far >= coarse_chz - tolerance_chz && !coarse_stuck_) {
       move_ = is_up ? command::frequency_up_1_hz : command::frequency_down_1_hz;
     }
-    if (wanted_.what == ask::step_scan_frequency) move_ = static_cast<command>(wanted_.value);
+    if (wanted_.what == request_kind::step_scan_frequency)
+      move_ = static_cast<command>(wanted_.value);
     is_coarse_ = move_ == command::frequency_up_1_hz || move_ == command::frequency_down_1_hz;
     return move_;
   }
@@ -267,7 +271,7 @@ class request_retry {
   /// Whether the last change can have led from `current_` to `value`; at the end of the device's
   /// range a step may be shorter.
   [[nodiscard]] constexpr bool is_move_to(std::uint16_t value) const noexcept {
-    if (wanted_.what == ask::set_ranging) return value == (current_ + 1) % 3;
+    if (wanted_.what == request_kind::set_ranging) return value == (current_ + 1) % 3;
     const bool is_up = move_ == command::frequency_up_0_1_hz || move_ == command::frequency_up_1_hz;
     const int by = is_up ? value - current_ : current_ - value;
     return by > 0 && by <= (is_coarse_ ? coarse_chz : fine_chz);
@@ -275,7 +279,7 @@ class request_retry {
 
  public:
   // ---- the state; public for tests that compare and change it ----
-  request wanted_{ask::device_info};
+  request wanted_{request_kind::device_info};
   answer_of waits_for_ = answer_of::query;
   command move_ = command::frequency_query;
   std::uint16_t origin_ = 0;   // the first value

@@ -29,19 +29,19 @@ class session_machine {
       while_scanning how = while_scanning::refuse) noexcept {
     if (!is_possible(wanted)) return refusal::bad_setting;
     if (is_busy()) return refusal::busy;
-    const bool disturbs = wanted.what != ask::start && wanted.what != ask::stop;
+    const bool disturbs = wanted.what != request_kind::start && wanted.what != request_kind::stop;
     if (scanning_ && disturbs && how == while_scanning::refuse) return refusal::scanning;
     take_up(wanted, now_ns);
-    if (wanted.what == ask::start && scanning_) {
+    if (wanted.what == request_kind::start && scanning_) {
       if (channel_.is_at_rest()) publish();
       return std::nullopt;  // otherwise it is being started already
     }
     resume_ = scanning_ && disturbs ? resume::later : resume::no;
     surprise_ = !scanning_ && !channel_.is_draining();
     scanning_ = false;
-    if (wanted.what != ask::stop && is_idle_) {
+    if (wanted.what != request_kind::stop && is_idle_) {
       go(now_ns);
-    } else if (wanted.what == ask::stop || !channel_.is_draining()) {
+    } else if (wanted.what == request_kind::stop || !channel_.is_draining()) {
       drain(now_ns);
     }
     return std::nullopt;
@@ -118,11 +118,11 @@ class session_machine {
   /// The device is idle and silent: begins the request.
   constexpr void go(std::int64_t now_ns) noexcept {
     switch (outcome_.asked.what) {
-      case ask::stop:
+      case request_kind::stop:
         return publish();
-      case ask::start:
+      case request_kind::start:
         return start(now_ns);
-      case ask::restart:
+      case request_kind::restart:
         watch_.set_protection({});
         return channel_.restart(now_ns);
       default:
@@ -197,7 +197,7 @@ class session_machine {
     is_runaway_ = false;
     if (wants_start()) return start(now_ns);
     if (!has_request_) return channel_.rest();
-    if (!std::exchange(is_broken_, false) || outcome_.asked.what == ask::restart) {
+    if (!std::exchange(is_broken_, false) || outcome_.asked.what == request_kind::restart) {
       return go(now_ns);
     }
     channel_.clear(now_ns);
@@ -250,7 +250,7 @@ class session_machine {
   // ---- scanning ----
   [[nodiscard]] constexpr bool wants_start() const noexcept {
     if (!has_request_) return scanning_;
-    return resume_ == resume::now || outcome_.asked.what == ask::start;
+    return resume_ == resume::now || outcome_.asked.what == request_kind::start;
   }
 
   constexpr void start(std::int64_t now_ns) noexcept {
@@ -327,7 +327,7 @@ class session_machine {
   command_channel channel_;
   scan_supervisor watch_;
   request_retry steps_;
-  outcome outcome_{request{ask::device_info}};
+  outcome outcome_{request{request_kind::device_info}};
   notice notice_ = notice::none;
   resume resume_ = resume::no;  // of the scan that the request has interrupted
   bool has_request_ = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the clients of a hub get, whether they read or not.
-#include "hub.hpp"
+// What the clients of a client registry get, whether they read or not.
+#include "client_registry.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ std::string text_in(const outgoing& message) {
 class Hub : public ::testing::Test {
  protected:
   /// "op" of each text that waits, "scan" for a binary message; all are taken.
-  std::vector<std::string> take_all(hub::client& to) {
+  std::vector<std::string> take_all(client_registry::client& to) {
     std::vector<std::string> all;
     while (const auto message = center.take(to)) {
       last = text_in(*message);
@@ -37,8 +37,8 @@ class Hub : public ::testing::Test {
     }
     return all;
   }
-  hub::client& page() { return *center.connect(client_kind::page, nullptr); }
-  hub::client& foxglove() { return *center.connect(client_kind::foxglove, nullptr); }
+  client_registry::client& page() { return *center.connect(client_kind::page, nullptr); }
+  client_registry::client& foxglove() { return *center.connect(client_kind::foxglove, nullptr); }
 
   bool allows_set = true;
   int woken = 0;
@@ -46,26 +46,26 @@ class Hub : public ::testing::Test {
   std::vector<std::function<void(const std::string&)>> done;
   int plays = 0;
   std::string last;
-  hub center{"session",
-             true,
-             {.set =
-                  [this](const set_request& wanted, auto when_done) {
-                    wishes.push_back(wanted.name + '=' + wanted.value);
-                    done.push_back(std::move(when_done));
-                  },
-              .play = [this](const play_request&) { ++plays; }},
-             [this] { ++woken; }};
+  client_registry center{"session",
+                         true,
+                         {.set =
+                              [this](const set_request& wanted, auto when_done) {
+                                wishes.push_back(wanted.name + '=' + wanted.value);
+                                done.push_back(std::move(when_done));
+                              },
+                          .play = [this](const play_request&) { ++plays; }},
+                         [this] { ++woken; }};
 };
 
 TEST_F(Hub, NewClients_AreGreeted) {
-  center.greet(R"({"op":"hello"})", true);
+  center.send_hello(R"({"op":"hello"})", true);
   EXPECT_THAT(take_all(page()), ElementsAre("hello", "status"));
   EXPECT_THAT(take_all(foxglove()), ElementsAre("serverInfo", "advertise"));
 }
 
 TEST_F(Hub, Pages_GetWhatIsPublished) {
-  hub::client& one = page();
-  hub::client& two = foxglove();
+  client_registry::client& one = page();
+  client_registry::client& two = foxglove();
   take_all(one);
   take_all(two);
   EXPECT_EQ(woken, 0);
@@ -82,7 +82,7 @@ TEST_F(Hub, Pages_GetWhatIsPublished) {
 }
 
 TEST_F(Hub, SlowPage_GetsTheNewestScan) {
-  hub::client& slow = page();
+  client_registry::client& slow = page();
   take_all(slow);
   for (std::uint8_t i = 0; i < 200; ++i) center.page_scan({i});
   EXPECT_THAT(take_all(slow), ElementsAre("scan"));
@@ -90,18 +90,18 @@ TEST_F(Hub, SlowPage_GetsTheNewestScan) {
 }
 
 TEST_F(Hub, PageThatNeverReads_HasABoundedOutbox) {
-  hub::client& deaf = page();
+  client_registry::client& deaf = page();
   for (int i = 0; i < 1000; ++i) {
     center.event(R"({"op":"event"})");
     EXPECT_TRUE(center.receive(deaf, R"({"op":"dance"})"));
-    center.greet(R"({"op":"hello"})", true);
+    center.send_hello(R"({"op":"hello"})", true);
     center.page_scan({1});
   }
   EXPECT_LE(take_all(deaf).size(), outbox::longest_queue + outbox::slot_count);
 }
 
 TEST_F(Hub, SlotsTakeTurns) {
-  hub::client& slow = page();
+  client_registry::client& slow = page();
   take_all(slow);
   std::vector<std::string> got;
   for (int i = 0; i < 4; ++i) {  // a scan comes whenever one message could be sent
@@ -113,8 +113,8 @@ TEST_F(Hub, SlotsTakeTurns) {
 }
 
 TEST_F(Hub, Set_IsPassedOnAndAnswered) {
-  hub::client& one = page();
-  hub::client& two = page();
+  client_registry::client& one = page();
+  client_registry::client& two = page();
   take_all(one);
   take_all(two);
   EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":9})"));
@@ -134,9 +134,9 @@ TEST_F(Hub, Set_IsPassedOnAndAnswered) {
 }
 
 TEST_F(Hub, Set_IsRefusedUnlessAllowed) {
-  hub closed("s", false, {.set = [](const set_request&, const auto&) { FAIL(); }, .play = {}},
-             [] {});
-  hub::client& one = *closed.connect(client_kind::page, nullptr);
+  client_registry closed(
+      "s", false, {.set = [](const set_request&, const auto&) { FAIL(); }, .play = {}}, [] {});
+  client_registry::client& one = *closed.connect(client_kind::page, nullptr);
   EXPECT_TRUE(closed.receive(one, R"({"op":"set","name":"freq","value":9})"));
   EXPECT_THAT(text_in(*closed.take(one)), HasSubstr("--allow-set"));
 }
@@ -152,7 +152,7 @@ TEST_F(Hub, ClientsThatDoNotSpeakTheirProtocol_AreClosed) {
 }
 
 TEST_F(Hub, Foxglove_GetsWhatItSubscribes) {
-  hub::client& one = foxglove();
+  client_registry::client& one = foxglove();
   take_all(one);
   center.publish(channel::scan, 5, {1});
   EXPECT_FALSE(center.has_more(one)) << "not subscribed";
@@ -177,7 +177,7 @@ TEST_F(Hub, Foxglove_GetsWhatItSubscribes) {
 }
 
 TEST_F(Hub, Foxglove_IsWarnedOfBytesThatAreLeftOut) {
-  hub::client& slow = foxglove();
+  client_registry::client& slow = foxglove();
   take_all(slow);
   EXPECT_TRUE(center.receive(
       slow,
@@ -201,7 +201,7 @@ TEST_F(Hub, Foxglove_IsWarnedOfBytesThatAreLeftOut) {
 }
 
 TEST_F(Hub, Foxglove_IsWarnedOfWhatCannotBe) {
-  hub::client& one = foxglove();
+  client_registry::client& one = foxglove();
   take_all(one);
   const auto expect_warning = [&](const std::string& request, const std::string& why) {
     EXPECT_TRUE(center.receive(one, request));
@@ -218,15 +218,15 @@ TEST_F(Hub, Foxglove_IsWarnedOfWhatCannotBe) {
 }
 
 TEST_F(Hub, NumberOfClients_IsLimited) {
-  std::vector<hub::client*> all;
-  for (std::size_t i = 0; i < hub::most_clients; ++i) {
+  std::vector<client_registry::client*> all;
+  for (std::size_t i = 0; i < client_registry::most_clients; ++i) {
     all.push_back(center.connect(client_kind::page, nullptr));
     EXPECT_NE(all.back(), nullptr);
   }
   EXPECT_EQ(center.connect(client_kind::page, nullptr), nullptr);
   center.disconnect(all.front());
   EXPECT_NE(center.connect(client_kind::page, nullptr), nullptr);
-  EXPECT_EQ(center.client_count(), hub::most_clients);
+  EXPECT_EQ(center.client_count(), client_registry::most_clients);
 }
 
 TEST(HostGuard, LoopbackKnowsItsNames) {

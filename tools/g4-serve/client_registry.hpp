@@ -23,7 +23,7 @@ namespace g4_tool {
 /// What a client speaks.
 enum class client_kind : std::uint8_t { page, foxglove };
 
-/// What the hub asks of the lidar. Both may be called in any thread, without a lock.
+/// What the client registry asks of the lidar. Both may be called in any thread, without a lock.
 struct hub_actions {
   /// Sets, and calls `done` later, in any thread, with what went wrong; empty: nothing.
   std::function<void(const set_request&, std::function<void(const std::string&)> done)> set;
@@ -31,17 +31,18 @@ struct hub_actions {
 };
 
 /// *Any thread.* Its memory is bounded by the number of clients.
-class hub {
+class client_registry {
  public:
   /// A client, from connect() to disconnect(). Only its connection touches it.
   struct client;
 
   /// `wake` is called, in any thread, after messages were put into outboxes. `session`: see
   /// server_info_text().
-  hub(std::string_view session, bool allows_set, hub_actions actions, std::function<void()> wake);
-  hub(const hub&) = delete;
-  hub& operator=(const hub&) = delete;
-  ~hub();
+  client_registry(std::string_view session, bool allows_set, hub_actions actions,
+                  std::function<void()> wake);
+  client_registry(const client_registry&) = delete;
+  client_registry& operator=(const client_registry&) = delete;
+  ~client_registry();
 
   // ---- for the connections --------------------------------------------------------------------
 
@@ -72,7 +73,7 @@ class hub {
   [[nodiscard]] wishes wanted() const;
 
   /// The first message for pages from now on, and, if `sends`, for those that are there.
-  void greet(const std::string& hello, bool sends);
+  void send_hello(const std::string& hello, bool sends);
   void settings(const std::string& text);
   void status(const std::string& text);
   void event(const std::string& text);

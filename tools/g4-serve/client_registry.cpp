@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "hub.hpp"
+#include "client_registry.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ outgoing text_of(std::string_view text) { return text_of(share(text)); }
 
 }  // namespace
 
-struct hub::client {
+struct client_registry::client {
   client_kind kind;
   void* socket;
   std::uint64_t id;
@@ -31,7 +31,8 @@ struct hub::client {
   bool is_setting = false;  // a setting of it is not done yet
 };
 
-hub::hub(std::string_view session, bool allows_set, hub_actions actions, std::function<void()> wake)
+client_registry::client_registry(std::string_view session, bool allows_set, hub_actions actions,
+                                 std::function<void()> wake)
     : allows_set_(allows_set),
       actions_(std::move(actions)),
       wake_(std::move(wake)),
@@ -39,9 +40,9 @@ hub::hub(std::string_view session, bool allows_set, hub_actions actions, std::fu
       advertise_(share(advertise_text())),
       status_(share(status_text({}))) {}
 
-hub::~hub() = default;
+client_registry::~client_registry() = default;
 
-hub::client* hub::connect(client_kind kind, void* socket) {
+client_registry::client* client_registry::connect(client_kind kind, void* socket) {
   const std::lock_guard lock(mutex_);
   if (clients_.size() >= most_clients) return nullptr;
   client& made = clients_.emplace_back(client{kind, socket, ++last_id_});
@@ -55,16 +56,16 @@ hub::client* hub::connect(client_kind kind, void* socket) {
   return &made;
 }
 
-void hub::disconnect(client* gone) {
+void client_registry::disconnect(client* gone) {
   const std::lock_guard lock(mutex_);
   clients_.remove_if([gone](const client& each) { return &each == gone; });
 }
 
-bool hub::receive(client& from, std::string_view text) {
+bool client_registry::receive(client& from, std::string_view text) {
   return from.kind == client_kind::page ? receive_page(from, text) : receive_foxglove(from, text);
 }
 
-bool hub::receive_page(client& from, std::string_view text) {
+bool client_registry::receive_page(client& from, std::string_view text) {
   const auto request = parse_page_request(text);
   if (!request) return false;
   if (const auto* bad = std::get_if<bad_request>(&*request)) {
@@ -77,7 +78,7 @@ bool hub::receive_page(client& from, std::string_view text) {
   return true;
 }
 
-void hub::take_set(client& from, const set_request& wanted) {
+void client_registry::take_set(client& from, const set_request& wanted) {
   if (!allows_set_) {
     return answer(from.id, "set", "the settings are read-only: start g4-serve with --allow-set");
   }
@@ -98,7 +99,7 @@ void hub::take_set(client& from, const set_request& wanted) {
   });
 }
 
-bool hub::receive_foxglove(client& from, std::string_view text) {
+bool client_registry::receive_foxglove(client& from, std::string_view text) {
   const auto request = parse_foxglove_request(text);
   if (!request) return false;
   const std::lock_guard lock(mutex_);
@@ -120,7 +121,7 @@ bool hub::receive_foxglove(client& from, std::string_view text) {
   return true;
 }
 
-std::string hub::subscribe(client& from, const subscribe_request::entry& wanted) {
+std::string client_registry::subscribe(client& from, const subscribe_request::entry& wanted) {
   const auto which = channel_of(wanted.channel_id);
   if (!which) return fmt::format("there is no channel {}", wanted.channel_id);
   if (std::ranges::count(from.subscriptions, wanted.id) > 0) {
@@ -132,29 +133,29 @@ std::string hub::subscribe(client& from, const subscribe_request::entry& wanted)
   return {};
 }
 
-std::optional<outgoing> hub::take(client& to) {
+std::optional<outgoing> client_registry::take(client& to) {
   const std::lock_guard lock(mutex_);
   return to.waiting.take();
 }
 
-bool hub::has_more(const client& to) const {
+bool client_registry::has_more(const client& to) const {
   const std::lock_guard lock(mutex_);
   return !to.waiting.is_empty();
 }
 
-void hub::for_each_ready(const std::function<void(void*)>& use) {
+void client_registry::for_each_ready(const std::function<void(void*)>& use) {
   const std::lock_guard lock(mutex_);
   for (const client& each : clients_) {
     if (!each.waiting.is_empty()) use(each.socket);
   }
 }
 
-shared_bytes hub::status() const {
+shared_bytes client_registry::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
 }
 
-hub::wishes hub::wanted() const {
+client_registry::wishes client_registry::wanted() const {
   wishes all;
   const std::lock_guard lock(mutex_);
   for (const client& each : clients_) {
@@ -166,7 +167,7 @@ hub::wishes hub::wanted() const {
   return all;
 }
 
-void hub::to_pages(std::size_t slot, bool is_text, const shared_bytes& payload) {
+void client_registry::to_pages(std::size_t slot, bool is_text, const shared_bytes& payload) {
   {
     const std::lock_guard lock(mutex_);
     for (client& each : clients_) {
@@ -177,7 +178,7 @@ void hub::to_pages(std::size_t slot, bool is_text, const shared_bytes& payload) 
   wake_();
 }
 
-void hub::answer(std::uint64_t id, std::string_view of, const std::string& message) {
+void client_registry::answer(std::uint64_t id, std::string_view of, const std::string& message) {
   {
     const std::lock_guard lock(mutex_);
     const auto found = std::ranges::find(clients_, id, &client::id);
@@ -187,7 +188,7 @@ void hub::answer(std::uint64_t id, std::string_view of, const std::string& messa
   wake_();
 }
 
-void hub::greet(const std::string& hello, bool sends) {
+void client_registry::send_hello(const std::string& hello, bool sends) {
   {
     const std::lock_guard lock(mutex_);
     hello_ = share(hello);
@@ -198,9 +199,11 @@ void hub::greet(const std::string& hello, bool sends) {
   wake_();
 }
 
-void hub::settings(const std::string& text) { to_pages(settings_slot, true, share(text)); }
+void client_registry::settings(const std::string& text) {
+  to_pages(settings_slot, true, share(text));
+}
 
-void hub::status(const std::string& text) {
+void client_registry::status(const std::string& text) {
   const shared_bytes shared = share(text);
   {
     const std::lock_guard lock(mutex_);
@@ -209,7 +212,7 @@ void hub::status(const std::string& text) {
   to_pages(status_slot, true, shared);
 }
 
-void hub::event(const std::string& text) {
+void client_registry::event(const std::string& text) {
   const shared_bytes shared = share(text);
   {
     const std::lock_guard lock(mutex_);
@@ -220,11 +223,12 @@ void hub::event(const std::string& text) {
   wake_();
 }
 
-void hub::page_scan(std::vector<std::uint8_t> message) {
+void client_registry::page_scan(std::vector<std::uint8_t> message) {
   to_pages(scan_slot, false, share(std::move(message)));
 }
 
-void hub::publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t> message) {
+void client_registry::publish(channel which, std::int64_t stamp_ns,
+                              std::vector<std::uint8_t> message) {
   const shared_bytes payload = share(std::move(message));
   const auto slot = static_cast<std::size_t>(which);
   {
@@ -242,7 +246,7 @@ void hub::publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t
   wake_();
 }
 
-std::size_t hub::client_count() const {
+std::size_t client_registry::client_count() const {
   const std::lock_guard lock(mutex_);
   return clients_.size();
 }
