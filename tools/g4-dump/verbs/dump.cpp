@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/point_help.hpp"
+#include "io/point_help.hpp"
 #include "io/point_job.hpp"
 #include "verbs/verbs.hpp"
 

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "cli/point_help.hpp"
+#include "io/point_help.hpp"
 #include "io/point_job.hpp"
 #include "verbs/verbs.hpp"
 

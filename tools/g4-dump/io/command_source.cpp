@@ -12,7 +12,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "output.hpp"
+#include "io/output.hpp"
 
 namespace g4_tool {
 namespace {

@@ -8,8 +8,8 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "interrupt.hpp"
-#include "output.hpp"
-#include "source.hpp"
+#include "io/output.hpp"
+#include "io/source.hpp"
 
 namespace g4_tool {
 namespace {

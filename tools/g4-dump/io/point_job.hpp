@@ -10,7 +10,7 @@
 #include "g4lidar/export/pcd.hpp"
 #include "g4lidar/export/point_file.hpp"
 #include "g4lidar/export/text_points.hpp"
-#include "source.hpp"
+#include "io/source.hpp"
 
 namespace g4_tool {
 

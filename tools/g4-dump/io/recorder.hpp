@@ -7,7 +7,7 @@
 
 #include "cli/common_options.hpp"
 #include "g4lidar/recording/writer.hpp"
-#include "source.hpp"
+#include "io/source.hpp"
 
 namespace g4_tool {
 

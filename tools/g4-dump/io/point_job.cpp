@@ -18,11 +18,11 @@
 #include "g4lidar/export/slam_text.hpp"
 #include "g4lidar/export/svg.hpp"
 #include "g4lidar/wall_clock.hpp"
-#include "input.hpp"
 #include "interrupt.hpp"
-#include "mask_file.hpp"
-#include "odometry_file.hpp"
-#include "output.hpp"
+#include "io/input.hpp"
+#include "io/mask_file.hpp"
+#include "io/odometry_file.hpp"
+#include "io/output.hpp"
 #include "read_loop.hpp"
 
 namespace g4_tool {

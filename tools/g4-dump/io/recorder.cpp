@@ -18,8 +18,8 @@
 #include "cli/rows.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "odometry_feed.hpp"
-#include "output.hpp"
+#include "io/odometry_feed.hpp"
+#include "io/output.hpp"
 #include "read_loop.hpp"
 #include "service_watch.hpp"
 
