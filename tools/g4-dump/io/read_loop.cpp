@@ -7,7 +7,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "interrupt.hpp"
+#include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/source.hpp"
 

@@ -20,8 +20,8 @@
 #include "g4lidar/recording/reader.hpp"
 #include "io/odometry_feed.hpp"
 #include "io/output.hpp"
+#include "io/service_watch.hpp"
 #include "read_loop.hpp"
-#include "service_watch.hpp"
 
 namespace g4_tool {
 namespace {
