@@ -134,7 +134,12 @@ INSTANTIATE_TEST_SUITE_P(All, Quality,
                          ::testing::Values(combination{true, "reliable", true},
                                            combination{false, "reliable", true},
                                            combination{false, "best-effort", true},
-                                           combination{true, "best-effort", false}));
+                                           combination{true, "best-effort", false}),
+                         [](const auto& which) {
+                           const combination& one = which.param;
+                           return std::string(one.reader_is_reliable ? "Reliable" : "BestEffort") +
+                                  (one.offered[0] == 'r' ? "_From_Reliable" : "_From_BestEffort");
+                         });
 
 TEST_F(Publish, ThePlaceOfTheLidarForWhoeverComesLate) {
   const served_lidar lidar;

@@ -32,7 +32,7 @@ using clock_message = rosgraph_msgs_msg_dds__Clock_;
 class test_domain {
  public:
   test_domain() {
-    const std::string tag = std::to_string(number());
+    const std::string tag = std::to_string(identity());
     ::setenv("CYCLONEDDS_URI",
              ("<CycloneDDS><Domain><Discovery><Tag>test_" + tag +
               "</Tag></Discovery></Domain></CycloneDDS>")
@@ -45,13 +45,14 @@ class test_domain {
     participant_ = dds::entity(dds_create_participant(number(), nullptr, nullptr));
     EXPECT_TRUE(participant_);
   }
-  /// Its own, or that of the test which has started this one. The ports of higher domains may be in use: the system gives
-  /// them to any program.
-  [[nodiscard]] static std::uint32_t number() {
-    const char* const given = std::getenv("G4_ROS2_TEST_DOMAIN");
-    return given != nullptr ? static_cast<std::uint32_t>(std::atoi(given))
-                            : static_cast<std::uint32_t>(::getpid()) % 100U + 1U;
+  /// No other test that runs has it: that of this process, or of the test that has started it. Participants
+  /// with another tag are not seen, also where they have the number of the domain.
+  [[nodiscard]] static std::uint32_t identity() {
+    const char* const given = std::getenv("G4_ROS2_TEST_IDENTITY");
+    return static_cast<std::uint32_t>(given != nullptr ? std::atoi(given) : ::getpid());
   }
+  /// Of the domain. The ports of higher domains may be in use: the system gives them to any program.
+  [[nodiscard]] static std::uint32_t number() { return identity() % 100U + 1U; }
   [[nodiscard]] dds_entity_t participant() const noexcept { return participant_.get(); }
 
  private:

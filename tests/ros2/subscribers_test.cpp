@@ -134,8 +134,8 @@ TEST_F(Subscribers, OneThatStandsStillHoldsUpNobody) {
   make_recording(file, 20);
   subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2, {.depth = 1000});
   subscriber<cloud_message> never_read(domain_, "/points", dds::point_cloud2, {.depth = 5});
-  const std::string domain = std::to_string(test_domain::number());
-  ::setenv("G4_ROS2_TEST_DOMAIN", domain.c_str(), 1);
+  const std::string identity = std::to_string(test_domain::identity());
+  ::setenv("G4_ROS2_TEST_IDENTITY", identity.c_str(), 1);
   const pid_t child = ::fork();
   if (child == 0) {
     ::execl("/proc/self/exe", "ros2_tests", "--gtest_also_run_disabled_tests",
