@@ -96,9 +96,10 @@ TEST_F(Source, Sim_IsASimulatedLidarThatScans) {
 }
 
 TEST_F(Source, Sim_SurvivesAnUnplugWithReconnecting) {
-  auto lidar = lidar::open("sim:?fault=unplug@100ms+200ms&standstill_ns=10ms", {.reconnect = true});
+  auto lidar = lidar::open("sim:?fault=unplug@300ms+200ms&standstill_ns=10ms", {.reconnect = true});
   ASSERT_TRUE(lidar) << lidar.error().message();
-  ASSERT_TRUE(lidar->start());
+  // On a busy machine it is unplugged before it has started.
+  EXPECT_TRUE(comes_true([&] { return lidar->start().has_value(); }));
   EXPECT_TRUE(comes_true([&] {
     static_cast<void>(lidar->next_scan(100ms));
     return lidar->counts().reconnects == 1 && lidar->counts().scans > 0;

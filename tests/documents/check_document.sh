@@ -62,6 +62,16 @@ need_g4() {
   await "$g4" || { echo "g4-dump sim created no device" >&2; exit 1; }
 }
 
+# Whether programs waited for a processor for more than 0.2 s since this check began: then the simulated lidar stalls,
+# and the doctor (exit code 9) is right.
+waited_us() { sed -n 's/^some.*total=//p' /proc/pressure/cpu 2>/dev/null || true; }
+waited_before=$(waited_us)
+was_busy() {
+  local now
+  now=$(waited_us)
+  ((${now:-0} - ${waited_before:-0} > 200000))
+}
+
 # interrupted <lines> <command>...: runs it until it has printed so many lines, or ends; returns its
 # exit code. With 0 lines it ends by itself.
 interrupted() {
@@ -117,6 +127,10 @@ run_line() {
     done
     # A reader that reads only the beginning ends the writers.
     if [[ $words == *"|"* ]] && ((code == 141)); then code=0; fi
+  fi
+  if ((code == 9 && wanted == 0)) && was_busy; then
+    echo "$document:$at: '$3' found faults on a busy machine: not counted"
+    code=0
   fi
   if ((code != wanted)); then refuse "$at" "'$3' ended with $code"; fi
   # A simulated device must be available before the next line.

@@ -7,9 +7,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <functional>
+#include <thread>
+#include <vector>
+
+#include "support/patience.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -51,6 +57,22 @@ TEST(MachineWatch, NoticesAStop) {
   const machine_watch machine;
   be_stopped();
   EXPECT_TRUE(machine.was_stopped());
+}
+
+// More threads than processors, none of which sleeps.
+TEST(MachineWatch, NoticesAWaitForAProcessor) {
+  const machine_watch machine;
+  std::atomic<bool> is_over = false;
+  std::vector<std::thread> busy;
+  for (unsigned i = 0; i < 4 * std::max(1U, std::thread::hardware_concurrency()); ++i) {
+    busy.emplace_back([&is_over] {
+      while (!is_over) {
+      }
+    });
+  }
+  EXPECT_TRUE(comes_true([&] { return machine.was_stopped(); }));
+  is_over = true;
+  for (std::thread& each : busy) each.join();
 }
 
 TEST(MachineWatch, RunsThatTakeTooLongWhileItStops_AreRepeated) {

@@ -305,7 +305,7 @@ std::vector<std::chrono::nanoseconds> delays_of(int count) {
   std::vector<std::chrono::nanoseconds> delays;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const auto at = std::find(sent.begin(), sent.end(), scans[i]) - sent.begin();
-    EXPECT_LT(at + 1, static_cast<std::ptrdiff_t>(zero_sent_ns.size())) << i;
+    // A scan that lost bytes because the reader was late is not among those that were sent.
     if (at + 1 >= static_cast<std::ptrdiff_t>(zero_sent_ns.size())) break;
     delays.emplace_back(handed_ns[i] - zero_sent_ns[static_cast<std::size_t>(at) + 1]);
   }
@@ -318,7 +318,8 @@ TEST(RealTime, DeliversScansImmediately) {
   std::vector<std::chrono::nanoseconds> all;
   for (int start = 0; start < 4; ++start) {
     const auto delays = delays_of(10);
-    ASSERT_EQ(delays.size(), 10U);
+    if (delays.size() < 10 && machine.was_stopped()) GTEST_SKIP() << test::machine_was_stopped;
+    ASSERT_EQ(delays.size(), 10U) << "a scan was delivered that was not sent";
     all.insert(all.end(), delays.begin(), delays.end());
   }
   EXPECT_GE(*std::min_element(all.begin(), all.end()), 0ns);
