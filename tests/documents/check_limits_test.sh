@@ -22,6 +22,7 @@ make_project() {
   printf '%s\n' '# Promises' '' '| promise | test |' '|---|---|' '| It works. | `tests/it` |' >docs/promises.md
   printf '%s\n' '# Maps' >docs/maps.md
   printf '%s\n' '# Support' >SUPPORT.md
+  printf '%s\n' '# Contributing' >CONTRIBUTING.md
 }
 
 # expect <right
@@ -64,7 +65,7 @@ printf '\n%s.\n%s.\n' "$(words 25)" "$(words 25)" >>docs/promises.md
 expect right "two sentences of 25 words"
 for text in "$(words 26)." "$(words 13)
 $(words 13)" "- $(words 26)" "| $(words 26) | \`test\` |" "[$(words 20)](https://example.org) $(words 6)"; do
-  for page in README.md SUPPORT.md docs/promises.md docs/guide/README.md; do
+  for page in README.md SUPPORT.md CONTRIBUTING.md docs/promises.md docs/guide/README.md; do
     make_project
     printf '\n%s\n' "$text" >>"$page"
     expect wrong "a sentence of 26 words in $page: ${text:0:9}" "a sentence of 26 words: word"
