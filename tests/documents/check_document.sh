@@ -45,11 +45,11 @@ refuse() {
   exit 1
 }
 
-# await <path>: waits until it exists.
+# await <path>: waits until it exists, or with a pattern a path that matches.
 await() {
   local i
   for ((i = 0; i < 600; ++i)); do
-    if [[ -e $1 ]]; then return 0; fi
+    if compgen -G "$1" >/dev/null; then return 0; fi
     sleep 0.05
   done
   return 1
@@ -139,6 +139,9 @@ run_line() {
     while read -r _ link; do
       await "$link" || refuse "$at" "'$3' created no $link"
     done < <(grep -oE -e '--link [^ ]+' <<<"$words")
+    if [[ $words == *--register* ]]; then
+      await "$G4LIDAR_SIM_DIR/*" || refuse "$at" "'$3' registered no device"
+    fi
   fi
 }
 

@@ -19,8 +19,10 @@ make_project() {
     printf '%s\n' '| I want to ... | command |' '|---|---|' "| see a scan | ${1-"\`g4-dump scan -n 1 sim:\`"} |"
   } >README.md
   printf '%s\n' '# Guide' '' '## The `second` one' '' '[Back](../../README.md)' >docs/guide/README.md
-  printf '%s\n' '# Promises' '' '| promise | test |' '|---|---|' '| It works. | `none` |' >docs/promises.md
+  printf '%s\n' '# Promises' '' '| promise | test |' '|---|---|' '| It works. | `tests/it` |' >docs/promises.md
   printf '%s\n' '# Maps' >docs/maps.md
+  printf '%s\n' '# Support' >SUPPORT.md
+  printf '%s\n' '# Contributing' >CONTRIBUTING.md
 }
 
 # expect <right
@@ -63,7 +65,7 @@ printf '\n%s.\n%s.\n' "$(words 25)" "$(words 25)" >>docs/promises.md
 expect right "two sentences of 25 words"
 for text in "$(words 26)." "$(words 13)
 $(words 13)" "- $(words 26)" "| $(words 26) | \`test\` |" "[$(words 20)](https://example.org) $(words 6)"; do
-  for page in README.md docs/promises.md docs/guide/README.md; do
+  for page in README.md SUPPORT.md CONTRIBUTING.md docs/promises.md docs/guide/README.md; do
     make_project
     printf '\n%s\n' "$text" >>"$page"
     expect wrong "a sentence of 26 words in $page: ${text:0:9}" "a sentence of 26 words: word"
@@ -75,6 +77,10 @@ expect right "a row with sentences of 20, 10 and 25 words; code is one word"
 make_project
 printf '\n```text\n%s\n```\n' "$(words 40)" >>docs/promises.md
 expect right "a long line in a block"
+
+make_project
+echo '| It is fast. | measured once |' >>docs/promises.md
+expect wrong "a promise without a test" "docs/promises.md:6: a promise without a test: It is fast."
 
 make_project
 echo '[Nothing](nothing.md)' >>docs/maps.md

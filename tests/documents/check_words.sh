@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # The programs of the README and of docs/install.md are equal to the examples; the files and commands
-# that the documents name exist, and the documents that the sources name; a command line within a
+# that the documents name exist, and the documents that the sources name; so do options; a command line within a
 # sentence is also in a block, and so is executed; no line of a document is too long; no figures of
 # speech stand in documents, names, comments and messages. Links: check_limits.sh.
 # Needs G4_DUMP and G4LIDAR_SOURCE_DIR.
@@ -66,6 +66,27 @@ while IFS=: read -r document path; do
   fi
 done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|python|\.ci)(/[A-Za-z0-9_./-]+)?`' \
   "${documents[@]}" | sort --unique)
+
+# Every option that a document names is one of a program. Those of other programs: apt, ros2 bag.
+others='--(no-install-recommends|qos-profile-overrides-path)'
+programs=$(dirname "$G4_DUMP")
+for command in $("$G4_DUMP" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
+  "$G4_DUMP" "$command" --help
+done >"$scratch/help"
+"$G4_DUMP" --help >>"$scratch/help"
+if [[ -x $programs/g4-serve && -x $programs/g4-ros2 ]]; then
+  "$programs/g4-serve" --help >>"$scratch/help"
+  "$programs/g4-ros2" --help >>"$scratch/help"
+  # shellcheck disable=SC2016 # the backquotes are those of Markdown
+  while IFS=: read -r document option; do
+    option=${option//\`/}
+    if [[ ! $option =~ ^$others$ ]] && ! grep -qE -e "(^|[ ,])$option([ =,[]|$)" "$scratch/help"; then
+      echo "$document names the option $option, which no program has" >&2
+      missing=1
+    fi
+  done < <(grep -oE '`--[a-z][a-z-]+' README.md SUPPORT.md docs/*.md docs/*/*.md | sort --unique)
+fi
+
 # The pages link to each other, so each package with one of them has all.
 for list in debian/*.docs; do
   if ! diff debian/libg4lidar-dev.docs "$list"; then
