@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "client_registry.hpp"
 #include "host_guard.hpp"
-#include "hub.hpp"
 
 namespace {
 
@@ -68,12 +68,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     expect(!wanted.speed || *wanted.speed == *wanted.speed, "a speed that is no number");
     expect(!wanted.seek_s || *wanted.seek_s == *wanted.seek_s, "a place that is no number");
   };
-  hub center("session", true, {set, play}, [] {});
-  hub::client* clients[] = {center.connect(client_kind::page, nullptr),
-                            center.connect(client_kind::foxglove, nullptr)};
+  client_registry center("session", true, {set, play}, [] {});
+  client_registry::client* clients[] = {center.connect(client_kind::page, nullptr),
+                                        center.connect(client_kind::foxglove, nullptr)};
   while (!rest.empty()) {
     const std::string_view text = take_line(rest);
-    for (hub::client*& each : clients) {
+    for (client_registry::client*& each : clients) {
       if (each == nullptr || center.receive(*each, text)) continue;
       center.disconnect(each);
       each = nullptr;
@@ -82,7 +82,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     expect(unanswered.size() < 2, "a client sets twice at once");
   }
   for (const auto& done : unanswered) done("it is over");
-  for (hub::client* const each : clients) {
+  for (client_registry::client* const each : clients) {
     if (each == nullptr) continue;
     unsigned waiting = 0;
     while (center.take(*each)) ++waiting;

@@ -52,7 +52,7 @@ struct scan {
   std::uint8_t reported_frequency_dhz = 0;
   std::uint32_t suspect_packets = 0;  ///< Left out of `points`, and flagged as `data_lost`.
   std::uint32_t suspect_samples = 0;  ///< The samples of these packets.
-  std::uint32_t nominal_sample_rate_hz =
+  std::uint32_t sample_rate_hz =
       default_sample_rate_hz;  ///< The configured sample rate of the device.
   /// The change of the first-level angle, clockwise degrees, from the first point to the first one
   /// of the next scan (or to the last point, where the stream ended): about 360 for a revolution.
@@ -113,10 +113,10 @@ struct scan {
 #endif
   /// Samples per second, from the times of its points; the nominal rate if these are not
   /// sufficient.
-  [[nodiscard]] constexpr float sample_rate_hz() const noexcept {
+  [[nodiscard]] constexpr float measured_sample_rate_hz() const noexcept {
     const std::int64_t taken = size() < 2 ? 0 : points.back().time_ns - time_ns();
     if (taken <= 0 || has(scan_flags::data_lost | scan_flags::crc_mismatch))
-      return static_cast<float>(nominal_sample_rate_hz);
+      return static_cast<float>(sample_rate_hz);
     return static_cast<float>(size() - 1) * 1e9F / static_cast<float>(taken);
   }
   /// The measured rotation frequency in Hz: turns by time if the times are known, else turns by
@@ -126,7 +126,7 @@ struct scan {
     if (duration_ns > 0) return turns * 1e9F / static_cast<float>(duration_ns);
     if (empty() || has(scan_flags::data_lost | scan_flags::crc_mismatch | scan_flags::end_missing))
       return 0.0F;
-    return turns * static_cast<float>(nominal_sample_rate_hz) / static_cast<float>(size());
+    return turns * static_cast<float>(sample_rate_hz) / static_cast<float>(size());
   }
 };
 

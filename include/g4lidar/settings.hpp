@@ -33,7 +33,7 @@ inline constexpr std::uint16_t max_scan_frequency_chz = 1200;
 /// The direction in which the head turns, seen from above. (commands 06, 07, 08)
 enum class motor_direction : std::uint8_t { clockwise = 0, counter_clockwise = 1 };
 /// The measurements per second: 4000, 8000 or 9000. (commands D0, D1)
-enum class ranging_frequency : std::uint8_t { khz_4 = 0, khz_8 = 1, khz_9 = 2 };
+enum class sample_rate : std::uint8_t { khz_4 = 0, khz_8 = 1, khz_9 = 2 };
 /// Whether the lidar stops scanning by itself 3 s after the last command. (command D9)
 enum class power_down_protection : std::uint8_t { on = 0, off = 1 };
 /// Whether the motor stops while no scan is running. (commands 01, 02, 05)
@@ -46,8 +46,8 @@ enum class constant_frequency : std::uint8_t { off = 0, on = 1 };
   return wanted.chz >= min_scan_frequency_chz && wanted.chz <= max_scan_frequency_chz;
 }
 /// The same for the setting with three values,
-[[nodiscard]] constexpr bool is_valid(ranging_frequency wanted) noexcept {
-  return wanted <= ranging_frequency::khz_9;
+[[nodiscard]] constexpr bool is_valid(sample_rate wanted) noexcept {
+  return wanted <= sample_rate::khz_9;
 }
 /// and for the settings with two.
 template <class Setting>
@@ -56,13 +56,13 @@ template <class Setting>
 }
 
 /// The measurements per second. *Pure.*
-[[nodiscard]] constexpr std::uint32_t samples_per_second(ranging_frequency frequency) noexcept {
+[[nodiscard]] constexpr std::uint32_t to_hz(sample_rate frequency) noexcept {
   switch (frequency) {
-    case ranging_frequency::khz_4:
+    case sample_rate::khz_4:
       return 4000;
-    case ranging_frequency::khz_8:
+    case sample_rate::khz_8:
       return 8000;
-    case ranging_frequency::khz_9:
+    case sample_rate::khz_9:
       break;
   }
   return 9000;

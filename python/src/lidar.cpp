@@ -37,7 +37,7 @@ void set(live_lidar& on, const wanted_settings& wanted, bool interrupt) {
   const auto send = [&](const auto& value) {
     if (value) on.run([&](lidar& device) { return device.set(*value, how); });
   };
-  send(wanted.ranging());
+  send(wanted.sample_rate());
   send(wanted.frequency());
   send(wanted.direction);
   send(wanted.constancy());
@@ -52,7 +52,7 @@ nb::dict settings(live_lidar& on, bool interrupt) {
   };
   nb::dict all;
   all["frequency_hz"] = ask(requests::get_scan_frequency()).hz();
-  all["sample_rate_hz"] = samples_per_second(ask(requests::get_ranging()));
+  all["sample_rate_hz"] = to_hz(ask(requests::get_sample_rate()));
   all["direction"] = ask(requests::get_direction());
   all["low_power"] = ask(requests::get_low_power()) == low_power::on;
   return all;

@@ -179,7 +179,7 @@ live_lidar* open_by_keywords(
                                constant_frequency, low_power,      protection};
   lidar_options options;
   options.baud = baud;
-  options.ranging = wanted.ranging();
+  options.sample_rate = wanted.sample_rate();
   options.frequency = wanted.frequency();
   options.direction = direction;
   options.constant = wanted.constancy();

@@ -18,7 +18,7 @@ kept_scan::kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns)
       time_ns(from.time_ns()),
       end_ns(from.end_ns()),
       wall_ahead_ns(wall_minus_monotonic_ns),
-      sample_rate_hz(from.sample_rate_hz()),
+      measured_sample_rate_hz(from.measured_sample_rate_hz()),
       measured_frequency_hz(from.measured_frequency_hz()) {
   about.points = {};
 }
@@ -119,7 +119,7 @@ void bind_scan(nb::module_& module) {
           "did not.")
       .def_ro("measured_frequency_hz", &kept_scan::measured_frequency_hz,
               "The measured rotation frequency, in Hz; 0 if it cannot be determined.")
-      .def_ro("sample_rate_hz", &kept_scan::sample_rate_hz, "Samples per second.")
+      .def_ro("measured_sample_rate_hz", &kept_scan::measured_sample_rate_hz, "Samples per second.")
       .def(
           "xy", [](const kept_scan& s, frame to) { return to_xy_array(s.points, to); },
           "frame"_a = frame::robot,

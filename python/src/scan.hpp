@@ -21,7 +21,7 @@ struct kept_scan {
   std::int64_t time_ns;  ///< Of the first point.
   std::int64_t end_ns;   ///< When the next scan began.
   std::int64_t wall_ahead_ns;
-  float sample_rate_hz;
+  float measured_sample_rate_hz;
   float measured_frequency_hz;
 };
 

@@ -23,11 +23,11 @@ struct wanted_settings {
   std::optional<bool> protection;
 
   /// Raises BadOption for a rate that a G4 does not have.
-  [[nodiscard]] std::optional<ranging_frequency> ranging() const {
+  [[nodiscard]] std::optional<g4lidar::sample_rate> sample_rate() const {
     if (!sample_rate_hz) return std::nullopt;
     for (const auto each :
-         {ranging_frequency::khz_4, ranging_frequency::khz_8, ranging_frequency::khz_9}) {
-      if (static_cast<int>(samples_per_second(each)) == *sample_rate_hz) return each;
+         {g4lidar::sample_rate::khz_4, g4lidar::sample_rate::khz_8, g4lidar::sample_rate::khz_9}) {
+      if (static_cast<int>(to_hz(each)) == *sample_rate_hz) return each;
     }
     raise(error(task::configuring, problem::bad_option,
                 "sample_rate_hz: 4000, 8000 or 9000, not " + std::to_string(*sample_rate_hz)));

@@ -28,7 +28,7 @@ def use(room, path):
     need(info["firmware_version"] == "3.2", f"firmware {info}")
     need(info["serial_number"] == serial, f"serial number {info}")
     need(lidar.GetCurrentFrequency() == 7.0, "another frequency than 7 Hz")
-    need(lidar.GetCurrentRangingFrequency() == 9, "another ranging frequency than 9 kHz")
+    need(lidar.GetCurrentRangingFrequency() == 9, "another sample rate than 9 kHz")
     scans = lidar.StartScanning()
     ranges = []
     for _ in range(6):

@@ -30,8 +30,8 @@ void fill(g4lidar_scan& out, const scan& from) noexcept {
   out.flags = static_cast<std::uint32_t>(from.flags);
   out.suspect_packets = from.suspect_packets;
   out.suspect_samples = from.suspect_samples;
-  out.nominal_sample_rate_hz = from.nominal_sample_rate_hz;
-  out.sample_rate_hz = from.sample_rate_hz();
+  out.sample_rate_hz = from.sample_rate_hz;
+  out.measured_sample_rate_hz = from.measured_sample_rate_hz();
   out.frequency_hz = from.measured_frequency_hz();
   out.reported_frequency_hz = static_cast<float>(from.reported_frequency_dhz) * 0.1F;
   out.turned_deg = from.turned_deg;
@@ -42,8 +42,8 @@ void fill(g4lidar_scan& out, const scan& from) noexcept {
 /// The value of an answer in C; nothing if it has none.
 std::optional<std::int32_t> value_of(const answer& from) noexcept {
   if (const auto* it = std::get_if<scan_frequency>(&from)) return it->chz;
-  if (const auto* it = std::get_if<ranging_frequency>(&from)) {
-    return static_cast<std::int32_t>(samples_per_second(*it));
+  if (const auto* it = std::get_if<sample_rate>(&from)) {
+    return static_cast<std::int32_t>(to_hz(*it));
   }
   if (const auto* it = std::get_if<motor_direction>(&from)) {
     return *it == motor_direction::clockwise ? G4LIDAR_CLOCKWISE : G4LIDAR_COUNTER_CLOCKWISE;
@@ -63,8 +63,8 @@ std::optional<request> query_of(int setting) noexcept {
   switch (setting) {
     case G4LIDAR_SCAN_FREQUENCY:
       return requests::get_scan_frequency();
-    case G4LIDAR_RANGING_FREQUENCY:
-      return requests::get_ranging();
+    case G4LIDAR_SAMPLE_RATE:
+      return requests::get_sample_rate();
     case G4LIDAR_MOTOR_DIRECTION:
       return requests::get_direction();
     case G4LIDAR_LOW_POWER:
@@ -85,11 +85,11 @@ std::optional<request> change_of(int setting, std::int32_t wanted) noexcept {
     case G4LIDAR_SCAN_FREQUENCY:
       return requests::set(
           scan_frequency{static_cast<std::uint16_t>(std::clamp(wanted, 0, 0xFFFF))});
-    case G4LIDAR_RANGING_FREQUENCY:
-      return requests::set(wanted == 4000   ? ranging_frequency::khz_4
-                           : wanted == 8000 ? ranging_frequency::khz_8
-                           : wanted == 9000 ? ranging_frequency::khz_9
-                                            : static_cast<ranging_frequency>(0xFF));
+    case G4LIDAR_SAMPLE_RATE:
+      return requests::set(wanted == 4000   ? sample_rate::khz_4
+                           : wanted == 8000 ? sample_rate::khz_8
+                           : wanted == 9000 ? sample_rate::khz_9
+                                            : static_cast<sample_rate>(0xFF));
     case G4LIDAR_MOTOR_DIRECTION:
       return requests::set(choice(motor_direction::clockwise, motor_direction::counter_clockwise));
     case G4LIDAR_LOW_POWER:

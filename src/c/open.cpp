@@ -38,10 +38,11 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
   if (given.frequency_chz != 0) {
     into.frequency = scan_frequency{static_cast<std::uint16_t>(given.frequency_chz)};
   }
-  if (given.ranging_hz == 4000) into.ranging = ranging_frequency::khz_4;
-  if (given.ranging_hz == 8000) into.ranging = ranging_frequency::khz_8;
-  if (given.ranging_hz == 9000) into.ranging = ranging_frequency::khz_9;
-  if (given.ranging_hz != 0 && !into.ranging) return "ranging_hz: 4000, 8000, 9000 or 0";
+  if (given.sample_rate_hz == 4000) into.sample_rate = sample_rate::khz_4;
+  if (given.sample_rate_hz == 8000) into.sample_rate = sample_rate::khz_8;
+  if (given.sample_rate_hz == 9000) into.sample_rate = sample_rate::khz_9;
+  if (given.sample_rate_hz != 0 && !into.sample_rate)
+    return "sample_rate_hz: 4000, 8000, 9000 or 0";
   if (!take_choice(given.direction, motor_direction::clockwise, motor_direction::counter_clockwise,
                    into.direction)) {
     return "direction: a g4lidar_direction or 0";
@@ -71,7 +72,7 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
 void describe(lidar& made, recording_writer& into) {
   recorded_device known;
   known.information = made.information();
-  if (const auto got = made.ask(requests::get_ranging())) known.ranging = *got;
+  if (const auto got = made.ask(requests::get_sample_rate())) known.sample_rate = *got;
   if (const auto got = made.ask(requests::get_scan_frequency())) known.frequency = *got;
   into.device(known);
 }

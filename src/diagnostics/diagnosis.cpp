@@ -130,7 +130,7 @@ constexpr std::array rows{
     row("packets_lost", fail,
         "Whole packets are missing while the others are intact: more is measured than the line "
         "carries, or the computer is too slow.",
-        "Set a lower ranging frequency; reduce the load of this computer.", {stalls}),
+        "Set a lower sample rate; reduce the load of this computer.", {stalls}),
     row("line_noise", fail, "Bytes arrive that belong to no packet, and they show no pattern.",
         line_advice, {wrong_baud_rate, interference}),
     row("usb_latency", warn,

@@ -58,7 +58,7 @@ class file_run {
     if (const auto& device = reader.device()) {
       if (!device_.information) device_.information = device->information;
       device_.frequency = device->frequency;
-      device_.ranging = device->ranging;
+      device_.sample_rate = device->sample_rate;
     }
     seconds_ = static_cast<double>(last_ns_ - reader.first_ns()) / 1e9;
     return true;

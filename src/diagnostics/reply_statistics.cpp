@@ -13,7 +13,7 @@ namespace {
 constexpr int rounds = 5;
 constexpr std::array questions{command::device_info,          command::health,
                                command::health_vendor,        command::frequency_query,
-                               command::ranging_query,        command::low_power_query,
+                               command::sample_rate_query,    command::low_power_query,
                                command::motor_direction_query};
 /// A reply that takes longer is late.
 constexpr std::int64_t late_ns = 150 * ms;
@@ -136,8 +136,8 @@ device_snapshot reply_statistics::snapshot() const {
     known.take(*reply);
     if (const auto chz = reply->as_frequency_chz()) known.frequency = scan_frequency{*chz};
     const auto value = reply->as_byte();
-    if (value && code == command::ranging_query) {
-      known.ranging = reply_byte<ranging_frequency>(*value);
+    if (value && code == command::sample_rate_query) {
+      known.sample_rate = reply_byte<sample_rate>(*value);
     }
   }
   return known;

@@ -18,7 +18,7 @@ struct device_snapshot {
   std::optional<device_information> information{};
   std::optional<health> condition{};
   std::optional<scan_frequency> frequency{};
-  std::optional<ranging_frequency> ranging{};
+  std::optional<g4lidar::sample_rate> sample_rate{};
 
   /// The information or the health, if the reply contains it.
   void take(const response_view& reply);

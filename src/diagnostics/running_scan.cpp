@@ -99,8 +99,8 @@ void running_scan::take(const response_view& response) {
   known_.take(response);
   if (const auto chz = response.as_frequency_chz()) known_.frequency = scan_frequency{*chz};
   const auto value = response.as_byte();
-  if (value && (asked_ == command::ranging_query || asked_ == command::ranging_next)) {
-    known_.ranging = reply_byte<ranging_frequency>(*value);
+  if (value && (asked_ == command::sample_rate_query || asked_ == command::sample_rate_next)) {
+    known_.sample_rate = reply_byte<sample_rate>(*value);
   }
   const bool is_unasked = is_device_ && asked_ == command::start;
   may_have_booted_ |= is_unasked && response.kind() == response_kind::device_info;

@@ -27,7 +27,7 @@ class running_scan {
   explicit running_scan(const running_diagnosis_options& options)
       : half_window_ns_(options.window.count() / 2) {
     known_.frequency = options.frequency;
-    known_.ranging = options.ranging;
+    known_.sample_rate = options.sample_rate;
   }
 
   /// A connection begins, to a device or to a file.

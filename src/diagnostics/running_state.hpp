@@ -47,7 +47,7 @@ class running_state {
  public:
   explicit running_state(const running_diagnosis_options& options)
       : window_ns_(std::clamp<std::int64_t>(options.window.count(), 1'000 * ms, 3'600'000 * ms)),
-        scan_({std::chrono::nanoseconds(window_ns_), options.frequency, options.ranging}) {}
+        scan_({std::chrono::nanoseconds(window_ns_), options.frequency, options.sample_rate}) {}
 
   void begin(bool is_device, const recorded_device* recorded) {
     const std::lock_guard hold(mutex_);
@@ -55,7 +55,7 @@ class running_state {
     if (recorded == nullptr) return;
     scan_.known().information = recorded->information;
     if (recorded->frequency) scan_.known().frequency = recorded->frequency;
-    if (recorded->ranging) scan_.known().ranging = recorded->ranging;
+    if (recorded->sample_rate) scan_.known().sample_rate = recorded->sample_rate;
   }
   void connected(const transport& to) {
     const std::lock_guard hold(mutex_);

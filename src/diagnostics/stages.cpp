@@ -30,10 +30,9 @@ bool is_host_busy(const stream_statistics& measured) noexcept {
 
 /// Bytes without device information: a speed that no G4 has is that of another model.
 void find_other_speed(stage_report& rate, double samples_per_s, double samples_per_revolution) {
-  constexpr std::array rates{ranging_frequency::khz_4, ranging_frequency::khz_8,
-                             ranging_frequency::khz_9};
-  const auto is_near = [samples_per_s](ranging_frequency each) {
-    const double nominal = samples_per_second(each);
+  constexpr std::array rates{sample_rate::khz_4, sample_rate::khz_8, sample_rate::khz_9};
+  const auto is_near = [samples_per_s](sample_rate each) {
+    const double nominal = to_hz(each);
     return std::abs(samples_per_s - nominal) <= other_model_tolerance * nominal;
   };
   const bool is_known_rate = samples_per_s <= 0.0 || std::ranges::any_of(rates, is_near);
@@ -143,7 +142,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   if (measured.turns_per_sample() > 0.0) {
     rate.add("samples_per_revolution", 1.0 / measured.turns_per_sample());
   }
-  const bool is_unknown_model = !known.information && !known.ranging && is_certain &&
+  const bool is_unknown_model = !known.information && !known.sample_rate && is_certain &&
                                 measured.was_steady() && measured.turns_per_sample() > 0.0;
   if (frequency_hz <= 0.0) {
     rate.outcome = stage_verdict::skipped;
@@ -161,8 +160,8 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   }
   rate.add("samples_per_s", rate_hz);
   if (is_unknown_model) find_other_speed(rate, rate_hz, 1.0 / measured.turns_per_sample());
-  if (known.ranging) {
-    const double nominal_hz = samples_per_second(*known.ranging);
+  if (known.sample_rate) {
+    const double nominal_hz = to_hz(*known.sample_rate);
     rate.add("nominal_samples_per_s", nominal_hz);
     const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
     if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);

@@ -43,8 +43,8 @@ class error_context {
     add(", ").add(what);
     if (wanted.what == request_kind::set_scan_frequency)
       return add(" ").add(scan_frequency{wanted.value});
-    if (wanted.what == request_kind::set_ranging && wanted.value < ranging_words.size()) {
-      return add(ranging_words[wanted.value]);
+    if (wanted.what == request_kind::set_sample_rate && wanted.value < rate_words.size()) {
+      return add(rate_words[wanted.value]);
     }
     return *this;
   }
@@ -64,15 +64,15 @@ class error_context {
                                                                   "scan frequency",
                                                                   "scan frequency",
                                                                   "constant frequency",
-                                                                  "ranging frequency",
-                                                                  "ranging frequency",
+                                                                  "sample rate",
+                                                                  "sample rate",
                                                                   "power-down protection",
                                                                   "restart",
                                                                   "",
                                                                   ""};
   static_assert(request_words.size() == static_cast<std::size_t>(request_kind::stop) + 1);
 
-  static constexpr std::array<std::string_view, 3> ranging_words{" 4 kHz", " 8 kHz", " 9 kHz"};
+  static constexpr std::array<std::string_view, 3> rate_words{" 4 kHz", " 8 kHz", " 9 kHz"};
 
   std::array<char, 95> text_{};
   std::size_t size_ = 0;

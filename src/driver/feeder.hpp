@@ -103,7 +103,7 @@ class feeder {
   receiver receiver_;
   spin_up spin_up_;
   device_information information_{};
-  std::uint32_t samples_per_second_ = 9000;
+  std::uint32_t sample_rate_hz_ = 9000;
 };
 
 }  // namespace g4lidar

@@ -165,7 +165,7 @@ void live_driver::follow_delivery() {
 
 void live_driver::begin_points() {
   begin_spin_up();
-  pipeline_.begin(samples_per_second_);
+  pipeline_.begin(sample_rate_hz_);
   record(recorded_event::kind::begun);
 }
 
@@ -182,7 +182,7 @@ void live_driver::record(recorded_event::kind what) {
   recorded_event made{.what = what, .time_ns = now_ns()};
   made.delivers = pipeline_.delivers();
   made.baud = connection_.on().baud();
-  made.samples_per_second = samples_per_second_;
+  made.sample_rate_hz = sample_rate_hz_;
   made.unparsed = static_cast<std::uint32_t>(pipeline_.unparsed().size());
   made.events = pipeline_.events_of_reading();
   recorder->event(made);

@@ -77,9 +77,9 @@ result<bool> live_driver::go_on_with_setup() {
 }
 
 void live_driver::learn_rate(const outcome& done) {
-  const auto* ranging = std::get_if<ranging_frequency>(&done.value);
-  if (ranging == nullptr || samples_per_second(*ranging) == samples_per_second_) return;
-  samples_per_second_ = samples_per_second(*ranging);
+  const auto* rate = std::get_if<sample_rate>(&done.value);
+  if (rate == nullptr || to_hz(*rate) == sample_rate_hz_) return;
+  sample_rate_hz_ = to_hz(*rate);
   if (pipeline_.delivers()) begin_points();
 }
 
@@ -99,8 +99,8 @@ void live_driver::remember(const outcome& done) {
       return keep(options_.frequency);
     case request_kind::set_constant_frequency:
       return keep(options_.constant);
-    case request_kind::set_ranging:
-      return keep(options_.ranging);
+    case request_kind::set_sample_rate:
+      return keep(options_.sample_rate);
     case request_kind::set_protection:
       return keep(options_.protection);
     default:

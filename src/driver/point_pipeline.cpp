@@ -75,11 +75,11 @@ ring_read point_pipeline::read(std::span<point> out) noexcept {
   return ring_.get().reader.read(out);
 }
 
-void point_pipeline::begin(std::uint32_t samples_per_second) noexcept {
+void point_pipeline::begin(std::uint32_t sample_rate_hz) noexcept {
   end();
-  decoder_.begin(samples_per_second);
+  decoder_.begin(sample_rate_hz);
   stream_counts_.crc = {};
-  assembler_.set_sample_rate(samples_per_second);
+  assembler_.set_sample_rate(sample_rate_hz);
 }
 
 void point_pipeline::end() noexcept {

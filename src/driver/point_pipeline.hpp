@@ -116,7 +116,7 @@ class point_pipeline {
   [[nodiscard]] bool delivers() const noexcept { return delivers_; }
   /// A new stream of points begins, including those of the last event. The unfinished revolution
   /// becomes a piece.
-  void begin(std::uint32_t samples_per_second) noexcept;
+  void begin(std::uint32_t sample_rate_hz) noexcept;
   /// The stream of points has ended: the unfinished revolution becomes a piece.
   void end() noexcept;
   /// The following bytes are from another transport; see transport::baud(). Before begin().

@@ -20,8 +20,8 @@ result<void> replay_player::open() {
   stage_ = stage::idle;
   if (source_ == nullptr) return {};
   information_ = source_->device().information;
-  if (const auto ranging = source_->device().ranging) {
-    samples_per_second_ = samples_per_second(*ranging);
+  if (const auto rate = source_->device().sample_rate) {
+    sample_rate_hz_ = to_hz(*rate);
   }
   static_cast<void>(digest());
   return {};
@@ -147,7 +147,7 @@ void replay_player::follow_delivery() {
   pipeline_.deliver(wanted);
   if (!wanted) return;
   begin_spin_up();
-  pipeline_.begin(samples_per_second_);
+  pipeline_.begin(sample_rate_hz_);
 }
 
 /// Whether the event happened when this much of the read had been processed.
@@ -213,13 +213,13 @@ void replay_player::play(const recorded_event& what) {
       return report(lidar_event::kind::lost, what.reason);
     case recorded_event::kind::begun:
       delivers_ = what.delivers;
-      samples_per_second_ = what.samples_per_second;
-      return pipeline_.begin(samples_per_second_);
+      sample_rate_hz_ = what.sample_rate_hz;
+      return pipeline_.begin(sample_rate_hz_);
     case recorded_event::kind::held:
       delivers_ = false;
       return;
     case recorded_event::kind::gap:
-      return pipeline_.begin(samples_per_second_);
+      return pipeline_.begin(sample_rate_hz_);
     case recorded_event::kind::state:
       return play_state(what);
     case recorded_event::kind::cut:
@@ -233,9 +233,9 @@ void replay_player::play(const recorded_event& what) {
 void replay_player::play_state(const recorded_event& what) {
   pipeline_.follow(what.baud);
   delivers_ = what.delivers;
-  const std::uint32_t rate = what.samples_per_second;
-  if (rate == 0 || rate == samples_per_second_) return;
-  samples_per_second_ = rate;
+  const std::uint32_t rate = what.sample_rate_hz;
+  if (rate == 0 || rate == sample_rate_hz_) return;
+  sample_rate_hz_ = rate;
   pipeline_.begin(rate);
 }
 

@@ -15,7 +15,7 @@ enum class setup_step : std::uint8_t {
   identify,
   stop,
   health,
-  ranging,
+  sample_rate,
   frequency,
   direction,
   constant,
@@ -83,7 +83,7 @@ class setup_sequence {
   }
   void add_steps(const lidar_options& options) noexcept {
     add(setup_step::health);
-    add(setup_step::ranging);  // queried if it is not set
+    add(setup_step::sample_rate);  // queried if it is not set
     if (options.frequency) add(setup_step::frequency);
     if (options.direction) add(setup_step::direction);
     if (options.constant) add(setup_step::constant);
@@ -110,8 +110,8 @@ class setup_sequence {
       return requests::stop();
     case setup_step::health:
       return requests::health();
-    case setup_step::ranging:
-      return set(options.ranging, requests::get_ranging());
+    case setup_step::sample_rate:
+      return set(options.sample_rate, requests::get_sample_rate());
     case setup_step::frequency:
       return set(options.frequency, requests::get_scan_frequency());
     case setup_step::direction:
@@ -139,7 +139,7 @@ class setup_sequence {
 
 /// Whether the sequence fails if the step is not answered. Old firmware does not know every query.
 [[nodiscard]] inline bool is_needed(setup_step step, const lidar_options& options) noexcept {
-  return step != setup_step::health && (step != setup_step::ranging || options.ranging);
+  return step != setup_step::health && (step != setup_step::sample_rate || options.sample_rate);
 }
 
 }  // namespace g4lidar

@@ -28,9 +28,9 @@ class timed_decoder {
     byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
     clock_ = sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud});
   }
-  /// A scan begins, or continues after an interruption. `samples_per_second` is nominal.
-  void begin(std::uint32_t samples_per_second) noexcept {
-    clock_.reset(samples_per_second);
+  /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
+  void begin(std::uint32_t sample_rate_hz) noexcept {
+    clock_.reset(sample_rate_hz);
     angles_ = {};
     last_packet_ns_ = 0;
   }

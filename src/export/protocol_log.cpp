@@ -35,8 +35,8 @@ constexpr std::array<std::pair<command, std::string_view>, 24> command_words{{
     {command::device_info, "device information?"},
     {command::health, "health?"},
     {command::health_vendor, "health?"},
-    {command::ranging_next, "next ranging frequency"},
-    {command::ranging_query, "ranging frequency?"},
+    {command::sample_rate_next, "next sample rate"},
+    {command::sample_rate_query, "sample rate?"},
     {command::protection_toggle, "protection on or off"},
 }};
 
@@ -58,9 +58,9 @@ std::string degrees(int angle_64ths) { return in_column(6, with_decimals(angle_6
 std::string meaning_of_byte(std::uint8_t asked, std::uint8_t value) {
   constexpr std::array<const char*, 3> khz{"4 kHz", "8 kHz", "9 kHz"};
   switch (static_cast<command>(asked)) {
-    case command::ranging_next:
-    case command::ranging_query:
-      return std::string("ranging frequency ") + (value < khz.size() ? khz[value] : "?");
+    case command::sample_rate_next:
+    case command::sample_rate_query:
+      return std::string("sample rate ") + (value < khz.size() ? khz[value] : "?");
     case command::motor_clockwise:
     case command::motor_counter_clockwise:
     case command::motor_direction_query:

@@ -22,7 +22,7 @@ constexpr std::string_view recorded_event_schema =
 int64 monotonic_ns
 int64 wall_ahead_ns  # wall clock - monotonic clock
 uint32 baud
-uint32 samples_per_second
+uint32 sample_rate_hz
 uint32 unparsed  # bytes of the last reading that had not been parsed
 uint32 events    # of the parser since the last reading
 bool delivers    # whether packets make points from here on

@@ -106,7 +106,7 @@ void put_event(record_text& out, const recorded_event& what, std::int64_t wall_a
   message.put(what.time_ns);
   message.put(wall_ahead_ns);
   message.put(what.baud);
-  message.put(what.samples_per_second);
+  message.put(what.sample_rate_hz);
   message.put(what.unparsed);
   message.put(what.events);
   message.put(std::uint8_t{what.delivers});
@@ -125,7 +125,7 @@ std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept {
 
 /// A G4 has 9000; much larger values are never written by this library, and no clock could use
 /// them.
-constexpr std::uint32_t most_samples_per_second = 1'000'000;
+constexpr std::uint32_t max_sample_rate_hz = 1'000'000;
 
 std::optional<recorded_event> event_from(bytes message) noexcept {
   if (message.size() < 4 || message[1] != 1) return std::nullopt;
@@ -134,7 +134,7 @@ std::optional<recorded_event> event_from(bytes message) noexcept {
   made.time_ns = static_cast<std::int64_t>(fields.take<std::uint64_t>());
   static_cast<void>(fields.take<std::uint64_t>());  // the wall clock is that of the message
   made.baud = fields.take<std::uint32_t>();
-  made.samples_per_second = fields.take<std::uint32_t>();
+  made.sample_rate_hz = fields.take<std::uint32_t>();
   made.unparsed = fields.take<std::uint32_t>();
   made.events = fields.take<std::uint32_t>();
   made.delivers = fields.take<std::uint8_t>() != 0;
@@ -144,8 +144,8 @@ std::optional<recorded_event> event_from(bytes message) noexcept {
   const auto* const named = std::ranges::find(event_names, what);
   if (!fields.is_good() || named == event_names.end()) return std::nullopt;
   made.what = static_cast<recorded_event::kind>(named - event_names.begin());
-  if (made.samples_per_second > most_samples_per_second) return std::nullopt;
-  if (made.what == recorded_event::kind::begun && made.samples_per_second == 0) return std::nullopt;
+  if (made.sample_rate_hz > max_sample_rate_hz) return std::nullopt;
+  if (made.what == recorded_event::kind::begun && made.sample_rate_hz == 0) return std::nullopt;
   // These have channels of their own.
   const bool is_event =
       made.what != recorded_event::kind::sent && made.what != recorded_event::kind::odometry;
@@ -197,7 +197,7 @@ word_map words_of(const recorded_device& device) {
       {"serial_number", std::string(who.serial_number())},
   };
   if (device.frequency) words.emplace_back("frequency_chz", std::to_string(device.frequency->chz));
-  put_setting(words, "ranging", device.ranging);
+  put_setting(words, "sample_rate", device.sample_rate);
   put_setting(words, "motor_direction", device.motor);
   put_setting(words, "constant_frequency", device.constant);
   put_setting(words, "low_power", device.idle);
@@ -217,7 +217,7 @@ recorded_device device_of(field_reader& map) {
     if (name == "frequency_chz") {
       if (const auto chz = number_in<std::uint16_t>(value)) device.frequency = scan_frequency{*chz};
     }
-    if (name == "ranging") take_setting(device.ranging, value);
+    if (name == "sample_rate") take_setting(device.sample_rate, value);
     if (name == "motor_direction") take_setting(device.motor, value);
     if (name == "constant_frequency") take_setting(device.constant, value);
     if (name == "low_power") take_setting(device.idle, value);
@@ -262,7 +262,7 @@ void transport_state::take(const recorded_event& what) noexcept {
       is_open = what.reason != problem::gone;
       [[fallthrough]];
     case begun:
-      samples_per_second = what.samples_per_second;
+      sample_rate_hz = what.sample_rate_hz;
       delivers = what.delivers;
       break;
     case held:
@@ -281,7 +281,7 @@ recorded_event transport_state::as_event(std::int64_t time_ns) const noexcept {
   made.reason = is_open ? problem::cancelled : problem::gone;
   made.delivers = delivers;
   made.baud = baud;
-  made.samples_per_second = samples_per_second;
+  made.sample_rate_hz = sample_rate_hz;
   made.name = transport_name();
   return made;
 }

@@ -63,7 +63,7 @@ struct transport_state {
   bool is_open = false;
   bool delivers = true;
   std::uint32_t baud = 0;
-  std::uint32_t samples_per_second = 0;
+  std::uint32_t sample_rate_hz = 0;
   std::array<char, longest_name> name{};
   std::uint8_t name_size = 0;
 

@@ -201,7 +201,7 @@ class byte_connector final : public connector, private recording_hook {
 }  // namespace
 
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
-                                                  std::uint32_t samples_per_second) {
+                                                  std::uint32_t sample_rate_hz) {
   const bool is_standard = name == "-";
   owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
                           : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
@@ -216,7 +216,7 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   if (is_known && S_ISREG(file.st_mode)) {
     const std::int64_t wall_ns = file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec;
     auto now_ns = std::make_shared<std::int64_t>(file_begin_ns);
-    port = std::make_unique<counted_transport>(std::move(fd), std::move(title), samples_per_second,
+    port = std::make_unique<counted_transport>(std::move(fd), std::move(title), sample_rate_hz,
                                                now_ns);
     return std::make_unique<byte_connector>(std::move(port), std::move(now_ns),
                                             wall_ns - file_begin_ns);

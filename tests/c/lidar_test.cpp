@@ -16,7 +16,7 @@ TEST(CLidar, GivesWholeRevolutions) {
   ASSERT_NE(scan, nullptr);
   // 9000 samples a second at 7 Hz.
   EXPECT_NEAR(static_cast<double>(scan->point_count), 9000.0 / 7.0, 100.0);
-  EXPECT_EQ(scan->nominal_sample_rate_hz, 9000U);
+  EXPECT_EQ(scan->sample_rate_hz, 9000U);
   EXPECT_NEAR(scan->turned_deg, 360.0F, 1.0F);
   EXPECT_NEAR(scan->reported_frequency_hz, 7.0F, 0.11F);
   EXPECT_FALSE(scan->is_piece);
@@ -123,10 +123,10 @@ TEST(CLidar, SetsAndGetsEverySetting) {
   EXPECT_EQ(get(G4LIDAR_SCAN_FREQUENCY), 700);
   EXPECT_EQ(set(G4LIDAR_SCAN_FREQUENCY, 1000), 1000);
   EXPECT_EQ(get(G4LIDAR_SCAN_FREQUENCY), 1000);
-  EXPECT_EQ(get(G4LIDAR_RANGING_FREQUENCY), 9000);
+  EXPECT_EQ(get(G4LIDAR_SAMPLE_RATE), 9000);
   for (const int hz : {4000, 8000, 9000}) {
-    EXPECT_EQ(set(G4LIDAR_RANGING_FREQUENCY, hz), hz);
-    EXPECT_EQ(get(G4LIDAR_RANGING_FREQUENCY), hz);
+    EXPECT_EQ(set(G4LIDAR_SAMPLE_RATE, hz), hz);
+    EXPECT_EQ(get(G4LIDAR_SAMPLE_RATE), hz);
   }
   EXPECT_EQ(get(G4LIDAR_MOTOR_DIRECTION), G4LIDAR_CLOCKWISE);
   EXPECT_EQ(set(G4LIDAR_MOTOR_DIRECTION, G4LIDAR_COUNTER_CLOCKWISE), G4LIDAR_COUNTER_CLOCKWISE);
@@ -162,7 +162,7 @@ TEST(CLidar, RefusesImpossibleSettings) {
   EXPECT_EQ(refused(G4LIDAR_SCAN_FREQUENCY, 499), G4LIDAR_BAD_SETTING);
   EXPECT_EQ(refused(G4LIDAR_SCAN_FREQUENCY, -1), G4LIDAR_BAD_SETTING);
   EXPECT_EQ(refused(G4LIDAR_SCAN_FREQUENCY, 65536 + 700), G4LIDAR_BAD_SETTING);
-  EXPECT_EQ(refused(G4LIDAR_RANGING_FREQUENCY, 5000), G4LIDAR_BAD_SETTING);
+  EXPECT_EQ(refused(G4LIDAR_SAMPLE_RATE, 5000), G4LIDAR_BAD_SETTING);
   for (const int setting : {G4LIDAR_MOTOR_DIRECTION, G4LIDAR_LOW_POWER, G4LIDAR_CONSTANT_FREQUENCY,
                             G4LIDAR_POWER_DOWN_PROTECTION}) {
     EXPECT_EQ(refused(setting, 0), G4LIDAR_BAD_SETTING) << setting;
@@ -192,7 +192,7 @@ TEST(CLidar, AppliesItsOptions) {
   const simulator device = simulate();
   g4lidar_options options = defaults();
   options.frequency_chz = 1000;
-  options.ranging_hz = 4000;
+  options.sample_rate_hz = 4000;
   const lidar it = start_on(device, &options);
   const g4lidar_scan* scan = scan_at_speed(it);
   ASSERT_NE(scan, nullptr);

@@ -60,7 +60,7 @@ TEST(CMembers, PiecesComeOnlyIfWished) {
     EXPECT_EQ(g4lidar_next_scan(it.get(), 5000, &scan, nullptr), G4LIDAR_OK);
     EXPECT_EQ(scan->revolution, revolution + 1);
     EXPECT_EQ(scan->points[0].revolution, scan->revolution);
-    EXPECT_NEAR(scan->sample_rate_hz, 9000.0F, 90.0F);
+    EXPECT_NEAR(scan->measured_sample_rate_hz, 9000.0F, 90.0F);
     return flags;
   };
   EXPECT_EQ(first_flags(true) & G4LIDAR_START_MISSING, G4LIDAR_START_MISSING);

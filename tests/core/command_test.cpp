@@ -43,8 +43,8 @@ constexpr std::array<row, 24> table{{
     {0x0D, command::frequency_query, reply::frequency, -1, false, false},
     {0x0E, command::constant_frequency_on, reply::byte, 1, false, false},
     {0x0F, command::constant_frequency_off, reply::byte, 0, false, false},
-    {0xD0, command::ranging_next, reply::byte, -1, true, false},
-    {0xD1, command::ranging_query, reply::byte, -1, false, false},
+    {0xD0, command::sample_rate_next, reply::byte, -1, true, false},
+    {0xD1, command::sample_rate_query, reply::byte, -1, false, false},
     {0xD9, command::protection_toggle, reply::byte, -1, true, false},
     {0x80, command::restart, reply::none, -1, false, false},
     {0x40, command::restart_old, reply::none, -1, false, false},
@@ -83,9 +83,9 @@ TEST(Command, OtherBytes_AreNoCommand) {
 }
 
 TEST(Command, AnswersOfOneByte) {
-  static_assert(reply_byte<ranging_frequency>(0) == ranging_frequency::khz_4);
-  static_assert(reply_byte<ranging_frequency>(1) == ranging_frequency::khz_8);
-  static_assert(reply_byte<ranging_frequency>(2) == ranging_frequency::khz_9);
+  static_assert(reply_byte<sample_rate>(0) == sample_rate::khz_4);
+  static_assert(reply_byte<sample_rate>(1) == sample_rate::khz_8);
+  static_assert(reply_byte<sample_rate>(2) == sample_rate::khz_9);
   static_assert(reply_byte<power_down_protection>(0) == power_down_protection::on);
   static_assert(reply_byte<power_down_protection>(1) == power_down_protection::off);
   static_assert(reply_byte<motor_direction>(0) == motor_direction::clockwise);
@@ -96,7 +96,7 @@ TEST(Command, AnswersOfOneByte) {
   static_assert(reply_byte<constant_frequency>(1) == constant_frequency::on);
   for (unsigned value = 2; value < 256; ++value) {
     const auto byte = static_cast<std::uint8_t>(value);
-    EXPECT_EQ(reply_byte<ranging_frequency>(byte).has_value(), value == 2);
+    EXPECT_EQ(reply_byte<sample_rate>(byte).has_value(), value == 2);
     EXPECT_FALSE(reply_byte<power_down_protection>(byte));
     EXPECT_FALSE(reply_byte<motor_direction>(byte));
     EXPECT_FALSE(reply_byte<low_power>(byte));
@@ -105,9 +105,9 @@ TEST(Command, AnswersOfOneByte) {
 }
 
 TEST(Command, RatesAndLimits) {
-  EXPECT_EQ(samples_per_second(ranging_frequency::khz_4), 4000U);
-  EXPECT_EQ(samples_per_second(ranging_frequency::khz_8), 8000U);
-  EXPECT_EQ(samples_per_second(ranging_frequency::khz_9), 9000U);
+  EXPECT_EQ(to_hz(sample_rate::khz_4), 4000U);
+  EXPECT_EQ(to_hz(sample_rate::khz_8), 8000U);
+  EXPECT_EQ(to_hz(sample_rate::khz_9), 9000U);
   EXPECT_EQ(min_scan_frequency_chz, 500);
   EXPECT_EQ(max_scan_frequency_chz, 1200);
 }

@@ -285,9 +285,9 @@ TEST(Scan, IsARangeOfPointsWithTimes) {
   EXPECT_EQ(found.time_ns(), 7'000'000'000);
   EXPECT_EQ(found.end_ns(), 7'000'000'000 + 721 * step);
   EXPECT_EQ(cutter.scans().back().view.end_ns(), 7'000'000'000 + (721 + 720) * step);
-  EXPECT_NEAR(found.sample_rate_hz(), 8000.0F, 0.01F);
-  EXPECT_EQ(found.nominal_sample_rate_hz, 4000U);
-  EXPECT_EQ(scan().sample_rate_hz(), 9000.0F);
+  EXPECT_NEAR(found.measured_sample_rate_hz(), 8000.0F, 0.01F);
+  EXPECT_EQ(found.sample_rate_hz, 4000U);
+  EXPECT_EQ(scan().measured_sample_rate_hz(), 9000.0F);
   EXPECT_TRUE(scan().empty());
   EXPECT_EQ(scan().time_ns() + scan().end_ns(), 0);
 }

@@ -52,7 +52,7 @@ sim::scanner_options noisy(std::uint64_t seed) {
 sim::scanner_options slow_and_turned(std::uint64_t seed) {
   sim::scanner_options options;
   options.seed = seed;
-  options.ranging = ranging_frequency::khz_4;
+  options.sample_rate = sample_rate::khz_4;
   options.scan_frequency_chz = 1200;
   options.samples_per_packet = 80;
   options.index_deg = 348.0;

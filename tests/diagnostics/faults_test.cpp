@@ -146,12 +146,11 @@ TEST(Faults, Damage_IsFoundAtOtherRatesAndSizes) {
       {"truncate*0.05", "packets_truncated"},
       {"jolt*0.05", "jolts"},
       {"batch", "usb_latency"}};
-  for (const ranging_frequency rate :
-       {ranging_frequency::khz_4, ranging_frequency::khz_8, ranging_frequency::khz_9}) {
+  for (const sample_rate rate : {sample_rate::khz_4, sample_rate::khz_8, sample_rate::khz_9}) {
     for (const std::size_t samples : {24U, 40U, 80U}) {
       for (const auto& [fault, diagnosis] : kinds) {
         sim::device_options options;
-        options.scanner.ranging = rate;
+        options.scanner.sample_rate = rate;
         options.scanner.samples_per_packet = samples;
         options.scanner.seed = samples + static_cast<std::uint64_t>(rate);
         const examined done = examine(options, faults_of({fault}));

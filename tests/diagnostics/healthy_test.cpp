@@ -28,7 +28,7 @@ void expect_healthy(const sim::device_options& options) {
   ASSERT_EQ(done.motor_turns, options.initial.idle_power == low_power::off) << done;
   sim::device_settings before = options.initial;
   before.scan_frequency_chz = options.scanner.scan_frequency_chz;
-  before.ranging = options.scanner.ranging;
+  before.sample_rate = options.scanner.sample_rate;
   ASSERT_EQ(done.settings, before) << done;
 }
 
@@ -48,7 +48,7 @@ sim::device_options odd_device(std::uint64_t seed) {
   choice by(seed);
   sim::device_options options;
   options.scanner.seed = seed;
-  options.scanner.ranging = static_cast<ranging_frequency>(by.below(3));
+  options.scanner.sample_rate = static_cast<sample_rate>(by.below(3));
   options.scanner.scan_frequency_chz = static_cast<std::uint16_t>(500 + 50 * by.below(15));
   options.scanner.samples_per_packet = 24 + by.below(57);
   options.scanner.reports_frequency = by.flip();
@@ -81,7 +81,7 @@ sim::device_options odd_device(std::uint64_t seed) {
   options.time_packet_ns = by.flip() ? 0 : 100'000'000;
   // Packets so small that they exceed the capacity of the connection do not occur in a healthy
   // device.
-  const std::uint64_t least = options.scanner.ranging == ranging_frequency::khz_4 ? 8 : 24;
+  const std::uint64_t least = options.scanner.sample_rate == sample_rate::khz_4 ? 8 : 24;
   if (options.scanner.samples_per_packet < least) options.scanner.samples_per_packet = least;
   return options;
 }

@@ -137,7 +137,7 @@ class noisy_link final : public forwarding_transport {
   }
 };
 
-/// A setting is reported wrongly: the ranging frequency as 4 kHz, or the scan frequency as 10 Hz.
+/// A setting is reported wrongly: the sample rate as 4 kHz, or the scan frequency as 10 Hz.
 class lying_link final : public forwarding_transport {
  public:
   lying_link(std::unique_ptr<transport> inner, response_kind about)

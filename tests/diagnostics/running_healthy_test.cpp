@@ -64,16 +64,16 @@ TEST(RunningHealthy, HasNoDiagnosis_AndReportsItsMeasurements) {
 
 TEST(RunningHealthy, OtherDevices_HaveNoDiagnosis) {
   for (const int seed : test::seeds(4)) {
-    for (const auto rate : {ranging_frequency::khz_4, ranging_frequency::khz_8}) {
+    for (const auto rate : {sample_rate::khz_4, sample_rate::khz_8}) {
       use how;
       how.device.scanner.seed = static_cast<std::uint64_t>(seed);
-      how.device.scanner.ranging = rate;
+      how.device.scanner.sample_rate = rate;
       how.device.scanner.scan_frequency_chz = seed % 2 == 0 ? 500 : 1200;
       how.device.scanner.samples_per_packet = 24;
       how.device.stray_before_zero = true;
       how.device.boots_at_start = true;
       how.device.boot_text = true;
-      how.options.ranging = rate;
+      how.options.sample_rate = rate;
       const seen found = watch(how);
       ASSERT_EQ(found.diagnoses(), "") << seed << found;
     }

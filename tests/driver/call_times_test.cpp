@@ -105,7 +105,7 @@ TEST(CallTimes, Start) {
 
 TEST(CallTimes, StartWithAllSettings) {
   lidar_options options;
-  options.ranging = ranging_frequency::khz_8;
+  options.sample_rate = sample_rate::khz_8;
   options.frequency = scan_frequency::hz(11.5);
   options.direction = motor_direction::counter_clockwise;
   options.constant = constant_frequency::off;

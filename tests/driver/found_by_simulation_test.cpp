@@ -106,7 +106,7 @@ TEST(FoundBySimulation, SettingsLostByAReboot_AreSetAgain) {
   const sim::fault faults[] = {sim::make_fault(sim::fault_kind::reboot, 0, 1500 * ms)};
   virtual_bench bench(forgetful(), faults);
   lidar_options options;
-  options.ranging = ranging_frequency::khz_4;
+  options.sample_rate = sample_rate::khz_4;
   auto lidar = open_virtual(bench, options);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
@@ -115,8 +115,8 @@ TEST(FoundBySimulation, SettingsLostByAReboot_AreSetAgain) {
   ASSERT_TRUE(event);
   EXPECT_EQ(event->what, lidar_event::kind::restarted);
   ASSERT_TRUE(lidar->is_scanning());
-  EXPECT_EQ(*lidar->ask(requests::get_ranging(), while_scanning::stop_and_resume),
-            ranging_frequency::khz_4);
+  EXPECT_EQ(*lidar->ask(requests::get_sample_rate(), while_scanning::stop_and_resume),
+            sample_rate::khz_4);
 }
 
 TEST(FoundBySimulation, SettingsOfAsk_AreSetAgainAfterARestart) {
@@ -137,12 +137,12 @@ TEST(FoundBySimulation, SettingsOfAsk_AreSetAgainAfterManyRestarts) {
   virtual_bench bench(forgetful());
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
-  ASSERT_TRUE(lidar->ask(requests::set(ranging_frequency::khz_4)));
+  ASSERT_TRUE(lidar->ask(requests::set(sample_rate::khz_4)));
   ASSERT_TRUE(lidar->start());
   for (int i = 0; i < 6; ++i) {
     ASSERT_TRUE(lidar->ask(requests::restart(), while_scanning::stop_and_resume)) << i;
-    EXPECT_EQ(*lidar->ask(requests::get_ranging(), while_scanning::stop_and_resume),
-              ranging_frequency::khz_4)
+    EXPECT_EQ(*lidar->ask(requests::get_sample_rate(), while_scanning::stop_and_resume),
+              sample_rate::khz_4)
         << i;
   }
 }
@@ -208,13 +208,13 @@ TEST(FoundBySimulation, BytesLostWhileSuspended_DoNotShiftTheTimes) {
   }
 }
 
-TEST(FoundBySimulation, Times_FollowARangingFrequencySetByAsk) {
+TEST(FoundBySimulation, Times_FollowASampleRateSetByAsk) {
   virtual_bench bench;
   auto lidar = open_virtual(bench);
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   ASSERT_TRUE(lidar->next_scan(2000ms));
-  ASSERT_TRUE(lidar->ask(requests::set(ranging_frequency::khz_4), while_scanning::stop_and_resume));
+  ASSERT_TRUE(lidar->ask(requests::set(sample_rate::khz_4), while_scanning::stop_and_resume));
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(lidar->next_scan(2000ms)) << i;
   const auto scan = lidar->next_scan(2000ms);
   ASSERT_TRUE(scan);

@@ -97,7 +97,7 @@ TEST(Settings, AreSetAndReadBack) {
   EXPECT_EQ(frequency->chz, 1000);
   EXPECT_EQ(bench.device.settings().scan_frequency_chz, 1000);
   EXPECT_EQ(lidar->ask(requests::get_scan_frequency()).value(), scan_frequency::hz(10));
-  EXPECT_EQ(lidar->set(ranging_frequency::khz_4).value(), ranging_frequency::khz_4);
+  EXPECT_EQ(lidar->set(sample_rate::khz_4).value(), sample_rate::khz_4);
   EXPECT_EQ(lidar->set(motor_direction::counter_clockwise).value(),
             motor_direction::counter_clockwise);
 }
@@ -131,14 +131,14 @@ TEST(Options, InvalidEnumerators_AreRefused) {
     const auto wrong = problem_with(options);
     return wrong ? std::string(wrong->subject().substr(0, wrong->subject().find(':'))) : "nothing";
   };
-  EXPECT_EQ(refused([](auto& o) { o.ranging = ranging_frequency{77}; }), "ranging");
-  EXPECT_EQ(refused([](auto& o) { o.ranging = ranging_frequency{3}; }), "ranging");
+  EXPECT_EQ(refused([](auto& o) { o.sample_rate = sample_rate{77}; }), "sample_rate");
+  EXPECT_EQ(refused([](auto& o) { o.sample_rate = sample_rate{3}; }), "sample_rate");
   EXPECT_EQ(refused([](auto& o) { o.direction = motor_direction{77}; }), "direction");
   EXPECT_EQ(refused([](auto& o) { o.constant = constant_frequency{2}; }), "constant");
   EXPECT_EQ(refused([](auto& o) { o.idle = low_power{77}; }), "idle");
   EXPECT_EQ(refused([](auto& o) { o.protection = power_down_protection{77}; }), "protection");
   EXPECT_EQ(refused([](auto& o) { o.frequency = scan_frequency::hz(15); }), "frequency");
-  EXPECT_EQ(refused([](auto& o) { o.ranging = ranging_frequency::khz_9; }), "nothing");
+  EXPECT_EQ(refused([](auto& o) { o.sample_rate = sample_rate::khz_9; }), "nothing");
 }
 
 TEST(Options, AnImpossibleValue_IsRepeated) {

@@ -91,7 +91,7 @@ TEST(Lidar, ReleasedWhenIdle_StaysIdle) {
 TEST(Lidar, AppliesTheSettingsOfTheOptions) {
   virtual_bench bench;
   lidar_options options;
-  options.ranging = ranging_frequency::khz_4;
+  options.sample_rate = sample_rate::khz_4;
   options.frequency = scan_frequency{1000};
   options.direction = motor_direction::counter_clockwise;
   options.protection = power_down_protection::on;
@@ -100,7 +100,7 @@ TEST(Lidar, AppliesTheSettingsOfTheOptions) {
   const auto started = lidar->start();
   ASSERT_TRUE(started) << started.error().message();
   const auto& settings = bench.device.settings();
-  EXPECT_EQ(settings.ranging, ranging_frequency::khz_4);
+  EXPECT_EQ(settings.sample_rate, sample_rate::khz_4);
   EXPECT_EQ(settings.scan_frequency_chz, 1000);
   EXPECT_EQ(settings.direction, motor_direction::counter_clockwise);
   EXPECT_EQ(settings.protection, power_down_protection::on);

@@ -183,7 +183,7 @@ TEST(Saturating, Sum_EndsAtTheLastTime) {
 /// Every step at once: a bounded list would drop some of them.
 TEST(SetupSequence, RepeatedSteps_NeverOverflow) {
   lidar_options all;
-  all.ranging = ranging_frequency::khz_9;
+  all.sample_rate = sample_rate::khz_9;
   all.frequency = scan_frequency{700};
   all.direction = motor_direction::clockwise;
   all.constant = constant_frequency::on;
@@ -202,7 +202,7 @@ TEST(SetupSequence, RepeatedSteps_NeverOverflow) {
   const std::vector wanted{request_kind::device_info,
                            request_kind::stop,
                            request_kind::health,
-                           request_kind::set_ranging,
+                           request_kind::set_sample_rate,
                            request_kind::set_scan_frequency,
                            request_kind::set_direction,
                            request_kind::set_constant_frequency,
@@ -219,9 +219,9 @@ TEST(SetupSequence, NoOptions_QueriesHealthAndSampleRateOnly) {
   for (; !sequence.is_done(); sequence.finish_next()) {
     asked.push_back(request_of(sequence.next(), {}).what);
   }
-  EXPECT_EQ(asked,
-            (std::vector{request_kind::health, request_kind::get_ranging, request_kind::start}));
-  EXPECT_FALSE(is_needed(setup_step::ranging, {}));
+  EXPECT_EQ(asked, (std::vector{request_kind::health, request_kind::get_sample_rate,
+                                request_kind::start}));
+  EXPECT_FALSE(is_needed(setup_step::sample_rate, {}));
   EXPECT_FALSE(is_needed(setup_step::health, {}));
   EXPECT_TRUE(is_needed(setup_step::start, {}));
 }

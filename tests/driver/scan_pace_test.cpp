@@ -14,13 +14,13 @@ namespace {
 using namespace test;
 
 struct setup {
-  ranging_frequency ranging = ranging_frequency::khz_9;
+  g4lidar::sample_rate sample_rate = g4lidar::sample_rate::khz_9;
   scan_frequency frequency{700};
 };
 
 lidar start_with(test::virtual_bench& bench, const setup& wanted) {
   lidar_options options;
-  options.ranging = wanted.ranging;
+  options.sample_rate = wanted.sample_rate;
   options.frequency = wanted.frequency;
   auto opened = test::open_virtual(bench, options);
   EXPECT_TRUE(opened);
@@ -89,8 +89,8 @@ TEST_P(ScanPace, HandsScansOverAsSoonAsAtThePaceOfPackets) {
 INSTANTIATE_TEST_SUITE_P(AtAllRates, ScanPace,
                          testing::Values(setup{}, setup{.frequency = scan_frequency{500}},
                                          setup{.frequency = scan_frequency{1200}},
-                                         setup{ranging_frequency::khz_4, scan_frequency{500}},
-                                         setup{ranging_frequency::khz_8, scan_frequency{1000}}));
+                                         setup{sample_rate::khz_4, scan_frequency{500}},
+                                         setup{sample_rate::khz_8, scan_frequency{1000}}));
 
 TEST(ScanPaceOfADriver, ReadsAtMostFifteenTimesInARevolution) {
   test::virtual_bench bench;

@@ -36,7 +36,7 @@ sim::fault dip(std::int64_t after_motor_ns, std::int64_t begin_ns, std::int64_t 
 
 lidar_options at_4_khz() {
   lidar_options options;
-  options.ranging = ranging_frequency::khz_4;
+  options.sample_rate = sample_rate::khz_4;
   options.frequency = scan_frequency{1000};
   return options;
 }
@@ -44,7 +44,7 @@ lidar_options at_4_khz() {
 void expect_settings_and_times(virtual_bench& bench, lidar& device) {
   ASSERT_TRUE(device.is_scanning());
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(device.next_scan(2000ms)) << i;
-  EXPECT_EQ(bench.device.settings().ranging, ranging_frequency::khz_4);
+  EXPECT_EQ(bench.device.settings().sample_rate, sample_rate::khz_4);
   EXPECT_EQ(bench.device.settings().scan_frequency_chz, 1000);
   const auto scan = device.next_scan(2000ms);
   ASSERT_TRUE(scan);

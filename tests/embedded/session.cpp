@@ -57,7 +57,7 @@ class dialogue {
 
 void test_lost_step() {
   dialogue line;
-  check(line.begins(requests::set(ranging_frequency::khz_9)));
+  check(line.begins(requests::set(sample_rate::khz_9)));
   check(line.sends(0x00) && line.sends(0x65) && line.sends_nothing());
   line.waits();
   check(line.sends(0x90));
@@ -76,8 +76,8 @@ void test_lost_step() {
   check(line.sends(0xD1));
   line.hears_byte(2);
   if (!check(line.ends(verdict::answered))) return;
-  const auto* const reached = std::get_if<ranging_frequency>(&line.value());
-  check(reached != nullptr && *reached == ranging_frequency::khz_9);
+  const auto* const reached = std::get_if<sample_rate>(&line.value());
+  check(reached != nullptr && *reached == sample_rate::khz_9);
   check(line.talk().retries() == 1);
 }
 

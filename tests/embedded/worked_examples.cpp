@@ -127,7 +127,7 @@ void test_replies() {
   constexpr std::array<std::uint8_t, 8> byte_data{0xA5, 0x5A, 1, 0, 0, 0, 4, 2};
   const auto byte_reply = reply(byte_data);
   check(byte_reply && byte_reply->as_byte() == 2);
-  check(reply_byte<ranging_frequency>(unknown(std::uint8_t{2})) == ranging_frequency::khz_9);
+  check(reply_byte<sample_rate>(unknown(std::uint8_t{2})) == sample_rate::khz_9);
 
   constexpr std::array<std::uint8_t, 11> frequency_data{0xA5, 0x5A, 4, 0,    0, 0,
                                                         4,    0xBC, 2, 0x00, 0};

@@ -70,7 +70,7 @@ TEST(RealTime, SlowestRevolutions_AreKeptByTheSystem) {
   test::expect_three_of_four([] {
     device_on_pty simulated;
     auto wanted = test::patient_options(simulated.path());
-    wanted.ranging = ranging_frequency::khz_9;
+    wanted.sample_rate = sample_rate::khz_9;
     wanted.frequency = scan_frequency{500};
     auto device = started(wanted);
     EXPECT_TRUE(device) << device.error().message();
@@ -91,7 +91,7 @@ TEST(RealTime, ReadsScansWithoutLoss) {
     options.truth_capacity = 1'000'000;
     device_on_pty simulated(options);
     auto wanted = test::patient_options(simulated.path());
-    wanted.ranging = ranging_frequency::khz_4;
+    wanted.sample_rate = sample_rate::khz_4;
     wanted.frequency = scan_frequency{1200};
     auto device = started(wanted);
     EXPECT_TRUE(device) << device.error().message();

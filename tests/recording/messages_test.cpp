@@ -23,14 +23,14 @@ TEST(Messages, Event_IsReadAsWritten) {
   const auto read = mcap::event_from(message_of({.what = recorded_event::kind::begun,
                                                  .delivers = true,
                                                  .baud = 230400,
-                                                 .samples_per_second = 8000,
+                                                 .sample_rate_hz = 8000,
                                                  .unparsed = 7,
                                                  .events = 3,
                                                  .time_ns = 123'456'789},
                                                 memory));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->what, recorded_event::kind::begun);
-  EXPECT_EQ(read->samples_per_second, 8000U);
+  EXPECT_EQ(read->sample_rate_hz, 8000U);
   EXPECT_EQ(read->unparsed, 7U);
   EXPECT_EQ(read->events, 3U);
   EXPECT_EQ(read->time_ns, 123'456'789);
@@ -39,7 +39,7 @@ TEST(Messages, Event_IsReadAsWritten) {
 TEST(Messages, ExtremeSampleRate_IsRefused) {
   for (const std::uint32_t rate : {0U, 1'000'001U, UINT32_MAX}) {
     mcap::record_text memory;
-    const recorded_event event{.what = recorded_event::kind::begun, .samples_per_second = rate};
+    const recorded_event event{.what = recorded_event::kind::begun, .sample_rate_hz = rate};
     EXPECT_FALSE(mcap::event_from(message_of(event, memory))) << rate;
   }
   mcap::record_text memory;  // a stream that has not begun has no rate

@@ -243,7 +243,7 @@ TEST(Recording, BeginInTheMiddle_ReturnsTheStateFirst) {
       .what = recorded_event::kind::opened, .baud = 230'400, .time_ns = time_of(0)};
   event.name = "/dev/ttyUSB7";
   writer.event(event);
-  event = {.what = recorded_event::kind::begun, .samples_per_second = 8000, .time_ns = time_of(1)};
+  event = {.what = recorded_event::kind::begun, .sample_rate_hz = 8000, .time_ns = time_of(1)};
   writer.event(event);
   record_readings(writer, 2, 1000);
   ASSERT_TRUE(writer.close());
@@ -253,7 +253,7 @@ TEST(Recording, BeginInTheMiddle_ReturnsTheStateFirst) {
   ASSERT_TRUE(first && *first);
   ASSERT_EQ((*first)->what, recorded_item::kind::other);
   EXPECT_EQ((*first)->other.what, recorded_event::kind::state);
-  EXPECT_EQ((*first)->other.samples_per_second, 8000U);
+  EXPECT_EQ((*first)->other.sample_rate_hz, 8000U);
   EXPECT_EQ((*first)->other.baud, 230'400U);
   EXPECT_EQ((*first)->other.name, "/dev/ttyUSB7");
   EXPECT_TRUE((*first)->other.delivers);
@@ -288,7 +288,7 @@ TEST(Recording, ContainsItsDevice) {
   recorded_device known;
   known.information = {
       5, 3, 2, 3, {'2', '0', '2', '1', '1', '0', '1', '0', '0', '0', '0', '7', '0', '0', '7', '3'}};
-  known.ranging = ranging_frequency::khz_8;
+  known.sample_rate = sample_rate::khz_8;
   known.frequency = scan_frequency{1000};
   known.protection = power_down_protection::on;
   record_readings(writer, 0, 10);
@@ -302,7 +302,7 @@ TEST(Recording, ContainsItsDevice) {
     ASSERT_TRUE(reader) << reader.error().message();
     ASSERT_TRUE(reader->device());
     EXPECT_EQ(reader->device()->information, known.information);
-    EXPECT_EQ(reader->device()->ranging, known.ranging);
+    EXPECT_EQ(reader->device()->sample_rate, known.sample_rate);
     EXPECT_EQ(reader->device()->frequency, known.frequency);
     EXPECT_EQ(reader->device()->protection, known.protection);
     EXPECT_FALSE(reader->device()->idle);

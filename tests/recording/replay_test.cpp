@@ -36,8 +36,8 @@ class program {
     } else if (what < 94) {
       static_cast<void>(device_.ask(requests::health(), while_scanning::stop_and_resume));
     } else if (what < 96) {
-      static_cast<void>(device_.ask(requests::set(ranging_frequency(dice_() % 3)),
-                                    while_scanning::stop_and_resume));
+      static_cast<void>(
+          device_.ask(requests::set(sample_rate(dice_() % 3)), while_scanning::stop_and_resume));
     } else if (what < 97) {
       device_.wake();
     } else {
@@ -120,7 +120,7 @@ std::vector<std::string> items_of(const std::string& path) {
     std::ostringstream text;
     text << static_cast<int>((*item)->what) << ' ' << (*item)->time_ns << ' ' << (*item)->wall_ns
          << ' ' << name_of(other.what) << ' ' << name_of(other.reason) << ' ' << other.delivers
-         << ' ' << other.baud << ' ' << other.samples_per_second << ' ' << other.unparsed << ' '
+         << ' ' << other.baud << ' ' << other.sample_rate_hz << ' ' << other.unparsed << ' '
          << other.events << ' ' << other.name << ' ';
     for (const std::uint8_t byte : (*item)->data) text << static_cast<int>(byte) << ',';
     all.push_back(text.str());

@@ -115,7 +115,7 @@ TEST(SimCommands, ConstantFrequency) {
   EXPECT_EQ(host.device.settings().constancy, constant_frequency::on);
 }
 
-TEST(SimCommands, RangingFrequency_Cycles) {
+TEST(SimCommands, SampleRate_Cycles) {
   host_side host;
   EXPECT_EQ(host.ask(0xD1), byte_answer(2));
   EXPECT_EQ(host.ask(0xD0), byte_answer(0));

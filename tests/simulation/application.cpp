@@ -34,9 +34,9 @@ request some_request(dice& d, bool may_restart) {
     case 4:
       return requests::set(scan_frequency{static_cast<std::uint16_t>(d.between(50, 120) * 10)});
     case 5:
-      return requests::get_ranging();
+      return requests::get_sample_rate();
     case 6:
-      return requests::set(static_cast<ranging_frequency>(d.between(0, 2)));
+      return requests::set(static_cast<sample_rate>(d.between(0, 2)));
     case 7:
       return requests::set(static_cast<constant_frequency>(d.between(0, 1)));
     case 8:

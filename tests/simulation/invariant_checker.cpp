@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t longest_history = 50'000;
 /// Where the sensor clock has restarted, times that must grow may be ahead by a packet at a quarter of
 /// the distance of its samples, and a little more: 2.5 ms at 9 kHz, 5.5 ms at 4 kHz.
-std::int64_t healthy_ahead_ns(ranging_frequency ranging) {
-  return static_cast<std::int64_t>(1.1 * max_samples / 4.0 * 1e9 / samples_per_second(ranging));
+std::int64_t healthy_ahead_ns(sample_rate rate) {
+  return static_cast<std::int64_t>(1.1 * max_samples / 4.0 * 1e9 / to_hz(rate));
 }
 /// More where it restarts within what has gathered while the program slept.
 constexpr std::int64_t most_ahead_ns = 500 * ms;
@@ -90,8 +90,8 @@ void invariant_checker::check(const known_point& found) {
   last_time_ns_ = found.seen.time_ns;
   const std::int64_t ahead_ns = found.seen.time_ns - environment_->clock.now_ns();
   times_.ahead += ahead_ns > 0;
-  const ranging_frequency ranging = environment_->device.settings().ranging;
-  if (ahead_ns > (parameters_->healthy ? healthy_ahead_ns(ranging) : most_ahead_ns)) {
+  const sample_rate rate = environment_->device.settings().sample_rate;
+  if (ahead_ns > (parameters_->healthy ? healthy_ahead_ns(rate) : most_ahead_ns)) {
     fail(text_of("a point is %.6f s in the future", in_seconds(ahead_ns)));
   }
   history_.push_back(found);

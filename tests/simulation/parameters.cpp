@@ -21,12 +21,12 @@ Enum either(dice& d, Enum a, Enum b, double p = 0.5) {
   return d.chance(p) ? a : b;
 }
 
-ranging_frequency some_ranging(dice& d) { return static_cast<ranging_frequency>(d.between(0, 2)); }
+sample_rate some_rate(dice& d) { return static_cast<sample_rate>(d.between(0, 2)); }
 
 void draw_scanner(dice& d, std::uint64_t seed, sim::scanner_options& scanner) {
   scanner.seed = seed;
   scanner.scan_frequency_chz = static_cast<std::uint16_t>(d.between(500, 1200));
-  scanner.ranging = d.chance(0.6) ? ranging_frequency::khz_9 : some_ranging(d);
+  scanner.sample_rate = d.chance(0.6) ? sample_rate::khz_9 : some_rate(d);
   // More exceeds the baud rate: 9.3 kHz with a header for each 30 samples are 21.6 kB/s.
   scanner.samples_per_packet = static_cast<std::size_t>(d.chance(0.5) ? 40 : d.between(30, 80));
   scanner.index_deg = d.chance(0.5) ? 0.0 : d.real(0.0, 359.9);
@@ -111,7 +111,7 @@ void draw_device(dice& d, run_parameters& parameters) {
 
 void draw_options(dice& d, run_parameters& parameters) {
   lidar_options& o = parameters.options;
-  if (d.chance(0.4)) o.ranging = some_ranging(d);
+  if (d.chance(0.4)) o.sample_rate = some_rate(d);
   if (d.chance(0.4))
     o.frequency = scan_frequency{static_cast<std::uint16_t>(d.between(50, 120) * 10)};
   if (d.chance(0.2)) o.direction = static_cast<motor_direction>(d.between(0, 1));

@@ -67,8 +67,8 @@ std::optional<std::uint16_t> read_frequency(response_view reply) {
 }
 std::optional<command_traits> look_up(command code) { return traits_of(code); }
 std::array<std::uint8_t, 2> command_bytes(command code) { return encode(code); }
-std::optional<ranging_frequency> read_ranging(std::uint8_t value) {
-  return reply_byte<ranging_frequency>(value);
+std::optional<sample_rate> read_sample_rate(std::uint8_t value) {
+  return reply_byte<sample_rate>(value);
 }
 std::optional<motor_direction> read_direction(std::uint8_t value) {
   return reply_byte<motor_direction>(value);

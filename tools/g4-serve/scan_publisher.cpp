@@ -38,7 +38,7 @@ void scan_rates::add(const g4lidar::scan& scan, clock::time_point now) {
   const std::lock_guard lock(mutex_);
   times_.push_back(now);
   while (now - times_.front() > rate_window) times_.pop_front();
-  sample_rate_hz_ = static_cast<double>(scan.sample_rate_hz());
+  sample_rate_hz_ = static_cast<double>(scan.measured_sample_rate_hz());
   frequency_hz_ = static_cast<double>(scan.measured_frequency_hz());
 }
 

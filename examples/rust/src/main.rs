@@ -43,8 +43,8 @@ struct Scan {
     flags: u32,
     suspect_packets: u32,
     suspect_samples: u32,
-    nominal_sample_rate_hz: u32,
-    sample_rate_hz: f32,
+    sample_rate_hz: u32,
+    measured_sample_rate_hz: f32,
     frequency_hz: f32,
 }
 

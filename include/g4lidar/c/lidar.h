@@ -15,7 +15,7 @@ extern "C" {
 /** The settings of a lidar, with the unit of their values. */
 enum g4lidar_setting {
   G4LIDAR_SCAN_FREQUENCY = 1,     /**< Revolutions: 0.01 Hz, 500 to 1200. */
-  G4LIDAR_RANGING_FREQUENCY = 2,  /**< Measurements: Hz, 4000, 8000 or 9000. */
+  G4LIDAR_SAMPLE_RATE = 2,        /**< Measurements: Hz, 4000, 8000 or 9000. */
   G4LIDAR_MOTOR_DIRECTION = 3,    /**< A g4lidar_direction. */
   G4LIDAR_LOW_POWER = 4,          /**< Whether the motor stops when idle: a g4lidar_switch. */
   G4LIDAR_CONSTANT_FREQUENCY = 5, /**< Whether it regulates its frequency: a g4lidar_switch. */
@@ -61,7 +61,7 @@ typedef struct g4lidar_options {
   int64_t transport_delay_ns; /**< The least delay between measurement and arrival, up to 1 s. */
   uint32_t baud;              /**< Bits per second; 230400. */
   int32_t frequency_chz;      /**< As G4LIDAR_SCAN_FREQUENCY; 0. */
-  int32_t ranging_hz;         /**< As G4LIDAR_RANGING_FREQUENCY; 0. */
+  int32_t sample_rate_hz;     /**< As G4LIDAR_SAMPLE_RATE; 0. */
   int32_t direction;          /**< A g4lidar_direction; 0. */
   int32_t low_power;          /**< A g4lidar_switch; 0. */
   int32_t constant_frequency; /**< A g4lidar_switch; 0. */

@@ -72,22 +72,22 @@ enum g4lidar_scan_flag {
 
 /** One revolution. A view; the function that returns it defines its lifetime. */
 typedef struct g4lidar_scan {
-  const g4lidar_point* points;     /**< In the order in which they were measured. */
-  size_t point_count;              /**< Their number. */
-  int64_t time_ns;                 /**< When its first point was measured; 0 if not known. */
-  int64_t end_ns;                  /**< When the next scan began, or the last point was measured. */
-  int64_t duration_ns;             /**< The time for its turn; 0 if not known. */
-  uint32_t revolution;             /**< The number of revolutions before it. */
-  uint32_t flags;                  /**< g4lidar_scan_flag; 0 for a whole revolution. */
-  uint32_t suspect_packets;        /**< Left out, because their angles contradict each other. */
-  uint32_t suspect_samples;        /**< The samples of these packets. */
-  uint32_t nominal_sample_rate_hz; /**< The configured sample rate. */
-  float sample_rate_hz;            /**< By the times of its points. */
-  float frequency_hz;              /**< The measured rotation frequency; 0 if not known. */
-  float reported_frequency_hz;     /**< As the device reports it; 0 if it does not. */
-  float turned_deg; /**< The turn from its first point to the next scan: about 360. */
-  bool is_whole;    /**< One revolution without known loss. */
-  bool is_piece;    /**< Only a part of a turn. */
+  const g4lidar_point* points;   /**< In the order in which they were measured. */
+  size_t point_count;            /**< Their number. */
+  int64_t time_ns;               /**< When its first point was measured; 0 if not known. */
+  int64_t end_ns;                /**< When the next scan began, or the last point was measured. */
+  int64_t duration_ns;           /**< The time for its turn; 0 if not known. */
+  uint32_t revolution;           /**< The number of revolutions before it. */
+  uint32_t flags;                /**< g4lidar_scan_flag; 0 for a whole revolution. */
+  uint32_t suspect_packets;      /**< Left out, because their angles contradict each other. */
+  uint32_t suspect_samples;      /**< The samples of these packets. */
+  uint32_t sample_rate_hz;       /**< The configured sample rate. */
+  float measured_sample_rate_hz; /**< By the times of its points. */
+  float frequency_hz;            /**< The measured rotation frequency; 0 if not known. */
+  float reported_frequency_hz;   /**< As the device reports it; 0 if it does not. */
+  float turned_deg;              /**< The turn from its first point to the next scan: about 360. */
+  bool is_whole;                 /**< One revolution without known loss. */
+  bool is_piece;                 /**< Only a part of a turn. */
 } g4lidar_scan;
 
 /** Writes `count` points as x and y in `frame`, a g4lidar_frame, to `out`, which is as long. */

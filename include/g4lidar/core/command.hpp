@@ -34,10 +34,10 @@ enum class command : std::uint8_t {
   stop = 0x65,
   restart = 0x80,
   device_info = 0x90,
-  health = 0x91,         ///< According to the manual.
-  health_vendor = 0x92,  ///< As all software of the vendor sends it; the same reply.
-  ranging_next = 0xD0,   ///< Steps to the next of 4, 8, 9 kHz; after the last comes the first.
-  ranging_query = 0xD1,
+  health = 0x91,            ///< According to the manual.
+  health_vendor = 0x92,     ///< As all software of the vendor sends it; the same reply.
+  sample_rate_next = 0xD0,  ///< Steps to the next of 4, 8, 9 kHz; after the last comes the first.
+  sample_rate_query = 0xD1,
   protection_toggle = 0xD9,
 };
 
@@ -88,8 +88,8 @@ inline constexpr std::array<command_traits, 24> commands{{
     {command::device_info, reply::device_info, {}, false, false},
     {command::health, reply::health, {}, false, false},
     {command::health_vendor, reply::health, {}, false, false},
-    {command::ranging_next, reply::byte, {}, true, false},
-    {command::ranging_query, reply::byte, {}, false, false},
+    {command::sample_rate_next, reply::byte, {}, true, false},
+    {command::sample_rate_query, reply::byte, {}, false, false},
     {command::protection_toggle, reply::byte, {}, true, false},
 }};
 

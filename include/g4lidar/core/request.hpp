@@ -31,8 +31,8 @@ enum class request_kind : std::uint8_t {
   step_scan_frequency,
   set_scan_frequency,
   set_constant_frequency,
-  get_ranging,
-  set_ranging,
+  get_sample_rate,
+  set_sample_rate,
   set_protection,
   restart,
   start,
@@ -94,13 +94,13 @@ namespace requests {
 [[nodiscard]] constexpr request_for<constant_frequency> set(constant_frequency wanted) noexcept {
   return {{request_kind::set_constant_frequency, static_cast<std::uint16_t>(wanted)}};
 }
-/// Queries the sample rate. Answer: a ranging_frequency.
-[[nodiscard]] constexpr request_for<ranging_frequency> get_ranging() noexcept {
-  return {{request_kind::get_ranging}};
+/// Queries the sample rate. Answer: a sample_rate.
+[[nodiscard]] constexpr request_for<sample_rate> get_sample_rate() noexcept {
+  return {{request_kind::get_sample_rate}};
 }
-/// Steps through the ranging frequencies until the wanted one is set.
-[[nodiscard]] constexpr request_for<ranging_frequency> set(ranging_frequency wanted) noexcept {
-  return {{request_kind::set_ranging, static_cast<std::uint16_t>(wanted)}};
+/// Steps through the sample rates until the wanted one is set.
+[[nodiscard]] constexpr request_for<sample_rate> set(sample_rate wanted) noexcept {
+  return {{request_kind::set_sample_rate, static_cast<std::uint16_t>(wanted)}};
 }
 /// Toggles the protection until the device reports the wanted state.
 [[nodiscard]] constexpr request_for<power_down_protection> set(
@@ -134,9 +134,8 @@ struct heard_from_device {
 };
 
 /// An answer, in the type of the request; start, stop and restart have none.
-using answer =
-    std::variant<std::monostate, device_information, health, low_power, motor_direction,
-                 scan_frequency, constant_frequency, ranging_frequency, power_down_protection>;
+using answer = std::variant<std::monostate, device_information, health, low_power, motor_direction,
+                            scan_frequency, constant_frequency, sample_rate, power_down_protection>;
 
 /// The outcome of a request.
 struct outcome {

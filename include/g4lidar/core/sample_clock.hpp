@@ -14,11 +14,9 @@ namespace g4lidar {
 /// accumulates. Valid for 292 years. *Single thread, never allocates.* (protocol: Point packets)
 class sample_clock {
  public:
-  /// `samples_per_second`: 1 to 10^9.
-  explicit constexpr sample_clock(std::uint32_t samples_per_second) noexcept
-      : rate_(samples_per_second),
-        step_(second / samples_per_second),
-        rest_(second % samples_per_second) {}
+  /// `sample_rate_hz`: 1 to 10^9.
+  explicit constexpr sample_clock(std::uint32_t sample_rate_hz) noexcept
+      : rate_(sample_rate_hz), step_(second / sample_rate_hz), rest_(second % sample_rate_hz) {}
 
   /// The time of the next sample.
   [[nodiscard]] constexpr std::int64_t now_ns() const noexcept { return now_ns_; }

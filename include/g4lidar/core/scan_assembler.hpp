@@ -257,7 +257,7 @@ class scan_assembler {
     given_ = count;
     scan_.points = storage_.first(count);
     scan_.flags = flags_ | more;
-    scan_.nominal_sample_rate_hz = sample_rate_hz_;
+    scan_.sample_rate_hz = sample_rate_hz_;
     scan_.turned_deg = static_cast<float>(end_64ths - first_turned_) / 64.0F;
     const std::int64_t from = scan_.time_ns();
     if (from != 0 && behind != nullptr && behind->time_ns > from) {

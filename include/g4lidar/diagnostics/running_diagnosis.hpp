@@ -22,7 +22,7 @@ struct running_diagnosis_options {
   std::chrono::nanoseconds window = std::chrono::seconds(10);
   /// What the lidar is set to, if it is known. Replies of the lidar that the driver reads replace it.
   std::optional<scan_frequency> frequency{};
-  std::optional<ranging_frequency> ranging{};  ///< The same.
+  std::optional<g4lidar::sample_rate> sample_rate{};  ///< The same.
 };
 
 /// The judgement of diagnose(), continuously: the same stages, thresholds and diagnoses, over a sliding

@@ -28,8 +28,8 @@ namespace g4lidar {
 /// construction*; exceptions of the sink are passed on.
 class G4LIDAR_API byte_points {
  public:
-  /// `writer` and `out` must outlive this. `samples_per_second`: 1 to 10^9.
-  byte_points(point_writer& writer, text_sink& out, std::uint32_t samples_per_second);
+  /// `writer` and `out` must outlive this. `sample_rate_hz`: 1 to 10^9.
+  byte_points(point_writer& writer, text_sink& out, std::uint32_t sample_rate_hz);
 
   /// Adds the next bytes, in pieces of any size.
   void take(g4lidar::bytes data);

@@ -21,14 +21,14 @@ namespace g4lidar {
 /// it ends with end_of_input, and no device answers.
 ///
 /// A regular file contains no times, so they are counted: its packets arrive at the rate of their
-/// samples, `samples_per_second` (1 to 1,000,000), each packet as a whole with its last sample; the
+/// samples, `sample_rate_hz` (1 to 1,000,000), each packet as a whole with its last sample; the
 /// first sample has the modification time of the file as its wall-clock time. Calls do not wait:
 /// now_ns() is the time of the bytes read last, and begins at 1 s. Bytes of a pipe, a terminal or a
 /// device have the time at which they are read. *Allocates on open.*
 ///
 /// Fails with system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
-    const std::string& path, std::uint32_t samples_per_second);
+    const std::string& path, std::uint32_t sample_rate_hz);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// whoever wrote it, is a recording.

@@ -14,7 +14,7 @@ namespace g4lidar {
 /// Settings that were not queried are not known.
 struct recorded_device {
   device_information information{};
-  std::optional<ranging_frequency> ranging{};
+  std::optional<g4lidar::sample_rate> sample_rate{};
   std::optional<scan_frequency> frequency{};
   std::optional<motor_direction> motor{};
   std::optional<constant_frequency> constant{};

@@ -28,7 +28,7 @@ struct recorded_event {
     opened,  ///< The transport was opened, the first time or again: `name`, `baud`.
     closed,  ///< The transport was closed, or the connection broke: `reason`.
     sent,    ///< `data` was sent to the device.
-    begun,   ///< The following points begin a new stream: `samples_per_second`, `delivers`.
+    begun,   ///< The following points begin a new stream: `sample_rate_hz`, `delivers`.
     held,    ///< From here on packets produce no points, until the next `begun`.
     cut,  ///< The unparsed bytes were discarded, and a held packet was parsed again from its second byte.
     gap,       ///< Bytes are missing from the recording at this place.
@@ -36,16 +36,16 @@ struct recorded_event {
     odometry,  ///< The robot's `odometry`, which is recorded beside the bytes.
   };
   kind what;
-  problem reason = problem::cancelled;   ///< Of `closed`; cancelled: no error.
-  bool delivers = true;                  ///< Whether packets produce points from here on.
-  std::uint32_t baud = 0;                ///< See transport::baud().
-  std::uint32_t samples_per_second = 0;  ///< The nominal sample rate.
-  std::uint32_t unparsed = 0;            ///< Bytes of the last read.
-  std::uint32_t events = 0;              ///< Of the parser, since the last read.
-  std::int64_t time_ns = 0;              ///< By the clock of the transport.
-  std::string_view name{};               ///< transport::name(), of `opened` and `state`.
-  bytes data{};                          ///< Of `sent`.
-  stamped_odometry odometry{};           ///< Of `odometry`.
+  problem reason = problem::cancelled;  ///< Of `closed`; cancelled: no error.
+  bool delivers = true;                 ///< Whether packets produce points from here on.
+  std::uint32_t baud = 0;               ///< See transport::baud().
+  std::uint32_t sample_rate_hz = 0;     ///< The nominal sample rate.
+  std::uint32_t unparsed = 0;           ///< Bytes of the last read.
+  std::uint32_t events = 0;             ///< Of the parser, since the last read.
+  std::int64_t time_ns = 0;             ///< By the clock of the transport.
+  std::string_view name{};              ///< transport::name(), of `opened` and `state`.
+  bytes data{};                         ///< Of `sent`.
+  stamped_odometry odometry{};          ///< Of `odometry`.
 };
 
 /// The names in tools and documents. Valid forever.

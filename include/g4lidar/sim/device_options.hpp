@@ -19,7 +19,7 @@ struct device_settings {
   motor_direction direction = motor_direction::clockwise;
   std::uint16_t scan_frequency_chz = 700;
   constant_frequency constancy = constant_frequency::on;
-  ranging_frequency ranging = ranging_frequency::khz_9;
+  g4lidar::sample_rate sample_rate = g4lidar::sample_rate::khz_9;
   power_down_protection protection = power_down_protection::off;
 
   friend bool operator==(const device_settings&, const device_settings&) = default;
@@ -41,7 +41,7 @@ enum class disturbance : std::uint8_t {
 
 /// All properties of a device that are not faults. By default a healthy G4, as far as it is known.
 struct device_options {
-  /// Measurement options, and the seed of everything random here. Its scan and ranging frequency
+  /// Measurement options, and the seed of everything random here. Its scan frequency and sample rate
   /// are the defaults of the device; `start_deg` is not used: each start has a random angle.
   scanner_options scanner;
   /// The answer to 90.

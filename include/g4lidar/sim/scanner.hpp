@@ -30,7 +30,7 @@ enum class turning : std::uint8_t {
 struct scanner_options {
   std::uint64_t seed = 1;                  ///< The seed of all random values below.
   std::uint16_t scan_frequency_chz = 700;  ///< Revolutions per 100 s, constant; 500 to 1200.
-  ranging_frequency ranging = ranging_frequency::khz_9;
+  g4lidar::sample_rate sample_rate = g4lidar::sample_rate::khz_9;
   std::size_t samples_per_packet = 40;  ///< 1 to 80.
   double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
   /// The angle at the first sample, [0, 360); drawn at random where not given.
@@ -93,7 +93,7 @@ class G4LIDAR_API scanner {
   /// does not turn, and all samples have the same angle.
   void set_speed_mhz(std::uint32_t speed_mhz) noexcept;
   /// From the next packet on it has this sample rate.
-  void set_ranging(ranging_frequency ranging) noexcept;
+  void set_sample_rate(sample_rate rate) noexcept;
   /// From the next packet on the head turns in this direction.
   void set_turning(turning way) noexcept { turning_ = way; }
   /// The next sample is measured at `at_ns`, not before the last one, when the head is `phase` /
@@ -102,7 +102,7 @@ class G4LIDAR_API scanner {
   /// When the next sample is measured, unless resume() changes it.
   [[nodiscard]] std::int64_t next_sample_ns() const noexcept;
 
-  /// As given, except `ranging`, which set_ranging() changes; valid as long as the scanner.
+  /// As given, except `sample_rate`, which set_sample_rate() changes; valid as long as the scanner.
   [[nodiscard]] const scanner_options& options() const noexcept { return options_; }
 
  private:

@@ -43,7 +43,7 @@ double slow_wave(std::int64_t time_ns) noexcept {
 // The true sample rate in 0.001 Hz.
 std::uint64_t true_rate_mhz(const scanner_options& options, std::int64_t time_ns) noexcept {
   const double drift = options.sample_rate_drift_ppm * 1e-6 * slow_wave(time_ns);
-  const double nominal = 1000.0 * samples_per_second(options.ranging);
+  const double nominal = 1000.0 * to_hz(options.sample_rate);
   return static_cast<std::uint64_t>(nominal * options.sample_rate_ratio * (1.0 + drift) + 0.5);
 }
 
@@ -111,7 +111,7 @@ void scanner::set_speed_mhz(std::uint32_t speed_mhz) noexcept {
   set_step();
 }
 
-void scanner::set_ranging(ranging_frequency ranging) noexcept { options_.ranging = ranging; }
+void scanner::set_sample_rate(sample_rate rate) noexcept { options_.sample_rate = rate; }
 
 std::int64_t scanner::next_sample_ns() const noexcept {
   const std::uint64_t since = index_ - index_then_;

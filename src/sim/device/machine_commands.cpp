@@ -74,7 +74,7 @@ bool device::machine::obey_setting(command code) noexcept {
 
 void device::machine::use_settings() noexcept {
   const bool clockwise = settings.direction == motor_direction::clockwise;
-  sampler_.set(settings.ranging, clockwise ? turning::clockwise : options_.counter_clockwise);
+  sampler_.set(settings.sample_rate, clockwise ? turning::clockwise : options_.counter_clockwise);
   head.hold(settings.constancy);
 }
 

@@ -22,8 +22,8 @@ class sampler {
         phases_(stream_for(options.seed, purpose::phases)),
         strays_(stream_for(options.seed, purpose::strays)) {}
 
-  void set(ranging_frequency ranging, turning direction) noexcept {
-    scanner_.set_ranging(ranging);
+  void set(sample_rate rate, turning direction) noexcept {
+    scanner_.set_sample_rate(rate);
     scanner_.set_turning(direction);
   }
   /// A scan begins at a random angle.

@@ -39,8 +39,8 @@ answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
   return answer_with_frequency(frequency_chz);
 }
 
-ranging_frequency next_of(ranging_frequency now) noexcept {
-  return static_cast<ranging_frequency>((static_cast<unsigned>(now) + 1U) % 3U);
+sample_rate next_of(sample_rate now) noexcept {
+  return static_cast<sample_rate>((static_cast<unsigned>(now) + 1U) % 3U);
 }
 
 power_down_protection other_than(power_down_protection now) noexcept {
@@ -78,7 +78,7 @@ answer_bytes answer_with(const health& condition) noexcept {
 device_settings first_settings(const device_options& options) noexcept {
   device_settings settings = options.initial;
   settings.scan_frequency_chz = options.scanner.scan_frequency_chz;
-  settings.ranging = options.scanner.ranging;
+  settings.sample_rate = options.scanner.sample_rate;
   return settings;
 }
 
@@ -112,10 +112,10 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
       return set(now.constancy, constant_frequency::on);
     case command::constant_frequency_off:
       return set(now.constancy, constant_frequency::off);
-    case command::ranging_next:
-      return set(now.ranging, next_of(now.ranging));
-    case command::ranging_query:
-      return set(now.ranging, now.ranging);
+    case command::sample_rate_next:
+      return set(now.sample_rate, next_of(now.sample_rate));
+    case command::sample_rate_query:
+      return set(now.sample_rate, now.sample_rate);
     case command::protection_toggle:
       return set(now.protection, other_than(now.protection));
     default:

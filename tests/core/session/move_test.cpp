@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Requests that need commands that change state: ranging, frequency, protection.
+// Requests that need commands that change state: sample rate, frequency, protection.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,36 +11,36 @@
 namespace g4lidar::test {
 namespace {
 
-TEST_F(session_requests, Ranging_StepsAndReadsOnceMore) {
-  EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_8),
+TEST_F(session_requests, SampleRate_StepsAndReadsOnceMore) {
+  EXPECT_ASKED(bench, requests::set(sample_rate::khz_8),
                ">D1 <byte:2 >D0 <byte:0 >D0 <byte:1 >90 <info >D1 <byte:1 =answered:1");
-  EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_8),
+  EXPECT_ASKED(bench, requests::set(sample_rate::khz_8),
                ">90 <info >D1 <byte:1 >90 <info >D1 <byte:1 =answered:1");
 }
 
-TEST_F(session_requests, RangingAfterALoss_IsQueriedAndNotSteppedAgain) {
+TEST_F(session_requests, SampleRateAfterALoss_IsQueriedAndNotSteppedAgain) {
   // The step was executed, its answer lost.
-  EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_9),
+  EXPECT_ASKED(bench, requests::set(sample_rate::khz_9),
                ">D1 <byte:1 >D0 wait >90 <info >D1 <byte:2 >90 <info >D1 <byte:2 =answered:2");
   // The step itself was lost.
-  EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_4),
+  EXPECT_ASKED(bench, requests::set(sample_rate::khz_4),
                ">90 <info >D1 <byte:2 >D0 wait >90 <info >D1 <byte:2 >D0 <byte:0 >90 <info >D1 "
                "<byte:0 =answered:0");
 }
 
-TEST_F(session_requests, Ranging_IgnoresACopyOfTheLastAnswer) {
-  EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_8),
+TEST_F(session_requests, SampleRate_IgnoresACopyOfTheLastAnswer) {
+  EXPECT_ASKED(bench, requests::set(sample_rate::khz_8),
                ">D1 <byte:2 >D0 <byte:2 >90 <byte:0 <info >D1 <byte:0 >D0 <byte:0 >90 <byte:1 "
                "<info >D1 <byte:1 >90 <info >D1 <byte:1 =answered:1");
 }
 
-TEST_F(session_requests, RangingWithoutEffect_IsNotReached) {
-  EXPECT_ASKED(bench, requests::set(ranging_frequency::khz_4),
+TEST_F(session_requests, SampleRateWithoutEffect_IsNotReached) {
+  EXPECT_ASKED(bench, requests::set(sample_rate::khz_4),
                ">D1 <byte:2 >D0 <byte:2 >90 <info >D1 <byte:2 =not_reached:2");
 }
 
 TEST_F(session_requests, EndIfNoChangeIsKept) {
-  std::string went = bench.ask(requests::set(ranging_frequency::khz_9), "<byte:0");
+  std::string went = bench.ask(requests::set(sample_rate::khz_9), "<byte:0");
   int moves = 0;
   unsigned now = 0;
   for (int i = 0; i < 1000 && bench.talk.is_busy(); ++i) {

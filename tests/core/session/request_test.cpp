@@ -65,7 +65,7 @@ TEST(session_opening, SilenceNoiseAndImpossibleAnswers_AreDistinguished) {
   EXPECT_TRUE(noisy.last.heard_noise_only());
 
   played wrong;
-  EXPECT_ASKED(wrong, requests::get_ranging(),
+  EXPECT_ASKED(wrong, requests::get_sample_rate(),
                ">00 >65 wait >90 <info >D1 <health:0 >90 wait >91 "
                "wait >90 wait =timed_out");
   EXPECT_EQ(wrong.last.wrong_answers, 1);
@@ -85,8 +85,8 @@ TEST_F(session_requests, AreAnsweredInTheirOwnTypes) {
   EXPECT_ASKED(bench, requests::get_direction(), ">08 <byte:1 =answered:1");
   EXPECT_EQ(std::get<motor_direction>(bench.last.value), counter_clockwise);
   EXPECT_ASKED(bench, requests::health(), ">91 <health:0 =answered:0");
-  EXPECT_ASKED(bench, requests::get_ranging(), ">D1 <byte:2 =answered:2");
-  EXPECT_EQ(std::get<ranging_frequency>(bench.last.value), ranging_frequency::khz_9);
+  EXPECT_ASKED(bench, requests::get_sample_rate(), ">D1 <byte:2 =answered:2");
+  EXPECT_EQ(std::get<sample_rate>(bench.last.value), sample_rate::khz_9);
 }
 
 TEST_F(session_requests, SetByCommandsThatAnswerWithTheSetting) {
@@ -110,7 +110,7 @@ TEST_F(session_requests, HealthFallsBackToTheVendorsCommand) {
 }
 
 TEST_F(session_requests, ClearTheLinkAfterALossAndDiscardLateAnswers) {
-  EXPECT_ASKED(bench, requests::get_ranging(),
+  EXPECT_ASKED(bench, requests::get_sample_rate(),
                ">D1 wait >90 <byte:1 <info >D1 <byte:2 =answered:2");
   EXPECT_ASKED(bench, requests::device_info(),
                ">90 wait >91 <info <health:0 >90 <info =answered:2021101000070073");
@@ -119,7 +119,7 @@ TEST_F(session_requests, ClearTheLinkAfterALossAndDiscardLateAnswers) {
 TEST_F(session_requests, ClearTheLinkAfterAnImpossibleAnswer) {
   EXPECT_ASKED(bench, requests::get_low_power(), ">05 <byte:2 >90 <info >05 <byte:0 =answered:0");
   EXPECT_EQ(bench.last.wrong_answers, 1);
-  EXPECT_ASKED(bench, requests::get_ranging(),
+  EXPECT_ASKED(bench, requests::get_sample_rate(),
                ">90 <info >D1 <freq:700 >90 <byte:1 <info >D1 "
                "<byte:2 =answered:2");
   EXPECT_ASKED(bench, requests::device_info(), ">90 <info =answered:2021101000070073");
@@ -130,18 +130,19 @@ TEST_F(session_requests, ClearTheLinkAfterAnImpossibleAnswer) {
 TEST_F(session_requests, IgnoreTheSecondCopyOfAnAnswer) {
   EXPECT_ASKED(bench, requests::get_low_power(), ">05 <byte:1 =answered:1");
   // The same kind: the link is cleared first. Another kind: the source is known.
-  EXPECT_ASKED(bench, requests::get_ranging(), ">90 <byte:1 <info >D1 <info <byte:2 =answered:2");
+  EXPECT_ASKED(bench, requests::get_sample_rate(),
+               ">90 <byte:1 <info >D1 <info <byte:2 =answered:2");
 }
 
 TEST_F(session_requests, IgnoreAnUnrequestedAnswer) {
   EXPECT_ASKED(bench, requests::health(), ">91 <health:0 =answered:0");
   EXPECT_PLAYED(bench, "<byte:1");
-  EXPECT_ASKED(bench, requests::get_ranging(), ">90 <byte:1 <info >D1 <byte:2 =answered:2");
+  EXPECT_ASKED(bench, requests::get_sample_rate(), ">90 <byte:1 <info >D1 <byte:2 =answered:2");
 }
 
 TEST_F(session_requests, AlternateTheClearingQueryIfAnswersAreLate) {
   // Each answer arrives 350 ms after its query: the third time the session waits longer.
-  EXPECT_ASKED(bench, requests::get_ranging(),
+  EXPECT_ASKED(bench, requests::get_sample_rate(),
                ">D1 +300 >90 +50 <byte:2 +249 >91 +50 <info +249 >90 +50 <health:0 +299 <info >D1 "
                "+350 <byte:2 =answered:2");
 }
@@ -152,7 +153,7 @@ TEST_F(session_requests, AreGivenUpAfterFourLossesOrTenSeconds) {
                "=timed_out");
   EXPECT_EQ(bench.last.retries, 3);
   EXPECT_ASKED(bench, requests::get_direction(), ">00 >65 wait >90 <info >08 <byte:0 =answered:0");
-  EXPECT_ASKED(bench, requests::get_ranging(),
+  EXPECT_ASKED(bench, requests::get_sample_rate(),
                ">90 <info >D1 +300 >90 late >91 <health:0 =timed_out");
 }
 
@@ -162,7 +163,7 @@ TEST_F(session_requests, AreNotAnsweredBeforeTheyAreSent) {
     const auto sent = talk.to_send();
     return sent ? (*sent)[1] : 0xFF;
   };
-  ASSERT_FALSE(talk.begin(requests::set(ranging_frequency::khz_8), 0));
+  ASSERT_FALSE(talk.begin(requests::set(sample_rate::khz_8), 0));
   EXPECT_EQ(next(), 0x00);
   EXPECT_EQ(next(), 0x65);
   talk.look(50 * ms);
@@ -180,8 +181,8 @@ TEST(session_patience, FirstAnswer_MayTakeASecond) {
   played bench;
   EXPECT_ASKED(bench, requests::device_info(),
                ">00 >65 wait >90 +990 <info =answered:2021101000070073");
-  EXPECT_ASKED(bench, requests::health(), ">91 +990 <health:0 =answered:0");  // a slow device
-  EXPECT_ASKED(bench, requests::get_ranging(), ">D1 <byte:2 =answered:2");    // a quick one again
+  EXPECT_ASKED(bench, requests::health(), ">91 +990 <health:0 =answered:0");    // a slow device
+  EXPECT_ASKED(bench, requests::get_sample_rate(), ">D1 <byte:2 =answered:2");  // a quick one again
   const std::int64_t asked_ns = bench.now_ns;
   EXPECT_ASKED(bench, requests::get_low_power(),
                ">90 <info >05 wait >90 <info >05 <byte:1 =answered:1");
@@ -202,9 +203,9 @@ TEST_F(session_requests, ImpossibleValue_IsRefusedBeforeSending) {
            requests::set(scan_frequency{1500}), requests::set(scan_frequency{1201}),
            requests::set(scan_frequency{499}), requests::set(scan_frequency{10}),
            requests::set(bad(low_power::on)), requests::set(bad(motor_direction::clockwise)),
-           requests::set(bad(constant_frequency::on)), requests::set(bad(ranging_frequency::khz_4)),
+           requests::set(bad(constant_frequency::on)), requests::set(bad(sample_rate::khz_4)),
            requests::set(bad(power_down_protection::on)),
-           requests::step(bad(frequency_step::up_1_hz)), request{static_cast<ask>(77)},
+           requests::step(bad(frequency_step::up_1_hz)), request{static_cast<request_kind>(77)},
            request{request_kind::health, 1}}) {
     EXPECT_ASKED(bench, wanted, "bad_setting");
     EXPECT_FALSE(bench.talk.is_busy());
@@ -221,7 +222,7 @@ TEST_F(session_requests, Restart_EndsWhenTheDeviceAnswers) {
 TEST_F(session_requests, Restart_MayBeFollowedByADeviceInformation) {
   EXPECT_ASKED(bench, requests::health(), ">91 <health:0 =answered:0");
   EXPECT_ASKED(bench, requests::restart(), ">80 <noise wait >90 <info =answered");
-  EXPECT_ASKED(bench, requests::get_ranging(), ">D1 <info <byte:2 =answered:2");
+  EXPECT_ASKED(bench, requests::get_sample_rate(), ">D1 <info <byte:2 =answered:2");
   EXPECT_EQ(bench.last.wrong_answers, 0);
 }
 

@@ -99,7 +99,7 @@ TEST_F(session_scanning, RefusesWhatWouldDisturbTheStream) {
   start();
   for (const request& wanted : std::initializer_list<request>{
            requests::device_info(), requests::health(), requests::get_low_power(),
-           requests::set(low_power::on), requests::restart(), requests::get_ranging(),
+           requests::set(low_power::on), requests::restart(), requests::get_sample_rate(),
            requests::set(power_down_protection::on), requests::set(scan_frequency{800})}) {
     EXPECT_ASKED(bench, wanted, "scanning");
   }
@@ -157,14 +157,15 @@ TEST_F(session_scanning, AcceptsARequestWhileItStopsAnUnwantedScan) {
 
 TEST_F(session_scanning, StopsAScanThatInterruptsAQuery) {
   EXPECT_ASKED(
-      bench, requests::get_ranging(),
+      bench, requests::get_sample_rate(),
       ">D1 <packet >00 >65 !found_scanning wait >90 <byte:1 <info >D1 <byte:2 =answered:2");
 }
 
 TEST_F(session_scanning, QueryInterruptedRepeatedly_Ends) {
-  EXPECT_EQ(bench.ask(requests::get_ranging(), "<packet wait <packet wait <packet wait <packet"),
-            ">D1 <packet >00 >65 !found_scanning wait >90 <packet >00 >65 wait >90 <packet >00 >65 "
-            "wait >90 <packet =still_scanning");
+  EXPECT_EQ(
+      bench.ask(requests::get_sample_rate(), "<packet wait <packet wait <packet wait <packet"),
+      ">D1 <packet >00 >65 !found_scanning wait >90 <packet >00 >65 wait >90 <packet >00 >65 "
+      "wait >90 <packet =still_scanning");
 }
 
 // ---- protection --------------------------------------------------------------------------------

@@ -44,12 +44,12 @@ const std::vector<asked_and_set>& settings() {
        [](state now) { return now.scan_frequency_chz == 530; }},
       {"no constant frequency", requests::set(constant_frequency::off),
        [](state now) { return now.constancy == constant_frequency::off; }},
-      {"4 kHz", requests::set(ranging_frequency::khz_4),
-       [](state now) { return now.ranging == ranging_frequency::khz_4; }},
-      {"8 kHz", requests::set(ranging_frequency::khz_8),
-       [](state now) { return now.ranging == ranging_frequency::khz_8; }},
-      {"9 kHz", requests::set(ranging_frequency::khz_9),
-       [](state now) { return now.ranging == ranging_frequency::khz_9; }},
+      {"4 kHz", requests::set(sample_rate::khz_4),
+       [](state now) { return now.sample_rate == sample_rate::khz_4; }},
+      {"8 kHz", requests::set(sample_rate::khz_8),
+       [](state now) { return now.sample_rate == sample_rate::khz_8; }},
+      {"9 kHz", requests::set(sample_rate::khz_9),
+       [](state now) { return now.sample_rate == sample_rate::khz_9; }},
       {"protection on", requests::set(power_down_protection::on),
        [](state now) { return now.protection == power_down_protection::on; }},
       {"protection off", requests::set(power_down_protection::off),
@@ -58,10 +58,10 @@ const std::vector<asked_and_set>& settings() {
   return all;
 }
 
-const std::array<request, 8> others{requests::device_info(),   requests::health(),
-                                    requests::get_low_power(), requests::get_direction(),
-                                    requests::get_ranging(),   requests::get_scan_frequency(),
-                                    requests::restart(),       requests::start()};
+const std::array<request, 8> others{requests::device_info(),     requests::health(),
+                                    requests::get_low_power(),   requests::get_direction(),
+                                    requests::get_sample_rate(), requests::get_scan_frequency(),
+                                    requests::restart(),         requests::start()};
 
 /// Only start and stop may reach a scanning device.
 void expect_undisturbed(const on_simulator& bench) {

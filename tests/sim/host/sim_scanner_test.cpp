@@ -48,10 +48,10 @@ std::vector<sim::sample_truth> truths_of(const std::vector<kept_packet>& packets
   return truths;
 }
 
-sim::scanner_options settings(ranging_frequency ranging, int frequency_chz, std::size_t samples,
+sim::scanner_options settings(sample_rate rate, int frequency_chz, std::size_t samples,
                               double index_deg) {
   sim::scanner_options options;
-  options.ranging = ranging;
+  options.sample_rate = rate;
   options.scan_frequency_chz = static_cast<std::uint16_t>(frequency_chz);
   options.samples_per_packet = samples;
   options.index_deg = index_deg;
@@ -61,12 +61,11 @@ sim::scanner_options settings(ranging_frequency ranging, int frequency_chz, std:
 // The minimum and maximum of everything that shapes a packet, and values between.
 std::vector<sim::scanner_options> all_settings() {
   std::vector<sim::scanner_options> all;
-  for (const auto ranging :
-       {ranging_frequency::khz_4, ranging_frequency::khz_8, ranging_frequency::khz_9}) {
+  for (const auto rate : {sample_rate::khz_4, sample_rate::khz_8, sample_rate::khz_9}) {
     for (const int frequency_chz : {500, 700, 1003, 1200}) {
       for (const std::size_t samples : {1U, 7U, 40U, 80U}) {
         for (const double index_deg : {0.0, 123.4, 348.0, 359.999}) {
-          all.push_back(settings(ranging, frequency_chz, samples, index_deg));
+          all.push_back(settings(rate, frequency_chz, samples, index_deg));
         }
       }
     }
@@ -113,7 +112,7 @@ TEST(SimScanner, AnglesOnTheWire_AreWithinHalfA64th) {
 
 TEST(SimScanner, ZeroPacket_HoldsOnlyTheFirstSampleAfterTheIndex) {
   for (const sim::scanner_options& options : all_settings()) {
-    const double step_deg = 3.6 * options.scan_frequency_chz / samples_per_second(options.ranging);
+    const double step_deg = 3.6 * options.scan_frequency_chz / to_hz(options.sample_rate);
     std::uint64_t zeros = 0;
     const auto packets = run(options, 2.0);
     for (const kept_packet& p : packets) {
@@ -162,7 +161,7 @@ TEST(SimScanner, Revolutions_CountLaterZeroPackets) {
 TEST(SimScanner, SamplesAreEquidistantInTimeAndAngle) {
   for (const sim::scanner_options& options : all_settings()) {
     const auto truths = truths_of(run(options, 1.0));
-    const std::uint32_t rate = samples_per_second(options.ranging);
+    const std::uint32_t rate = to_hz(options.sample_rate);
     EXPECT_LE(truths.size(), rate);
     EXPECT_GT(truths.size() + options.samples_per_packet, rate);
     const double step_deg = 3.6 * options.scan_frequency_chz / rate;

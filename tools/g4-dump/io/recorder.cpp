@@ -102,7 +102,7 @@ class recorder {
     g4lidar::lidar& lidar = source_->lidar();
     recorded_device known;
     known.information = lidar.information();
-    if (const auto got = lidar.ask(requests::get_ranging())) known.ranging = *got;
+    if (const auto got = lidar.ask(requests::get_sample_rate())) known.sample_rate = *got;
     if (const auto got = lidar.ask(requests::get_scan_frequency())) known.frequency = *got;
     writer_->device(known);
   }

@@ -36,8 +36,8 @@ device_facts facts_of_recording(const std::string& source) {
   const auto& known = reader.device();
   if (!known) return facts;
   if (known->information.model != 0) facts.information = known->information;
-  facts.settings = {known->ranging,  known->frequency, known->motor,
-                    known->constant, known->idle,      known->protection};
+  facts.settings = {known->sample_rate, known->frequency, known->motor,
+                    known->constant,    known->idle,      known->protection};
   return facts;
 }
 

@@ -148,7 +148,7 @@ class viewer {
     if (!settings_.is_frozen && newest_.take(scan_, event)) {
       const scan now = scan_.view();
       facts_.frequency_hz = static_cast<double>(now.measured_frequency_hz());
-      facts_.sample_rate_hz = static_cast<double>(now.sample_rate_hz());
+      facts_.sample_rate_hz = static_cast<double>(now.measured_sample_rate_hz());
       if (!settings_.is_zoomed) follow_range(now);
     }
     if (!event.empty()) facts_.event = event;

@@ -37,11 +37,11 @@ request request_for_value(const answer& value) {
 }  // namespace
 
 const std::vector<setting>& all_settings() {
-  using enum ranging_frequency;
+  using enum sample_rate;
   using enum motor_direction;
   static const std::vector<setting> all{
       {"sample_rate",
-       requests::get_ranging(),
+       requests::get_sample_rate(),
        {{"4k", khz_4},
         {"8k", khz_8},
         {"9k", khz_9},
@@ -118,7 +118,7 @@ std::string text_of(const maybe_answer& value) {
 nlohmann::ordered_json json_of(const maybe_answer& value) {
   std::string text = text_of(value);
   if (!value || text == "unknown") return nullptr;
-  if (const auto* rate = std::get_if<ranging_frequency>(&*value)) return samples_per_second(*rate);
+  if (const auto* rate = std::get_if<sample_rate>(&*value)) return to_hz(*rate);
   if (const auto* frequency = std::get_if<scan_frequency>(&*value)) return frequency->chz / 100.0;
   if (std::holds_alternative<motor_direction>(*value)) return text;
   return text == "on";

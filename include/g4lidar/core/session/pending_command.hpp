@@ -34,7 +34,7 @@ namespace g4lidar {
   const auto byte = heard.as_byte();
   if (!byte) return true;
   if (traits->fixed_answer) return *byte == *traits->fixed_answer;
-  const bool has_three = code == command::ranging_next || code == command::ranging_query;
+  const bool has_three = code == command::sample_rate_next || code == command::sample_rate_query;
   return *byte < (has_three ? 3 : 2);
 }
 

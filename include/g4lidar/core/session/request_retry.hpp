@@ -20,8 +20,8 @@ namespace g4lidar {
     case request_kind::step_scan_frequency:
       return wanted.value >= static_cast<std::uint16_t>(frequency_step::up_0_1_hz) &&
              wanted.value <= static_cast<std::uint16_t>(frequency_step::down_1_hz);
-    case request_kind::set_ranging:
-      return wanted.value <= static_cast<std::uint16_t>(ranging_frequency::khz_9);
+    case request_kind::set_sample_rate:
+      return wanted.value <= static_cast<std::uint16_t>(sample_rate::khz_9);
     case request_kind::set_low_power:
     case request_kind::set_direction:
     case request_kind::set_constant_frequency:
@@ -117,7 +117,7 @@ class request_retry {
   [[nodiscard]] constexpr bool is_moving() const noexcept {
     return wanted_.what == request_kind::step_scan_frequency ||
            wanted_.what == request_kind::set_scan_frequency ||
-           wanted_.what == request_kind::set_ranging;
+           wanted_.what == request_kind::set_sample_rate;
   }
 
   /// The first command, which is also repeated after a loss.
@@ -141,9 +141,9 @@ class request_retry {
         return command::frequency_query;
       case request_kind::set_constant_frequency:
         return is_one ? command::constant_frequency_on : command::constant_frequency_off;
-      case request_kind::get_ranging:
-      case request_kind::set_ranging:
-        return command::ranging_query;
+      case request_kind::get_sample_rate:
+      case request_kind::set_sample_rate:
+        return command::sample_rate_query;
       case request_kind::set_protection:
         return command::protection_toggle;
       default:
@@ -163,9 +163,9 @@ class request_retry {
         return static_cast<motor_direction>(byte);
       case request_kind::set_constant_frequency:
         return static_cast<constant_frequency>(byte);
-      case request_kind::get_ranging:
-      case request_kind::set_ranging:
-        return static_cast<ranging_frequency>(byte);
+      case request_kind::get_sample_rate:
+      case request_kind::set_sample_rate:
+        return static_cast<sample_rate>(byte);
       case request_kind::set_protection:
         return static_cast<power_down_protection>(byte);
       default:
@@ -239,7 +239,7 @@ class request_retry {
   }
   [[nodiscard]] constexpr bool has_arrived() const noexcept {
     if (wanted_.what == request_kind::step_scan_frequency) return current_ != origin_;
-    if (wanted_.what == request_kind::set_ranging) return missing() == 0;
+    if (wanted_.what == request_kind::set_sample_rate) return missing() == 0;
     return missing() <= tolerance_chz && -missing() <= tolerance_chz;
   }
   [[nodiscard]] constexpr bool is_at_end() const noexcept {
@@ -255,7 +255,7 @@ class request_retry {
 
   [[nodiscard]] constexpr command next_move() noexcept {
     is_coarse_ = false;
-    if (wanted_.what == request_kind::set_ranging) return command::ranging_next;
+    if (wanted_.what == request_kind::set_sample_rate) return command::sample_rate_next;
     const bool is_up = missing() > 0;
     const int far = is_up ? missing() : -missing();
     move_ = is_up ? command::frequency_up_0_1_hz : command::frequency_down_0_1_hz;
@@ -271,7 +271,7 @@ class request_retry {
   /// Whether the last change can have led from `current_` to `value`; at the end of the device's
   /// range a step may be shorter.
   [[nodiscard]] constexpr bool is_move_to(std::uint16_t value) const noexcept {
-    if (wanted_.what == request_kind::set_ranging) return value == (current_ + 1) % 3;
+    if (wanted_.what == request_kind::set_sample_rate) return value == (current_ + 1) % 3;
     const bool is_up = move_ == command::frequency_up_0_1_hz || move_ == command::frequency_up_1_hz;
     const int by = is_up ? value - current_ : current_ - value;
     return by > 0 && by <= (is_coarse_ ? coarse_chz : fine_chz);
