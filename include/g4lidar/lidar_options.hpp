@@ -81,7 +81,7 @@ struct lidar_options {
   /// returns is used instead; its error ends the attempt.
   std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> wrap{};
   /// Called often while open() reads a file, and every 50 ms between two attempts to open, if it is set;
-  /// true ends open() with cancelled. An attempt is not interrupted. Playing a recording calls it, too.
+  /// true ends open() with cancelled. An attempt is not interrupted. Playing a file calls it, too.
   std::function<bool()> is_cancelled{};
 };
 

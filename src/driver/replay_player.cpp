@@ -103,16 +103,17 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
     stage_ = stage::ending;
     return {};
   }
-  if (got->count == 0) return {};
+  if (got->count == 0) return check();
   is_pause_reported_ = false;
   pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
   static_cast<void>(digest());
   return check();
 }
 
-/// Whether reading the recording was not cancelled by then.
+/// Whether reading the file was not cancelled by then.
 result<void> replay_player::check() const noexcept {
-  if (source_ == nullptr || !source_->take_cancelled()) return {};
+  recording_hook& file = *connection_.from().recording();
+  if (!(source_ != nullptr ? source_->take_cancelled() : file.take_cancelled())) return {};
   return failure(task::reading, problem::cancelled, connection_.name());
 }
 

@@ -75,7 +75,7 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
       return replay::open(path, {.rate = how.speed, .loop = how.loop, .range = range});
     }
     case source_kind::raw_bytes:
-      return open_raw_bytes(path, options.raw_sample_rate_hz);
+      return open_raw_bytes(path, options.raw_sample_rate_hz, options.is_cancelled);
     case source_kind::simulated:
       return connect_simulated(options);
     case source_kind::device:

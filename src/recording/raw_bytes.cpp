@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -30,6 +31,13 @@ namespace {
 constexpr std::int64_t file_begin_ns = second_ns;
 /// Of bytes that belong to no packet.
 constexpr std::size_t longest_piece = 16'384;
+
+/// What the transport of a file and its connector, which may be destroyed first, share.
+struct counted_state {
+  std::int64_t now_ns = file_begin_ns;
+  std::function<bool()> is_cancelled;
+  bool was_cancelled = false;  // and the connector was not asked yet
+};
 
 /// The common part of both kinds: a descriptor, and no device that answers.
 class byte_transport : public transport {
@@ -103,10 +111,10 @@ class pipe_transport final : public byte_transport {
 class counted_transport final : public byte_transport {
  public:
   counted_transport(owned_fd fd, std::string name, std::uint32_t rate_hz,
-                    std::shared_ptr<std::int64_t> now_ns)
+                    std::shared_ptr<counted_state> state)
       : byte_transport(std::move(fd), std::move(name)),
         rate_hz_(rate_hz),
-        now_ns_(std::move(now_ns)) {}
+        state_(std::move(state)) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out, std::int64_t) noexcept override {
     if (is_woken()) return failure(task::reading, problem::cancelled, name());
@@ -119,7 +127,7 @@ class counted_transport final : public byte_transport {
     return received{count, now_ns()};
   }
   [[nodiscard]] result<void> pause(std::int64_t) noexcept override { return {}; }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return *now_ns_; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return state_->now_ns; }
 
  private:
   /// Up to the end of the next packet, whose samples have been measured by then. No part of it
@@ -129,6 +137,10 @@ class counted_transport final : public byte_transport {
       std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
       end_ = parsed_ = end_ - begin_;
       begin_ = 0;
+      if (state_->is_cancelled && state_->is_cancelled()) {
+        state_->was_cancelled = true;
+        return failure(task::reading, problem::cancelled, name());
+      }
       const auto got = take(std::span(buffer_).subspan(end_));
       if (!got && end_ > 0 && got.error() == problem::end_of_input) break;
       if (!got) return tl::unexpected(got.error());
@@ -153,12 +165,12 @@ class counted_transport final : public byte_transport {
   }
   void count(std::size_t samples) noexcept {
     samples_ += static_cast<std::int64_t>(samples);
-    *now_ns_ = file_begin_ns + samples_ / rate_hz_ * second_ns +
-               samples_ % rate_hz_ * second_ns / rate_hz_;
+    state_->now_ns = file_begin_ns + samples_ / rate_hz_ * second_ns +
+                     samples_ % rate_hz_ * second_ns / rate_hz_;
   }
 
   std::int64_t rate_hz_;
-  std::shared_ptr<std::int64_t> now_ns_;
+  std::shared_ptr<counted_state> state_;
   std::int64_t samples_ = 0;
   stream_parser parser_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
@@ -168,40 +180,42 @@ class counted_transport final : public byte_transport {
   bytes piece_;
 };
 
-/// Returns its transport once. The time is that of the transport, which may be destroyed before
-/// this.
+/// Returns its transport once.
 class byte_connector final : public connector, private recording_hook {
  public:
-  byte_connector(std::unique_ptr<byte_transport> port,
-                 std::shared_ptr<const std::int64_t> counted_ns,
+  byte_connector(std::unique_ptr<byte_transport> port, std::shared_ptr<counted_state> counted,
                  std::optional<std::int64_t> wall_ahead_ns)
-      : port_(std::move(port)), counted_ns_(std::move(counted_ns)), wall_ahead_ns_(wall_ahead_ns) {}
+      : port_(std::move(port)), counted_(std::move(counted)), wall_ahead_ns_(wall_ahead_ns) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
     return std::move(port_);
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override {
-    return counted_ns_ != nullptr ? *counted_ns_ : steady_now_ns();
+    return counted_ != nullptr ? counted_->now_ns : steady_now_ns();
   }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
   [[nodiscard]] recording_hook* recording() noexcept override { return this; }
-  [[nodiscard]] bool counts_time() const noexcept override { return counted_ns_ != nullptr; }
+  [[nodiscard]] bool counts_time() const noexcept override { return counted_ != nullptr; }
+  [[nodiscard]] bool take_cancelled() noexcept override {
+    return counted_ != nullptr && std::exchange(counted_->was_cancelled, false);
+  }
   [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
     return wall_ahead_ns_;
   }
 
  private:
   std::unique_ptr<byte_transport> port_;
-  std::shared_ptr<const std::int64_t> counted_ns_;
+  std::shared_ptr<counted_state> counted_;  // null: a pipe
   std::optional<std::int64_t> wall_ahead_ns_;
 };
 
 }  // namespace
 
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
-                                                  std::uint32_t sample_rate_hz) {
+                                                  std::uint32_t sample_rate_hz,
+                                                  std::function<bool()> is_cancelled) {
   const bool is_standard = name == "-";
   owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
                           : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
@@ -215,10 +229,11 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::unique_ptr<byte_transport> port;
   if (is_known && S_ISREG(file.st_mode)) {
     const std::int64_t wall_ns = file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec;
-    auto now_ns = std::make_shared<std::int64_t>(file_begin_ns);
+    auto counted = std::make_shared<counted_state>();
+    counted->is_cancelled = std::move(is_cancelled);
     port = std::make_unique<counted_transport>(std::move(fd), std::move(title), sample_rate_hz,
-                                               now_ns);
-    return std::make_unique<byte_connector>(std::move(port), std::move(now_ns),
+                                               counted);
+    return std::make_unique<byte_connector>(std::move(port), std::move(counted),
                                             wall_ns - file_begin_ns);
   }
   port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));

@@ -127,7 +127,11 @@ class recorded_connector final : public forwarding_connector,
   [[nodiscard]] std::int64_t wait_for_next_ns() noexcept override {
     return played_->wait_for_next_ns();
   }
-  [[nodiscard]] bool take_cancelled() noexcept override { return played_->take_cancelled(); }
+  // Of both bases.
+  [[nodiscard]] bool take_cancelled() noexcept override {
+    if (played_ != nullptr) return played_->take_cancelled();
+    return inner_hook_ != nullptr && inner_hook_->take_cancelled();
+  }
 
   Writer* into_;
   recording_hook* inner_hook_;     // null: a device that nobody else records

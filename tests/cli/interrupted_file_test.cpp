@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A signal ends each command that reads a recording, also where a small file unpacks to much.
+// A signal ends each command that reads a file, also where a small one unpacks to much, or a large one has no packet.
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +47,21 @@ TEST_P(InterruptedFile, FileOfZerosThatUnpacksToMuch_EndsByItself) {
   const auto ended = cli::run(command(path("zeros.mcap")));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 30s) << "it unpacks to 64 GiB";
   EXPECT_EQ(ended.code, 10) << ended.err;
+}
+
+// A sparse file: no packet in it ends the reading.
+TEST_P(InterruptedFile, LargeFileWithoutPackets_ObeysASignal) {
+  const std::string command_name = GetParam();
+  if (command_name == "replay" || command_name == "info") return;  // they refuse raw bytes
+  cli::write_file(path("zeros.bin"), "");
+  std::filesystem::resize_file(path("zeros.bin"), std::uintmax_t{1} << 38U);
+  cli::program reading(command(path("zeros.bin")));  // it needs hours
+  std::this_thread::sleep_for(1s);
+  reading.send(SIGTERM);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto ended = reading.wait();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 20s);
+  EXPECT_EQ(ended.code == -1 ? -ended.signal : ended.code, 128 + SIGTERM) << ended.err;
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, InterruptedFile,

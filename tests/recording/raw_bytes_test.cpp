@@ -7,13 +7,19 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "recorded_run.hpp"
 #include "support/packet_maker.hpp"
 
 namespace g4lidar::test {
@@ -106,6 +112,33 @@ TEST_F(RawBytes, ReturnTheirTransportOnceAndDiscardWrites) {
   const auto second = from->connect();
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error(), problem::end_of_input);
+}
+
+// A file without a packet: no scan ends the call.
+TEST_F(RawBytes, Cancelled_EndsACallSoonAndTheNextOneContinues) {
+  std::ofstream(path_, std::ios::binary) << std::string(1U << 20U, '\x17');
+  for (const bool is_recorded : {false, true}) {
+    const temporary_path copy;
+    std::optional<recording_writer> writer;
+    int asked = 0;
+    lidar_options how;
+    how.device = path_;
+    how.is_cancelled = [&] { return ++asked == 4; };
+    how.wrap = [&](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
+      if (!is_recorded) return from;
+      writer.emplace(std::move(*recording_writer::create(copy.text())));
+      return recorded(std::move(from), *writer);
+    };
+    auto device = lidar::open(how);
+    ASSERT_TRUE(device && device->start());
+    const auto cut = device->next_scan(std::chrono::milliseconds(500));
+    EXPECT_EQ(cut.error(), problem::cancelled);
+    EXPECT_LE(device->counts().bytes, 4U * 65'536U);
+    const auto rest = device->next_points(std::chrono::milliseconds(500));
+    EXPECT_EQ(rest.error(), problem::end_of_input);
+    EXPECT_EQ(device->counts().bytes, 1U << 20U);
+    EXPECT_GE(asked, 16);
+  }
 }
 
 TEST_F(RawBytes, MissingFileOrDirectory_IsRefused) {

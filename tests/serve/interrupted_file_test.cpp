@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A signal ends g4-serve while it opens a small recording that unpacks to much.
+// A signal ends g4-serve while it opens a small recording that unpacks to much, or reads a large file without packets.
+#include <cstdint>
+#include <filesystem>
+
 #include "server.hpp"
 #include "support/hostile_mcap.hpp"
 
@@ -12,6 +15,17 @@ TEST_F(Server, FileThatUnpacksToMuch_DoesNotDelayTheEnd) {
   using namespace g4lidar::test;
   cli::write_file(path("slow.mcap"), hostile_mcap(chunk_of_a_foreign_message(), 10'000));
   begin({}, path("slow.mcap"));  // opening it needs many minutes
+  std::this_thread::sleep_for(1s);
+  const auto sent = std::chrono::steady_clock::now();
+  const auto ended = end();
+  EXPECT_LT(std::chrono::steady_clock::now() - sent, 20s);
+  EXPECT_EQ(ended.code, 128 + SIGTERM) << cli::read_file(path("err"));
+}
+
+TEST_F(Server, LargeFileWithoutPackets_DoesNotDelayTheEnd) {
+  cli::write_file(path("zeros.bin"), "");
+  std::filesystem::resize_file(path("zeros.bin"), std::uintmax_t{1} << 38U);
+  begin({}, path("zeros.bin"));  // reading it needs hours
   std::this_thread::sleep_for(1s);
   const auto sent = std::chrono::steady_clock::now();
   const auto ended = end();

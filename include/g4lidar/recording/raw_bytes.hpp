@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -26,9 +27,12 @@ namespace g4lidar {
 /// now_ns() is the time of the bytes read last, and begins at 1 s. Bytes of a pipe, a terminal or a
 /// device have the time at which they are read. *Allocates on open.*
 ///
+/// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
+/// it is set: while it returns true, reading fails with cancelled.
+///
 /// Fails with system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
-    const std::string& path, std::uint32_t sample_rate_hz);
+    const std::string& path, std::uint32_t sample_rate_hz, std::function<bool()> is_cancelled = {});
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// whoever wrote it, is a recording.

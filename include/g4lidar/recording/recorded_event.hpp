@@ -88,6 +88,9 @@ class G4LIDAR_API recording_hook {
   [[nodiscard]] virtual bool answers() const noexcept { return false; }
   /// Whether the clock is counted from the bytes that were read, so that no call waits.
   [[nodiscard]] virtual bool counts_time() const noexcept { return false; }
+  /// Whether the last read ended early, because the program cancels the reading of a file without events.
+  /// Resets it.
+  [[nodiscard]] virtual bool take_cancelled() noexcept { return false; }
   /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
   /// of a file arrived when they were recorded.
   [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
