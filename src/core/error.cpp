@@ -102,7 +102,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 7> all_details{{
+constexpr std::array<detail_words, 8> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -114,6 +114,10 @@ constexpr std::array<detail_words, 7> all_details{{
      "ttyUSB port; in a container, pass the device through. Without a name the only G4 is opened."},
     {"there is no port and no file of this name",
      "Give the path of a port such as /dev/ttyUSB0, or of a recording that exists."},
+    {"nothing that is attached has this number or USB path",
+     "Compare it with the label of the lidar, or with `g4-dump list --probe`. Connect the lidar "
+     "with "
+     "a data cable, and check that it has power."},
     {"this does not name a lidar",
      "A lidar is named by a path (/dev/ttyUSB0), serial:<its number of 16 digits>, usb:<USB path, "
      "1-1.4>, tcp:<host>:<port>, file:<path>, or sim:. Without a name the only G4 is opened."},

@@ -55,8 +55,12 @@ error explained(const error& why, const std::string& device) {
   if (why == problem::bad_option) {
     return {why.doing(), why.code(), why.subject(), 0, error_detail::bad_name};
   }
+  if (why != problem::no_port || device.empty()) return why;
+  if (!names_path(device) && why.system_errno() == 0) {
+    return {why.doing(), why.code(), with_existing_ports(device), 0, error_detail::not_attached};
+  }
   const bool is_missing = why.system_errno() == ENOENT || why.system_errno() == ENOTDIR;
-  if (why != problem::no_port || !is_missing || !names_path(device)) return why;
+  if (!is_missing || !names_path(device)) return why;
   if (!device.starts_with("/dev/")) {
     return {why.doing(), why.code(), device, why.system_errno(), error_detail::missing_path};
   }

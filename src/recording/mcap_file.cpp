@@ -2,6 +2,7 @@
 #include "mcap_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -71,7 +72,11 @@ result<mcap_file> mcap_file::create(const std::string& path, channel_set channel
   text.end(header);
   made.channels_.put_schemas(text);
   made.channels_.put_channels(text);
-  if (auto written = made.write(text.all()); !written) return tl::unexpected(written.error());
+  if (auto written = made.write(text.all()); !written) {
+    struct stat file{};  // a device such as /dev/full stays
+    if (::fstat(made.fd_.get(), &file) == 0 && S_ISREG(file.st_mode)) ::unlink(path.c_str());
+    return tl::unexpected(written.error());
+  }
   return made;
 }
 

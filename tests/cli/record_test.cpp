@@ -203,6 +203,19 @@ TEST_F(Record, FullDisk_EndsItAndKeepsWrittenData) {
   EXPECT_GT(points_of(path("walk.mcap")).size(), 1000U);
 }
 
+TEST_F(Record, DiskThatWasFullBefore_LeavesNoFileAndPromisesNone) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit{100, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  const outcome done = run({"record", "sim:", path("walk.mcap"), "-d", "20s"});
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(done.code, 10) << done.err;
+  EXPECT_THAT(done.err, HasSubstr("File too large. Free some space"));
+  EXPECT_THAT(done.err, Not(HasSubstr("can be read")));
+  EXPECT_EQ(listing(), "");
+}
+
 class Replay : public Record {};
 
 TEST_F(Replay, Loop_DoesNotEnd) {

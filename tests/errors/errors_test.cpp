@@ -103,6 +103,16 @@ TEST(Text, OfANamedPort_StatesThatItDoesNotExist_AndWhichDo) {
   EXPECT_TRUE(has(file, "ENOENT")) << file;
 }
 
+TEST(Text, OfANumberOrUsbPath_StatesThatNothingHasIt_AndWhichPortsExist) {
+  for (const char* name : {"NothingAtThatPlace", "AnotherLidar"}) {
+    const std::string all = message_of(name);
+    EXPECT_TRUE(has(all, "): nothing that is attached has this number or USB path.")) << all;
+    EXPECT_TRUE(has(all, " (ports: /dev/")) << all;
+    EXPECT_FALSE(has(all, "no serial port with a lidar was found")) << all;
+    EXPECT_FALSE(has(all, "name the port")) << all;
+  }
+}
+
 /// A message of the C interface has 255 characters for the cause and for the advice.
 TEST(Text, OfEachDetail_FitsIntoTheCInterface) {
   for (auto detail = error_detail::usual; detail <= error_detail::no_simulator;

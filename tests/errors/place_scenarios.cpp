@@ -39,7 +39,7 @@ std::vector<scenario> place_scenarios() {
   using enum problem;
   return {
       {"NothingPlugged", no_port, task::finding, true, "", [] { return opening("", {}); }},
-      {"NothingAtThatPlace", no_port, task::finding, true, "usb:1-9",
+      {"NothingAtThatPlace", no_port, task::finding, true, "usb:1-9 (ports: /dev/null)",
        [] { return opening("usb:1-9", bridges{{"1-1", "/dev/null"}}); }},
       {"AnotherPortExists", no_port, task::opening, true, "/dev/ttyNothing (ports: /dev/null)",
        [] { return opening("/dev/ttyNothing", bridges{{"1-1", "/dev/null"}}); }},

@@ -78,7 +78,7 @@ class recorder {
                 &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
       if (!writer_) {
         auto file = recording_writer::create(job_.path, made);
-        if (!file) throw file_failure(file.error(), title_, job_.is_kept);
+        if (!file) throw file_failure(file.error(), title_, false);  // nothing was written
         writer_ = std::make_unique<recording_writer>(std::move(*file));
         // The bytes of a file are counted from its beginning, by a clock that begins elsewhere.
         const std::string& name = job_.common.source;
