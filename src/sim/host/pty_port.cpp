@@ -62,7 +62,7 @@ result<owned_fd> claim_link_at(const std::string& link) {
   const fs::path whole = fs::weakly_canonical(place.parent_path(), none) / place.filename();
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
   for (const char c : whole.native()) {
-    hash = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   }
   std::array<char, 17> name{};
   std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(hash));
