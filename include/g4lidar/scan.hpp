@@ -96,7 +96,7 @@ struct scan {
   }
 #if __STDC_HOSTED__
   /// The same as a time of the monotonic clock; the epoch if it is not known.
-  [[nodiscard]] constexpr std::chrono::steady_clock::time_point stamp() const noexcept {
+  [[nodiscard]] constexpr std::chrono::steady_clock::time_point time() const noexcept {
     return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns()));
   }
 #endif
@@ -107,7 +107,7 @@ struct scan {
   }
 #if __STDC_HOSTED__
   /// The same as a time of the monotonic clock; the epoch if it is not known.
-  [[nodiscard]] constexpr std::chrono::steady_clock::time_point end_stamp() const noexcept {
+  [[nodiscard]] constexpr std::chrono::steady_clock::time_point end_time() const noexcept {
     return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(end_ns()));
   }
 #endif

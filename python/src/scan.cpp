@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "errors.hpp"
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "words.hpp"
 
 namespace g4lidar::python {

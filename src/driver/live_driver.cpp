@@ -38,7 +38,7 @@ result<void> live_driver::advance(std::int64_t deadline_ns) {
     case stage::lost:
       return wait_for_return(deadline_ns);
     case stage::breaking:
-      if (digest()) return {};
+      if (parse_bytes()) return {};
       pipeline_.end();
       stage_ = stage::broken;
       return {};
@@ -58,12 +58,12 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   if (auto looked = look_if_due(); !looked) return looked;
   const auto has_outcome = serve();
   if (!has_outcome) return tl::unexpected(has_outcome.error());
-  if (digest()) return {};
+  if (parse_bytes()) return {};
   // A caller that waits for an outcome gets it first.
   const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, next_deadline_ns());
   if (auto got = receive(until); !got) return got;
   if (pipeline_.unparsed().empty() && is_cut_off()) cut();
-  if (digest()) return {};
+  if (parse_bytes()) return {};
   // An event loop may not call again before bytes arrive: everything must be sent now.
   if (auto served = serve(); !served) return tl::unexpected(served.error());
   return {};
@@ -99,7 +99,7 @@ result<void> live_driver::look_if_due() {
   if (is_cut_off()) {
     pipeline_.drop_scan();
     cut();
-    if (digest()) return {};  // look() follows in the next round
+    if (parse_bytes()) return {};  // look() follows in the next round
   }
   session_.look(now_ns());
   return {};
@@ -131,7 +131,7 @@ reading live_driver::how_to_read() const noexcept {
 }
 
 /// Parses until there is a scan (true), or until nothing is left.
-bool live_driver::digest() {
+bool live_driver::parse_bytes() {
   while (!pipeline_.find_scan()) {
     const event* const found = pipeline_.next();
     if (found == nullptr) return false;

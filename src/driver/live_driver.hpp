@@ -84,7 +84,7 @@ class live_driver final : public feeder {
   [[nodiscard]] result<void> look_if_due();
   [[nodiscard]] result<void> take_notice();
   [[nodiscard]] result<void> receive(std::int64_t deadline_ns);
-  [[nodiscard]] bool digest();
+  [[nodiscard]] bool parse_bytes();
   void follow_delivery();
   void begin_points();
   void cut();

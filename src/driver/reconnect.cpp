@@ -81,7 +81,7 @@ void live_driver::flush() {
   if (!connection_.is_open()) return;
   pipeline_.drop_scan();
   cut();
-  while (digest()) pipeline_.drop_scan();
+  while (parse_bytes()) pipeline_.drop_scan();
 }
 
 /// Why nothing can be sent or read now.

@@ -23,7 +23,7 @@ result<void> replay_player::open() {
   if (const auto rate = source_->device().sample_rate) {
     sample_rate_hz_ = to_hz(*rate);
   }
-  static_cast<void>(digest());
+  static_cast<void>(parse_bytes());
   return {};
 }
 
@@ -39,7 +39,7 @@ result<void> replay_player::stop() {
   if (stage_ == stage::closed) return tl::unexpected(why_);
   pipeline_.drop_scan();
   pipeline_.cut();
-  while (digest()) pipeline_.drop_scan();
+  while (parse_bytes()) pipeline_.drop_scan();
   static_cast<void>(check());  // a wake-up ends the next call
   pipeline_.end();
   if (stage_ == stage::playing) stage_ = stage::idle;
@@ -86,7 +86,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
       break;
   }
   follow_delivery();
-  const bool has_scan = digest();
+  const bool has_scan = parse_bytes();
   if (auto good = check(); !good || has_scan) return good;
   if (stage_ == stage::ending) {
     pipeline_.end();
@@ -106,7 +106,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   if (got->count == 0) return check();
   is_pause_reported_ = false;
   pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
-  static_cast<void>(digest());
+  static_cast<void>(parse_bytes());
   return check();
 }
 
@@ -128,7 +128,7 @@ void replay_player::report_long_pause() {
 
 /// Parses until there is a scan (true), or until nothing is left and all recorded actions before
 /// the next read are done.
-bool replay_player::digest() {
+bool replay_player::parse_bytes() {
   while (!pipeline_.find_scan()) {
     static_cast<void>(play_events(false));
     if (pipeline_.next() != nullptr) {

@@ -39,7 +39,7 @@ class replay_player final : public feeder {
   };
 
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
-  [[nodiscard]] bool digest();
+  [[nodiscard]] bool parse_bytes();
   [[nodiscard]] result<void> check() const noexcept;
   void follow_delivery();
   void report_long_pause();

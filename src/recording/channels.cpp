@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "messages.hpp"
 

@@ -9,7 +9,7 @@
 #include <new>
 #include <utility>
 
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 namespace g4lidar {
 namespace {

@@ -6,10 +6,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "export/cdr.hpp"
 #include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/response.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
+#include "message/cdr.hpp"
 
 namespace g4lidar {
 namespace {
@@ -168,15 +169,8 @@ std::optional<stamped_odometry> odometry_from(bytes message) noexcept {
   std::array<double, 6> twist{};
   std::ranges::generate(twist, number);
   static_cast<void>(fields.take(covariance_size));
-  const auto is_possible = [](double value) { return std::fabs(value) <= max_odometry_value; };
-  const bool is_good = fields.is_good() && fields.is_at_end() && rest_ns < 1'000'000'000 &&
-                       std::ranges::all_of(pose, is_possible) &&
-                       std::ranges::all_of(twist, is_possible);
-  if (!is_good) return std::nullopt;
-  const auto& [x, y, z, qx, qy, qz, qw] = pose;
-  const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
-  return stamped_odometry{
-      std::int64_t{seconds} * 1'000'000'000 + rest_ns, {x, y, yaw}, {twist[0], twist[1], twist[5]}};
+  if (!fields.is_good() || !fields.is_at_end() || rest_ns >= 1'000'000'000) return std::nullopt;
+  return planar_odometry(std::int64_t{seconds} * 1'000'000'000 + rest_ns, pose, twist);
 }
 
 void put_map(record_text& out, const word_map& words) {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "g4lidar/export/ros_messages.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan.hpp"
 #include "g4lidar/too_near.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ROS messages against a reader written from the CDR rules, and against bytes written by hand.
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 namespace g4lidar::test {
 namespace {

@@ -14,7 +14,7 @@
 #include "cli/common_options.hpp"
 #include "cli/settings.hpp"
 #include "cli/verbs.hpp"
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "io/source.hpp"
 #include "io/station.hpp"
 

@@ -3,35 +3,26 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdlib>
 #include <utility>
 
 #include <messages.h>
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "scan_messages.hpp"
 
 namespace g4_tool {
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int64_t clock_step_ns = 10'000'000;
 
 /// Nothing for one that no robot has.
 std::optional<stamped_odometry> odometry_of(const nav_msgs_msg_dds__Odometry_& from) {
   const auto& [place, turn] = from.pose.pose;
   const auto& [linear, angular] = from.twist.twist;
-  const double yaw =
-      std::atan2(2.0 * (turn.w * turn.z + turn.x * turn.y),
-                 turn.w * turn.w + turn.x * turn.x - turn.y * turn.y - turn.z * turn.z);
-  const stamped_odometry made{
-      std::int64_t{from.header.stamp.sec} * second_ns + from.header.stamp.nanosec,
-      {place.x, place.y, yaw},
-      {linear.x, linear.y, angular.z}};
-  const std::array<double, 6> numbers{place.x, place.y, yaw, linear.x, linear.y, angular.z};
-  const bool is_possible = std::ranges::all_of(
-      numbers, [](double value) { return std::fabs(value) <= max_odometry_value; });
-  return is_possible ? std::optional(made) : std::nullopt;
+  return planar_odometry(
+      std::int64_t{from.header.stamp.sec} * 1'000'000'000 + from.header.stamp.nanosec,
+      {place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w},
+      {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z});
 }
 
 }  // namespace
@@ -72,12 +63,8 @@ void robot_messages::publish(const stamped_odometry& at, std::int64_t stamp_ns) 
 void robot_messages::publish_clock(std::int64_t now_ns) {
   if (!clock_ || !clock_->is_wanted() || std::abs(now_ns - clock_ns_) < clock_step_ns) return;
   clock_ns_ = now_ns;
-  message_.assign({0, 1, 0, 0});
-  const auto put = [this](std::uint32_t value) {
-    for (int i = 0; i < 4; ++i) message_.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-  };
-  put(static_cast<std::uint32_t>(now_ns / second_ns));
-  put(static_cast<std::uint32_t>(now_ns % second_ns));
+  message_.clear();
+  put_clock(now_ns, message_);
   clock_->publish(message_);
 }
 

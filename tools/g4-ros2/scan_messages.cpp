@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "g4lidar/export/ros_messages.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 namespace g4_tool {
 

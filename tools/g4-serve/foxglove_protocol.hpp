@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "outbox.hpp"
 
 namespace g4_tool {

@@ -9,8 +9,8 @@
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
-#include "g4lidar/export/ros_messages.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 namespace g4_tool {
 namespace {

@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Diagnoses and counts as a diagnostic_msgs/msg/DiagnosticArray of ROS 2, in CDR. Does not need ROS.
+// Diagnoses and counts as the statuses of a DiagnosticArray of ROS 2.
 #pragma once
 
-#include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
-#include "g4lidar/export/ros_messages.hpp"
-#include "g4lidar/lidar.hpp"
+#include "g4lidar/lidar_counts.hpp"
+#include "g4lidar/message/diagnostic_array.hpp"
 
 namespace g4lidar {
-
-/// The levels of a DiagnosticStatus.
-enum class diagnostic_level : std::uint8_t { ok = 0, warn = 1, error = 2, stale = 3 };
-
-/// One diagnostic_msgs/msg/DiagnosticStatus.
-struct diagnostic_status {
-  diagnostic_level level = diagnostic_level::ok;
-  std::string name{};         ///< "g4lidar: rate".
-  std::string message{};      ///< Cause and advice; "ok" where there is no diagnosis.
-  std::string hardware_id{};  ///< The serial number of the lidar.
-  std::vector<std::pair<std::string, std::string>> values{};  ///< Names with units, and values.
-};
 
 /// The status of a stage: warn and fail become warn and error, skipped becomes ok with its remark. Its
 /// evidence is in `values`, the name of each diagnosis too. Allocates.
@@ -38,12 +23,5 @@ struct diagnostic_status {
 /// The statuses of all stages, then the counts. Allocates.
 [[nodiscard]] G4LIDAR_API std::vector<diagnostic_status> statuses_of(
     std::span<const stage_report> stages, const lidar_counts& counts, std::string_view hardware_id);
-
-/// The schema of DiagnosticArray.
-[[nodiscard]] G4LIDAR_API message_schema diagnostic_array_schema() noexcept;
-/// Appends a diagnostic_msgs/msg/DiagnosticArray to `out`; `stamp_ns` is in nanoseconds since 1970.
-/// Allocates beyond the capacity of `out`.
-G4LIDAR_API void put_diagnostic_array(std::span<const diagnostic_status> statuses,
-                                      std::int64_t stamp_ns, std::vector<std::uint8_t>& out);
 
 }  // namespace g4lidar

@@ -13,7 +13,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {

@@ -60,12 +60,12 @@ result<owned_fd> claim_link_at(const std::string& link) {
   std::error_code none;
   const fs::path place = fs::absolute(link, none);
   const fs::path whole = fs::weakly_canonical(place.parent_path(), none) / place.filename();
-  std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
   for (const char c : whole.native()) {
-    digest = (digest ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   }
   std::array<char, 17> name{};
-  std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(digest));
+  std::snprintf(name.data(), name.size(), "%016llx", static_cast<unsigned long long>(hash));
   owned_fd held = claim(name.data()).hold();
   if (held) return held;
   const bool is_served = errno == EADDRINUSE;

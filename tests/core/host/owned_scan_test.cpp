@@ -39,8 +39,8 @@ TEST(OwnedScan, CopiesTheScanAndItsPoints) {
   EXPECT_EQ(seen.flags, scan_flags::data_lost);
   EXPECT_EQ(seen.turned_deg, 359.5F);
   EXPECT_EQ(seen.end_ns(), 1'143);
-  EXPECT_EQ(seen.stamp().time_since_epoch(), std::chrono::nanoseconds(1'000));
-  EXPECT_EQ(seen.end_stamp().time_since_epoch(), std::chrono::nanoseconds(1'143));
+  EXPECT_EQ(seen.time().time_since_epoch(), std::chrono::nanoseconds(1'000));
+  EXPECT_EQ(seen.end_time().time_since_epoch(), std::chrono::nanoseconds(1'143));
   EXPECT_EQ(std::vector<point>(seen.begin(), seen.end()), before);
   EXPECT_EQ(seen.data(), kept.points().data());
 }

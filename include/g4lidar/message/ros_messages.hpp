@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -87,6 +88,12 @@ struct odometry_message {
 };
 /// Appends a nav_msgs/msg/Odometry to `out`. Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_odometry(const odometry_message& message, std::vector<std::uint8_t>& out);
+/// The contents of a nav_msgs/msg/Odometry in the plane. `pose`: x, y, z, and the quaternion x, y, z, w;
+/// `twist`: along and about x, y, z. Nothing if a number that is used is above max_odometry_value in
+/// magnitude, or is none. *Pure.*
+[[nodiscard]] G4LIDAR_API std::optional<stamped_odometry> planar_odometry(
+    std::int64_t time_ns, const std::array<double, 7>& pose,
+    const std::array<double, 6>& twist) noexcept;
 
 /// The place of one frame in another.
 struct transform_message {
@@ -98,5 +105,9 @@ struct transform_message {
 /// Appends a tf2_msgs/msg/TFMessage with this transform to `out`. Allocates beyond the capacity of
 /// `out`.
 G4LIDAR_API void put_tf_message(const transform_message& message, std::vector<std::uint8_t>& out);
+
+/// Appends a rosgraph_msgs/msg/Clock to `out`; `now_ns` is in nanoseconds since 1970. Allocates beyond
+/// the capacity of `out`.
+G4LIDAR_API void put_clock(std::int64_t now_ns, std::vector<std::uint8_t>& out);
 
 }  // namespace g4lidar

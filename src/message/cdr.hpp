@@ -53,13 +53,18 @@ class cdr_writer {
   std::size_t origin_ = 0;
 };
 
-/// A std_msgs/Header.
-inline void put_header(cdr_writer& message, std::int64_t stamp_ns, std::string_view frame_id) {
+/// A builtin_interfaces/Time, since 1970.
+inline void put_time(cdr_writer& message, std::int64_t time_ns) {
   constexpr std::int64_t second_ns = 1'000'000'000;
   // The nanoseconds count from the previous second, also before 1970.
-  const std::int64_t rest_ns = (stamp_ns % second_ns + second_ns) % second_ns;
-  message.put(static_cast<std::int32_t>((stamp_ns - rest_ns) / second_ns));
+  const std::int64_t rest_ns = (time_ns % second_ns + second_ns) % second_ns;
+  message.put(static_cast<std::int32_t>((time_ns - rest_ns) / second_ns));
   message.put(static_cast<std::uint32_t>(rest_ns));
+}
+
+/// A std_msgs/Header.
+inline void put_header(cdr_writer& message, std::int64_t stamp_ns, std::string_view frame_id) {
+  put_time(message, stamp_ns);
   message.put(frame_id);
 }
 

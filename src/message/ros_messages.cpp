@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "g4lidar/export/ros_messages.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 
 #include <algorithm>
 #include <array>
@@ -265,12 +265,29 @@ void put_odometry(const odometry_message& message, std::vector<std::uint8_t>& ou
   put_all(text, message.twist_covariance);
 }
 
+std::optional<stamped_odometry> planar_odometry(std::int64_t time_ns,
+                                                const std::array<double, 7>& pose,
+                                                const std::array<double, 6>& twist) noexcept {
+  const auto& [x, y, z, qx, qy, qz, qw] = pose;
+  const double yaw = std::atan2(2.0 * (qw * qz + qx * qy), qw * qw + qx * qx - qy * qy - qz * qz);
+  const std::array used{x, y, yaw, twist[0], twist[1], twist[5]};
+  const bool is_possible = std::ranges::all_of(
+      used, [](double value) { return std::fabs(value) <= max_odometry_value; });
+  if (!is_possible) return std::nullopt;
+  return stamped_odometry{time_ns, {x, y, yaw}, {twist[0], twist[1], twist[5]}};
+}
+
 void put_tf_message(const transform_message& message, std::vector<std::uint8_t>& out) {
   cdr_writer text(out);
   text.put(std::uint32_t{1});
   put_header(text, message.stamp_ns, message.frame_id);
   text.put(message.child_frame_id);
   put_place(text, message.place.pose, message.place.upside_down);
+}
+
+void put_clock(std::int64_t now_ns, std::vector<std::uint8_t>& out) {
+  cdr_writer message(out);
+  put_time(message, now_ns);
 }
 
 }  // namespace g4lidar
