@@ -177,7 +177,7 @@ void live_driver::cut() {
 /// For a recording. A place is defined by the unparsed rest of the last read and by the number of
 /// events from it: both are the same when the same bytes are read again.
 void live_driver::record(recorded_event::kind what) {
-  recording_hook* const recorder = connection_.from().recording();
+  recording_hook* const recorder = recording_hook_of(connection_.from());
   if (recorder == nullptr || !connection_.is_open()) return;
   recorded_event made{.what = what, .time_ns = now_ns()};
   made.delivers = pipeline_.delivers();

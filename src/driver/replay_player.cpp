@@ -13,8 +13,9 @@ replay_player::replay_player(parts& of, const lidar_options& options) : feeder(o
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  source_ = connection_.from().recording()->events();
-  counts_time_ = connection_.from().recording()->counts_time();
+  recording_hook* const played = recording_hook_of(connection_.from());
+  source_ = played != nullptr ? played->events() : nullptr;
+  counts_time_ = connection_.from().traits().counts_time;
   receiver_.reset(0, 0, now_ns());
   pipeline_.follow(connection_.on().baud());
   stage_ = stage::idle;

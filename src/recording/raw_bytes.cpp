@@ -170,7 +170,7 @@ class counted_transport final : public byte_transport {
 
 /// Returns its transport once. The time is that of the transport, which may be destroyed before
 /// this.
-class byte_connector final : public connector, private recording_hook {
+class byte_connector final : public connector {
  public:
   byte_connector(std::unique_ptr<byte_transport> port,
                  std::shared_ptr<const std::int64_t> counted_ns,
@@ -186,10 +186,9 @@ class byte_connector final : public connector, private recording_hook {
   }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
-  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
-  [[nodiscard]] bool counts_time() const noexcept override { return counted_ns_ != nullptr; }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return wall_ahead_ns_;
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    return {
+        .answers = false, .counts_time = counted_ns_ != nullptr, .wall_ahead_ns = wall_ahead_ns_};
   }
 
  private:
