@@ -57,6 +57,7 @@ class replay_player final : public feeder {
   bool delivers_ = true;                     // whether packets produced points in the recording
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
+  std::uint32_t samples_per_second_ = 9000;
   std::uint64_t reconnects_ = 0;
 };
 
