@@ -329,7 +329,6 @@ const g4lidar_counts* g4lidar_get_counts(g4lidar_lidar* lidar) {
 int64_t g4lidar_wall_ns(const g4lidar_lidar* lidar, int64_t time_ns) {
   if (lidar == nullptr) return 0;
   if (lidar->wall_ahead_ns != 0) return time_ns + lidar->wall_ahead_ns;
-  const recording_hook* const hook = lidar->connector->recording();
-  const auto ahead_ns = hook == nullptr ? std::nullopt : hook->wall_ahead_ns();
+  const auto ahead_ns = lidar->connector->traits().wall_ahead_ns;
   return time_ns + ahead_ns.value_or(wall_clock().ahead().count());
 }

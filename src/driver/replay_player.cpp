@@ -9,12 +9,14 @@
 
 namespace g4lidar {
 
-replay_player::replay_player(parts& of, const lidar_options& options) : feeder(of, options) {}
+replay_player::replay_player(parts& of, const lidar_options& options)
+    : feeder(of, options), is_cancelled_(options.is_cancelled) {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  source_ = connection_.from().recording()->events();
-  counts_time_ = connection_.from().recording()->counts_time();
+  recording_hook* const played = recording_hook_of(connection_.from());
+  source_ = played != nullptr ? played->events() : nullptr;
+  counts_time_ = connection_.from().traits().counts_time;
   receiver_.reset(0, 0, now_ns());
   pipeline_.follow(connection_.on().baud());
   stage_ = stage::idle;
@@ -38,7 +40,7 @@ result<void> replay_player::start() {
 result<void> replay_player::stop() {
   if (stage_ == stage::closed) return tl::unexpected(why_);
   pipeline_.drop_scan();
-  pipeline_.cut();
+  pipeline_.input().cut();
   while (parse_bytes()) pipeline_.drop_scan();
   static_cast<void>(check());  // a wake-up ends the next call
   pipeline_.end();
@@ -95,25 +97,26 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   }
   report_long_pause();
   const reading how = receiver_.is_batched() && is_scanning() ? reading::batched : reading::at_once;
-  const auto got =
-      receiver_.receive(connection_.on(), how, pipeline_.held(), pipeline_.missing(), deadline_ns);
+  const auto got = receiver_.receive(connection_.on(), how, pipeline_.input().held(),
+                                     pipeline_.input().missing(), deadline_ns);
   if (!got) {
     why_ = got.error();
-    pipeline_.cut();
+    pipeline_.input().cut();
     stage_ = stage::ending;
     return {};
   }
   if (got->count == 0) return check();
   is_pause_reported_ = false;
-  pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
+  pipeline_.input().feed(receiver_.buffer(got->count), got->arrival_ns);
   static_cast<void>(parse_bytes());
   return check();
 }
 
 /// Whether reading the file was not cancelled by then.
 result<void> replay_player::check() const noexcept {
-  recording_hook& file = *connection_.from().recording();
-  if (!(source_ != nullptr ? source_->take_cancelled() : file.take_cancelled())) return {};
+  const bool is_cancelled = source_ != nullptr ? source_->take_cancelled()
+                                               : counts_time_ && is_cancelled_ && is_cancelled_();
+  if (!is_cancelled) return {};
   return failure(task::reading, problem::cancelled, connection_.name());
 }
 
@@ -157,8 +160,8 @@ bool replay_player::is_here(const recorded_event& what) const noexcept {
     case recorded_event::kind::begun:
     case recorded_event::kind::held:
     case recorded_event::kind::cut:
-      return pipeline_.unparsed().size() <= what.unparsed &&
-             pipeline_.events_of_reading() >= what.events;
+      return pipeline_.input().unparsed().size() <= what.unparsed &&
+             pipeline_.input().events_of_reading() >= what.events;
     case recorded_event::kind::sent:
     case recorded_event::kind::state:
     case recorded_event::kind::odometry:
@@ -183,7 +186,7 @@ bool replay_player::play_events(bool all) {
     const bool cuts =
         ends_here || what == recorded_event::kind::closed || what == recorded_event::kind::gap;
     if (cuts && !std::exchange(is_cut_, true)) {
-      pipeline_.cut();
+      pipeline_.input().cut();
       if (ends_here) {
         is_cut_ = false;
         event_.reset();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "feeder.hpp"
@@ -48,6 +49,7 @@ class replay_player final : public feeder {
   void play(const recorded_event& what);
   void play_state(const recorded_event& what);
 
+  std::function<bool()> is_cancelled_;       // reading a file of bytes
   recorded_event_source* source_ = nullptr;  // of a recording
   bool counts_time_ = false;                 // raw bytes of a file
   stage stage_ = stage::closed;
@@ -57,6 +59,7 @@ class replay_player final : public feeder {
   bool delivers_ = true;                     // whether packets produced points in the recording
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
+  std::uint32_t sample_rate_hz_ = 9000;
   std::uint64_t reconnects_ = 0;
 };
 

@@ -32,13 +32,6 @@ constexpr std::int64_t file_begin_ns = second_ns;
 /// Of bytes that belong to no packet.
 constexpr std::size_t longest_piece = 16'384;
 
-/// What the transport of a file and its connector, which may be destroyed first, share.
-struct counted_state {
-  std::int64_t now_ns = file_begin_ns;
-  std::function<bool()> is_cancelled;
-  bool was_cancelled = false;  // and the connector was not asked yet
-};
-
 /// The common part of both kinds: a descriptor, and no device that answers.
 class byte_transport : public transport {
  public:
@@ -111,10 +104,11 @@ class pipe_transport final : public byte_transport {
 class counted_transport final : public byte_transport {
  public:
   counted_transport(owned_fd fd, std::string name, std::uint32_t rate_hz,
-                    std::shared_ptr<counted_state> state)
+                    std::shared_ptr<std::int64_t> counted_ns, std::function<bool()> is_cancelled)
       : byte_transport(std::move(fd), std::move(name)),
         rate_hz_(rate_hz),
-        state_(std::move(state)) {}
+        counted_ns_(std::move(counted_ns)),
+        is_cancelled_(std::move(is_cancelled)) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out, std::int64_t) noexcept override {
     if (is_woken()) return failure(task::reading, problem::cancelled, name());
@@ -127,7 +121,7 @@ class counted_transport final : public byte_transport {
     return received{count, now_ns()};
   }
   [[nodiscard]] result<void> pause(std::int64_t) noexcept override { return {}; }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return state_->now_ns; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return *counted_ns_; }
 
  private:
   /// Up to the end of the next packet, whose samples have been measured by then. No part of it
@@ -137,8 +131,7 @@ class counted_transport final : public byte_transport {
       std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
       end_ = parsed_ = end_ - begin_;
       begin_ = 0;
-      if (state_->is_cancelled && state_->is_cancelled()) {
-        state_->was_cancelled = true;
+      if (is_cancelled_ && is_cancelled_()) {
         return failure(task::reading, problem::cancelled, name());
       }
       const auto got = take(std::span(buffer_).subspan(end_));
@@ -165,12 +158,13 @@ class counted_transport final : public byte_transport {
   }
   void count(std::size_t samples) noexcept {
     samples_ += static_cast<std::int64_t>(samples);
-    state_->now_ns = file_begin_ns + samples_ / rate_hz_ * second_ns +
-                     samples_ % rate_hz_ * second_ns / rate_hz_;
+    *counted_ns_ = file_begin_ns + samples_ / rate_hz_ * second_ns +
+                   samples_ % rate_hz_ * second_ns / rate_hz_;
   }
 
   std::int64_t rate_hz_;
-  std::shared_ptr<counted_state> state_;
+  std::shared_ptr<std::int64_t> counted_ns_;  // the connector has it, too
+  std::function<bool()> is_cancelled_;
   std::int64_t samples_ = 0;
   stream_parser parser_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
@@ -180,34 +174,32 @@ class counted_transport final : public byte_transport {
   bytes piece_;
 };
 
-/// Returns its transport once.
-class byte_connector final : public connector, private recording_hook {
+/// Returns its transport once. The time is that of the transport, which may be destroyed before
+/// this.
+class byte_connector final : public connector {
  public:
-  byte_connector(std::unique_ptr<byte_transport> port, std::shared_ptr<counted_state> counted,
+  byte_connector(std::unique_ptr<byte_transport> port,
+                 std::shared_ptr<const std::int64_t> counted_ns,
                  std::optional<std::int64_t> wall_ahead_ns)
-      : port_(std::move(port)), counted_(std::move(counted)), wall_ahead_ns_(wall_ahead_ns) {}
+      : port_(std::move(port)), counted_ns_(std::move(counted_ns)), wall_ahead_ns_(wall_ahead_ns) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
     return std::move(port_);
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override {
-    return counted_ != nullptr ? counted_->now_ns : steady_now_ns();
+    return counted_ns_ != nullptr ? *counted_ns_ : steady_now_ns();
   }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
-  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
-  [[nodiscard]] bool counts_time() const noexcept override { return counted_ != nullptr; }
-  [[nodiscard]] bool take_cancelled() noexcept override {
-    return counted_ != nullptr && std::exchange(counted_->was_cancelled, false);
-  }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return wall_ahead_ns_;
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    return {
+        .answers = false, .counts_time = counted_ns_ != nullptr, .wall_ahead_ns = wall_ahead_ns_};
   }
 
  private:
   std::unique_ptr<byte_transport> port_;
-  std::shared_ptr<counted_state> counted_;  // null: a pipe
+  std::shared_ptr<const std::int64_t> counted_ns_;  // null: a pipe
   std::optional<std::int64_t> wall_ahead_ns_;
 };
 
@@ -229,11 +221,10 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   std::unique_ptr<byte_transport> port;
   if (is_known && S_ISREG(file.st_mode)) {
     const std::int64_t wall_ns = file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec;
-    auto counted = std::make_shared<counted_state>();
-    counted->is_cancelled = std::move(is_cancelled);
+    auto counted_ns = std::make_shared<std::int64_t>(file_begin_ns);
     port = std::make_unique<counted_transport>(std::move(fd), std::move(title), sample_rate_hz,
-                                               counted);
-    return std::make_unique<byte_connector>(std::move(port), std::move(counted),
+                                               counted_ns, std::move(is_cancelled));
+    return std::make_unique<byte_connector>(std::move(port), std::move(counted_ns),
                                             wall_ns - file_begin_ns);
   }
   port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));

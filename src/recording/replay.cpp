@@ -291,7 +291,7 @@ class replay_transport final : public transport {
   std::shared_ptr<player> of_;
 };
 
-class replay_connector final : public connector, private recording_hook {
+class replay_connector final : public connector, public recording_hook {
  public:
   explicit replay_connector(std::shared_ptr<player> of) noexcept : of_(std::move(of)) {}
 
@@ -308,10 +308,9 @@ class replay_connector final : public connector, private recording_hook {
     return of_->wait(deadline_ns).has_value();
   }
   void wake() noexcept override { of_->wake(); }
-  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
   [[nodiscard]] recorded_event_source* events() noexcept override { return of_.get(); }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return of_->wall_ahead_ns();
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    return {.answers = false, .wall_ahead_ns = of_->wall_ahead_ns()};
   }
   [[nodiscard]] const recording_reader& reader() const noexcept { return of_->reader(); }
 
