@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lidar_diagnostics.hpp"
 
-#include <utility>
-
 #include "cli/exit_code.hpp"
 
 namespace g4_tool {

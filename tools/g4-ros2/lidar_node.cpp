@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "merger.hpp"

@@ -2,9 +2,7 @@
 #include "node_announcement.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>

@@ -5,7 +5,6 @@
 #include <functional>
 #include <mutex>
 #include <set>
-#include <span>
 
 #include "service_messages.hpp"
 

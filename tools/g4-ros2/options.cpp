@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
 
 #include "cli/logger.hpp"
@@ -134,11 +133,7 @@ option_rows device_and_player_rows(ros2_options& options) {
   return joined(
       in_group("Device", joined(set, flag_row("--standby", "Rest the motor while nobody subscribes",
                                               options.is_standby))),
-      device_rows(options.common),
-      in_group("Recordings",
-               {number_row("--playback-speed", "FACTOR", "1: as recorded, 0.5: half as fast (1)",
-                           options.station.speed, 0.01, 100.0),
-                flag_row("--loop", "Start again at the end", options.station.loops)}));
+      device_rows(options.common), player_rows(options.station.speed, options.station.loops));
 }
 
 /// "--no-return": no_return

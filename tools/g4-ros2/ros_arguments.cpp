@@ -28,13 +28,12 @@ std::pair<std::string, std::string> assignment(const std::string& word) {
 }
 
 const option_row* row_named(const option_rows& rows, const std::string& option) {
-  const auto found = std::ranges::find_if(rows, [&option](const option_row& row) {
-    return ("," + row.names + ",").find("," + option + ",") != std::string::npos;
-  });
+  const auto found =
+      std::ranges::find_if(rows, [&option](const option_row& row) { return row.has_name(option); });
   return found == rows.end() ? nullptr : &*found;
 }
 
-/// The names of the node, which other arguments depend on.
+/// The namespace and the name of the node, on which other arguments depend.
 struct node_names {
   std::string name_space;
   std::string node = "g4lidar";
@@ -54,7 +53,7 @@ node_names names_in(const words& all) {
   return made;
 }
 
-/// As in ROS, what is not for this node does not end it.
+/// Logs an argument that does not apply to this node. As in ROS, it is not an error.
 void ignored(const std::string& word, std::string_view why) {
   logger::info(fmt::format("--ros-args: {} is ignored: {}\n", in_quotes(word), why));
 }
@@ -99,7 +98,7 @@ void set_parameter(const std::string& name, const YAML::Node& value, const optio
   if (row == nullptr) {
     std::vector<std::string> known;
     for (const option_row& each : rows) {
-      known.push_back(each.names.substr(each.names.rfind("--") + 2));
+      known.push_back(each.long_name().substr(2));
       std::ranges::replace(known.back(), '-', '_');
     }
     throw bad_value("--ros-args: there is no parameter " + in_quotes(name) +
@@ -125,8 +124,8 @@ void set_parameter(const std::string& name, const YAML::Node& value, const optio
   }
 }
 
-/// The sections of a file of parameters that are of this node: those of all nodes, and those of its name. At most `left`
-/// sections in all: a section may contain itself, or many others several times, by the aliases of YAML.
+/// Reads the sections of a file of parameters that apply to all nodes or to this one. At most `left` sections in all:
+/// by the aliases of YAML a section may contain itself, or others many times.
 void read_sections(const YAML::Node& sections, const std::string& above, const node_names& names,
                    const option_rows& rows, parameter_words& out, int& left) {
   for (const auto& section : sections) {
@@ -149,7 +148,7 @@ void read_sections(const YAML::Node& sections, const std::string& above, const n
   }
 }
 
-/// `read` with what is wrong with the YAML of `what` as bad_value.
+/// Calls `read`. Errors of the YAML of `what` become a bad_value.
 template <class Read>
 void with_yaml(const std::string& what, Read read) {
   try {

@@ -9,7 +9,6 @@
 #include <string>
 #include <variant>
 
-#include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "io/output.hpp"
@@ -17,7 +16,7 @@
 namespace g4_tool {
 namespace {
 
-/// Throws a failure where the source is a file, which cannot answer.
+/// Throws a failure if the source is a file, which cannot answer.
 void refuse_files(const common_options& options, task doing) {
   const source_kind kind = kind_of_source(options.source);
   if (kind == source_kind::device || kind == source_kind::simulated) return;
@@ -27,7 +26,7 @@ void refuse_files(const common_options& options, task doing) {
 /// In this time the slowest G4 sends a packet.
 constexpr std::int64_t listen_ns = 60'000'000;
 
-/// Whether a packet comes. The driver reports what goes wrong.
+/// Whether a packet arrives. Errors are left to the driver, which reports them.
 bool hears_packet(transport& port, std::int64_t deadline_ns) {
   stream_parser parser;
   std::array<std::uint8_t, 1024> buffer;
@@ -42,8 +41,8 @@ bool hears_packet(transport& port, std::int64_t deadline_ns) {
   return found;
 }
 
-/// Waits for a packet before anything is sent. The driver reports a scan only where it hears a whole
-/// packet before its own stop is obeyed.
+/// Options that wait for a packet before anything is sent. The driver alone would report a scan only if
+/// it receives a whole packet before the device obeys its stop.
 lidar_options listening(bool& heard) {
   lidar_options how;
   how.wrap = for_each_connection([&heard](std::unique_ptr<transport> port) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the verbs that send commands to a device have in common.
+// The common parts of the verbs that send commands to a device.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,15 +13,15 @@ namespace g4_tool {
 
 class output;
 
-/// A device that is opened for commands, which stops it. Before that it listens whether the device is
-/// scanning, and reports that. (Discovery by serial number or among several has stopped it already.)
+/// A device that is opened for commands, which stops it. It first listens whether the device is scanning,
+/// and logs that. (Discovery by serial number or among several devices has stopped it before.)
 class command_source {
  public:
-  /// `doing` is what a file is refused for. Throws a failure.
+  /// `doing`: the task in the error for a file. Throws a failure.
   command_source(const common_options& options, g4lidar::task doing);
 
   [[nodiscard]] g4lidar::lidar& lidar() noexcept { return source_.lidar(); }
-  /// Whether it had to be stopped first.
+  /// Whether the device was scanning.
   [[nodiscard]] bool was_scanning() const noexcept { return was_scanning_; }
 
  private:
@@ -33,8 +33,8 @@ class command_source {
 [[nodiscard]] verb device_verb(verb made, exit_code (*run)(const common_options&),
                                bool has_output = false);
 
-/// An object as a line of JSON, or for people: lines "name  value" with `width` columns for the
-/// name. Null is "unknown", and an object in it, such as "skipped", gives lines "skipped_noise".
+/// Writes an object as a line of JSON or as lines "name  value" with `width` columns for the name. In
+/// these null is "unknown", and an object in the object, such as "skipped", gives lines "skipped_noise".
 void write_object(output& out, const nlohmann::ordered_json& value, std::size_t width,
                   bool as_json);
 

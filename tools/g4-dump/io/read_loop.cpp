@@ -36,7 +36,7 @@ class read_loop {
       report_events(lidar_);
       if (ended_) return;
       if (got) {
-        limits_.came();
+        limits_.restart_idle();
       } else {
         flush_if_due();
         wait();
@@ -63,7 +63,7 @@ class read_loop {
     flushed_ = now;
   }
 
-  /// Takes what is there, without waiting where poll() can do that; false if nothing was.
+  /// Takes available data; waits only if poll() cannot. False if there was none.
   bool read() {
     const auto longest = lidar_.native_handle() < 0 ? 50ms : 0ms;
     const auto take_scan = [this](const g4lidar::scan& scan) { records_ += sink_.scan(scan); };
@@ -77,7 +77,7 @@ class read_loop {
   }
 
   void wait() {
-    if (lidar_.native_handle() < 0) return;  // it has waited itself
+    if (lidar_.native_handle() < 0) return;  // read() has waited
     auto until = std::min({clock::now() + pulse_time, lidar_.next_deadline(), limits_.end()});
     if (out_.has_unwritten()) until = std::min(until, flushed_ + flush_time);
     const wake woken = wait_for_input(lidar_.native_handle(), out_.descriptor(), until);
@@ -103,7 +103,7 @@ class read_loop {
 void report_events(g4lidar::lidar& lidar) {
   while (const auto event = lidar.next_event()) {
     const bool is_loss = event->what == lidar_event::kind::lost;
-    if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // a file is over
+    if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // the end of a file
     logger::info(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what),
                              is_loss ? ", " : "", is_loss ? name_of(event->reason) : ""));
   }
@@ -114,7 +114,7 @@ void read_source(opened_source& source, const common_options& options, const rea
   g4lidar::lidar& lidar = source.lidar();
   value_of(lidar.start());
   read_loop(source, options, sink, out).run();
-  static_cast<void>(lidar.stop());  // what was received is good, whatever the device answers
+  static_cast<void>(lidar.stop());  // the data is valid even if stopping fails
   report_events(lidar);
 }
 
@@ -122,7 +122,7 @@ void report_counts(const lidar_counts& counts, bool has_scans) {
   const std::uint64_t mismatches = counts.stream.crc_mismatches;
   const std::string crc =
       mismatches > 0 ? counted(mismatches, "revolution") + " with a wrong CRC, " : "";
-  // What was not read was not wanted: scans beside points are not missed, nor points beside scans.
+  // A command that reads points misses no scans, and the other way round.
   logger::info(fmt::format(
       "{}: {} ({} suspect) with {} in {} and {}\n{} skipped, {} lost, {}{} missed, {}\n",
       counted(counts.bytes, "byte"), counted(counts.stream.packets, "packet"),

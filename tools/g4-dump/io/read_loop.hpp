@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loop of a command that reads a lidar or a recording: until enough has come, the time is over, or ^C.
+// The loop of a command that reads a lidar or a recording until -n, -d, --idle or ^C ends it.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,28 @@ namespace g4_tool {
 class opened_source;
 class output;
 
-/// What a command does with what comes.
+/// The receiver of the data.
 struct read_sink {
-  /// Where it is set, scans are read, and it gives how many records that made; else points.
+  /// If set: scans are read instead of points. Returns the number of records that it has written.
   std::function<std::uint64_t(const g4lidar::scan&)> scan{};
   std::function<void(std::span<const g4lidar::point>)> points{};
-  /// Called at least every 100 ms, where it is set.
+  /// If set: called at least every 100 ms.
   std::function<void()> pulse{};
-  /// Whether there has been enough, where it is set; else -n counts records.
+  /// If set: whether to end; else -n counts records.
   std::function<bool()> is_done{};
-  bool with_bar = true;  ///< Whether to show how far a recording has been read.
+  bool with_bar = true;  ///< Shows the progress through a recording.
 };
 
-/// Starts the lidar, reads it until one of the options' ends, a signal, the end of a recording, or
-/// nobody reads `out` any more; stops it. Events are reported. A terminal is shown
-/// everything before each wait; a pipe or a file gets it after 50 ms at most. Throws a failure where
-/// the lidar is lost.
+/// Starts the lidar, reads it and stops it. Ends by the options, a signal, the end of a recording, or when
+/// the reader of `out` closes it. Logs events. Flushes a terminal before each wait, a pipe or a file
+/// within 50 ms. Throws a failure if the lidar is lost.
 void read_source(opened_source& source, const common_options& options, const read_sink& sink,
                  output& out);
 
-/// Reports the events since the last call.
+/// Logs the events since the last call.
 void report_events(g4lidar::lidar& lidar);
 
-/// Writes the counts at the end to standard error. `has_scans`: scans were read, and not points, so
-/// that scans may have been missed.
+/// Logs the counts at the end. `has_scans`: scans were read instead of points, and may have been missed.
 void report_counts(const g4lidar::lidar_counts& counts, bool has_scans = false);
 
 }  // namespace g4_tool

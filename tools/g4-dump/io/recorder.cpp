@@ -7,11 +7,9 @@
 #include <cerrno>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -26,7 +24,7 @@
 namespace g4_tool {
 namespace {
 
-/// What is wrong with the file of a recording, and what to try.
+/// The failure for an error of the file of a recording.
 failure file_failure(const g4lidar::error& why, const std::string& path, bool is_kept) {
   const int number = why.system_errno();
   if (why.code() == problem::bad_option) return {exit_code::usage, in_tool_words(why.message())};
@@ -62,7 +60,7 @@ class recorder {
   }
 
  private:
-  /// The file is there before the source is opened, because opening is recorded, too.
+  /// Creates the file before the source is opened, because opening is recorded, too.
   void open() {
     recording_options made = job_.made;
     made.mount = job_.common.mount;
@@ -71,8 +69,8 @@ class recorder {
       made.keep_odometry = false;
     }
     lidar_options how = job_.source;
-    how.partial_scans = true;  // so that points come at latest when a scan's storage is full
-    // The ring holds the points of many readings; nobody waits for the single packet.
+    how.partial_scans = true;  // so that points arrive at the latest when a scan's storage is full
+    // The ring stores the points of many reads, so a read for each revolution is enough.
     how.tuning.pace = read_pace::revolutions;
     how.wrap = [this,
                 &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
@@ -80,7 +78,7 @@ class recorder {
         auto file = recording_writer::create(job_.path, made);
         if (!file) throw file_failure(file.error(), title_, job_.is_kept);
         writer_ = std::make_unique<recording_writer>(std::move(*file));
-        // The bytes of a file are counted from its beginning, by a clock that begins elsewhere.
+        // Odometry of a file counts from its first byte; the clock of the connection does not begin at 0.
         const std::string& name = job_.common.source;
         if (kind_of_source(name) == source_kind::raw_bytes && is_file(path_of_source(name))) {
           odometry_.shift(from->now_ns());
@@ -95,7 +93,7 @@ class recorder {
     describe();
   }
 
-  /// What is known of the device; nothing is changed for it. Of a recording, recorded() knows it.
+  /// Records the information and settings of the device; recorded() does that for a recording.
   void describe() {
     const source_kind kind = kind_of_source(job_.common.source);
     if (kind == source_kind::recording || kind == source_kind::raw_bytes) return;
@@ -137,7 +135,7 @@ class recorder {
     }
   }
 
-  /// A service is ready when the lidar scans, and alive with each turn.
+  /// Reports to systemd: ready when the lidar scans, alive with each call.
   void report_to_service() {
     service_.ready();
     service_.alive();
@@ -147,7 +145,7 @@ class recorder {
     }
   }
 
-  /// Ends the scan, the connection and the file, in this order; an earlier error is kept.
+  /// Ends the scan, the connection and the file, in this order. Keeps the first error of the file.
   void end() {
     line_.clear();
     service_.stopping();
@@ -168,7 +166,7 @@ class recorder {
     result_.file = writer_->counts();
     result_.digest = writer_->digest();
     std::error_code unimportant;
-    // It holds an attempt to open the source, and nothing else.
+    // Without has_run_ the file contains only the attempt to open the source.
     const bool has_bytes = result_.file.bytes_from_device + result_.file.bytes_to_device > 0;
     const bool is_kept = has_run_ || (job_.keeps_attempt && has_bytes);
     if (!is_kept && is_file(job_.path)) std::filesystem::remove(job_.path, unimportant);
@@ -184,7 +182,7 @@ class recorder {
   const std::string& title_ = job_.title.empty() ? job_.path : job_.title;
   status_line line_;
   service_watch service_;
-  std::unique_ptr<recording_writer> writer_;  // outlives the source, which is recorded by it
+  std::unique_ptr<recording_writer> writer_;  // outlives the source, which writes to it
   std::unique_ptr<opened_source> source_;
   std::unique_ptr<lidar_ring::reader> points_;
   std::array<g4lidar::point, 512> memory_{};

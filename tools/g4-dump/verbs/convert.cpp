@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,7 +28,7 @@
 namespace g4_tool {
 namespace {
 
-/// In this order: bytes, points that are also read, points that are only written.
+/// In this order: bytes, points that are read and written, points that are only written.
 enum class file_form : unsigned char {
   recording,
   raw_bytes,
@@ -44,18 +45,18 @@ enum class file_form : unsigned char {
 
 struct convert_options {
   point_job points;               ///< Its source is IN, its output OUT; also for bytes.
-  std::optional<file_form> from;  ///< Else by its contents and name.
-  std::optional<file_form> to;    ///< Else by its name.
-  bool overwrites = false;        ///< OUT may be a file that exists.
-  bool shapes = false;            ///< An option was given that only points can have.
-  recording_options made;         ///< Of a recording.
+  std::optional<file_form> from;  ///< Nothing: by its contents and name.
+  std::optional<file_form> to;    ///< Nothing: by its name.
+  bool overwrites = false;        ///< OUT may be an existing file.
+  bool shapes = false;            ///< An option for points was given.
+  recording_options made;         ///< Of a written recording.
 
   [[nodiscard]] const std::string& in() const noexcept { return points.common->source; }
   [[nodiscard]] const std::string& out() const noexcept { return points.common->output; }
   [[nodiscard]] const playback_options& range() const noexcept { return points.source.playback; }
 };
 
-/// The first four are read, and all are written; then other names of them.
+/// The first four are read and written, the others are written; the last two are other names.
 const choices<file_form>& forms() {
   static const choices<file_form> all{
       {"mcap", file_form::recording}, {"bin", file_form::raw_bytes}, {"csv", file_form::csv},
@@ -108,11 +109,9 @@ file_form form_of_output(const convert_options& options) {
                   name));
 }
 
-bool is_text(file_form form) { return form == file_form::csv || form == file_form::jsonl; }
-
 void refuse_nonsense(const convert_options& options, file_form from, file_form to) {
   const bool to_points = to >= file_form::csv;
-  if (is_text(from) && !to_points) {
+  if (from >= file_form::csv && !to_points) {
     throw bad_value(
         fmt::format("{} holds points, not bytes of a lidar: it can be converted to other formats "
                     "of points, but not to raw bytes or a recording",
@@ -142,27 +141,15 @@ void refuse_nonsense(const convert_options& options, file_form from, file_form t
   }
 }
 
-std::optional<point_file_format> point_file_of(file_form form) {
-  switch (form) {
-    case file_form::npy:
-      return point_file_format::npy;
-    case file_form::npz:
-      return point_file_format::npz;
-    case file_form::ply:
-      return point_file_format::ply;
-    case file_form::xyz:
-      return point_file_format::xyz;
-    default:
-      return std::nullopt;
-  }
-}
-
 int to_points(convert_options options, file_form from, file_form to) {
+  using enum point_file_format;
+  static const std::map<file_form, point_file_format> point_files{
+      {file_form::npy, npy}, {file_form::npz, npz}, {file_form::ply, ply}, {file_form::xyz, xyz}};
   point_job& job = options.points;
   if (from == file_form::csv) job.text = text_source::csv;
   if (from == file_form::jsonl) job.text = text_source::jsonl;
   if (to == file_form::pcd) job.file = scan_file::pcd;
-  job.point_file = point_file_of(to);
+  if (const auto at = point_files.find(to); at != point_files.end()) job.point_file = at->second;
   job.keeps_existing = !options.overwrites;
   if (to == file_form::tum) job.log = slam_log::tum;
   if (to == file_form::carmen) {
@@ -175,7 +162,7 @@ int to_points(convert_options options, file_form from, file_form to) {
   return run(job);
 }
 
-/// What the lidar sent, as it sent it.
+/// Writes the bytes that the lidar sent.
 void copy_recording(const convert_options& options, output& out) {
   std::uint64_t count = 0;
   const auto take = [&](const recorded_item& item) {
@@ -192,7 +179,7 @@ void copy_recording(const convert_options& options, output& out) {
       fmt::format("{} from the lidar\n{}", counted(count, "byte"), describe(reader.damage())));
 }
 
-/// A part of raw bytes, by times that are counted.
+/// Writes a part of raw bytes; their times are counted.
 void copy_bytes(const convert_options& options, output& out) {
   const auto from = value_of(
       open_raw_bytes(path_of_source(options.in()), options.points.source.raw_sample_rate_hz));
@@ -254,7 +241,7 @@ int run(const convert_options& options) {
   const file_form from = form_of_input(options);
   const file_form to = form_of_output(options);
   refuse_nonsense(options, from, to);
-  const auto in_place = id_of_name(options.out());  // the input itself is refused in other words
+  const auto in_place = id_of_name(options.out());  // the input itself has another error message
   if (!options.overwrites && in_place != id_of_name(path_of_source(options.in()))) {
     refuse_existing(options.out());
   }
@@ -296,7 +283,7 @@ option_rows form_rows(convert_options& options) {
       compress_row(options.made.packed)};
 }
 
-/// Rows that make sense for points only.
+/// The rows of the options for points.
 option_rows point_rows(convert_options& options) {
   common_options& common = *options.points.common;
   option_rows rows = joined(flag_row("--scans", "A record for each revolution, in csv and jsonl",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb doctor: the stages in words or as JSON, each as it is done.
+// The verb doctor: prints each stage, as text or JSON, when it is done.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -95,8 +95,9 @@ nlohmann::ordered_json json_of_report(const stage_report& report) {
   return line;
 }
 
-/// Where a stage failed by another one, the lidar is unhealthy.
-constexpr std::array<std::pair<diagnosis, exit_code>, 15> failure_codes{{
+/// For all other diagnoses the exit code is unhealthy.
+using failure_code = std::pair<diagnosis, exit_code>;
+constexpr std::array<failure_code, 15> failure_codes{{
     {diagnosis::no_port, exit_code::no_device},
     {diagnosis::several_ports, exit_code::no_device},
     {diagnosis::not_serial, exit_code::no_device},
@@ -119,10 +120,8 @@ exit_code exit_code_of(std::span<const stage_report> stages) noexcept {
   for (const stage_report& each : stages) {
     for (const diagnosis what : each.diagnoses) {
       if (std::min(each.outcome, describe(what).severity) != stage_verdict::fail) continue;
-      for (const auto& [failed, code] : failure_codes) {
-        if (failed == what) return code;
-      }
-      return exit_code::unhealthy;
+      const auto* const at = std::ranges::find(failure_codes, what, &failure_code::first);
+      return at == failure_codes.end() ? exit_code::unhealthy : at->second;
     }
   }
   return exit_code::ok;

@@ -14,7 +14,6 @@
 #include "io/command_source.hpp"
 #include "io/input.hpp"
 #include "io/output.hpp"
-#include "verbs/device_facts.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
@@ -22,12 +21,11 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// All that is known about a device.
 struct device_facts {
   std::string source;
   std::optional<device_information> information{};
-  std::vector<maybe_answer> settings{all_settings().size()};  ///< In their order.
-  std::string_view why_unknown = "no answer";  ///< Of settings that can be asked for.
+  std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
+  std::string_view why_unknown = "no answer";  ///< For settings that a G4 can be asked for.
 };
 
 device_facts facts_of_recording(const std::string& source) {
@@ -57,12 +55,12 @@ device_facts facts_of(const common_options& options) {
              : facts_of_device(options);
 }
 
-/// For people: the value, or why it is not known.
+/// The value as text, or why it is unknown.
 std::string words_for(const device_facts& facts, std::size_t index) {
   std::string text = text_of(facts.settings[index]);
   if (facts.settings[index]) return text;
-  const bool is_mute = !all_settings()[index].question;
-  return fmt::format("{} ({})", text, is_mute ? "a G4 cannot be asked for it" : facts.why_unknown);
+  const bool can_ask = all_settings()[index].question.has_value();
+  return fmt::format("{} ({})", text, can_ask ? facts.why_unknown : "a G4 cannot be asked for it");
 }
 
 void write(const device_facts& facts, bool as_json, output& out) {

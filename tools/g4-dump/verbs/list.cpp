@@ -19,7 +19,6 @@
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/port_row.hpp"
-#include "verbs/device_facts.hpp"
 #include "verbs/verbs.hpp"
 
 namespace g4_tool {
@@ -28,10 +27,10 @@ namespace {
 struct list_options {
   common_options common;
   bool probe = false;
-  bool all = false;  ///< Probe other ports, too.
+  bool all = false;  ///< Also probe ports without the bridge of a G4.
 };
 
-/// A port, and the result of probing it, if that was done.
+/// A port and, if it was probed, the result.
 struct listed_port {
   port_info port;
   std::optional<result<device_information>> answer{};
@@ -96,7 +95,7 @@ nlohmann::ordered_json object_of(const listed_port& listed) {
   return all;
 }
 
-/// 0 where a G4 (or its bridge) was found; else the reason.
+/// 0 if a G4 (without probing: its bridge) was found; else the reason.
 exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
   const bool found = std::any_of(ports.begin(), ports.end(), [probed](const listed_port& each) {
     return probed ? each.answer && *each.answer : is_g4_bridge(each.port);

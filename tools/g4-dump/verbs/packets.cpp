@@ -29,7 +29,7 @@ struct packets_options {
 };
 
 void end(protocol_log& log, output& out) {
-  if (!log.is_done()) log.finish();  // else what is left was not wanted
+  if (!log.is_done()) log.finish();
   out.commit();
   logger::info(stats_in_words(log.counts(), log.bytes_from_device()));
 }
@@ -50,7 +50,7 @@ void list_bytes(const packets_options& options) {
   end(log, out);
 }
 
-/// An event of the transport in a recording.
+/// Logs an event of the transport in a recording.
 void log_event(const recorded_event& event, protocol_log& log) {
   using enum recorded_event::kind;
   if (event.what == opened) return log.remark(fmt::format("opened {}", event.name), event.time_ns);
@@ -88,7 +88,7 @@ void list_recording(const packets_options& options) {
   logger::info(describe(reader.damage()));
 }
 
-/// Logs what passes over a connection, and that it was opened and closed.
+/// Logs the bytes, the opening and the closing of a connection.
 class logged_transport final : public forwarding_transport {
  public:
   logged_transport(std::unique_ptr<transport> inner, protocol_log& log)
@@ -121,7 +121,7 @@ class logged_transport final : public forwarding_transport {
 void list_lidar(const packets_options& options) {
   const common_options& common = *options.common;
   output out(common.output, output::appears::growing);
-  // Kept until it can be written: a transport must not throw where a file is full.
+  // Lines are stored and written later, because a transport must not throw if a file is full.
   std::string lines;
   callback_sink kept([&](std::string_view text) { lines += text; });
   const time_style wanted = common.time.value_or(time_style::absolute);

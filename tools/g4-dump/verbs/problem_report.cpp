@@ -16,19 +16,18 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "cli/verbs.hpp"
 #include "g4lidar/version.hpp"
 #include "io/interrupt.hpp"
 #include "io/recorder.hpp"
 #include "io/source.hpp"
-#include "verbs/device_facts.hpp"
+#include "verbs/verbs.hpp"
 
 namespace g4_tool {
 namespace {
 
 constexpr auto recorded_time = std::chrono::seconds(10);
 
-/// The name of the recording beside the text. Where both may be replaced, an older recording is removed.
+/// The name of the recording beside the text. Removes an older recording if it may be replaced.
 std::string recording_path(const report_options& how) {
   if (how.path == "-" || how.path.ends_with(".mcap")) {
     throw bad_value("--report: " + in_quotes(how.path) +
@@ -38,14 +37,12 @@ std::string recording_path(const report_options& how) {
   std::error_code unimportant;
   if (how.overwrites) std::filesystem::remove(recording, unimportant);
   for (const std::string& each : {how.path, recording}) {
-    if (how.overwrites || !std::filesystem::exists(each, unimportant)) continue;
-    throw failure(exit_code::bad_file, fmt::format("cannot write {}: it exists already. {}",
-                                                   in_quotes(each), advice_on_writing(EEXIST)));
+    if (!how.overwrites) refuse_existing(each);
   }
   return recording;
 }
 
-/// The line of `file` that begins with `name`, without it; empty where there is none.
+/// The rest of the first line of `file` that begins with `name`; empty if there is none.
 std::string line_after(const char* file, std::string_view name) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -61,7 +58,7 @@ std::string versions() {
 
 std::string machine() {
   utsname names{};
-  ::uname(&names);  // not nodename: the name of the computer is nobody's business
+  ::uname(&names);  // without nodename: the name of the computer is private
   std::array<double, 3> load{};
   static_cast<void>(::getloadavg(load.data(), static_cast<int>(load.size())));
   const char* const simulated = std::getenv("G4LIDAR_SIM_DIR");
@@ -74,7 +71,7 @@ std::string machine() {
   return text;
 }
 
-/// What write() writes, or why it cannot.
+/// Calls `write`, and writes its failure instead if it throws one.
 template <class Write>
 void attempt(output& out, Write write) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What people who help with a problem need, in two files: a text, and a recording beside it.
+// The report of a problem, for people who help, in two files: a text, and a recording beside it.
 #pragma once
 
 #include <string>
@@ -12,18 +12,19 @@ namespace g4_tool {
 
 struct report_options {
   std::string path{};       ///< Of the text; empty: no report.
-  bool overwrites = false;  ///< Existing files, too.
+  bool overwrites = false;  ///< Replaces existing files.
 };
 
 class problem_report {
  public:
-  /// Writes the versions, the system and the ports. Throws bad_value for a name that cannot be that of a
-  /// text, and a failure where a file exists already or cannot be made.
+  /// Writes the versions, the system and the ports. Throws bad_value for an unsuitable name, and a failure
+  /// if a file exists already or cannot be created.
   problem_report(const common_options& source, const report_options& how);
 
-  /// Adds words of the diagnosis.
+  /// Adds a part of the diagnosis.
   void add(std::string_view text) { text_.write(text); }
-  /// Adds the settings and the counts of ten recorded seconds, or why there are none, and prints the names of the files.
+  /// Adds the settings and the counts of ten recorded seconds, or why they are missing, and logs the names of the
+  /// files.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb record: a source to a recording.
+// The verb record: records a source.
 #include <memory>
 #include <string>
 #include <vector>

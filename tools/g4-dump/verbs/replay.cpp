@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb replay: a recording at the speed at which it was made, or another; and whether it is whole.
+// The verb replay: plays a recording at its own or another speed, or verifies it.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -37,7 +37,7 @@ struct replay_verb_options {
   throw failure(exit_code::bad_file, sentences);
 }
 
-/// Plays and records again, to nowhere: the digests must be those that are kept in the file.
+/// Plays the file and computes the digests again: they must equal those in the file.
 void verify(const std::string& path) {
   const std::string title = in_quotes(path);
   recording_job job;
@@ -124,7 +124,7 @@ verb make_replay_verb() {
                            [](const std::string& word) {
                              return word == "max" ? 0.0 : number_of(word, 0.001, 1000.0);
                            }),
-                 flag_row("--loop", "Start again at the end", played.loop),
+                 loop_row(played.loop),
                  moment_row("--from", "Begin at this time of the recording: 10s", played.from_ns),
                  moment_row("--to", "End at this time of the recording: 40s", played.to_ns),
                  verification, ending_rows(common), filter_rows(common),

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The verb serve: another program does it, because it needs libraries that g4-dump does not.
+// The verb serve: runs g4-serve, which needs libraries that g4-dump does not need.
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <string>
@@ -17,23 +18,12 @@ namespace {
 
 constexpr const char* server = "g4-serve";
 
-/// The command line of the other program: the same words, without that of the verb.
-std::vector<std::string> words_for_server() {
-  std::vector<std::string> made{server};
-  bool is_named = false;
-  for (const std::string& word : command_line()) {
-    if (is_named || word != "serve") {
-      made.push_back(word);
-    } else {
-      is_named = true;
-    }
-  }
-  return made;
-}
-
-/// Becomes g4-serve: the one beside this program, or that of the PATH.
+/// Executes g4-serve in this process: the one beside this program, else the one in the PATH. It gets the
+/// same command line without the verb.
 int serve(const serve_options& /*options*/) {
-  std::vector<std::string> words = words_for_server();
+  std::vector<std::string> words = command_line();
+  words.erase(std::ranges::find(words, "serve"));
+  words.insert(words.begin(), server);
   std::vector<char*> raw;
   raw.reserve(words.size() + 1);
   for (std::string& word : words) raw.push_back(word.data());

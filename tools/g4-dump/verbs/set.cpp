@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb set: settings, each shown before and after.
+// The verb set: changes settings, and prints each before and after.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ void write_row(output& out, std::string_view name, std::string_view before,
   out.write(fmt::format("{:<11} {:<8} {}\n", name, before, after));
 }
 
-/// Sets one. Where the value is not reached, the value read back is written and the command fails.
+/// Changes one setting. If that fails, writes the value that the device has and throws a failure.
 void execute(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) {
   const maybe_answer before = read_setting(lidar, *wanted.which);
   const auto given = lidar.ask(wanted.how);
@@ -56,7 +56,7 @@ void execute(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) 
   if (!given) throw failure(given.error());
 }
 
-/// What the user should know about these settings.
+/// Logs what the changes mean for the user.
 void report_consequences(const std::vector<wish>& wishes) {
   logger::info("The settings may be lost when the lidar restarts or has no power.\n");
   const answer protection(power_down_protection::on);

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The verb sim: the bytes of a simulated lidar to a file, or simulated lidars as devices.
+// The verb sim: writes the bytes of a simulated lidar, or serves simulated devices.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -22,7 +15,6 @@
 #include "g4lidar/sim/scanner.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/source.hpp"
 #include "sim.hpp"
 #include "verbs/verbs.hpp"
 
@@ -58,7 +50,7 @@ void check(const sim_options& options) {
   }
 }
 
-/// Throws a failure for a port that could not be opened. `advice` is for a place that is taken.
+/// The opened port; throws a failure for an error. `advice` is for a place that is in use.
 sim::pty_port opened(result<sim::pty_port> port, const std::string& place,
                      std::string_view advice) {
   if (port) return *std::move(port);
@@ -73,7 +65,7 @@ sim::pty_port opened(result<sim::pty_port> port, const std::string& place,
                             advice));
 }
 
-/// At the links, then the registered one, then the bridges.
+/// Opens the links, then the registered link, then the bridges.
 std::vector<sim::pty_port> open_ports(const sim_options& options,
                                       const std::vector<sim::device_options>& devices) {
   const sim::world scene = load_scene(options.setup);
@@ -238,7 +230,7 @@ option_rows served_rows(sim_options& options) {
                          completion complete = completion::nothing) {
     return option_row{name, value, help, std::move(take), complete, true};
   };
-  option_rows doors{
+  option_rows places{
       listed(
           "--link", "PATH", "Serve a device at this path; repeat for more devices",
           [&options](const std::string& word) {
@@ -250,7 +242,7 @@ option_rows served_rows(sim_options& options) {
           [&options](const std::string& word) { options.bridges.push_back(tcp_place_of(word)); }),
       flag_row("--register", "Serve a device where list and serial: find it",
                options.is_registered)};
-  for (option_row& row : doors) row.excludes = {"--seconds", "--output", "--truth", "--odometry"};
+  for (option_row& row : places) row.excludes = {"--seconds", "--output", "--truth", "--odometry"};
   option_rows of_devices{
       listed("--serial", "DIGITS", "Serial numbers of the devices, in turn: 16 digits each",
              [&options](const std::string& word) {
@@ -277,7 +269,7 @@ option_rows served_rows(sim_options& options) {
     row = checked(std::move(row),
                   [&options](const std::string&) { options.has_device_options = true; });
   }
-  return in_group("Devices in real time", joined(doors, of_devices));
+  return in_group("Devices in real time", joined(places, of_devices));
 }
 
 }  // namespace

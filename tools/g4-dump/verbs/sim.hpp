@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The two halves of the verb sim: a stream in a file, and devices.
+// The options of the verb sim, which writes a stream or serves devices.
 #pragma once
 
 #include <cstdint>
@@ -18,16 +18,16 @@ struct sim_options {
   sim::setup setup;
   std::string truth;
   std::string odometry_file;
-  sim::odometry_options odometry;     ///< Its seed is that of the lidar.
-  bool has_odometry_options = false;  ///< Whether one of them was given.
+  sim::odometry_options odometry;     ///< Its seed is not used: it is that of the lidar.
+  bool has_odometry_options = false;  ///< Whether an option of the odometry was given.
   std::string output = "-";
-  // Devices instead of a file, each at one of these places.
+  // The places of devices; without any the stream is written.
   std::vector<std::string> links{};
   std::vector<std::pair<std::string, std::uint16_t>> bridges{};
   bool is_registered = false;
-  std::vector<std::string> serials{};  ///< Of the first of them.
-  bool has_device_options = false;     ///< Whether an option of devices alone was given.
-  bool log = false;                    ///< Whether their commands are written to standard error.
+  std::vector<std::string> serials{};  ///< Of the first devices.
+  bool has_device_options = false;     ///< Whether an option for devices only was given.
+  bool log = false;                    ///< Writes their commands to standard error.
 
   [[nodiscard]] std::size_t devices() const noexcept {
     return links.size() + bridges.size() + (is_registered ? 1U : 0U);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The stream of a simulated lidar in a file, with what was true.
+// Writes the stream of a simulated lidar, its true values and its odometry.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -43,7 +42,7 @@ void write_truth(std::span<const sim::sample_truth> samples, output& out) {
   }
 }
 
-/// Lines "time_ns x y yaw_rad", up to the end.
+/// Writes lines "time_ns x y yaw_rad".
 void write_odometry(const sim::world& scene, const sim_options& options, std::int64_t end_ns,
                     output& out) {
   sim::odometry_options how = options.odometry;
@@ -94,7 +93,7 @@ int write_stream(const sim_options& options) {
     if (truth) write_truth(packet.samples, *truth);
   }
   if (way) write_odometry(scene, options, end_ns, *way);
-  // An interrupted simulation is of no use: it can be repeated.
+  // Files of an interrupted simulation are not kept, because it can be repeated.
   if (interrupt() != 0) {
     if (options.output == "-") out.flush();
     return 128 + interrupt();

@@ -33,7 +33,7 @@ struct stats_options : common_options {
   [[nodiscard]] bool is_watch() const noexcept { return interval.count() > 0; }
 };
 
-/// The counts at a moment, and what has come since the moment before.
+/// The counts at a time, and the rates since the previous line.
 struct report_line {
   double seconds = 0.0;  ///< Since the beginning.
   lidar_counts now{};
@@ -85,13 +85,12 @@ bool is_file(const std::string& source) {
   return kind == source_kind::recording || kind == source_kind::raw_bytes;
 }
 
-/// Seconds since the beginning; of a file those in which it was recorded, not those in which it is
-/// read.
+/// Seconds since the beginning; of a file by the times of its points.
 class source_clock {
  public:
   explicit source_clock(bool is_file) noexcept : is_file_(is_file) {}
 
-  void came(const scan& what) noexcept {
+  void add(const scan& what) noexcept {
     if (what.points.empty()) return;
     if (!first_ns_) first_ns_ = what.points.front().time_ns;
     recorded_ = std::chrono::nanoseconds(what.points.back().time_ns - *first_ns_);
@@ -123,9 +122,7 @@ common_options readable(const stats_options& options) {
 int stats(const stats_options& options) {
   const common_options how = readable(options);
   output out(how.output);
-  lidar_options wish;
-  wish.partial_scans = true;  // for their times
-  opened_source source(how, wish);
+  opened_source source(how, {.partial_scans = true});  // for their times
   if (options.is_watch() && !how.json) out.write(columns);
   source_clock time(is_file(how.source));
   report_line last;
@@ -140,7 +137,7 @@ int stats(const stats_options& options) {
   };
   read_sink sink;
   sink.scan = [&](const scan& what) {
-    time.came(what);
+    time.add(what);
     return std::uint64_t{what.is_piece() ? 0U : 1U};
   };
   if (options.is_watch()) {
@@ -157,7 +154,7 @@ int stats(const stats_options& options) {
   };
   try {
     read_source(source, how, sink, out);
-  } catch (const failure&) {  // what was counted until then is good
+  } catch (const failure&) {  // the counts until then are valid
     end();
     throw;
   }

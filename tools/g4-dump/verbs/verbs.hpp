@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The verbs of g4-dump. Each is made in a file of its own.
+// The verbs of g4-dump, and what several of them write.
 #pragma once
 
 #include <vector>
 
+#include "cli/common_options.hpp"
 #include "cli/verbs.hpp"
+#include "io/output.hpp"
 
 namespace g4_tool {
 
@@ -27,13 +29,17 @@ namespace g4_tool {
 [[nodiscard]] verb make_replay_verb();
 [[nodiscard]] verb make_convert_verb();
 [[nodiscard]] verb make_serve_verb();
-[[nodiscard]] verb make_view_verb();  ///< Where there is ncursesw.
+[[nodiscard]] verb make_view_verb();  ///< Only built with ncursesw.
 
 /// All of them, in the order of the help.
 [[nodiscard]] std::vector<verb> all_verbs();
 
-/// The ports with a G4, as far as that can be known without sending anything, and the commands. Returns
-/// the exit code.
+/// Prints the ports that may have a G4, without sending anything, and the commands. Returns the exit code.
 [[nodiscard]] int print_overview();
+
+/// The table of list, of all ports, without asking a device.
+void write_ports(output& out);
+/// The lines of info. Throws a failure.
+void write_facts(const common_options& options, output& out);
 
 }  // namespace g4_tool

@@ -26,7 +26,7 @@ namespace {
 using namespace std::chrono_literals;
 using clock = std::chrono::steady_clock;
 
-/// Between two pictures, and between two looks at what changes slowly.
+/// The shortest time between two pictures, and between two queries of slow facts.
 constexpr auto least_pause = 66ms;
 constexpr auto facts_pause = 500ms;
 /// How long --once waits for a revolution.
@@ -104,14 +104,11 @@ class viewer {
   }
 
   int run() {
-    const glyphs how = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
     {
       screen terminal(wants_color(STDOUT_FILENO));
       while (!is_over_ && interrupt() == 0 && !station_.failure() && !limits_.is_over()) {
         follow();
-        canvas picture(terminal.columns(), terminal.rows(), how);
-        draw_view(picture, scan_.view().points, facts_, settings_);
-        terminal.show(picture);
+        terminal.show(picture(terminal.columns(), terminal.rows()));
         wait(terminal);
       }
     }
@@ -133,16 +130,14 @@ class viewer {
     if (const auto failure = station_.failure()) std::rethrow_exception(failure);
     if (interrupt() != 0) return exit_code_now();
     if (scan_.view().empty()) throw failure(exit_code::lost, "no revolution has come.");
-    const glyphs how = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
-    canvas picture(job_.columns, job_.rows, how);
-    draw_view(picture, scan_.view().points, facts_, settings_);
-    for (int row = 0; row < picture.rows(); ++row) out.write(picture.text(row) + "\n");
+    const canvas shown = picture(job_.columns, job_.rows);
+    for (int row = 0; row < shown.rows(); ++row) out.write(shown.text(row) + "\n");
     out.commit();
     return 0;
   }
 
  private:
-  /// Takes what has changed.
+  /// Takes the changes since the last call.
   void follow() {
     std::string event;
     if (!settings_.is_frozen && newest_.take(scan_, event)) {
@@ -174,8 +169,8 @@ class viewer {
     }
   }
 
-  /// Farther at once; nearer only if it would have been so for a while, because a picture that changes
-  /// its size all the time cannot be read.
+  /// Zooms out at once, and in only after several revolutions, because a picture that often changes its
+  /// scale is hard to read.
   void follow_range(const scan& now) {
     const double wanted_m = range_for(now.points);
     double& range_m = settings_.radar.range_m;
@@ -196,6 +191,12 @@ class viewer {
     if (is_pressed || is_over_ || interrupt() != 0) return;
     const auto rest = begin + least_pause - clock::now();
     if (rest > 0ns) newest_.wait(clock::now() + rest, interrupt_handle());
+  }
+
+  [[nodiscard]] canvas picture(int width, int height) const {
+    canvas made(width, height, glyphs_);
+    draw_view(made, scan_.view().points, facts_, settings_);
+    return made;
   }
 
   void press(int key) {
@@ -237,6 +238,7 @@ class viewer {
   }
 
   const view_job& job_;
+  glyphs glyphs_ = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
   view_settings settings_;
   newest newest_{job_.once};
   station station_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb watch: serial ports as they are plugged and unplugged.
+// The verb watch: reports serial ports that are plugged and unplugged.
 #include <fmt/chrono.h>
 #include <unistd.h>
 
@@ -65,7 +65,7 @@ class watcher {
       if (woken == wake::output_closed) out_.close_early();
       while (auto event = monitor_ ? monitor_->next() : std::nullopt) {
         apply(event->plugged, std::move(event->port));
-        next_look_ = clock::now() + look_time;  // the system may not be settled yet
+        next_look_ = clock::now() + look_time;  // the file system may change later
       }
       if (looks_ && clock::now() >= next_look_) look();
       out_.flush();
@@ -86,7 +86,7 @@ class watcher {
     for (const auto& [path, port] : there) apply(true, port);
   }
 
-  /// Reports it, unless it is known already.
+  /// Reports a change, unless it is already known.
   void apply(bool plugged, port_info port) {
     if (known_.contains(port.path) == plugged || has_enough()) return;
     if (!plugged) port.may_open = false;
@@ -106,7 +106,7 @@ class watcher {
     out_.write(json_line(all));
   }
 
-  /// In widths that suit most ports, since the lines are written one by one.
+  /// Uses widths that suit most ports, because later lines are unknown.
   void write_row(const std::string& time, const char* what, std::vector<std::string> cells) {
     cells.insert(cells.begin(), {time, what});
     out_.write(line_of(cells, {24, 9, 12, 8, 9, 8, 6, 4, 0}));
@@ -115,7 +115,7 @@ class watcher {
   const common_options& options_;
   output& out_;
   std::optional<port_monitor> monitor_;
-  bool looks_ = false;  // since udevd may not report
+  bool looks_ = false;  // lists the ports periodically
   known_ports known_;
   std::uint64_t printed_ = 0;
   time_limits limits_{options_.duration, std::chrono::nanoseconds(0)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A picture of character cells: dots, drawn as braille or as ASCII, and words over them.
+// A picture of character cells: dots as braille or ASCII, and text above them.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace g4_tool {
 
-/// How dots are shown: eight to a cell, or two, one above the other.
+/// The form of the dots: eight in a cell, or two, one above the other.
 enum class glyphs : unsigned char { braille, ascii };
 
-/// What a cell shows, which decides its colour.
+/// What a cell shows; it determines the colour.
 enum class ink : unsigned char { plain, faint, grid, points, good, warn, bad, title };
 inline constexpr std::size_t ink_count = static_cast<std::size_t>(ink::title) + 1;
 
@@ -31,32 +31,32 @@ struct canvas_cell {
   friend bool operator==(const canvas_cell&, const canvas_cell&) = default;
 };
 
-/// Everything outside is ignored. A word hides dots, and points hide the grid.
+/// Drawing outside of it has no effect. Text hides dots, and points hide the grid.
 class canvas {
  public:
   canvas(int columns, int rows, glyphs how);
 
   [[nodiscard]] int columns() const noexcept { return columns_; }
   [[nodiscard]] int rows() const noexcept { return rows_; }
-  /// Dots of a cell, from left to right and from top to bottom. A dot is as wide as it is high, as far as
-  /// a cell is twice as high as it is wide.
+  /// Dots of a cell, from left to right and from top to bottom. Dots are square if a cell is twice as high
+  /// as it is wide.
   [[nodiscard]] int dots_across() const noexcept { return how_ == glyphs::braille ? 2 : 1; }
   [[nodiscard]] int dots_down() const noexcept { return how_ == glyphs::braille ? 4 : 2; }
 
-  /// A dot of the grid or a point, counted from the left and from the top.
+  /// Draws a dot of the grid or a point; x and y count dots from the left and from the top.
   void dot(int x, int y, ink what);
-  /// ASCII. Cut at the edge of `within`, the whole canvas where it is empty.
+  /// Writes ASCII text, cut at the edge of `within` (empty: the whole canvas).
   void write(int column, int row, std::string_view words, ink what, cell_area within = {});
 
   [[nodiscard]] canvas_cell at(int column, int row) const noexcept;
-  /// A row in UTF-8, without blanks at its end.
+  /// A row in UTF-8 without trailing blanks.
   [[nodiscard]] std::string text(int row) const;
 
  private:
   struct place {
     char word = '\0';
     ink what = ink::plain;
-    std::uint8_t grid = 0;  // the dots, as braille has them
+    std::uint8_t grid = 0;  // the dots, as bits of a braille pattern
     std::uint8_t points = 0;
   };
   [[nodiscard]] bool has(int column, int row) const noexcept {
@@ -73,7 +73,7 @@ class canvas {
   std::vector<place> places_;
 };
 
-/// `glyph` in UTF-8, added to `text`.
+/// Appends `glyph` in UTF-8.
 void add_utf8(std::string& text, char32_t glyph);
 
 }  // namespace g4_tool

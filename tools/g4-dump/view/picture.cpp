@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
-#include "cli/exit_code.hpp"
-#include "g4lidar/export/printable.hpp"
+#include "cli/logger.hpp"
 
 namespace g4_tool {
 namespace {
@@ -19,7 +19,7 @@ using g4lidar::stage_verdict;
 
 constexpr int panel_columns = 26;
 constexpr int label_columns = 10;
-/// With less there is no panel.
+/// Smaller canvases have no panel.
 constexpr int least_columns = 60;
 constexpr int least_rows = 12;
 
@@ -67,24 +67,7 @@ std::string health_of(std::span<const stage_report> stages) {
   return "-";
 }
 
-/// Lines of words at most so wide.
-std::vector<std::string> lines_of(std::string_view words, std::size_t width) {
-  std::vector<std::string> lines;
-  std::string line;
-  while (!words.empty()) {
-    const std::size_t end = std::min(words.find(' '), words.size());
-    const std::string_view word = words.substr(0, end);
-    words.remove_prefix(std::min(end + 1, words.size()));
-    if (!line.empty() && line.size() + 1 + word.size() > width) {
-      lines.push_back(std::exchange(line, {}));
-    }
-    line.append(line.empty() ? "" : " ").append(word);
-  }
-  if (!line.empty()) lines.push_back(line);
-  return lines;
-}
-
-/// Words from the top of an area to its bottom.
+/// Writes lines into an area, from its top.
 class column_of_words {
  public:
   column_of_words(canvas& on, const cell_area& in) : on_(on), in_(in) {}
@@ -101,8 +84,8 @@ class column_of_words {
     ++row_;
   }
   void paragraph(std::string_view words, ink what = ink::plain) {
-    for (const auto& each : lines_of(words, static_cast<std::size_t>(in_.columns)))
-      line(each, what);
+    std::istringstream lines(wrapped(words, 0, 0, static_cast<std::size_t>(in_.columns)));
+    for (std::string each; std::getline(lines, each);) line(each, what);
   }
 
  private:
@@ -144,7 +127,7 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
   }
 }
 
-/// The same in one line.
+/// The most important facts in one line.
 std::string summary_of(const view_facts& facts, const view_settings& how) {
   const verdict all = verdict_of(facts.stages);
   return fmt::format("{} {} {} lost {} doctor {}", how.is_frozen ? "frozen" : facts.state,

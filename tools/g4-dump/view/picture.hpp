@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The whole picture of `g4-dump view`: the radar, and beside it what is known about the lidar.
+// The picture of `g4-dump view`: the radar, and a panel with facts about the lidar.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@
 
 namespace g4_tool {
 
-/// What stands beside the radar. Numbers below 0 are not known.
+/// The contents of the panel. Numbers below 0 are unknown.
 struct view_facts {
-  std::string name{};   ///< Of the source.
-  std::string state{};  ///< Of the station.
+  std::string name{};  ///< Of the source.
+  std::string state{};
   std::string why{};
   std::string serial{};
   std::string event{};  ///< The last one.
@@ -31,16 +31,16 @@ struct view_facts {
   std::vector<g4lidar::stage_report> stages{};
 };
 
-/// How it is shown.
+/// The choices of the user.
 struct view_settings {
   radar_view radar{};
-  bool is_zoomed = false;  ///< By a key: else the range follows the returns.
+  bool is_zoomed = false;  ///< The user has chosen the range; else it follows the returns.
   bool is_frozen = false;
   bool shows_help = false;
 };
 
-/// Draws all of it, on a canvas of any size: without room for the words beside the radar they stand in one line
-/// below it, and without room for a radar there is that line only.
+/// Draws the picture on a canvas of any size. Without room for the panel its facts are in one line below the
+/// radar; without room for the radar there is only that line.
 void draw_view(canvas& on, std::span<const g4lidar::point> points, const view_facts& facts,
                const view_settings& how);
 

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "g4lidar/cartesian.hpp"
 
@@ -16,8 +15,9 @@ namespace {
 
 using g4lidar::point;
 
+/// The zoom ranges in metres.
 constexpr std::array<double, 9> ranges{0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0};
-/// Between the rings of each.
+/// The distance between the rings of each.
 constexpr std::array<double, 9> steps{0.25, 0.5, 0.5, 1.0, 1.0, 2.0, 2.0, 4.0, 4.0};
 /// The share of the returns that range_for() shows.
 constexpr double nearly_all = 0.97;
@@ -27,7 +27,7 @@ std::size_t level_of(double range_m) noexcept {
   return std::min<std::size_t>(static_cast<std::size_t>(at - ranges.begin()), ranges.size() - 1);
 }
 
-/// The middle of an area, and how many dots a metre has.
+/// The middle of an area and the number of dots per metre.
 struct scale {
   double x;
   double y;
@@ -73,8 +73,6 @@ void draw_grid(canvas& on, const cell_area& in, const scale& to, const radar_vie
 
 }  // namespace
 
-std::span<const double> zoom_ranges() noexcept { return ranges; }
-
 double next_range(double range_m, bool farther) noexcept {
   const std::size_t level = level_of(range_m);
   if (farther) return ranges[std::min(level + 1, ranges.size() - 1)];
@@ -106,8 +104,7 @@ void draw_radar(canvas& on, const cell_area& in, std::span<const point> points,
   for (const point& each : points) {
     if (each.is_no_return()) continue;
     const g4lidar::xy_point at = g4lidar::to_xy(each, view.frame);
-    const auto side_m =
-        static_cast<double>(at.y_m);  // left in the robot frame, right in the vendor's
+    const auto side_m = static_cast<double>(at.y_m);  // to the left in the robot frame only
     to.dot(on, is_robot ? -side_m : side_m, static_cast<double>(at.x_m), ink::points);
   }
   const int column = static_cast<int>(to.x) / on.dots_across();

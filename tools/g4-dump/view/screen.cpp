@@ -22,12 +22,12 @@
 namespace g4_tool {
 namespace {
 
-/// Signals that end the program at once, and those that it handles the first time.
+/// Signals that end the program at once, and those of which it handles the first one.
 constexpr std::array fatal_signals{SIGQUIT, SIGILL,  SIGABRT, SIGBUS,  SIGFPE,
                                    SIGSEGV, SIGALRM, SIGUSR1, SIGUSR2, SIGSYS};
 constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
 
-/// What a signal handler needs: all of it is made before.
+/// The data of the signal handlers, prepared by the constructor.
 struct restoring {
   std::array<char, 256> words;
   std::size_t size;
@@ -39,7 +39,7 @@ restoring saved{};
 volatile std::sig_atomic_t is_ending = 0;
 sigset_t mask_before{};
 
-/// Empty: the terminal has none.
+/// The control sequence of a capability; empty if the terminal has none.
 std::string_view word_for(const char* capability) {
   const char* const word = ::tigetstr(capability);
   const bool is_none = word == nullptr || word == reinterpret_cast<const char*>(-1);  // NOLINT
@@ -64,7 +64,7 @@ void die(int number) {
   ::raise(number);
 }
 
-/// The first one is kept for the loop, as without a screen; the second one ends the program.
+/// Passes the first signal to the handler of the program; a second one ends the program.
 void end(int number) {
   if (is_ending != 0) return die(number);
   is_ending = 1;
@@ -88,7 +88,7 @@ void handle(const std::array<int, Count>& signals, std::array<struct sigaction, 
   }
 }
 
-/// Black and white first: they need no terminal with colours.
+/// By ink: the attribute, and the colour on terminals that have colours (-1: the default).
 constexpr std::array<std::pair<attr_t, short>, ink_count> looks{{{A_NORMAL, -1},
                                                                  {A_DIM, -1},
                                                                  {A_DIM, COLOR_CYAN},

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The terminal as a screen, by ncurses.
+// The terminal as a screen, with ncurses.
 #pragma once
-
-#include <chrono>
 
 #include "view/canvas.hpp"
 
 namespace g4_tool {
 
-/// Takes the terminal of standard input and output; one at a time. The destructor restores it, and signals
-/// that end the program restore it, too. ^Z leaves it as it was, and fg draws it again. Throws a failure if there
-/// is no terminal.
+/// Uses the terminal of standard input and output; one at a time. The destructor restores it, and so do signals
+/// that end the program. ^Z restores it, and fg draws it again. Throws a failure if there is no terminal.
 class screen {
  public:
   explicit screen(bool colored);
@@ -20,7 +17,7 @@ class screen {
 
   [[nodiscard]] int columns() const;
   [[nodiscard]] int rows() const;
-  /// Writes what has changed.
+  /// Writes the changes since the last call.
   void show(const canvas& picture);
   /// The next key that was pressed: a letter, or resized; 0 if there is none.
   [[nodiscard]] int key();
@@ -28,11 +25,11 @@ class screen {
   /// Whether the terminal was closed.
   [[nodiscard]] bool is_gone() const;
 
-  /// Whether the locale shows braille.
+  /// Whether the locale can show braille.
   [[nodiscard]] static bool has_utf8();
 };
 
-/// Blocks all signals of this thread, so that those that it starts do not handle them.
+/// Blocks all signals in this thread, so that threads that it starts do not handle them.
 class blocked_signals {
  public:
   blocked_signals();

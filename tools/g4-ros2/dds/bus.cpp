@@ -7,11 +7,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <mutex>
 #include <set>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "cli/exit_code.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The table of verbs as CLI11 wants it; the only place that sees CLI11.
+// Parses the command line with CLI11, which no other source includes.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -25,20 +25,14 @@
 namespace g4_tool {
 namespace {
 
-/// "--output" of "-o,--output".
-std::string long_name(const std::string& names) {
-  const std::size_t comma = names.rfind(',');
-  return comma == std::string::npos ? names : names.substr(comma + 1);
-}
-
-/// The name of an option or argument for CLI11, which refuses `=` in names from version 2.4 on.
+/// A name for CLI11, which refuses `=` in names from version 2.4 on.
 std::string accepted_name(std::string names) {
   std::ranges::replace(names, '=', '-');
   return names;
 }
 
-/// The value that a flag may have is shown without a space before it: --speckle[=LIMITS]. The name of
-/// an argument is shown as it was before accepted_name: NAME=VALUE.
+/// Prints the optional value of a flag without a space before it (--speckle[=LIMITS]), and the name of
+/// an argument as it was before accepted_name() (NAME=VALUE).
 class help_formatter final : public CLI::Formatter {
   std::string make_option_name(const CLI::Option* option, bool is_argument) const override {
     std::string name = CLI::Formatter::make_option_name(option, is_argument);
@@ -52,7 +46,7 @@ class help_formatter final : public CLI::Formatter {
   }
 };
 
-/// Of a file of --config: a flag that is false is one that is not given.
+/// Reads the file of --config. A flag that is false there counts as not given.
 class config_reader final : public CLI::ConfigBase {
   std::vector<CLI::ConfigItem> from_config(std::istream& in) const override {
     std::vector<CLI::ConfigItem> lines = CLI::ConfigBase::from_config(in);
@@ -64,7 +58,7 @@ class config_reader final : public CLI::ConfigBase {
 };
 
 void add(CLI::App& app, const option_row& row) {
-  const std::string name = long_name(row.names);
+  const std::string name = row.long_name();
   const auto take = [inner = row.take, name](const std::vector<std::string>& words) {
     try {
       for (const std::string& word : words) inner(word);
@@ -100,13 +94,10 @@ void add(CLI::App& app, const option_row& row) {
   if (!row.group.empty()) option->group(row.group);
 }
 
-/// The codes that are among `wanted`, or all.
 std::string exit_code_list(const std::vector<int>& wanted) {
   std::string text = "Exit codes:";
-  for (const exit_code_row& row : exit_codes) {
-    if (wanted.empty() || std::find(wanted.begin(), wanted.end(), row.code) != wanted.end()) {
-      text += fmt::format("{} {} {}", text.back() == ':' ? "" : ",", row.code, row.meaning);
-    }
+  for (const auto& [code, meaning] : exit_code_rows(wanted)) {
+    text += fmt::format("{} {} {}", text.back() == ':' ? "" : ",", code, meaning);
   }
   return wrapped(text + '.', 0, 0);
 }
@@ -118,12 +109,12 @@ std::string footer_of(const verb& shown) {
   return text + (text.empty() ? "" : "\n\n") + exit_code_list(shown.exits);
 }
 
-/// The arguments and options of `added`, as those of `made`.
+/// Adds the arguments and options of `added` to `made`.
 void fill(CLI::App& made, const verb& added) {
   for (const option_row& row : added.arguments) add(made, row);
   for (const option_row& row : added.options) add(made, row);
   for (const option_row& row : added.options) {
-    CLI::Option* const option = made.get_option(long_name(row.names));
+    CLI::Option* const option = made.get_option(row.long_name());
     for (const std::string& other : row.excludes) option->excludes(made.get_option(other));
   }
 }
@@ -142,7 +133,7 @@ std::string unknown_verb(const std::string& word) {
                      fmt::join(names, ", "), did_you_mean(word, {names.begin(), names.end()}));
 }
 
-/// The long names of the options of the command that was chosen, and of those of the program.
+/// The long names of the options of the program and of the chosen command.
 std::vector<std::string> option_names(const CLI::App& app, std::string_view dashes) {
   std::vector<const CLI::App*> both{&app};
   for (const CLI::App* const chosen : app.get_subcommands()) both.push_back(chosen);
@@ -157,7 +148,7 @@ std::vector<std::string> option_names(const CLI::App& app, std::string_view dash
   return names;
 }
 
-/// What is wrong with a line of the file of --config that is no option.
+/// The error of a line of the file of --config that is not an option.
 std::string problem_in_file(std::string line, const std::vector<std::string>& options) {
   constexpr std::string_view section = ".++";
   if (line.ends_with(section)) line.resize(line.size() - section.size());
@@ -176,7 +167,7 @@ std::string problem_in_file(std::string line, const std::vector<std::string>& op
                      is_word ? "\"" : "", value, is_word ? "\"" : "");
 }
 
-/// What is wrong with the command line, without a full stop.
+/// The error of the command line, without a full stop.
 std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   const bool has_verb = !app.get_subcommands().empty() || app.get_subcommands({}).empty();
   const std::vector<std::string> rest = app.remaining(has_verb);
@@ -218,7 +209,7 @@ int explain(const std::string& problem, const std::string& verb) {
   return static_cast<int>(exit_code::usage);
 }
 
-/// `run`, and a value that it refuses is a wrong command line.
+/// `chosen.run`. A bad_value that it throws is reported as an error of the command line.
 std::function<int()> guarded(const verb& chosen) {
   const bool is_named = chosen.name != this_program().name;
   return [run = chosen.run, name = is_named ? " " + chosen.name : std::string()] {
@@ -230,8 +221,7 @@ std::function<int()> guarded(const verb& chosen) {
   };
 }
 
-/// How many words from `at` on are the program's own options, which may stand before the verb; 0:
-/// none.
+/// How many words at `at` belong to a global option, which may precede the verb; 0: none.
 std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
   const std::string& word = words[at];
   if (word == "--color") return 2;
@@ -241,8 +231,8 @@ std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
   return is_short && word.find_first_not_of("qv", 1) == std::string::npos ? 1 : 0;
 }
 
-/// Whether an option or a source stands where a verb could: for the verb that needs not be named.
-/// `--help` and `--version` are the program's own. A file need not look like one.
+/// Whether the command line has no verb, because an option of the default verb or a source stands in
+/// its place. `--help` and `--version` belong to the program. The name of a file can have any form.
 bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
   std::size_t at = 0;
   while (at < words.size() && own_words(words, at) > 0) at += own_words(words, at);

@@ -65,56 +65,55 @@ option_rows ending_rows(common_options& options, bool with_idle) {
   return in_group("End condition", rows);
 }
 
-option_row speckle_row(common_options& options) {
-  option_row row{"--speckle", "", "Leave out returns without another one near them"};
+namespace {
+
+/// A flag whose optional value sets some of `Limits`. `numbers_of` names the members that it can set.
+template <class Limits, class NumbersOf>
+option_row limits_row(const char* name, const char* help, std::optional<Limits>& into,
+                      NumbersOf numbers_of) {
+  option_row row{name, "", help};
+  row.group = "Filters";
   row.optional_value = "LIMITS";
-  row.take = [&into = options.marks.speckle](const std::string& word) {
-    speckle_limits limits;
-    const auto length = [](float& into_one) {
-      return [&into_one](double value) { into_one = static_cast<float>(value); };
-    };
-    const auto number = [](std::size_t& into_one) {
-      return [&into_one](double value) { into_one = static_cast<std::size_t>(value); };
-    };
-    take_numbers(word, {{"window", 1, max_window, true, number(limits.window)},
-                        {"count", 1, 2 * max_window, true, number(limits.count)},
-                        {"near", 0, 100, false, length(limits.near_m)},
-                        {"ratio", 0, 1, false, length(limits.near_ratio)}});
+  row.take = [&into, numbers_of](const std::string& word) {
+    Limits limits;
+    take_numbers(word, numbers_of(limits));
     into = limits;
   };
   return row;
+}
+
+/// Stores a number, times `factor`, in a member of limits.
+template <class Member>
+std::function<void(double)> store_in(Member& into, double factor = 1.0) {
+  return [&into, factor](double value) { into = static_cast<Member>(value * factor); };
+}
+
+option_row speckle_row(common_options& options) {
+  return limits_row("--speckle", "Leave out returns without another one near them",
+                    options.marks.speckle, [](speckle_limits& limits) -> named_numbers {
+                      return {{"window", 1, max_window, true, store_in(limits.window)},
+                              {"count", 1, 2 * max_window, true, store_in(limits.count)},
+                              {"near", 0, 100, false, store_in(limits.near_m)},
+                              {"ratio", 0, 1, false, store_in(limits.near_ratio)}};
+                    });
 }
 
 option_row edges_row(common_options& options) {
-  option_row row{"--edges", "", "Leave out veiling points at jumps of the range"};
-  row.optional_value = "LIMITS";
-  row.take = [&into = options.marks.edges](const std::string& word) {
-    edge_limits limits;
-    take_numbers(
-        word, {{"window", 1, max_window, true,
-                [&limits](double value) { limits.window = static_cast<std::size_t>(value); }},
-               {"angle", 0.1, 45, false,
-                [&limits](double value) { limits.least_angle_deg = static_cast<float>(value); }}});
-    into = limits;
-  };
-  return row;
+  return limits_row("--edges", "Leave out veiling points at jumps of the range",
+                    options.marks.edges, [](edge_limits& limits) -> named_numbers {
+                      return {{"window", 1, max_window, true, store_in(limits.window)},
+                              {"angle", 0.1, 45, false, store_in(limits.least_angle_deg)}};
+                    });
 }
 
+}  // namespace
+
 option_row near_row(std::optional<near_limits>& into) {
-  option_row row{"--near", "", "Flag directions where something may be too near for a return"};
-  row.group = "Filters";
-  row.optional_value = "LIMITS";
-  row.take = [&into](const std::string& word) {
-    near_limits limits;
-    take_numbers(
-        word, {{"shortest", 0.01, 16, false,
-                [&limits](double value) { limits.shortest_mm = static_cast<float>(value * 1e3); }},
-               {"revolutions", 0, 1e9, true, [&limits](double value) {
-                  limits.revolutions = static_cast<std::uint32_t>(value);
-                }}});
-    into = limits;
-  };
-  return row;
+  return limits_row("--near", "Flag directions where something may be too near for a return", into,
+                    [](near_limits& limits) -> named_numbers {
+                      return {{"shortest", 0.01, 16, false, store_in(limits.shortest_mm, 1e3)},
+                              {"revolutions", 0, 1e9, true, store_in(limits.revolutions)}};
+                    });
 }
 
 option_rows grid_rows(grid_options& into) {
@@ -135,7 +134,7 @@ option_rows filter_rows(common_options& options) {
   range.take = [&filter = options.filter](const std::string& word) {
     const auto [from, to] = range_of(word, 0.0, 100.0);
     if (to < from) throw bad_value("'" + word + "' ends before it begins");
-    // To the nearest thousandth of a millimetre, so that 0.28 is 280.
+    // Rounded to a thousandth of a millimetre, so that 0.28 is 280.
     filter.least_range_mm = static_cast<float>(std::round(from * 1e6) / 1e3);
     filter.greatest_range_mm = static_cast<float>(std::round(to * 1e6) / 1e3);
   };
@@ -159,9 +158,8 @@ option_rows filter_rows(common_options& options) {
 }
 
 mounting mounting_of(const std::string& text) {
-  const std::string upside_down = ",down";
-  const bool is_down = text.ends_with(upside_down);
-  const std::string place = text.substr(0, text.size() - (is_down ? upside_down.size() : 0));
+  const bool is_down = text.ends_with(",down");
+  const std::string place = is_down ? text.substr(0, text.rfind(',')) : text;
   const std::size_t first = place.find(',');
   const std::size_t second = std::min(place.find(',', first + 1), place.size());
   if (first == std::string::npos || second == place.size()) {
@@ -235,6 +233,15 @@ option_rows device_rows(common_options& options) {
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
   return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
                 baud_row(options));
+}
+
+option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }
+
+option_rows player_rows(double& speed, bool& loops) {
+  return in_group("Recordings",
+                  {number_row("--playback-speed", "FACTOR", "1: as recorded, 0.5: half as fast (1)",
+                              speed, 0.01, 100.0),
+                   loop_row(loops)});
 }
 
 option_row json_row(common_options& options) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The global options, which every verb has, and the options that verbs share, with their rows in
-// the table. A verb takes the rows that mean something for it.
+// The global options of every verb, and the options that several verbs share, with their rows of the
+// table. Each verb uses the rows that apply to it.
 #pragma once
 
 #include <chrono>
@@ -43,17 +43,18 @@ struct global_options {
 /// --help and --version.
 [[nodiscard]] option_rows standard_rows();
 
-/// Whether what is written to `descriptor` is to be coloured: a terminal, no NO_COLOR, or --color.
+/// Whether output to `descriptor` is coloured: by --color, else if it is a terminal and NO_COLOR is
+/// not set.
 [[nodiscard]] bool wants_color(int descriptor) noexcept;
 
-/// What a command does when its device is not connected.
+/// What a command does if its device is not connected.
 enum class loss_rule : unsigned char {
-  exit,       ///< It ends.
-  reconnect,  ///< It continues when the device is connected again.
-  wait,       ///< It also waits for a device that is not connected yet.
+  exit,       ///< Ends.
+  reconnect,  ///< Waits for a lost device and continues.
+  wait,       ///< Also waits for a device that is not connected at the start.
 };
 
-/// Which points are marked by their neighbours or by earlier revolutions: those that are given.
+/// The limits of the flags for points; only flags with limits are computed.
 struct mark_limits {
   std::optional<speckle_limits> speckle;
   std::optional<edge_limits> edges;
@@ -64,27 +65,27 @@ struct common_options {
   std::string source;        ///< Empty: the only G4.
   std::string output = "-";  ///< `-`: standard output.
   std::uint32_t baud = 230400;
-  std::uint64_t count = 0;               ///< So many records, then the end; 0: no end.
-  std::chrono::nanoseconds duration{0};  ///< 0: no end.
-  std::chrono::nanoseconds idle{0};      ///< The end when nothing has come for so long; 0: never.
-  point_filter filter;  ///< But for its frame, which is `frame`, and its ignored sectors.
+  std::uint64_t count = 0;               ///< The largest number of records; 0: no limit.
+  std::chrono::nanoseconds duration{0};  ///< 0: no limit.
+  std::chrono::nanoseconds idle{0};      ///< The longest time without data; 0: no limit.
+  point_filter filter;                   ///< Without its frame and ignored sectors: see below.
   std::vector<sector> ignored;
   std::string mask;  ///< The file of --mask; empty: none.
   mark_limits marks;
   grid_options grid;  ///< Of --no-return and --near-as; its frame is not used.
   deskewing deskew = deskewing::none;
-  std::string odometry;           ///< The file of --odometry; empty: that of the recording.
-  std::optional<mounting> mount;  ///< Where it is given.
+  std::string odometry;  ///< The file of --odometry; empty: that of the recording.
+  std::optional<mounting> mount;
   g4lidar::frame frame = g4lidar::frame::vendor;
   length_unit unit = length_unit::millimetres;
-  std::optional<time_style> time;  ///< If not given, what suits the source.
+  std::optional<time_style> time;  ///< Nothing: the default depends on the source.
   loss_rule on_loss = loss_rule::exit;
-  bool json = false;  ///< JSON instead of text.
+  bool json = false;
 };
 
 using shared_options = std::shared_ptr<common_options>;
 
-/// The words of lidar_options::device, a file, `-`, or `sim:`; see source.hpp.
+/// The argument SOURCE: see source.hpp.
 [[nodiscard]] option_row source_argument(common_options& options);
 [[nodiscard]] option_row output_row(common_options& options);
 /// -d.
@@ -109,12 +110,16 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_row frame_row(const char* name, const char* help, g4lidar::frame& into);
 /// --format csv|jsonl|text.
 [[nodiscard]] option_row format_row(text_format& into, const char* help = "Output format (text)");
+/// --loop.
+[[nodiscard]] option_row loop_row(bool& into);
+/// --playback-speed and --loop of a recording.
+[[nodiscard]] option_rows player_rows(double& speed, bool& loops);
 /// --json.
 [[nodiscard]] option_row json_row(common_options& options);
 /// --compress.
 [[nodiscard]] option_row compress_row(packing& into);
 [[nodiscard]] option_rows baud_row(common_options& options);
-/// --on-loss, whose default is what `options` has now, and --baud.
+/// --on-loss with the present value of `options` as default, and --baud.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool

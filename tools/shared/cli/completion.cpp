@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Completion: the program itself lists what can follow the words of a command line. The scripts for bash,
-// zsh and fish in packaging/completions ask it.
+// Completion: the program lists what can follow the words of a command line, for the scripts for bash,
+// zsh and fish in packaging/completions.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <span>
 #include <sstream>
 #include <string>
@@ -28,7 +27,7 @@ std::vector<std::string> pieces_of(const std::string& text, char between) {
   return pieces;
 }
 
-/// Prints the words that begin as `typed` does, each with what it means.
+/// Prints the words that begin with `typed`, each with its description.
 class offer {
  public:
   explicit offer(std::string typed) : typed_(std::move(typed)) {}
@@ -39,7 +38,7 @@ class offer {
     return true;
   }
 
-  /// The values of a row, behind `before`, such as "--format=".
+  /// Adds the values of a row after `before`, such as "--format=".
   void add_values(const option_row& row, const std::string& before = {}) {
     switch (row.complete) {
       case completion::choices:
@@ -79,11 +78,7 @@ class offer {
   std::string typed_;
 };
 
-bool has_name(const option_row& row, const std::string& name) {
-  return ("," + row.names + ",").find("," + name + ",") != std::string::npos;
-}
-
-/// The verb of that name; null where there is none.
+/// The verb of that name, or null.
 const verb* find_verb(const std::vector<verb>& verbs, std::string_view name) {
   const auto found = std::ranges::find(verbs, name, &verb::name);
   return found == verbs.end() ? nullptr : &*found;
@@ -118,8 +113,8 @@ int complete(std::span<const std::string> words) {
   const std::string name = typed.substr(0, typed.find('='));
   for (const option_row& row : rows) {
     if (row.value.empty()) continue;
-    if (!before.empty() && has_name(row, before.back())) return offered.add_values(row), 0;
-    if (typed != name && has_name(row, name)) return offered.add_values(row, name + "="), 0;
+    if (!before.empty() && row.has_name(before.back())) return offered.add_values(row), 0;
+    if (typed != name && row.has_name(name)) return offered.add_values(row, name + "="), 0;
   }
   if (typed.starts_with('-')) {
     for (const option_row& row : rows) {

@@ -29,8 +29,8 @@ std::string counted(unsigned long long number, std::string_view noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
-std::string wrapped(std::string_view words, std::size_t column, std::size_t indent) {
-  constexpr std::size_t width = 98;
+std::string wrapped(std::string_view words, std::size_t column, std::size_t indent,
+                    std::size_t width) {
   std::string text;
   while (!words.empty()) {
     const std::size_t end = std::min(words.find(' '), words.size());

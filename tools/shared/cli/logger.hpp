@@ -16,21 +16,22 @@ namespace g4_tool {
 
 using g4lidar::printable;
 
-/// `name` as it stands in sentences.
+/// `name` in quotation marks, for sentences.
 [[nodiscard]] inline std::string in_quotes(const std::string& name) { return "'" + name + "'"; }
 
-/// How many there are of something: "1 packet", "0 packets", "2 packets".
+/// A number and its noun: "1 packet", "0 packets", "2 packets".
 [[nodiscard]] std::string counted(unsigned long long number, std::string_view noun);
 
-/// Words in lines that fit a terminal. The first begins at `column`, all others after `indent`
-/// blanks.
-[[nodiscard]] std::string wrapped(std::string_view words, std::size_t column, std::size_t indent);
+/// Words in lines of at most `width` characters. The first line begins at `column`, all others after
+/// `indent` blanks.
+[[nodiscard]] std::string wrapped(std::string_view words, std::size_t column, std::size_t indent,
+                                  std::size_t width = 98);
 
-/// One line of JSON. Everything but ASCII is escaped, and what is not UTF-8 is replaced.
+/// One line of JSON in ASCII, with escapes. Invalid UTF-8 is replaced.
 [[nodiscard]] std::string json_line(const nlohmann::ordered_json& value);
 
-/// A line of a terminal that is drawn over, ten times a second, and wiped away at the end. With -q, and
-/// where standard error is not a terminal, nothing is drawn.
+/// A line of a terminal that is replaced ten times a second and erased at the end. With -q, or if
+/// standard error is not a terminal, nothing is drawn.
 class status_line {
  public:
   explicit status_line(bool wanted);
@@ -38,11 +39,11 @@ class status_line {
   status_line& operator=(const status_line&) = delete;
   ~status_line() { clear(); }
 
-  /// Whether draw() is to be called now.
+  /// Whether it is time to call draw().
   [[nodiscard]] bool is_due();
   void draw(std::string_view text);
   void clear();
-  /// How long it has been there.
+  /// The time since its construction.
   [[nodiscard]] double seconds() const;
 
  private:
@@ -54,10 +55,10 @@ class status_line {
   clock::time_point next_ = begin_;
 };
 
-/// Shows how much of a known number of bytes is done.
+/// Shows the progress through a known number of bytes.
 class progress_bar {
  public:
-  /// Below this many bytes it is over before anybody has read the bar.
+  /// For fewer bytes no bar is shown, because they take too little time.
   static constexpr std::uint64_t least_bytes = 16'000'000;
 
   explicit progress_bar(std::uint64_t all_bytes, bool wanted = true)
@@ -72,17 +73,17 @@ class progress_bar {
 
 }  // namespace g4_tool
 
-/// Each line of a message passes through printable(). A message that cannot be written is dropped.
+/// Each line of a message passes through printable(). Messages that cannot be written are dropped.
 namespace g4_tool::logger {
 
-/// A message with its line breaks; not with -q.
+/// Writes a message with its line breaks; not with -q.
 void info(std::string_view message);
-/// A message with its line breaks; with -v only.
+/// Writes a message with its line breaks; with -v only.
 void verbose(std::string_view message);
 /// "PROGRAM: SENTENCES", or with --json-errors {"error":SENTENCES,"problem":...,"exit_code":N}.
 void error(std::string_view sentences, exit_code code, std::string_view problem = {});
-/// Bytes as they are, whatever the options: for lines that are drawn over, and for output that the
-/// user asked for on standard error.
+/// Writes bytes unchanged, whatever the options: for status lines, and for output that the user
+/// requested on standard error.
 void write(std::string_view text) noexcept;
 
 }  // namespace g4_tool::logger

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The man pages: the help's words, in the order of the help. A program with several commands has an
-// overview, and a page for each command.
+// The man pages, from the texts of the help and in its order. A program with several commands has an
+// overview page, and a page for each command.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace g4_tool {
 namespace {
 
-/// As man(7) wants text: a dash is a minus, which can be copied.
+/// Escaped for man(7). A dash becomes a minus, so that it can be copied.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -49,24 +49,18 @@ std::string title_of(const option_row& row) {
   return title;
 }
 
-/// A title, which is as man(7) wants it, and indented under it what it means.
+/// An entry of a list: `title`, already escaped, and its meaning indented below.
 std::string entry(const std::string& title, std::string_view meaning) {
   return ".TP\n" + title + "\n" + escaped(meaning) + ".\n";
 }
 
-/// The long name of an option; the name of an argument.
-std::string long_name(const option_row& row) {
-  const std::size_t dashes = row.names.find("--");
-  return row.names.substr(dashes == std::string::npos ? 0 : dashes);
-}
-
-/// The words of the help, and the options that cannot be used with this one.
+/// The help text, and the options that cannot be used with this one.
 std::string meaning_of(const option_row& row, const option_rows& all) {
   std::vector<std::string> excluded = row.excludes;
   for (const option_row& other : all) {
-    const bool excludes_it =
-        std::ranges::find(other.excludes, long_name(row)) != other.excludes.end();
-    if (excludes_it) excluded.push_back(long_name(other));
+    if (std::ranges::count(other.excludes, row.long_name()) > 0) {
+      excluded.push_back(other.long_name());
+    }
   }
   if (excluded.empty()) return row.help;
   return fmt::format("{}. Cannot be used with {}", row.help, fmt::join(excluded, ", "));
@@ -100,7 +94,7 @@ std::string synopsis_of(const verb& shown) {
   return text;
 }
 
-/// The rows of a table, "  name  meaning", each with the lines that continue it: names in a column.
+/// A table of the rows "  name  meaning". Lines with a deeper indent continue the row above.
 std::string table(const std::vector<std::string_view>& lines) {
   constexpr std::size_t indent = 2;
   constexpr std::size_t widest = 20;
@@ -125,8 +119,7 @@ std::string table(const std::vector<std::string_view>& lines) {
   return text + ".PD\n";
 }
 
-/// Paragraphs with empty lines between them, the first as it stands; indented lines are the rows of a
-/// table.
+/// Paragraphs, which empty lines separate. Indented lines are the rows of a table.
 std::string paragraphs(std::string_view text) {
   std::string out;
   std::vector<std::string_view> rows;
@@ -156,9 +149,8 @@ std::string paragraphs(std::string_view text) {
 
 std::string exit_status_of(const std::vector<int>& wanted) {
   std::string text = ".SH \"EXIT STATUS\"\n";
-  for (const exit_code_row& row : exit_codes) {
-    const bool is_possible = wanted.empty() || std::ranges::find(wanted, row.code) != wanted.end();
-    if (is_possible) text += entry(fmt::format(".B {}", row.code), row.meaning);
+  for (const auto& [code, meaning] : exit_code_rows(wanted)) {
+    text += entry(fmt::format(".B {}", code), meaning);
   }
   return text;
 }
@@ -189,8 +181,8 @@ std::string page_of(const program& ours, const verb& shown) {
 /// The programs of this project.
 constexpr std::array<std::string_view, 3> programs{"g4-dump", "g4-ros2", "g4-serve"};
 
-/// The pages of the program, of the commands that the text of a command names, and of the program that
-/// a command runs.
+/// The pages of the program, of the commands that the text names, and of the program that the
+/// command runs.
 std::vector<std::string> related_pages(const program& ours, const verb& shown) {
   std::vector<std::string> pages{std::string(ours.name)};
   for (const verb& other : ours.verbs()) {
@@ -212,7 +204,7 @@ std::vector<std::string> related_programs(const program& ours) {
   return pages;
 }
 
-/// The begin of a page, up to its description.
+/// A page up to the heading of its description.
 std::string head_of(std::string_view page, std::string_view title, const std::string& synopsis) {
   std::string upper = escaped(page);
   std::ranges::transform(upper, upper.begin(),
@@ -232,7 +224,7 @@ std::string sources() {
   return text;
 }
 
-/// The end of the page of a program.
+/// The last sections of the page of a program.
 std::string environment_and_bugs() {
   std::string text = ".SH ENVIRONMENT\n";
   text += entry(".B NO_COLOR", "If it is set and not empty, the output is not colored");
@@ -245,7 +237,7 @@ std::string environment_and_bugs() {
          "\n";
 }
 
-/// The page of a command, where a program has several.
+/// The page of one of several commands.
 std::string command_page(const program& ours, const verb& shown) {
   std::string text = head_of(page_of(ours, shown), shown.summary, synopsis_of(shown));
   text += escaped(shown.summary) + ".\n";
@@ -254,7 +246,7 @@ std::string command_page(const program& ours, const verb& shown) {
   text += ".SS Options of every command\n";
   const option_rows shared = joined(global_rows(), standard_rows());
   for (const option_row& row : shared) {
-    text += "\\fB" + escaped(long_name(row));
+    text += "\\fB" + escaped(row.long_name());
     text += &row == &shared.back() ? "\\fR: see\n" : "\\fR,\n";
   }
   text += reference_to(ours.name) +
@@ -283,7 +275,7 @@ std::string overview_page(const program& ours) {
   return text + environment_and_bugs() + see_also(related_programs(ours));
 }
 
-/// The page of a program with one command, which is not named.
+/// The page of a program with one command.
 std::string single_page(const program& ours, const verb& only) {
   std::string text = head_of(ours.name, ours.title, synopsis_of(only));
   text += paragraphs(ours.description) + sources() + ".SH OPTIONS\n";

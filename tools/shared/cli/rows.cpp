@@ -2,7 +2,6 @@
 #include "rows.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 
@@ -14,7 +13,7 @@ struct unit {
   double factor;
 };
 
-/// A number and one of the units, in the smallest of them; below 0 where it is anything else.
+/// The number in `text`, times the factor of its unit; below 0 if it has another form.
 double scaled_number(std::string_view text, std::initializer_list<unit> units) {
   double number = 0.0;
   const char* const end = text.data() + text.size();
@@ -49,28 +48,26 @@ std::chrono::nanoseconds duration_of(const std::string& text) {
 std::int64_t moment_of(const std::string& text) { return time_of(text, 0.0); }
 
 std::uint64_t byte_count_of(const std::string& text) {
-  std::string lower = text;
-  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   constexpr double k = 1024.0;
-  const double bytes = scaled_number(lower, {{"", 1.0},
-                                             {"b", 1.0},
-                                             {"k", k},
-                                             {"kib", k},
-                                             {"kb", 1e3},
-                                             {"m", k * k},
-                                             {"mib", k * k},
-                                             {"mb", 1e6},
-                                             {"g", k * k * k},
-                                             {"gib", k * k * k},
-                                             {"gb", 1e9},
-                                             {"t", k * k * k * k},
-                                             {"tib", k * k * k * k},
-                                             {"tb", 1e12}});
+  const double bytes = scaled_number(lowered(text), {{"", 1.0},
+                                                     {"b", 1.0},
+                                                     {"k", k},
+                                                     {"kib", k},
+                                                     {"kb", 1e3},
+                                                     {"m", k * k},
+                                                     {"mib", k * k},
+                                                     {"mb", 1e6},
+                                                     {"g", k * k * k},
+                                                     {"gib", k * k * k},
+                                                     {"gb", 1e9},
+                                                     {"t", k * k * k * k},
+                                                     {"tib", k * k * k * k},
+                                                     {"tb", 1e12}});
   if (bytes >= 1.0 && bytes <= 1e18) return static_cast<std::uint64_t>(bytes);
   throw bad_value(fmt::format("'{}' is not a size such as 500M or 1G", text));
 }
 
-void take_numbers(const std::string& text, const std::vector<named_number>& known) {
+void take_numbers(const std::string& text, const named_numbers& known) {
   std::string_view rest = text;
   while (!rest.empty()) {
     const std::string_view piece = rest.substr(0, rest.find(','));

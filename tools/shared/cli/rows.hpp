@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes rows of the table of options. Each parses its value, refuses one that is not valid by a
-// bad_value, and writes into a variable that exists as long as the table.
+// Makes rows of the table of options. Each row parses its value, throws bad_value for an invalid one,
+// and writes into a variable that outlives the table.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@
 
 namespace g4_tool {
 
-/// A number from `least` to `most`, all of `text`. Without exponent tricks: 9000, 0.5, 1e3.
+/// The number that is all of `text`: 9000, 0.5, 1e3. Throws bad_value outside of `least` to `most`.
 template <class Value>
 [[nodiscard]] Value number_of(const std::string& text, Value least, Value most) {
   Value value{};
@@ -34,17 +34,17 @@ template <class Value>
   return value;
 }
 
-/// Words and what they stand for, in the order of the help.
+/// Words and their meanings, in the order of the help.
 template <class Value>
 using choices = std::vector<std::pair<std::string, Value>>;
 
-/// The words with `between` between them.
+/// The words, separated by `between`.
 template <class Value>
 [[nodiscard]] std::string words_of(const choices<Value>& known, std::string_view between) {
   return fmt::format("{}", fmt::join(known | std::views::keys, between));
 }
 
-/// What a word stands for; any other is refused with the list of them and the nearest one.
+/// The meaning of a word. The bad_value for an unknown word lists the known ones and the nearest one.
 template <class Value>
 [[nodiscard]] Value choice_of(const std::string& word, const choices<Value>& known) {
   for (const auto& [choice, meaning] : known) {
@@ -58,20 +58,20 @@ template <class Value>
 /// "10s", "500ms", "1.5min", "2h", "250us": above 0, at most ten years. A number alone: seconds.
 [[nodiscard]] std::chrono::nanoseconds duration_of(const std::string& text);
 
-/// A place in a recording in nanoseconds: as a duration, or 0.
+/// A position in a recording in nanoseconds: a duration, or 0.
 [[nodiscard]] std::int64_t moment_of(const std::string& text);
 
-/// "1G", "500M", "64k": in steps of 1024; "1GB": of 1000. A number alone: bytes.
+/// "1G", "500M", "64k": multiples of 1024; "1GB": of 1000. A number alone: bytes.
 [[nodiscard]] std::uint64_t byte_count_of(const std::string& text);
 
-/// Two numbers with a colon between, either may be missing: "0.28:16", "-90:90", ":4".
+/// Two numbers separated by a colon; either may be missing: "0.28:16", "-90:90", ":4".
 struct number_range {
   double from;
   double to;
 };
 [[nodiscard]] number_range range_of(const std::string& text, double least, double most);
 
-/// A number that a word such as "window=3,near=0.1" can set.
+/// One of the numbers that a word such as "window=3,near=0.1" can set.
 struct named_number {
   std::string_view name;
   double least;
@@ -79,10 +79,11 @@ struct named_number {
   bool is_whole;
   std::function<void(double)> take;
 };
-/// Sets the numbers that `text` names; it may be empty.
-void take_numbers(const std::string& text, const std::vector<named_number>& known);
+using named_numbers = std::vector<named_number>;
+/// Sets the numbers that `text` names; it may be empty. Throws bad_value.
+void take_numbers(const std::string& text, const named_numbers& known);
 
-/// `into` becomes what `parse` makes of the word; it throws bad_value.
+/// An option whose value `parse` converts; `parse` throws bad_value.
 template <class Target, class Parse>
 [[nodiscard]] option_row value_row(const char* names, std::string value, const char* help,
                                    Target& into, Parse parse) {
@@ -90,7 +91,7 @@ template <class Target, class Parse>
           [&into, convert = std::move(parse)](const std::string& word) { into = convert(word); }};
 }
 
-/// Becomes true.
+/// A flag that sets `into` to true.
 [[nodiscard]] inline option_row flag_row(const char* names, const char* help, bool& into) {
   return value_row(names, "", help, into, [](const std::string&) { return true; });
 }
@@ -104,7 +105,7 @@ template <class Target>
   return row;
 }
 
-/// An argument that every command line has to have: the name of a file.
+/// A required argument: the name of a file.
 [[nodiscard]] inline option_row file_argument(const char* name, const char* help,
                                               std::string& into) {
   option_row row = text_row(name, "", help, into);
@@ -118,7 +119,7 @@ template <class Target>
   return value_row(names, "TIME", help, into, duration_of);
 }
 
-/// A place in a recording, as nanoseconds from its beginning.
+/// A position in a recording, as nanoseconds from its beginning.
 [[nodiscard]] inline option_row moment_row(const char* names, const char* help,
                                            std::int64_t& into) {
   return value_row(names, "TIME", help, into, moment_of);
@@ -150,7 +151,7 @@ template <class Target, class Value>
   return row;
 }
 
-/// `row`, and `check` is called with the word before it is taken.
+/// `row` with a `check` of each word before it is taken.
 [[nodiscard]] inline option_row checked(option_row row,
                                         std::function<void(const std::string&)> check) {
   row.take = [inner = std::move(row.take), is_valid = std::move(check)](const std::string& word) {
@@ -160,13 +161,13 @@ template <class Target, class Value>
   return row;
 }
 
-/// `rows` under a heading of the help.
+/// `rows` with a heading in the help.
 [[nodiscard]] inline option_rows in_group(const char* heading, option_rows rows) {
   for (option_row& row : rows) row.group = heading;
   return rows;
 }
 
-/// Rows one after the other, each part an option_row or option_rows.
+/// All rows in one table; each part is an option_row or option_rows.
 template <class... Parts>
 [[nodiscard]] option_rows joined(Parts... parts) {
   option_rows all;

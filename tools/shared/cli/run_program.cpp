@@ -38,7 +38,7 @@ int run_program(const program& run, int argc, const char* const* argv) noexcept 
     logger::error(reason.what(), reason.code(), reason.problem());
     return static_cast<int>(reason.code());
   } catch (const std::bad_alloc&) {
-    // Nothing is allocated for this.
+    // These messages need no memory.
     if (our_global_options().json_errors) {
       logger::write("{\"error\":\"out of memory\",\"exit_code\":11}\n");
     } else {

@@ -59,13 +59,6 @@ option_rows scan_rows(serve_options& options) {
                 options.frame_id, completion::nothing)});
 }
 
-option_rows player_rows(serve_options& options) {
-  return in_group("Recordings",
-                  {number_row("--playback-speed", "FACTOR", "1: as recorded, 0.5: half as fast (1)",
-                              options.speed, 0.01, 100.0),
-                   flag_row("--loop", "Start again at the end", options.loops)});
-}
-
 }  // namespace
 
 verb make_serve_verb(std::string name, const std::function<int(const serve_options&)>& run) {
@@ -75,10 +68,11 @@ verb make_serve_verb(std::string name, const std::function<int(const serve_optio
       .name = std::move(name),
       .summary = "Show the lidar in a web page, and to Foxglove",
       .arguments = {source_argument(options->common)},
-      .options = joined(server_rows(*options), device_rows(options->common),
-                        filter_rows(options->common), near_row(options->common.marks.near),
-                        scan_rows(*options), grid_rows(options->common.grid), player_rows(*options),
-                        in_group("End condition", {duration_row(options->common)})),
+      .options =
+          joined(server_rows(*options), device_rows(options->common), filter_rows(options->common),
+                 near_row(options->common.marks.near), scan_rows(*options),
+                 grid_rows(options->common.grid), player_rows(options->speed, options->loops),
+                 in_group("End condition", {duration_row(options->common)})),
       .details = serve_details,
       .examples = {{command, "Serve the only G4 at http://localhost:8765/"},
                    {command + " walk.mcap --loop --port 8000", "Play a recording, again and again"},

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,21 +15,21 @@ namespace g4_tool {
 struct serve_options {
   serve_options() {
     common.on_loss = loss_rule::wait;
-    common.frame = frame::robot;  // that of the page
+    common.frame = frame::robot;  // as in the page
   }
 
   common_options common;
   std::string address = "127.0.0.1";
-  std::uint16_t port = 8765;  ///< 0: any that is free.
+  std::uint16_t port = 8765;  ///< 0: any free port.
   bool allows_set = false;
-  std::vector<std::string> origins;  ///< Web pages of others that may connect.
-  std::uint32_t bins = 720;          ///< Of a LaserScan.
+  std::vector<std::string> origins;  ///< Of other web pages that may connect.
+  std::uint32_t bins = 720;          ///< Ranges of a LaserScan.
   std::string frame_id = "laser";
-  double speed = 1.0;  ///< Of a recording.
+  double speed = 1.0;  ///< Of the playback of a recording.
   bool loops = false;
 };
 
-/// The verb `name`, which `run` runs.
+/// The verb `name`, executed by `run`.
 [[nodiscard]] verb make_serve_verb(std::string name,
                                    const std::function<int(const serve_options&)>& run);
 

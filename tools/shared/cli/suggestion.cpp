@@ -8,14 +8,8 @@
 namespace g4_tool {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string made(text);
-  for (char& c : made) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return made;
-}
-
-/// How many letters must be inserted, removed, replaced or swapped with the next one to make `b` of
-/// `a`.
+/// How many letters must be inserted, removed, replaced or swapped with the next one to turn `a` into
+/// `b`.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> two_ago;
   std::vector<std::size_t> before(b.size() + 1);
@@ -37,17 +31,23 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string lowered(std::string_view text) {
+  std::string made(text);
+  for (char& c : made) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return made;
+}
+
 std::string did_you_mean(std::string_view typed, const std::vector<std::string>& known) {
-  constexpr std::size_t longest = 64;  // of a word, so that the comparison takes no time
+  constexpr std::size_t longest = 64;  // bounds the time of the comparison
   if (typed.size() < 3 || typed.size() > longest) return {};
   if (std::isdigit(static_cast<unsigned char>(typed.front())) != 0) return {};
-  const std::string word = lower(typed);
+  const std::string word = lowered(typed);
   std::size_t least = std::max<std::size_t>(1, typed.size() / 3) + 1;
   const std::string* nearest = nullptr;
   for (const std::string& each : known) {
     if (each == typed) return {};
     const bool is_begin = each.size() > word.size() && each.starts_with(word);
-    const std::size_t distance = is_begin ? 1 : edit_distance(word, lower(each));
+    const std::size_t distance = is_begin ? 1 : edit_distance(word, lowered(each));
     if (distance >= least) continue;
     least = distance;
     nearest = &each;

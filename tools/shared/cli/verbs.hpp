@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The table of verbs and options, and what the help contains beside them: the command line, the man
-// pages and the completions are made from it. A program makes its verbs.
+// The table of verbs and options, and the texts of the help. The command line, the man pages and the
+// completions are generated from it. Each program creates its own verbs.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <span>
@@ -13,39 +14,46 @@
 
 namespace g4_tool {
 
-/// Thrown by option_row::take and verb::run for a value that is not valid: what is wrong with it,
+/// Thrown by option_row::take and verb::run for an invalid value. The message describes the error,
 /// without the option's name and without a full stop.
 class bad_value : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a shell offers for a value.
+/// What the completion of a shell offers for a value.
 enum class completion : unsigned char { nothing, file, source, choices, setting, fault };
 
-/// An option, or an argument where `names` begins with no dash. An option with an empty `value` is a
-/// flag.
+/// An option, or an argument if `names` does not begin with a dash. An option with an empty `value`
+/// is a flag.
 struct option_row {
-  std::string names{};                             ///< "-o,--output"; of an argument "SOURCE".
+  std::string names{};                             ///< "-o,--output"; an argument: "SOURCE".
   std::string value{};                             ///< "FILE", "csv|jsonl|text"; empty for a flag.
-  std::string help{};                              ///< A line; the default in parentheses.
-  std::function<void(const std::string&)> take{};  ///< Of a flag it gets "".
+  std::string help{};                              ///< One line; the default in parentheses.
+  std::function<void(const std::string&)> take{};  ///< Called with each value; "" for a flag.
   completion complete = completion::nothing;       ///< choices: the words of `value`.
-  bool repeatable = false;                         ///< May be given again.
+  bool repeatable = false;                         ///< May be given several times.
   bool required = false;
   std::string group{};                  ///< Its heading in the help; empty: Options.
-  std::vector<std::string> excludes{};  ///< Refused together with these.
-  /// Of a flag: the value that it may have after `=`; then `take` gets it.
+  std::vector<std::string> excludes{};  ///< Options that cannot be combined with this one.
+  /// For a flag: the name of the value that may follow after `=` and is passed to `take`.
   std::string optional_value{};
+
+  /// "--output" of "-o,--output"; the name of an argument.
+  [[nodiscard]] std::string long_name() const { return names.substr(names.rfind(',') + 1); }
+  /// Whether `name` is one of `names`.
+  [[nodiscard]] bool has_name(const std::string& name) const {
+    return ("," + names + ",").find("," + name + ",") != std::string::npos;
+  }
 };
 using option_rows = std::vector<option_row>;
 
-/// A command line that can be copied, and what it does: words without a full stop.
+/// A command line to copy, and its description without a full stop.
 struct example {
   std::string line;
   std::string words;
 };
 
-/// One verb. Its rows write into what `run` reads and keeps alive.
+/// One verb. Its rows write into the options that `run` reads and owns.
 struct verb {
   std::string name{};
   std::string summary{};  ///< A line.
@@ -55,31 +63,31 @@ struct verb {
   /// are rows "name  meaning" of a table.
   std::string details{};
   std::vector<example> examples{};
-  std::vector<int> exits{};    ///< The exit codes that it can have; empty: all.
+  std::vector<int> exits{};    ///< The possible exit codes; empty: all.
   std::function<int()> run{};  ///< Returns the exit code; throws a failure.
 };
 
-/// A program: its verbs, and the words of its help. All names are valid forever.
+/// A program: its verbs and the texts of its help. The views are valid for the whole run.
 struct program {
   std::string_view name;         ///< "g4-dump".
   std::string_view title;        ///< A line for the help, without a full stop.
   std::string_view description;  ///< Paragraphs of the man page.
-  std::vector<verb> (
-      *verbs)();  ///< In the order of the help. A single one is not named on the command line.
-  std::string_view default_verb;  ///< The verb that need not be named.
-  /// Runs where nothing is given and standard output is a terminal, if it is set. Returns the exit code.
+  /// In the order of the help. The name of the only verb is not part of the command line.
+  std::vector<verb> (*verbs)();
+  std::string_view default_verb;  ///< The verb if the command line names none.
+  /// If set: runs for an empty command line on a terminal. Returns the exit code.
   int (*overview)() = nullptr;
-  /// Its options can also stand in a TOML file, which --config names. For a program with one verb.
-  bool has_config = false;
+  bool has_config =
+      false;  ///< --config reads options from a TOML file. For a program with one verb.
 };
 
-/// The program that runs. Set by run_program().
+/// The running program. Set by run_program().
 [[nodiscard]] const program& this_program() noexcept;
 
-/// The words of the command line that run_program() was given, without the program's name.
+/// The arguments of run_program(), without the program's name.
 [[nodiscard]] const std::vector<std::string>& command_line() noexcept;
 
-/// The exit codes and what they mean.
+/// The exit codes and their meanings.
 struct exit_code_row {
   int code;
   std::string_view meaning;
@@ -99,7 +107,16 @@ inline constexpr std::array<exit_code_row, 12> exit_codes{{
     {130, "ended by ^C (128 + the number of the signal)"},
 }};
 
-/// What SOURCE can be.
+/// The codes in `wanted`; all if that is empty.
+[[nodiscard]] inline std::vector<exit_code_row> exit_code_rows(const std::vector<int>& wanted) {
+  std::vector<exit_code_row> rows(exit_codes.begin(), exit_codes.end());
+  std::erase_if(rows, [&wanted](const exit_code_row& row) {
+    return !wanted.empty() && std::ranges::find(wanted, row.code) == wanted.end();
+  });
+  return rows;
+}
+
+/// The forms of SOURCE.
 struct source_form {
   std::string_view form;
   std::string_view meaning;
@@ -117,20 +134,19 @@ inline constexpr std::array<source_form, 7> source_forms{{
 /// main() of every program: runs the verb of the command line and reports errors. Returns the exit code.
 [[nodiscard]] int run_program(const program& run, int argc, const char* const* argv) noexcept;
 
-/// Reads the command line. Returns the function to run, which returns the exit code; after --help,
-/// --version and a wrong command line nothing is left to do, and it only returns that.
+/// Parses the command line. Returns the function that runs the command and returns the exit code.
+/// --help, --version and errors are handled before it returns.
 [[nodiscard]] std::function<int()> read_command_line(int argc, const char* const* argv);
 
 /// "PROBLEM. See: COMMAND --help".
 [[nodiscard]] std::string with_help(const std::string& problem, std::string_view command);
 
-/// `--generate man DIRECTORY`, which the build runs: writes the man pages to the directory. Returns the
-/// exit code.
+/// `--generate man DIRECTORY`, which the build runs: writes the man pages. Returns the exit code.
 [[nodiscard]] int write_man_pages(const std::string& directory);
 
-/// `--complete WORD...`, which the scripts of the shells run: prints what the last word,
-/// which may be empty, can become, each with a tab and what it means; `/` stands for the names of
-/// files. Returns the exit code.
+/// `--complete WORD...`, which the completion scripts run: prints the completions of the last word
+/// (which may be empty), each with a tab and its description; `/` requests the names of files.
+/// Returns the exit code.
 [[nodiscard]] int complete(std::span<const std::string> words);
 
 }  // namespace g4_tool

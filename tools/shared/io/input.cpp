@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Opening and reading, with every failure as a sentence.
 #include "input.hpp"
 
 #include <fcntl.h>
@@ -17,7 +16,6 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
-#include "interrupt.hpp"
 
 namespace g4_tool {
 namespace {
@@ -28,7 +26,7 @@ std::string advice_on(int error, const std::string& what_to_give) {
   return what_to_give;
 }
 
-/// A recording comes in files; in a pipe it would be taken for noise.
+/// A recording can be read from files only; in a pipe it would count as noise.
 void refuse_recording(std::span<const std::uint8_t> begin, const std::string& title) {
   constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
   if (!std::ranges::equal(begin.first(std::min(begin.size(), magic.size())), magic)) return;
@@ -78,7 +76,7 @@ std::size_t input::read(std::span<std::uint8_t> into) {
   while (interrupt() == 0) {
     const ssize_t count = ::read(fd_, into.data(), into.size());
     if (count >= 0) return static_cast<std::size_t>(count);
-    if (errno == EIO && ::isatty(fd_) != 0) return 0;  // the other side of a terminal has gone
+    if (errno == EIO && ::isatty(fd_) != 0) return 0;  // the other side has closed the terminal
     if (errno == EAGAIN && wait_for_input(fd_, -1) == wake::input) continue;
     if (errno == EINTR || errno == EAGAIN) continue;
     throw failure(exit_code::bad_file,
@@ -107,7 +105,7 @@ void input::pump(output& out, const byte_sink& sink, const common_options& optio
     const std::size_t most = bytes == 0 ? first_piece : buffer.size();
     const std::span<const std::uint8_t> got(buffer.data(), read(std::span(buffer).first(most)));
     if (got.empty()) return;
-    limits.came();
+    limits.restart_idle();
     if (bytes == 0) refuse_recording(got, title_);
     sink.take(got);
     if (bytes == 0) out.flush();

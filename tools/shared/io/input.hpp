@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bytes from a file, a pipe or standard input, as they come; the contents of a recording; the counts
-// of raw bytes as text or JSON, and what is wrong with an input that holds no packet.
+// Bytes from a file, a pipe or standard input; the contents of a recording; the counts of raw bytes as
+// text or JSON; the error for an input without packets.
 #pragma once
 
 #include <cstddef>
@@ -19,38 +19,38 @@
 
 namespace g4_tool {
 
-/// What becomes of the bytes.
+/// The receiver of the bytes.
 struct byte_sink {
   std::function<void(std::span<const std::uint8_t>)> take;
-  std::function<bool()> is_done{};  ///< Asked after each piece, where it is set.
-  bool with_bar = true;             ///< Whether to show how far a file has been read.
+  std::function<bool()> is_done{};  ///< If set: called after each piece.
+  bool with_bar = true;             ///< Shows the progress through a file.
 };
 
-/// Something that is read from its beginning to its end. Closes itself.
+/// An input that is read once, from its beginning to its end. Owns its descriptor.
 class input {
  public:
-  /// The file of that name, `-` for standard input. `what_to_give` ends the sentence of a failure:
-  /// "Give a file with ...".
+  /// Opens a file, or standard input for `-`. `what_to_give` is the advice in failures: "Give a file
+  /// with ...".
   input(const std::string& name, const std::string& what_to_give);
   input(const input&) = delete;
   input& operator=(const input&) = delete;
   ~input();
 
-  /// Reads what is there, waiting until something is; how many bytes, 0 at the end or after a signal.
+  /// Waits for bytes and reads them. Returns their number: 0 at the end or after a signal.
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> into);
 
-  /// Reads until `sink` is done, the end of the input, a signal, -d or --idle of a pipe, or nobody
-  /// reads `out` any more. Who reads `out` has all there is before more is waited for, and the first of a file at once.
+  /// Reads until `sink` is done, the end of the input, a signal, -d or --idle of a pipe, or the reader of
+  /// `out` closes it. `out` is flushed before each wait, and after the first piece of a file.
   void pump(output& out, const byte_sink& sink, const common_options& options);
 
-  /// Where it is a file on disk: which one.
+  /// The identity of a file on disk.
   [[nodiscard]] const std::optional<file_id>& id() const noexcept { return id_; }
 
-  /// As it stands in sentences.
+  /// Its name in messages.
   [[nodiscard]] const std::string& title() const noexcept { return title_; }
 
  private:
-  /// Waits for more of a pipe; false where the end has come.
+  /// Waits for more bytes of a pipe; false if there is no reason to read on.
   [[nodiscard]] bool wait(output& out, const time_limits& limits) const;
 
   int fd_ = 0;
@@ -59,36 +59,35 @@ class input {
   std::uint64_t size_ = 0;
 };
 
-/// A reader that a signal ends with cancelled, if `range` names no other reason. Throws interrupted
-/// if it was ended while it opened, or a failure.
+/// Opens a recording; by default a signal cancels reading. Throws interrupted if opening was cancelled,
+/// or a failure.
 [[nodiscard]] g4lidar::recording_reader open_recording(const std::string& path,
                                                        g4lidar::reading_options range = {});
 
 /// Calls `take` with each item in `range` until it returns false, a signal comes, or the recording
-/// ends; with a progress bar. Returns the reader, for what it knows at the end. Throws a failure.
+/// ends; shows the progress. Returns the reader, for its state at the end. Throws a failure.
 g4lidar::recording_reader read_items(
     const std::string& path, const g4lidar::reading_options& range,
     const std::function<bool(const g4lidar::recorded_item&)>& take);
 
-/// What is missing from a recording, as a text line; empty where nothing is.
+/// The damage of a recording as a text line; empty if there is none.
 [[nodiscard]] std::string describe(const g4lidar::recording_damage& damage);
 
 /// Two lines for people.
 [[nodiscard]] std::string stats_in_words(const g4lidar::stream_counts& counts, std::uint64_t bytes);
 
-/// An object with the keys bytes, packets, responses, points, suspect and skipped, the latter an
-/// object of bytes by reason.
+/// An object with the counts; "skipped" is an object of bytes by reason.
 [[nodiscard]] nlohmann::ordered_json counts_as_json(const g4lidar::stream_counts& counts,
                                                     std::uint64_t bytes);
 
-/// Whether bytes look like text, which no recording is: only the first ones are looked at.
+/// Whether the first bytes look like text, which no recording does.
 [[nodiscard]] bool looks_like_text(std::span<const std::uint8_t> bytes) noexcept;
 
-/// Why there is no packet in `bytes` bytes of `title`, and what to do: whole sentences.
+/// Why `bytes` bytes of `title` contain no packet, and what to do: whole sentences.
 [[nodiscard]] std::string why_no_packet(const g4lidar::stream_counts& counts, std::uint64_t bytes,
                                         bool has_text, const std::string& title);
 
-/// A warning about an input most of which is no packet; empty if there is nothing to warn of.
+/// A warning if most bytes of an input belong to no packet; else empty.
 [[nodiscard]] std::string warning_about(const g4lidar::stream_counts& counts, std::uint64_t bytes);
 
 }  // namespace g4_tool

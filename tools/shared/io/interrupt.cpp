@@ -28,7 +28,7 @@ void keep_signal(int number) {
 }  // namespace
 
 void prepare_process() {
-  // open() gives the lowest free number: exactly the one that is missing.
+  // open() returns the lowest free number, which is the missing one.
   for (const int standard : {0, 1, 2}) {
     if (::fcntl(standard, F_GETFD) < 0) {
       [[maybe_unused]] const int fd = ::open("/dev/null", O_RDONLY);
@@ -43,7 +43,7 @@ void prepare_process() {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before{};
     ::sigaction(number, nullptr, &before);
-    if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);  // nohup stays
+    if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);  // as under nohup
   }
 }
 
@@ -58,7 +58,7 @@ wake wait_for_input(int input, int output, std::chrono::steady_clock::time_point
   while (interrupt() == 0) {
     std::array<pollfd, 3> waiting{{{input, POLLIN, 0}, {wake_pipe[0], POLLIN, 0}, {output, 0, 0}}};
     const auto left = until == no_deadline ? 1h : until - std::chrono::steady_clock::now();
-    // Not in milliseconds: the end of a revolution is awaited from a moment before it on.
+    // poll() with its milliseconds is too coarse for the wait for the end of a revolution.
     const std::chrono::nanoseconds time = std::clamp<std::chrono::nanoseconds>(left, 0ns, 1h);
     const timespec longest{static_cast<std::time_t>(time / 1s),
                            static_cast<long>((time % 1s).count())};
@@ -69,7 +69,7 @@ wake wait_for_input(int input, int output, std::chrono::steady_clock::time_point
     if (woken <= 0) continue;
     if (waiting[1].revents != 0) break;
     if ((waiting[2].revents & (POLLERR | POLLHUP)) != 0) return wake::output_closed;
-    return wake::input;  // or an output that cannot be waited for
+    return wake::input;  // or poll() does not support the output
   }
   return wake::interrupt;
 }

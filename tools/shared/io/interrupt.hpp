@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// ^C, SIGTERM and SIGHUP as something a loop can ask for and a poll can wait for; how long it waits.
+// ^C, SIGTERM and SIGHUP as a state for loops and a descriptor for poll(); the time limits of loops.
 #pragma once
 
 #include <algorithm>
@@ -8,38 +8,38 @@
 
 namespace g4_tool {
 
-/// A moment that does not come.
+/// A deadline that never expires.
 inline constexpr auto no_deadline = std::chrono::steady_clock::time_point::max();
 
-/// From now on the first such signal is only stored, a second one ends the program, and writing to a
-/// closed pipe or beyond the largest file is an error like any other. Descriptors 0 to 2 that are closed lead
-/// nowhere, so that no file takes their place.
+/// Installs the handlers: the first such signal is only stored, a second one ends the program. Writing
+/// to a closed pipe or beyond the largest file size becomes an ordinary error. Closed descriptors from 0
+/// to 2 are opened on /dev/null, so that no file gets their numbers.
 void prepare_process();
 
-/// The signal that came, or 0.
+/// The stored signal, or 0.
 [[nodiscard]] int interrupt() noexcept;
 
-/// The exit code of a command that came to its end: 0, or after a signal 128 + its number.
+/// The exit code of a command that has ended without an error: 0, or after a signal 128 + its number.
 [[nodiscard]] int exit_code_now() noexcept;
 
-/// For poll(): readable when a signal has come.
+/// For poll(): readable after a signal.
 [[nodiscard]] int interrupt_handle() noexcept;
 
-/// Thrown where a signal came while there was nothing yet to be brought to a good end.
+/// Thrown for a signal before there is any output to complete.
 struct interrupted {};
 
-/// What wait_for_input() saw.
+/// The result of wait_for_input().
 enum class wake { input, interrupt, output_closed, timeout };
 
-/// Waits until `input` can be read, a signal comes, the reader of `output` has gone, or the time has
-/// come. A descriptor below 0 is not waited for.
+/// Waits until `input` is readable, a signal comes, the reader of `output` has closed it, or `until`.
+/// Descriptors below 0 are ignored.
 [[nodiscard]] wake wait_for_input(
     int input, int output, std::chrono::steady_clock::time_point until = no_deadline) noexcept;
 
-/// open(2), again after a signal that ends nothing; -1 with errno. Throws interrupted.
+/// open(2), repeated after EINTR; -1 with errno. Throws interrupted after a stored signal.
 [[nodiscard]] int open_file(const std::string& name, int flags);
 
-/// When a loop ends by -d and --idle.
+/// The end of a loop by -d and --idle.
 class time_limits {
  public:
   using clock = std::chrono::steady_clock;
@@ -48,9 +48,9 @@ class time_limits {
   time_limits(std::chrono::nanoseconds duration, std::chrono::nanoseconds idle) noexcept
       : duration_(duration), idle_(idle) {}
 
-  /// Something has come: --idle counts from now on.
-  void came() noexcept { last_ = clock::now(); }
-  /// When it ends, if nothing comes until then.
+  /// Data has arrived: --idle counts from now on.
+  void restart_idle() noexcept { last_ = clock::now(); }
+  /// When the loop ends if no data arrives.
   [[nodiscard]] clock::time_point end() const noexcept {
     return std::min(duration_.count() > 0 ? begin_ + duration_ : no_deadline,
                     idle_.count() > 0 ? last_ + idle_ : no_deadline);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Writing, with every failure as a sentence; the temporary file and its renaming.
 #include "output.hpp"
 
 #include <fcntl.h>
@@ -12,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
-#include <utility>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -57,7 +55,7 @@ output::~output() {
 void output::open_beside(const struct stat* older) {
   if (older != nullptr && ::access(name_.c_str(), W_OK) != 0) give_up("replace", errno);
   std::error_code unknown;
-  // Behind symbolic links, so that what they point to is replaced and not the links.
+  // Symbolic links are resolved, so that their target is replaced.
   const std::filesystem::path real = std::filesystem::canonical(name_, unknown);
   if (!unknown) name_ = real;
   const std::filesystem::path directory = std::filesystem::path(name_).parent_path();
@@ -66,7 +64,7 @@ void output::open_beside(const struct stat* older) {
     fd_ = open_file(temporary_, O_WRONLY | O_CREAT | O_EXCL);
     if (fd_ >= 0) break;
     const int error = errno;
-    temporary_.clear();  // it is somebody else's or not there
+    temporary_.clear();  // the destructor must not remove it
     if (error != EEXIST) give_up("create", error);
   }
   if (older != nullptr) ::fchmod(fd_, older->st_mode & 0777);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A file that appears whole or not at all; or standard output, a pipe, a device, as it comes.
+// Output to a file that appears complete or not at all; or directly to standard output, a pipe or a device.
 #pragma once
 
 #include <sys/stat.h>
@@ -15,7 +15,7 @@
 
 namespace g4_tool {
 
-/// A regular file on disk, whatever name it has: its device and its number.
+/// The identity of a regular file, independent of its names: its device and inode.
 using file_id = std::pair<dev_t, ino_t>;
 
 [[nodiscard]] inline std::optional<file_id> id_of(const struct stat& status) noexcept {
@@ -23,49 +23,49 @@ using file_id = std::pair<dev_t, ino_t>;
   return file_id{status.st_dev, status.st_ino};
 }
 
-/// The regular file of that name; nothing where there is none.
+/// The identity of the regular file of that name; nothing if there is none.
 [[nodiscard]] inline std::optional<file_id> id_of_name(const std::string& name) noexcept {
   struct stat status{};
   if (::stat(name.c_str(), &status) != 0) return std::nullopt;
   return id_of(status);
 }
 
-/// Where data goes, through a buffer. A file on disk is written beside its place under another name
-/// and put there by commit(); without a commit() nothing is left of it and an older file of that
-/// name stays untouched. Everything else is written to directly.
+/// A buffered output. A file on disk is written beside its place under a temporary name, and commit()
+/// renames it; without commit() it is removed and an older file of that name remains. All else is
+/// written directly.
 class output : public g4lidar::text_sink {
  public:
-  /// When a file on disk stands in its place.
+  /// When a file on disk appears under its name.
   enum class appears : unsigned char {
-    whole,    ///< When it is finished.
-    growing,  ///< With the first bytes that go to it, so that a crash leaves what there was.
+    whole,    ///< At commit().
+    growing,  ///< With the first bytes, so that they remain after a crash.
   };
 
-  /// The file of that name, `-` for standard output.
+  /// The file of that name; standard output for `-`.
   explicit output(std::string name, appears when = appears::whole);
   output(const output&) = delete;
   output& operator=(const output&) = delete;
   ~output() override;
 
-  /// flush(), then writes `text` over the begin of what was written. For a file on disk.
+  /// Calls flush(), then overwrites the beginning of the output. For a file on disk.
   void replace_begin(std::string_view text);
-  /// flush(), and the file stands in its place.
+  /// Calls flush() and gives the file its name.
   void commit();
 
-  /// Nobody reads any more: what is written is thrown away. That is a normal end.
+  /// The reader has closed the pipe: further output is discarded. That is a normal end.
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
-  /// Somebody else has seen that.
+  /// The caller has seen that the reader has closed it.
   void close_early() noexcept { closed_ = true; }
 
   [[nodiscard]] bool is_terminal() const noexcept;
-  /// The file on disk that is written or replaced, if there is one already.
+  /// The existing file on disk that is written or replaced.
   [[nodiscard]] const std::optional<file_id>& id() const noexcept { return id_; }
   [[nodiscard]] int descriptor() const noexcept { return fd_; }
-  /// Where the file is written until commit().
+  /// The path of the file until commit().
   [[nodiscard]] const std::string& place() const noexcept {
     return temporary_.empty() ? name_ : temporary_;
   }
-  /// As it stands in sentences.
+  /// Its name in messages.
   [[nodiscard]] const std::string& title() const noexcept { return title_; }
 
  private:
@@ -75,27 +75,27 @@ class output : public g4lidar::text_sink {
 
   std::string name_;
   std::string title_;
-  std::string temporary_;  // until it is renamed
-  int fd_ = 1;             // -1: a growing file that has not begun
+  std::string temporary_;  // until commit()
+  int fd_ = 1;             // -1: a growing file before its first bytes
   std::optional<file_id> id_;
   bool closed_ = false;
 };
 
-/// The name of each file: `scan-%04d.pcd` and a directory stand for one for each number.
+/// The names of numbered files.
 using numbered_files = std::function<std::string(std::uint64_t)>;
 
-/// Empty where `name` is the name of one file. Throws a bad_value where it makes no sense. With
-/// `keeps_existing` the name of a file that exists is refused.
+/// For `scan-%04d.pcd` or a directory; empty if `name` is the name of one file. Throws a bad_value for
+/// other uses of %. With `keeps_existing` the function refuses the name of an existing file.
 [[nodiscard]] numbered_files numbered_files_of(const std::string& name,
                                                bool keeps_existing = false);
 
-/// What to do where a file cannot be written.
+/// The advice for an error of writing.
 [[nodiscard]] const char* advice_on_writing(int error) noexcept;
 
-/// Refuses, with a sentence, to replace a file on disk.
+/// Throws a failure if the file exists.
 void refuse_existing(const std::string& name);
 
-/// Refuses, with a sentence, to read and write one and the same file.
+/// Throws a failure if input and output are the same file.
 void refuse_same_file(const std::optional<file_id>& from, const output& to);
 
 }  // namespace g4_tool

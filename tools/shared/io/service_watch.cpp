@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Datagrams to the socket of whoever has started the service.
 #include "service_watch.hpp"
 
 #include <sys/socket.h>
@@ -16,27 +15,27 @@
 namespace g4_tool {
 namespace {
 
-/// A variable of the environment; empty where it is not set.
+/// A variable of the environment; empty if it is not set.
 std::string_view variable(const char* name) {
   const char* const text = std::getenv(name);
   return text == nullptr ? std::string_view() : std::string_view(text);
 }
 
-/// The number that is all of `text`; 0 where it is none.
+/// The number that is all of `text`; 0 if it is not a number.
 std::int64_t number_in(std::string_view text) {
   std::int64_t value = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
   return problem == std::errc{} && end == text.data() + text.size() ? value : 0;
 }
 
-/// Half of what the watchdog grants to this process; 0 where it watches another, or none.
+/// Half of the watchdog's timeout; 0 if it does not watch this process.
 std::int64_t watchdog_interval_ns() {
   const std::string_view watched = variable("WATCHDOG_PID");
   if (!watched.empty() && number_in(watched) != ::getpid()) return 0;
   return std::clamp<std::int64_t>(number_in(variable("WATCHDOG_USEC")), 0, INT64_MAX / 1000) * 500;
 }
 
-/// A socket that leads to `name`: a path, or `@` and a name in the abstract space. -1 if there is none.
+/// A socket connected to `name`: a path, or `@` and an abstract name. -1 on failure.
 int connect_to(std::string_view name) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
@@ -45,7 +44,7 @@ int connect_to(std::string_view name) {
   if (name.size() >= sizeof(address.sun_path)) return -1;
   std::copy(name.begin(), name.end(), std::begin(address.sun_path));
   if (is_abstract) address.sun_path[0] = '\0';
-  // An abstract name ends where the address ends, a path with its zero.
+  // The size of the address includes the terminating zero of a path, but an abstract name has none.
   const std::size_t size = offsetof(sockaddr_un, sun_path) + name.size() + (is_abstract ? 0U : 1U);
   const int fd = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const auto* const at = reinterpret_cast<const sockaddr*>(&address);
@@ -64,7 +63,7 @@ service_watch::~service_watch() {
 }
 
 void service_watch::ready() {
-  // Without this word the service is taken for one that did not start: here it is worth waiting.
+  // Without this message systemd assumes that the service did not start, so it may wait.
   if (!is_ready_) is_ready_ = send("READY=1", 0);
 }
 
@@ -79,7 +78,7 @@ void service_watch::alive() {
 
 void service_watch::status(std::string_view text) {
   std::string line = "STATUS=" + std::string(text);
-  std::replace(line.begin(), line.end(), '\n', ' ');  // a line break would begin another word
+  std::replace(line.begin(), line.end(), '\n', ' ');  // a line break would begin another variable
   if (line != status_ && send(line, MSG_DONTWAIT)) status_ = std::move(line);
 }
 

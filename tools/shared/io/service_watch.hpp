@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a service reports to systemd: that it is ready, that it runs, what it does, that it ends.
+// The reports of a service to systemd: ready, alive, its status, stopping.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace g4_tool {
 
-/// The service's side of systemd's notify protocol (sd_notify(3)), without libsystemd. Where the
-/// environment has no NOTIFY_SOCKET, as in a shell, every call does nothing. *Single thread, never
-/// waits* but for ready(): a manager that is busy must not hold up a recording.
+/// The service's side of systemd's notify protocol (sd_notify(3)), without libsystemd. Without
+/// NOTIFY_SOCKET in the environment, as in a shell, all calls have no effect. *Single thread, never
+/// waits* except for ready(): a busy manager must not delay a recording.
 class service_watch {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID.
@@ -19,23 +19,23 @@ class service_watch {
   service_watch& operator=(const service_watch&) = delete;
   ~service_watch();
 
-  /// READY=1: the lidar scans, or whatever it is that other units wait for. Sent once.
+  /// READY=1: the service does its work, for which other units may wait. Sent once.
   void ready();
-  /// To be called in every turn of the loop: WATCHDOG=1, as soon as half of the unit's WatchdogSec= has
-  /// gone by since the last one. Where the loop hangs, systemd ends the service and starts it anew.
+  /// Call it in every turn of the loop. Sends WATCHDOG=1 when half of the unit's WatchdogSec= has passed
+  /// since the last one; if the loop hangs, systemd restarts the service.
   void alive(std::int64_t now_ns);
   /// The same, by std::chrono::steady_clock.
   void alive();
-  /// STATUS=: what `systemctl status` shows, one line. The same text again is not sent again.
+  /// STATUS=: one line for `systemctl status`. An unchanged text is not sent again.
   void status(std::string_view text);
-  /// STOPPING=1: it was asked to end, or has come to its end. Sent once.
+  /// STOPPING=1: the service ends. Sent once.
   void stopping();
 
-  /// Whether anybody listens.
+  /// Whether there is a manager.
   [[nodiscard]] bool is_heard() const noexcept { return fd_ >= 0; }
 
  private:
-  /// Whether it has arrived.
+  /// Whether it was sent.
   bool send(std::string_view text, int flags) const noexcept;
 
   int fd_;
