@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Keeps what the driver reads, for clients that record it.
+// Stores the bytes that the driver reads, for clients that record them.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +14,10 @@
 
 namespace g4_tool {
 
-/// Bytes since the last take(). Bounded: what does not fit is dropped. *Single thread*: the station's.
+/// The bytes since the last take(). Bounded: bytes that do not fit are dropped. *Single thread*: that of the lidar.
 class byte_tap {
  public:
-  /// Many times those of the longest revolution.
+  /// Many times the bytes of the longest revolution.
   static constexpr std::size_t most_bytes = 65'536;
 
   byte_tap() { kept_.reserve(most_bytes); }
@@ -27,14 +27,14 @@ class byte_tap {
       std::unique_ptr<g4lidar::transport> inner) {
     return std::make_unique<observed>(std::move(inner), *this);
   }
-  /// Whether bytes are kept from now on.
+  /// Starts or stops storing bytes.
   void want(bool wants) noexcept {
     wants_ = wants;
     if (!wants) kept_.clear();
   }
-  /// When the last kept byte had arrived, by the clock of the transport.
+  /// The arrival of the last stored byte, by the clock of the transport.
   [[nodiscard]] std::int64_t arrival_ns() const noexcept { return arrival_ns_; }
-  /// The kept bytes as a message of recordings, which are forgotten then; empty if there are none.
+  /// The stored bytes as a message of recordings, and clears them; empty if there are none.
   [[nodiscard]] std::vector<std::uint8_t> take() {
     std::vector<std::uint8_t> message;
     if (!kept_.empty()) g4lidar::put_recorded_bytes(kept_, arrival_ns_, message);

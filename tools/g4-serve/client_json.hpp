@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// JSON that a client sent: small, or nothing.
+// Parses JSON from clients, within limits of size and depth.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <string_view>
 
 namespace g4_tool {
@@ -15,15 +14,15 @@ namespace g4_tool {
 /// The longest text of a client, in bytes.
 inline constexpr std::size_t longest_request = 16'384;
 
-/// An object with the key "op", not nested deeper than the protocols are; else nothing.
+/// An object with the key "op", nested at most as deep as the protocols need; else nothing.
 [[nodiscard]] inline std::optional<nlohmann::json> request_in(std::string_view text) {
-  constexpr int deepest = 4;
+  constexpr int greatest_depth = 4;
   if (text.size() > longest_request) return std::nullopt;
   bool is_deep = false;
   auto read = nlohmann::json::parse(
       text,
       [&is_deep](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
-        is_deep = is_deep || depth > deepest;
+        is_deep = is_deep || depth > greatest_depth;
         return true;
       },
       false);
@@ -33,7 +32,7 @@ inline constexpr std::size_t longest_request = 16'384;
   return read;
 }
 
-/// A number that is finite; else nothing.
+/// The finite number of a key; else nothing.
 [[nodiscard]] inline std::optional<double> number_in(const nlohmann::json& object,
                                                      const char* key) {
   const auto found = object.find(key);

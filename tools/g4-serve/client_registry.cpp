@@ -28,10 +28,10 @@ struct client_registry::client {
   std::uint64_t id;
   outbox waiting{};
   std::array<std::optional<std::uint32_t>, channel_count> subscriptions{};
-  bool is_setting = false;  // a setting of it is not done yet
+  bool is_setting = false;  // its last setting is not finished
 };
 
-client_registry::client_registry(std::string_view session, bool allows_set, hub_actions actions,
+client_registry::client_registry(std::string_view session, bool allows_set, lidar_actions actions,
                                  std::function<void()> wake)
     : allows_set_(allows_set),
       actions_(std::move(actions)),
@@ -155,8 +155,8 @@ shared_bytes client_registry::status() const {
   return status_;
 }
 
-client_registry::wishes client_registry::wanted() const {
-  wishes all;
+client_registry::demand client_registry::wanted() const {
+  demand all;
   const std::lock_guard lock(mutex_);
   for (const client& each : clients_) {
     all.page = all.page || each.kind == client_kind::page;
@@ -167,36 +167,33 @@ client_registry::wishes client_registry::wanted() const {
   return all;
 }
 
-void client_registry::to_pages(std::size_t slot, bool is_text, const shared_bytes& payload) {
+void client_registry::put_messages(const std::function<void(client&)>& put) {
   {
     const std::lock_guard lock(mutex_);
-    for (client& each : clients_) {
-      if (each.kind != client_kind::page) continue;
-      each.waiting.replace(slot, {.is_text = is_text, .payload = payload});
-    }
+    for (client& each : clients_) put(each);
   }
   wake_();
 }
 
+void client_registry::to_pages(std::size_t slot, bool is_text, const shared_bytes& payload) {
+  put_messages([&](client& each) {
+    if (each.kind != client_kind::page) return;
+    each.waiting.replace(slot, {.is_text = is_text, .payload = payload});
+  });
+}
+
 void client_registry::answer(std::uint64_t id, std::string_view of, const std::string& message) {
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::ranges::find(clients_, id, &client::id);
-    if (found == clients_.end()) return;
-    found->waiting.add(text_of(error_text(of, message)));
-  }
-  wake_();
+  put_messages([&](client& each) {
+    if (each.id == id) each.waiting.add(text_of(error_text(of, message)));
+  });
 }
 
 void client_registry::send_hello(const std::string& hello, bool sends) {
   {
     const std::lock_guard lock(mutex_);
     hello_ = share(hello);
-    for (client& each : clients_) {
-      if (sends && each.kind == client_kind::page) each.waiting.add(text_of(hello_));
-    }
   }
-  wake_();
+  if (sends) event(hello);
 }
 
 void client_registry::settings(const std::string& text) {
@@ -214,13 +211,9 @@ void client_registry::status(const std::string& text) {
 
 void client_registry::event(const std::string& text) {
   const shared_bytes shared = share(text);
-  {
-    const std::lock_guard lock(mutex_);
-    for (client& each : clients_) {
-      if (each.kind == client_kind::page) each.waiting.add(text_of(shared));
-    }
-  }
-  wake_();
+  put_messages([&](client& each) {
+    if (each.kind == client_kind::page) each.waiting.add(text_of(shared));
+  });
 }
 
 void client_registry::page_scan(std::vector<std::uint8_t> message) {
@@ -231,19 +224,15 @@ void client_registry::publish(channel which, std::int64_t stamp_ns,
                               std::vector<std::uint8_t> message) {
   const shared_bytes payload = share(std::move(message));
   const auto slot = static_cast<std::size_t>(which);
-  {
-    const std::lock_guard lock(mutex_);
-    for (client& each : clients_) {
-      const auto& subscription = each.subscriptions[slot];
-      if (!subscription) continue;
-      const auto replaced =
-          each.waiting.replace(slot, message_data(*subscription, stamp_ns, payload));
-      if (which == channel::from_device && replaced == 1) {
-        each.waiting.add(text_of(foxglove_status_text(1, bytes_left_out)));
-      }
+  put_messages([&](client& each) {
+    const auto& subscription = each.subscriptions[slot];
+    if (!subscription) return;
+    const auto replaced =
+        each.waiting.replace(slot, message_data(*subscription, stamp_ns, payload));
+    if (which == channel::from_device && replaced == 1) {
+      each.waiting.add(text_of(foxglove_status_text(1, bytes_left_out)));
     }
-  }
-  wake_();
+  });
 }
 
 std::size_t client_registry::client_count() const {

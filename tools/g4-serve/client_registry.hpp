@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The clients, what waits for each of them, and what becomes of their requests. Knows no sockets.
+// The clients, their waiting messages, and the handling of their requests, without sockets.
 #pragma once
 
 #include <array>
@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <list>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -20,12 +19,12 @@
 
 namespace g4_tool {
 
-/// What a client speaks.
+/// The protocol of a client.
 enum class client_kind : std::uint8_t { page, foxglove };
 
-/// What the client registry asks of the lidar. Both may be called in any thread, without a lock.
-struct hub_actions {
-  /// Sets, and calls `done` later, in any thread, with what went wrong; empty: nothing.
+/// How requests of clients reach the lidar. Both may be called in any thread, without a lock.
+struct lidar_actions {
+  /// Changes a setting, and calls `done` later, in any thread, with the error; empty if there is none.
   std::function<void(const set_request&, std::function<void(const std::string&)> done)> set;
   std::function<void(const play_request&)> play;
 };
@@ -38,7 +37,7 @@ class client_registry {
 
   /// `wake` is called, in any thread, after messages were put into outboxes. `session`: see
   /// server_info_text().
-  client_registry(std::string_view session, bool allows_set, hub_actions actions,
+  client_registry(std::string_view session, bool allows_set, lidar_actions actions,
                   std::function<void()> wake);
   client_registry(const client_registry&) = delete;
   client_registry& operator=(const client_registry&) = delete;
@@ -46,54 +45,56 @@ class client_registry {
 
   // ---- for the connections --------------------------------------------------------------------
 
-  /// `socket`: whatever for_each_ready() shall give back. Null where there are `most_clients`.
+  /// `socket`: passed to the callback of for_each_ready(). Null if there are `most_clients`.
   static constexpr std::size_t most_clients = 128;
   [[nodiscard]] client* connect(client_kind kind, void* socket);
   void disconnect(client* gone);
-  /// A text of a client. False if it is to be closed: it does not speak its protocol.
+  /// Handles a text of a client. False if it violates the protocol: then close the connection.
   [[nodiscard]] bool receive(client& from, std::string_view text);
   /// The next message for it; nothing if none waits.
   [[nodiscard]] std::optional<outgoing> take(client& to);
   [[nodiscard]] bool has_more(const client& to) const;
-  /// Calls `use` with the socket of each client for which something waits.
+  /// Calls `use` with the socket of each client that has waiting messages.
   void for_each_ready(const std::function<void(void*)>& use);
-  /// The last status as JSON, for programs that ask by HTTP.
+  /// The last status as JSON, for HTTP.
   [[nodiscard]] shared_bytes status() const;
 
   // ---- for the publisher ----------------------------------------------------------------------
 
-  /// What at least one client wants of the next scan.
-  struct wishes {
+  /// The messages that at least one client receives.
+  struct demand {
     bool page = false;
     std::array<bool, channel_count> channels{};
     [[nodiscard]] bool wants(channel which) const noexcept {
       return channels[static_cast<std::size_t>(which)];
     }
   };
-  [[nodiscard]] wishes wanted() const;
+  [[nodiscard]] demand wanted() const;
 
-  /// The first message for pages from now on, and, if `sends`, for those that are there.
+  /// Sets the first message for new pages and, if `sends`, sends it to the present ones.
   void send_hello(const std::string& hello, bool sends);
   void settings(const std::string& text);
   void status(const std::string& text);
   void event(const std::string& text);
-  /// A binary message to all pages.
+  /// Sends a binary message to all pages.
   void page_scan(std::vector<std::uint8_t> message);
   void publish(channel which, std::int64_t stamp_ns, std::vector<std::uint8_t> message);
 
   [[nodiscard]] std::size_t client_count() const;
 
  private:
+  /// Calls `put` with each client, under the lock, and then wake().
+  void put_messages(const std::function<void(client&)>& put);
   void to_pages(std::size_t slot, bool is_text, const shared_bytes& payload);
   void answer(std::uint64_t id, std::string_view of, const std::string& message);
   void take_set(client& from, const set_request& wanted);
   [[nodiscard]] bool receive_page(client& from, std::string_view text);
   [[nodiscard]] bool receive_foxglove(client& from, std::string_view text);
-  /// What is wrong with it; empty: nothing.
+  /// Returns the error; empty if there is none.
   [[nodiscard]] static std::string subscribe(client& from, const subscribe_request::entry& wanted);
 
   const bool allows_set_;
-  const hub_actions actions_;
+  const lidar_actions actions_;
   const std::function<void()> wake_;
   const shared_bytes server_info_;
   const shared_bytes advertise_;

@@ -13,16 +13,10 @@
 #include <array>
 #include <utility>
 
+#include "cli/suggestion.hpp"
+
 namespace g4_tool {
 namespace {
-
-char lowered(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
-std::string lowered(std::string_view text) {
-  std::string made(text);
-  std::ranges::transform(made, made.begin(), [](char c) { return lowered(c); });
-  return made;
-}
 
 bool is_in_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '_';
@@ -85,7 +79,7 @@ host_guard::host_guard(std::string_view address, std::vector<std::string> origin
   names_.push_back(is_ipv6 ? '[' + lowered(address) + ']' : lowered(address));
   for (std::string& origin : origins_) {
     origin = lowered(origin);
-    // A proxy may pass its own name on.
+    // A proxy may send its own name as host.
     if (const auto name = name_in_host(origin.substr(origin.find("://") + 3))) {
       names_.push_back(*name);
     }

@@ -21,7 +21,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
 }
 
-/// A method or the name of a header.
+/// Whether it can be a method or the name of a header.
 bool is_token(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
     return std::isalnum(c) != 0 ||
@@ -38,7 +38,7 @@ bool is_value(std::string_view text) {
                              [](unsigned char c) { return c == '\t' || (c >= 0x20 && c != 0x7F); });
 }
 
-/// Up to the separator, which is removed too; all where there is none.
+/// Removes and returns the text before the separator, and removes the separator; all if there is none.
 std::string_view cut(std::string_view& text, std::string_view separator) {
   const std::size_t at = text.find(separator);
   const std::string_view first = text.substr(0, at);
@@ -46,7 +46,7 @@ std::string_view cut(std::string_view& text, std::string_view separator) {
   return first;
 }
 
-/// False where the request has it already.
+/// False if the member is already set.
 bool set(std::string_view& member, std::string_view value) {
   if (!member.empty()) return false;
   member = value;

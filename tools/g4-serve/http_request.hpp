@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The head of an HTTP/1 request: what a server without uploads needs of it (RFC 9112).
+// Parses the head of an HTTP/1 request, as far as a server without uploads needs it (RFC 9112).
 #pragma once
 
 #include <cstddef>
@@ -23,16 +23,16 @@ struct http_request {
   bool has_body = false;
   bool is_old = false;  ///< HTTP/1.0.
 
-  /// Whether a WebSocket is asked for. Other upgrades, such as h2c, are ignored, as RFC 9110 (7.8) allows.
+  /// Whether it requests a WebSocket. Other upgrades, such as h2c, are ignored, as RFC 9110 (7.8) allows.
   [[nodiscard]] bool wants_socket() const;
-  /// Whether a further request may follow on this connection.
+  /// Whether another request may follow on this connection.
   [[nodiscard]] bool keeps_open() const;
 };
 
-/// The size of the head in `text`, with its empty line; 0 while its end has not come.
+/// The size of the head in `text`, with its empty line; 0 if its end is missing.
 [[nodiscard]] std::size_t head_size(std::string_view text);
-/// `head`: up to and with its empty line, and outlives the result. Nothing if it is not HTTP/1.0 or 1.1, or not
-/// well-formed, or has a header twice that is used here.
+/// `head`: including its empty line; it outlives the result. Nothing if it is malformed, not HTTP/1.0 or 1.1, or
+/// repeats one of the headers of http_request.
 [[nodiscard]] std::optional<http_request> parse_head(std::string_view head);
 /// Whether a comma-separated list has this element. Case does not matter.
 [[nodiscard]] bool has_element(std::string_view list, std::string_view element);

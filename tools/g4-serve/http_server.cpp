@@ -7,7 +7,6 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -23,12 +22,12 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t most_connections = 60;
-/// A younger one may have sent its request, which was not read yet.
+/// A connection is not replaced earlier, because its request may be unread.
 constexpr auto least_age = 200ms;
 constexpr std::size_t longest_head = 4096;
-/// For a request, and for a part of an answer to be taken.
+/// The longest time for a request, and for progress of an answer.
 constexpr auto patience = 5s;
-/// Until the other side has read an answer after which the connection ends.
+/// The longest time in which the client reads the last answer before the connection is closed.
 constexpr auto linger = 2s;
 
 std::string_view words_of(unsigned status) {
@@ -52,7 +51,7 @@ std::string_view words_of(unsigned status) {
   }
 }
 
-/// What only the page's own files may do: this keeps foreign texts from becoming programs.
+/// Allows scripts and styles of the page's own files only, so that texts of others cannot run as scripts.
 std::string policy_for(std::string_view host) {
   return fmt::format(
       "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
@@ -60,7 +59,7 @@ std::string policy_for(std::string_view host) {
       host);
 }
 
-/// `host`: the header of the request; with the status 200 it is a name of ours.
+/// `host`: the header of the request; with the status 200 it was accepted by the host_guard.
 std::string head_of(const http_answer& answer, std::size_t size, std::string_view host,
                     bool keeps_open) {
   const std::string policy = answer.status == 200 ? policy_for(host) : "default-src 'none'";
@@ -82,10 +81,10 @@ struct http_server::connection {
 
   socket_fd socket;
   step now = step::reading;
-  clock::time_point since = clock::now();  // the last progress
+  clock::time_point since = clock::now();  // of the last progress
   clock::time_point until = since + patience;
   std::string received{};
-  // The answer, as far as it was not sent.
+  // The unsent part of the answer.
   std::string head{};
   shared_bytes owned{};
   std::string_view rest{};
@@ -108,8 +107,7 @@ http_server::http_server(socket_fd listening, http_actions actions)
 
 http_server::~http_server() {
   stops_ = true;
-  const std::uint64_t one = 1;
-  static_cast<void>(::write(wake_.get(), &one, sizeof(one)) == sizeof(one));
+  static_cast<void>(::eventfd_write(wake_.get(), 1));
   thread_.join();
 }
 
@@ -155,7 +153,7 @@ void http_server::accept_all() noexcept {
   while (may_accept_at() <= clock::now()) {
     socket_fd socket(::accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     if (socket.get() < 0) {
-      // Without sockets the next attempt is later, and what others hold does not stay.
+      // No sockets are left: end one connection and try again later.
       if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {
         accepts_at_ = clock::now() + least_age;
         if (!connections_.empty()) connections_.pop_front();
@@ -234,14 +232,14 @@ bool http_server::write(connection& each) {
   }
   if (!each.head.empty() || !each.rest.empty()) {
     each.go_on(connection::step::writing, patience);
-    return true;  // poll() calls again
+    return true;
   }
   each.owned.reset();
   if (each.keeps_open) {
     each.go_on(connection::step::reading, patience);
     return each.received.empty() || start_answer(each);
   }
-  // Closed at once, with bytes that were not read, the other side could lose the answer.
+  // If the socket were closed at once, with unread bytes, the client could lose the answer.
   ::shutdown(each.socket.get(), SHUT_WR);
   each.go_on(connection::step::lingering, linger);
   return true;

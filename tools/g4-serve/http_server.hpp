@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// HTTP/1.1 for small answers, and the requests of WebSockets, in a thread of its own.
+// Serves HTTP/1.1 with small answers, and hands over requests of WebSockets, in a thread of its own.
 #pragma once
 
 #include <atomic>
 #include <chrono>
-#include <cstddef>
 #include <functional>
 #include <list>
 #include <string>
@@ -17,26 +16,26 @@
 
 namespace g4_tool {
 
-/// What a request is answered with.
+/// The answer to a request.
 struct http_answer {
   static constexpr unsigned is_socket = 101;
 
-  unsigned
-      status;  ///< is_socket: the connection is handed over, and `owned` is the request for its new owner.
+  /// is_socket: the connection is handed over, and `owned` is the request for its new owner.
+  unsigned status;
   std::string_view type = "text/plain";
   shared_bytes owned{};
-  std::string_view content{};  ///< Instead of `owned`: bytes that are valid forever.
+  std::string_view content{};  ///< Instead of `owned`: static bytes.
 };
 
-/// What a server asks of its owner, in its thread.
+/// The callbacks of a server, called in its thread.
 struct http_actions {
   std::function<http_answer(const http_request&)> answer;
-  /// Hands over a connection, and the bytes that are to be read before those of its socket.
+  /// Takes over a connection; `first` precedes the bytes that its socket receives.
   std::function<void(socket_fd socket, std::string first)> hand_over;
 };
 
-/// A request is answered when its head is complete, within limits of size and time. It never reads a body. Connections
-/// are bounded: where there are too many, the one that has made no progress for the longest time is ended.
+/// Answers each request when its head is complete, within limits of size and time, and never reads a body. The number
+/// of connections is bounded: a further one replaces the one that has made no progress for the longest time.
 class http_server {
  public:
   http_server(socket_fd listening, http_actions actions);
@@ -50,7 +49,7 @@ class http_server {
 
   void run() noexcept;
   void accept_all() noexcept;
-  /// False if the connection is over.
+  /// False if the connection has ended.
   bool serve(connection& each, bool is_ready) noexcept;
   bool read(connection& each);
   bool write(connection& each);
@@ -60,8 +59,8 @@ class http_server {
   const socket_fd listening_;
   const socket_fd wake_;
   const http_actions actions_;
-  std::list<connection> connections_;  // the one without progress for the longest time first
-  clock::time_point accepts_at_{};     // later, where the system has no sockets
+  std::list<connection> connections_;  // by their last progress, the oldest first
+  clock::time_point accepts_at_{};     // in the future if the system had no sockets
   std::atomic<bool> stops_ = false;
   std::thread thread_;
 };

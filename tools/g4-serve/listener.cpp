@@ -66,7 +66,7 @@ socket_fd listen_at(const std::string& address, std::uint16_t port) {
 }
 
 std::uint16_t port_of(const socket_fd& socket) {
-  sockaddr_in6 place{};  // its port is where that of IPv4 is
+  sockaddr_in6 place{};  // the port has the same offset as in sockaddr_in
   socklen_t size = sizeof(place);
   if (::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&place), &size) != 0) return 0;
   return ntohs(place.sin6_port);

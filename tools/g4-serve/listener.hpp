@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The socket at which a server listens.
+// Opens the socket of a server.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace g4_tool {
 
-/// A descriptor, closed with its owner.
+/// Owns a descriptor.
 class socket_fd {
  public:
   explicit socket_fd(int fd = -1) noexcept : fd_(fd) {}
@@ -29,12 +29,12 @@ class socket_fd {
   int fd_;
 };
 
-/// Listens at `address`, which is in numbers. `port` 0: any. Throws a bad_value for another address, and a failure
-/// that names the reason where the address and the port cannot be used now.
+/// Listens at a numeric `address`. `port` 0: any. Throws a bad_value for another form of address, and a failure if the
+/// address and port cannot be used.
 [[nodiscard]] socket_fd listen_at(const std::string& address, std::uint16_t port);
 /// The port of a socket.
 [[nodiscard]] std::uint16_t port_of(const socket_fd& socket);
-/// The system has refused `what`, with the number `why` in errno.
+/// The failure for a system call that failed with the error number `why`.
 [[nodiscard]] failure refused_by_system(std::string_view what, int why);
 
 }  // namespace g4_tool

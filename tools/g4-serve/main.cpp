@@ -32,7 +32,7 @@ std::string new_session() {
   return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-/// All parts, in the order in which they need each other.
+/// All parts of the server.
 class lidar_server {
  public:
   explicit lidar_server(const serve_options& options)
@@ -59,7 +59,7 @@ class lidar_server {
     server_.reset();
   }
 
-  /// Until a signal, the end of -d, or a failure, which it throws.
+  /// Serves until a signal or the end of -d. Throws a failure of the lidar.
   void run() {
     using namespace std::chrono_literals;
     using clock = std::chrono::steady_clock;

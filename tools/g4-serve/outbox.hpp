@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What waits for one client: bounded, whatever the client reads.
+// The waiting messages of one client, bounded however slowly the client reads.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace g4_tool {
 
-/// The payload of a message; many clients share it.
+/// The payload of a message, shared by many clients.
 using shared_bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 [[nodiscard]] inline shared_bytes share(std::string_view text) {
@@ -25,7 +25,7 @@ using shared_bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
   return std::make_shared<const std::vector<std::uint8_t>>(std::move(data));
 }
 
-/// One message to one client: its own prefix, then the shared payload.
+/// A message to one client: a prefix of its own, then the shared payload.
 struct outgoing {
   bool is_text = true;
   shared_bytes payload{};
@@ -35,21 +35,21 @@ struct outgoing {
   [[nodiscard]] std::size_t size() const noexcept { return prefix_size + payload->size(); }
 };
 
-/// Messages that wait until the client reads: a few in their order, and in each slot the newest one, which
-/// replaces an older one. So a client that never reads costs a constant amount of memory. *Single thread.*
+/// A short queue of messages, and slots that store only the newest message. So a client that never reads uses a
+/// constant amount of memory. *Single thread.*
 class outbox {
  public:
   static constexpr std::size_t slot_count = 4;
   static constexpr std::size_t longest_queue = 16;
 
-  /// To be sent before all that is not in the queue yet. False, and dropped, if the queue is full.
+  /// Appends to the queue, which is sent before the slots. False if it is full: the message is dropped.
   bool add(outgoing message) {
     if (queue_.size() >= longest_queue) return false;
     queue_.push_back(std::move(message));
     return true;
   }
-  /// To be sent once, unless it is replaced before. Slots take turns. Returns how many messages of the
-  /// slot were replaced since one was sent.
+  /// Stores a message in a slot and replaces an unsent one there. Slots are sent in turn. Returns the number
+  /// of messages of the slot that were replaced since the last one was sent.
   std::size_t replace(std::size_t slot, outgoing message) {
     newest& into = slots_.at(slot);
     if (into.message) ++into.replaced;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The files of the web page, which the build puts into the program: see embed.cmake.
+// The files of the web page, embedded into the program by embed.cmake.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ struct page_file {
   std::string_view content;
 };
 
-/// All of them; valid forever.
+/// All files; static.
 [[nodiscard]] std::span<const page_file> page_files() noexcept;
 
 }  // namespace g4_tool

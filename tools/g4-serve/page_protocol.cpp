@@ -26,7 +26,7 @@ void put_little(Unsigned value, std::vector<std::uint8_t>& out) {
   }
 }
 
-/// The server reconnects by itself, and a page has no command line.
+/// Texts for the page, which has no command line and reconnects automatically.
 std::string in_page_words(std::string_view text) {
   constexpr tool_word unplugged{
       "Unless the program closed it, the lidar was unplugged: plug it in and open it again.",
@@ -36,7 +36,7 @@ std::string in_page_words(std::string_view text) {
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
-/// The word of `g4-dump set` for a value; empty for what is none.
+/// A value as a word of `g4-dump set`; empty if it is not one.
 std::string word_of(const nlohmann::json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
@@ -84,6 +84,10 @@ json json_of(const lidar_counts& counts) {
           {"reconnects", counts.reconnects}};
 }
 
+json json_of(const evidence& measured) {
+  return std::visit([](const auto& held) { return json(held); }, measured.value);
+}
+
 json json_of(const stage_report& stage) {
   json made{{"stage", name_of(stage.stage)}, {"verdict", name_of(stage.outcome)}};
   json& diagnoses = made["diagnoses"] = json::array();
@@ -95,8 +99,7 @@ json json_of(const stage_report& stage) {
   }
   json& all = made["evidence"] = json::array();
   for (const evidence& each : stage.measurements) {
-    const json value = std::visit([](const auto& held) { return json(held); }, each.value);
-    all.push_back({{"name", each.name}, {"value", value}, {"unit", each.unit()}});
+    all.push_back({{"name", each.name}, {"value", json_of(each)}, {"unit", each.unit()}});
   }
   if (!stage.remark.empty()) made["remark"] = stage.remark;
   return made;
@@ -106,10 +109,8 @@ json json_of(const stage_report& stage) {
 json measured(const std::vector<stage_report>& stages, diagnostic_stage where,
               std::string_view name) {
   for (const stage_report& stage : stages) {
-    if (stage.stage != where) continue;
     for (const evidence& each : stage.measurements) {
-      if (each.name == name)
-        return std::visit([](const auto& held) { return json(held); }, each.value);
+      if (stage.stage == where && each.name == name) return json_of(each);
     }
   }
   return nullptr;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The protocol of the web page, g4lidar.page.v1: what it sends, and what it is sent. docs/serve.md
-// describes it.
+// The protocol of the web page, g4lidar.page.v1, in both directions. docs/serve.md describes it.
 #pragma once
 
 #include <cstdint>
@@ -25,20 +24,20 @@ struct set_request {
   std::string name;
   std::string value;  ///< As in `g4-dump set`.
 };
-/// {"op":"play"}: what is to change.
+/// {"op":"play"}: the changes of the playback.
 struct play_request {
   std::optional<bool> paused;
   std::optional<double> speed;
   std::optional<double> seek_s;
 };
-/// An object that is none of them, and why.
+/// An object that is not a valid request, and why.
 struct bad_request {
   std::string of;  ///< Its "op".
   std::string message;
 };
 using page_request = std::variant<set_request, play_request, bad_request>;
 
-/// Nothing for a text that no page sends: the client is to be closed.
+/// Nothing for a text that a page never sends: close the connection.
 [[nodiscard]] std::optional<page_request> parse_page_request(std::string_view text);
 
 /// The contents of the first message, which is sent again when it changes.
@@ -58,17 +57,17 @@ struct page_hello {
 struct page_status {
   station_state state = station_state::opening;
   std::string why{};
-  std::optional<double> scan_rate_hz{};    ///< Scans that came, a second.
-  std::optional<double> sample_rate_hz{};  ///< Of the last scan, as the next.
-  std::optional<double> frequency_hz{};
-  double loss = 0;  ///< The part of the samples that was lost lately.
+  std::optional<double> scan_rate_hz{};    ///< Received scans per second.
+  std::optional<double> sample_rate_hz{};  ///< Of the last scan.
+  std::optional<double> frequency_hz{};    ///< Of the last scan.
+  double loss = 0;                         ///< The ratio of lost samples in the last ten seconds.
   lidar_counts counts{};
   std::vector<stage_report> stages{};
   std::optional<playback> player{};
 };
 [[nodiscard]] std::string status_text(const page_status& status);
 
-/// The binary message of a revolution: its returns in the robot's frame. Appends to `out`.
+/// Appends the binary message of a revolution: its returns in the robot's frame.
 void put_page_scan(std::span<const point> points, std::uint32_t revolution, bool is_whole,
                    double stamp_s, std::vector<std::uint8_t>& out);
 

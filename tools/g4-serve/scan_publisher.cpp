@@ -54,7 +54,7 @@ void scan_rates::put(page_status& into, clock::time_point now) const {
 double loss_window::add(const lidar_counts& counts) {
   constexpr std::size_t ticks = 20;
   const sums now{counts.stream.points, counts.samples_lost};
-  // A recording that is opened again counts from 0.
+  // The counts restart at 0 when a recording is opened again.
   if (!sums_.empty() && now.points < sums_.back().points) sums_.clear();
   sums_.push_back(now);
   if (sums_.size() > ticks + 1) sums_.pop_front();
@@ -94,11 +94,11 @@ void scan_publisher::send_hello(bool sends) {
 
 void scan_publisher::on_scan(const g4lidar::scan& scan) {
   rates_.add(scan, scan_rates::clock::now());
-  const client_registry::wishes wanted = registry_.wanted();
+  const client_registry::demand wanted = registry_.wanted();
   const bool wants_scan = wanted.wants(channel::scan);
   const bool wants_points = wanted.wants(channel::points);
   publish_bytes(wanted.wants(channel::from_device));
-  // By all scans, wanted or not.
+  // These need all scans, also without clients.
   const bool has_memory = options_.common.deskew != deskewing::none || options_.common.marks.near;
   if (!wanted.page && !wants_scan && !wants_points && !has_memory) return;
   const shaped_scan shaped = shaper_.shape(scan, {});
@@ -125,7 +125,7 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   }
 }
 
-/// One message a revolution.
+/// Publishes one message per revolution.
 void scan_publisher::publish_bytes(bool is_wanted) {
   if (std::vector<std::uint8_t> message = bytes_.take(); is_wanted && !message.empty()) {
     registry_.publish(channel::from_device, station_->wall_ns(bytes_.arrival_ns()),
@@ -188,7 +188,7 @@ void scan_publisher::execute(g4lidar::lidar* lidar, const std::string& word,
   if (!given) return done(in_tool_words(given.error().message()));
   settings_[std::string(wanted.which->name)] = json_of(maybe_answer(*given));
   send_hello(false);
-  done({});  // before pages get them: a page may set again at once
+  done({});  // first, because a page may send the next setting at once
   registry_.settings(settings_text(settings_));
 }
 

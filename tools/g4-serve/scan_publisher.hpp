@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Turns what a station gives into messages for the client registry, and requests of clients into commands.
+// Converts scans, events and states to messages for the client registry, and requests of clients to commands.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,6 @@
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,13 +20,13 @@
 
 namespace g4_tool {
 
-/// The rates of the last scans. *Any thread.*
+/// The rates of the recent scans. *Any thread.*
 class scan_rates {
  public:
   using clock = std::chrono::steady_clock;
 
   void add(const g4lidar::scan& scan, clock::time_point now);
-  /// Writes what is known of the time before `now`; nothing where no scan came lately.
+  /// Sets the rates at `now`; sets nothing if no scan was received recently.
   void put(page_status& into, clock::time_point now) const;
 
  private:
@@ -37,10 +36,10 @@ class scan_rates {
   double frequency_hz_ = 0;
 };
 
-/// The part of the samples that was lost in the last ten seconds. *Single thread.*
+/// The ratio of lost samples in the last ten seconds. *Single thread.*
 class loss_window {
  public:
-  /// Twice a second: all counts so far. Returns the part.
+  /// Call it twice a second with the counts. Returns the ratio.
   double add(const lidar_counts& counts);
 
  private:
@@ -53,11 +52,11 @@ class loss_window {
 
 class scan_publisher final : public station_listener {
  public:
-  /// Throws a failure for a mask that cannot be read. `to` outlives this.
+  /// Throws a failure if the mask cannot be read. `to` outlives this.
   scan_publisher(const serve_options& options, client_registry& to);
-  /// Before it is started; `from` outlives this.
+  /// Call it before `from` is started. `from` outlives this.
   void attach(station& from) { station_ = &from; }
-  /// How the station opens the source. This outlives the station.
+  /// The options for opening the source. This outlives the station.
   [[nodiscard]] lidar_options how_to_open() {
     return {.wrap = for_each_connection(
                 [this](auto inner) { return bytes_.observe(std::move(inner)); })};
@@ -69,10 +68,10 @@ class scan_publisher final : public station_listener {
   void on_event(const lidar_event& event) override;
   void on_state(station_state state, std::string_view why) override;
 
-  /// Twice a second, in one thread: status and diagnostics.
+  /// Publishes status and diagnostics. Call it twice a second, in one thread.
   void tick();
 
-  // hub_actions. *Any thread.*
+  // lidar_actions. *Any thread.*
   void set(const set_request& wanted, std::function<void(const std::string&)> done);
   void play(const play_request& wanted);
 
@@ -91,7 +90,7 @@ class scan_publisher final : public station_listener {
   scan_rates rates_;
   std::vector<float> ranges_m_;
   nlohmann::ordered_json settings_;  // of the station's thread
-  loss_window loss_;                 // of tick(), as the next
+  loss_window loss_;                 // of tick(), like the next member
   unsigned ticks_ = 0;
 };
 

@@ -16,8 +16,8 @@ namespace g4_tool {
 namespace {
 
 constexpr unsigned close_seconds = 5;
-/// Its descriptors: the sockets, those that were handed over when it was almost full, and its own.
-constexpr unsigned handles = socket_server::most_sockets + 100;
+/// Its limit of descriptors: the sockets, those handed over when it was almost full, and its own.
+constexpr unsigned most_descriptors = socket_server::most_sockets + 100;
 constexpr std::uint16_t ping_after_seconds = 15;
 constexpr std::uint16_t hang_up_after_seconds = 30;
 constexpr std::size_t page_index = 1;  // of the protocols
@@ -26,7 +26,7 @@ constexpr std::array subprotocols_of_ours{page_subprotocol, foxglove_subprotocol
                                           foxglove_subprotocols[1]};
 
 void log_line(int /*level*/, const char* line) {
-  // It calls each adoption an error.
+  // Each adoption is logged as an error.
   if (std::string_view(line).find("adopt_socket_readbuf") != std::string_view::npos) return;
   try {
     logger::verbose(std::string("libwebsockets: ") + line);
@@ -37,10 +37,10 @@ void log_line(int /*level*/, const char* line) {
 
 }  // namespace
 
-/// What libwebsockets calls, all in its thread.
+/// The callbacks of libwebsockets, all in its thread.
 class socket_server::callbacks {
  public:
-  /// Of a connection that is no WebSocket yet, and of the server.
+  /// For the server, and for connections before their upgrade to a WebSocket.
   static int server(lws* wsi, lws_callback_reasons reason, void* /*user*/, void* /*in*/,
                     std::size_t /*length*/) {
     switch (reason) {
@@ -56,7 +56,7 @@ class socket_server::callbacks {
               [](void* socket) { lws_callback_on_writable(static_cast<lws*>(socket)); });
         }
         return 0;
-      case LWS_CALLBACK_HTTP:  // adopted ones ask for WebSockets only
+      case LWS_CALLBACK_HTTP:  // adopted connections request WebSockets only
       case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
         return -1;
       default:
@@ -110,7 +110,7 @@ class socket_server::callbacks {
     open = std::make_unique<web_socket>(server.clients_, kind, wsi).release();
     return 0;
   }
-  /// What libwebsockets delivers to a socket although begin() had no memory for it.
+  /// Whether the callback needs a web_socket; it is missing if begin() had no memory for it.
   static bool is_for_open(lws_callback_reasons reason) {
     return reason == LWS_CALLBACK_TIMER || reason == LWS_CALLBACK_RECEIVE ||
            reason == LWS_CALLBACK_SERVER_WRITEABLE;
@@ -141,7 +141,7 @@ socket_server::socket_server(client_registry& clients) : clients_(clients) {
   info.uid = static_cast<decltype(info.uid)>(-1);
   info.options = LWS_SERVER_OPTION_SKIP_SERVER_CANONICAL_NAME;
   info.timeout_secs = close_seconds;
-  info.fd_limit_per_thread = handles;
+  info.fd_limit_per_thread = most_descriptors;
   info.server_string = "g4-serve";
   info.retry_and_idle_policy = &validity;
   errno = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The WebSockets of the clients of a client registry, with libwebsockets, in a thread of its own.
+// Serves the WebSockets of the clients with libwebsockets, in a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -18,11 +18,11 @@
 
 namespace g4_tool {
 
-/// It gets connections with the request of a WebSocket that this program has written itself: the HTTP of libwebsockets,
-/// which also has an upgrade to HTTP/2, reads no byte of a client.
+/// Adopts connections with a request that this program has written itself. So no byte of a client reaches the HTTP of
+/// libwebsockets, which also has an upgrade to HTTP/2.
 class socket_server {
  public:
-  /// Connections, with those that are being closed.
+  /// The largest number of connections, including those that are being closed.
   static constexpr std::size_t most_sockets = 256;
 
   /// `clients` outlives this. Throws a failure.
@@ -31,12 +31,12 @@ class socket_server {
   socket_server& operator=(const socket_server&) = delete;
   ~socket_server();
 
-  /// The one of these subprotocols, a list of a client, that is used; empty: it is none of ours.
+  /// The subprotocol to use, from the list of a client; empty if none is supported.
   [[nodiscard]] static std::string_view choose(std::string_view subprotocols);
   [[nodiscard]] bool is_full() const noexcept { return sockets_ >= most_sockets; }
-  /// `first`: a whole request, and what the client has sent after its own. *Any thread.*
+  /// `first`: a whole request, and the bytes that followed the client's own request. *Any thread.*
   void adopt(socket_fd socket, std::string first);
-  /// Messages wait in the client registry. *Any thread.*
+  /// Sends the messages that wait in the client registry. *Any thread.*
   void wake() noexcept;
 
  private:

@@ -13,7 +13,7 @@
 namespace g4_tool {
 namespace {
 
-/// Others are not logged.
+/// Further refusals are not logged.
 constexpr std::size_t most_refusals = 20;
 
 constexpr std::string_view forbidden =

@@ -6,7 +6,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "client_registry.hpp"
@@ -16,18 +15,17 @@
 
 namespace g4_tool {
 
-/// Listens from its construction on. Serves the files of the page, /status.json, and the clients of a client registry.
+/// Serves the files of the page, /status.json, and the clients of a client registry.
 class web_server {
  public:
-  /// `port` 0: any that is free. `clients` outlives this. Throws a failure where it cannot listen, and
-  /// names the reason.
+  /// Listens. `port` 0: any free port. `clients` outlives this. Throws a failure if it cannot listen.
   web_server(const std::string& address, std::uint16_t port, std::vector<std::string> origins,
              client_registry& clients);
 
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
   /// "http://127.0.0.1:8765/"; with 0.0.0.0 and :: one for each name and address of this machine.
   [[nodiscard]] std::vector<std::string> urls() const;
-  /// Messages wait in the client registry. *Any thread.*
+  /// Sends the messages that wait in the client registry. *Any thread.*
   void wake() noexcept { sockets_.wake(); }
 
  private:
@@ -38,10 +36,10 @@ class web_server {
   std::string address_;
   host_guard guard_;
   client_registry& clients_;
-  std::set<std::string> refused_{};  // what was logged
+  std::set<std::string> refused_{};  // the logged refusals
   socket_server sockets_;
   std::uint16_t port_ = 0;
-  std::optional<http_server> http_;  // ends first
+  std::optional<http_server> http_;  // destroyed first
 };
 
 }  // namespace g4_tool

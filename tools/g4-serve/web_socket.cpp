@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <utility>
 
 #include "client_json.hpp"
@@ -13,8 +12,8 @@
 namespace g4_tool {
 namespace {
 
-/// Clients in JavaScript may begin to listen some time after the handshake.
-constexpr lws_usec_t greeting_after_us = 50'000;
+/// Until the first message, because clients in JavaScript may listen only some time after the handshake.
+constexpr lws_usec_t first_message_delay_us = 50'000;
 constexpr int most_waits = 20;
 
 }  // namespace
@@ -22,7 +21,7 @@ constexpr int most_waits = 20;
 web_socket::web_socket(client_registry& clients, client_kind kind, lws* wsi)
     : clients_(clients), kind_(kind), wsi_(wsi) {
   has_place();
-  lws_set_timer_usecs(wsi_, greeting_after_us);
+  lws_set_timer_usecs(wsi_, first_message_delay_us);
 }
 
 bool web_socket::has_place() {
@@ -33,10 +32,10 @@ bool web_socket::has_place() {
 int web_socket::check_timer() {
   if (has_ended_) return 0;
   if (!has_place() && ++waits_ < most_waits) {
-    lws_set_timer_usecs(wsi_, greeting_after_us);
+    lws_set_timer_usecs(wsi_, first_message_delay_us);
     return 0;
   }
-  is_due_ = true;
+  may_send_ = true;
   return lws_callback_on_writable(wsi_) < 0 ? -1 : 0;
 }
 
@@ -60,11 +59,11 @@ int web_socket::receive(std::string_view piece) {
 }
 
 int web_socket::write(std::vector<std::uint8_t>& scratch) {
-  if (has_ended_ || !is_due_) return 0;
+  if (has_ended_ || !may_send_) return 0;
   if (!has_place()) return refuse();
   const auto message = clients_.take(*client_);
   if (!message) return 0;
-  // libwebsockets wants to write before the message.
+  // libwebsockets writes its header before the message.
   if (scratch.size() < LWS_PRE + message->size()) scratch.resize(LWS_PRE + message->size());
   unsigned char* const begin = scratch.data() + LWS_PRE;
   const auto after = std::copy_n(message->prefix.begin(), message->prefix_size, begin);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A WebSocket whose handshake is done.
+// A WebSocket after its handshake.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace g4_tool {
 
-/// A client of the client registry, if a place is free or becomes free within a second: clients that have ended may still be
-/// counted when the next ones come. Otherwise it is closed with the reason. libwebsockets delivers what arrives until
-/// the connection is destroyed, also after a callback has refused it.
-/// Functions return what a callback of libwebsockets does: not 0 to close. *Single thread*: the one of libwebsockets.
+/// Becomes a client of the client registry, if a place is free or becomes free within a second, because clients that
+/// have just ended may still be counted. Otherwise it is closed with the reason. libwebsockets calls it until the
+/// connection is destroyed, also after a callback has requested to close. Functions return the value for the callback of
+/// libwebsockets: not 0 to close. *Single thread*: that of libwebsockets.
 class web_socket {
  public:
   web_socket(client_registry& clients, client_kind kind, lws* wsi);
@@ -27,9 +27,9 @@ class web_socket {
   [[nodiscard]] int receive(std::string_view piece);
   /// `scratch`: any memory.
   [[nodiscard]] int write(std::vector<std::uint8_t>& scratch);
-  /// The timer, which the constructor sets, has elapsed.
+  /// Handles the timer, which the constructor sets.
   [[nodiscard]] int check_timer();
-  /// From now on it is no client of the client registry.
+  /// Disconnects it from the client registry.
   void end();
 
  private:
@@ -41,9 +41,9 @@ class web_socket {
   client_kind kind_;
   lws* wsi_;
   client_registry::client* client_ = nullptr;
-  std::string received_;  // of a message whose end has not come
+  std::string received_;  // the begin of an incomplete message
   int waits_ = 0;         // for a place
-  bool is_due_ = false;   // messages may be sent
+  bool may_send_ = false;
   bool has_ended_ = false;
 };
 
