@@ -204,7 +204,7 @@ TEST_F(session_requests, ImpossibleValue_IsRefusedBeforeSending) {
            requests::set(bad(low_power::on)), requests::set(bad(motor_direction::clockwise)),
            requests::set(bad(constant_frequency::on)), requests::set(bad(ranging_frequency::khz_4)),
            requests::set(bad(power_down_protection::on)),
-           requests::step(bad(frequency_step::up_1_hz)), request{static_cast<ask>(77)},
+           requests::step(bad(frequency_step::up_1_hz)), request{static_cast<request_kind>(77)},
            request{request_kind::health, 1}}) {
     EXPECT_ASKED(bench, wanted, "bad_setting");
     EXPECT_FALSE(bench.talk.is_busy());
