@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb info: what a device, or a recording of one, reports about itself and its settings.
+// The verb info: the information and settings of a device, or of a recording.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The settings of the lidar: shown, and changed where the server allows it.
+// Shows the settings of the lidar, and changes them if the server allows it.
 import { element } from './input.js';
 import { make, write } from './status.js';
 
@@ -15,7 +15,7 @@ const rows = [
   { name: 'protection', label: 'Power-down protection', values: [['on', 'on'], ['off', 'off']] },
 ];
 
-/** @param {unknown} value @returns {string} As a value of the form; empty if not known. */
+/** @param {unknown} value @returns {string} A value of the form; empty if unknown. */
 function text_of(value) {
   if (value === null || value === undefined) return '';
   if (typeof value === 'boolean') return value ? 'on' : 'off';
@@ -76,7 +76,7 @@ export class Settings {
     write(this.error, '');
   }
 
-  /** @param {string} message  A change failed: the form shows again what the lidar has. */
+  /** @param {string} message  A change failed: the form shows the last known values again. */
   fail(message) {
     this.show(this.values);
     write(this.error, message);
