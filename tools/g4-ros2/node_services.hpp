@@ -30,7 +30,7 @@ class node_services {
  private:
   /// Whose parameter it is.
   struct target {
-    std::string name;  ///< "front.scan_frequency"
+    std::string name;  ///< "front.frequency"
     lidar_node* lidar;
     const parameter* what;
   };
