@@ -111,8 +111,8 @@ void lidar_node::on_open(opened_source& source) {
   }
   if (feed_.is_known() && source.simulation() == nullptr) return;
   feed_.follow(source.simulation());
-  for (const wish& each : options_.settings) {
-    const auto done = source.lidar().ask(each.how);
+  for (const setting_change& each : options_.settings) {
+    const auto done = source.lidar().ask(change_to(each.value));
     if (!done) logger::info(in_tool_words(done.error().message()) + "\n");
   }
   if (const auto kind = kind_of_source(which_.source);

@@ -31,7 +31,7 @@ class node_services {
  private:
   /// A parameter and its lidar.
   struct target {
-    std::string name;  ///< "front.scan_frequency"
+    std::string name;  ///< "front.frequency"
     lidar_node* lidar;
     const parameter* what;
   };

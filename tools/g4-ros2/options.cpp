@@ -126,8 +126,8 @@ option_rows place_rows(ros2_options& options) {
 
 option_rows device_and_player_rows(ros2_options& options) {
   option_row set{
-      "--set", "NAME=VALUE", "Set the lidar at the start: freq=10; may be repeated",
-      [&into = options.settings](const std::string& word) { into.push_back(wish_of(word)); }};
+      "--set", "NAME=VALUE", "Set the lidar at the start: frequency=10; may be repeated",
+      [&into = options.settings](const std::string& word) { into.push_back(change_of(word)); }};
   set.complete = completion::setting;
   set.repeatable = true;
   return joined(

@@ -59,7 +59,7 @@ struct ros2_options {
   station_options station;
   std::vector<std::string> sources;  ///< "SOURCE", or "NAME=SOURCE".
   std::vector<named_mounting> mounts;
-  std::vector<wish> settings;
+  std::vector<setting_change> settings;
   std::string name_space;        ///< "/robot1"; empty: the root.
   std::string node = "g4lidar";  ///< The name of the node.
   topic_names topics;

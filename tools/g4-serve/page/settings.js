@@ -8,7 +8,7 @@ import { make, write } from './status.js';
 /** Names and values are those of g4-dump set. */
 const rows = [
   { name: 'sample_rate', label: 'Sample rate', values: [['4000', '4 kHz'], ['8000', '8 kHz'], ['9000', '9 kHz']] },
-  { name: 'freq', label: 'Scan frequency', values: null },
+  { name: 'frequency', label: 'Scan frequency', values: null },
   { name: 'direction', label: 'Direction', values: [['cw', 'clockwise'], ['ccw', 'counter-clockwise']] },
   { name: 'constant', label: 'Constant frequency', values: [['on', 'on'], ['off', 'off']] },
   { name: 'idle', label: 'Motor off when idle', values: [['on', 'on'], ['off', 'off']] },
@@ -52,7 +52,7 @@ export class Settings {
       field.disabled = true;
       field.addEventListener('change', () => this.#change(field));
       this.fields.set(row.name, field);
-      const label = make('label', row.name === 'freq' ? `${row.label} (Hz) ` : `${row.label} `);
+      const label = make('label', row.name === 'frequency' ? `${row.label} (Hz) ` : `${row.label} `);
       label.append(field);
       form.append(label);
     }
