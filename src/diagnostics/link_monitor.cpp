@@ -187,19 +187,19 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
   const std::uint64_t pauses_before = host_pauses_;
   std::int64_t until_ns = now_ns() + patience_ns;
   observer to;
-  to.event = [&](const observed_event& came) {
-    const channel_state state = channel.take(came.what, came.arrival_ns);
-    const auto* response = std::get_if<response_view>(&came.what);
+  to.event = [&](const observed_event& observed) {
+    const channel_state state = channel.take(observed.what, observed.arrival_ns);
+    const auto* response = std::get_if<response_view>(&observed.what);
     if (response == nullptr) return;
     if (state != channel_state::answered) {
       ++made.wrong;
-      until_ns = std::min(until_ns, came.arrival_ns + after_wrong_ns);
+      until_ns = std::min(until_ns, observed.arrival_ns + after_wrong_ns);
     } else if (made.is_answered()) {
       ++made.copies;
     } else {
-      made.answered_ns = came.arrival_ns;
+      made.answered_ns = observed.arrival_ns;
       made.reply.assign(response->data().begin(), response->data().end());
-      until_ns = std::min(until_ns, came.arrival_ns + second_answer_ns);
+      until_ns = std::min(until_ns, observed.arrival_ns + second_answer_ns);
     }
   };
   listen(until_ns, to);
