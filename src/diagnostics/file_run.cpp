@@ -111,12 +111,12 @@ class file_run {
     splitter_.take(data, arrival_ns, to_);
   }
 
-  void take(const observed_event& came) {
-    if (const auto* response = std::get_if<response_view>(&came.what)) {
+  void take(const observed_event& observed) {
+    if (const auto* response = std::get_if<response_view>(&observed.what)) {
       device_.take(*response);
       if (response->kind() == response_kind::scan_started) await_speed();
     }
-    measured_.take(came);
+    measured_.take(observed);
     if (is_judging_ || measured_.tally().samples < looked_ + steady_samples) return;
     looked_ = measured_.tally().samples;
     if (!measured_.is_steady()) return;
@@ -181,7 +181,7 @@ class file_run {
   stage_report port_{};
   event_splitter splitter_;
   layout_votes layout_;
-  observer to_{.event = [this](const observed_event& came) { take(came); }};
+  observer to_{.event = [this](const observed_event& observed) { take(observed); }};
   stream_statistics measured_;
   device_snapshot device_;
   std::uint64_t looked_ = 0;  // samples at the last check of the speed

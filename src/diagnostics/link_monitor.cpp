@@ -36,17 +36,16 @@ std::size_t size_of(const event& found) noexcept {
 
 }  // namespace
 
-void event_splitter::take(bytes data, std::int64_t arrival_ns, const observer& to) {
-  input_.feed(data, arrival_ns);
+void event_splitter::take(bytes input, std::int64_t arrival_ns, const observer& to) {
+  arrival_ns_ = arrival_ns;
   raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(raw_begin_));
   raw_begin_ = 0;
-  raw_.insert(raw_.end(), data.begin(), data.end());
-  while (const event* const found = input_.next()) give(*found, to);
+  raw_.insert(raw_.end(), input.begin(), input.end());
+  while (const auto found = parser_.next(input)) give(*found, to);
 }
 
 void event_splitter::finish(const observer& to) {
-  input_.cut();
-  while (const event* const found = input_.next()) give(*found, to);
+  while (const auto found = parser_.finish()) give(*found, to);
 }
 
 void event_splitter::give(const event& found, const observer& to) {
@@ -61,7 +60,7 @@ void event_splitter::give(const event& found, const observer& to) {
     in_text_ = false;
   }
   counts_.add(found);
-  if (to.event) to.event({found, raw, input_.arrival_ns()});
+  if (to.event) to.event({found, raw, arrival_ns_});
 }
 
 void event_splitter::look_for_text(bytes raw) {
@@ -79,7 +78,7 @@ void event_splitter::look_for_text(bytes raw) {
 link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled)
     : transport_(std::move(opened)),
       is_cancelled_(std::move(is_cancelled)),
-      link_(splitter_.input(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns}, cut_off_after_ns) {}
+      link_(splitter_.parser(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns}, cut_off_after_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
@@ -188,19 +187,19 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
   const std::uint64_t pauses_before = host_pauses_;
   std::int64_t until_ns = now_ns() + patience_ns;
   observer to;
-  to.event = [&](const observed_event& came) {
-    const channel_state state = channel.take(came.what, came.arrival_ns);
-    const auto* response = std::get_if<response_view>(&came.what);
+  to.event = [&](const observed_event& observed) {
+    const channel_state state = channel.take(observed.what, observed.arrival_ns);
+    const auto* response = std::get_if<response_view>(&observed.what);
     if (response == nullptr) return;
     if (state != channel_state::answered) {
       ++made.wrong;
-      until_ns = std::min(until_ns, came.arrival_ns + after_wrong_ns);
+      until_ns = std::min(until_ns, observed.arrival_ns + after_wrong_ns);
     } else if (made.is_answered()) {
       ++made.copies;
     } else {
-      made.answered_ns = came.arrival_ns;
+      made.answered_ns = observed.arrival_ns;
       made.reply.assign(response->data().begin(), response->data().end());
-      until_ns = std::min(until_ns, came.arrival_ns + second_answer_ns);
+      until_ns = std::min(until_ns, observed.arrival_ns + second_answer_ns);
     }
   };
   listen(until_ns, to);

@@ -46,8 +46,8 @@ struct observer {
 /// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*
 class event_splitter {
  public:
-  [[nodiscard]] event_reader& input() noexcept { return input_; }
-  void take(bytes data, std::int64_t arrival_ns, const observer& to);
+  [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
+  void take(bytes input, std::int64_t arrival_ns, const observer& to);
   /// The held bytes have ended.
   void finish(const observer& to);
   /// Counts of all events so far.
@@ -59,10 +59,11 @@ class event_splitter {
   void give(const event& found, const observer& to);
   void look_for_text(bytes raw);
 
-  event_reader input_;
+  stream_parser parser_;
   stream_counter counts_;
   std::vector<std::uint8_t> raw_;  // not part of an event yet
   std::size_t raw_begin_ = 0;
+  std::int64_t arrival_ns_ = 0;
   std::uint64_t boots_ = 0;
   std::size_t letters_ = 0;  // consecutive
   bool in_text_ = false;

@@ -63,7 +63,7 @@ class live_run {
   [[nodiscard]] scan_state listen_once(stream_statistics& measured);
   /// How long the scan may be silent at this time.
   [[nodiscard]] std::int64_t patience_ns() const;
-  void follow(const observed_event& came);
+  void follow(const observed_event& observed);
   [[nodiscard]] fate fate_of_silent();
   /// The scan became silent during the measurement. Returns whether it continues.
   bool revive(std::int64_t& until_ns);

@@ -63,7 +63,7 @@ void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns
   }
 }
 
-void running_scan::came(const reading& what, bytes data) {
+void running_scan::received(const reading& what, bytes data) {
   reading known = what;
   if (!is_device_) {
     known.silence_ns = time_ns_ > 0 ? what.arrival_ns - time_ns_ : 0;

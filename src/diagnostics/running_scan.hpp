@@ -36,7 +36,7 @@ class running_scan {
   void end();
   /// A command was sent, after so much silence.
   void sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns);
-  void came(const reading& what, bytes data);
+  void received(const reading& what, bytes data);
 
   [[nodiscard]] phase now() const noexcept { return phase_; }
   [[nodiscard]] device_snapshot& known() noexcept { return known_; }

@@ -77,10 +77,10 @@ class running_state {
     scan_.sent(data, now_ns, silence_ns);
     follow_scan();
   }
-  void came(const reading& what, bytes data, std::int64_t now_ns) {
+  void received(const reading& what, bytes data, std::int64_t now_ns) {
     const std::lock_guard hold(mutex_);
     now_ns_ = now_ns;
-    scan_.came(what, data);
+    scan_.received(what, data);
     follow_scan();
   }
   [[nodiscard]] bool is_device() const noexcept { return is_device_; }

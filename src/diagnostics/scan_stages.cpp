@@ -38,11 +38,11 @@ void live_run::start_scan() {
       .sent_ns = link_.now_ns(), .kept_alive_ns = link_.now_ns(), .boots_before = link_.boots()};
 }
 
-void live_run::follow(const observed_event& came) {
-  if (std::holds_alternative<packet_view>(came.what) && started_.first_packet_ns == 0) {
-    started_.first_packet_ns = came.arrival_ns;
+void live_run::follow(const observed_event& observed) {
+  if (std::holds_alternative<packet_view>(observed.what) && started_.first_packet_ns == 0) {
+    started_.first_packet_ns = observed.arrival_ns;
   }
-  const auto* response = std::get_if<response_view>(&came.what);
+  const auto* response = std::get_if<response_view>(&observed.what);
   if (response == nullptr) return;
   started_.has_introduced_itself |= response->kind() == response_kind::device_info;
   started_.has_header |= response->kind() == response_kind::scan_started;
@@ -56,11 +56,11 @@ std::int64_t live_run::patience_ns() const {
 
 live_run::scan_state live_run::listen_once(stream_statistics& measured) {
   observer to;
-  to.event = [&](const observed_event& came) {
-    measured.take(came);
-    follow(came);
+  to.event = [&](const observed_event& observed) {
+    measured.take(observed);
+    follow(observed);
   };
-  to.arrival = [&](const reading& came) { measured.take(came); };
+  to.arrival = [&](const reading& observed) { measured.take(observed); };
   if (keeps_alive_ && link_.now_ns() >= started_.kept_alive_ns + times.keep_alive_ns) {
     link_.send(command::start);
     started_.kept_alive_ns = link_.now_ns();
@@ -134,8 +134,8 @@ void live_run::find_stall() {
 live_run::fate live_run::fate_of_silent() {
   const std::uint64_t before = link_.counts().packets;
   std::int64_t until_ns = link_.now_ns() + signs_ns;
-  link_.listen(until_ns, {.event = [&](const observed_event& came) {
-                 follow(came);
+  link_.listen(until_ns, {.event = [&](const observed_event& observed) {
+                 follow(observed);
                  if (link_.counts().packets > before) until_ns = 0;
                }});
   if (link_.counts().packets > before) return fate::resumed;

@@ -118,24 +118,24 @@ bool stream_statistics::is_steady() {
 
 bool stream_statistics::stands() const { return step_deg().value_or(0.0) <= standing_deg; }
 
-void stream_statistics::take(const reading& came) {
-  tally_.arrivals.take(came);
-  if (std::max(came.silence_ns, came.host_pause_ns) < arrival_statistics::stall_ns) return;
+void stream_statistics::take(const reading& observed) {
+  tally_.arrivals.take(observed);
+  if (std::max(observed.silence_ns, observed.host_pause_ns) < arrival_statistics::stall_ns) return;
   between_.is_unsure = true;
-  backlog_ns_ = came.arrival_ns + backlog_time_ns;
+  backlog_ns_ = observed.arrival_ns + backlog_time_ns;
 }
 
-void stream_statistics::take(const observed_event& came) {
-  tally_.counts.add(came.what);
-  if (const auto* packet = std::get_if<packet_view>(&came.what)) {
-    return take_packet(*packet, came.arrival_ns);
+void stream_statistics::take(const observed_event& observed) {
+  tally_.counts.add(observed.what);
+  if (const auto* packet = std::get_if<packet_view>(&observed.what)) {
+    return take_packet(*packet, observed.arrival_ns);
   }
-  if (std::holds_alternative<time_packet_view>(came.what)) return;
-  between_.has_answers |= std::holds_alternative<response_view>(came.what);
-  between_.size += came.raw.size();
-  since_packet_ += came.raw.size();
-  if (between_.raw.size() + came.raw.size() > max_between) return;
-  between_.raw.insert(between_.raw.end(), came.raw.begin(), came.raw.end());
+  if (std::holds_alternative<time_packet_view>(observed.what)) return;
+  between_.has_answers |= std::holds_alternative<response_view>(observed.what);
+  between_.size += observed.raw.size();
+  since_packet_ += observed.raw.size();
+  if (between_.raw.size() + observed.raw.size() > max_between) return;
+  between_.raw.insert(between_.raw.end(), observed.raw.begin(), observed.raw.end());
 }
 
 void stream_statistics::take_packet(packet_view packet, std::int64_t arrival_ns) {

@@ -33,8 +33,8 @@ class step_median {
 
 class stream_statistics {
  public:
-  void take(const observed_event& came);
-  void take(const reading& came);
+  void take(const observed_event& observed);
+  void take(const reading& observed);
 
   /// The head has reached its speed: from now on packets are evaluated, and all counts begin again.
   void begin();

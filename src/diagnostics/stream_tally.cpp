@@ -55,15 +55,15 @@ void arrival_statistics::add(const arrival_statistics& other) noexcept {
   longest_pause_ns_ = std::max(longest_pause_ns_, other.longest_pause_ns_);
 }
 
-void arrival_statistics::take(const reading& came) {
-  bytes_ += came.count;
-  if (!came.is_backlog && came.silence_ns < stall_ns) {
-    portions_[std::min(came.count, portions_.size() - 1)] += came.count;
-    portioned_ += came.count;
+void arrival_statistics::take(const reading& observed) {
+  bytes_ += observed.count;
+  if (!observed.is_backlog && observed.silence_ns < stall_ns) {
+    portions_[std::min(observed.count, portions_.size() - 1)] += observed.count;
+    portioned_ += observed.count;
   }
-  if (came.silence_ns >= stall_ns) ++stalls_;
-  longest_silence_ns_ = std::max(longest_silence_ns_, came.silence_ns);
-  longest_pause_ns_ = std::max(longest_pause_ns_, came.host_pause_ns);
+  if (observed.silence_ns >= stall_ns) ++stalls_;
+  longest_silence_ns_ = std::max(longest_silence_ns_, observed.silence_ns);
+  longest_pause_ns_ = std::max(longest_pause_ns_, observed.host_pause_ns);
 }
 
 double arrival_statistics::held_back_ms(std::uint32_t baud) const noexcept {

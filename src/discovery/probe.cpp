@@ -35,17 +35,18 @@ class inquiry {
     const std::int64_t now_ns = port_.now_ns();
     if (got->count > 0) {
       link_.heard(got->arrival_ns);
-      input_.feed(bytes(buffer_).first(got->count), got->arrival_ns);
+      parser_.feed(bytes(buffer_).first(got->count), [&](const event& found) { take(found); });
     } else if (link_.is_cut_off(now_ns)) {
-      input_.cut();
-    }
-    while (const event* const found = input_.next()) {
-      has_heard_ = true;
-      has_packets_ = has_packets_ || std::holds_alternative<packet_view>(*found);
-      link_.take(*found);
+      while (const auto found = parser_.finish()) take(*found);
     }
     if (now_ns >= link_.talk().next_look_ns()) link_.talk().look(now_ns);
     return {};
+  }
+
+  void take(const event& found) noexcept {
+    has_heard_ = true;
+    has_packets_ = has_packets_ || std::holds_alternative<packet_view>(found);
+    link_.take(found);
   }
 
   [[nodiscard]] result<device_information> judge(const outcome& ended) const {
@@ -68,8 +69,8 @@ class inquiry {
   }
 
   transport& port_;
-  event_reader input_;
-  device_link link_{input_};
+  stream_parser parser_;
+  device_link link_{parser_};
   std::array<std::uint8_t, 4096> buffer_{};
   bool has_heard_ = false;
   bool has_packets_ = false;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "event_reader.hpp"
 #include "g4lidar/core/session.hpp"
+#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
@@ -19,10 +19,10 @@ class device_link {
   /// bytes back for up to 16 ms.
   static constexpr std::int64_t usual_cut_off_ns = 30'000'000;
 
-  /// `input` must outlive this.
-  explicit device_link(event_reader& input, const session_times& times = {},
+  /// `parser` gets the bytes, and must outlive this.
+  explicit device_link(const stream_parser& parser, const session_times& times = {},
                        std::int64_t cut_off_after_ns = usual_cut_off_ns) noexcept
-      : input_(input), session_(times), cut_off_after_ns_(cut_off_after_ns) {}
+      : parser_(parser), session_(times), cut_off_after_ns_(cut_off_after_ns) {}
 
   /// Another transport follows: nothing is known about the device.
   void reset(std::int64_t now_ns) noexcept {
@@ -33,12 +33,12 @@ class device_link {
   [[nodiscard]] session& talk() noexcept { return session_; }
   [[nodiscard]] const session& talk() const noexcept { return session_; }
 
-  /// Bytes have arrived, which the input is fed with.
+  /// Bytes have arrived, which the parser gets.
   void heard(std::int64_t arrival_ns) noexcept { heard_ns_ = arrival_ns; }
   /// When the last byte arrived.
   [[nodiscard]] std::int64_t heard_ns() const noexcept { return heard_ns_; }
-  /// An event of the input.
-  void take(const event& found) noexcept { session_.take(found, input_.arrival_ns()); }
+  /// An event of the parser.
+  void take(const event& found) noexcept { session_.take(found, heard_ns_); }
 
   /// The device does not continue a packet after such a pause. The held bytes are to be parsed again,
   /// before the next answer is taken for the rest of the packet.
@@ -47,7 +47,7 @@ class device_link {
   }
   /// When is_cut_off() becomes true, if nothing arrives.
   [[nodiscard]] std::int64_t cut_off_ns() const noexcept {
-    return input_.held() > 0 ? heard_ns_ + cut_off_after_ns_ : never_ns;
+    return parser_.held() > 0 ? heard_ns_ + cut_off_after_ns_ : never_ns;
   }
 
   /// Sends the commands of the session: calls `write(bytes)` for each, until one fails.
@@ -59,7 +59,7 @@ class device_link {
   }
 
  private:
-  event_reader& input_;
+  const stream_parser& parser_;
   session session_;
   std::int64_t cut_off_after_ns_;
   std::int64_t heard_ns_ = 0;

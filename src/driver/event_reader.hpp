@@ -47,6 +47,8 @@ class event_reader {
   /// Whether next() returns nothing, and the last event has been handled.
   [[nodiscard]] bool is_empty() const noexcept { return input_.empty() && !is_cutting_ && !event_; }
 
+  [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
+
   // ---- the place ----
   [[nodiscard]] bytes unparsed() const noexcept { return input_; }
   /// The events of the last read that have been handled.

@@ -184,7 +184,9 @@ result<void> live_driver::start() {
   pipeline_.drop_scan();
   setup_.reset_short_scans();
   spin_up_.forget();
-  add_start();
+  stage_ = live_stage::preparing;
+  question_.forget_woken();
+  setup_.add_start(options_);
   const auto started = run_setup();
   // If it is woken, the next calls continue it, also next_scan().
   if (!started && started.error() != problem::cancelled) wants_scan_ = false;

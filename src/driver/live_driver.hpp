@@ -50,7 +50,6 @@ class live_driver final : public feeder {
   [[nodiscard]] result<void> hang_up();
 
   // The setup sequence, and the request of the caller.
-  void add_start();
   [[nodiscard]] bool set_up_again();
   [[nodiscard]] result<void> run_setup();
   [[nodiscard]] result<bool> go_on_with_setup();

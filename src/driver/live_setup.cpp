@@ -34,12 +34,6 @@ void remember(const outcome& done, lidar_options& options) {
 
 }  // namespace
 
-void live_driver::add_start() {
-  stage_ = live_stage::preparing;
-  question_.forget_woken();
-  setup_.add_start(options_);
-}
-
 /// The device ended a scan by itself. If it rebooted, it has lost its settings. Returns false if
 /// this happens repeatedly.
 bool live_driver::set_up_again() {
@@ -172,7 +166,9 @@ result<void> live_driver::identified(const device_information& who) {
   information_ = who;
   stage_ = live_stage::idle;
   if (wants_scan_) {
-    add_start();
+    stage_ = live_stage::preparing;
+    question_.forget_woken();
+    setup_.add_start(options_);
   } else if (reconnection_.end()) {
     report(lidar_event::kind::reconnected);
   }

@@ -21,7 +21,7 @@ session_times times_for(const lidar_tuning& tuning) noexcept {
 }  // namespace
 
 live_stream::live_stream(const parts& of, const lidar_tuning& tuning)
-    : of_(of), pace_(tuning.pace), link_(of.pipeline.input(), times_for(tuning)) {}
+    : of_(of), pace_(tuning.pace), link_(of.pipeline.input().parser(), times_for(tuning)) {}
 
 void live_stream::begin() {
   const transport& on = of_.on.on();

@@ -92,7 +92,7 @@ class session {
       watch_.answered(channel_.question().code(), *heard);
       return follow(request_.answered(*heard), now_ns);
     }
-    on_talk(now, now_ns);
+    if (now != channel_state::going_on) on_talk(now, now_ns);  // not usual
     if (std::get_if<packet_view>(&found) != nullptr) {
       if (scanning_) return watch_.packet(now_ns);
       // Of a scan that is not wanted: it is reported once, and stopped.
