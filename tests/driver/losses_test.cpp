@@ -195,7 +195,7 @@ TEST(SetupSequence, RepeatedSteps_NeverOverflow) {
     sequence.add(setup_step::stop);
     sequence.add(setup_step::identify);
   }
-  std::vector<ask> asked;
+  std::vector<request_kind> asked;
   for (; !sequence.is_done(); sequence.finish_next()) {
     asked.push_back(request_of(sequence.next(), all).what);
   }
@@ -215,7 +215,7 @@ TEST(SetupSequence, RepeatedSteps_NeverOverflow) {
 TEST(SetupSequence, NoOptions_QueriesHealthAndSampleRateOnly) {
   setup_sequence sequence;
   sequence.add_start({});
-  std::vector<ask> asked;
+  std::vector<request_kind> asked;
   for (; !sequence.is_done(); sequence.finish_next()) {
     asked.push_back(request_of(sequence.next(), {}).what);
   }
