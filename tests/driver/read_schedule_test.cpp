@@ -24,7 +24,7 @@ struct PaceFarFromTheEnd : testing::Test {
   }
   void take(const made::packet& next, std::size_t behind = 0) {
     now_ns += 10 * ms;
-    pace.came(next.data().size() + behind, now_ns);
+    pace.received(next.data().size() + behind, now_ns);
     // The last sample was measured when the packet began to be sent.
     const auto size = static_cast<std::int64_t>(next.data().size() + behind);
     pace.packet(next.view(), behind, now_ns - size * byte_ns, period_ns);
@@ -50,12 +50,12 @@ TEST_F(PaceFarFromTheEnd, ExpectedPacket_IsReadEarlierEachTime) {
 
 TEST_F(PaceFarFromTheEnd, IncompletePacket_RestIsWaitedFor) {
   now_ns += 4 * ms;
-  pace.came(80, now_ns);
+  pace.received(80, now_ns);
   EXPECT_EQ(pace.next_ns(80, 10, demand::points), now_ns + 10 * byte_ns);
 }
 
 TEST_F(PaceFarFromTheEnd, BytesBehindAPacket_ShowItsAge) {
-  pace.came(1, now_ns);  // not as expected
+  pace.received(1, now_ns);  // not as expected
   take(made::packet(0, 30 * 64, 40 * 64, 40), 20);
   const std::int64_t expected_ns = now_ns - 20 * byte_ns + packet_ns;
   EXPECT_NEAR(static_cast<double>(pace.next_ns(20, 70, demand::points)),
@@ -83,36 +83,36 @@ TEST_F(PaceFarFromTheEnd, TruncatedPacket_DoesNotPredictTheNext) {
 }
 
 TEST_F(PaceFarFromTheEnd, Flood_IsReadWithoutWaiting) {
-  for (int i = 0; i < 3; ++i) pace.came(4096, now_ns += 100 * us);
+  for (int i = 0; i < 3; ++i) pace.received(4096, now_ns += 100 * us);
   EXPECT_EQ(pace.next_ns(11, 79, demand::points), 0);
-  pace.came(1, now_ns += second);
+  pace.received(1, now_ns += second);
   EXPECT_GT(pace.next_ns(12, 78, demand::points), now_ns);
 }
 
 TEST_F(PaceFarFromTheEnd, StalledTransport_MayCatchUp) {
-  pace.came(10, now_ns += 190 * ms);
-  pace.came(3'000, now_ns += 100 * us);
+  pace.received(10, now_ns += 190 * ms);
+  pace.received(3'000, now_ns += 100 * us);
   EXPECT_GT(pace.next_ns(11, 79, demand::points), now_ns);
 }
 
 TEST_F(PaceFarFromTheEnd, UselessWaits_BecomeRare) {
   int rests = 0;
   for (int i = 0; i < 1'000; ++i) {
-    pace.came(10, now_ns += 16 * ms);
+    pace.received(10, now_ns += 16 * ms);
     if (pace.next_ns(10, 80, demand::points) <= now_ns) continue;
     ++rests;
-    pace.in_vain();
+    pace.nothing_complete();
   }
   EXPECT_GT(rests, 10);
   EXPECT_LT(rests, 30);
   pace.reset(230'400, 4095);
-  pace.came(10, now_ns += 16 * ms);
+  pace.received(10, now_ns += 16 * ms);
   EXPECT_GT(pace.next_ns(10, 80, demand::points), now_ns);
 }
 
 TEST_F(PaceFarFromTheEnd, NoBaudRate_NoWait) {
   pace.reset(0, 4095);
-  pace.came(10, now_ns);
+  pace.received(10, now_ns);
   EXPECT_EQ(pace.next_ns(10, 80, demand::points), 0);
 }
 
