@@ -6,6 +6,7 @@
 
 #include "file_writer.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "played_file.hpp"
 
 namespace g4lidar {
 namespace {
@@ -83,7 +84,9 @@ class recorded_connector final : public forwarding_connector,
       : forwarding_connector(std::move(from)),
         into_(&into),
         inner_hook_(inner().recording()),
-        played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {}
+        played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {
+    if (played_file* const played = file()) played->controls().forbid_seek();
+  }
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     auto port = inner().connect();
@@ -101,6 +104,9 @@ class recorded_connector final : public forwarding_connector,
   }
   [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
     return inner_hook_ != nullptr ? inner_hook_->wall_ahead_ns() : std::nullopt;
+  }
+  [[nodiscard]] played_file* file() noexcept override {
+    return inner_hook_ != nullptr ? inner_hook_->file() : nullptr;
   }
   [[nodiscard]] recorded_event_source* events() noexcept override {
     return played_ != nullptr ? this : nullptr;
@@ -127,11 +133,7 @@ class recorded_connector final : public forwarding_connector,
   [[nodiscard]] std::int64_t wait_for_next_ns() noexcept override {
     return played_->wait_for_next_ns();
   }
-  // Of both bases.
-  [[nodiscard]] bool take_cancelled() noexcept override {
-    if (played_ != nullptr) return played_->take_cancelled();
-    return inner_hook_ != nullptr && inner_hook_->take_cancelled();
-  }
+  [[nodiscard]] bool take_cancelled() noexcept override { return played_->take_cancelled(); }
 
   Writer* into_;
   recording_hook* inner_hook_;     // null: a device that nobody else records

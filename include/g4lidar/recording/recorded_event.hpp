@@ -15,6 +15,7 @@
 namespace g4lidar {
 
 struct recorded_device;
+class played_file;
 
 /// One event between two reads of a transport. A view; the function that returns it defines its
 /// lifetime.
@@ -86,11 +87,8 @@ class G4LIDAR_API recording_hook {
 
   /// Whether a device answers on the transports. Nothing is written to files and recordings.
   [[nodiscard]] virtual bool answers() const noexcept { return false; }
-  /// Whether the clock is counted from the bytes that were read, so that no call waits.
-  [[nodiscard]] virtual bool counts_time() const noexcept { return false; }
-  /// Whether the last read ended early, because the program cancels the reading of a file without events.
-  /// Resets it.
-  [[nodiscard]] virtual bool take_cancelled() noexcept { return false; }
+  /// The file that is played; null: a device, or a pipe. The type is internal to the library.
+  [[nodiscard]] virtual played_file* file() noexcept { return nullptr; }
   /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
   /// of a file arrived when they were recorded.
   [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
