@@ -101,7 +101,7 @@ TEST_F(PaceFarFromTheEnd, UselessWaits_BecomeRare) {
     pace.received(10, now_ns += 16 * ms);
     if (pace.next_ns(10, 80, demand::points) <= now_ns) continue;
     ++rests;
-    pace.in_vain();
+    pace.nothing_complete();
   }
   EXPECT_GT(rests, 10);
   EXPECT_LT(rests, 30);

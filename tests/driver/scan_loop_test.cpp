@@ -241,7 +241,7 @@ TEST(WhileScanning, ImpossibleValue_IsRefused) {
     const std::uint64_t writes = bench.writes;
     EXPECT_EQ(lidar->ask(requests::health(), while_scanning(9)).error(), problem::bad_option);
     EXPECT_EQ(lidar->set(scan_frequency::hz(9), while_scanning(2)).error(), problem::bad_option);
-    EXPECT_EQ(lidar->ask(request{ask(99)}).error(), problem::bad_option);
+    EXPECT_EQ(lidar->ask(request{request_kind(99)}).error(), problem::bad_option);
     EXPECT_EQ(bench.writes, writes);
     EXPECT_EQ(lidar->is_scanning(), scans);
   }
