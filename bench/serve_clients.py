@@ -64,7 +64,7 @@ def main():
         if not client.is_page:
             send(client.sock, '{"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":2},'
                               '{"id":3,"channelId":3}]}')
-    send(clients[0].sock, '{"op":"set","name":"freq","value":12}')
+    send(clients[0].sock, '{"op":"set","name":"frequency","value":12}')
     selector = selectors.DefaultSelector()
     for client in clients:
         selector.register(client.sock, selectors.EVENT_READ, client)

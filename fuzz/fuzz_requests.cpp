@@ -68,27 +68,27 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     expect(!wanted.speed || *wanted.speed == *wanted.speed, "a speed that is no number");
     expect(!wanted.seek_s || *wanted.seek_s == *wanted.seek_s, "a place that is no number");
   };
-  client_registry center("session", true, {set, play}, [] {});
-  client_registry::client* clients[] = {center.connect(client_kind::page, nullptr),
-                                        center.connect(client_kind::foxglove, nullptr)};
+  client_registry registry("session", true, {set, play}, [] {});
+  client_registry::client* clients[] = {registry.connect(client_kind::page, nullptr),
+                                        registry.connect(client_kind::foxglove, nullptr)};
   while (!rest.empty()) {
     const std::string_view text = take_line(rest);
     for (client_registry::client*& each : clients) {
-      if (each == nullptr || center.receive(*each, text)) continue;
-      center.disconnect(each);
+      if (each == nullptr || registry.receive(*each, text)) continue;
+      registry.disconnect(each);
       each = nullptr;
     }
-    center.publish(channel::scan, 1, std::vector<std::uint8_t>(8));
+    registry.publish(channel::scan, 1, std::vector<std::uint8_t>(8));
     expect(unanswered.size() < 2, "a client sets twice at once");
   }
   for (const auto& done : unanswered) done("it is over");
   for (client_registry::client* const each : clients) {
     if (each == nullptr) continue;
     unsigned waiting = 0;
-    while (center.take(*each)) ++waiting;
+    while (registry.take(*each)) ++waiting;
     expect(waiting <= outbox::longest_queue + outbox::slot_count, "more waits than has room");
-    center.disconnect(each);
+    registry.disconnect(each);
   }
-  expect(center.client_count() == 0, "a client is left");
+  expect(registry.client_count() == 0, "a client is left");
   return 0;
 }

@@ -34,15 +34,9 @@ std::optional<live_lidar::milliseconds> optional_timeout(std::optional<double> s
 /// Sends each setting that is given.
 void set(live_lidar& on, const wanted_settings& wanted, bool interrupt) {
   const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
-  const auto send = [&](const auto& value) {
-    if (value) on.run([&](lidar& device) { return device.set(*value, how); });
-  };
-  send(wanted.sample_rate());
-  send(wanted.frequency());
-  send(wanted.direction);
-  send(wanted.constancy());
-  send(wanted.idle());
-  send(wanted.protecting());
+  for (const answer& value : wanted.values()) {
+    on.run([&](lidar& device) { return device.ask(change_to(value), how); });
+  }
 }
 
 nb::dict settings(live_lidar& on, bool interrupt) {
@@ -54,7 +48,7 @@ nb::dict settings(live_lidar& on, bool interrupt) {
   all["frequency_hz"] = ask(requests::get_scan_frequency()).hz();
   all["sample_rate_hz"] = to_hz(ask(requests::get_sample_rate()));
   all["direction"] = ask(requests::get_direction());
-  all["low_power"] = ask(requests::get_low_power()) == low_power::on;
+  all["idle"] = ask(requests::get_low_power()) == low_power::on;
   return all;
 }
 
@@ -151,33 +145,28 @@ void bind_control(Class& made) {
   made.def(
           "start",
           [](live_lidar& on, std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
-             std::optional<motor_direction> direction, std::optional<bool> constant_frequency,
-             std::optional<bool> low_power, std::optional<bool> protection) {
-            set(on,
-                {frequency_hz, sample_rate_hz, direction, constant_frequency, low_power,
-                 protection},
-                true);
+             std::optional<motor_direction> direction, std::optional<bool> constant,
+             std::optional<bool> idle, std::optional<bool> protection) {
+            set(on, {frequency_hz, sample_rate_hz, direction, constant, idle, protection}, true);
             on.start();
           },
           nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
-          "direction"_a = nb::none(), "constant_frequency"_a = nb::none(),
-          "low_power"_a = nb::none(), "protection"_a = nb::none(),
+          "direction"_a = nb::none(), "constant"_a = nb::none(), "idle"_a = nb::none(),
+          "protection"_a = nb::none(),
           "Sets what is given, as set() does, and starts the scan. Returns when the device has "
           "confirmed. Blocks at most "
           "10 s with one fault of the device, 15 s for each request if many bytes are damaged.")
       .def(
           "set",
           [](live_lidar& on, std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
-             std::optional<motor_direction> direction, std::optional<bool> constant_frequency,
-             std::optional<bool> low_power, std::optional<bool> protection, bool interrupt) {
-            set(on,
-                {frequency_hz, sample_rate_hz, direction, constant_frequency, low_power,
-                 protection},
+             std::optional<motor_direction> direction, std::optional<bool> constant,
+             std::optional<bool> idle, std::optional<bool> protection, bool interrupt) {
+            set(on, {frequency_hz, sample_rate_hz, direction, constant, idle, protection},
                 interrupt);
           },
           nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
-          "direction"_a = nb::none(), "constant_frequency"_a = nb::none(),
-          "low_power"_a = nb::none(), "protection"_a = nb::none(), "interrupt"_a = false,
+          "direction"_a = nb::none(), "constant"_a = nb::none(), "idle"_a = nb::none(),
+          "protection"_a = nb::none(), "interrupt"_a = false,
           "Sets the scan frequency (5 to 12 Hz), the measurements per second (4000, 8000 or 9000), "
           "the direction of the "
           "head, whether the lidar regulates its frequency, whether the motor stops when idle, "
@@ -188,7 +177,7 @@ void bind_control(Class& made) {
       .def("settings", &settings, nb::kw_only(), "interrupt"_a = false,
            nb::sig("def settings(self, *, interrupt: bool = False) -> dict[str, typing.Any]"),
            "The settings that can be queried: 'frequency_hz', 'sample_rate_hz', 'direction', "
-           "'low_power'.")
+           "'idle'.")
       .def(
           "health",
           [](live_lidar& on, bool interrupt) {

@@ -167,24 +167,20 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
-live_lidar* open_by_keywords(
-    const device_name& device, std::uint32_t baud, std::optional<double> frequency_hz,
-    std::optional<int> sample_rate_hz, std::optional<motor_direction> direction,
-    std::optional<bool> constant_frequency, std::optional<bool> low_power,
-    std::optional<bool> protection, bool reconnect, bool partial_scans, double answer_time,
-    double stall_time, double longest_backoff, double batch, double transport_delay, double speed,
-    bool loop, double begin, std::optional<double> end, std::uint32_t raw_sample_rate_hz,
-    const std::optional<path_text>& record, bool overwrite, double device_wait) {
-  const wanted_settings wanted{frequency_hz,       sample_rate_hz, direction,
-                               constant_frequency, low_power,      protection};
+live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
+                             std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
+                             std::optional<motor_direction> direction, std::optional<bool> constant,
+                             std::optional<bool> idle, std::optional<bool> protection,
+                             bool reconnect, bool partial_scans, double answer_time,
+                             double stall_time, double longest_backoff, double batch,
+                             double transport_delay, double speed, bool loop, double begin,
+                             std::optional<double> end, std::uint32_t raw_sample_rate_hz,
+                             const std::optional<path_text>& record, bool overwrite,
+                             double device_wait) {
+  const wanted_settings wanted{frequency_hz, sample_rate_hz, direction, constant, idle, protection};
   lidar_options options;
   options.baud = baud;
-  options.sample_rate = wanted.sample_rate();
-  options.frequency = wanted.frequency();
-  options.direction = direction;
-  options.constant = wanted.constancy();
-  options.idle = wanted.idle();
-  options.protection = wanted.protecting();
+  for (const answer& value : wanted.values()) set_option(options, value);
   options.reconnect = reconnect;
   options.partial_scans = partial_scans;
   options.tuning.answer_time = in_milliseconds(answer_time);
@@ -274,7 +270,7 @@ void bind_opening(nb::module_& module) {
   module.def(
       "open", &open_by_keywords, "device"_a = path_text{}, nb::kw_only(), "baud"_a = usual.baud,
       "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(), "direction"_a = nb::none(),
-      "constant_frequency"_a = nb::none(), "low_power"_a = nb::none(), "protection"_a = nb::none(),
+      "constant"_a = nb::none(), "idle"_a = nb::none(), "protection"_a = nb::none(),
       "reconnect"_a = usual.reconnect, "partial_scans"_a = usual.partial_scans,
       "answer_time"_a = seconds(usual.tuning.answer_time),
       "stall_time"_a = seconds(usual.tuning.stall_time),

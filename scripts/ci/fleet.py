@@ -70,7 +70,7 @@ class Fleet:
             config = scratch / f"robot{number}.toml"
             config.write_text(f'SOURCE = ["{source}"]\nnamespace = "robot{number}"\nframe-id = "robot{number}/laser"\n'
                               f'base-frame = "robot{number}/base_link"\nmount = ["0.2,0,0"]\nstandby = true\n'
-                              f'set = ["freq={FREQUENCY_HZ}"]\n')
+                              f'set = ["frequency={FREQUENCY_HZ}"]\n')
             with open(scratch / f"robot{number}.log", "w") as log:
                 self.robots.append(subprocess.Popen(inside(number, g4_ros2, "--config", str(config)), stderr=log,
                                                     env=os.environ | environment))

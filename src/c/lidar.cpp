@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "border.hpp"
+#include "g4lidar/setting_table.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "handles.hpp"
 
@@ -39,68 +40,29 @@ void fill(g4lidar_scan& out, const scan& from) noexcept {
   out.is_piece = from.is_piece();
 }
 
-/// The value of an answer in C; nothing if it has none.
-std::optional<std::int32_t> value_of(const answer& from) noexcept {
-  if (const auto* it = std::get_if<scan_frequency>(&from)) return it->chz;
-  if (const auto* it = std::get_if<sample_rate>(&from)) {
-    return static_cast<std::int32_t>(to_hz(*it));
-  }
-  if (const auto* it = std::get_if<motor_direction>(&from)) {
-    return *it == motor_direction::clockwise ? G4LIDAR_CLOCKWISE : G4LIDAR_COUNTER_CLOCKWISE;
-  }
-  const auto shown = [](bool is_on) { return is_on ? G4LIDAR_ON : G4LIDAR_OFF; };
-  if (const auto* it = std::get_if<low_power>(&from)) return shown(*it == low_power::on);
-  if (const auto* it = std::get_if<constant_frequency>(&from)) {
-    return shown(*it == constant_frequency::on);
-  }
-  if (const auto* it = std::get_if<power_down_protection>(&from)) {
-    return shown(*it == power_down_protection::on);
-  }
-  return std::nullopt;
+static_assert(G4LIDAR_SAMPLE_RATE == 1 && G4LIDAR_SCAN_FREQUENCY == 2 &&
+              G4LIDAR_MOTOR_DIRECTION == 3 && G4LIDAR_CONSTANT_FREQUENCY == 4 &&
+              G4LIDAR_LOW_POWER == 5 && G4LIDAR_POWER_DOWN_PROTECTION == 6);
+
+/// The row of a setting; null if there is none.
+const setting_info* row_of(int setting) noexcept {
+  const auto all = all_settings();
+  const bool is_known = setting >= 1 && static_cast<std::size_t>(setting) <= all.size();
+  return is_known ? &all[static_cast<std::size_t>(setting) - 1] : nullptr;
 }
 
 std::optional<request> query_of(int setting) noexcept {
-  switch (setting) {
-    case G4LIDAR_SCAN_FREQUENCY:
-      return requests::get_scan_frequency();
-    case G4LIDAR_SAMPLE_RATE:
-      return requests::get_sample_rate();
-    case G4LIDAR_MOTOR_DIRECTION:
-      return requests::get_direction();
-    case G4LIDAR_LOW_POWER:
-      return requests::get_low_power();
-    default:
-      return std::nullopt;
-  }
+  const setting_info* const row = row_of(setting);
+  return row == nullptr ? std::nullopt : row->query;
 }
 
 /// The request that sets `wanted`; a value that is none of the setting's becomes one that the session
 /// refuses.
 std::optional<request> change_of(int setting, std::int32_t wanted) noexcept {
-  const auto choice = [wanted](auto first, auto second) {
-    using type = decltype(first);
-    return wanted == 1 ? first : wanted == 2 ? second : static_cast<type>(0xFF);
-  };
-  switch (setting) {
-    case G4LIDAR_SCAN_FREQUENCY:
-      return requests::set(
-          scan_frequency{static_cast<std::uint16_t>(std::clamp(wanted, 0, 0xFFFF))});
-    case G4LIDAR_SAMPLE_RATE:
-      return requests::set(wanted == 4000   ? sample_rate::khz_4
-                           : wanted == 8000 ? sample_rate::khz_8
-                           : wanted == 9000 ? sample_rate::khz_9
-                                            : static_cast<sample_rate>(0xFF));
-    case G4LIDAR_MOTOR_DIRECTION:
-      return requests::set(choice(motor_direction::clockwise, motor_direction::counter_clockwise));
-    case G4LIDAR_LOW_POWER:
-      return requests::set(choice(low_power::off, low_power::on));
-    case G4LIDAR_CONSTANT_FREQUENCY:
-      return requests::set(choice(constant_frequency::off, constant_frequency::on));
-    case G4LIDAR_POWER_DOWN_PROTECTION:
-      return requests::set(choice(power_down_protection::off, power_down_protection::on));
-    default:
-      return std::nullopt;
-  }
+  const setting_info* const row = row_of(setting);
+  if (row == nullptr) return std::nullopt;
+  const auto value = value_of(*row, wanted);
+  return value ? change_to(*value) : request{row->change, 0xFFFF};
 }
 
 std::optional<request> step_of(std::int32_t step_chz) noexcept {
@@ -140,7 +102,7 @@ int send(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how, g4
 int ask_value(g4lidar_lidar* lidar, const std::optional<request>& wanted, int how,
               std::int32_t* value, g4lidar_error* error) noexcept {
   return send(lidar, wanted, how, error, [value](const answer& from) {
-    const auto got = value_of(from);
+    const auto got = number_of(from);
     if (got && value != nullptr) *value = *got;
     return got.has_value();
   });
@@ -325,7 +287,6 @@ const g4lidar_counts* g4lidar_get_counts(g4lidar_lidar* lidar) {
 int64_t g4lidar_wall_ns(const g4lidar_lidar* lidar, int64_t time_ns) {
   if (lidar == nullptr) return 0;
   if (lidar->wall_ahead_ns != 0) return time_ns + lidar->wall_ahead_ns;
-  const recording_hook* const hook = lidar->connector->recording();
-  const auto ahead_ns = hook == nullptr ? std::nullopt : hook->wall_ahead_ns();
+  const auto ahead_ns = lidar->connector->traits().wall_ahead_ns;
   return time_ns + ahead_ns.value_or(wall_clock().ahead().count());
 }

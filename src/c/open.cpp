@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Lidars: options, opening, and continuing a recording at another place.
+#include <array>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "border.hpp"
 #include "g4lidar/recording/replay.hpp"
+#include "g4lidar/setting_table.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "handles.hpp"
@@ -18,46 +20,29 @@ constexpr g4lidar_options lidar_defaults{
     sizeof(g4lidar_options), nullptr, nullptr, 0, 230400, 0,     0,     0,  0, 0, 0,
     G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}, 0};
 
-/// An option that is 0 for "as it is", and 1 or 2 for the two values of a setting.
-template <class Setting>
-bool take_choice(std::int32_t given, Setting first, Setting second,
-                 std::optional<Setting>& into) noexcept {
-  if (given == 1) into = first;
-  if (given == 2) into = second;
-  return given >= 0 && given <= 2;
-}
-
 void take_time(std::int32_t given_ms, std::chrono::milliseconds& into) noexcept {
   if (given_ms != 0) into = std::chrono::milliseconds(given_ms);
 }
 
 /// The option without a valid value, or null. Times and the baud rate are checked by the lidar.
 const char* take_settings(const g4lidar_options& given, lidar_options& into) noexcept {
-  if (given.frequency_chz < 0 || given.frequency_chz > 0xFFFF) {
-    return "frequency_chz: 500 to 1200, or 0";
-  }
-  if (given.frequency_chz != 0) {
-    into.frequency = scan_frequency{static_cast<std::uint16_t>(given.frequency_chz)};
-  }
-  if (given.sample_rate_hz == 4000) into.sample_rate = sample_rate::khz_4;
-  if (given.sample_rate_hz == 8000) into.sample_rate = sample_rate::khz_8;
-  if (given.sample_rate_hz == 9000) into.sample_rate = sample_rate::khz_9;
-  if (given.sample_rate_hz != 0 && !into.sample_rate)
-    return "sample_rate_hz: 4000, 8000, 9000 or 0";
-  if (!take_choice(given.direction, motor_direction::clockwise, motor_direction::counter_clockwise,
-                   into.direction)) {
-    return "direction: a g4lidar_direction or 0";
-  }
-  if (!take_choice(given.low_power, low_power::off, low_power::on, into.idle)) {
-    return "low_power: a g4lidar_switch or 0";
-  }
-  if (!take_choice(given.constant_frequency, constant_frequency::off, constant_frequency::on,
-                   into.constant)) {
-    return "constant_frequency: a g4lidar_switch or 0";
-  }
-  if (!take_choice(given.protection, power_down_protection::off, power_down_protection::on,
-                   into.protection)) {
-    return "protection: a g4lidar_switch or 0";
+  struct row {
+    std::int32_t number;
+    const char* error;
+  };
+  const std::array<row, 6> settings{{
+      {given.sample_rate_hz, "sample_rate_hz: 4000, 8000, 9000 or 0"},
+      {given.frequency_chz, "frequency_chz: 500 to 1200, or 0"},
+      {given.direction, "direction: a g4lidar_direction or 0"},
+      {given.constant_frequency, "constant_frequency: a g4lidar_switch or 0"},
+      {given.low_power, "low_power: a g4lidar_switch or 0"},
+      {given.protection, "protection: a g4lidar_switch or 0"},
+  }};
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    if (settings[i].number == 0) continue;  // as it is
+    const auto value = value_of(all_settings()[i], settings[i].number);
+    if (!value) return settings[i].error;
+    set_option(into, *value);
   }
   if (given.device_wait_ms < -1) return "device_wait_ms: 0 or more, or -1 for no limit";
   into.device_wait = given.device_wait_ms < 0 ? std::chrono::milliseconds::max()

@@ -31,7 +31,7 @@ class file_run {
     const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
     splitter_.finish(to_);
     layout_.finish();
-    if (!is_read || measured_.arrivals().bytes() == 0) {
+    if (!is_read || measured_.tally().arrivals.bytes() == 0) {
       port_.find(diagnosis::bad_file);
       log_.report(std::move(port_));
       return log_.skip_from(diagnostic_stage::permission, "Not reached.");
@@ -117,8 +117,8 @@ class file_run {
       if (response->kind() == response_kind::scan_started) await_speed();
     }
     measured_.take(came);
-    if (is_judging_ || measured_.samples() < looked_ + steady_samples) return;
-    looked_ = measured_.samples();
+    if (is_judging_ || measured_.tally().samples < looked_ + steady_samples) return;
+    looked_ = measured_.tally().samples;
     if (!measured_.is_steady()) return;
     measured_.resume();
     is_judging_ = true;
@@ -128,22 +128,22 @@ class file_run {
   void await_speed() {
     measured_.suspend();
     is_judging_ = false;
-    looked_ = measured_.samples();
+    looked_ = measured_.tally().samples;
   }
 
   void report() {
     log_.skip(diagnostic_stage::permission, needs_device);
     log_.skip(diagnostic_stage::holder, needs_device);
     stage_report baud{.stage = diagnostic_stage::baud_rate};
-    const stream_counts& counts = measured_.counts();
-    baud.add("bytes", measured_.arrivals().bytes());
+    const stream_counts& counts = measured_.tally().counts;
+    baud.add("bytes", measured_.tally().arrivals.bytes());
     baud.add("packets", counts.packets);
     baud.add("responses", counts.responses);
     if (find_other_layout(baud, layout_)) {
       log_.report(std::move(baud));
       return log_.skip_from(diagnostic_stage::answers, "The packets are not those of a G4.");
     }
-    const auto found = diagnosis_of(counts, measured_.arrivals().bytes());
+    const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
     if (found) baud.find(*found);
     if (found == diagnosis::wrong_baud_rate) {
       baud.remark = "It is also possible that these bytes are not those of a lidar.";
@@ -154,8 +154,8 @@ class file_run {
     report_health(log_, device_.condition);
     stage_report motor{.stage = diagnostic_stage::motor};
     // Two comparisons of the speed need three times its samples; a head that stands still shows it sooner.
-    const bool is_short =
-        !measured_.was_steady() && !measured_.stands() && measured_.samples() < 3 * steady_samples;
+    const bool is_short = !measured_.was_steady() && !measured_.stands() &&
+                          measured_.tally().samples < 3 * steady_samples;
     if (is_short || counts.packets <= few_packets) {
       motor.outcome = stage_verdict::skipped;
       motor.remark = "There are too few packets.";

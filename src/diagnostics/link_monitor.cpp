@@ -18,6 +18,7 @@ constexpr std::int64_t host_pause_ns = 25 * ms;
 constexpr std::int64_t second_answer_ns = 35 * ms;
 /// The wait for the right reply after a wrong one.
 constexpr std::int64_t after_wrong_ns = 250 * ms;
+constexpr std::int64_t cut_off_after_ns = 60 * ms;
 /// After a stop, a link without bytes for this time is quiet.
 constexpr std::int64_t quiet_ns = 70 * ms;
 /// A device that has not stopped by then gets another stop.
@@ -35,16 +36,17 @@ std::size_t size_of(const event& found) noexcept {
 
 }  // namespace
 
-void event_splitter::take(bytes input, std::int64_t arrival_ns, const observer& to) {
-  arrival_ns_ = arrival_ns;
+void event_splitter::take(bytes data, std::int64_t arrival_ns, const observer& to) {
+  input_.feed(data, arrival_ns);
   raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(raw_begin_));
   raw_begin_ = 0;
-  raw_.insert(raw_.end(), input.begin(), input.end());
-  while (const auto found = parser_.next(input)) give(*found, to);
+  raw_.insert(raw_.end(), data.begin(), data.end());
+  while (const event* const found = input_.next()) give(*found, to);
 }
 
 void event_splitter::finish(const observer& to) {
-  while (const auto found = parser_.finish()) give(*found, to);
+  input_.cut();
+  while (const event* const found = input_.next()) give(*found, to);
 }
 
 void event_splitter::give(const event& found, const observer& to) {
@@ -59,7 +61,7 @@ void event_splitter::give(const event& found, const observer& to) {
     in_text_ = false;
   }
   counts_.add(found);
-  if (to.event) to.event({found, raw, arrival_ns_});
+  if (to.event) to.event({found, raw, input_.arrival_ns()});
 }
 
 void event_splitter::look_for_text(bytes raw) {
@@ -73,6 +75,11 @@ void event_splitter::look_for_text(bytes raw) {
   }
   if (letters_ == 0) in_text_ = false;
 }
+
+link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled)
+    : transport_(std::move(opened)),
+      is_cancelled_(std::move(is_cancelled)),
+      link_(splitter_.input(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns}, cut_off_after_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
@@ -102,24 +109,25 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
     }
     has_backlog_ = false;
     silence_ns_ += std::min(took_ns, slice_ns);
-    if (splitter_.held() > 0 && read_ns_ >= heard_ns_ + cut_off_after_ns_) splitter_.finish(to);
+    if (link_.is_cut_off(read_ns_)) splitter_.finish(to);
   }
 }
 
 void link_monitor::take(const received& got, reading what, const observer& to) {
-  heard_ns_ = got.arrival_ns;
+  const bytes data = bytes(buffer_).first(got.count);
+  link_.heard(got.arrival_ns);
   what.silence_ns = std::exchange(silence_ns_, 0);
   what.is_backlog = has_backlog_;
   has_backlog_ = has_backlog_ && got.count == buffer_.size();
   if (to.arrival) to.arrival(what);
-  layout_.take(bytes(buffer_).first(got.count));
-  splitter_.take(bytes(buffer_).first(got.count), got.arrival_ns, to);
+  layout_.take(data);
+  splitter_.take(data, got.arrival_ns, to);
 }
 
 void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
   while (!is_over() && now_ns() < until_ns) {
     listen(std::min(now_ns() + quiet, until_ns), {});
-    if (now_ns() >= heard_ns_ + quiet) return splitter_.finish({});
+    if (now_ns() >= heard_ns() + quiet) return splitter_.finish({});
   }
 }
 
@@ -130,26 +138,28 @@ void link_monitor::write(bytes data) {
 }
 
 bool link_monitor::stop() {
-  session_times times;
-  times.quiet_ns = quiet_ns;
-  times.drain_ns = stop_ns;
-  command_channel channel(times);
-  channel.drain(now_ns());
-  channel_state state = channel_state::going_on;
-  while (!is_over() && state == channel_state::going_on) {
-    while (const auto command_bytes = channel.to_send()) write(*command_bytes);
-    std::int64_t until_ns = channel.next_look_ns();
-    listen(until_ns, {.event = [&](const observed_event& came) {
-             if (state == channel_state::going_on) state = channel.take(came.what, came.arrival_ns);
-             until_ns = state == channel_state::going_on ? channel.next_look_ns() : 0;
+  session& talk = link_.talk();
+  talk.reset();
+  static_cast<void>(talk.begin(requests::stop(), now_ns()));
+  std::optional<outcome> done;
+  while (!is_over() && !done) {
+    static_cast<void>(link_.send([&](bytes out) {
+      write(out);
+      return result<void>();
+    }));
+    std::int64_t until_ns = talk.next_look_ns();
+    listen(until_ns, {.event = [&](const observed_event& found) {
+             link_.take(found.what);
+             until_ns = talk.next_look_ns();
            }});
-    if (state == channel_state::going_on) state = channel.look(now_ns());
+    talk.look(now_ns());
+    done = talk.finished();
   }
-  // The channel counts events only: the beginning of a last packet may have arrived later.
-  if (now_ns() < heard_ns_ + quiet_ns) listen_for_quiet(quiet_ns, now_ns() + stop_ns);
-  const bool is_quiet = now_ns() >= heard_ns_ + quiet_ns;  // also without noise
+  // The session counts events only: the beginning of a last packet may have arrived later.
+  if (now_ns() < heard_ns() + quiet_ns) listen_for_quiet(quiet_ns, now_ns() + stop_ns);
+  const bool is_quiet = now_ns() >= heard_ns() + quiet_ns;  // also without noise
   if (is_quiet) splitter_.finish({});
-  return state == channel_state::quiet && is_quiet;
+  return done && done->how == verdict::answered && is_quiet;
 }
 
 void link_monitor::stop_after_failure() {

@@ -10,10 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "driver/device_link.hpp"
 #include "g4lidar/core/command.hpp"
-#include "g4lidar/core/session/command_channel.hpp"
 #include "g4lidar/core/stream_counter.hpp"
-#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "layout_votes.hpp"
@@ -47,10 +46,10 @@ struct observer {
 /// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*
 class event_splitter {
  public:
-  void take(bytes input, std::int64_t arrival_ns, const observer& to);
+  [[nodiscard]] event_reader& input() noexcept { return input_; }
+  void take(bytes data, std::int64_t arrival_ns, const observer& to);
   /// The held bytes have ended.
   void finish(const observer& to);
-  [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
   /// Counts of all events so far.
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   /// Boot texts so far.
@@ -60,11 +59,10 @@ class event_splitter {
   void give(const event& found, const observer& to);
   void look_for_text(bytes raw);
 
-  stream_parser parser_;
+  event_reader input_;
   stream_counter counts_;
   std::vector<std::uint8_t> raw_;  // not part of an event yet
   std::size_t raw_begin_ = 0;
-  std::int64_t arrival_ns_ = 0;
   std::uint64_t boots_ = 0;
   std::size_t letters_ = 0;  // consecutive
   bool in_text_ = false;
@@ -92,8 +90,7 @@ struct exchange {
 /// *Single thread.* After a loss (error()) nothing arrives, and every call returns immediately.
 class link_monitor {
  public:
-  link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled)
-      : transport_(std::move(opened)), is_cancelled_(std::move(is_cancelled)) {}
+  link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled);
 
   /// Observes until `until_ns`, which the observer may change.
   void listen(const std::int64_t& until_ns, const observer& to);
@@ -101,7 +98,7 @@ class link_monitor {
   /// Observes until nothing has arrived for `quiet_ns`, at most until `until_ns`.
   void listen_for_quiet(std::int64_t quiet_ns, std::int64_t until_ns);
   /// A packet or response that does not continue for this time has ended. On a link that stalls it takes longer.
-  void set_cut_off_after(std::int64_t pause_ns) noexcept { cut_off_after_ns_ = pause_ns; }
+  void set_cut_off_after(std::int64_t pause_ns) noexcept { link_.set_cut_off_after(pause_ns); }
 
   void send(command code) { write(encode(code)); }
   /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.
@@ -126,7 +123,7 @@ class link_monitor {
   }
   [[nodiscard]] bool is_over() const noexcept { return cancelled_ || error_ || !transport_; }
   /// When the last byte arrived.
-  [[nodiscard]] std::int64_t heard_ns() const noexcept { return heard_ns_; }
+  [[nodiscard]] std::int64_t heard_ns() const noexcept { return link_.heard_ns(); }
   [[nodiscard]] std::uint64_t boots() const noexcept { return splitter_.boots(); }
   /// Counts of everything observed since replace().
   [[nodiscard]] const stream_counts& counts() const noexcept { return splitter_.counts(); }
@@ -156,9 +153,8 @@ class link_monitor {
   std::int64_t ended_ns_ = 0;
   std::int64_t read_ns_ = -1;  // the end of the last read
   event_splitter splitter_;
+  device_link link_;
   std::array<std::uint8_t, 4096> buffer_{};
-  std::int64_t heard_ns_ = 0;
-  std::int64_t cut_off_after_ns_ = 60'000'000;
   std::int64_t silence_ns_ = 0;
   std::uint64_t host_pauses_ = 0;
   std::int64_t host_paused_ns_ = 0;

@@ -110,10 +110,9 @@ running_diagnosis::running_diagnosis(const running_diagnosis_options& options)
 running_diagnosis::~running_diagnosis() = default;
 
 std::unique_ptr<connector> running_diagnosis::observe(std::unique_ptr<connector> from) {
-  recording_hook* const hook = from->recording();
+  recording_hook* const hook = recording_hook_of(*from);
   recorded_event_source* const played = hook != nullptr ? hook->events() : nullptr;
-  state_->begin(hook == nullptr || hook->answers(),
-                played != nullptr ? &played->device() : nullptr);
+  state_->begin(from->traits().answers, played != nullptr ? &played->device() : nullptr);
   return std::make_unique<observed_connector>(std::move(from), *state_);
 }
 

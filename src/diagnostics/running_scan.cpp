@@ -28,7 +28,7 @@ void running_scan::enter(phase next) {
   silence_ns_ = 0;
   if (next == phase::speeds_up) {
     begin_.phase_ns = time_ns_;
-    looked_ = measured_.samples();
+    looked_ = measured_.tally().samples;
   } else if (next == phase::runs) {
     measured_.begin();
     looked_ = 0;
@@ -112,8 +112,8 @@ void running_scan::take(const response_view& response) {
 
 void running_scan::look() {
   if (phase_ < phase::speeds_up) return;
-  if (measured_.samples() >= looked_ + steady_samples) {
-    looked_ = measured_.samples();
+  if (measured_.tally().samples >= looked_ + steady_samples) {
+    looked_ = measured_.tally().samples;
     const bool is_steady = measured_.is_steady();
     if (phase_ == phase::speeds_up && is_steady) return enter(phase::runs);
   }

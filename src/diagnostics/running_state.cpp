@@ -111,7 +111,7 @@ std::vector<stage_report> running_state::stages() const {
                             return what != diagnosis::stalls && (where == diagnostic_stage::motor ||
                                                                  where == diagnostic_stage::stream);
                           }) ||
-      of.measured.arrivals().longest_host_pause_ns() >= arrival_statistics::stall_ns;
+      of.measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
   if (is_explained) std::erase(of.found, diagnosis::stalls);
   const auto add_found = [&] { add_those_of(log.stages().back(), of.found); };
   log.report(std::move(of.port));

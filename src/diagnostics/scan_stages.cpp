@@ -97,7 +97,7 @@ bool live_run::start_motor() {
   stage_report motor{.stage = diagnostic_stage::motor};
   if (!is_deaf_) start_scan();
   scan_state state = warm_up(measured_);
-  const bool had_packets = measured_.counts().packets > 0;
+  const bool had_packets = measured_.tally().counts.packets > 0;
   if (had_packets && state == scan_state::runs) {
     motor.add("spin_up_ms", (link_.now_ns() - started_.sent_ns) / ms);
     motor.add("first_packet_ms", (started_.first_packet_ns - started_.sent_ns) / ms);

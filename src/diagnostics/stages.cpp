@@ -25,7 +25,7 @@ constexpr double few_lost = 0.002;
 
 /// The program was suspended for as long as a stall: what depends on time is not judged.
 bool is_host_busy(const stream_statistics& measured) noexcept {
-  return measured.arrivals().longest_host_pause_ns() >= arrival_statistics::stall_ns;
+  return measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
 }
 
 /// Bytes without device information: a speed that no G4 has is that of another model.
@@ -101,13 +101,13 @@ bool report_health(stage_log& log, const std::optional<health>& known) {
 }
 
 void judge_stream(stage_report& stream, const stream_statistics& measured, double seconds) {
-  const arrival_statistics& arrivals = measured.arrivals();
-  const stream_counts& counts = measured.counts();
+  const arrival_statistics& arrivals = measured.tally().arrivals;
+  const stream_counts& counts = measured.tally().counts;
   if (seconds > 0.0) stream.add("seconds", seconds);
   stream.add("bytes", arrivals.bytes());
   stream.add("packets", counts.packets);
   stream.add("points", counts.points);
-  if (measured.jerks() > 0) stream.add("jerks", measured.jerks());
+  if (measured.tally().jerks > 0) stream.add("jerks", measured.tally().jerks);
   if (seconds > 0.0) stream.add("longest_silence_ms", arrivals.longest_silence_ns() / 1'000'000);
   if (arrivals.longest_host_pause_ns() > 0) {
     stream.add("longest_host_pause_ms", arrivals.longest_host_pause_ns() / 1'000'000);
@@ -121,34 +121,35 @@ void judge_stream(stage_report& stream, const stream_statistics& measured, doubl
     stream.find(diagnosis::wrong_baud_rate);
   }
   // Among many damaged packets some have a matching checksum, and look like jolts.
-  if (20 * measured.jerks() > measured.damage().changed && measured.was_steady()) {
+  if (20 * measured.tally().jerks > measured.tally().damage.changed && measured.was_steady()) {
     stream.find(diagnosis::jolts);
   }
   if (is_host_busy(measured)) stream.find(diagnosis::host_busy);
 }
 
 void judge_motor(stage_report& motor, const stream_statistics& measured) {
-  if (measured.counts().packets <= few_packets || measured.was_steady()) return;
+  if (measured.tally().counts.packets <= few_packets || measured.was_steady()) return;
   motor.find(measured.stands() ? diagnosis::motor_stuck : diagnosis::motor_unsteady);
 }
 
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known) {
-  const double frequency_hz = measured.frequency_hz();
-  const double rate_hz = measured.sample_rate_hz();
+  const double frequency_hz = measured.tally().frequency_hz();
+  const double rate_hz = measured.tally().sample_rate_hz();
   // A computer that is busy again and again makes arrivals late that look like another rate.
   const bool is_certain = !is_host_busy(measured);
   stage_report rate{.stage = diagnostic_stage::rate};
-  if (measured.reported_hz() > 0.0) rate.add("reported_hz", measured.reported_hz());
-  if (measured.turns_per_sample() > 0.0) {
-    rate.add("samples_per_revolution", 1.0 / measured.turns_per_sample());
+  if (measured.tally().reported_hz() > 0.0) rate.add("reported_hz", measured.tally().reported_hz());
+  if (measured.tally().turns_per_sample() > 0.0) {
+    rate.add("samples_per_revolution", 1.0 / measured.tally().turns_per_sample());
   }
   const bool is_unknown_model = !known.information && !known.sample_rate && is_certain &&
-                                measured.was_steady() && measured.turns_per_sample() > 0.0;
+                                measured.was_steady() && measured.tally().turns_per_sample() > 0.0;
   if (frequency_hz <= 0.0) {
     rate.outcome = stage_verdict::skipped;
     rate.remark = "There is too little with times to measure it.";
-    const double turns = measured.turns_per_sample();
-    if (is_unknown_model) find_other_speed(rate, measured.reported_hz() / turns, 1.0 / turns);
+    const double turns = measured.tally().turns_per_sample();
+    if (is_unknown_model)
+      find_other_speed(rate, measured.tally().reported_hz() / turns, 1.0 / turns);
     return log.report(std::move(rate));
   }
   rate.add("measured_hz", frequency_hz);
@@ -159,7 +160,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
   }
   rate.add("samples_per_s", rate_hz);
-  if (is_unknown_model) find_other_speed(rate, rate_hz, 1.0 / measured.turns_per_sample());
+  if (is_unknown_model) find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample());
   if (known.sample_rate) {
     const double nominal_hz = to_hz(*known.sample_rate);
     rate.add("nominal_samples_per_s", nominal_hz);
@@ -170,20 +171,21 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
 }
 
 void report_loss(stage_log& log, const stream_statistics& measured) {
-  if (measured.arrivals().bytes() == 0) return log.skip(diagnostic_stage::loss, "Nothing arrived.");
+  if (measured.tally().arrivals.bytes() == 0)
+    return log.skip(diagnostic_stage::loss, "Nothing arrived.");
   stage_report loss{.stage = diagnostic_stage::loss};
-  const double all = static_cast<double>(measured.samples() + measured.samples_lost());
-  const double lost = static_cast<double>(measured.samples_lost()) / std::max(all, 1.0);
+  const double all = static_cast<double>(measured.tally().samples + measured.tally().lost);
+  const double lost = static_cast<double>(measured.tally().lost) / std::max(all, 1.0);
   loss.add("lost_percent", 100.0 * lost);
-  loss.add("samples_lost", measured.samples_lost());
+  loss.add("samples_lost", measured.tally().lost);
   for (const auto reason : {skip_reason::noise, skip_reason::bad_header, skip_reason::bad_checksum,
                             skip_reason::truncated}) {
-    loss.add(std::string("skipped_") + name_of(reason), measured.counts().skipped(reason));
+    loss.add(std::string("skipped_") + name_of(reason), measured.tally().counts.skipped(reason));
   }
-  const damage_counts& damage = measured.damage();
+  const damage_counts& damage = measured.tally().damage;
   for (const auto& [name, count] :
-       {std::pair("crc_matches", measured.counts().crc_matches),
-        std::pair("crc_mismatches", measured.counts().crc_mismatches),
+       {std::pair("crc_matches", measured.tally().counts.crc_matches),
+        std::pair("crc_mismatches", measured.tally().counts.crc_mismatches),
         std::pair("changed", damage.changed), std::pair("shortened", damage.shortened),
         std::pair("cut", damage.cut), std::pair("lengthened", damage.lengthened),
         std::pair("vanished", damage.vanished), std::pair("unclear", damage.unclear)}) {
@@ -218,13 +220,13 @@ void report_latency(stage_log& log, const stream_statistics& measured, std::uint
   if (name.starts_with("tcp:") || is_pty(std::string(name))) {
     return log.skip(diagnostic_stage::usb_latency, "There is no USB bridge in this connection.");
   }
-  if (baud == 0 || !measured.arrivals().has_delays()) {
+  if (baud == 0 || !measured.tally().arrivals.has_delays()) {
     return log.skip(diagnostic_stage::usb_latency, "There is nothing to measure it by.");
   }
   stage_report latency{.stage = diagnostic_stage::usb_latency};
-  const double held_ms = measured.arrivals().held_back_ms(baud);
+  const double held_ms = measured.tally().arrivals.held_back_ms(baud);
   latency.add("held_back_ms", held_ms);
-  if (measured.arrivals().longest_host_pause_ns() > 0) {
+  if (measured.tally().arrivals.longest_host_pause_ns() > 0) {
     latency.remark = "This computer was busy: that delays bytes, too.";
   } else if (held_ms > held_back_limit_ms) {
     latency.find(diagnosis::usb_latency);

@@ -241,8 +241,8 @@ void stream_statistics::measure_pace(const place& before, const place& now, std:
 }
 
 std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {
-  const damage_counts& damage = measured.damage();
-  const bool is_burst = comes_in_bursts(damage, measured.counts().packets);
+  const damage_counts& damage = measured.tally().damage;
+  const bool is_burst = comes_in_bursts(damage, measured.tally().counts.packets);
   std::vector<std::pair<std::uint64_t, diagnosis>> kinds{
       {damage.changed, is_burst ? diagnosis::bursts : diagnosis::bits_flipped},
       {damage.shortened, diagnosis::bytes_dropped},
@@ -259,7 +259,7 @@ std::vector<diagnosis> diagnoses_of(const stream_statistics& measured) {
     found.push_back(what);
   }
   // A revolution lost a packet where its damage cannot be evaluated.
-  if (found.empty() && measured.counts().crc_mismatches > 0) return {diagnosis::packets_lost};
+  if (found.empty() && measured.tally().counts.crc_mismatches > 0) return {diagnosis::packets_lost};
   if (found.empty() && damage.unclear > 0) found.push_back(diagnosis::line_noise);
   return found;
 }

@@ -53,23 +53,8 @@ class stream_statistics {
   /// Whether the head has reached its speed and keeps it: call it every 250 ms or 1,000 samples.
   [[nodiscard]] bool is_steady();
 
-  // Since begin().
-  [[nodiscard]] const stream_counts& counts() const noexcept { return tally_.counts; }
-  [[nodiscard]] const damage_counts& damage() const noexcept { return tally_.damage; }
-  [[nodiscard]] const arrival_statistics& arrivals() const noexcept { return tally_.arrivals; }
-  [[nodiscard]] std::uint64_t samples() const noexcept { return tally_.samples; }
-  [[nodiscard]] std::uint64_t samples_lost() const noexcept { return tally_.lost; }
-  /// Packets in which the head moves back, or much less far than in others.
-  [[nodiscard]] std::uint64_t jerks() const noexcept { return tally_.jerks; }
-  /// Samples per second by the arrivals; 0 if there is not enough data.
-  [[nodiscard]] double sample_rate_hz() const { return tally_.pace.rate_hz(); }
-  /// The turn of the head per sample, as a fraction of a revolution, on average; 0 if it is not
-  /// known.
-  [[nodiscard]] double turns_per_sample() const noexcept { return tally_.turned.get() / 360.0; }
-  /// Revolutions per second, by the angles and the sample rate.
-  [[nodiscard]] double frequency_hz() const { return turns_per_sample() * sample_rate_hz(); }
-  /// The mean frequency in zero packets; 0 if none has one.
-  [[nodiscard]] double reported_hz() const noexcept { return tally_.reported.get() / 10.0; }
+  /// All counts since begin().
+  [[nodiscard]] const stream_tally& tally() const noexcept { return tally_; }
   /// Bytes that have arrived and belong to no packet.
   [[nodiscard]] std::uint64_t bytes_since_packet() const noexcept { return since_packet_; }
   /// Whether there are more than by damage.

@@ -103,14 +103,24 @@ struct stream_tally {
   sample_pace pace{};
   std::uint64_t samples = 0;
   std::uint64_t lost = 0;
-  std::uint64_t jerks = 0;
-  mean turned{};               // degrees
-  mean reported{};             // 0.1 Hz
+  std::uint64_t jerks = 0;  // packets in which the head moves back, or much less far than in others
+  mean turned{};            // degrees
+  mean reported{};          // 0.1 Hz
   std::uint64_t checks = 0;    // of the speed of the head
   std::uint64_t unsteady = 0;  // those that found that it changes
 
   /// Adds another stretch, whose pace has ended with part().
   void add(const stream_tally& other) noexcept;
+
+  /// Samples per second by the arrivals; 0 if there is not enough data.
+  [[nodiscard]] double sample_rate_hz() const { return pace.rate_hz(); }
+  /// The turn of the head per sample, as a fraction of a revolution, on average; 0 if it is not
+  /// known.
+  [[nodiscard]] double turns_per_sample() const noexcept { return turned.get() / 360.0; }
+  /// Revolutions per second, by the angles and the sample rate.
+  [[nodiscard]] double frequency_hz() const { return turns_per_sample() * sample_rate_hz(); }
+  /// The mean frequency in zero packets; 0 if none has one.
+  [[nodiscard]] double reported_hz() const noexcept { return reported.get() / 10.0; }
 };
 
 }  // namespace g4lidar

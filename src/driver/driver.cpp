@@ -11,9 +11,8 @@ namespace g4lidar {
 namespace {
 
 std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& options) {
-  const recording_hook* const hook = parts.link.from().recording();
-  if (hook != nullptr && !hook->answers()) return std::make_unique<replay_player>(parts, options);
-  return std::make_unique<live_driver>(parts, options);
+  if (parts.link.from().traits().answers) return std::make_unique<live_driver>(parts, options);
+  return std::make_unique<replay_player>(parts, options);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "connection.hpp"
+#include "core/saturating.hpp"
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
 #include "g4lidar/recording/player.hpp"
@@ -78,7 +79,9 @@ class feeder {
   /// The time until which bytes need not be read; may be in the past.
   [[nodiscard]] virtual std::int64_t rest_until_ns() const noexcept { return 0; }
   /// The end of a call that waits for this time.
-  [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept = 0;
+  [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept {
+    return saturating_add(now_ns(), timeout_ns);
+  }
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
   /// Of a file that is played; else null.
   [[nodiscard]] virtual player* controls() noexcept { return nullptr; }
@@ -108,7 +111,6 @@ class feeder {
   receiver receiver_;
   spin_up spin_up_;
   device_information information_{};
-  std::uint32_t sample_rate_hz_ = 9000;
 };
 
 }  // namespace g4lidar

@@ -6,18 +6,14 @@
 namespace g4lidar {
 
 const event* point_pipeline::next() noexcept {
-  if (is_cutting_) {
-    event_ = parser_.finish();
-    is_cutting_ = event_.has_value();
-  } else {
-    const std::size_t before = input_.size();
-    event_ = parser_.next(input_);
-    counts_.bytes += before - input_.size();
-    if (!event_ && before > 0 && delivers_) decoder_.seen(parser_.held(), arrival_ns_);
+  const bool has_bytes = !input_.unparsed().empty();
+  const event* const found = input_.next();
+  if (found != nullptr) {
+    stream_counts_.add(*found);
+  } else if (has_bytes && delivers_) {
+    decoder_.seen(input_.held(), input_.arrival_ns());
   }
-  if (!event_) return nullptr;
-  stream_counts_.add(*event_);
-  return &*event_;
+  return found;
 }
 
 bool point_pipeline::find_scan() noexcept {
@@ -26,15 +22,14 @@ bool point_pipeline::find_scan() noexcept {
       const auto found = assembler_.next(open_);
       is_open_ = found.has_value();
       if (found) keep(*found);
-    } else if (event_) {
-      ++events_of_reading_;
-      const auto* const packet = std::get_if<packet_view>(&*event_);
+    } else if (const event* const found = input_.current()) {
+      const auto* const packet = std::get_if<packet_view>(found);
       if (delivers_ && packet != nullptr) add(*packet);
-      if (const auto* const gone = std::get_if<skipped>(&*event_); delivers_ && gone != nullptr) {
+      if (const auto* const gone = std::get_if<skipped>(found); delivers_ && gone != nullptr) {
         assembler_.add(*gone);
         decoder_.gone(*gone);
       }
-      event_.reset();
+      input_.pass();
     } else {
       return false;
     }
@@ -47,7 +42,7 @@ void point_pipeline::add(packet_view packet) noexcept {
   const std::span<point> room = assembler_.room();
   const bool fits = room.size() >= max_samples;
   bool lost = false;
-  open_ = decoder_.decode(packet, arrival_ns_, input_.size(),
+  open_ = decoder_.decode(packet, input_.arrival_ns(), input_.unparsed().size(),
                           fits ? room.first<max_samples>() : std::span(spare_), lost);
   points_ += open_.points.size();
   if (auto* const made = ring_.find()) made->ring.push(open_.points);
@@ -90,7 +85,8 @@ lidar_counts point_pipeline::counts() const noexcept {
   lidar_counts all = counts_;
   all.stream = stream_counts_;
   all.stream.points = points_;  // the packets of a device that is being stopped make none
-  all.held = parser_.held();
+  all.bytes = input_.bytes_parsed();
+  all.held = input_.held();
   all.samples_lost = decoder_.samples_lost();
   all.largest_gap_ns = decoder_.largest_gap_ns();
   return all;

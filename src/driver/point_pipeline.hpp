@@ -11,10 +11,10 @@
 #include <span>
 #include <type_traits>
 
+#include "event_reader.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
-#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/lidar.hpp"
 #include "timed_decoder.hpp"
 
@@ -86,24 +86,11 @@ class point_pipeline {
         storage_(largest_scan),
         assembler_(storage_.all()) {}
 
-  // ---- bytes ----
-
-  /// The bytes of one read; valid until they are parsed. Only if is_empty().
-  void feed(bytes reading, std::int64_t arrival_ns) noexcept {
-    input_ = reading;
-    arrival_ns_ = arrival_ns;
-    events_of_reading_ = 0;
-  }
-  /// No more bytes follow: the unparsed bytes are discarded, and the next calls of next() parse the
-  /// held bytes again.
-  void cut() noexcept {
-    input_ = {};
-    is_cutting_ = true;
-  }
+  /// The bytes of one read at a time, and the place in them. Fed only if is_empty().
+  [[nodiscard]] event_reader& input() noexcept { return input_; }
+  [[nodiscard]] const event_reader& input() const noexcept { return input_; }
   /// Whether everything that was fed has been processed.
-  [[nodiscard]] bool is_empty() const noexcept {
-    return input_.empty() && !is_cutting_ && !event_ && !has_scans();
-  }
+  [[nodiscard]] bool is_empty() const noexcept { return input_.is_empty() && !scan_ && !is_open_; }
 
   // ---- events ----
 
@@ -144,13 +131,6 @@ class point_pipeline {
     scan_.reset();
   }
 
-  // ---- position ----
-
-  [[nodiscard]] bytes unparsed() const noexcept { return input_; }
-  [[nodiscard]] std::uint32_t events_of_reading() const noexcept { return events_of_reading_; }
-  [[nodiscard]] std::int64_t arrival_ns() const noexcept { return arrival_ns_; }
-  [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
-  [[nodiscard]] std::size_t missing() const noexcept { return parser_.missing(); }
   /// The scan begins that has_begun() is about.
   void begin_scans() noexcept { scans_at_begin_ = counts_.scans; }
   /// How many whole revolutions were complete.
@@ -190,18 +170,12 @@ class point_pipeline {
   static constexpr std::size_t largest_scan = 8192;
 
   void add(packet_view packet) noexcept;
-  [[nodiscard]] bool has_scans() const noexcept { return scan_ || is_open_; }
   void keep(const scan& found) noexcept;
 
   bool partial_scans_;
   bool delivers_ = false;
-  bool is_cutting_ = false;
   bool is_open_ = false;  // the last packet may complete more scans
-  stream_parser parser_;
-  bytes input_;
-  std::int64_t arrival_ns_ = 0;
-  std::optional<event> event_;  // found, and not decoded yet
-  std::uint32_t events_of_reading_ = 0;
+  event_reader input_;
   timed_decoder decoder_;
   ring_on_demand ring_;
   point_storage storage_;

@@ -29,7 +29,7 @@ class receiver {
   /// Another transport follows. `baud` 0: bytes take no time. See read_schedule.
   void reset(std::uint32_t baud, std::size_t kept, std::int64_t now_ns) noexcept {
     pace_.reset(baud, kept);
-    last_bytes_ns_ = read_until_ns_ = now_ns;
+    read_until_ns_ = now_ns;
   }
 
   /// One read, which waits until bytes arrive or the deadline. The result is valid until the next
@@ -43,7 +43,6 @@ class receiver {
     if (!got) return got;
     read_until_ns_ = got->count == 0 ? from.now_ns() : got->arrival_ns;
     if (got->count == 0) return got;
-    last_bytes_ns_ = got->arrival_ns;
     pace_.received(got->count, got->arrival_ns);
     return got;
   }
@@ -58,7 +57,6 @@ class receiver {
     pace_.packet(found, behind, measured_ns, period_ns);
   }
   [[nodiscard]] bool is_batched() const noexcept { return batch_ns_ > 0; }
-  [[nodiscard]] std::int64_t last_bytes_ns() const noexcept { return last_bytes_ns_; }
   /// Bytes that arrived by this time have been read.
   [[nodiscard]] std::int64_t read_until_ns() const noexcept { return read_until_ns_; }
 
@@ -99,7 +97,6 @@ class receiver {
   /// Most reads need few pages of it.
   std::unique_ptr<std::uint8_t[]> buffer_ = std::make_unique_for_overwrite<std::uint8_t[]>(size);
   read_schedule pace_;
-  std::int64_t last_bytes_ns_ = 0;
   std::int64_t read_until_ns_ = 0;
 };
 

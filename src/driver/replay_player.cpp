@@ -13,9 +13,9 @@ replay_player::replay_player(parts& of, const lidar_options& options) : feeder(o
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  recording_hook& hook = *connection_.from().recording();
-  file_ = hook.file();
-  source_ = hook.events();
+  recording_hook* const hook = recording_hook_of(connection_.from());
+  file_ = file_of(connection_.from());
+  source_ = hook != nullptr ? hook->events() : nullptr;
   if (source_ == nullptr) source_ = file_;  // the seams of raw bytes in a loop
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
@@ -41,7 +41,7 @@ result<void> replay_player::start() {
 result<void> replay_player::stop() {
   if (stage_ == stage::closed) return tl::unexpected(why_);
   pipeline_.drop_scan();
-  pipeline_.cut();
+  pipeline_.input().cut();
   while (parse_bytes()) pipeline_.drop_scan();
   static_cast<void>(check());  // a wake-up ends the next call
   pipeline_.end();
@@ -99,17 +99,17 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   }
   report_long_pause();
   const reading how = receiver_.is_batched() && is_scanning() ? reading::batched : reading::at_once;
-  const auto got =
-      receiver_.receive(connection_.on(), how, pipeline_.held(), pipeline_.missing(), deadline_ns);
+  const auto got = receiver_.receive(connection_.on(), how, pipeline_.input().held(),
+                                     pipeline_.input().missing(), deadline_ns);
   if (!got) {
     why_ = got.error();
-    pipeline_.cut();
+    pipeline_.input().cut();
     stage_ = stage::ending;
     return {};
   }
   if (got->count == 0) return check();
   is_pause_reported_ = false;
-  pipeline_.feed(receiver_.buffer(got->count), got->arrival_ns);
+  pipeline_.input().feed(receiver_.buffer(got->count), got->arrival_ns);
   static_cast<void>(parse_bytes());
   return check();
 }
@@ -160,8 +160,8 @@ bool replay_player::is_here(const recorded_event& what) const noexcept {
     case recorded_event::kind::begun:
     case recorded_event::kind::held:
     case recorded_event::kind::cut:
-      return pipeline_.unparsed().size() <= what.unparsed &&
-             pipeline_.events_of_reading() >= what.events;
+      return pipeline_.input().unparsed().size() <= what.unparsed &&
+             pipeline_.input().events_of_reading() >= what.events;
     case recorded_event::kind::sent:
     case recorded_event::kind::state:
     case recorded_event::kind::odometry:
@@ -186,7 +186,7 @@ bool replay_player::play_events(bool all) {
     const bool cuts =
         ends_here || what == recorded_event::kind::closed || what == recorded_event::kind::gap;
     if (cuts && !std::exchange(is_cut_, true)) {
-      pipeline_.cut();
+      pipeline_.input().cut();
       if (ends_here) {
         is_cut_ = false;
         event_.reset();
@@ -263,7 +263,7 @@ player* replay_player::controls() noexcept {
 void replay_player::follow_seek() {
   if (is_released_) return;
   pipeline_.deliver(false);
-  pipeline_.cut();
+  pipeline_.input().cut();
   do {
     while (pipeline_.find_scan()) pipeline_.drop_scan();
   } while (pipeline_.next() != nullptr);

@@ -64,6 +64,7 @@ class replay_player final : public feeder {
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
   bool is_released_ = false;
+  std::uint32_t sample_rate_hz_ = 9000;
   std::uint64_t reconnects_ = 0;
 };
 

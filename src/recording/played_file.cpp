@@ -9,6 +9,8 @@
 #include <ctime>
 #include <new>
 
+#include "g4lidar/recording/replay.hpp"
+
 namespace g4lidar {
 namespace {
 
@@ -295,7 +297,7 @@ class file_transport final : public transport {
   std::shared_ptr<played_file> of_;
 };
 
-class file_connector final : public connector, private recording_hook {
+class file_connector final : public connector, public recording_hook {
  public:
   explicit file_connector(std::shared_ptr<played_file> of) noexcept : of_(std::move(of)) {}
 
@@ -313,15 +315,14 @@ class file_connector final : public connector, private recording_hook {
     return of_->wait(deadline_ns).has_value();
   }
   void wake() noexcept override { of_->wake(); }
-  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
   [[nodiscard]] recorded_event_source* events() noexcept override {
     return of_->items().source().recording() == nullptr ? nullptr : of_.get();
   }
-  [[nodiscard]] played_file* file() noexcept override { return of_.get(); }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return of_->wall_ahead_ns();
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    const bool is_counted = of_->items().source().recording() == nullptr && of_->clock().is_free();
+    return {.answers = false, .counts_time = is_counted, .wall_ahead_ns = of_->wall_ahead_ns()};
   }
-  [[nodiscard]] const played_file& played() const noexcept { return *of_; }
+  [[nodiscard]] played_file* file() const noexcept { return of_.get(); }
 
  private:
   std::shared_ptr<played_file> of_;
@@ -334,9 +335,15 @@ result<std::unique_ptr<connector>> connect_to(std::shared_ptr<played_file> file)
   return std::make_unique<file_connector>(std::move(file));
 }
 
-const played_file* file_of(const connector& from) noexcept {
+played_file* file_of(connector& from) noexcept {
+  for (connector* each = &from; each != nullptr; each = each->wrapped()) {
+    if (auto* const found = dynamic_cast<file_connector*>(each)) return found->file();
+  }
+  return nullptr;
+}
+const recording_reader* replay::reader_of(const connector& from) noexcept {
   const auto* const played = dynamic_cast<const file_connector*>(&from);
-  return played == nullptr ? nullptr : &played->played();
+  return played == nullptr ? nullptr : played->file()->items().source().recording();
 }
 
 }  // namespace g4lidar

@@ -176,8 +176,9 @@ class played_file final : public recorded_event_source {
 /// What is wrong with the options, if so.
 [[nodiscard]] std::optional<error> problem_with(const playback_options& options) noexcept;
 
-/// To the transport of a file that is played. The file of `from`, if it is such a connector; else null.
+/// To the transport of a file that is played.
 [[nodiscard]] result<std::unique_ptr<connector>> connect_to(std::shared_ptr<played_file> file);
-[[nodiscard]] const played_file* file_of(const connector& from) noexcept;
+/// The file that the connector, or one that it wraps, plays; null if none does.
+[[nodiscard]] played_file* file_of(connector& from) noexcept;
 
 }  // namespace g4lidar

@@ -89,7 +89,7 @@ class pipe_transport final : public transport {
 };
 
 /// Returns its transport once.
-class pipe_connector final : public connector, private recording_hook {
+class pipe_connector final : public connector {
  public:
   explicit pipe_connector(std::unique_ptr<pipe_transport> port) : port_(std::move(port)) {}
 
@@ -100,7 +100,7 @@ class pipe_connector final : public connector, private recording_hook {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
-  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
+  [[nodiscard]] connector_traits traits() const noexcept override { return {.answers = false}; }
 
  private:
   std::unique_ptr<pipe_transport> port_;

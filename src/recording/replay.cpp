@@ -68,11 +68,6 @@ class recorded_items final : public item_source {
 
 }  // namespace
 
-const recording_reader* replay::reader_of(const connector& from) noexcept {
-  const auto* const played = file_of(from);
-  return played == nullptr ? nullptr : played->items().source().recording();
-}
-
 result<std::unique_ptr<connector>> replay::open(std::string_view path,
                                                 const playback_options& options,
                                                 std::function<bool()> is_cancelled) {

@@ -15,10 +15,15 @@ namespace {
 template <class Writer>
 class recorded_transport final : public forwarding_transport {
  public:
-  recorded_transport(std::unique_ptr<transport> port, recording_hook& from, Writer& into) noexcept
-      : forwarding_transport(std::move(port)), from_(&from), into_(&into) {
+  /// `played`: the events of a recording; null for a device or a file of bytes.
+  recorded_transport(std::unique_ptr<transport> port, const connector& from,
+                     const recorded_event_source* played, Writer& into) noexcept
+      : forwarding_transport(std::move(port)),
+        from_(&from),
+        is_played_(played != nullptr),
+        into_(&into) {
     follow_wall_clock();
-    if (const auto* const played = from.events()) {
+    if (played != nullptr) {
       into.device(played->device());
       return;
     }
@@ -30,7 +35,7 @@ class recorded_transport final : public forwarding_transport {
   recorded_transport(const recorded_transport&) = delete;
   recorded_transport& operator=(const recorded_transport&) = delete;
   ~recorded_transport() override {
-    if (from_->events() != nullptr) return;  // a recording reports its own events
+    if (is_played_) return;  // a recording reports its own events
     into_->event({.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
   }
 
@@ -50,7 +55,7 @@ class recorded_transport final : public forwarding_transport {
     auto sent = inner().write(data, deadline_ns);
     if (!sent) {
       remember(sent.error());
-    } else if (from_->answers()) {
+    } else if (from_->traits().answers) {
       into_->put_bytes(direction::to_device, data, begun_ns);
     }
     return sent;
@@ -66,10 +71,11 @@ class recorded_transport final : public forwarding_transport {
     if (why != problem::cancelled && why != problem::timeout) reason_ = why.code();
   }
   void follow_wall_clock() noexcept {
-    if (const auto ahead_ns = from_->wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
+    if (const auto ahead_ns = from_->traits().wall_ahead_ns) into_->set_wall_clock(*ahead_ns);
   }
 
-  recording_hook* from_;
+  const connector* from_;
+  bool is_played_;
   Writer* into_;
   problem reason_ = problem::cancelled;  // it was closed
 };
@@ -77,37 +83,27 @@ class recorded_transport final : public forwarding_transport {
 /// Records the bytes of its transports, the events of the driver, and the events of a recording.
 template <class Writer>
 class recorded_connector final : public forwarding_connector,
-                                 private recording_hook,
+                                 public recording_hook,
                                  private recorded_event_source {
  public:
   recorded_connector(std::unique_ptr<connector> from, Writer& into) noexcept
       : forwarding_connector(std::move(from)),
         into_(&into),
-        inner_hook_(inner().recording()),
+        inner_hook_(recording_hook_of(inner())),
         played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {
-    if (played_file* const played = file()) played->controls().forbid_seek();
+    if (played_file* const played = file_of(inner())) played->controls().forbid_seek();
   }
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     auto port = inner().connect();
     if (!port) return port;
     auto* const made =
-        new (std::nothrow) recorded_transport<Writer>(std::move(*port), *this, *into_);
+        new (std::nothrow) recorded_transport<Writer>(std::move(*port), *this, played_, *into_);
     if (made == nullptr) return failure(task::opening, problem::system, {}, ENOMEM);
     return std::unique_ptr<transport>(made);
   }
-  [[nodiscard]] recording_hook* recording() noexcept override { return this; }
 
  private:
-  [[nodiscard]] bool answers() const noexcept override {
-    return inner_hook_ == nullptr || inner_hook_->answers();
-  }
-  [[nodiscard]] std::optional<std::int64_t> wall_ahead_ns() const noexcept override {
-    return inner_hook_ != nullptr ? inner_hook_->wall_ahead_ns() : std::nullopt;
-  }
-  [[nodiscard]] played_file* file() noexcept override {
-    return inner_hook_ != nullptr ? inner_hook_->file() : nullptr;
-  }
   [[nodiscard]] recorded_event_source* events() noexcept override {
     return played_ != nullptr ? this : nullptr;
   }
@@ -119,7 +115,7 @@ class recorded_connector final : public forwarding_connector,
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override {
     const auto what = played_->next_event();
     if (what) {
-      if (const auto ahead_ns = wall_ahead_ns()) into_->set_wall_clock(*ahead_ns);
+      if (const auto ahead_ns = traits().wall_ahead_ns) into_->set_wall_clock(*ahead_ns);
       into_->event(*what);
     }
     return what;
@@ -141,6 +137,13 @@ class recorded_connector final : public forwarding_connector,
 };
 
 }  // namespace
+
+recording_hook* recording_hook_of(connector& from) noexcept {
+  for (connector* each = &from; each != nullptr; each = each->wrapped()) {
+    if (auto* const found = dynamic_cast<recording_hook*>(each)) return found;
+  }
+  return nullptr;
+}
 
 result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
                                             recording_writer& into) {

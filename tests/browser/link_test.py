@@ -68,7 +68,7 @@ class ReconnectTest(PageTest):
 
 
 class SettingsTest(PageTest):
-    FIELDS = ("sample_rate", "freq", "direction", "constant", "idle", "protection")
+    FIELDS = ("sample_rate", "frequency", "direction", "constant", "idle", "protection")
 
     def field(self, page, name):
         return page.driver.find_element(By.NAME, name)
@@ -77,7 +77,7 @@ class SettingsTest(PageTest):
         page = self.open(self.serve(standing("flat.txt"))).runs()
         self.assertEqual([self.field(page, name).is_enabled() for name in self.FIELDS], [False] * 6)
         self.assertEqual(self.field(page, "sample_rate").get_attribute("value"), "9000")
-        self.assertEqual(float(self.field(page, "freq").get_attribute("value")), 7)
+        self.assertEqual(float(self.field(page, "frequency").get_attribute("value")), 7)
         self.assertIn("--allow-set", page.text("settings_note"))
         # A page that asks all the same is refused.
         answer = self.driver.execute_async_script(
@@ -96,7 +96,7 @@ class SettingsTest(PageTest):
         page = self.open(self.serve(standing("flat.txt"), "--allow-set")).runs()
         Select(self.field(page, "sample_rate")).select_by_value("4000")
         until(lambda: (page.read("status.sample_rate_hz") or 9000) < 5000, "4,000 samples per second")
-        frequency = self.field(page, "freq")
+        frequency = self.field(page, "frequency")
         frequency.send_keys(Keys.CONTROL, "a")
         frequency.send_keys("10", Keys.ENTER)
         until(lambda: abs((page.read("status.frequency_hz") or 0) - 10) < 0.5, "10 Hz")
@@ -104,7 +104,7 @@ class SettingsTest(PageTest):
         self.driver.switch_to.new_window("tab")
         other = self.open(page).runs()
         self.assertEqual(self.field(other, "sample_rate").get_attribute("value"), "4000")
-        self.assertEqual(float(self.field(other, "freq").get_attribute("value")), 10)
+        self.assertEqual(float(self.field(other, "frequency").get_attribute("value")), 10)
         self.driver.close()
         self.driver.switch_to.window(page.tab)
 

@@ -151,7 +151,7 @@ TEST_F(Escaping, TheNameOfAPort) {
   for (const words& arguments : {words{"info", port},
                                  {"info", port, "--json"},
                                  {"health", port, "-v"},
-                                 {"set", port, "freq=8"},
+                                 {"set", port, "frequency=8"},
                                  {"start", port},
                                  {"stop", port},
                                  {"restart", port},

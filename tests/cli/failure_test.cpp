@@ -130,7 +130,7 @@ TEST_F(Failure, WrongCommandLine) {
   expect_usage({"decode", "--sample-rate"}, "--sample-rate needs one value");
   expect_usage({"decode", "-n", "5", "-n", "6"}, "--count is given twice");
   expect_usage({"replay", "--verify", "--loop", "x"}, "--loop cannot be used with --verify");
-  expect_usage({"set", "foo=3"}, "g4-dump: 'foo' is not one of sample_rate, freq, ");
+  expect_usage({"set", "foo=3"}, "g4-dump: 'foo' is not one of sample_rate, frequency, ");
   expect_usage({"info", "--json=5"}, "--json takes no value. See: g4-dump info --help");
   expect_usage({"decode", "--quiet=no"}, "--quiet takes no value. See: g4-dump decode --help");
   for (const char* const seconds : {"-1", "long", "1e10", "nan", "inf"}) {

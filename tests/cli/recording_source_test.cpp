@@ -78,7 +78,7 @@ TEST_F(RecordingSource, NothingAnswers) {
     EXPECT_EQ(done.code, 10) << verb << ": " << done.err;
     EXPECT_THAT(done.err, HasSubstr("a file cannot be asked or set"));
   }
-  EXPECT_EQ(run({"set", whole_, "freq=7"}).code, 10);
+  EXPECT_EQ(run({"set", whole_, "frequency=7"}).code, 10);
 }
 
 // What is whole is used, the rest is counted, whatever reads it.

@@ -28,7 +28,7 @@ class ServiceWatch : public cli::scratch {};
 TEST_F(ServiceWatch, EachWordIsSentOnce) {
   const manager systemd(path("notify"));
   service_watch watch;
-  EXPECT_TRUE(watch.is_heard());
+  EXPECT_TRUE(watch.has_manager());
   EXPECT_EQ(systemd.heard(), words{});
   watch.ready();
   watch.ready();
@@ -117,7 +117,7 @@ TEST_F(ServiceWatch, MissingManager_IsIgnored) {
     watch.alive(second_ns);
     watch.status("fine");
     watch.stopping();
-    return !watch.is_heard();
+    return !watch.has_manager();
   };
   ::unsetenv("NOTIFY_SOCKET");
   ::setenv("WATCHDOG_USEC", "1000000", 1);

@@ -43,7 +43,7 @@ TEST_F(Talk, Info_PrintsIdentityAndSettings) {
   EXPECT_EQ(done.err, "");
   EXPECT_THAT(lines_of(done.out),
               ElementsAre("source      " + port(), "model       G4", "serial      2023000000000017",
-                          "firmware    3.2", "hardware    3", "sample_rate 8k", "freq        7.0",
+                          "firmware    3.2", "hardware    3", "sample_rate 8k", "frequency   7.0",
                           "direction   cw", "constant    unknown (a G4 cannot be asked for it)",
                           "idle        on", "protection  unknown (a G4 cannot be asked for it)"));
 }
@@ -56,7 +56,7 @@ TEST_F(Talk, Info_AsJson) {
                                {"firmware", "3.2"},
                                {"hardware", 3},
                                {"sample_rate", 9000},
-                               {"freq", 7.0},
+                               {"frequency", 7.0},
                                {"direction", "cw"},
                                {"constant", nullptr},
                                {"idle", true},
@@ -94,19 +94,19 @@ TEST_F(Talk, Health_PrintsTheStatus) {
 
 TEST_F(Talk, Set_ShowsEachBeforeAndAfter) {
   const cli::simulator simulator(port());
-  const outcome done = run({"set", port(), "sample_rate=4k", "freq=9.5", "direction=ccw",
-                            "constant=off", "low-power=off", "protection=on"});
+  const outcome done = run({"set", port(), "sample_rate=4k", "frequency=9.5", "direction=ccw",
+                            "constant=off", "idle=off", "protection=on"});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(lines_of(done.out),
               ElementsAre("NAME        BEFORE   AFTER", "sample_rate 9k       4k",
-                          "freq        7.0      9.5", "direction   cw       ccw",
+                          "frequency   7.0      9.5", "direction   cw       ccw",
                           "constant    unknown  off", "idle        on       off",
                           "protection  unknown  on"));
   EXPECT_THAT(done.err, HasSubstr("may be lost when"));
   EXPECT_THAT(done.err, HasSubstr("stops 3 s after"));
   const json after = ask("info");
   EXPECT_EQ(after.at("sample_rate"), 4000);
-  EXPECT_EQ(after.at("freq"), 9.5);
+  EXPECT_EQ(after.at("frequency"), 9.5);
   EXPECT_EQ(after.at("direction"), "ccw");
   EXPECT_EQ(after.at("idle"), false);
 }
@@ -127,9 +127,9 @@ TEST_F(Talk, Set_AsJson) {
 
 TEST_F(Talk, Set_InvalidWord_SetsNothing) {
   cli::simulator simulator(port());
-  for (const char* const word :
-       {"sample_rate=10k", "freq=4.9", "freq=12.1", "freq=nan", "freq=7.55",
-        "freq=", "direction=left", "constant=1", "speed=3", "sample_rate=9k", "/dev/ttyUSB0"}) {
+  for (const char* const word : {"sample_rate=10k", "frequency=4.9", "frequency=12.1",
+                                 "frequency=nan", "frequency=7.55", "frequency=", "direction=left",
+                                 "constant=1", "speed=3", "sample_rate=9k", "/dev/ttyUSB0"}) {
     const outcome done = run({"set", port(), "sample_rate=8k", word});
     EXPECT_EQ(done.code, 2) << word;
     EXPECT_EQ(done.out, "");
@@ -142,15 +142,17 @@ TEST_F(Talk, Set_InvalidWord_SetsNothing) {
 
 TEST_F(Talk, Set_RefusedSetting_IsShownAndEndsIt) {
   const cli::stubborn_device device;
-  const outcome done = run({"set", device.path(), "sample_rate=9k", "freq=9", "sample_rate=9k"});
+  const outcome done =
+      run({"set", device.path(), "sample_rate=9k", "frequency=9", "sample_rate=9k"});
   EXPECT_EQ(done.code, 2) << "given twice";
-  const outcome refused = run({"set", device.path(), "sample_rate=9k", "freq=9", "direction=cw"});
+  const outcome refused =
+      run({"set", device.path(), "sample_rate=9k", "frequency=9", "direction=cw"});
   EXPECT_EQ(refused.code, 8) << refused.err;
   EXPECT_THAT(lines_of(refused.out),
               ElementsAre("NAME        BEFORE   AFTER", "sample_rate 9k       9k",
-                          "freq        7.0      7.0"));
+                          "frequency   7.0      7.0"));
   EXPECT_THAT(refused.err, HasSubstr("does not accept this value"));
-  const outcome json_error = run({"set", device.path(), "freq=9", "--json", "--json-errors"});
+  const outcome json_error = run({"set", device.path(), "frequency=9", "--json", "--json-errors"});
   EXPECT_EQ(json_error.code, 8);
   EXPECT_EQ(json::parse(json_error.out).at("after"), 7.0);
   EXPECT_EQ(json::parse(json_error.err).at("problem"), "not_reached");
@@ -314,7 +316,7 @@ TEST(TalkHelp, FitsAndNamesWhatIsWritten) {
   }
   const std::string set = run({"set", "--help"}).out;
   for (const char* const name :
-       {"sample_rate=", "freq=", "direction=", "constant=", "idle=", "protection="}) {
+       {"sample_rate=", "frequency=", "direction=", "constant=", "idle=", "protection="}) {
     EXPECT_THAT(set, HasSubstr(name));
   }
   const std::string stats = run({"stats", "--help"}).out;

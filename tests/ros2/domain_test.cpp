@@ -89,7 +89,7 @@ TEST_F(Domain, WordsThatAreAlmostRight_GetASuggestion) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused{
       {{"sim:", "--gird", "360"}, "--grid"},
       {{"sim:", "--qos", "relaible"}, "reliable"},
-      {{"sim:", "--set", "feq=7"}, "freq"},
+      {{"sim:", "--set", "frequncy=7"}, "frequency"},
       {{"sim:", "--ros-args", "-p", "frame_idd:=laser"}, "frame_id"},
       {{"sim:", "--config", path("options")}, "grid"}};
   for (const auto& [words, wanted] : refused) {

@@ -245,10 +245,10 @@ TEST_F(ParameterFile, IsReadForThisNode) {
               ElementsAre("--frame-id", "laser3"));
   const std::string some =
       "other:\n  ros__parameters:\n    nonsense: 1\n"
-      "g4lidar:\n  ros__parameters:\n    grid: 90\n    set: [freq=10, sample_rate=8000]\n"
+      "g4lidar:\n  ros__parameters:\n    grid: 90\n    set: [frequency=10, sample_rate=8000]\n"
       "robot1:\n  front:\n    ros__parameters: {grid: 180}\n";
   EXPECT_THAT(read(some),
-              ElementsAre("--grid", "90", "--set", "freq=10", "--set", "sample_rate=8000"));
+              ElementsAre("--grid", "90", "--set", "frequency=10", "--set", "sample_rate=8000"));
   EXPECT_THAT(read(some, {"-r", "__ns:=/robot1", "-r", "__node:=front"}),
               ElementsAre("--namespace", "/robot1", "--node-name", "front", "--grid", "180"));
 }

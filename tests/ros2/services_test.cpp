@@ -200,25 +200,23 @@ TEST_F(Services, ParametersAreThoseOfTheDevice) {
   get_client getter(domain_, "g4lidar/get_parameters");
   set_client setter(domain_, "g4lidar/set_parameters");
   EXPECT_THAT(
-      get(getter, {"scan_frequency", "sample_rate", "direction", "constant", "fov", "range_max",
-                   "grid", "frame_id", "nothing"}),
+      get(getter, {"frequency", "sample_rate", "direction", "constant", "fov", "range_max", "grid",
+                   "frame_id", "nothing"}),
       ElementsAre("3 7.00", "2 9000", "4 cw", "0", "4 -90:90", "3 100.", "2 720", "4 laser", "0"));
 
-  EXPECT_THAT(
-      set(setter, {named("scan_frequency", number(9.5)), named("sample_rate", whole(8000))}),
-      ElementsAre("", ""));
+  EXPECT_THAT(set(setter, {named("frequency", number(9.5)), named("sample_rate", whole(8000))}),
+              ElementsAre("", ""));
   EXPECT_EQ(lidar.settings().scan_frequency_chz, 950);
-  EXPECT_THAT(get(getter, {"scan_frequency", "sample_rate"}), ElementsAre("3 9.50", "2 8000"));
+  EXPECT_THAT(get(getter, {"frequency", "sample_rate"}), ElementsAre("3 9.50", "2 8000"));
   EXPECT_TRUE(comes_true([&] { return scans.take() > 0; })) << "the scan goes on";
 
   // Refused, and nothing changes; a whole number is a double, too.
-  EXPECT_THAT(
-      set(setter, {named("scan_frequency", number(20)), named("scan_frequency", text("fast")),
-                   named("grid", whole(100)), named("nothing", whole(1)),
-                   named("sample_rate", whole(8001)), named("scan_frequency", whole(6))}),
-      ElementsAre("freq: '20' is not in the range 5 to 12", HasSubstr("a double"),
-                  HasSubstr("cannot change"), HasSubstr("no such parameter"),
-                  HasSubstr("'8001' is not one of 4k, 8k, 9k"), ""));
+  EXPECT_THAT(set(setter, {named("frequency", number(20)), named("frequency", text("fast")),
+                           named("grid", whole(100)), named("nothing", whole(1)),
+                           named("sample_rate", whole(8001)), named("frequency", whole(6))}),
+              ElementsAre("frequency: '20' is not in the range 5 to 12", HasSubstr("a double"),
+                          HasSubstr("cannot change"), HasSubstr("no such parameter"),
+                          HasSubstr("'8001' is not one of 4k, 8k, 9k"), ""));
   EXPECT_EQ(lidar.settings().scan_frequency_chz, 600);
   tool.send(SIGINT);
   EXPECT_EQ(tool.wait().code, 130);
@@ -270,25 +268,25 @@ TEST_F(Services, SeveralLidarsHaveTheirNamesBeforeADot) {
     names.assign(result.names._buffer, result.names._buffer + result.names._length);
     prefixes.assign(result.prefixes._buffer, result.prefixes._buffer + result.prefixes._length);
   });
-  EXPECT_THAT(names, AllOf(Contains("rear.scan_frequency"), ::testing::Each(HasSubstr("rear."))));
+  EXPECT_THAT(names, AllOf(Contains("rear.frequency"), ::testing::Each(HasSubstr("rear."))));
   EXPECT_THAT(prefixes, ElementsAre("rear"));
 
   set_client setter(domain_, "robot1/g4lidar/set_parameters");
   ASSERT_TRUE(comes_true([&] {
-    return set(setter, {named("rear.scan_frequency", number(11))}) == std::vector<std::string>{""};
+    return set(setter, {named("rear.frequency", number(11))}) == std::vector<std::string>{""};
   }));
   EXPECT_EQ(rear.settings().scan_frequency_chz, 1100);
   EXPECT_EQ(front.settings().scan_frequency_chz, 700);
 
   describe_client describer(domain_, "robot1/g4lidar/describe_parameters");
   types_client types(domain_, "robot1/g4lidar/get_parameter_types");
-  char one[] = "front.scan_frequency";
+  char one[] = "front.frequency";
   char other[] = "front.serial_number";
   std::vector<char*> wanted{one, other};
   describer.call({0, 0, sequence_of<dds_sequence_string>(wanted)}, [](const auto& reply) {
     ASSERT_EQ(reply.descriptors._length, 2U);
     const auto& frequency = reply.descriptors._buffer[0];
-    EXPECT_STREQ(frequency.name, "front.scan_frequency");
+    EXPECT_STREQ(frequency.name, "front.frequency");
     EXPECT_EQ(frequency.type, 3);
     EXPECT_THAT(frequency.description, HasSubstr("Hz"));
     EXPECT_FALSE(frequency.read_only);
@@ -323,8 +321,8 @@ TEST_F(Services, AnswerWhileTheLidarIsAway) {
   cli::program tool({path("not_there")});
   set_client setter(domain_, "g4lidar/set_parameters");
   get_client getter(domain_, "g4lidar/get_parameters");
-  EXPECT_THAT(get(getter, {"scan_frequency"}), ElementsAre("0"));
-  EXPECT_THAT(set(setter, {named("scan_frequency", number(8)), named("range_max", number(8))}),
+  EXPECT_THAT(get(getter, {"frequency"}), ElementsAre("0"));
+  EXPECT_THAT(set(setter, {named("frequency", number(8)), named("range_max", number(8))}),
               ElementsAre("the lidar is not connected", ""));
   EXPECT_THAT(set(setter, {}), IsEmpty());
   // Too many names: no answer, and the next request has one.

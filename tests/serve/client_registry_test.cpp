@@ -117,17 +117,17 @@ TEST_F(Hub, Set_IsPassedOnAndAnswered) {
   client_registry::client& two = page();
   take_all(one);
   take_all(two);
-  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":9})"));
-  EXPECT_THAT(wishes, ElementsAre("freq=9"));
-  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":8})"));
+  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"frequency","value":9})"));
+  EXPECT_THAT(wishes, ElementsAre("frequency=9"));
+  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"frequency","value":8})"));
   EXPECT_THAT(take_all(one), ElementsAre("error")) << "one after the other";
-  EXPECT_TRUE(center.receive(two, R"({"op":"set","name":"freq","value":7})"));
+  EXPECT_TRUE(center.receive(two, R"({"op":"set","name":"frequency","value":7})"));
   done.at(0)("");
   EXPECT_THAT(take_all(one), ElementsAre());
   done.at(1)("refused");
   EXPECT_THAT(take_all(two), ElementsAre("error"));
   EXPECT_THAT(last, HasSubstr("refused"));
-  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"freq","value":8})"));
+  EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"frequency","value":8})"));
   center.disconnect(&one);
   done.at(2)("too late");  // nobody hears it
   EXPECT_EQ(wishes.size(), 3U);
@@ -137,7 +137,7 @@ TEST_F(Hub, Set_IsRefusedUnlessAllowed) {
   client_registry closed(
       "s", false, {.set = [](const set_request&, const auto&) { FAIL(); }, .play = {}}, [] {});
   client_registry::client& one = *closed.connect(client_kind::page, nullptr);
-  EXPECT_TRUE(closed.receive(one, R"({"op":"set","name":"freq","value":9})"));
+  EXPECT_TRUE(closed.receive(one, R"({"op":"set","name":"frequency","value":9})"));
   EXPECT_THAT(text_in(*closed.take(one)), HasSubstr("--allow-set"));
 }
 

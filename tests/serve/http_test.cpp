@@ -220,7 +220,7 @@ TEST_F(Http, FramesRightBehindTheHandshake_AreRead) {
   begin();
   raw_client client(port_);
   client.send(raw_client::upgrade_request(page) +
-              raw_client::frame(1, R"({"op":"set","name":"freq","value":10})"));
+              raw_client::frame(1, R"({"op":"set","name":"frequency","value":10})"));
   EXPECT_THAT(client.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 101"));
   EXPECT_THAT(next(client, "error")["message"].get<std::string>(), HasSubstr("--allow-set"));
 }

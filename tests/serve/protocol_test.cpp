@@ -26,15 +26,16 @@ using nlohmann::json;
 
 TEST(PageRequest, SetTakesWordsNumbersAndFlags) {
   const auto value_of_set = [](const std::string& value) {
-    const auto read = parse_page_request(R"({"op":"set","name":"freq","value":)" + value + "}");
+    const auto read =
+        parse_page_request(R"({"op":"set","name":"frequency","value":)" + value + "}");
     const auto* const set = read ? std::get_if<set_request>(&*read) : nullptr;
     return set == nullptr ? "refused" : set->name + '=' + set->value;
   };
-  EXPECT_EQ(value_of_set("\"9k\""), "freq=9k");
-  EXPECT_EQ(value_of_set("7.5"), "freq=7.5");
-  EXPECT_EQ(value_of_set("10"), "freq=10");
-  EXPECT_EQ(value_of_set("true"), "freq=on");
-  EXPECT_EQ(value_of_set("false"), "freq=off");
+  EXPECT_EQ(value_of_set("\"9k\""), "frequency=9k");
+  EXPECT_EQ(value_of_set("7.5"), "frequency=7.5");
+  EXPECT_EQ(value_of_set("10"), "frequency=10");
+  EXPECT_EQ(value_of_set("true"), "frequency=on");
+  EXPECT_EQ(value_of_set("false"), "frequency=off");
   EXPECT_EQ(value_of_set("null"), "refused");
   EXPECT_EQ(value_of_set("[1]"), "refused");
 }
@@ -55,7 +56,7 @@ TEST(PageRequest, PlayTakesWhatIsGiven) {
 TEST(PageRequest, WhatNoPageSendsIsRefused) {
   const std::string deep =
       R"({"op":"set","name":)" + std::string(200, '[') + std::string(200, ']') + "}";
-  const std::string text = R"({"op":"set","name":"freq","value":7})";
+  const std::string text = R"({"op":"set","name":"frequency","value":7})";
   for (const std::string& bad :
        {std::string(), std::string("hello"), std::string("[]"), std::string("{}"),
         std::string(R"({"op":1})"), std::string("{\"op\":\"set\""), deep, text + "x",
@@ -163,7 +164,7 @@ TEST(PageTexts, AdviceIsNotForACommandLine) {
 
 TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   const json hello = json::parse(hello_text(
-      {.source = "a\"b", .device = {}, .settings = {{"freq", 7.0}}, .recording_s = 2.5}));
+      {.source = "a\"b", .device = {}, .settings = {{"frequency", 7.0}}, .recording_s = 2.5}));
   EXPECT_EQ(hello["op"], "hello");
   EXPECT_EQ(hello["source"], "a\"b");
   EXPECT_TRUE(hello["device"]["serial"].is_null());
@@ -191,7 +192,7 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
 // Texts that are nearly requests: whatever they are, there is an answer, and no crash.
 TEST(Requests, DamagedTexts_AreAnsweredOrRefused) {
   const std::vector<std::string> good{
-      R"({"op":"set","name":"freq","value":7.5})",
+      R"({"op":"set","name":"frequency","value":7.5})",
       R"({"op":"play","paused":true,"speed":2,"seek_s":1e300})",
       R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":1,"channelId":2}]})",
       R"({"op":"unsubscribe","subscriptionIds":[0,1]})"};

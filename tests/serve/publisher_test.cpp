@@ -246,7 +246,7 @@ class Setting : public Served {
  protected:
   bool read_all() override {
     if (scans_ == 1) {
-      publisher_->set({.name = "freq", .value = "10"}, [this](const std::string& error) {
+      publisher_->set({.name = "frequency", .value = "10"}, [this](const std::string& error) {
         EXPECT_EQ(error, "");
         while (const auto message = center_.take(*page_)) {
           const std::string text(message->payload->begin(), message->payload->end());

@@ -59,19 +59,19 @@ TEST_F(Server, PageProtocol_FromHelloToASetting) {
   EXPECT_EQ(hello["source"], "sim:?serial=1111222233334444");
   EXPECT_EQ(hello["allow_set"], true);
   EXPECT_TRUE(gets_scans(*client));
-  client->send_text(R"({"op":"set","name":"freq","value":10})");
-  EXPECT_EQ(next(*client, "settings")["settings"]["freq"], 10.0);
-  client->send_text(R"({"op":"set","name":"freq","value":100})");
+  client->send_text(R"({"op":"set","name":"frequency","value":10})");
+  EXPECT_EQ(next(*client, "settings")["settings"]["frequency"], 10.0);
+  client->send_text(R"({"op":"set","name":"frequency","value":100})");
   EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("range 5 to 12"));
   EXPECT_TRUE(gets_scans(*client)) << "it goes on";
-  EXPECT_EQ(next(*open_page(), "hello")["settings"]["freq"], 10.0);
+  EXPECT_EQ(next(*open_page(), "hello")["settings"]["frequency"], 10.0);
   EXPECT_EQ(end().code, 128 + SIGTERM);
 }
 
 TEST_F(Server, ReadOnly_UnlessAllowed) {
   begin();
   const auto client = open_page();
-  client->send_text(R"({"op":"set","name":"freq","value":10})");
+  client->send_text(R"({"op":"set","name":"frequency","value":10})");
   EXPECT_THAT(next(*client, "error")["message"].get<std::string>(), HasSubstr("--allow-set"));
 }
 

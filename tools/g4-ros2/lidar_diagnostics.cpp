@@ -6,8 +6,8 @@
 namespace g4_tool {
 namespace {
 
-constexpr std::chrono::seconds diagnostics_pulse{1};
-/// All statuses begin with it until they are published.
+constexpr std::chrono::seconds diagnostics_interval{1};
+/// The prefix of all statuses, which is replaced before they are published.
 constexpr std::string_view program_name = "g4lidar: ";
 
 diagnostic_status status_of_state(const station& device) {
@@ -58,7 +58,7 @@ void lidar_diagnostics::update(const station& device, const scan_messages& messa
                                std::int64_t stamp_ns) {
   const auto now = clock::now();
   if (!topic_ || now < due_ || stamp_ns == 0) return;
-  due_ = now + diagnostics_pulse;
+  due_ = now + diagnostics_interval;
   if (!topic_->is_wanted()) return;
   const auto who = device.identity();
   const std::string serial(who ? who->serial_number() : "");

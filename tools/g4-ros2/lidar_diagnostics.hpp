@@ -19,7 +19,7 @@
 
 namespace g4_tool {
 
-/// What subscribers get of the scans, and what they do not. *Pure* but for its own state.
+/// The delivery of the scans to subscribers. *Pure* except for its own state.
 class topic_report {
  public:
   /// A warning if more was lost or refused than at the last call.
@@ -40,15 +40,16 @@ class lidar_diagnostics {
   lidar_diagnostics(dds::bus& on, const ros2_options& options, std::string_view name_space,
                     std::string_view name);
 
-  /// One more status in each message; its name begins with "g4lidar: ", which becomes the name of the node.
+  /// Adds a status to each message. Its name begins with "g4lidar: ", which is replaced by the name of the node.
   void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
-  /// Publishes once a second, if somebody subscribes. `stamp_ns`: the time, since 1970; not before it is known (0).
+  /// Publishes once a second, if there are subscribers. `stamp_ns`: the time since 1970; 0: unknown, nothing is
+  /// published.
   void update(const station& device, const scan_messages& messages, std::int64_t stamp_ns);
 
  private:
   using clock = std::chrono::steady_clock;
 
-  std::string prefix_;                     // of the names of statuses: node and lidar
+  std::string prefix_;                     // of the names of statuses: the node and the lidar
   std::unique_ptr<dds::publisher> topic_;  // null: off
   topic_report topics_;
   std::vector<std::function<diagnostic_status()>> more_;

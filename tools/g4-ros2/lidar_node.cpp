@@ -12,13 +12,13 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// So long the motor turns on when the last subscriber has gone: one that comes again need not wait.
+/// How long the motor runs after the last subscriber has left, so that one that returns need not wait.
 constexpr auto rest_delay = 3s;
 
 common_options options_of(const ros2_options& options, const std::string& source, bool merges) {
   common_options made = options.common;
   made.source = source;
-  if (merges) made.deskew = deskewing::none;  // merging does that
+  if (merges) made.deskew = deskewing::none;  // the merger deskews
   return made;
 }
 
@@ -54,7 +54,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
     feed_.load_recording(path_of_source(which.source));
     time_.emplace();
   }
-  // The robot of all merged lidars is that of the first one.
+  // Merged lidars have one robot, which belongs to the first lidar.
   if (merger_ == nullptr || index == 0) {
     const bool is_known =
         feed_.is_known() || kind_of_source(which.source) == source_kind::simulated;
@@ -111,8 +111,8 @@ void lidar_node::on_open(opened_source& source) {
   }
   if (feed_.is_known() && source.simulation() == nullptr) return;
   feed_.follow(source.simulation());
-  for (const wish& each : options_.settings) {
-    const auto done = source.lidar().ask(each.how);
+  for (const setting_change& each : options_.settings) {
+    const auto done = source.lidar().ask(change_to(each.value));
     if (!done) logger::info(in_tool_words(done.error().message()) + "\n");
   }
   if (const auto kind = kind_of_source(which_.source);
@@ -151,7 +151,7 @@ void lidar_node::on_event(const lidar_event& event) {
 }
 
 void lidar_node::on_state(station_state state, std::string_view why) {
-  // The failure of the only lidar is reported where the program ends.
+  // The failure of the only lidar is reported at the end of the program.
   if (state == station_state::ended && options_.sources.size() <= 1) why = {};
   logger::info(fmt::format("{}{}: {}{}{}\n", which_.name.empty() ? "lidar" : "lidar ", which_.name,
                            name_of(state), why.empty() ? "" : ". ", in_tool_words(why)));

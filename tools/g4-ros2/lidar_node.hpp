@@ -35,22 +35,22 @@ class merger;
 
 class lidar_node final : public station_listener {
  public:
-  /// `into`: where its scans are merged, as number `index`; null: it has topics of its own. `on`, `options`
-  /// and `into` outlive it.
+  /// `into`: merges its scans, as number `index`; null: it has its own topics. `on`, `options` and `into`
+  /// outlive it.
   lidar_node(dds::bus& on, const ros2_options& options, const named_source& which, merger* into,
              std::size_t index);
   ~lidar_node() override;
 
-  /// Starts or rests the motor as subscribers and commands want it, and publishes diagnostics when they
-  /// are due. To be called several times a second.
+  /// Starts or stops the motor by subscribers and commands, and publishes due diagnostics. Call it several
+  /// times a second.
   void update();
-  /// A command of a user: whether it is to run.
+  /// Allows or forbids the motor to run, by a command of a user.
   void allow(bool runs) noexcept { is_allowed_ = runs; }
 
-  /// Sets parameters of this lidar, all or none; `done` is called in another thread: why not, or empty.
+  /// Sets parameters of this lidar, all or none. `done` is called in another thread with the error, or "".
   void change(std::vector<named_value> wanted, std::function<void(std::string)> done);
   [[nodiscard]] const lidar_parameters& parameters() const noexcept { return parameters_; }
-  /// One more status for its diagnostics: see lidar_diagnostics.
+  /// Adds a status to its diagnostics: see lidar_diagnostics.
   void also_report(std::function<diagnostic_status()> what) {
     diagnostics_.also_report(std::move(what));
   }
@@ -89,8 +89,8 @@ class lidar_node final : public station_listener {
   std::unique_ptr<deskew_report> deskewing_;  // null if it does not depend on odometry
   lidar_parameters parameters_;
   std::atomic<bool> is_allowed_ = true;
-  clock::time_point wanted_{};        // last
-  std::unique_ptr<station> station_;  // ends first
+  clock::time_point wanted_{};        // when it last had subscribers
+  std::unique_ptr<station> station_;  // destroyed first
 };
 
 }  // namespace g4_tool

@@ -28,7 +28,7 @@ constexpr const char* details =
   /clock         the time of a recording
 
 Services, for rmw_cyclonedds: get_parameters, set_parameters, list_parameters, ... of the node, as
-ros2 param uses them, with scan_frequency, sample_rate, range_max, fov, speckle and others;
+ros2 param uses them, with frequency, sample_rate, range_max, fov, speckle and others;
 start and stop (std_srvs/Trigger).
 
 Several lidars have names: front=/dev/ttyUSB0 rear=/dev/ttyUSB1. Then each name is a namespace,

@@ -26,8 +26,8 @@ namespace {
 using namespace std::chrono_literals;
 using clock = std::chrono::steady_clock;
 
-constexpr auto pulse = 100ms;
-constexpr auto network_pulse = 1s;
+constexpr auto update_interval = 100ms;
+constexpr auto network_interval = 1s;
 
 class node {
  public:
@@ -56,15 +56,15 @@ class node {
     bus_.update();
     for (const auto& each : lidars_) each->device().start();
     while (interrupt() == 0 && !limits_.is_over() && !has_ended()) {
-      bus_.cleared();
+      bus_.clear();
       if (const auto now = clock::now(); now >= network_due_) {
         bus_.update();
-        network_due_ = now + network_pulse;
+        network_due_ = now + network_interval;
       }
       services_->update();
       for (const auto& each : lidars_) each->update();
       report();
-      static_cast<void>(wait_for_input(bus_.handle(), -1, clock::now() + pulse));
+      static_cast<void>(wait_for_input(bus_.handle(), -1, clock::now() + update_interval));
     }
     service_.stopping();
     const std::exception_ptr why = failure_of_any();
@@ -75,7 +75,7 @@ class node {
   }
 
  private:
-  /// Whether nothing will come any more.
+  /// Whether all lidars have ended.
   [[nodiscard]] bool has_ended() const {
     return std::ranges::all_of(
         lidars_, [](const auto& each) { return each->device().state() == station_state::ended; });
@@ -88,11 +88,11 @@ class node {
     return nullptr;
   }
 
-  /// A service is ready although there is no network yet, and alive with each turn.
+  /// Reports to systemd: ready even without a network, and alive with each turn.
   void report() {
     service_.ready();
     service_.alive();
-    if (!service_.is_heard()) return;
+    if (!service_.has_manager()) return;
     std::string text;
     for (const auto& each : lidars_) {
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", each->name_space(),

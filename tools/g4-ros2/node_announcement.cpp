@@ -86,10 +86,10 @@ void node_announcement::open(dds_entity_t participant, int* /*handle*/) {
   if (form_ == announced_form::none) return;
   const bool is_humble = form_ == announced_form::humble;
   const dds::message_type& type = is_humble ? humble_type : iron_type;
-  const dds::qos wish = dds::qos_of({.type = &type, .depth = 1, .is_for_late = true});
+  const dds::qos qos = dds::qos_of({.type = &type, .depth = 1, .is_for_late = true});
   topic_ = dds::entity(
       dds_create_topic(participant, type.descriptor, "ros_discovery_info", nullptr, nullptr));
-  writer_ = dds::entity(dds_create_writer(participant, topic_.get(), wish.get(), nullptr));
+  writer_ = dds::entity(dds_create_writer(participant, topic_.get(), qos.get(), nullptr));
   const auto result = is_humble ? write<humble_message>(participant, writer_.get(), node_)
                                 : write<iron_message>(participant, writer_.get(), node_);
   if (result != DDS_RETCODE_OK) logger::info("cannot announce the node\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The topic by which programs of ROS 2 know which node has which publishers, subscriptions and services.
+// The topic that informs ROS 2 about the publishers, subscriptions and services of each node.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace g4_tool {
 
-/// Published each time that the domain is created, of all endpoints that were added to the bus before this one.
+/// Publishes the endpoints that were added to the bus before it, each time the domain is created.
 class node_announcement final : public dds::endpoint {
  public:
   /// `node`: "/robot1/g4lidar".

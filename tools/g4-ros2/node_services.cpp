@@ -13,14 +13,27 @@ namespace {
 
 /// Requests with more names are ignored.
 constexpr std::size_t most_names = 1000;
-/// So many requests to set parameters may wait for lidars.
+/// The largest number of requests to set parameters that wait for lidars.
 constexpr std::size_t most_unfinished = 32;
+
+/// Replies with a part for each of `names`, made by `part_of(name, reply)`. `parts_of` selects the member of the message
+/// for the parts. False if there are too many names.
+template <class Held>
+bool reply_to_each(dds::service& via, const dds::caller& from, const auto& names, auto parts_of,
+                   auto part_of) {
+  if (names._length > most_names) return false;
+  const auto held = std::make_shared<Held>();
+  for (const char* const name : span_of(names)) held->parts.push_back(part_of(name, *held));
+  refer(parts_of(held->message), held->parts);
+  via.send(from, as_reply(held));
+  return true;
+}
 
 }  // namespace
 
-/// Parameters that are being set, and what is called when all have been tried.
+/// Parameters that are being set, and the callback after all have been tried.
 struct node_services::set_job {
-  std::function<void(const std::vector<std::string>&)> done;  // with why each was not set
+  std::function<void(const std::vector<std::string>&)> done;  // gets the error of each
   std::mutex mutex{};
   std::vector<std::string> reasons{};
   std::size_t missing = 0;
@@ -90,34 +103,29 @@ const node_services::target* node_services::find(std::string_view name) const {
 }
 
 bool node_services::get(dds::service& via, const void* request, const dds::caller& from) {
-  const auto& wanted = *static_cast<const rcl_interfaces_srv_dds__GetParameters_Request_*>(request);
-  if (wanted.names._length > most_names) return false;
-  const auto held = std::make_shared<reply_with<rcl_interfaces_srv_dds__GetParameters_Response_,
-                                                rcl_interfaces_msg_dds__ParameterValue_>>();
-  for (const char* const name : span_of(wanted.names)) {
-    const target* const known = find(name);
-    held->parts.push_back(message_of(
-        known == nullptr ? parameter_value() : known->lidar->parameters().value(*known->what),
-        *held));
-  }
-  refer(held->message.values, held->parts);
-  via.send(from, as_reply(held));
-  return true;
+  using held_values = reply_with<rcl_interfaces_srv_dds__GetParameters_Response_,
+                                 rcl_interfaces_msg_dds__ParameterValue_>;
+  return reply_to_each<held_values>(
+      via, from, static_cast<const rcl_interfaces_srv_dds__GetParameters_Request_*>(request)->names,
+      [](auto& message) -> auto& { return message.values; },
+      [this](const char* name, held_values& held) {
+        const target* const known = find(name);
+        return message_of(
+            known == nullptr ? parameter_value() : known->lidar->parameters().value(*known->what),
+            held);
+      });
 }
 
 bool node_services::get_types(dds::service& via, const void* request, const dds::caller& from) {
-  const auto& wanted =
-      *static_cast<const rcl_interfaces_srv_dds__GetParameterTypes_Request_*>(request);
-  if (wanted.names._length > most_names) return false;
-  const auto held = std::make_shared<
-      reply_with<rcl_interfaces_srv_dds__GetParameterTypes_Response_, std::uint8_t>>();
-  for (const char* const name : span_of(wanted.names)) {
-    const target* const known = find(name);
-    held->parts.push_back(known == nullptr ? std::uint8_t{0} : known->what->type);
-  }
-  refer(held->message.types, held->parts);
-  via.send(from, as_reply(held));
-  return true;
+  using held_types = reply_with<rcl_interfaces_srv_dds__GetParameterTypes_Response_, std::uint8_t>;
+  return reply_to_each<held_types>(
+      via, from,
+      static_cast<const rcl_interfaces_srv_dds__GetParameterTypes_Request_*>(request)->names,
+      [](auto& message) -> auto& { return message.types; },
+      [this](const char* name, held_types&) {
+        const target* const known = find(name);
+        return known == nullptr ? std::uint8_t{0} : known->what->type;
+      });
 }
 
 bool node_services::list(dds::service& via, const void* request, const dds::caller& from) {
@@ -152,31 +160,29 @@ bool node_services::list(dds::service& via, const void* request, const dds::call
 }
 
 bool node_services::describe(dds::service& via, const void* request, const dds::caller& from) {
-  const auto& wanted =
-      *static_cast<const rcl_interfaces_srv_dds__DescribeParameters_Request_*>(request);
-  if (wanted.names._length > most_names) return false;
   struct held_ranges : reply_with<rcl_interfaces_srv_dds__DescribeParameters_Response_,
                                   rcl_interfaces_msg_dds__ParameterDescriptor_> {
     std::deque<rcl_interfaces_msg_dds__FloatingPointRange_> ranges;
   };
-  const auto held = std::make_shared<held_ranges>();
-  for (const char* const name : span_of(wanted.names)) {
-    const target* const known = find(name);
-    auto& made = held->parts.emplace_back();
-    made.name = held->text(name);
-    made.description = held->text(known == nullptr ? "" : known->what->description);
-    made.additional_constraints = held->text(known == nullptr ? "" : known->what->constraints);
-    if (known == nullptr) continue;
-    made.type = known->what->type;
-    made.read_only = known->what->kind == parameter_kind::read_only;
-    if (const auto [least, most, step] = known->what->range; least < most) {
-      made.floating_point_range._buffer = &held->ranges.emplace_back(least, most, step);
-      made.floating_point_range._length = made.floating_point_range._maximum = 1;
-    }
-  }
-  refer(held->message.descriptors, held->parts);
-  via.send(from, as_reply(held));
-  return true;
+  return reply_to_each<held_ranges>(
+      via, from,
+      static_cast<const rcl_interfaces_srv_dds__DescribeParameters_Request_*>(request)->names,
+      [](auto& message) -> auto& { return message.descriptors; },
+      [this](const char* name, held_ranges& held) {
+        const target* const known = find(name);
+        rcl_interfaces_msg_dds__ParameterDescriptor_ made{};
+        made.name = held.text(name);
+        made.description = held.text(known == nullptr ? "" : known->what->description);
+        made.additional_constraints = held.text(known == nullptr ? "" : known->what->constraints);
+        if (known == nullptr) return made;
+        made.type = known->what->type;
+        made.read_only = known->what->kind == parameter_kind::read_only;
+        if (const auto [least, most, step] = known->what->range; least < most) {
+          made.floating_point_range._buffer = &held.ranges.emplace_back(least, most, step);
+          made.floating_point_range._length = made.floating_point_range._maximum = 1;
+        }
+        return made;
+      });
 }
 
 bool node_services::set(dds::service& via, const void* request, const dds::caller& from) {

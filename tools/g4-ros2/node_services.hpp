@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The services of the node: parameters as `ros2 param` uses them, start and stop.
+// The services of the node: parameters (for `ros2 param`), start and stop.
 #pragma once
 
 #include <atomic>
@@ -15,21 +15,23 @@
 
 namespace g4_tool {
 
-/// *Single thread*: that of the bus. Of several lidars each has its parameters with its name before a dot.
+/// *Single thread*: that of the bus. With several lidars the name of a parameter begins with that of its lidar and a
+/// dot.
 class node_services {
  public:
-  /// All outlive it, but the threads of `lidars` end before it. Throws bad_value for the name of the node.
+  /// All arguments outlive it, but the threads of `lidars` end before it. Throws bad_value for an invalid name of the
+  /// node.
   node_services(dds::bus& on, const ros2_options& options, std::vector<lidar_node*> lidars);
   ~node_services();
 
-  /// To be called when the bus is readable, and several times a second.
+  /// Call it when the bus is readable, and several times a second.
   void update();
   [[nodiscard]] diagnostic_status status() const;
 
  private:
-  /// Whose parameter it is.
+  /// A parameter and its lidar.
   struct target {
-    std::string name;  ///< "front.scan_frequency"
+    std::string name;  ///< "front.frequency"
     lidar_node* lidar;
     const parameter* what;
   };
@@ -52,7 +54,7 @@ class node_services {
   const ros2_options& options_;
   std::vector<lidar_node*> lidars_;
   std::vector<target> targets_;
-  std::atomic<std::size_t> unfinished_ = 0;  // sets
+  std::atomic<std::size_t> unfinished_ = 0;  // requests to set parameters
   std::vector<std::unique_ptr<dds::service>> services_;
 };
 

@@ -25,14 +25,14 @@ void check_length(std::string_view name) {
                               longest_name, name.substr(0, 20), name.size()));
 }
 
-/// Whether it can stand between two slashes of a name of ROS 2.
+/// Whether it is a valid part of a name of ROS 2, between slashes.
 bool is_token(std::string_view word) {
   return !word.empty() && is_letter(word.front()) &&
          std::ranges::all_of(word, [](char c) { return is_letter(c) || is_digit(c); });
 }
 
-/// "front=/dev/ttyUSB0": the name, and what it names; without a name the whole word.
-std::pair<std::string, std::string> named(const std::string& word) {
+/// The name and the value of "front=/dev/ttyUSB0"; without a name the whole word is the value.
+std::pair<std::string, std::string> split_name(const std::string& word) {
   const std::size_t at = word.find('=');
   if (at == std::string::npos || !is_token(word.substr(0, at))) return {"", word};
   return {word.substr(0, at), word.substr(at + 1)};
@@ -117,7 +117,7 @@ option_rows place_rows(ros2_options& options) {
   option_row mount{"--mount", "X,Y,DEG[,down]",
                    "Where the lidar is on the robot; NAME=X,Y,DEG: that lidar; for /tf_static",
                    [&into = options.mounts](const std::string& word) {
-                     const auto [name, place] = named(word);
+                     const auto [name, place] = split_name(word);
                      into.emplace_back(name, mounting_of(place));
                    }};
   mount.repeatable = true;
@@ -126,8 +126,8 @@ option_rows place_rows(ros2_options& options) {
 
 option_rows device_and_player_rows(ros2_options& options) {
   option_row set{
-      "--set", "NAME=VALUE", "Set the lidar at the start: freq=10; may be repeated",
-      [&into = options.settings](const std::string& word) { into.push_back(wish_of(word)); }};
+      "--set", "NAME=VALUE", "Set the lidar at the start: frequency=10; may be repeated",
+      [&into = options.settings](const std::string& word) { into.push_back(change_of(word)); }};
   set.complete = completion::setting;
   set.repeatable = true;
   return joined(
@@ -136,14 +136,14 @@ option_rows device_and_player_rows(ros2_options& options) {
       device_rows(options.common), player_rows(options.station.speed, options.station.loops));
 }
 
-/// "--no-return": no_return
+/// no_return of "--no-return".
 std::string parameter_name_of(const option_row& row) {
   std::string name = row.names.substr(2);
   std::ranges::replace(name, '-', '_');
   return name;
 }
 
-/// Keeps the words of those that are parameters, too.
+/// The rows of filters, which also store their words for the parameters.
 option_rows filter_rows_of(ros2_options& options) {
   common_options& common = options.common;
   option_rows rows =
@@ -171,7 +171,7 @@ std::string list_of(const std::vector<named_source>& lidars) {
   return made;
 }
 
-/// A topic has one type.
+/// Refuses two uses of one topic, which can have only one type.
 void check_topics(const ros2_options& options, const std::vector<named_source>& lidars) {
   const topic_names& topics = options.topics;
   const std::array<std::pair<const char*, std::string_view>, 4> wanted{
@@ -227,7 +227,7 @@ std::vector<named_source> sources_of(const ros2_options& options) {
   std::vector<named_source> made;
   std::set<std::string> names;
   for (const std::string& word : options.sources) {
-    auto [name, source] = named(word);
+    auto [name, source] = split_name(word);
     if (!names.insert(name).second) {
       throw bad_value(options.sources.size() > 1 && name.empty()
                           ? "several lidars need names: front=" + options.sources.front()

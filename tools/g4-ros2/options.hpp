@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the command line, the file of --config and the arguments of ROS 2 decide.
+// The options, from the command line, the file of --config and the arguments of ROS 2.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@
 
 namespace g4_tool {
 
-/// The names of topics; those that begin with a slash are not in the namespace, and "off" is none.
+/// The names of topics. Those that begin with a slash are not in the namespace; "off": no topic.
 struct topic_names {
   std::string scan = "scan";
   std::string points = "points";
@@ -37,29 +37,29 @@ struct frame_names {
   std::string odometry = "odom";
 };
 
-/// The form in which the node is announced: that of releases up to Humble, or from Iron on.
+/// The message that announces the node: that of releases up to Humble, or from Iron on.
 enum class announced_form : unsigned char { none, humble, iron };
 
-/// How messages travel.
+/// The network and the quality of service.
 struct delivery {
-  std::optional<std::uint32_t> domain;  ///< Where given, else ROS_DOMAIN_ID.
+  std::optional<std::uint32_t> domain;  ///< Nothing: ROS_DOMAIN_ID.
   std::string interface;
   bool is_reliable = true;
   int depth = 5;
   announced_form announced = announced_form::none;
 };
 
-/// A place that was given for the lidar of a name, or for the only one.
+/// The name of a lidar (empty for the only one) and its mounting.
 using named_mounting = std::pair<std::string, mounting>;
 
 struct ros2_options {
-  /// Of every lidar, but for its source. The frame of the filters is the robot's.
+  /// Of every lidar; without its source. The filters use the robot's frame.
   common_options common;
   lidar_options source;
   station_options station;
   std::vector<std::string> sources;  ///< "SOURCE", or "NAME=SOURCE".
   std::vector<named_mounting> mounts;
-  std::vector<wish> settings;
+  std::vector<setting_change> settings;
   std::string name_space;        ///< "/robot1"; empty: the root.
   std::string node = "g4lidar";  ///< The name of the node.
   topic_names topics;
@@ -67,7 +67,7 @@ struct ros2_options {
   delivery transport;
   scan_order order = scan_order::angle;
   std::uint32_t bins = 720;
-  /// Filters as their options have them, by the names of the parameters.
+  /// The values of the filters, as their options take them, by the names of the parameters.
   std::map<std::string, std::string> filter_words{
       {"edges", "off"},   {"fov", "-180:180"},  {"ignore", ""},    {"near", "off"},
       {"near_as", "nan"}, {"no_return", "inf"}, {"speckle", "off"}};
@@ -75,7 +75,6 @@ struct ros2_options {
   bool is_standby = false;
 };
 
-/// One lidar of several.
 struct named_source {
   std::string name;  ///< Empty for the only one.
   std::string source;
@@ -85,17 +84,17 @@ struct named_source {
 /// The lidars that the options name, at least one. Throws bad_value.
 [[nodiscard]] std::vector<named_source> sources_of(const ros2_options& options);
 
-/// A name of ROS 2 in a namespace: "/robot1/scan". Throws bad_value for one that ROS 2 does not allow.
+/// A name of ROS 2 in a namespace: "/robot1/scan". Throws bad_value for an invalid name.
 [[nodiscard]] std::string full_name(std::string_view name_space, std::string_view name);
 
-/// The frame of a lidar; the name of one of several follows the last slash: "robot1/front_laser".
+/// The frame of a lidar; the name of one of several is inserted: "robot1/front_laser".
 [[nodiscard]] std::string frame_of(const ros2_options& options, std::string_view lidar);
 
 /// The table of options, which writes into `options`.
 [[nodiscard]] option_rows ros2_rows(const std::shared_ptr<ros2_options>& options);
 
-/// `words` of a command line with what follows `--ros-args` as options of this program: `-r __ns:=/x`
-/// is `--namespace /x`, `-p grid:=360` is `--grid 360`. Throws bad_value for what it cannot be.
+/// Converts the words after `--ros-args` to options of this program: `-r __ns:=/x` to `--namespace /x`,
+/// `-p grid:=360` to `--grid 360`. Throws bad_value for invalid ones.
 [[nodiscard]] std::vector<std::string> without_ros_arguments(const std::vector<std::string>& words,
                                                              const option_rows& rows);
 

@@ -61,9 +61,23 @@ parameter_value value_of(const maybe_answer& given) {
   return {};
 }
 
-const setting* setting_of(std::string_view name) {
-  const auto at = std::ranges::find(all_settings(), name, &setting::name);
-  return at == all_settings().end() ? nullptr : &*at;
+parameter parameter_of(const setting_info& which) {
+  constexpr std::array types{is_integer, is_double, is_string, is_bool};
+  parameter made{which.name, types.at(static_cast<std::size_t>(which.type)), parameter_kind::device,
+                 std::string(which.text), which.query ? "" : "known when it was set"};
+  made.setting = &which;
+  if (!which.unit.empty()) made.description.append(", ").append(which.unit);
+  if (which.type == setting_type::decimal) {
+    made.constraints = fmt::format("multiples of {}", which.step / 100.0);
+    made.range = {which.least / 100.0, which.most / 100.0, which.step / 100.0};
+  } else if (which.type != setting_type::on_off) {
+    const bool is_whole = which.type == setting_type::whole;
+    for (const setting_value& each : which.values) {
+      made.constraints.append(made.constraints.empty() ? "" : ", ");
+      made.constraints.append(is_whole ? std::to_string(each.number) : std::string(each.word));
+    }
+  }
+  return made;
 }
 
 /// Sets an option of the command line by its parser. Throws bad_value.
@@ -95,42 +109,33 @@ void set_filter(common_options& into, std::string_view name, const std::string& 
 
 std::span<const parameter> all_parameters() {
   using enum parameter_kind;
-  static const std::vector<parameter> all{
-      {"constant", is_bool, device, "constant", "Constant scan frequency", "known when it was set"},
-      {"direction", is_string, device, "direction", "Sense of rotation of the motor", "cw, ccw"},
-      {"edges", is_string, filter, "", "Leave out veiling points at jumps of the range",
-       "off, on, or limits as --edges"},
-      {"fov", is_string, filter, "", "Directions that are kept, degrees in the frame of the robot",
-       "FROM:TO, such as -90:90"},
-      {"frame_id", is_string, read_only, "", "Frame of the scans", ""},
-      {"grid", is_integer, read_only, "", "Ranges of each LaserScan", ""},
-      {"idle", is_bool, device, "idle", "Low power when no scan is running", ""},
-      {"ignore", is_string, filter, "", "Directions that are left out, as fov",
-       "several with spaces between them: 30:40 90:100; off: none"},
-      {"near", is_string, filter, "",
-       "Flag directions where something may be too near for a return: in a LaserScan as near_as",
-       "off, on, or limits as --near"},
-      {"near_as", is_string, filter, "", "What ranges in directions that near flags become",
-       "nan, minus-inf"},
-      {"no_return", is_string, filter, "",
-       "What ranges without return become, which are not free space", "inf, nan, max"},
-      {"order", is_string, read_only, "", "Order of the ranges of a LaserScan", "angle, time"},
-      {"protection", is_bool, device, "protection", "Power-down protection",
-       "known when it was set"},
-      {"range_max", is_double, filter, "", "Longest range that is kept, m", "", {0.0, 100.0, 0.0}},
-      {"range_min", is_double, filter, "", "Shortest range that is kept, m", "", {0.0, 100.0, 0.0}},
-      {"sample_rate", is_integer, device, "sample_rate", "Samples per second, Hz",
-       "4000, 8000, 9000"},
-      {"scan_frequency",
-       is_double,
-       device,
-       "freq",
-       "Revolutions per second, Hz",
-       "multiples of 0.1",
-       {5.0, 12.0, 0.1}},
-      {"serial_number", is_string, read_only, "", "Serial number of the lidar", ""},
-      {"speckle", is_string, filter, "", "Leave out returns without another one near them",
-       "off, on, or limits as --speckle"}};
+  static const std::vector<parameter> all = [] {
+    std::vector<parameter> made{
+        {"edges", is_string, filter, "Leave out veiling points at jumps of the range",
+         "off, on, or limits as --edges"},
+        {"fov", is_string, filter, "Directions that are kept, degrees in the frame of the robot",
+         "FROM:TO, such as -90:90"},
+        {"frame_id", is_string, read_only, "Frame of the scans", ""},
+        {"grid", is_integer, read_only, "Ranges of each LaserScan", ""},
+        {"ignore", is_string, filter, "Directions that are left out, as fov",
+         "several with spaces between them: 30:40 90:100; off: none"},
+        {"near", is_string, filter,
+         "Flag directions where something may be too near for a return: in a LaserScan as near_as",
+         "off, on, or limits as --near"},
+        {"near_as", is_string, filter, "What ranges in directions that near flags become",
+         "nan, minus-inf"},
+        {"no_return", is_string, filter,
+         "What ranges without return become, which are not free space", "inf, nan, max"},
+        {"order", is_string, read_only, "Order of the ranges of a LaserScan", "angle, time"},
+        {"range_max", is_double, filter, "Longest range that is kept, m", "", {0.0, 100.0, 0.0}},
+        {"range_min", is_double, filter, "Shortest range that is kept, m", "", {0.0, 100.0, 0.0}},
+        {"serial_number", is_string, read_only, "Serial number of the lidar", ""},
+        {"speckle", is_string, filter, "Leave out returns without another one near them",
+         "off, on, or limits as --speckle"}};
+    for (const setting_info& each : all_settings()) made.push_back(parameter_of(each));
+    std::ranges::sort(made, {}, &parameter::name);
+    return made;
+  }();
   return all;
 }
 
@@ -167,9 +172,8 @@ parameter_value lidar_parameters::value(const parameter& of) const {
 
 void lidar_parameters::read_device(g4lidar::lidar& device) {
   for (const parameter& each : all_parameters()) {
-    const setting* const known = setting_of(each.setting);
-    if (known == nullptr || !known->question) continue;
-    const auto given = device.ask(*known->question);
+    if (each.setting == nullptr || !each.setting->query) continue;
+    const auto given = device.ask(*each.setting->query);
     if (given)
       keep(each.name, value_of(maybe_answer(*given)));
     else if (given.error().is_fatal())
@@ -178,11 +182,11 @@ void lidar_parameters::read_device(g4lidar::lidar& device) {
 }
 
 std::string lidar_parameters::set_device(g4lidar::lidar* device,
-                                         std::span<const device_wish> wishes) {
-  if (!wishes.empty() && device == nullptr) return "the lidar is not connected";
+                                         std::span<const device_change> changes) {
+  if (!changes.empty() && device == nullptr) return "the lidar is not connected";
   std::vector<std::pair<const parameter*, parameter_value>> before;
-  for (const auto& [known, how] : wishes) {
-    const auto given = device->ask(how.how, while_scanning::stop_and_resume);
+  for (const auto& [known, change] : changes) {
+    const auto given = device->ask(change_to(change.value), while_scanning::stop_and_resume);
     if (given) {
       before.emplace_back(known, value(*known));
       keep(known->name, value_of(maybe_answer(*given)));
@@ -190,8 +194,9 @@ std::string lidar_parameters::set_device(g4lidar::lidar* device,
     }
     for (const auto& [earlier, old] : before) {
       if (old.index() == 0) continue;  // was not known
-      const wish back = wish_of(fmt::format("{}={}", earlier->setting, word_of(old)));
-      if (device->ask(back.how, while_scanning::stop_and_resume)) keep(earlier->name, old);
+      const setting_change back = change_of(fmt::format("{}={}", earlier->name, word_of(old)));
+      if (device->ask(change_to(back.value), while_scanning::stop_and_resume))
+        keep(earlier->name, old);
     }
     return in_tool_words(given.error().message());
   }
@@ -200,7 +205,7 @@ std::string lidar_parameters::set_device(g4lidar::lidar* device,
 
 std::string lidar_parameters::change(g4lidar::lidar* device, std::span<const named_value> wanted) {
   std::map<std::string_view, parameter_value> values;  // of the filters
-  std::vector<device_wish> wishes;
+  std::vector<device_change> changes;
   common_options next = how_;
   try {
     for (const auto& [name, given] : wanted) {
@@ -213,7 +218,7 @@ std::string lidar_parameters::change(g4lidar::lidar* device, std::span<const nam
       if (known->kind == parameter_kind::filter) {
         values[known->name] = value;
       } else {
-        wishes.emplace_back(known, wish_of(fmt::format("{}={}", known->setting, word_of(value))));
+        changes.emplace_back(known, change_of(fmt::format("{}={}", known->name, word_of(value))));
       }
     }
     for (const auto& [name, one] : values) {
@@ -229,7 +234,7 @@ std::string lidar_parameters::change(g4lidar::lidar* device, std::span<const nam
   } catch (const bad_value& reason) {
     return reason.what();
   }
-  if (std::string reason = set_device(device, wishes); !reason.empty()) return reason;
+  if (std::string reason = set_device(device, changes); !reason.empty()) return reason;
   if (!values.empty()) {
     shaper_.set_filters(next);
     how_ = next;

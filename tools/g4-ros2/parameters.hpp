@@ -31,10 +31,10 @@ struct parameter {
   std::string_view name;
   std::uint8_t type;  ///< The index in parameter_value.
   parameter_kind kind;
-  std::string_view setting;      ///< Of a device: the name for `g4-dump set`.
-  std::string_view description;  ///< With its unit.
-  std::string_view constraints;
-  std::array<double, 3> range{};  ///< From, to, step; all 0: none.
+  std::string description;  ///< With its unit.
+  std::string constraints;
+  std::array<double, 3> range{};          ///< From, to, step; all 0: none.
+  const setting_info* setting = nullptr;  ///< Of a device.
 };
 
 /// All of them, sorted by their names.
@@ -60,8 +60,9 @@ class lidar_parameters {
   [[nodiscard]] parameter_value value(const parameter& of) const;
 
  private:
-  using device_wish = std::pair<const parameter*, wish>;
-  [[nodiscard]] std::string set_device(g4lidar::lidar* device, std::span<const device_wish> wishes);
+  using device_change = std::pair<const parameter*, setting_change>;
+  [[nodiscard]] std::string set_device(g4lidar::lidar* device,
+                                       std::span<const device_change> changes);
   void keep(std::string_view name, parameter_value value);
 
   common_options how_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The arguments that `ros2 run` and launch files give to every node, as options of this program.
+// Converts the arguments that `ros2 run` and launch files pass to every node to options of this program.
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
@@ -91,7 +91,7 @@ using parameter_words = std::map<std::string, words>;
 
 void set_parameter(const std::string& name, const YAML::Node& value, const option_rows& rows,
                    parameter_words& out) {
-  if (name == "use_sim_time") return;  // of this program only /clock depends on it
+  if (name == "use_sim_time") return;  // has no effect here
   std::string option = "--" + name;
   std::ranges::replace(option, '_', '-');
   const option_row* const row = row_named(rows, option);

@@ -31,8 +31,8 @@ std::string host_name() {
   return lowered(std::string_view(name.data()));
 }
 
-}  // namespace
-
+/// "[::1]" of "[::1]:8765", "localhost" of "LocalHost": in lower case, without the port; nothing if it is
+/// malformed.
 std::optional<std::string> name_in_host(std::string_view host) {
   constexpr std::size_t longest = 255;
   if (host.empty() || host.size() > longest) return std::nullopt;
@@ -53,6 +53,7 @@ std::optional<std::string> name_in_host(std::string_view host) {
   return name;
 }
 
+/// Whether it is a numeric address, IPv6 in brackets.
 bool is_numeric(std::string_view name) {
   std::array<unsigned char, 16> address{};
   if (name.starts_with('[') && name.ends_with(']')) {
@@ -62,6 +63,7 @@ bool is_numeric(std::string_view name) {
   return ::inet_pton(AF_INET, std::string(name).c_str(), address.data()) == 1;
 }
 
+/// Whether it has the form of an origin in a browser: SCHEME://HOST or SCHEME://HOST:PORT.
 bool is_origin(std::string_view text) {
   const std::size_t colon = text.find("://");
   if (colon == std::string_view::npos || colon == 0) return false;
@@ -70,6 +72,8 @@ bool is_origin(std::string_view text) {
   return std::ranges::all_of(scheme, is_in_scheme) &&
          (text.size() == colon + 3 || name_in_host(text.substr(colon + 3)).has_value());
 }
+
+}  // namespace
 
 host_guard::host_guard(std::string_view address, std::vector<std::string> origins)
     : is_any_address_(address == "0.0.0.0" || address == "::"),

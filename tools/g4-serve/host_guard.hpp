@@ -38,12 +38,5 @@ class host_guard {
 /// The hosts for URLs of a server that listens at `address`; for 0.0.0.0 and :: the name and the addresses
 /// of this machine. Never empty.
 [[nodiscard]] std::vector<std::string> hosts_of(const std::string& address);
-/// "[::1]" of "[::1]:8765", "localhost" of "LocalHost": in lower case, without the port; nothing if it is
-/// malformed.
-[[nodiscard]] std::optional<std::string> name_in_host(std::string_view host);
-/// Whether it is a numeric address, IPv6 in brackets.
-[[nodiscard]] bool is_numeric(std::string_view name);
-/// Whether it has the form of an origin in a browser: SCHEME://HOST or SCHEME://HOST:PORT.
-[[nodiscard]] bool is_origin(std::string_view text);
 
 }  // namespace g4_tool

@@ -12,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <exception>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -26,29 +27,21 @@ constexpr std::size_t most_connections = 60;
 constexpr auto least_age = 200ms;
 constexpr std::size_t longest_head = 4096;
 /// The longest time for a request, and for progress of an answer.
-constexpr auto patience = 5s;
+constexpr auto progress_timeout = 5s;
 /// The longest time in which the client reads the last answer before the connection is closed.
-constexpr auto linger = 2s;
+constexpr auto linger_timeout = 2s;
 
-std::string_view words_of(unsigned status) {
-  switch (status) {
-    case 200:
-      return "OK";
-    case 400:
-      return "Bad Request";
-    case 403:
-      return "Forbidden";
-    case 404:
-      return "Not Found";
-    case 405:
-      return "Method Not Allowed";
-    case 426:
-      return "Upgrade Required";
-    case 431:
-      return "Request Header Fields Too Large";
-    default:
-      return "Service Unavailable";
-  }
+std::string_view reason_of(unsigned status) {
+  static const std::map<unsigned, std::string_view> reasons{
+      {200, "OK"},
+      {400, "Bad Request"},
+      {403, "Forbidden"},
+      {404, "Not Found"},
+      {405, "Method Not Allowed"},
+      {426, "Upgrade Required"},
+      {431, "Request Header Fields Too Large"},
+      {503, "Service Unavailable"}};
+  return reasons.at(status);
 }
 
 /// Allows scripts and styles of the page's own files only, so that texts of others cannot run as scripts.
@@ -69,7 +62,7 @@ std::string head_of(const http_answer& answer, std::size_t size, std::string_vie
       "x-frame-options: DENY\r\nreferrer-policy: no-referrer\r\n"
       "cross-origin-opener-policy: same-origin\r\ncross-origin-resource-policy: same-origin\r\n"
       "content-security-policy: {}\r\n\r\n",
-      answer.status, words_of(answer.status), answer.type, size,
+      answer.status, reason_of(answer.status), answer.type, size,
       keeps_open ? "keep-alive" : "close", answer.status == 405 ? "allow: GET, HEAD\r\n" : "",
       answer.status == 426 ? "upgrade: websocket\r\nsec-websocket-version: 13\r\n" : "", policy);
 }
@@ -82,7 +75,7 @@ struct http_server::connection {
   socket_fd socket;
   step now = step::reading;
   clock::time_point since = clock::now();  // of the last progress
-  clock::time_point until = since + patience;
+  clock::time_point until = since + progress_timeout;
   std::string received{};
   // The unsent part of the answer.
   std::string head{};
@@ -90,7 +83,7 @@ struct http_server::connection {
   std::string_view rest{};
   bool keeps_open = false;
 
-  void go_on(step next, std::chrono::milliseconds time) {
+  void enter(step next, std::chrono::milliseconds time) {
     now = next;
     since = clock::now();
     until = since + time;
@@ -216,7 +209,7 @@ bool http_server::start_answer(connection& each) {
   each.owned = answer.owned;
   each.rest = request && request->method == "HEAD" ? std::string_view() : answer.content;
   each.received.erase(0, size);
-  each.go_on(connection::step::writing, patience);
+  each.enter(connection::step::writing, progress_timeout);
   return write(each);
 }
 
@@ -231,17 +224,17 @@ bool http_server::write(connection& each) {
     each.rest.remove_prefix(static_cast<std::size_t>(sent));
   }
   if (!each.head.empty() || !each.rest.empty()) {
-    each.go_on(connection::step::writing, patience);
+    each.enter(connection::step::writing, progress_timeout);
     return true;
   }
   each.owned.reset();
   if (each.keeps_open) {
-    each.go_on(connection::step::reading, patience);
+    each.enter(connection::step::reading, progress_timeout);
     return each.received.empty() || start_answer(each);
   }
   // If the socket were closed at once, with unread bytes, the client could lose the answer.
   ::shutdown(each.socket.get(), SHUT_WR);
-  each.go_on(connection::step::lingering, linger);
+  each.enter(connection::step::lingering, linger_timeout);
   return true;
 }
 

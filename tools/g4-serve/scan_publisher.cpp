@@ -28,7 +28,7 @@ std::int64_t wall_now_ns() {
 
 nlohmann::ordered_json unknown_settings() {
   nlohmann::ordered_json all;
-  for (const setting& each : all_settings()) all[std::string(each.name)] = nullptr;
+  for (const setting_info& each : all_settings()) all[std::string(each.name)] = nullptr;
   return all;
 }
 
@@ -73,7 +73,7 @@ scan_publisher::scan_publisher(const serve_options& options, client_registry& to
 void scan_publisher::on_open(opened_source& source) {
   const source_kind kind = kind_of_source(options_.common.source);
   if (kind == source_kind::device || kind == source_kind::simulated) {
-    for (const setting& each : all_settings()) {
+    for (const setting_info& each : all_settings()) {
       settings_[std::string(each.name)] = json_of(read_setting(source.lidar(), each));
     }
   }
@@ -171,7 +171,7 @@ void scan_publisher::publish_diagnostics(const page_status& status) {
 void scan_publisher::set(const set_request& wanted, std::function<void(const std::string&)> done) {
   std::string word = wanted.name + '=' + wanted.value;
   try {
-    static_cast<void>(wish_of(word));
+    static_cast<void>(change_of(word));
   } catch (const bad_value& reason) {
     return done(reason.what());
   }
@@ -183,8 +183,8 @@ void scan_publisher::set(const set_request& wanted, std::function<void(const std
 void scan_publisher::execute(g4lidar::lidar* lidar, const std::string& word,
                              const std::function<void(const std::string&)>& done) {
   if (lidar == nullptr) return done("the lidar is not connected");
-  const wish wanted = wish_of(word);
-  const auto given = lidar->ask(wanted.how, while_scanning::stop_and_resume);
+  const setting_change wanted = change_of(word);
+  const auto given = lidar->ask(change_to(wanted.value), while_scanning::stop_and_resume);
   if (!given) return done(in_tool_words(given.error().message()));
   settings_[std::string(wanted.which->name)] = json_of(maybe_answer(*given));
   send_hello(false);

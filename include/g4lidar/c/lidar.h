@@ -14,11 +14,11 @@ extern "C" {
 
 /** The settings of a lidar, with the unit of their values. */
 enum g4lidar_setting {
-  G4LIDAR_SCAN_FREQUENCY = 1,     /**< Revolutions: 0.01 Hz, 500 to 1200. */
-  G4LIDAR_SAMPLE_RATE = 2,        /**< Measurements: Hz, 4000, 8000 or 9000. */
+  G4LIDAR_SAMPLE_RATE = 1,        /**< Measurements: Hz, 4000, 8000 or 9000. */
+  G4LIDAR_SCAN_FREQUENCY = 2,     /**< Revolutions: 0.01 Hz, 500 to 1200. */
   G4LIDAR_MOTOR_DIRECTION = 3,    /**< A g4lidar_direction. */
-  G4LIDAR_LOW_POWER = 4,          /**< Whether the motor stops when idle: a g4lidar_switch. */
-  G4LIDAR_CONSTANT_FREQUENCY = 5, /**< Whether it regulates its frequency: a g4lidar_switch. */
+  G4LIDAR_CONSTANT_FREQUENCY = 4, /**< Whether it regulates its frequency: a g4lidar_switch. */
+  G4LIDAR_LOW_POWER = 5,          /**< Whether the motor stops when idle: a g4lidar_switch. */
   /** Whether it stops when the host sends nothing for 3 s: a g4lidar_switch. */
   G4LIDAR_POWER_DOWN_PROTECTION = 6
 };

@@ -14,8 +14,8 @@
 
 namespace g4lidar {
 
+class connector;
 struct recorded_device;
-class played_file;
 
 /// One event between two reads of a transport. A view; the function that returns it defines its
 /// lifetime.
@@ -78,22 +78,13 @@ class G4LIDAR_API recorded_event_source {
   recorded_event_source() = default;
 };
 
-/// What a connector adds if it plays a recording or a file, or if its transports are recorded.
+/// The second base class of a connector that plays a recording, or whose transports are recorded.
 class G4LIDAR_API recording_hook {
  public:
   virtual ~recording_hook() = default;
   recording_hook(const recording_hook&) = delete;
   recording_hook& operator=(const recording_hook&) = delete;
 
-  /// Whether a device answers on the transports. Nothing is written to files and recordings.
-  [[nodiscard]] virtual bool answers() const noexcept { return false; }
-  /// The file that is played; null: a device, or a pipe. The type is internal to the library.
-  [[nodiscard]] virtual played_file* file() noexcept { return nullptr; }
-  /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
-  /// of a file arrived when they were recorded.
-  [[nodiscard]] virtual std::optional<std::int64_t> wall_ahead_ns() const noexcept {
-    return std::nullopt;
-  }
   /// The events that were recorded with the bytes of the transports; null if there are none.
   [[nodiscard]] virtual recorded_event_source* events() noexcept { return nullptr; }
   /// To be recorded: an event of the driver, after the last read and before the next one.
@@ -102,5 +93,9 @@ class G4LIDAR_API recording_hook {
  protected:
   recording_hook() = default;
 };
+
+/// That of the connector, or of the nearest one that it wraps; null if nothing is played or recorded.
+/// Valid as long as the connector.
+[[nodiscard]] G4LIDAR_API recording_hook* recording_hook_of(connector& from) noexcept;
 
 }  // namespace g4lidar

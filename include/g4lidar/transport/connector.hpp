@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
@@ -11,7 +12,16 @@
 
 namespace g4lidar {
 
-class recording_hook;
+/// What is behind a connector.
+struct connector_traits {
+  /// Whether a device answers on the transports. Nothing is written to files and recordings.
+  bool answers = true;
+  /// Whether the clock is counted from the bytes that were read, so that no call waits.
+  bool counts_time = false;
+  /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
+  /// of a file arrived when they were recorded.
+  std::optional<std::int64_t> wall_ahead_ns{};
+};
 
 /// Opens the transport to a device, the first time and after each loss. *Single thread* except
 /// wake(). Simulations and tests provide their own.
@@ -50,10 +60,10 @@ class G4LIDAR_API connector {
   /// ends a pause() early. Without it the driver tries at growing intervals only.
   [[nodiscard]] virtual bool may_be_back() noexcept { return false; }
 
-  /// What this connector adds for recordings; null for an ordinary connector to a device. Valid as long
-  /// as this. The type is internal to the library: do not override this function. A connector that
-  /// wraps another one derives from forwarding_connector, which forwards it.
-  [[nodiscard]] virtual recording_hook* recording() noexcept { return nullptr; }
+  /// What is behind this connector, at this time.
+  [[nodiscard]] virtual connector_traits traits() const noexcept { return {}; }
+  /// The connector that this one wraps, which is valid as long as this; null if there is none.
+  [[nodiscard]] virtual connector* wrapped() noexcept { return nullptr; }
 
  protected:
   connector() = default;

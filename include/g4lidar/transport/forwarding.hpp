@@ -67,7 +67,8 @@ class forwarding_connector : public connector {
   void refuse() noexcept override { inner_->refuse(); }
   [[nodiscard]] int watch() noexcept override { return inner_->watch(); }
   [[nodiscard]] bool may_be_back() noexcept override { return inner_->may_be_back(); }
-  [[nodiscard]] recording_hook* recording() noexcept override { return inner_->recording(); }
+  [[nodiscard]] connector_traits traits() const noexcept override { return inner_->traits(); }
+  [[nodiscard]] connector* wrapped() noexcept override { return inner_.get(); }
 
  protected:
   /// The wrapped connector.

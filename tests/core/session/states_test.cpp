@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/session/played.hpp"
-#include "core/session/session_state.hpp"
-#include "g4lidar/core/session/session_machine.hpp"
+#include "core/session/session_test_access.hpp"
+#include "g4lidar/core/session.hpp"
 #include "support/test_scale.hpp"
 
 namespace g4lidar::test {
@@ -89,7 +89,7 @@ const std::vector<named_reply>& all_replies() {
 
 /// A session and what an observer of the connection has seen.
 struct watched {
-  session_machine talk{short_times()};
+  session talk{short_times()};
   std::int64_t now = 0;
   command move_out =
       command::stop;         // a command that changes state and is not answered yet; stop: none
@@ -173,11 +173,11 @@ struct watched {
   }
 
   void normalise() {
-    session_state::normalise(talk, now);
+    session_test_access::normalise(talk, now);
     now = 0;
   }
   [[nodiscard]] std::string key() const {
-    std::string out = session_state::key(talk);
+    std::string out = session_test_access::key(talk);
     out += static_cast<char>(move_out);
     out += static_cast<char>(4 * silence + (streamed ? 2 : 0) + (stopped ? 1 : 0));
     return out;

@@ -139,7 +139,7 @@ class recorder {
   void report_to_service() {
     service_.ready();
     service_.alive();
-    if (service_.is_heard()) {
+    if (service_.has_manager()) {
       service_.status(fmt::format("recording {}: {}", writer_->path(),
                                   counted(source_->lidar().counts().scans, "scan")));
     }

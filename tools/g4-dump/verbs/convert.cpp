@@ -86,9 +86,9 @@ file_form form_of_input(const convert_options& options) {
     throw bad_value(in_quotes(name) + " is not a file: use dump or record");
   }
   const bool is_recording = kind == source_kind::recording;
-  const file_form by_looks =
+  const file_form by_contents =
       is_recording ? file_form::recording : form_of_name(name).value_or(file_form::raw_bytes);
-  const file_form form = options.from.value_or(by_looks);
+  const file_form form = options.from.value_or(by_contents);
   if (form >= file_form::pcd) throw bad_value("this format is written, but not read");
   if (form == file_form::recording && !is_recording) {
     throw failure(exit_code::bad_file,
@@ -109,7 +109,7 @@ file_form form_of_output(const convert_options& options) {
                   name));
 }
 
-void refuse_nonsense(const convert_options& options, file_form from, file_form to) {
+void check_combination(const convert_options& options, file_form from, file_form to) {
   const bool to_points = to >= file_form::csv;
   if (from >= file_form::csv && !to_points) {
     throw bad_value(
@@ -240,7 +240,7 @@ int to_recording(const convert_options& options) {
 int run(const convert_options& options) {
   const file_form from = form_of_input(options);
   const file_form to = form_of_output(options);
-  refuse_nonsense(options, from, to);
+  check_combination(options, from, to);
   const auto in_place = id_of_name(options.out());  // the input itself has another error message
   if (!options.overwrites && in_place != id_of_name(path_of_source(options.in()))) {
     refuse_existing(options.out());

@@ -127,7 +127,7 @@ exit_code exit_code_of(std::span<const stage_report> stages) noexcept {
   return exit_code::ok;
 }
 
-/// The last line, for people.
+/// The last line of the text output.
 std::string summary_of(std::span<const stage_report> stages) {
   std::vector<diagnosis> found;
   for (const stage_report& each : stages) {

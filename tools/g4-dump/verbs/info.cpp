@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb info: what a device, or a recording of one, reports about itself and its settings.
+// The verb info: the information and settings of a device, or of a recording.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -59,7 +59,7 @@ device_facts facts_of(const common_options& options) {
 std::string words_for(const device_facts& facts, std::size_t index) {
   std::string text = text_of(facts.settings[index]);
   if (facts.settings[index]) return text;
-  const bool can_ask = all_settings()[index].question.has_value();
+  const bool can_ask = all_settings()[index].query.has_value();
   return fmt::format("{} ({})", text, can_ask ? facts.why_unknown : "a G4 cannot be asked for it");
 }
 
@@ -83,7 +83,7 @@ exit_code info(const common_options& options) {
 
 constexpr const char* info_details =
     R"(A line for each of: source, model, serial, firmware, hardware, and the settings by the names
-that set takes: sample_rate, freq, direction, constant, idle, protection. A G4 cannot be asked
+that set takes: sample_rate, frequency, direction, constant, idle, protection. A G4 cannot be asked
 for constant and protection, and old firmware does not answer for direction: these are unknown,
 with the reason.
 With --json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.

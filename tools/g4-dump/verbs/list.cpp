@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb list: the serial ports, and with --probe the devices behind them.
+// The verb list: the serial ports, and with --probe the devices attached to them.
 #include <fmt/format.h>
 
 #include <algorithm>

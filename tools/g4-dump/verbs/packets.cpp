@@ -141,7 +141,7 @@ void list_lidar(const packets_options& options) {
         [&](auto port) { return std::make_unique<logged_transport>(std::move(port), log); });
     opened_source source(common, how);
     read_source(source, common, sink, out);
-  } catch (const failure&) {  // the bytes so far show why
+  } catch (const failure&) {  // the received bytes may show the cause
     write();
     log.bytes_from_device() > 0 ? end(log, out) : out.commit();
     throw;

@@ -19,18 +19,18 @@ namespace g4_tool {
 namespace {
 
 struct set_options : common_options {
-  std::vector<wish> wishes;
+  std::vector<setting_change> changes;
 };
 
-void add_wish(set_options& options, const std::string& word) {
-  if (!is_wish(word))
+void add_change(set_options& options, const std::string& word) {
+  if (!is_change(word))
     throw bad_value(fmt::format("'{}' is not NAME=VALUE such as sample_rate=9k", word));
-  const wish added = wish_of(word);
-  for (const wish& earlier : options.wishes) {
+  const setting_change added = change_of(word);
+  for (const setting_change& earlier : options.changes) {
     if (earlier.which == added.which)
       throw bad_value(fmt::format("{} is given twice", added.which->name));
   }
-  options.wishes.push_back(added);
+  options.changes.push_back(added);
 }
 
 void write_row(output& out, std::string_view name, std::string_view before,
@@ -39,9 +39,9 @@ void write_row(output& out, std::string_view name, std::string_view before,
 }
 
 /// Changes one setting. If that fails, writes the value that the device has and throws a failure.
-void execute(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) {
+void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, bool json) {
   const maybe_answer before = read_setting(lidar, *wanted.which);
-  const auto given = lidar.ask(wanted.how);
+  const auto given = lidar.ask(change_to(wanted.value));
   if (!given && given.error().is_fatal()) throw failure(given.error());
   const maybe_answer after = given ? *given : read_setting(lidar, *wanted.which);
   if (json) {
@@ -57,10 +57,10 @@ void execute(g4lidar::lidar& lidar, const wish& wanted, output& out, bool json) 
 }
 
 /// Logs what the changes mean for the user.
-void report_consequences(const std::vector<wish>& wishes) {
+void report_consequences(const std::vector<setting_change>& changes) {
   logger::info("The settings may be lost when the lidar restarts or has no power.\n");
   const answer protection(power_down_protection::on);
-  if (std::ranges::find(wishes, protection, &wish::value) != wishes.end()) {
+  if (std::ranges::find(changes, protection, &setting_change::value) != changes.end()) {
     logger::info(
         "With protection on, the lidar stops 3 s after the last keep-alive: dump, scan and record "
         "send them, start does not.\n");
@@ -68,55 +68,59 @@ void report_consequences(const std::vector<wish>& wishes) {
 }
 
 int set(const set_options& options) {
-  if (options.wishes.empty())
+  if (options.changes.empty())
     throw bad_value("nothing to set; give NAME=VALUE such as sample_rate=9k");
   output out("-");
   command_source source(options, task::configuring);
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
-  for (const wish& each : options.wishes) {
+  for (const setting_change& each : options.changes) {
     if (interrupt() != 0) return 128 + interrupt();
     execute(source.lidar(), each, out, options.json);
   }
   out.commit();
-  report_consequences(options.wishes);
+  report_consequences(options.changes);
   return static_cast<int>(exit_code::ok);
 }
 
 constexpr const char* set_details =
-    R"(Settings:
-  sample_rate=4k|8k|9k  samples per second (also 4000, 8000, 9000)
-  freq=5..12            revolutions per second, in steps of 0.1
-  direction=cw|ccw      direction of rotation, seen from above
-  constant=on|off       constant scan frequency
-  idle=on|off           stop the motor while not scanning
-  protection=on|off     stop 3 s after the last keep-alive of the host
-
+    R"(
 Nothing is changed if one of them is not valid. Each is read, set and read back: a line with
 NAME, BEFORE and AFTER; with --json an object with name, before, wanted, after. A G4 cannot be
 asked for constant and protection: BEFORE is unknown. If the device refuses a value, AFTER is the
 value that it has, the settings that follow are not changed, and the exit code is 8.)";
 
+std::string details() {
+  std::string all = "Settings:\n";
+  for (const setting_info& each : all_settings()) {
+    all +=
+        fmt::format("  {:<21} {}\n", fmt::format("{}={}", each.name, values_of(each)), each.text);
+  }
+  return all + set_details;
+}
+
 }  // namespace
 
 verb make_set_verb() {
   const auto options = std::make_shared<set_options>();
-  const auto take_wish = [set = options.get()](const std::string& word) { add_wish(*set, word); };
+  const auto take_change = [set = options.get()](const std::string& word) {
+    add_change(*set, word);
+  };
   option_row source = source_argument(*options);
   source.help = "The lidar (the only G4)";
-  source.take = [take_wish, as_source = source.take](const std::string& word) {
-    is_wish(word) ? take_wish(word) : as_source(word);
+  source.take = [take_change, as_source = source.take](const std::string& word) {
+    is_change(word) ? take_change(word) : as_source(word);
   };
   return {.name = "set",
           .summary = "Change settings; prints them before and after",
           .arguments = {source,
-                        {"NAME=VALUE", "", "The settings to change", take_wish, completion::setting,
-                         true}},
+                        {"NAME=VALUE", "", "The settings to change", take_change,
+                         completion::setting, true}},
           .options = joined(json_row(*options), device_rows(*options)),
-          .details = set_details,
-          .examples = {{"g4-dump set sample_rate=9k freq=10",
+          .details = details(),
+          .examples = {{"g4-dump set sample_rate=9k frequency=10",
                         "9000 samples and 10 revolutions per second"},
                        {"g4-dump set /dev/ttyUSB0 protection=on", "Turn on power-down protection"},
-                       {"g4-dump set sim: sample_rate=4k freq=7.5 direction=ccw --json",
+                       {"g4-dump set sim: sample_rate=4k frequency=7.5 direction=ccw --json",
                         "Three settings of a simulated G4"}},
           .run = [options] { return set(*options); }};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verb stats: counts of a lidar while it is read.
+// The verb stats: reads a lidar and prints counts.
 #include <fmt/format.h>
 
 #include <chrono>

@@ -107,7 +107,7 @@ class viewer {
     {
       screen terminal(wants_color(STDOUT_FILENO));
       while (!is_over_ && interrupt() == 0 && !station_.failure() && !limits_.is_over()) {
-        follow();
+        update();
         terminal.show(picture(terminal.columns(), terminal.rows()));
         wait(terminal);
       }
@@ -125,7 +125,7 @@ class viewer {
            !station_.failure() && station_.state() != station_state::ended) {
       newest_.wait(std::min(until, clock::now() + 100ms), interrupt_handle());
     }
-    follow();
+    update();
     station_.stop();
     if (const auto failure = station_.failure()) std::rethrow_exception(failure);
     if (interrupt() != 0) return exit_code_now();
@@ -138,13 +138,13 @@ class viewer {
 
  private:
   /// Takes the changes since the last call.
-  void follow() {
+  void update() {
     std::string event;
     if (!settings_.is_frozen && newest_.take(scan_, event)) {
       const scan now = scan_.view();
       facts_.frequency_hz = static_cast<double>(now.measured_frequency_hz());
       facts_.sample_rate_hz = static_cast<double>(now.measured_sample_rate_hz());
-      if (!settings_.is_zoomed) follow_range(now);
+      if (!settings_.is_zoomed) update_range(now);
     }
     if (!event.empty()) facts_.event = event;
     if (const auto now = clock::now(); now >= facts_due_) {
@@ -171,7 +171,7 @@ class viewer {
 
   /// Zooms out at once, and in only after several revolutions, because a picture that often changes its
   /// scale is hard to read.
-  void follow_range(const scan& now) {
+  void update_range(const scan& now) {
     const double wanted_m = range_for(now.points);
     double& range_m = settings_.radar.range_m;
     nearer_ = wanted_m < range_m ? nearer_ + 1 : 0;

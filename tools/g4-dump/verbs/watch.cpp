@@ -28,7 +28,7 @@ namespace {
 using namespace std::chrono_literals;
 using clock = std::chrono::steady_clock;
 
-constexpr auto look_time = 500ms;
+constexpr auto poll_interval = 500ms;
 
 /// "2026-11-21T21:50:21.123Z"
 std::string now_as_text() {
@@ -50,8 +50,8 @@ class watcher {
   watcher(const common_options& options, output& out) : options_(options), out_(out) {
     auto monitor = port_monitor::open();
     if (monitor) monitor_.emplace(std::move(*monitor));
-    looks_ = !monitor_ || ::access("/run/udev/control", F_OK) != 0;
-    if (looks_) logger::info("udevd is not running: the ports are checked every 500 ms\n");
+    polls_ = !monitor_ || ::access("/run/udev/control", F_OK) != 0;
+    if (polls_) logger::info("udevd is not running: the ports are checked every 500 ms\n");
     known_ = ports_now();
     if (!options_.json) write_row("TIME", "EVENT", port_columns());
     out_.flush();
@@ -60,14 +60,14 @@ class watcher {
   void run() {
     while (interrupt() == 0 && !out_.is_closed() && !has_enough() && !limits_.is_over()) {
       const int heard = monitor_ ? monitor_->native_handle() : -1;
-      const auto until = looks_ ? std::min(next_look_, limits_.end()) : limits_.end();
+      const auto until = polls_ ? std::min(next_poll_, limits_.end()) : limits_.end();
       const wake woken = wait_for_input(heard, out_.descriptor(), until);
       if (woken == wake::output_closed) out_.close_early();
       while (auto event = monitor_ ? monitor_->next() : std::nullopt) {
         apply(event->plugged, std::move(event->port));
-        next_look_ = clock::now() + look_time;  // the file system may change later
+        next_poll_ = clock::now() + poll_interval;  // udevd may still change the port
       }
-      if (looks_ && clock::now() >= next_look_) look();
+      if (polls_ && clock::now() >= next_poll_) poll_ports();
       out_.flush();
     }
   }
@@ -76,8 +76,8 @@ class watcher {
   [[nodiscard]] bool has_enough() const { return options_.count > 0 && printed_ >= options_.count; }
 
   /// Compares the ports with those known.
-  void look() {
-    next_look_ = clock::now() + look_time;
+  void poll_ports() {
+    next_poll_ = clock::now() + poll_interval;
     const known_ports there = ports_now();
     for (const auto& [path, port] : known_ports(known_)) {
       const auto now = there.find(path);
@@ -115,11 +115,11 @@ class watcher {
   const common_options& options_;
   output& out_;
   std::optional<port_monitor> monitor_;
-  bool looks_ = false;  // lists the ports periodically
+  bool polls_ = false;  // lists the ports periodically
   known_ports known_;
   std::uint64_t printed_ = 0;
   time_limits limits_{options_.duration, std::chrono::nanoseconds(0)};
-  clock::time_point next_look_ = clock::now();
+  clock::time_point next_poll_ = clock::now();
 };
 
 int watch(const common_options& options) {

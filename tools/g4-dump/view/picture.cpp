@@ -26,7 +26,6 @@ constexpr int least_rows = 12;
 std::string number_or_dash(double value, std::string_view unit, int decimals) {
   return value < 0 ? "-" : fmt::format("{:.{}f}{}", value, decimals, unit);
 }
-std::string count_or_dash(std::int64_t value) { return value < 0 ? "-" : fmt::format("{}", value); }
 
 /// The worst stage, and the names of all diagnoses.
 struct verdict {
@@ -104,10 +103,10 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
   if (!facts.serial.empty()) words.fact("serial", facts.serial);
   words.fact("frequency", number_or_dash(facts.frequency_hz, " Hz", 2));
   words.fact("samples", number_or_dash(facts.sample_rate_hz, " /s", 0));
-  words.fact("scans", count_or_dash(facts.scans));
+  words.fact("scans", number_or_dash(static_cast<double>(facts.scans), "", 0));
   words.fact("lost", number_or_dash(facts.lost_percent, " %", 2),
              facts.lost_percent > 0.2 ? ink::warn : ink::plain);
-  words.fact("checksum", count_or_dash(facts.checksum_errors));
+  words.fact("checksum", number_or_dash(static_cast<double>(facts.checksum_errors), "", 0));
   words.fact("health", health_of(facts.stages));
   words.fact("frame", how.radar.frame == g4lidar::frame::robot ? "robot" : "vendor");
   words.fact("range", fmt::format("{:g} m{}", how.radar.range_m, how.is_zoomed ? "" : ", auto"));

@@ -40,14 +40,14 @@ volatile std::sig_atomic_t is_ending = 0;
 sigset_t mask_before{};
 
 /// The control sequence of a capability; empty if the terminal has none.
-std::string_view word_for(const char* capability) {
+std::string_view sequence_of(const char* capability) {
   const char* const word = ::tigetstr(capability);
   const bool is_none = word == nullptr || word == reinterpret_cast<const char*>(-1);  // NOLINT
   return is_none ? std::string_view() : std::string_view(word);
 }
 
-void add_word(const char* capability) {
-  const std::string_view text = word_for(capability);
+void add_sequence(const char* capability) {
+  const std::string_view text = sequence_of(capability);
   if (saved.size + text.size() > saved.words.size()) return;
   std::ranges::copy(text, saved.words.begin() + static_cast<std::ptrdiff_t>(saved.size));
   saved.size += text.size();
@@ -58,22 +58,22 @@ void restore() noexcept {
   ::tcsetattr(STDOUT_FILENO, TCSANOW, &saved.before);
 }
 
-void die(int number) {
+void restore_and_raise(int number) {
   restore();
   std::signal(number, SIG_DFL);
   ::raise(number);
 }
 
 /// Passes the first signal to the handler of the program; a second one ends the program.
-void end(int number) {
-  if (is_ending != 0) return die(number);
+void handle_ending_signal(int number) {
+  if (is_ending != 0) return restore_and_raise(number);
   is_ending = 1;
   for (std::size_t i = 0; i < ending_signals.size(); ++i) {
     const struct sigaction& before = saved.ending[i];
     if (ending_signals[i] == number && before.sa_handler != SIG_DFL)
       return before.sa_handler(number);
   }
-  die(number);
+  restore_and_raise(number);
 }
 
 template <std::size_t Count>
@@ -116,7 +116,7 @@ screen::screen(bool colored) {
                   "view needs a terminal. With --once it prints one picture to any output.");
   }
   SCREEN* const made = name == nullptr ? nullptr : ::newterm(name, stdout, stdin);
-  const bool can_move = name != nullptr && !word_for("cup").empty();  // also if newterm() failed
+  const bool can_move = name != nullptr && !sequence_of("cup").empty();  // also if newterm() failed
   if (made == nullptr) {
     throw failure(exit_code::usage,
                   can_move ? "the screen cannot be prepared: is the terminal too large? Make it "
@@ -130,10 +130,10 @@ screen::screen(bool colored) {
                                         " cannot move its cursor. Set TERM, or use --once.");
   }
   saved.size = 0;
-  for (const char* word : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_word(word);
+  for (const char* word : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_sequence(word);
   is_ending = 0;
-  handle(ending_signals, saved.ending, end);
-  handle(fatal_signals, saved.fatal, die);
+  handle(ending_signals, saved.ending, handle_ending_signal);
+  handle(fatal_signals, saved.fatal, restore_and_raise);
   ::cbreak();
   ::noecho();
   ::nonl();

@@ -17,13 +17,13 @@
 namespace g4_tool::dds {
 namespace {
 
-/// So many different lines are remembered.
+/// The number of different lines that are remembered.
 constexpr std::size_t most_lines = 100;
 
-/// What Cyclone DDS reports.
+/// The log of Cyclone DDS.
 struct domain_log {
   std::mutex mutex;
-  std::set<std::string> lines;  // that were reported
+  std::set<std::string> lines;  // that were logged
   std::string refusal;          // of the configuration, the first one
 };
 
@@ -32,7 +32,7 @@ domain_log& the_log() {
   return log;
 }
 
-/// Why a configuration is refused; empty if the line is of something else.
+/// Why a configuration is refused; empty if the line has another subject.
 std::string_view refusal_in(std::string_view line) {
   constexpr std::string_view of_contents = "config: ";
   if (line.starts_with(of_contents)) {
@@ -42,7 +42,7 @@ std::string_view refusal_in(std::string_view line) {
   return line.starts_with("can't open configuration file") ? line : std::string_view();
 }
 
-/// What it cannot do is reported once, although it is tried again.
+/// Logs each different line once, because failed attempts are repeated.
 void log_line(void*, const dds_log_data_t* line) {
   std::string_view text(line->message, line->size);
   while (!text.empty() && (text.back() == '\n' || text.back() == '\0')) text.remove_suffix(1);
@@ -66,7 +66,7 @@ std::string take_refusal() {
   return std::exchange(log.refusal, {});
 }
 
-/// Whether so many more files can be open as a domain needs. Cyclone DDS crashes where it gets none.
+/// Whether enough descriptors for a domain are left. Cyclone DDS crashes without them.
 bool has_descriptors() {
   constexpr int needed = 16;
   struct rlimit limit{};
@@ -81,9 +81,7 @@ bool has_descriptors() {
 }  // namespace
 
 void wake(void* handle) noexcept {
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const auto unimportant =
-      ::write(*static_cast<const int*>(handle), &one, sizeof one);
+  static_cast<void>(::eventfd_write(*static_cast<const int*>(handle), 1));
 }
 
 bus::bus(network wanted)
@@ -97,9 +95,9 @@ bus::~bus() {
   ::close(wake_);
 }
 
-void bus::cleared() const noexcept {
-  std::uint64_t count = 0;
-  [[maybe_unused]] const auto unimportant = ::read(wake_, &count, sizeof count);
+void bus::clear() const noexcept {
+  eventfd_t count = 0;
+  static_cast<void>(::eventfd_read(wake_, &count));
 }
 
 void bus::add(endpoint& what) {
@@ -130,7 +128,7 @@ void bus::update() {
 
 void bus::open() {
   network here = wanted_;
-  // Without a network there is no multicast: then the programs of this machine are addressed one by one.
+  // Without a network there is no multicast, so the programs of this machine are addressed by unicast.
   if (on_.empty() && here.range == discovery_range::subnet && here.interface.empty()) {
     here.peers.emplace_back("localhost");
   }
@@ -138,10 +136,11 @@ void bus::open() {
   if (is_possible) domain_ = entity(dds_create_domain(here.domain, configuration(here).c_str()));
   // Without an enclave ROS 2 does not list the nodes of a participant.
   constexpr std::string_view user_data = "enclave=/;";
-  const qos wish(dds_create_qos(), dds_delete_qos);
-  dds_qset_userdata(wish.get(), user_data.data(), user_data.size());
+  const qos with_enclave(dds_create_qos(), dds_delete_qos);
+  dds_qset_userdata(with_enclave.get(), user_data.data(), user_data.size());
   const dds_entity_t made =
-      domain_ ? dds_create_participant(wanted_.domain, wish.get(), nullptr) : DDS_RETCODE_ERROR;
+      domain_ ? dds_create_participant(wanted_.domain, with_enclave.get(), nullptr)
+              : DDS_RETCODE_ERROR;
   participant_ = entity(made);
   if (!participant_) {
     domain_ = {};

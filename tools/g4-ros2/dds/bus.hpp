@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ROS 2 domain: what this program publishes there and reads from there, on networks that come and go.
+// A ROS 2 domain and the endpoints of this program in it. The domain follows changes of the network.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace g4_tool::dds {
 
 class bus;
 
-/// Something in the domain, which is opened each time that the domain is created. Made and destroyed by the
-/// thread of the bus.
+/// A publisher, subscription or service, which is opened each time the domain is created. Constructed and
+/// destroyed in the thread of the bus.
 class endpoint {
  public:
   /// The constructor of a derived class ends with bus::add(). `on` outlives it.
@@ -32,39 +32,39 @@ class endpoint {
   /// `handle`: that of the bus, for wake(); it outlives the endpoint's entities.
   virtual void open(dds_entity_t participant, int* handle) = 0;
   virtual void close() noexcept = 0;
-  /// The topic that it publishes; empty: none.
+  /// The topic that it publishes; empty if none.
   [[nodiscard]] virtual std::string_view published() const noexcept { return {}; }
 
  private:
   bus& on_;
 };
 
-/// From a listener whose argument is the handle of a bus: makes it readable.
+/// For listeners whose argument is the handle of a bus: makes the handle readable.
 void wake(void* handle) noexcept;
 
-/// The domain. *Single thread*; endpoints may be used by others.
+/// The domain. *Single thread*; other threads may use the endpoints.
 class bus {
  public:
-  /// Without a domain: see update(). Throws bad_value for a network that cannot be configured.
+  /// Does not create the domain: see update(). Throws bad_value for an invalid network.
   explicit bus(network wanted);
   bus(const bus&) = delete;
   bus& operator=(const bus&) = delete;
   ~bus();
 
-  /// Opens it now, if the domain is there, and with each new one.
+  /// Opens an endpoint in the present domain and in each new one.
   void add(endpoint& what);
-  /// Does so no more. The destructor of an endpoint calls it.
+  /// Ends that. The destructor of an endpoint calls it.
   void remove(const endpoint& what) noexcept;
-  /// Creates the domain if there is none, or if the network has changed; to be called about once a
-  /// second. What failed is reported once. The first call throws bad_value if CYCLONEDDS_URI is refused.
+  /// Creates the domain if there is none, or again if the network has changed. Call it about once a second.
+  /// An error is logged once. The first call throws bad_value if CYCLONEDDS_URI is refused.
   void update();
-  /// Closes all, so that subscribers learn it at once.
+  /// Closes all endpoints and the domain, so that subscribers are informed at once.
   void close() noexcept;
   [[nodiscard]] bool is_up() const noexcept { return static_cast<bool>(participant_); }
 
-  /// For poll(): readable when a subscriber came or went, or a request came. cleared() ends that.
+  /// For poll(): readable after a change of subscribers or a request, until clear().
   [[nodiscard]] int handle() const noexcept { return wake_; }
-  void cleared() const noexcept;
+  void clear() const noexcept;
 
  private:
   void open();
@@ -75,17 +75,17 @@ class bus {
   std::vector<std::string> on_;  // the addresses when the domain was created
   entity domain_;
   entity participant_;
-  std::string problem_;  // as it was reported
-  bool is_new_ = true;   // no domain was tried yet
+  std::string problem_;  // the last logged one
+  bool is_new_ = true;   // before the first attempt to create a domain
 };
 
-/// What is published.
+/// A published topic and its quality of service.
 struct topic {
   std::string name{};  ///< "/scan"
   const message_type* type = nullptr;
   bool is_reliable = true;
-  int depth = 5;             ///< So many messages wait for a slow subscriber.
-  bool is_for_late = false;  ///< Those who subscribe later get the last message, too.
+  int depth = 5;             ///< The number of messages that wait for a slow subscriber.
+  bool is_for_late = false;  ///< Later subscribers get the last message.
 };
 
 struct publisher_counts {
@@ -93,10 +93,11 @@ struct publisher_counts {
   /// Not sent, or replaced by a newer one before every reliable subscriber had acknowledged it.
   std::uint64_t lost = 0;
   std::uint32_t subscribers = 0;  ///< Now.
-  std::uint32_t refused = 0;  ///< Subscribers that want a quality of service that is not offered.
+  std::uint32_t refused =
+      0;  ///< Subscribers that request a quality of service that is not offered.
 };
 
-/// A topic that this program publishes. *Any thread.* Never waits for a subscriber.
+/// Publishes a topic. *Any thread.* Never waits for a subscriber.
 class publisher final : public endpoint {
  public:
   publisher(bus& on, topic what);
@@ -105,9 +106,9 @@ class publisher final : public endpoint {
   void close() noexcept override;
   [[nodiscard]] std::string_view published() const noexcept override { return what_.name; }
 
-  /// A message in CDR, as the library makes it.
+  /// Publishes a message in CDR, as the library encodes it.
   void publish(g4lidar::bytes message);
-  /// Whether anybody reads it: else there is no need to make a message.
+  /// Whether there are subscribers.
   [[nodiscard]] bool is_wanted() const;
   [[nodiscard]] publisher_counts counts() const;
 
@@ -119,14 +120,14 @@ class publisher final : public endpoint {
   entity topic_;
   entity writer_;
   const ddsi_sertype* type_ = nullptr;
-  std::deque<cdr_message> unread_;  // what the history of the writer keeps, oldest first
-  std::vector<std::uint8_t> last_;  // where it is for late subscribers
+  std::deque<cdr_message> unread_;  // the history of the writer, oldest first
+  std::vector<std::uint8_t> last_;  // for late subscribers
   publisher_counts counts_;
 };
 
-/// The qualities of service of ROS 2 for it. XCDR1, which every ROS 2 reads.
+/// The quality of service of ROS 2 for a topic. XCDR1, which every ROS 2 can read.
 [[nodiscard]] qos qos_of(const topic& what);
-/// The name of a topic of ROS 2 in DDS: "rt/scan".
+/// The name in DDS of a topic of ROS 2: "rt/scan".
 [[nodiscard]] std::string dds_name(std::string_view name);
 
 }  // namespace g4_tool::dds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A handle of Cyclone DDS that deletes itself.
+// Owns a handle of Cyclone DDS.
 #pragma once
 
 #include <dds/dds.h>
@@ -9,11 +9,11 @@
 
 namespace g4_tool::dds {
 
-/// A participant, topic, writer, ... and everything that was made of it. May be none.
+/// Owns a participant, topic, writer, ... with everything that was created in it. May be empty.
 class entity {
  public:
   entity() = default;
-  /// Takes the result of a dds_create function; an error is none.
+  /// `handle`: the result of a dds_create function; empty for an error.
   explicit entity(dds_entity_t handle) noexcept : handle_(handle > 0 ? handle : 0) {}
   entity(entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
   entity& operator=(entity&& other) noexcept {

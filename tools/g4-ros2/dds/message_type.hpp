@@ -8,8 +8,8 @@
 
 namespace g4_tool::dds {
 
-/// How Cyclone DDS knows the type, and the hash of its definition (REP 2011), by which newer ROS 2
-/// compares definitions. Valid forever.
+/// The descriptor of a type for Cyclone DDS, and the hash of its definition (REP 2011), by which newer
+/// releases of ROS 2 compare definitions. Static.
 struct message_type {
   const dds_topic_descriptor_t* descriptor;
   std::string_view hash;

@@ -19,11 +19,11 @@
 namespace g4_tool::dds {
 namespace {
 
-/// Beyond this the ports of two domains overlap.
+/// The ports of greater domains would overlap with those of others.
 constexpr std::uint32_t greatest_domain = 232;
-/// ROS 2 sends its announcements to so many processes of a machine that it addresses one by one.
+/// The number of processes of a machine to which ROS 2 sends its announcements by unicast.
 constexpr int unicast_participants = 32;
-/// The ports of a domain are sufficient for so many.
+/// The number of processes for which the ports of a domain are sufficient.
 constexpr int most_participants = 119;
 
 /// In the order of their values.
@@ -48,7 +48,7 @@ std::uint32_t domain_of(const std::string& word) {
   }
 }
 
-/// `text` as a value in the configuration, which is XML.
+/// `text`, which is safe as a value in the XML of the configuration. Throws bad_value.
 std::string checked_name(const std::string& text) {
   const auto is_good = [](char c) {
     return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
@@ -89,7 +89,7 @@ std::string configuration(const network& wanted) {
   std::string discovery;
   const bool is_local = wanted.range == discovery_range::localhost;
   std::string interface = wanted.interface;
-  // With other machines as peers it cannot be on loopback alone.
+  // Peers on other machines are not reachable by loopback alone.
   if (interface.empty() && is_local && wanted.peers.empty()) interface = "127.0.0.1";
   if (!interface.empty()) {
     const bool is_address = interface.find_first_of(".:") != std::string::npos;
@@ -120,8 +120,8 @@ std::string configuration(const network& wanted) {
   std::string made = "<CycloneDDS><Domain>";
   if (!general.empty()) made += "<General>" + general + "</General>";
   if (!discovery.empty()) made += "<Discovery>" + discovery + "</Discovery>";
-  // A message that comes sooner after the one before than four fifths of this interval is not acknowledged. With a
-  // thread for each socket, these wait at the end for a packet to their own address, which may be gone.
+  // A message is not acknowledged if it follows the previous one within four fifths of this interval. A thread for each
+  // socket would wait, at the end, for a packet to its own address, which may not exist any more.
   made +=
       "<Internal><HeartbeatInterval>10ms</HeartbeatInterval>"
       "<MultipleReceiveThreads>false</MultipleReceiveThreads></Internal>";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which network a ROS 2 domain is on: from the options, and from the variables that ROS 2 reads.
+// The network of a ROS 2 domain, from the options and from the environment variables of ROS 2.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace g4_tool::dds {
 
-/// Who can discover this program, as ROS_AUTOMATIC_DISCOVERY_RANGE names it.
+/// The programs that can discover this one: the values of ROS_AUTOMATIC_DISCOVERY_RANGE.
 enum class discovery_range : unsigned char { subnet, localhost, off, system_default };
 
 /// "LOCALHOST"
@@ -20,34 +20,31 @@ enum class discovery_range : unsigned char { subnet, localhost, off, system_defa
 struct network {
   std::uint32_t domain = 0;
   discovery_range range = discovery_range::subnet;
-  std::vector<std::string>
-      peers{};              ///< Machines to which this program is announced, by name or address.
-  std::string interface{};  ///< A name or an address; empty: any.
-  std::string more{};       ///< The contents of CYCLONEDDS_URI, which has the last word.
+  std::vector<std::string> peers{};  ///< Names or addresses of machines that are informed.
+  std::string interface{};           ///< A name or an address; empty: any.
+  std::string more{};                ///< The contents of CYCLONEDDS_URI, which overrides the rest.
 };
 
-/// The value of a variable; empty where it is not set.
+/// Returns the value of a variable; empty if it is not set.
 using environment = std::function<std::string(const char*)>;
-/// That of this process.
+/// A variable of this process.
 [[nodiscard]] std::string variable(const char* name);
 
-/// The domain and the interface of the command line, and the rest from the variables. What is wrong
-/// with a variable is reported, and what ROS 2 then does is done. Throws bad_value for a domain that
-/// is none.
+/// The domain and the interface from the command line, all else from the variables. An invalid variable
+/// is logged and has the effect that it has in ROS 2. Throws bad_value for an invalid domain.
 [[nodiscard]] network read_network(std::optional<std::uint32_t> domain,
                                    const std::string& interface,
                                    const environment& from = variable);
 
-/// The configuration of Cyclone DDS for it. Throws bad_value for an interface or a peer that cannot
-/// be one.
+/// The configuration for Cyclone DDS. Throws bad_value for an invalid interface or peer.
 [[nodiscard]] std::string configuration(const network& wanted);
 
-/// The addresses of the interfaces that are up, and not loopback, as "eth0 192.0.2.2", the one that Cyclone DDS takes
-/// first; of `interface` only, if it is not empty.
+/// The addresses of the interfaces that are up, without loopback, as "eth0 192.0.2.2". The one that Cyclone DDS uses is
+/// the first. Only those of `interface`, if it is not empty.
 [[nodiscard]] std::vector<std::string> addresses(std::string_view interface = {});
 
-/// Whether a domain that was created on `before` must be created again: an address is gone, or another one is
-/// first now.
+/// Whether a domain that was created on `before` must be created again: an address was removed, or the first one has
+/// changed.
 [[nodiscard]] bool has_moved(const std::vector<std::string>& before,
                              const std::vector<std::string>& now);
 

@@ -34,7 +34,7 @@ publisher::publisher(bus& on, topic what) : endpoint(on), what_(std::move(what))
 
 void publisher::open(dds_entity_t participant, int* handle) {
   const std::lock_guard lock(mutex_);
-  const qos wish = qos_of(what_);
+  const qos quality = qos_of(what_);
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(
       dds_create_listener(handle), dds_delete_listener);
   dds_lset_publication_matched(
@@ -42,7 +42,7 @@ void publisher::open(dds_entity_t participant, int* handle) {
       [](dds_entity_t, const dds_publication_matched_status_t, void* with) { wake(with); });
   topic_ = entity(dds_create_topic(participant, what_.type->descriptor,
                                    dds_name(what_.name).c_str(), nullptr, nullptr));
-  writer_ = entity(dds_create_writer(participant, topic_.get(), wish.get(), listener.get()));
+  writer_ = entity(dds_create_writer(participant, topic_.get(), quality.get(), listener.get()));
   type_ = type_in(participant, *what_.type->descriptor);
   if (!writer_ || type_ == nullptr)
     return logger::info(fmt::format("cannot publish {}\n", what_.name));
@@ -67,11 +67,11 @@ void publisher::write(g4lidar::bytes message) {
   cdr_message made = type_ == nullptr ? nullptr : encoded(*type_, message);
   const bool is_sent = made && write_cdr(writer_.get(), made) == DDS_RETCODE_OK;
   ++(is_sent ? counts_.sent : counts_.lost);
-  // What is kept for late subscribers was not lost.
+  // Messages for late subscribers stay in the history and do not count as lost.
   if (!is_sent || what_.is_for_late || !is_kept(made)) return;
   unread_.push_back(std::move(made));
   if (unread_.size() <= static_cast<std::size_t>(what_.depth)) return;
-  ++counts_.lost;  // this one has taken its place
+  ++counts_.lost;  // replaced by this message
   unread_.pop_front();
 }
 

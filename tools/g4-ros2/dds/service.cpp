@@ -16,20 +16,19 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// So many requests wait at most until they are handled, as ROS 2 has it.
+/// The number of requests that can wait, as in ROS 2.
 constexpr int depth = 10;
-/// So many replies wait at most for the readers of their clients, and so long.
+/// The largest number of replies that wait for the readers of their clients, and the longest wait.
 constexpr std::size_t most_waiting = 64;
 constexpr auto longest_wait = 1s;
 
-/// A text that no other service has.
+/// A random text, different for each service.
 std::string unique_text() {
   std::random_device random;
   return fmt::format("{:08x}{:08x}{:08x}{:08x}", random(), random(), random(), random());
 }
 
-/// What the writer and the reader of one client have in common: the key that rmw_cyclonedds gives both, else their
-/// participant.
+/// The common key of the writer and the reader of a client: the one that rmw_cyclonedds sets, else their participant.
 std::string identity_of(const dds_builtintopic_endpoint_t& of) {
   void* data = nullptr;
   std::size_t size = 0;
@@ -50,13 +49,13 @@ using endpoint_data =
 
 std::string identity_of(endpoint_data found) { return found ? identity_of(*found) : std::string(); }
 
-/// Whether the client has a reader that `writer` knows: before that it would not get the reply.
+/// Whether `writer` has discovered the client's reader, without which the reply would be lost.
 bool has_reader(dds_entity_t writer, const std::string& identity) {
   if (identity.empty()) return true;
   std::array<dds_instance_handle_t, 256> readers{};
   const dds_return_t count = dds_get_matched_subscriptions(writer, readers.data(), readers.size());
   const auto known = static_cast<std::size_t>(std::max(count, 0));
-  if (known > readers.size()) return true;  // too many to look at
+  if (known > readers.size()) return true;  // too many to compare
   return std::ranges::any_of(std::span(readers).first(known), [&](dds_instance_handle_t each) {
     return identity_of({dds_get_matched_subscription_data(writer, each),
                         dds_builtintopic_free_endpoint}) == identity;
@@ -72,10 +71,10 @@ service::service(bus& on, std::string name, const service_type& type, handler ha
 
 void service::open(dds_entity_t participant, int* handle) {
   const message_type hashed{type_.request, type_.hash};
-  const qos wish = qos_of({.type = &hashed, .depth = depth});
+  const qos quality = qos_of({.type = &hashed, .depth = depth});
   const std::string words =
       fmt::format("serviceid={};typehash=RIHS01_{};", unique_text(), type_.hash);
-  dds_qset_userdata(wish.get(), words.data(), words.size());
+  dds_qset_userdata(quality.get(), words.data(), words.size());
   const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(
       dds_create_listener(handle), dds_delete_listener);
   dds_lset_data_available(listener.get(), [](dds_entity_t, void* with) { wake(with); });
@@ -86,9 +85,10 @@ void service::open(dds_entity_t participant, int* handle) {
                                            ("rq" + name_ + "Request").c_str(), nullptr, nullptr));
   reply_topic_ = entity(dds_create_topic(participant, type_.reply, ("rr" + name_ + "Reply").c_str(),
                                          nullptr, nullptr));
-  writer_ = entity(dds_create_writer(participant, reply_topic_.get(), wish.get(), listener.get()));
+  writer_ =
+      entity(dds_create_writer(participant, reply_topic_.get(), quality.get(), listener.get()));
   reader_ =
-      entity(dds_create_reader(participant, request_topic_.get(), wish.get(), listener.get()));
+      entity(dds_create_reader(participant, request_topic_.get(), quality.get(), listener.get()));
   if (!reader_ || !writer_) logger::info(fmt::format("cannot offer the service {}\n", name_));
   const std::lock_guard lock(mutex_);
   wake_ = handle;

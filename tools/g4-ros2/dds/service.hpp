@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A service of ROS 2, as rmw_cyclonedds has them: a topic of requests and one of replies, whose samples begin with
-// the number of the client and of its request.
+// A service of ROS 2 in the form of rmw_cyclonedds: a topic of requests and a topic of replies. Their samples begin with
+// the numbers of the client and of its request.
 #pragma once
 
 #include <chrono>
@@ -16,7 +16,7 @@
 
 namespace g4_tool::dds {
 
-/// How Cyclone DDS knows both types, and the hash of the definition of the service. Valid forever.
+/// The descriptors of both types for Cyclone DDS, and the hash of the definition of the service. Static.
 struct service_type {
   const dds_topic_descriptor_t* request;
   const dds_topic_descriptor_t* reply;
@@ -29,26 +29,25 @@ struct request_header {
   std::int64_t number;
 };
 
-/// Whose request it is.
+/// The sender of a request.
 struct caller {
   request_header header{};
-  std::string
-      identity{};  ///< What the client's writer and reader have in common; empty: not known.
+  std::string identity{};  ///< The common key of the client's writer and reader; empty: unknown.
 };
 
 struct service_counts {
   std::uint64_t requests = 0;
-  std::uint64_t ignored = 0;  ///< Not valid.
+  std::uint64_t ignored = 0;  ///< Invalid requests.
   std::uint64_t replies = 0;
   std::uint64_t lost = 0;  ///< Replies that could not be sent.
 };
 
-/// A reply as the C structure of its type, with all that it refers to.
+/// A reply: the C structure of its type, with all that it refers to.
 using reply = std::shared_ptr<void>;
 
 class service final : public endpoint {
  public:
-  /// Answers by send(), now or later; false: the request is not valid, and gets no answer. `request`: the C structure
+  /// Replies by send(), at once or later. False: the request is invalid and gets no reply. `request`: the C structure
   /// of the type.
   using handler = std::function<bool(const void* request, const caller& from)>;
 
@@ -58,9 +57,9 @@ class service final : public endpoint {
   void open(dds_entity_t participant, int* handle) override;
   void close() noexcept override;
 
-  /// Handles what came, and sends what is ready. To be called when the bus is readable, and several times a second.
+  /// Handles requests and sends replies. Call it when the bus is readable, and several times a second.
   void update();
-  /// Replies with the next update(). *Any thread.*
+  /// Stores a reply for the next update(). *Any thread.*
   void send(const caller& to, reply what);
   [[nodiscard]] const service_counts& counts() const noexcept { return counts_; }
 

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The connection to the server; connects again by itself.
-//
-// The server sends the texts hello, status (of a recording also with paused and speed), event, settings and error, and
-// scans as data (scans.js). The page sends set with a name and a value as g4-dump set takes them, both as
-// text, and play with those of paused, speed and seek_s that change.
+// The connection to the server, which reconnects automatically. docs/serve.md describes the messages.
 
 const subprotocol = 'g4lidar.page.v1';
 const first_wait_s = 0.5;
 const longest_wait_s = 5;
-/** The server sends a status twice a second; after this silence it is gone. */
+/** The server sends a status twice a second; after this time without one the connection is lost. */
 const silence_s = 5;
 
 /**
  * @typedef {object} Handlers
  * @property {(message: any) => void} on_message  A JSON message.
  * @property {(data: ArrayBuffer) => void} on_data  A binary message.
- * @property {() => void} on_change  Whether it is open has changed.
+ * @property {() => void} on_change  The state has changed.
  */
 
 export class Connection {
@@ -24,7 +20,7 @@ export class Connection {
     this.handlers = handlers;
     /** @type {'connecting' | 'open' | 'waiting'} */
     this.state = 'waiting';
-    /** Why it is not open. */
+    /** Why it is not open; empty if it is. */
     this.why = '';
     this.opened = 0;
     this.attempts = 0;
@@ -52,7 +48,7 @@ export class Connection {
     if (this.state === 'waiting') this.#connect();
   }
 
-  /** Until the next attempt, in seconds. */
+  /** The time until the next attempt, in seconds. */
   get wait_s() {
     return Math.max(0, (this.retry_at_ms - performance.now()) / 1000);
   }
@@ -89,7 +85,7 @@ export class Connection {
     try {
       message = JSON.parse(text);
     } catch {
-      return; // a newer server may send something else
+      return; // a newer server may send another format
     }
     this.handlers.on_message(message);
   }

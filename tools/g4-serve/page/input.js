@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Mouse, fingers and keys on the radar.
+// Input by mouse, touch and keys on the radar.
 
 /** @typedef {import('./view.js').View} View */
 /** @typedef {import('./ruler.js').Ruler} Ruler */
@@ -27,7 +27,7 @@ function button(id, action) {
   return made;
 }
 
-/** Zoom and pan by pointers: one moves, two zoom, one that does not move puts the ruler. */
+/** Pan with one pointer, zoom with two; a click sets an end of the ruler. */
 export class Pointers {
   /**
    * @param {HTMLElement} surface @param {View} view
@@ -142,7 +142,7 @@ export class Controls {
       Escape: () => this.ruler.is_on && this.turn_ruler(),
       '?': () => keys.showModal(),
     };
-    /** @type {Record<string, () => void>} These are for the radar only if it has the focus. */
+    /** @type {Record<string, () => void>} Only while the radar has the focus. */
     this.focus_keys = {
       ArrowLeft: () => view.pan(pan_pixels, 0),
       ArrowRight: () => view.pan(-pan_pixels, 0),
@@ -169,7 +169,7 @@ export class Controls {
     action();
   }
 
-  /** @param {number} [part]  Of the points that shall be visible. */
+  /** @param {number} [part]  The part of the points that must be visible. */
   fit(part = 1) {
     const range_m = this.scans.range_of(part);
     if (range_m > 0) this.view.fit(range_m * 1.08);
@@ -206,7 +206,7 @@ export class Controls {
     this.use_trails();
   }
 
-  /** @param {number} column @param {number} row @param {boolean} exactly  Not a point near it. */
+  /** @param {number} column @param {number} row @param {boolean} exactly  Do not take a near point instead. */
   #click(column, row, exactly) {
     if (!this.ruler.is_on) return;
     const place = this.view.place(column, row);

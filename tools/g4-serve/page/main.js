@@ -11,10 +11,10 @@ import { Panels, write } from './status.js';
 import { View } from './view.js';
 
 const frames_kept = 1024;
-/** Of the points that are visible at first: a few may be far away, through a door. */
+/** The part of the points that is visible at first; a few may be far away, through a door. */
 const first_part = 0.95;
 
-/** By the number in the device information. @type {Record<number, string>} */
+/** By the model number in the device information. @type {Record<number, string>} */
 const model_names = { 5: 'G4' };
 
 const surface = /** @type {HTMLCanvasElement} */ (element('points'));
@@ -37,7 +37,7 @@ const controls = new Controls(surface, view, ruler, scans, () => playback.pause(
 
 /** @param {any} message */
 function take_message(message) {
-  if (message.op === 'hello') send_hello(message);
+  if (message.op === 'hello') show_hello(message);
   if (message.op === 'settings') settings.show(message.settings ?? {});
   if (message.op === 'error') fail(message);
   if (message.op === 'event') panels.add_event(message);
@@ -49,7 +49,7 @@ function take_message(message) {
 }
 
 /** @param {any} message */
-function send_hello(message) {
+function show_hello(message) {
   hello = message;
   document.title = `g4lidar: ${hello.source ?? ''}`;
   const who = hello.device ?? {};
@@ -78,7 +78,7 @@ function take_data(data) {
   if (!view.is_chosen && (scan.whole || scans.received === 1)) follow();
 }
 
-/** Until a person zooms, nearly everything is visible: the picture grows, but does not shrink. */
+/** Until the user zooms, nearly all points stay visible: the view zooms out, but not in. */
 function follow() {
   const shown_m = Math.min(view.width, view.height) / 2 / view.scale;
   if (scans.range_of(first_part) > shown_m || scans.received === 1) controls.fit(first_part);
@@ -109,7 +109,7 @@ function show_state() {
   if (connection.state !== 'open') status = null;
   const { state, text } = state_now();
   const shown = element('state');
-  // The countdown is in the banner only: it would interrupt a screen reader.
+  // Only the banner shows the countdown, which would interrupt a screen reader here.
   write(shown, state === 'waiting' ? 'No connection' : text);
   shown.dataset.state = state;
   const is_good = state === 'running' || state === 'paused';
@@ -119,7 +119,7 @@ function show_state() {
   surface.classList.toggle('stale', !is_good && state !== 'ended');
 }
 
-/** The times of the frames, in milliseconds: from frame to frame, and of the drawing. */
+/** Times in milliseconds: between frames, and for drawing. */
 const frames = {
   count: 0,
   drawn: 0,
@@ -167,7 +167,7 @@ radar.draw_legend(legend);
 connection.start();
 requestAnimationFrame(frame);
 
-/** What is shown, for tests and scripts; copies, in metres, seconds and CSS pixels. */
+/** The state of the page for tests and scripts; copies, in metres, seconds and CSS pixels. */
 Object.defineProperty(window, 'g4lidar', {
   value: Object.freeze({
     get connection() {

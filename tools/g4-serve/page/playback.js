@@ -14,7 +14,7 @@ export function time_text(seconds) {
 }
 
 export class Playback {
-  /** @param {{send: (message: object) => void}} connection @param {() => void} on_pause  It has changed. */
+  /** @param {{send: (message: object) => void}} connection @param {() => void} on_pause */
   constructor(connection, on_pause) {
     this.connection = connection;
     this.on_pause = on_pause;
@@ -75,7 +75,7 @@ export class Playback {
     this.position.setAttribute('aria-valuetext', text);
   }
 
-  /** While the slider is dragged, not more often than the server can follow. */
+  /** Limits the rate of seeks while the slider is dragged. */
   #seek() {
     this.is_dragged = true;
     this.#show_position();

@@ -7,9 +7,9 @@ import { colour_count } from './scans.js';
 /** @typedef {import('./scans.js').Scans} Scans */
 /** @typedef {import('./ruler.js').Ruler} Ruler */
 
-const most_pixels_per_point = 2; // more than two pixels per CSS pixel cannot be seen
+const most_pixels_per_point = 2; // more pixels per CSS pixel are not visible
 const ring_pixels = 70;
-/** The texts of the page are above and below; the labels of the rings are between them. */
+/** The heights of the texts above and below the labels of the rings. */
 const top_pixels = 36;
 const bottom_pixels = 76;
 /** Half the height of a label. */
@@ -170,14 +170,8 @@ export class Radar {
     const away = Math.hypot(end_column - column, end_row - row);
     const right = (end_column - column) / away;
     const down = (end_row - row) / away;
-    paper.strokeStyle = theme.ring;
     paper.lineWidth = 1;
-    paper.beginPath();
-    paper.moveTo(column, 0);
-    paper.lineTo(column, view.height);
-    paper.moveTo(0, row);
-    paper.lineTo(view.width, row);
-    paper.stroke();
+    this.#lines(theme.ring, [[column, 0, column, view.height], [0, row, view.width, row]]);
     paper.font = '12px system-ui, "DejaVu Sans", sans-serif';
     paper.textAlign = 'center';
     paper.textBaseline = 'middle';
@@ -194,6 +188,17 @@ export class Radar {
     }
   }
 
+  /** @param {string} style @param {number[][]} lines  Columns and rows of both ends. */
+  #lines(style, lines) {
+    this.paper.strokeStyle = style;
+    this.paper.beginPath();
+    for (const [from_column, from_row, to_column, to_row] of lines) {
+      this.paper.moveTo(from_column, from_row);
+      this.paper.lineTo(to_column, to_row);
+    }
+    this.paper.stroke();
+  }
+
   /** @param {string} text @param {number} column @param {number} row */
   #label(text, column, row) {
     const width = this.paper.measureText(text).width + 6;
@@ -208,16 +213,8 @@ export class Radar {
   #draw_robot(column, row) {
     const { paper, theme } = this;
     paper.lineWidth = 2;
-    paper.strokeStyle = theme.axis_x;
-    paper.beginPath();
-    paper.moveTo(column, row);
-    paper.lineTo(column, row - 26);
-    paper.stroke();
-    paper.strokeStyle = theme.axis_y;
-    paper.beginPath();
-    paper.moveTo(column, row);
-    paper.lineTo(column - 26, row);
-    paper.stroke();
+    this.#lines(theme.axis_x, [[column, row, column, row - 26]]);
+    this.#lines(theme.axis_y, [[column, row, column - 26, row]]);
     paper.fillStyle = theme.text;
     paper.beginPath();
     paper.moveTo(column, row - 10);
@@ -229,24 +226,19 @@ export class Radar {
   /** @param {Ruler} ruler */
   #draw_ruler(ruler) {
     const { paper, theme, view } = this;
-    paper.strokeStyle = theme.ruler;
-    paper.lineWidth = 2;
-    paper.beginPath();
-    if (ruler.from && ruler.to) {
-      paper.moveTo(view.column(ruler.from.y), view.row(ruler.from.x));
-      paper.lineTo(view.column(ruler.to.y), view.row(ruler.to.x));
-    }
-    for (const end of [ruler.from, ruler.to]) {
-      if (!end) continue;
-      paper.moveTo(view.column(end.y) + 6, view.row(end.x));
-      paper.arc(view.column(end.y), view.row(end.x), 6, 0, 2 * Math.PI);
-    }
+    const ends = [ruler.from, ruler.to].filter((end) => end !== null)
+      .map((end) => [view.column(end.y), view.row(end.x)]);
+    const lines = ends.length === 2 ? [ends.flat()] : [];
+    const [column, row] = [view.width / 2, view.height / 2];
     if (ruler.shows_middle) {
-      paper.moveTo(view.width / 2 - 12, view.height / 2);
-      paper.lineTo(view.width / 2 + 12, view.height / 2);
-      paper.moveTo(view.width / 2, view.height / 2 - 12);
-      paper.lineTo(view.width / 2, view.height / 2 + 12);
+      lines.push([column - 12, row, column + 12, row], [column, row - 12, column, row + 12]);
     }
-    paper.stroke();
+    paper.lineWidth = 2;
+    this.#lines(theme.ruler, lines);
+    for (const [end_column, end_row] of ends) {
+      paper.beginPath();
+      paper.arc(end_column, end_row, 6, 0, 2 * Math.PI);
+      paper.stroke();
+    }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scans that are shown: the newest, and older ones as trails.
+// The visible scans: the newest, and older ones as trails.
 
 const header_bytes = 16;
 const scan_message = 0x10;
@@ -27,7 +27,7 @@ export function scan_of(message, born) {
   const xy = new Float32Array(message, header_bytes, 2 * count); // every browser is little-endian
   const colours = new Uint8Array(count);
   for (let i = 0; i < count; i++) {
-    // The square root shows differences near the lidar; the range has one already.
+    // By the square root of the range, for more colours near the lidar.
     const part = Math.sqrt(Math.hypot(xy[2 * i], xy[2 * i + 1]) / colour_range_m);
     colours[i] = Math.min(colour_count - 1, part * colour_count);
   }
@@ -45,9 +45,9 @@ export class Scans {
   constructor() {
     /** @type {Scan[]} The newest is the last. */
     this.shown = [];
-    /** How long a trail is, in seconds. */
+    /** The duration of a trail, in seconds. */
     this.trail_s = 0;
-    /** The time of the picture, in seconds; it stands while the picture is frozen. */
+    /** The time of the picture, in seconds; it stops while the picture is frozen. */
     this.now = 0;
     this.is_frozen = false;
     this.received = 0;
@@ -68,21 +68,21 @@ export class Scans {
     this.received++;
     this.points_received += scan.colours.length;
     if (this.is_frozen) return true;
-    if (this.newest && scan.stamp < this.newest.stamp) this.shown.length = 0; // a recording went back
+    if (this.newest && scan.stamp < this.newest.stamp) this.shown.length = 0; // seek to an earlier position
     this.shown.push(scan);
     if (this.shown.length > most_scans) this.shown.shift(); // the page is hidden
     this.version++;
     return true;
   }
 
-  /** @param {number} seconds  Since the last call. Drops trails that have ended. */
+  /** @param {number} seconds  Since the last call. Removes old trails. */
   advance(seconds) {
     if (this.is_frozen) return;
     this.now += seconds;
     let old = 0;
     while (old < this.shown.length - 1 && this.now - this.shown[old].born > this.trail_s) old++;
     if (old > 0) this.shown.splice(0, old);
-    // Trails fade with the time, and the last ones have to go.
+    // Trails fade with time, and removed ones must disappear.
     if (old > 0 || this.shown.length > 1) this.version++;
   }
 
@@ -105,7 +105,7 @@ export class Scans {
   }
 
   /**
-   * The range within which a part of the points of the newest scan is, in metres; 0 without points.
+   * The range of the nearest part of the points of the newest scan, in metres; 0 without points.
    * @param {number} part  1: all.
    */
   range_of(part) {

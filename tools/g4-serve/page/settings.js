@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The settings of the lidar: shown, and changed where the server allows it.
+// Shows the settings of the lidar, and changes them if the server allows it.
 import { element } from './input.js';
 import { make, write } from './status.js';
 
@@ -8,14 +8,14 @@ import { make, write } from './status.js';
 /** Names and values are those of g4-dump set. */
 const rows = [
   { name: 'sample_rate', label: 'Sample rate', values: [['4000', '4 kHz'], ['8000', '8 kHz'], ['9000', '9 kHz']] },
-  { name: 'freq', label: 'Scan frequency', values: null },
+  { name: 'frequency', label: 'Scan frequency', values: null },
   { name: 'direction', label: 'Direction', values: [['cw', 'clockwise'], ['ccw', 'counter-clockwise']] },
   { name: 'constant', label: 'Constant frequency', values: [['on', 'on'], ['off', 'off']] },
   { name: 'idle', label: 'Motor off when idle', values: [['on', 'on'], ['off', 'off']] },
   { name: 'protection', label: 'Power-down protection', values: [['on', 'on'], ['off', 'off']] },
 ];
 
-/** @param {unknown} value @returns {string} As a value of the form; empty if not known. */
+/** @param {unknown} value @returns {string} A value of the form; empty if unknown. */
 function text_of(value) {
   if (value === null || value === undefined) return '';
   if (typeof value === 'boolean') return value ? 'on' : 'off';
@@ -52,7 +52,7 @@ export class Settings {
       field.disabled = true;
       field.addEventListener('change', () => this.#change(field));
       this.fields.set(row.name, field);
-      const label = make('label', row.name === 'freq' ? `${row.label} (Hz) ` : `${row.label} `);
+      const label = make('label', row.name === 'frequency' ? `${row.label} (Hz) ` : `${row.label} `);
       label.append(field);
       form.append(label);
     }
@@ -76,7 +76,7 @@ export class Settings {
     write(this.error, '');
   }
 
-  /** @param {string} message  A change failed: the form shows again what the lidar has. */
+  /** @param {string} message  A change failed: the form shows the last known values again. */
   fail(message) {
     this.show(this.values);
     write(this.error, message);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The panels: what the doctor finds, measurements, counters, events.
+// The panels: diagnoses of the doctor, measurements, counters, events.
 import { element } from './input.js';
 
 /**
@@ -15,7 +15,7 @@ const marks = /** @type {Record<string, string>} */ ({
 });
 const most_events = 50;
 
-/** @param {Element} where @param {string} text  Writes only what has changed. */
+/** @param {Element} where @param {string} text  Not written again if it is unchanged. */
 export function write(where, text) {
   if (where.textContent !== text) where.textContent = text;
 }
@@ -56,7 +56,7 @@ function evidence_text(fact) {
   return number_text(fact.value, is_whole ? 0 : 2, unit);
 }
 
-/** A list of names and values, whose values change. */
+/** A list of names and changing values. */
 class Table {
   /** @param {HTMLElement} list */
   constructor(list) {
@@ -82,7 +82,7 @@ class Table {
   }
 }
 
-/** A stage of the doctor: a line, and its evidence on demand. */
+/** A stage of the doctor: a line, with its evidence folded below. */
 class StageRow {
   constructor() {
     this.summary = make('summary');
@@ -178,7 +178,7 @@ export class Panels {
   /** @param {{what: string, time?: number | string}} event */
   add_event(event) {
     let time = event.time ?? '';
-    // Seconds since 1970, or of a recording.
+    // Seconds since 1970, or since the beginning of a recording.
     if (typeof time === 'number') {
       time = time > 1e9 ? new Date(1000 * time).toLocaleTimeString() : `${time.toFixed(1)} s`;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which part of the robot's frame is shown: x ahead is up, y is left. Pixels are CSS pixels.
+// The visible part of the robot's frame: x (ahead) is up, y is left. Pixels are CSS pixels.
 
 const least_scale = 4;
 const largest_scale = 4000;
@@ -18,7 +18,7 @@ export class View {
     this.height = 1;
     /** Counts changes. */
     this.version = 0;
-    /** Whether a person has chosen the view. */
+    /** Whether the user has chosen the view. */
     this.is_chosen = false;
   }
 
@@ -54,7 +54,7 @@ export class View {
   }
 
   /**
-   * Zooms about a pixel, which keeps its place.
+   * Zooms around a pixel, which keeps its place.
    * @param {number} factor @param {number} [column] @param {number} [row]
    */
   zoom(factor, column = this.width / 2, row = this.height / 2) {
@@ -65,7 +65,7 @@ export class View {
     this.is_chosen = true;
   }
 
-  /** @param {number} range_m  The lidar in the middle, and everything up to this range. */
+  /** @param {number} range_m  Shows this range around the lidar, which is in the middle. */
   fit(range_m) {
     this.scale = Math.min(this.width, this.height) / 2 / range_m;
     this.#look_at(0, 0);

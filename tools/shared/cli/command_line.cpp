@@ -59,11 +59,14 @@ class config_reader final : public CLI::ConfigBase {
 
 void add(CLI::App& app, const option_row& row) {
   const std::string name = row.long_name();
-  const auto take = [inner = row.take, name](const std::vector<std::string>& words) {
+  // CLI11 itself adds the name of a flag with a value.
+  const bool adds_name = name.starts_with('-') && row.optional_value.empty();
+  const auto take = [inner = row.take,
+                     before = adds_name ? name + ": " : ""](const std::string& word) {
     try {
-      for (const std::string& word : words) inner(word);
+      inner(word);
     } catch (const bad_value& reason) {
-      throw CLI::ValidationError((name.starts_with('-') ? name + ": " : "") + reason.what());
+      throw CLI::ValidationError(before + reason.what());
     }
   };
   CLI::Option* option = nullptr;
@@ -71,25 +74,22 @@ void add(CLI::App& app, const option_row& row) {
     const auto given = std::make_shared<std::string>();
     option = app.add_flag(row.names, *given, row.help)->disable_flag_override(false);
     option->option_text("[=" + row.optional_value + "]");
-    option->each([inner = row.take, given](const std::string& word) {
-      try {
-        inner(word == "true" ? "" : word);
-      } catch (const bad_value& reason) {  // CLI11 adds the name
-        throw CLI::ValidationError(reason.what());
-      }
-    });
+    option->each([take, given](const std::string& word) { take(word == "true" ? "" : word); });
   } else if (row.value.empty() && name.starts_with('-')) {
-    option = app.add_flag_function(row.names, [take](std::int64_t) { take({""}); }, row.help);
+    option = app.add_flag_function(row.names, [take](std::int64_t) { take(""); }, row.help);
   } else {
     const bool is_list = row.repeatable && !name.starts_with('-');
-    option =
-        app.add_option_function<std::vector<std::string>>(accepted_name(row.names), take, row.help)
-            ->type_name(row.value)
-            ->expected(1, is_list ? CLI::detail::expected_max_vector_size : 1)
-            ->allow_extra_args(is_list)
-            ->required(row.required)
-            ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
-                                                 : CLI::MultiOptionPolicy::Throw);
+    const auto take_all = [take](const std::vector<std::string>& words) {
+      std::ranges::for_each(words, take);
+    };
+    option = app.add_option_function<std::vector<std::string>>(accepted_name(row.names), take_all,
+                                                               row.help)
+                 ->type_name(row.value)
+                 ->expected(1, is_list ? CLI::detail::expected_max_vector_size : 1)
+                 ->allow_extra_args(is_list)
+                 ->required(row.required)
+                 ->multi_option_policy(row.repeatable ? CLI::MultiOptionPolicy::TakeAll
+                                                      : CLI::MultiOptionPolicy::Throw);
   }
   if (!row.group.empty()) option->group(row.group);
 }
@@ -203,7 +203,7 @@ std::string problem_with(const CLI::App& app, const CLI::ParseError& error) {
   return words;
 }
 
-int explain(const std::string& problem, const std::string& verb) {
+int report_usage_error(const std::string& problem, const std::string& verb) {
   logger::error(with_help(problem, fmt::format("{}{}", this_program().name, verb)),
                 exit_code::usage);
   return static_cast<int>(exit_code::usage);
@@ -216,13 +216,13 @@ std::function<int()> guarded(const verb& chosen) {
     try {
       return run();
     } catch (const bad_value& reason) {
-      return explain(reason.what(), name);
+      return report_usage_error(reason.what(), name);
     }
   };
 }
 
 /// How many words at `at` belong to a global option, which may precede the verb; 0: none.
-std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
+std::size_t global_option_words(const std::vector<std::string>& words, std::size_t at) {
   const std::string& word = words[at];
   if (word == "--color") return 2;
   if (word == "--quiet" || word == "--verbose" || word == "--json-errors") return 1;
@@ -233,9 +233,10 @@ std::size_t own_words(const std::vector<std::string>& words, std::size_t at) {
 
 /// Whether the command line has no verb, because an option of the default verb or a source stands in
 /// its place. `--help` and `--version` belong to the program. The name of a file can have any form.
-bool leaves_out_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
+bool has_no_verb(const std::vector<std::string>& words, const std::vector<verb>& verbs) {
   std::size_t at = 0;
-  while (at < words.size() && own_words(words, at) > 0) at += own_words(words, at);
+  while (at < words.size() && global_option_words(words, at) > 0)
+    at += global_option_words(words, at);
   if (at >= words.size()) return this_program().overview == nullptr || ::isatty(1) == 0;
   const std::string& first = words[at];
   if (first == "-h" || first == "--help" || first == "--version") return false;
@@ -281,7 +282,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
   const std::vector<verb> verbs = ours.verbs();
   if (!words.empty() && words.front() == "help") {
     if (words.size() > 1 && std::ranges::find(verbs, words[1], &verb::name) == verbs.end()) {
-      return [what = words[1]] { return explain(unknown_verb(what), ""); };
+      return [what = words[1]] { return report_usage_error(unknown_verb(what), ""); };
     }
     std::ranges::rotate(words, words.begin() + 1);
     words.back() = "--help";
@@ -315,7 +316,7 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
     for (const verb& each : verbs) {
       add(app, each)->callback([&chosen, &each] { chosen = guarded(each); });
     }
-    if (leaves_out_verb(words, verbs)) words.insert(words.begin(), std::string(ours.default_verb));
+    if (has_no_verb(words, verbs)) words.insert(words.begin(), std::string(ours.default_verb));
   }
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   const auto done = [](int code) { return [code] { return code; }; };
@@ -330,8 +331,8 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
     return done(code);
   } catch (const CLI::ParseError& error) {
     const std::vector<CLI::App*> named = app.get_subcommands();
-    return done(
-        explain(problem_with(app, error), named.empty() ? "" : " " + named.back()->get_name()));
+    return done(report_usage_error(problem_with(app, error),
+                                   named.empty() ? "" : " " + named.back()->get_name()));
   }
   return chosen ? chosen : ours.overview;
 }

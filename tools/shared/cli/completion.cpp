@@ -45,7 +45,7 @@ class offer {
         for (const std::string& word : pieces_of(row.value, '|')) add(before + word);
         break;
       case completion::setting:
-        for (const std::string& word : example_wishes()) add(word);
+        for (const std::string& word : example_changes()) add(word);
         break;
       case completion::fault:
         for (const std::string& name : fault_names()) add(before + name);

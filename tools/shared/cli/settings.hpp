@@ -8,47 +8,36 @@
 #include <string_view>
 #include <vector>
 
-#include "g4lidar/core/request.hpp"
 #include "g4lidar/lidar.hpp"
-#include "rows.hpp"
+#include "g4lidar/setting_table.hpp"
 
 namespace g4_tool {
-
-struct setting {
-  std::string_view name;  ///< The word that `set` takes.
-  /// Nothing where a G4 answers only when it is set.
-  std::optional<g4lidar::request> question;
-  /// The words for its values; of several for one value the first is written. The scan frequency has
-  /// numbers instead.
-  choices<g4lidar::answer> values;
-};
-
-/// All of them, in the order of the help.
-[[nodiscard]] const std::vector<setting>& all_settings();
 
 /// What a device has for a setting; nothing where that is not known.
 using maybe_answer = std::optional<g4lidar::answer>;
 
-/// A setting and the request that makes it so.
-struct wish {
-  const setting* which;
-  g4lidar::request how;
-  g4lidar::answer value;  ///< As the device answers when it is so.
+/// A setting, and the value that it is to get.
+struct setting_change {
+  const g4lidar::setting_info* which;
+  g4lidar::answer value;
 };
 
-/// "sample_rate=4k", "freq=5": examples for completion.
-[[nodiscard]] std::vector<std::string> example_wishes();
+/// "sample_rate=4k", "frequency=5": examples for completion.
+[[nodiscard]] std::vector<std::string> example_changes();
+
+/// "4k|8k|9k", "5..12": what is possible, for a help.
+[[nodiscard]] std::string values_of(const g4lidar::setting_info& which);
 
 /// Whether `word` has the form NAME=VALUE: only letters, `-` and `_` before the first `=`. A source
 /// does not.
-[[nodiscard]] bool is_wish(std::string_view word) noexcept;
+[[nodiscard]] bool is_change(std::string_view word) noexcept;
 
 /// "sample_rate=9k". Throws bad_value, with what is possible.
-[[nodiscard]] wish wish_of(const std::string& word);
+[[nodiscard]] setting_change change_of(const std::string& word);
 
 /// What the device answers; nothing if it cannot be asked for this, or does not answer. Throws a
 /// failure if the device is lost.
-[[nodiscard]] maybe_answer read_setting(g4lidar::lidar& lidar, const setting& which);
+[[nodiscard]] maybe_answer read_setting(g4lidar::lidar& lidar, const g4lidar::setting_info& which);
 
 /// "9k", "7.0", "cw", "on"; "unknown" where there is nothing.
 [[nodiscard]] std::string text_of(const maybe_answer& value);

@@ -33,7 +33,7 @@ output::output(std::string name, appears when)
   }
   if (exists && !S_ISREG(status.st_mode)) {
     fd_ = open_file(name_, O_WRONLY);
-    if (fd_ < 0) give_up("open", errno);
+    if (fd_ < 0) fail("open", errno);
     return;
   }
   if (exists) id_ = id_of(status);
@@ -43,7 +43,7 @@ output::output(std::string name, appears when)
   }
   const std::string directory = std::filesystem::path(name_).parent_path().string();
   const std::string place = exists ? name_ : directory.empty() ? "." : directory;
-  if (::access(place.c_str(), W_OK) != 0) give_up(exists ? "replace" : "create", errno);
+  if (::access(place.c_str(), W_OK) != 0) fail(exists ? "replace" : "create", errno);
   fd_ = -1;
 }
 
@@ -53,7 +53,7 @@ output::~output() {
 }
 
 void output::open_beside(const struct stat* older) {
-  if (older != nullptr && ::access(name_.c_str(), W_OK) != 0) give_up("replace", errno);
+  if (older != nullptr && ::access(name_.c_str(), W_OK) != 0) fail("replace", errno);
   std::error_code unknown;
   // Symbolic links are resolved, so that their target is replaced.
   const std::filesystem::path real = std::filesystem::canonical(name_, unknown);
@@ -65,7 +65,7 @@ void output::open_beside(const struct stat* older) {
     if (fd_ >= 0) break;
     const int error = errno;
     temporary_.clear();  // the destructor must not remove it
-    if (error != EEXIST) give_up("create", error);
+    if (error != EEXIST) fail("create", error);
   }
   if (older != nullptr) ::fchmod(fd_, older->st_mode & 0777);
 }
@@ -73,7 +73,7 @@ void output::open_beside(const struct stat* older) {
 void output::take(std::string_view text) {
   if (fd_ < 0 && !text.empty()) {
     fd_ = open_file(name_, O_WRONLY | O_CREAT | O_TRUNC);
-    if (fd_ < 0) give_up("create", errno);
+    if (fd_ < 0) fail("create", errno);
   }
   while (!text.empty() && !closed_) {
     const ssize_t count = ::write(fd_, text.data(), text.size());
@@ -85,7 +85,7 @@ void output::take(std::string_view text) {
       pollfd waiting{fd_, POLLOUT, 0};
       ::poll(&waiting, 1, -1);
     } else if (errno != EINTR) {
-      give_up("write", errno);
+      fail("write", errno);
     }
   }
 }
@@ -95,7 +95,7 @@ void output::replace_begin(std::string_view text) {
   if (fd_ <= 2 || closed_) return;
   for (off_t at = 0; !text.empty();) {
     const ssize_t count = ::pwrite(fd_, text.data(), text.size(), at);
-    if (count < 0 && errno != EINTR) give_up("write", errno);
+    if (count < 0 && errno != EINTR) fail("write", errno);
     if (count <= 0) continue;
     text.remove_prefix(static_cast<std::size_t>(count));
     at += count;
@@ -105,15 +105,15 @@ void output::replace_begin(std::string_view text) {
 void output::commit() {
   flush();
   if (fd_ <= 2) return;
-  if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR) give_up("write", errno);
+  if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR) fail("write", errno);
   if (temporary_.empty()) return;
-  if (::rename(temporary_.c_str(), name_.c_str()) != 0) give_up("replace", errno);
+  if (::rename(temporary_.c_str(), name_.c_str()) != 0) fail("replace", errno);
   temporary_.clear();
 }
 
 bool output::is_terminal() const noexcept { return ::isatty(fd_) != 0; }
 
-void output::give_up(const char* doing, int error) const {
+void output::fail(const char* doing, int error) const {
   throw failure(exit_code::bad_file, fmt::format("cannot {} {}: {}. {}", doing, title_,
                                                  std::strerror(error), advice_on_writing(error)));
 }

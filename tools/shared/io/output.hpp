@@ -71,7 +71,7 @@ class output : public g4lidar::text_sink {
  private:
   void take(std::string_view text) override;
   void open_beside(const struct stat* older);
-  [[noreturn]] void give_up(const char* doing, int error) const;
+  [[noreturn]] void fail(const char* doing, int error) const;
 
   std::string name_;
   std::string title_;

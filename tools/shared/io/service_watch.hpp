@@ -32,7 +32,7 @@ class service_watch {
   void stopping();
 
   /// Whether there is a manager.
-  [[nodiscard]] bool is_heard() const noexcept { return fd_ >= 0; }
+  [[nodiscard]] bool has_manager() const noexcept { return fd_ >= 0; }
 
  private:
   /// Whether it was sent.

@@ -35,8 +35,6 @@ enum class channel_state : std::uint8_t {
 /// One operation at a time, each of bounded duration. *Single thread.* session.hpp has the table.
 class command_channel {
  public:
-  enum class act : std::uint8_t { none, draining, asking, starting, booting, probing };
-
   /// No operation, with these times.
   explicit constexpr command_channel(const session_times& times) noexcept : times_(times) {}
 
@@ -152,6 +150,8 @@ class command_channel {
   [[nodiscard]] constexpr const session_times& times() const noexcept { return times_; }
 
  private:
+  friend struct session_test_access;
+  enum class act : std::uint8_t { none, draining, asking, starting, booting, probing };
   static constexpr int max_drains = 3;  // the number of attempts to stop a device
 
   constexpr void enter(act next, std::int64_t deadline_ns) noexcept {
@@ -244,8 +244,6 @@ class command_channel {
     return is_free ? channel_state::going_on : channel_state::disturbed;
   }
 
- public:
-  // ---- the state; public for tests that compare and change it ----
   session_times times_;
   pending_command question_;
   act act_ = act::none;

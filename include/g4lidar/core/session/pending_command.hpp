@@ -110,6 +110,7 @@ class pending_command {
   }
 
  private:
+  friend struct session_test_access;
   static constexpr int max_clears = 3;
   static constexpr std::uint8_t all_kinds = 0xFF;
 
@@ -160,8 +161,6 @@ class pending_command {
     return question_state::send;
   }
 
- public:
-  // ---- the state; public for tests that compare and change it ----
   command code_ = command::device_info;
   command sent_ = command::device_info;
   std::uint8_t doubt_ =

@@ -36,6 +36,8 @@ namespace g4lidar {
 struct request_step {
   /// What to do.
   enum class action : std::uint8_t {
+    start,    ///< Start the scan.
+    restart,  ///< Restart the device.
     ask,      ///< Send `code` and wait for its answer.
     doubt,    ///< The answer is impossible: clear the link, then call lost().
     end,      ///< The request has ended with `how` and `value`.
@@ -61,8 +63,19 @@ class request_retry {
   /// The steps of `wanted`.
   explicit constexpr request_retry(const request& wanted) noexcept : wanted_(wanted) {}
 
-  /// The first step.
-  [[nodiscard]] constexpr request_step first() const noexcept { return ask(question()); }
+  /// The first step, to a device that is idle and silent.
+  [[nodiscard]] constexpr request_step first() const noexcept {
+    switch (wanted_.what) {
+      case request_kind::stop:
+        return end({});
+      case request_kind::start:
+        return {.what = request_step::action::start};
+      case request_kind::restart:
+        return {.what = request_step::action::restart};
+      default:
+        return ask(question());
+    }
+  }
 
   /// `heard` must be a possible answer to the last command.
   [[nodiscard]] constexpr request_step answered(const response_view& heard) noexcept {
@@ -91,6 +104,7 @@ class request_retry {
   }
 
  private:
+  friend struct session_test_access;
   enum class answer_of : std::uint8_t { query, move, confirmation };
 
   static constexpr int max_losses = 4;   // of answers, without a change between them
@@ -277,8 +291,6 @@ class request_retry {
     return by > 0 && by <= (is_coarse_ ? coarse_chz : fine_chz);
   }
 
- public:
-  // ---- the state; public for tests that compare and change it ----
   request wanted_{request_kind::device_info};
   answer_of waits_for_ = answer_of::query;
   command move_ = command::frequency_query;

@@ -9,6 +9,7 @@
 
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/core/request.hpp"
+#include "g4lidar/core/response.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "g4lidar/settings.hpp"
 
@@ -79,6 +80,18 @@ class scan_supervisor {
     protection_ = now;
   }
 
+  /// This was answered to a command: the protection may be known now.
+  constexpr void answered(command code, const response_view& heard) noexcept {
+    const auto byte = heard.as_byte();
+    if (byte && code == command::protection_toggle) {
+      protection_ = reply_byte<power_down_protection>(*byte);
+    }
+  }
+  /// The effect of a command is not known.
+  constexpr void unanswered(command code) noexcept {
+    if (code == command::protection_toggle) protection_.reset();
+  }
+
   /// When look() is due, if no packet arrives.
   [[nodiscard]] constexpr std::int64_t next_look_ns(const session_times& times) const noexcept {
     std::int64_t next = last_packet_ns_ + patience_ns(times);
@@ -108,6 +121,7 @@ class scan_supervisor {
   }
 
  private:
+  friend struct session_test_access;
   static constexpr int max_restarts = 3;         // of a scan that always ends early
   static constexpr int max_silent_restarts = 1;  // of a scan that never sends a packet
 
@@ -136,8 +150,6 @@ class scan_supervisor {
     return scan_need::found_protected;
   }
 
- public:
-  // ---- the state; public for tests that compare and change it ----
   std::int64_t last_start_ns_ = 0;
   std::int64_t since_ns_ = 0;
   std::int64_t last_packet_ns_ = 0;  // or of the header

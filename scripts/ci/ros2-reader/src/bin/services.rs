@@ -103,14 +103,14 @@ fn main() {
 
     let request = ListParametersRequest { prefixes: vec![], depth: 0 };
     let list: ListParametersResponse = parameters(domain, "ListParameters", "list_parameters", request);
-    assert!(list.result.names.contains(&"scan_frequency".to_string()), "{list:?}");
+    assert!(list.result.names.contains(&"frequency".to_string()), "{list:?}");
 
-    assert_eq!(get(domain, "scan_frequency").double_value, 7.0);
-    let done = set(domain, "scan_frequency", ParameterValue::Double(9.5));
+    assert_eq!(get(domain, "frequency").double_value, 7.0);
+    let done = set(domain, "frequency", ParameterValue::Double(9.5));
     assert!(done.successful, "{done:?}");
-    let refused = set(domain, "scan_frequency", ParameterValue::Double(20.0));
+    let refused = set(domain, "frequency", ParameterValue::Double(20.0));
     assert!(!refused.successful && refused.reason.contains("5 to 12"), "{refused:?}");
-    assert_eq!(get(domain, "scan_frequency").double_value, 9.5);
+    assert_eq!(get(domain, "frequency").double_value, 9.5);
 
     let request = DescribeParametersRequest { names: vec!["grid".to_string()] };
     let grid: DescribeParametersResponse = parameters(domain, "DescribeParameters", "describe_parameters", request);

@@ -6,20 +6,20 @@
 #include <cstdint>
 #include <string>
 
-#include "g4lidar/core/session/session_machine.hpp"
+#include "g4lidar/core/session.hpp"
 
-namespace g4lidar::test {
+namespace g4lidar {
 
-/// The equality of two states of a session. Times are counted from now; values without influence
+/// Reads and changes the state of a session, for the equality of two states. Times are counted from now; values without influence
 /// (times of completed operations, counters that are only reported) are set to zero.
-struct session_state {
+struct session_test_access {
   static constexpr std::int64_t horizon = 16;  // more than any of the times below
 
   static std::int64_t from_now(std::int64_t time, std::int64_t now, bool counts) {
     return counts ? std::clamp(time - now, -horizon, horizon) : 0;
   }
 
-  static void normalise(session_machine& s, std::int64_t now) {
+  static void normalise(session& s, std::int64_t now) {
     command_channel& talk = s.channel_;
     using act = command_channel::act;
     const bool boots = talk.act_ == act::booting || talk.act_ == act::probing;
@@ -47,26 +47,27 @@ struct session_state {
     if (!s.scanning_) watch.restarts_ = 0;
     watch.is_assumed_ = watch.is_assumed_ && !watch.has_packets_;
 
-    const request asked = s.outcome_.asked;
-    s.outcome_ = outcome{request{request_kind::device_info}};
-    s.steps_.moves_ = 0;  // bounds the moves of a request: see EndIfNoChangeIsKept
-    s.retries_ = 0;
-    s.limit_ns_ = horizon;  // never reached: an end by it would only be an earlier one
-    if (s.has_request_) {
-      s.outcome_.asked = asked;
+    request_course& course = s.request_;
+    const request asked = course.outcome_.asked;
+    course.outcome_ = outcome{request{request_kind::device_info}};
+    course.steps_.moves_ = 0;  // bounds the moves of a request: see EndIfNoChangeIsKept
+    course.retries_ = 0;
+    course.limit_ns_ = horizon;  // never reached: an end by it would only be an earlier one
+    if (course.is_running_) {
+      course.outcome_.asked = asked;
     } else {
-      s.steps_ = request_retry{};
+      course.steps_ = request_retry{};
       const std::uint8_t doubt = talk.question_.doubt_;
       talk.question_ = pending_command{};
       talk.question_.doubt_ = doubt;
-      s.is_broken_ = false;
-      s.disturbances_ = 0;
+      course.is_broken_ = false;
+      course.disturbances_ = 0;
       if (!s.scanning_) s.starts_ = 0;
     }
   }
 
   /// Every member.
-  static std::string key(const session_machine& s) {
+  static std::string key(const session& s) {
     std::string out;
     const auto add = [&](auto... values) {
       ((out += static_cast<char>(static_cast<int>(values) & 0xFF)), ...);
@@ -82,7 +83,8 @@ struct session_state {
     add(watch.last_start_ns_, watch.since_ns_, watch.last_packet_ns_,
         watch.protection_ ? static_cast<int>(*watch.protection_) : 2, watch.restarts_,
         watch.has_packets_, watch.is_reported_, watch.is_assumed_);
-    const request_retry& steps = s.steps_;
+    const request_course& course = s.request_;
+    const request_retry& steps = course.steps_;
     add(steps.wanted_.what, steps.waits_for_, steps.move_, steps.losses_, steps.unmoved_,
         steps.has_origin_, steps.is_known_, steps.has_moved_, steps.denied_, steps.is_coarse_,
         steps.coarse_stuck_, steps.stuck_);
@@ -90,11 +92,12 @@ struct session_state {
     add_wide(steps.origin_);
     add_wide(steps.current_);
     add_wide(steps.before_);
-    add(s.outcome_.asked.what, s.notice_, s.resume_, s.has_request_, s.is_done_, s.scanning_,
-        s.is_idle_, s.is_runaway_, s.surprise_, s.is_broken_, s.disturbances_, s.starts_);
-    add_wide(s.outcome_.asked.value);
+    add(course.outcome_.asked.what, s.notice_, s.resume_, course.is_running_, course.is_done_,
+        s.scanning_, s.is_idle_, s.is_runaway_, s.surprise_, course.is_broken_,
+        course.disturbances_, s.starts_);
+    add_wide(course.outcome_.asked.value);
     return out;
   }
 };
 
-}  // namespace g4lidar::test
+}  // namespace g4lidar

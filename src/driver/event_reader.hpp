@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The events in the bytes of one read at a time, and the place that was reached in them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "g4lidar/core/stream_parser.hpp"
+
+namespace g4lidar {
+
+/// *Single thread, never allocates.*
+class event_reader {
+ public:
+  /// The bytes of one read; valid until they are parsed. Only if the bytes before are parsed.
+  void feed(bytes reading, std::int64_t arrival_ns) noexcept {
+    input_ = reading;
+    arrival_ns_ = arrival_ns;
+    events_ = 0;
+  }
+  /// No more bytes follow: the unparsed bytes are discarded, and the next calls of next() parse the
+  /// held bytes again.
+  void cut() noexcept {
+    input_ = {};
+    is_cutting_ = true;
+  }
+  /// The next event, or nothing; valid until the next call.
+  [[nodiscard]] const event* next() noexcept {
+    if (is_cutting_) {
+      event_ = parser_.finish();
+      is_cutting_ = event_.has_value();
+    } else {
+      const std::size_t before = input_.size();
+      event_ = parser_.next(input_);
+      bytes_ += before - input_.size();
+    }
+    return current();
+  }
+  /// The last event, until pass().
+  [[nodiscard]] const event* current() const noexcept { return event_ ? &*event_ : nullptr; }
+  /// The last event has been handled.
+  void pass() noexcept {
+    ++events_;
+    event_.reset();
+  }
+  /// Whether next() returns nothing, and the last event has been handled.
+  [[nodiscard]] bool is_empty() const noexcept { return input_.empty() && !is_cutting_ && !event_; }
+
+  // ---- the place ----
+  [[nodiscard]] bytes unparsed() const noexcept { return input_; }
+  /// The events of the last read that have been handled.
+  [[nodiscard]] std::uint32_t events_of_reading() const noexcept { return events_; }
+  [[nodiscard]] std::int64_t arrival_ns() const noexcept { return arrival_ns_; }
+  /// Bytes of an unfinished packet or response, and how many are missing at least.
+  [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
+  [[nodiscard]] std::size_t missing() const noexcept { return parser_.missing(); }
+  /// All bytes that were parsed.
+  [[nodiscard]] std::uint64_t bytes_parsed() const noexcept { return bytes_; }
+
+ private:
+  stream_parser parser_;
+  bytes input_;
+  std::int64_t arrival_ns_ = 0;
+  std::optional<event> event_;
+  std::uint32_t events_ = 0;
+  bool is_cutting_ = false;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "live_stream.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <variant>
+
+#include "core/saturating.hpp"
+#include "transport/port_holder.hpp"
+
+namespace g4lidar {
+namespace {
+
+session_times times_for(const lidar_tuning& tuning) noexcept {
+  session_times times;
+  times.answer_ns = std::chrono::nanoseconds(tuning.answer_time).count();
+  times.stall_ns = std::chrono::nanoseconds(tuning.stall_time).count();
+  return times;
+}
+
+}  // namespace
+
+live_stream::live_stream(const parts& of, const lidar_tuning& tuning)
+    : of_(of), pace_(tuning.pace), link_(of.pipeline.input(), times_for(tuning)) {}
+
+void live_stream::begin() {
+  const transport& on = of_.on.on();
+  link_.reset(now_ns());
+  of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
+  of_.pipeline.follow(on.baud());
+  of_.motor.forget();
+  record(recorded_event::kind::held);
+}
+
+result<void> live_stream::send() {
+  return link_.send([&](bytes command) { return of_.on.send(command); });
+}
+
+result<void> live_stream::look_if_due() {
+  const std::int64_t due_ns = talk().next_look_ns();
+  if (!of_.pipeline.input().unparsed().empty() || due_ns > now_ns()) return {};
+  if (of_.from.read_until_ns() < due_ns) {
+    if (auto got = read(now_ns()); !got) return got;
+    if (!of_.pipeline.input().unparsed().empty()) return {};
+  }
+  if (is_cut_off()) {
+    of_.pipeline.drop_scan();
+    cut();
+    if (parse()) return {};  // look() follows in the next round
+  }
+  talk().look(now_ns());
+  return {};
+}
+
+result<void> live_stream::receive(std::int64_t deadline_ns) {
+  if (auto got = read(deadline_ns); !got) return got;
+  if (of_.pipeline.input().unparsed().empty() && is_cut_off()) cut();
+  return {};
+}
+
+result<void> live_stream::read(std::int64_t deadline_ns) {
+  const event_reader& input = of_.pipeline.input();
+  const auto got =
+      of_.from.receive(of_.on.on(), how_to_read(), input.held(), input.missing(), deadline_ns);
+  if (!got) return tl::unexpected(got.error());
+  if (got->count == 0) return {};
+  link_.heard(got->arrival_ns);
+  of_.pipeline.input().feed(of_.from.buffer(got->count), got->arrival_ns);
+  return {};
+}
+
+reading live_stream::how_to_read() const noexcept {
+  if (of_.stage != live_stage::scanning) return reading::at_once;
+  if (of_.from.is_batched()) return reading::batched;
+  if (is_waiting_for_answer()) return reading::at_once;
+  const bool by_packets = pace_ == read_pace::automatic
+                              ? of_.takes_points.load(std::memory_order_relaxed)
+                              : pace_ == read_pace::packets;
+  return by_packets ? reading::paced : reading::scans;
+}
+
+bool live_stream::parse() {
+  point_pipeline& pipeline = of_.pipeline;
+  while (!pipeline.find_scan()) {
+    const event* const found = pipeline.next();
+    if (found == nullptr) return false;
+    link_.take(*found);
+    follow_delivery();
+    const auto* const packet = std::get_if<packet_view>(found);
+    if (packet != nullptr && pipeline.delivers()) {
+      const double period_ns = pipeline.period_ns();
+      const auto way_ns = static_cast<double>(packet->sample_count() - 1) * period_ns;
+      of_.from.packet(*packet, pipeline.input().unparsed().size(),
+                      pipeline.next_sample_ns() + static_cast<std::int64_t>(way_ns), period_ns);
+    }
+  }
+  return true;
+}
+
+void live_stream::cut() {
+  record(recorded_event::kind::cut);
+  of_.pipeline.input().cut();
+}
+
+void live_stream::flush() {
+  if (!of_.on.is_open()) return;
+  of_.pipeline.drop_scan();
+  cut();
+  while (parse()) of_.pipeline.drop_scan();
+}
+
+void live_stream::follow_delivery() {
+  const bool delivers = of_.pipeline.delivers();
+  const bool may_begin = of_.stage >= live_stage::preparing && of_.stage != live_stage::stopping;
+  const bool wanted =
+      talk().is_scanning() && (may_begin || (of_.stage == live_stage::stopping && delivers));
+  if (wanted == delivers) return;
+  of_.pipeline.deliver(wanted);
+  wanted ? begin_points() : record(recorded_event::kind::held);
+}
+
+void live_stream::begin_points() {
+  of_.motor.begin(saturating_add(now_ns(), spin_up::longest_ns), of_.pipeline.scans());
+  of_.pipeline.begin(sample_rate_hz_);
+  record(recorded_event::kind::begun);
+}
+
+void live_stream::learn_rate(const answer& heard) {
+  const auto* rate = std::get_if<sample_rate>(&heard);
+  if (rate == nullptr || to_hz(*rate) == sample_rate_hz_) return;
+  sample_rate_hz_ = to_hz(*rate);
+  if (of_.pipeline.delivers()) begin_points();
+}
+
+/// For a recording. A place is defined by the unparsed rest of the last read and by the number of
+/// events from it: both are the same when the same bytes are read again.
+void live_stream::record(recorded_event::kind what) {
+  recording_hook* const recorder = recording_hook_of(of_.on.from());
+  if (recorder == nullptr || !of_.on.is_open()) return;
+  recorded_event made{.what = what, .time_ns = now_ns()};
+  made.delivers = of_.pipeline.delivers();
+  made.baud = of_.on.on().baud();
+  made.sample_rate_hz = sample_rate_hz_;
+  made.unparsed = static_cast<std::uint32_t>(of_.pipeline.input().unparsed().size());
+  made.events = of_.pipeline.input().events_of_reading();
+  recorder->event(made);
+}
+
+std::int64_t live_stream::next_deadline_ns() const noexcept {
+  if (!of_.pipeline.is_empty() || !talk().has_nothing()) return now_ns();
+  const std::int64_t next = talk().next_look_ns();
+  return is_waiting_for_answer() ? std::min(next, link_.cut_off_ns()) : next;
+}
+
+/// An event loop that takes points is woken by each byte.
+std::int64_t live_stream::rest_until_ns() const noexcept {
+  const reading how = how_to_read();
+  if (how != reading::scans && how != reading::batched) return 0;
+  const event_reader& input = of_.pipeline.input();
+  return of_.from.again_ns(how, input.held(), input.missing());
+}
+
+error live_stream::silence_error() const {
+  const bool has_begun = of_.pipeline.has_begun();
+  return {has_begun ? task::reading : task::starting,
+          has_begun ? problem::stalled : problem::brown_out, of_.on.name()};
+}
+
+error live_stream::error_after(const error& why) const {
+  return of_.on.is_open() ? with_port_conflict(why, of_.on.on()) : why;
+}
+
+}  // namespace g4lidar

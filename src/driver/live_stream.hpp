@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The bytes of a live device: when they are read, which of them make points, and the session.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "connection.hpp"
+#include "device_link.hpp"
+#include "g4lidar/recording/recorded_event.hpp"
+#include "live_stage.hpp"
+#include "point_pipeline.hpp"
+#include "receiver.hpp"
+#include "spin_up.hpp"
+
+namespace g4lidar {
+
+/// The parts of a round on an open connection. *Single thread.* What it is made of must outlive it.
+class live_stream {
+ public:
+  struct parts {
+    connection& on;
+    point_pipeline& pipeline;
+    receiver& from;
+    spin_up& motor;
+    const live_stage& stage;
+    const std::atomic<bool>& takes_points;  ///< See feeder::take_points().
+  };
+
+  live_stream(const parts& of, const lidar_tuning& tuning);
+
+  [[nodiscard]] session& talk() noexcept { return link_.talk(); }
+  [[nodiscard]] const session& talk() const noexcept { return link_.talk(); }
+
+  /// The connection was opened.
+  void begin();
+  /// Sends the commands of the session.
+  [[nodiscard]] result<void> send();
+  /// Passes the time to the session, when it is due. Bytes that arrived while the program was
+  /// suspended are processed before that.
+  [[nodiscard]] result<void> look_if_due();
+  /// One read, which waits for bytes until the deadline. A packet that does not continue is cut off.
+  [[nodiscard]] result<void> receive(std::int64_t deadline_ns);
+  /// Parses until there is a scan (true), or until nothing is left.
+  [[nodiscard]] bool parse();
+  /// Nothing follows: the held bytes are parsed again.
+  void cut();
+  /// Decodes the received bytes. Scans that are completed here are not taken.
+  void flush();
+
+  /// Packets of a device that is being stopped are discarded. A scan that continues after any
+  /// interruption begins a new stream of points.
+  void follow_delivery();
+  /// The motor is started, or was interrupted: the points that follow are a new stream.
+  void begin_points();
+  /// Uses the sample rate, if it is the answer.
+  void learn_rate(const answer& heard);
+
+  /// When something is due, if nothing arrives.
+  [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
+  /// The time until which bytes need not be read.
+  [[nodiscard]] std::int64_t rest_until_ns() const noexcept;
+
+  /// Of a device that has ended a scan and does not continue.
+  [[nodiscard]] error silence_error() const;
+  /// `why`, or a process on the port that explains more than its effects.
+  [[nodiscard]] error error_after(const error& why) const;
+
+ private:
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return of_.on.now_ns(); }
+  [[nodiscard]] reading how_to_read() const noexcept;
+  [[nodiscard]] bool is_waiting_for_answer() const noexcept {
+    return talk().is_busy() || !talk().is_scanning();
+  }
+  [[nodiscard]] bool is_cut_off() const noexcept {
+    return is_waiting_for_answer() && link_.is_cut_off(now_ns());
+  }
+  [[nodiscard]] result<void> read(std::int64_t deadline_ns);
+  void record(recorded_event::kind what);
+
+  parts of_;
+  read_pace pace_;
+  device_link link_;
+  std::uint32_t sample_rate_hz_ = 9000;
+};
+
+}  // namespace g4lidar

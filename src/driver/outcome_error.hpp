@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The error of a request that was not answered.
+#pragma once
+
+#include <string_view>
+#include <variant>
+
+#include "error_context.hpp"
+#include "g4lidar/error.hpp"
+#include "live_stage.hpp"
+
+namespace g4lidar {
+
+/// What was being done in this stage.
+[[nodiscard]] inline task task_of(const request& asked, live_stage stage) noexcept {
+  if (asked.what == request_kind::start) return task::starting;
+  if (asked.what == request_kind::stop) return task::stopping;
+  if (stage == live_stage::identifying) return task::opening;
+  if (stage != live_stage::preparing) return task::asking;
+  return asked.what == request_kind::health ? task::starting : task::configuring;
+}
+
+/// `device` is the name of the transport.
+[[nodiscard]] inline error error_of(const outcome& done, live_stage stage,
+                                    std::string_view device) noexcept {
+  const task doing = task_of(done.asked, stage);
+  error_context about(device);
+  if (stage != live_stage::identifying) about.add(done.asked);
+  if (done.how == verdict::not_reached) {
+    if (const auto* reached = std::get_if<scan_frequency>(&done.value)) {
+      about.add(" (reached ").add(*reached).add(")");
+    }
+    return {doing, problem::not_reached, about};
+  }
+  if (done.how == verdict::still_scanning) return {doing, problem::does_not_stop, about};
+  const bool is_setting_up = stage == live_stage::identifying || stage == live_stage::preparing;
+  if (done.heard_nothing() && is_setting_up) return {doing, problem::silence, about};
+  if (done.heard_noise_only()) return {doing, problem::garbage, about};
+  return {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about};
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/setting_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <variant>
+
+namespace g4lidar {
+namespace {
+
+constexpr std::array<setting_value, 3> sample_rates{{{"4k", 4000, sample_rate::khz_4},
+                                                     {"8k", 8000, sample_rate::khz_8},
+                                                     {"9k", 9000, sample_rate::khz_9}}};
+constexpr std::array<setting_value, 2> directions{
+    {{"cw", 1, motor_direction::clockwise}, {"ccw", 2, motor_direction::counter_clockwise}}};
+/// The settings whose values are off and on.
+template <class Setting>
+constexpr std::array<setting_value, 2> switch_values{
+    {{"off", 1, Setting::off}, {"on", 2, Setting::on}}};
+
+constexpr std::array<setting_info, 6> table{{
+    {.name = "sample_rate",
+     .type = setting_type::whole,
+     .unit = "Hz",
+     .text = "samples per second",
+     .change = request_kind::set_sample_rate,
+     .query = requests::get_sample_rate(),
+     .values = sample_rates},
+    {.name = "frequency",
+     .type = setting_type::decimal,
+     .unit = "Hz",
+     .text = "revolutions per second",
+     .change = request_kind::set_scan_frequency,
+     .query = requests::get_scan_frequency(),
+     .values = {},
+     .least = min_scan_frequency_chz,
+     .most = max_scan_frequency_chz},
+    {.name = "direction",
+     .type = setting_type::word,
+     .unit = "",
+     .text = "direction of rotation, seen from above",
+     .change = request_kind::set_direction,
+     .query = requests::get_direction(),
+     .values = directions},
+    {.name = "constant",
+     .type = setting_type::on_off,
+     .unit = "",
+     .text = "constant scan frequency",
+     .change = request_kind::set_constant_frequency,
+     .query = {},
+     .values = switch_values<constant_frequency>},
+    {.name = "idle",
+     .type = setting_type::on_off,
+     .unit = "",
+     .text = "stop the motor while not scanning",
+     .change = request_kind::set_low_power,
+     .query = requests::get_low_power(),
+     .values = switch_values<low_power>},
+    {.name = "protection",
+     .type = setting_type::on_off,
+     .unit = "",
+     .text = "stop 3 s after the last keep-alive of the host",
+     .change = request_kind::set_protection,
+     .query = {},
+     .values = switch_values<power_down_protection>},
+}};
+
+}  // namespace
+
+std::span<const setting_info> all_settings() noexcept { return table; }
+
+const setting_info* setting_of(const answer& value) noexcept {
+  const auto* const at = std::ranges::find_if(table, [&](const setting_info& each) {
+    return each.values.empty() ? std::holds_alternative<scan_frequency>(value)
+                               : each.values.front().value.index() == value.index();
+  });
+  return at == table.end() ? nullptr : at;
+}
+
+std::optional<answer> value_of(const setting_info& of, std::int32_t number) noexcept {
+  const auto at = std::ranges::find(of.values, number, &setting_value::number);
+  if (at != of.values.end()) return at->value;
+  if (!of.values.empty() || number < of.least || number > of.most) return std::nullopt;
+  return scan_frequency{static_cast<std::uint16_t>(number)};
+}
+
+const setting_value* find_value(const answer& value) noexcept {
+  const setting_info* const of = setting_of(value);
+  if (of == nullptr) return nullptr;
+  const auto at = std::ranges::find(of->values, value, &setting_value::value);
+  return at == of->values.end() ? nullptr : &*at;
+}
+
+std::optional<std::int32_t> number_of(const answer& value) noexcept {
+  if (const auto* frequency = std::get_if<scan_frequency>(&value)) return frequency->chz;
+  const setting_value* const found = find_value(value);
+  return found == nullptr ? std::nullopt : std::optional(found->number);
+}
+
+request change_to(const answer& value) noexcept {
+  return std::visit(
+      [](const auto& wanted) -> request {
+        if constexpr (requires { requests::set(wanted); }) {
+          return requests::set(wanted);
+        } else {
+          return {request_kind::set_scan_frequency, std::numeric_limits<std::uint16_t>::max()};
+        }
+      },
+      value);
+}
+
+void set_option(lidar_options& options, const answer& value) noexcept {
+  const auto take = [&value]<class Setting>(std::optional<Setting>& option) {
+    if (const auto* given = std::get_if<Setting>(&value)) option = *given;
+  };
+  take(options.sample_rate);
+  take(options.frequency);
+  take(options.direction);
+  take(options.constant);
+  take(options.idle);
+  take(options.protection);
+}
+
+}  // namespace g4lidar
