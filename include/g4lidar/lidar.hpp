@@ -22,6 +22,7 @@
 #include "g4lidar/lidar_event.hpp"
 #include "g4lidar/lidar_options.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/recording/player.hpp"
 #include "g4lidar/scan.hpp"
 
 namespace g4lidar {
@@ -99,7 +100,8 @@ class G4LIDAR_API lidar {
   /// that is longer. With reconnecting on it waits without limit while the lidar is lost. So it
   /// returns an error only at the end of a file (end_of_input), at a fatal error, when it is woken
   /// (cancelled), when the lidar is not scanning, and when a scan that is due does not come within
-  /// the timeout. A recording counts as it was recorded: what is due in it is due.
+  /// the timeout. A recording counts as it was recorded: what is due in it is due; while it is paused,
+  /// nothing is.
   [[nodiscard]] view_result<scan> wait_scan(milliseconds timeout);
   /// The same as a range: `for (const auto& scan : lidar.scans(500ms))`; see scan_range.
   [[nodiscard]] scan_range scans(milliseconds timeout) & noexcept;
@@ -164,6 +166,9 @@ class G4LIDAR_API lidar {
 
   /// What the device reported about itself when it was opened. Valid as long as this lidar.
   [[nodiscard]] const device_information& information() const noexcept;
+  /// The player of a recording, or of raw bytes in a file; null for everything else, and after close().
+  /// Valid as long as this lidar is open.
+  [[nodiscard]] g4lidar::player* player() noexcept;
   /// The name of the transport in use: "/dev/ttyUSB0". Valid until the next call of anything but
   /// counts().
   [[nodiscard]] std::string_view name() const noexcept;

@@ -5,13 +5,13 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/recording/player.hpp"
 #include "g4lidar/settings.hpp"
 
 namespace g4lidar {
@@ -40,16 +40,6 @@ struct lidar_tuning {
   std::chrono::nanoseconds transport_delay{0};
 };
 
-/// How a recording is played.
-struct playback_options {
-  /// 1: as fast as it was recorded; 0.5: half as fast; 0: as fast as it is read. 0, or 0.000001 to 1000.
-  double speed = 0;
-  bool loop = false;  ///< Whether it begins again at its end; the times continue.
-  /// Only what was recorded from `from_ns` on and before `to_ns`, since its beginning.
-  std::int64_t from_ns = 0;
-  std::int64_t to_ns = std::numeric_limits<std::int64_t>::max();
-};
-
 /// How a lidar is opened and used. Every option has a default. A setting that is not given stays as the
 /// device has it; one that is given is set at each start, after a reconnect, and when the device seems
 /// to have rebooted.
@@ -74,7 +64,7 @@ struct lidar_options {
   bool partial_scans = false;  ///< Whether next_scan() also gives pieces: scan::is_piece().
   lidar_tuning tuning{};       ///< Times and speeds of the connection.
 
-  playback_options playback{};  ///< How a recording is played.
+  playback_options playback{};  ///< How a file is played.
   /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000.
   std::uint32_t raw_sample_rate_hz = 9000;
   /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it

@@ -12,7 +12,6 @@
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "g4lidar/recording/replay.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "simulation.hpp"
 
@@ -24,7 +23,6 @@ struct opening {
   std::shared_ptr<simulation> simulated;       // the device it is on
   std::shared_ptr<recording_writer> recorder;  // what records it
   std::string recording;                       // the file that it plays
-  replay_options played;
 };
 
 /// Fills `into`; `device` is not taken. Returns a g4lidar_result.
@@ -43,7 +41,6 @@ struct g4lidar_lidar {
   std::unique_ptr<g4lidar::lidar> made;
   g4lidar::connector* connector = nullptr;  // the innermost one, which the lidar owns
   std::int64_t wall_ahead_ns = 0;           // of virtual time
-  bool is_started = false;
   std::string name;
   g4lidar_identity identity{};
   g4lidar_scan scan{};

@@ -128,18 +128,14 @@ int take_scan(g4lidar_lidar* lidar, scan_call call, int timeout_ms, const g4lida
 }  // namespace
 
 int g4lidar_start(g4lidar_lidar* lidar, g4lidar_error* error) {
-  const int code = guarded(error, [&] { return lidar->made->start(); }, lidar);
-  if (code == G4LIDAR_OK) lidar->is_started = true;
-  return code;
+  return guarded(error, [&] { return lidar->made->start(); }, lidar);
 }
 
 int g4lidar_stop(g4lidar_lidar* lidar, g4lidar_error* error) {
-  if (lidar != nullptr) lidar->is_started = false;
   return guarded(error, [&] { return lidar->made->stop(); }, lidar);
 }
 
 int g4lidar_close(g4lidar_lidar* lidar, g4lidar_error* error) {
-  if (lidar != nullptr) lidar->is_started = false;
   return guarded(error, [&] { return lidar->made->close(); }, lidar);
 }
 

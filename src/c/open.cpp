@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "border.hpp"
+#include "g4lidar/recording/replay.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/wall_clock.hpp"
@@ -65,7 +66,7 @@ void describe(lidar& made, recording_writer& into) {
 /// Of a recording, or of a simulation in virtual time: what no name opens.
 result<lidar> open_unnamed(const opening& wish, const lidar_options& how) {
   auto from = wish.recording.empty() ? wish.simulated->connect()
-                                     : replay::open(wish.recording, wish.played);
+                                     : replay::open(wish.recording, how.playback, how.is_cancelled);
   if (from) from = how.wrap(*std::move(from));
   return from ? lidar::open(*std::move(from), how) : tl::unexpected(from.error());
 }
@@ -196,11 +197,9 @@ int g4lidar_open_recording(const char* path, const g4lidar_playback_options* pla
         g4lidar_playback_options taken = playback_defaults;
         if (!take_options(playback, taken)) return refuse(error, bad_options);
         wish.recording = path;
-        wish.played.rate = taken.speed;
-        wish.played.loop = taken.loop;
-        wish.played.range.from_ns = taken.from_ns;
-        if (taken.to_ns != 0) wish.played.range.to_ns = taken.to_ns;
-        wish.played.range.is_cancelled = question_of(taken);
+        wish.how.playback = {.speed = taken.speed, .loop = taken.loop, .from_ns = taken.from_ns};
+        if (taken.to_ns != 0) wish.how.playback.to_ns = taken.to_ns;
+        wish.how.is_cancelled = question_of(taken);
         return open_lidar(std::move(wish), lidar, error);
       },
       path);
@@ -210,12 +209,10 @@ int g4lidar_seek(g4lidar_lidar* lidar, int64_t from_ns, g4lidar_error* error) {
   return guarded(
       error,
       [&]() -> int {
-        if (lidar->from.recording.empty()) return refuse(error, "this lidar plays no recording");
-        lidar->from.played.range.from_ns = from_ns;
-        if (const auto opened = connect(*lidar); !opened) return fail(error, opened.error());
-        if (!lidar->is_started) return succeed(error);
-        const auto started = lidar->made->start();
-        return started ? succeed(error) : fail(error, started.error());
+        player* const played = lidar->from.recording.empty() ? nullptr : lidar->made->player();
+        if (played == nullptr) return refuse(error, "this lidar plays no recording");
+        const auto moved = played->seek(from_ns);
+        return moved ? succeed(error) : fail(error, moved.error());
       },
       lidar);
 }

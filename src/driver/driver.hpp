@@ -49,6 +49,7 @@ class G4LIDAR_HIDDEN lidar::driver {
     parts_.link.rest(rests);
     return rests ? std::min(due_ns, rest_ns) : due_ns;
   }
+  [[nodiscard]] g4lidar::player* player() noexcept { return feeder_->controls(); }
   [[nodiscard]] const device_information& information() const noexcept {
     return feeder_->information();
   }
@@ -68,7 +69,7 @@ class G4LIDAR_HIDDEN lidar::driver {
                    now.why);
   }
   [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
-    return parts_.link.now_ns() >= deadline_ns && parts_.pipeline.is_empty();
+    return (parts_.link.now_ns() >= deadline_ns || feeder_->stands()) && parts_.pipeline.is_empty();
   }
 
   feeder::parts parts_;

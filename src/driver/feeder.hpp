@@ -12,6 +12,7 @@
 #include "core/saturating.hpp"
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
+#include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
@@ -82,6 +83,10 @@ class feeder {
     return saturating_add(now_ns(), timeout_ns);
   }
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
+  /// Of a file that is played; else null.
+  [[nodiscard]] virtual player* controls() noexcept { return nullptr; }
+  /// Whether no step makes progress: a wait of it ends a call.
+  [[nodiscard]] virtual bool stands() const noexcept { return false; }
   /// Adds the counts that do not belong to the pipeline.
   virtual void add_to(lidar_counts& counts) const noexcept = 0;
 

@@ -190,6 +190,7 @@ const device_information& lidar::information() const noexcept {
   static constexpr device_information none{};
   return driver_ ? driver_->information() : none;
 }
+player* lidar::player() noexcept { return driver_ ? driver_->player() : nullptr; }
 std::string_view lidar::name() const noexcept { return driver_ ? driver_->name() : "closed"; }
 bool lidar::is_scanning() const noexcept { return driver_ && driver_->is_scanning(); }
 lidar_counts lidar::counts() const noexcept { return driver_ ? driver_->counts() : lidar_counts(); }

@@ -108,6 +108,11 @@ class point_pipeline {
   void end() noexcept;
   /// The following bytes are from another transport; see transport::baud(). Before begin().
   void follow(std::uint32_t baud) noexcept { decoder_.follow(baud); }
+  /// The same; their times may be earlier ones.
+  void restart(std::uint32_t baud) noexcept {
+    decoder_.forget();
+    decoder_.follow(baud);
+  }
 
   // ---- scans ----
 

@@ -9,14 +9,15 @@
 
 namespace g4lidar {
 
-replay_player::replay_player(parts& of, const lidar_options& options)
-    : feeder(of, options), is_cancelled_(options.is_cancelled) {}
+replay_player::replay_player(parts& of, const lidar_options& options) : feeder(of, options) {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
-  recording_hook* const played = recording_hook_of(connection_.from());
-  source_ = played != nullptr ? played->events() : nullptr;
-  counts_time_ = connection_.from().traits().counts_time;
+  recording_hook* const hook = recording_hook_of(connection_.from());
+  file_ = file_of(connection_.from());
+  source_ = hook != nullptr ? hook->events() : nullptr;
+  if (source_ == nullptr) source_ = file_;  // the seams of raw bytes in a loop
+  if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
   pipeline_.follow(connection_.on().baud());
   stage_ = stage::idle;
@@ -58,6 +59,7 @@ void replay_player::release() noexcept {
   pipeline_.drop_scan();
   connection_.close();
   stage_ = stage::closed;
+  is_released_ = true;
   why_ = error(task::reading, problem::gone, "this lidar, which was closed");
 }
 
@@ -70,7 +72,7 @@ result<void> replay_player::can_read() const noexcept {
 /// Where the recorded lidar was lost or stopped, the recording goes on later, or ends.
 scan_expectation replay_player::expects() const noexcept {
   if (!is_scanning()) return {};
-  if (!delivers_) return {.not_due_before_ns = never_ns};
+  if (!delivers_ || stands()) return {.not_due_before_ns = never_ns};
   return {.not_due_before_ns = spins_up() ? spin_up_.ends_ns() : 0};
 }
 
@@ -114,9 +116,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
 
 /// Whether reading the file was not cancelled by then.
 result<void> replay_player::check() const noexcept {
-  const bool is_cancelled = source_ != nullptr ? source_->take_cancelled()
-                                               : counts_time_ && is_cancelled_ && is_cancelled_();
-  if (!is_cancelled) return {};
+  if (source_ == nullptr || !source_->take_cancelled()) return {};
   return failure(task::reading, problem::cancelled, connection_.name());
 }
 
@@ -249,10 +249,36 @@ std::int64_t replay_player::next_deadline_ns() const noexcept {
   return stage_ >= stage::ending || !pipeline_.is_empty() ? now_ns() : never_ns;
 }
 
-/// The caller's time, converted with the playback speed. Counted time passes by reading alone.
+/// The caller's time, converted with the playback speed.
 std::int64_t replay_player::deadline_after_ns(std::int64_t timeout_ns) const noexcept {
   if (source_ != nullptr) return source_->deadline_after_ns(timeout_ns);
-  return counts_time_ && timeout_ns > 0 ? never_ns : saturating_add(now_ns(), timeout_ns);
+  return saturating_add(now_ns(), timeout_ns);
+}
+
+player* replay_player::controls() noexcept {
+  return file_ == nullptr || is_released_ ? nullptr : &file_->controls();
+}
+
+/// The file is at another place: what was read before is dropped.
+void replay_player::follow_seek() {
+  if (is_released_) return;
+  pipeline_.deliver(false);
+  pipeline_.input().cut();
+  do {
+    while (pipeline_.find_scan()) pipeline_.drop_scan();
+  } while (pipeline_.next() != nullptr);
+  pipeline_.end();
+  pipeline_.drop_scan();
+  event_.reset();
+  is_cut_ = is_lost_ = is_pause_reported_ = false;
+  delivers_ = true;
+  if (!connection_.is_open()) static_cast<void>(connection_.open());
+  receiver_.reset(0, 0, now_ns());
+  if (connection_.is_open()) pipeline_.restart(connection_.on().baud());
+  if (stage_ == stage::idle) return;
+  stage_ = connection_.is_open() ? stage::playing : stage::closed;
+  spin_up_.forget();
+  begin_spin_up();
 }
 
 }  // namespace g4lidar

@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 
 #include "feeder.hpp"
+#include "recording/played_file.hpp"
 
 namespace g4lidar {
 
@@ -24,6 +24,10 @@ class replay_player final : public feeder {
 
   [[nodiscard]] result<void> can_read() const noexcept override;
   [[nodiscard]] scan_expectation expects() const noexcept override;
+  [[nodiscard]] player* controls() noexcept override;
+  [[nodiscard]] bool stands() const noexcept override {
+    return file_ && file_->clock().is_paused();
+  }
   [[nodiscard]] bool has_motor_on() const noexcept override { return false; }
   [[nodiscard]] bool is_scanning() const noexcept override { return stage_ == stage::playing; }
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept override;
@@ -42,6 +46,7 @@ class replay_player final : public feeder {
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
   [[nodiscard]] bool parse_bytes();
   [[nodiscard]] result<void> check() const noexcept;
+  void follow_seek();
   void follow_delivery();
   void report_long_pause();
   [[nodiscard]] bool play_events(bool all);
@@ -49,9 +54,8 @@ class replay_player final : public feeder {
   void play(const recorded_event& what);
   void play_state(const recorded_event& what);
 
-  std::function<bool()> is_cancelled_;       // reading a file of bytes
-  recorded_event_source* source_ = nullptr;  // of a recording
-  bool counts_time_ = false;                 // raw bytes of a file
+  played_file* file_ = nullptr;              // null: a pipe
+  recorded_event_source* source_ = nullptr;  // of a file
   stage stage_ = stage::closed;
   error why_{task::reading, problem::gone};  // why it ended
   std::optional<recorded_event> event_;      // the next one, whose place has not been reached yet
@@ -59,6 +63,7 @@ class replay_player final : public feeder {
   bool delivers_ = true;                     // whether packets produced points in the recording
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
+  bool is_released_ = false;
   std::uint32_t sample_rate_hz_ = 9000;
   std::uint64_t reconnects_ = 0;
 };

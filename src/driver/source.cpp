@@ -68,14 +68,11 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
   const std::string path = path_of_source(options.device);
   switch (kind_of_source(options.device)) {
-    case source_kind::recording: {
-      const playback_options& how = options.playback;
-      const reading_options range{
-          .from_ns = how.from_ns, .to_ns = how.to_ns, .is_cancelled = options.is_cancelled};
-      return replay::open(path, {.rate = how.speed, .loop = how.loop, .range = range});
-    }
+    case source_kind::recording:
+      return replay::open(path, options.playback, options.is_cancelled);
     case source_kind::raw_bytes:
-      return open_raw_bytes(path, options.raw_sample_rate_hz, options.is_cancelled);
+      return open_raw_bytes(path, options.raw_sample_rate_hz, options.playback,
+                            options.is_cancelled);
     case source_kind::simulated:
       return connect_simulated(options);
     case source_kind::device:

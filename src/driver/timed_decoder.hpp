@@ -28,6 +28,8 @@ class timed_decoder {
     byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
     clock_ = sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud});
   }
+  /// The following bytes may be earlier ones. Before follow().
+  void forget() noexcept { baud_.reset(); }
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
   void begin(std::uint32_t sample_rate_hz) noexcept {
     clock_.reset(sample_rate_hz);

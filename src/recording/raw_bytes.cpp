@@ -17,11 +17,13 @@
 #include <variant>
 #include <vector>
 
+#include "core/saturating.hpp"
 #include "format.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "played_file.hpp"
 #include "transport/fd_port.hpp"
 
 namespace g4lidar {
@@ -32,45 +34,14 @@ constexpr std::int64_t file_begin_ns = second_ns;
 /// Of bytes that belong to no packet.
 constexpr std::size_t longest_piece = 16'384;
 
-/// The common part of both kinds: a descriptor, and no device that answers.
-class byte_transport : public transport {
+/// A pipe, a terminal or a device: bytes arrive when they can be read. Nothing answers.
+class pipe_transport final : public transport {
  public:
-  byte_transport(owned_fd fd, std::string name) : fd_(std::move(fd)), name_(std::move(name)) {}
-
-  [[nodiscard]] result<void> write(bytes, std::int64_t) noexcept override { return {}; }
-  void wake() noexcept override { woken_.store(true); }
-  [[nodiscard]] std::string_view name() const noexcept override { return name_; }
-
- protected:
-  [[nodiscard]] int fd() const noexcept { return fd_.get(); }
-  [[nodiscard]] bool is_woken() noexcept { return woken_.exchange(false); }
-
-  /// One call of read(), made only if it does not wait.
-  [[nodiscard]] result<std::size_t> take(std::span<std::uint8_t> out) noexcept {
-    while (true) {
-      const ssize_t count = ::read(fd(), out.data(), out.size());
-      if (count > 0) return static_cast<std::size_t>(count);
-      const bool has_gone = count < 0 && errno == EIO && ::isatty(fd()) != 0;
-      if (count == 0 || has_gone) return failure(task::reading, problem::end_of_input, name_);
-      if (errno == EAGAIN) return std::size_t{0};
-      if (errno != EINTR) return failure(task::reading, problem::system, name_, errno);
-    }
-  }
-
- private:
-  owned_fd fd_;
-  std::string name_;
-  std::atomic<bool> woken_{false};
-};
-
-/// A pipe: bytes arrive when they can be read.
-class pipe_transport final : public byte_transport {
- public:
-  using byte_transport::byte_transport;
+  pipe_transport(owned_fd fd, std::string name) : fd_(std::move(fd)), name_(std::move(name)) {}
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
-    if (is_woken()) return failure(task::reading, problem::cancelled, name());
+    if (woken_.exchange(false)) return failure(task::reading, problem::cancelled, name_);
     if (!wait(POLLIN, deadline_ns)) return received{};
     const auto got = take(out);
     if (!got) return tl::unexpected(got.error());
@@ -82,66 +53,125 @@ class pipe_transport final : public byte_transport {
     }
     return received{*got, steady_now_ns()};
   }
+  [[nodiscard]] result<void> write(bytes, std::int64_t) noexcept override { return {}; }
   [[nodiscard]] result<void> pause(std::int64_t deadline_ns) noexcept override {
     static_cast<void>(wait(0, deadline_ns));
     return {};
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
-  [[nodiscard]] int native_handle() const noexcept override { return fd(); }
+  void wake() noexcept override { woken_.store(true); }
+  [[nodiscard]] std::string_view name() const noexcept override { return name_; }
+  [[nodiscard]] int native_handle() const noexcept override { return fd_.get(); }
 
  private:
   /// Waits until something can be read, at most until the deadline; the end counts, too.
   [[nodiscard]] bool wait(short events, std::int64_t deadline_ns) noexcept {
     const std::int64_t left_ms = (deadline_ns - steady_now_ns() + 999'999) / 1'000'000;
-    pollfd waiting{events != 0 ? fd() : -1, events, 0};
+    pollfd waiting{events != 0 ? fd_.get() : -1, events, 0};
     return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000))) != 0;
   }
+  /// One call of read(), made only if it does not wait.
+  [[nodiscard]] result<std::size_t> take(std::span<std::uint8_t> out) noexcept {
+    while (true) {
+      const ssize_t count = ::read(fd_.get(), out.data(), out.size());
+      if (count > 0) return static_cast<std::size_t>(count);
+      const bool has_gone = count < 0 && errno == EIO && ::isatty(fd_.get()) != 0;
+      if (count == 0 || has_gone) return failure(task::reading, problem::end_of_input, name_);
+      if (errno == EAGAIN) return std::size_t{0};
+      if (errno != EINTR) return failure(task::reading, problem::system, name_, errno);
+    }
+  }
 
+  owned_fd fd_;
+  std::string name_;
+  std::atomic<bool> woken_{false};
   bool has_begun_ = false;
 };
 
-/// A file: its times are counted from samples.
-class counted_transport final : public byte_transport {
+/// Returns its transport once.
+class pipe_connector final : public connector {
  public:
-  counted_transport(owned_fd fd, std::string name, std::uint32_t rate_hz,
-                    std::shared_ptr<std::int64_t> counted_ns, std::function<bool()> is_cancelled)
-      : byte_transport(std::move(fd), std::move(name)),
-        rate_hz_(rate_hz),
-        counted_ns_(std::move(counted_ns)),
-        is_cancelled_(std::move(is_cancelled)) {}
+  explicit pipe_connector(std::unique_ptr<pipe_transport> port) : port_(std::move(port)) {}
 
-  [[nodiscard]] result<received> read(std::span<std::uint8_t> out, std::int64_t) noexcept override {
-    if (is_woken()) return failure(task::reading, problem::cancelled, name());
-    if (piece_.empty()) {
-      if (auto next = find_piece(); !next) return tl::unexpected(next.error());
-    }
-    const std::size_t count = std::min(out.size(), piece_.size());
-    std::memcpy(out.data(), piece_.data(), count);
-    piece_ = piece_.subspan(count);
-    return received{count, now_ns()};
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
+    if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
+    return std::move(port_);
   }
-  [[nodiscard]] result<void> pause(std::int64_t) noexcept override { return {}; }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override { return *counted_ns_; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
+  [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
+  void wake() noexcept override {}
+  [[nodiscard]] connector_traits traits() const noexcept override { return {.answers = false}; }
 
  private:
-  /// Up to the end of the next packet, whose samples have been measured by then. No part of it
-  /// arrives before.
-  [[nodiscard]] result<void> find_piece() noexcept {
+  std::unique_ptr<pipe_transport> port_;
+};
+
+/// The bytes of a file: their times are counted from samples.
+class counted_items final : public item_source {
+ public:
+  /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
+  counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
+                std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
+                std::function<bool()> is_cancelled)
+      : fd_(std::move(fd)),
+        file_begin_(at),
+        name_(std::move(name)),
+        rate_hz_(sample_rate_hz),
+        wall_ahead_ns_(wall_ns - file_begin_ns),
+        to_ns_(saturating_add(file_begin_ns, to_ns)),
+        is_cancelled_(std::move(is_cancelled)) {}
+
+  [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
+    while (true) {
+      auto piece = find_piece();
+      if (!piece) return tl::unexpected(piece.error());
+      if (piece->empty() || now_ns_ >= to_ns_) return std::nullopt;
+      if (now_ns_ < from_ns_) continue;
+      return recorded_item{
+          recorded_item::kind::from_device, now_ns_, now_ns_ + wall_ahead_ns_, *piece, {}};
+    }
+  }
+  [[nodiscard]] result<void> seek(std::int64_t from_ns) noexcept override {
+    from_ns_ = saturating_add(file_begin_ns, from_ns);
+    now_ns_ = file_begin_ns;
+    read_ = 0;
+    begin_ = parsed_ = end_ = 0;
+    samples_ = 0;
+    parser_ = stream_parser();
+    return {};
+  }
+  [[nodiscard]] std::int64_t first_ns() const noexcept override { return file_begin_ns; }
+  [[nodiscard]] std::int64_t last_ns() noexcept override {
+    if (!last_ns_) {
+      counted_items all(fd_, file_begin_, name_, static_cast<std::uint32_t>(rate_hz_), 0, never_ns,
+                        is_cancelled_);
+      for (auto piece = all.find_piece(); piece && !piece->empty();) piece = all.find_piece();
+      last_ns_ = all.now_ns_;
+    }
+    return *last_ns_;
+  }
+
+ private:
+  /// Up to the end of the next packet, whose samples have been measured by then: no part of it arrives
+  /// before. Empty at the end. Valid until the next call.
+  [[nodiscard]] result<bytes> find_piece() noexcept {
     while (!parse() && end_ - begin_ < longest_piece) {
       std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
       end_ = parsed_ = end_ - begin_;
       begin_ = 0;
-      if (is_cancelled_ && is_cancelled_()) {
-        return failure(task::reading, problem::cancelled, name());
-      }
-      const auto got = take(std::span(buffer_).subspan(end_));
-      if (!got && end_ > 0 && got.error() == problem::end_of_input) break;
-      if (!got) return tl::unexpected(got.error());
-      end_ += *got;
+      if (is_cancelled_ && is_cancelled_())
+        return failure(task::reading, problem::cancelled, name_);
+      const ssize_t count = uninterrupted([&] {
+        return ::pread(fd_->get(), buffer_.data() + end_, buffer_.size() - end_,
+                       file_begin_ + read_);
+      });
+      if (count < 0) return failure(task::reading, problem::system, name_, errno);
+      if (count == 0) break;
+      end_ += static_cast<std::size_t>(count);
+      read_ += count;
     }
-    piece_ = bytes(buffer_).subspan(begin_, parsed_ - begin_);
-    begin_ = parsed_;
-    return {};
+    const std::size_t from = std::exchange(begin_, parsed_);
+    return bytes(buffer_).subspan(from, parsed_ - from);
   }
   /// Whether there was a packet; then everything up to its end is parsed.
   [[nodiscard]] bool parse() noexcept {
@@ -158,56 +188,36 @@ class counted_transport final : public byte_transport {
   }
   void count(std::size_t samples) noexcept {
     samples_ += static_cast<std::int64_t>(samples);
-    *counted_ns_ = file_begin_ns + samples_ / rate_hz_ * second_ns +
-                   samples_ % rate_hz_ * second_ns / rate_hz_;
+    now_ns_ = file_begin_ns + samples_ / rate_hz_ * second_ns +
+              samples_ % rate_hz_ * second_ns / rate_hz_;
   }
 
+  std::shared_ptr<const owned_fd> fd_;
+  off_t file_begin_;
+  std::string name_;
   std::int64_t rate_hz_;
-  std::shared_ptr<std::int64_t> counted_ns_;  // the connector has it, too
+  std::int64_t wall_ahead_ns_;
+  std::int64_t from_ns_ = 0;
+  std::int64_t to_ns_;
   std::function<bool()> is_cancelled_;
+  std::int64_t now_ns_ = file_begin_ns;
+  std::optional<std::int64_t> last_ns_;
   std::int64_t samples_ = 0;
   stream_parser parser_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
+  off_t read_ = 0;          // of the file
   std::size_t begin_ = 0;   // of the bytes that were not returned yet
   std::size_t parsed_ = 0;  // up to here
   std::size_t end_ = 0;
-  bytes piece_;
-};
-
-/// Returns its transport once. The time is that of the transport, which may be destroyed before
-/// this.
-class byte_connector final : public connector {
- public:
-  byte_connector(std::unique_ptr<byte_transport> port,
-                 std::shared_ptr<const std::int64_t> counted_ns,
-                 std::optional<std::int64_t> wall_ahead_ns)
-      : port_(std::move(port)), counted_ns_(std::move(counted_ns)), wall_ahead_ns_(wall_ahead_ns) {}
-
-  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
-    if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
-    return std::move(port_);
-  }
-  [[nodiscard]] std::int64_t now_ns() const noexcept override {
-    return counted_ns_ != nullptr ? *counted_ns_ : steady_now_ns();
-  }
-  [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
-  void wake() noexcept override {}
-  [[nodiscard]] connector_traits traits() const noexcept override {
-    return {
-        .answers = false, .counts_time = counted_ns_ != nullptr, .wall_ahead_ns = wall_ahead_ns_};
-  }
-
- private:
-  std::unique_ptr<byte_transport> port_;
-  std::shared_ptr<const std::int64_t> counted_ns_;  // null: a pipe
-  std::optional<std::int64_t> wall_ahead_ns_;
 };
 
 }  // namespace
 
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::uint32_t sample_rate_hz,
+                                                  const playback_options& options,
                                                   std::function<bool()> is_cancelled) {
+  if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
   const bool is_standard = name == "-";
   owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
                           : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
@@ -218,17 +228,19 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
     return failure(task::opening, problem::bad_file, name, EISDIR);
   }
   std::string title = is_standard ? "standard input" : name;
-  std::unique_ptr<byte_transport> port;
-  if (is_known && S_ISREG(file.st_mode)) {
-    const std::int64_t wall_ns = file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec;
-    auto counted_ns = std::make_shared<std::int64_t>(file_begin_ns);
-    port = std::make_unique<counted_transport>(std::move(fd), std::move(title), sample_rate_hz,
-                                               counted_ns, std::move(is_cancelled));
-    return std::make_unique<byte_connector>(std::move(port), std::move(counted_ns),
-                                            wall_ns - file_begin_ns);
+  if (!is_known || !S_ISREG(file.st_mode)) {
+    return std::make_unique<pipe_connector>(
+        std::make_unique<pipe_transport>(std::move(fd), std::move(title)));
   }
-  port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
-  return std::make_unique<byte_connector>(std::move(port), nullptr, std::nullopt);
+  const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
+  auto waits = std::make_shared<waker>(real_system_calls());
+  auto items = std::make_unique<counted_items>(
+      std::make_shared<const owned_fd>(std::move(fd)), at, title, sample_rate_hz,
+      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
+      std::move(is_cancelled));
+  if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
+  return connect_to(std::make_shared<played_file>(std::move(items), title, options,
+                                                  recorded_device{}, std::move(waits)));
 }
 
 }  // namespace g4lidar

@@ -6,6 +6,7 @@
 
 #include "file_writer.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "played_file.hpp"
 
 namespace g4lidar {
 namespace {
@@ -89,7 +90,9 @@ class recorded_connector final : public forwarding_connector,
       : forwarding_connector(std::move(from)),
         into_(&into),
         inner_hook_(recording_hook_of(inner())),
-        played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {}
+        played_(inner_hook_ != nullptr ? inner_hook_->events() : nullptr) {
+    if (played_file* const played = file_of(inner())) played->controls().forbid_seek();
+  }
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     auto port = inner().connect();

@@ -83,7 +83,7 @@ class SlowReplay : public testing::TestWithParam<slow_replay> {};
 TEST_P(SlowReplay, ReturnsByTheTimeout_IsWokenAndReported) {
   const temporary_path path;
   record_jump(path.text(), GetParam().jump_ns);
-  auto device = lidar::open(std::move(*replay::open(path.text(), {.rate = GetParam().rate})));
+  auto device = lidar::open(std::move(*replay::open(path.text(), {.speed = GetParam().rate})));
   ASSERT_TRUE(device);
   ASSERT_TRUE(device->start());
   const auto begin = clock::now();

@@ -116,15 +116,14 @@ TEST_F(HostileChunks, WokenReplay_ReturnsOnceWithCancelled) {
   const temporary_path path;
   std::ofstream(path.text(), std::ios::binary)
       << file_around(repeated(chunk_of_a_foreign_message(), 3));
-  for (const double rate : {0.0, 1000.0}) {
+  for (const double speed : {0.0, 1000.0}) {
     std::optional<lidar> device;
     int asked = 0;
-    replay_options how{.rate = rate};
-    how.range.is_cancelled = [&] {
+    const auto asks = [&] {
       if (device && ++asked == 100) device->wake();
       return false;
     };
-    auto from = replay::open(path.text(), how);
+    auto from = replay::open(path.text(), {.speed = speed}, asks);
     ASSERT_TRUE(from) << from.error().message();
     device.emplace(*lidar::open(std::move(*from)));
     ASSERT_TRUE(device->start());
@@ -137,10 +136,10 @@ TEST_F(HostileChunks, WokenReplay_ReturnsOnceWithCancelled) {
       ASSERT_GE(asked, 100);
       ++cancelled;
     }
-    EXPECT_EQ(cancelled, 1U) << rate;
+    EXPECT_EQ(cancelled, 1U) << speed;
     std::size_t expected = 0;
     for (const std::uint32_t i : numbers(0, 400)) expected += reading(i).size();
-    EXPECT_EQ(device->counts().bytes, expected) << rate;
+    EXPECT_EQ(device->counts().bytes, expected) << speed;
   }
 }
 

@@ -131,4 +131,21 @@ inline void expect_same_points(const std::vector<point>& wanted, const std::vect
   }
 }
 
+/// Records a healthy device for this time.
+inline void record_device(recording_writer& into, std::int64_t until_ns,
+                          bool with_metadata = true) {
+  virtual_bench bench;
+  auto from = recorded(std::make_unique<virtual_connector>(bench), into);
+  auto device = lidar::open(std::move(*from));
+  ASSERT_TRUE(device) << device.error().message();
+  recorded_device known;
+  known.information = device->information();
+  if (with_metadata) into.device(known);
+  ASSERT_TRUE(device->start());
+  while (bench.now_ns < until_ns) {
+    const auto scan = device->next_scan(std::chrono::milliseconds(500));
+    if (scan) into.scan(*scan);
+  }
+}
+
 }  // namespace g4lidar::test

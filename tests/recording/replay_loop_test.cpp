@@ -40,7 +40,7 @@ TEST(ReplayLoop, RecordedSpinUpAndUnplug_DoNotEndIt) {
   }
   EXPECT_EQ(recorded_scans, 60);
   // 0.05 s are 2 s of the recording: more than a revolution, less than the spin-up and the unplug.
-  auto from = replay::open(path.text(), {.rate = 40.0});
+  auto from = replay::open(path.text(), {.speed = 40.0});
   ASSERT_TRUE(from);
   auto lidar = lidar::open(std::move(*from));
   ASSERT_TRUE(lidar);

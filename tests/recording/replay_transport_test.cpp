@@ -16,23 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Records a healthy device for this time.
-void record_device(recording_writer& into, std::int64_t until_ns, bool with_metadata = true) {
-  virtual_bench bench;
-  auto from = recorded(std::make_unique<virtual_connector>(bench), into);
-  auto device = lidar::open(std::move(*from));
-  ASSERT_TRUE(device) << device.error().message();
-  recorded_device known;
-  known.information = device->information();
-  if (with_metadata) into.device(known);
-  ASSERT_TRUE(device->start());
-  while (bench.now_ns < until_ns) {
-    const auto scan = device->next_scan(500ms);
-    if (scan) into.scan(*scan);
-  }
-}
-
-std::unique_ptr<transport> port_of(const std::string& path, const replay_options& how = {}) {
+std::unique_ptr<transport> port_of(const std::string& path, const playback_options& how = {}) {
   auto found = replay::open(path, how);
   if (!found) {
     ADD_FAILURE() << found.error().message();
@@ -214,7 +198,7 @@ TEST(ReplayTransport, RecordedSpeed_BytesArriveWhenTheyAreDue) {
     record_readings(writer, 1, 2);
   }
   const auto port =
-      port_of(path.text(), {.rate = 1e-5});  // the second one is due in a quarter of an hour
+      port_of(path.text(), {.speed = 1e-5});  // the second one is due in a quarter of an hour
   std::array<std::uint8_t, 200> out{};
   const auto first = port->read(out, never_ns);
   ASSERT_TRUE(first);
@@ -237,7 +221,7 @@ TEST(ReplayTransport, AtItsOwnRate_TakesItsTime) {
     record_readings(writer, 0, 101);
   }
   const auto begin = std::chrono::steady_clock::now();
-  const auto port = port_of(path.text(), {.rate = 10});
+  const auto port = port_of(path.text(), {.speed = 10});
   std::array<std::uint8_t, 200> out{};
   int count = 0;
   while (const auto got = port->read(out, never_ns)) count += got->count > 0 ? 1 : 0;
@@ -251,16 +235,16 @@ TEST(ReplayTransport, InvalidOptions_AreRefused) {
     auto writer = made_writer(path.text());
     record_readings(writer, 0, 2);
   }
-  const auto refused = [&](const replay_options& how) {
+  const auto refused = [&](const playback_options& how) {
     const auto made = replay::open(path.text(), how);
     return !made && made.error() == problem::bad_option;
   };
-  EXPECT_TRUE(refused({.rate = -1}));
-  EXPECT_TRUE(refused({.rate = 1001}));
-  EXPECT_TRUE(refused({.rate = 1e-7}));
-  EXPECT_TRUE(refused({.rate = std::numeric_limits<double>::denorm_min()}));
-  EXPECT_TRUE(refused({.rate = std::numeric_limits<double>::quiet_NaN()}));
-  EXPECT_TRUE(refused({.range = {.from_ns = 5, .to_ns = 5}}));
+  EXPECT_TRUE(refused({.speed = -1}));
+  EXPECT_TRUE(refused({.speed = 1001}));
+  EXPECT_TRUE(refused({.speed = 1e-7}));
+  EXPECT_TRUE(refused({.speed = std::numeric_limits<double>::denorm_min()}));
+  EXPECT_TRUE(refused({.speed = std::numeric_limits<double>::quiet_NaN()}));
+  EXPECT_TRUE(refused({.from_ns = 5, .to_ns = 5}));
   EXPECT_FALSE(refused({}));
 }
 

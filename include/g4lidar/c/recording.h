@@ -98,7 +98,8 @@ G4LIDAR_C_API int g4lidar_open_recording(const char* path, const g4lidar_playbac
                                          const g4lidar_options* options, g4lidar_lidar** lidar,
                                          g4lidar_error* error);
 /** Continues a lidar of g4lidar_open_recording() at another place, nanoseconds since the beginning of
- *  the recording; a scan that was started runs on. Counts begin again. Not for other lidars. */
+ *  the recording; a scan that was started runs on, and counts go on. Not for other lidars, nor for one
+ *  with a recorder. */
 G4LIDAR_C_API int g4lidar_seek(g4lidar_lidar* lidar, int64_t from_ns, g4lidar_error* error);
 
 /** What is known about a file and its damage, as far as it was read. */

@@ -14,6 +14,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/message/ros_messages.hpp"
+#include "g4lidar/recording/player.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
@@ -23,16 +24,18 @@ namespace g4lidar {
 ///
 /// A regular file contains no times, so they are counted: its packets arrive at the rate of their
 /// samples, `sample_rate_hz` (1 to 1,000,000), each packet as a whole with its last sample; the
-/// first sample has the modification time of the file as its wall-clock time. Calls do not wait:
-/// now_ns() is the time of the bytes read last, and begins at 1 s. Bytes of a pipe, a terminal or a
+/// first sample has the modification time of the file as its wall-clock time. It is played like a
+/// recording; the times begin at 1 s. At speed 0 calls do not wait, and now_ns() is the time of the bytes
+/// read last. Bytes of a pipe, a terminal or a
 /// device have the time at which they are read. *Allocates on open.*
 ///
 /// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
 /// it is set: while it returns true, reading fails with cancelled.
 ///
-/// Fails with system; reading fails with bad_file if a pipe contains a recording.
+/// Fails with bad_option and system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
-    const std::string& path, std::uint32_t sample_rate_hz, std::function<bool()> is_cancelled = {});
+    const std::string& path, std::uint32_t sample_rate_hz, const playback_options& options = {},
+    std::function<bool()> is_cancelled = {});
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// whoever wrote it, is a recording.

@@ -136,7 +136,7 @@ void station_reader::open() {
   source_.reset();  // before the next one opens the port
   source_ = std::make_unique<opened_source>(options_, how_);
   g4lidar::lidar& lidar = source_->lidar();
-  at_ = {.is_paced = nature_.is_file && (recorded_ || lidar.native_handle() < 0)};
+  at_ = {.is_paced = lidar.player() != nullptr};
   playback_.restart();
   static_cast<void>(wall_.update());
   board.show([&](station_view& all) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// The clock of a file that is played.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/saturating.hpp"
+#include "transport/fd_port.hpp"
+
+namespace g4lidar {
+
+/// By the times of the recording. At speed 0 reads move it forward; while it is paused it stands.
+class playback_clock {
+ public:
+  playback_clock(double speed, std::int64_t begin_ns) noexcept : speed_(speed) { seek(begin_ns); }
+
+  [[nodiscard]] double speed() const noexcept { return speed_; }
+  [[nodiscard]] bool is_paused() const noexcept { return is_paused_; }
+  /// Whether everything is due at once.
+  [[nodiscard]] bool is_free() const noexcept { return speed_ == 0 && !is_paused_; }
+  [[nodiscard]] std::int64_t now_ns() const noexcept {
+    if (is_paused_ || speed_ == 0) return now_ns_;
+    const auto since = static_cast<double>(steady_now_ns() - begun_ns_) * speed_;
+    return std::max(now_ns_, saturating_add(begin_ns_, saturating_ns(since)));
+  }
+  /// When this clock will be `at_ns`, by the steady clock. While it is paused: when a wait of as long ends.
+  [[nodiscard]] std::int64_t steady_ns(std::int64_t at_ns) const noexcept {
+    if (is_paused_) return saturating_add(steady_now_ns(), saturating_sub(at_ns, now_ns_));
+    const auto left = static_cast<double>(saturating_sub(at_ns, begin_ns_)) / speed_;
+    return saturating_add(begun_ns_, saturating_ns(std::max(left, 0.0)));
+  }
+  /// The end of a wait for `time_ns` of the steady clock: the time of this clock then, if it does not stand.
+  [[nodiscard]] std::int64_t after_ns(std::int64_t time_ns) const noexcept {
+    if (is_paused_ || speed_ == 0) return saturating_add(now_ns_, time_ns);
+    return saturating_add(now_ns(), saturating_ns(static_cast<double>(time_ns) * speed_));
+  }
+
+  /// It never goes back.
+  void advance_to(std::int64_t at_ns) noexcept { now_ns_ = std::max(now_ns_, at_ns); }
+  void set_speed(double speed) noexcept {
+    seek(now_ns());
+    speed_ = speed;
+  }
+  void pause(bool pauses) noexcept {
+    seek(now_ns());
+    is_paused_ = pauses;
+  }
+  void seek(std::int64_t at_ns) noexcept {
+    begin_ns_ = now_ns_ = at_ns;
+    begun_ns_ = steady_now_ns();
+  }
+
+ private:
+  double speed_;
+  bool is_paused_ = false;
+  std::int64_t begin_ns_ = 0;
+  std::int64_t now_ns_ = 0;
+  std::int64_t begun_ns_ = 0;
+};
+
+}  // namespace g4lidar
