@@ -13,10 +13,11 @@ def main(device: str = "", *, frames: int | None = None) -> None:
 
     axes = plt.figure("g4lidar").add_subplot(projection="polar", theta_offset=np.pi / 2, theta_direction=-1)
     (dots,) = axes.plot([], [], ".", markersize=2)
+    shaper = g4lidar.ScanShaper(returns_only=True)
     with g4lidar.open(device) as lidar:
         lidar.start()
         for number, scan in enumerate(lidar.scans(newest=True), 1):
-            points = g4lidar.filter_points(scan.points, returns_only=True)
+            points = shaper.shape(scan).kept
             dots.set_data(np.radians(points["angle_deg"]), points["range_mm"] / 1000)
             axes.set_ylim(0, max(1.0, points["range_mm"].max(initial=0) / 1000))
             plt.pause(0.01)

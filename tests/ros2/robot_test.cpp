@@ -20,7 +20,7 @@
 
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
-#include "io/scan_shaper.hpp"
+#include "io/odometry_feed.hpp"
 #include "lidar.hpp"
 #include "played_clock.hpp"
 #include "subscriber.hpp"
@@ -319,6 +319,21 @@ TEST_F(Robot, WithoutOdometryNothingIsDeskewedAndThatIsReported) {
   const std::size_t first = err.find("no odometry on /odom");
   EXPECT_NE(first, std::string::npos) << err;
   EXPECT_EQ(err.rfind("no odometry on /odom"), first) << err;
+}
+
+TEST_F(Robot, MergedLidarsWhoseScansDoNotShowTheMotion_AreNotDeskewedAndThatIsReported) {
+  cli::write_file(path("post.txt"), "wall 2 -0.1 2 0.1\nlidar 0 0 0\n");  // too few returns
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
+  diagnosis diagnostics(domain_);
+  cli::program tool({"front=sim:?world=" + path("post.txt"), "--merge", "--mount", "front=0,0,0",
+                     "--deskew", "scans"});
+  EXPECT_TRUE(comes_true([&] { return clouds.take() > 0; }));
+  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: front deskewing level"] == "1"; }));
+  EXPECT_EQ(diagnostics["g4lidar: front deskewing warning"],
+            "points are not deskewed: the scans do not show the motion");
+  EXPECT_TRUE(
+      comes_true([&] { return std::atoi(diagnostics["points_not_deskewed"].c_str()) > 3000; }));
+  tool.send(SIGINT);
 }
 
 TEST(OdometryPath, GoesOnForALittleWithTheLastVelocity) {

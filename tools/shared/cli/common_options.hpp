@@ -12,14 +12,13 @@
 
 #include "exit_code.hpp"
 #include "g4lidar/export/point_writer.hpp"
-#include "g4lidar/export/shaping_writer.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/too_near.hpp"
 #include "rows.hpp"
 #include "verbs.hpp"
@@ -51,13 +50,6 @@ enum class loss_rule : unsigned char {
   exit,       ///< It ends.
   reconnect,  ///< It continues when the device is connected again.
   wait,       ///< It also waits for a device that is not connected yet.
-};
-
-/// Which points are marked by their neighbours or by earlier revolutions: those that are given.
-struct mark_limits {
-  std::optional<speckle_limits> speckle;
-  std::optional<edge_limits> edges;
-  std::optional<near_limits> near;
 };
 
 struct common_options {
