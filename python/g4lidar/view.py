@@ -13,11 +13,10 @@ def main(device: str = "", *, frames: int | None = None) -> None:
 
     axes = plt.figure("g4lidar").add_subplot(projection="polar", theta_offset=np.pi / 2, theta_direction=-1)
     (dots,) = axes.plot([], [], ".", markersize=2)
-    shaper = g4lidar.ScanShaper(returns_only=True)
     with g4lidar.open(device) as lidar:
         lidar.start()
         for number, scan in enumerate(lidar.scans(newest=True), 1):
-            points = shaper.shape(scan).kept
+            points = scan.points[scan.points["range_mm"] > 0]
             dots.set_data(np.radians(points["angle_deg"]), points["range_mm"] / 1000)
             axes.set_ylim(0, max(1.0, points["range_mm"].max(initial=0) / 1000))
             plt.pause(0.01)

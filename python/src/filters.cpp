@@ -138,8 +138,7 @@ void bind_shaper(nb::module_& module) {
            "estimated, because merge_scans() deskews.")
       .def(
           "shape",
-          [](shaper& self, const kept_scan& scan,
-             const std::optional<array<stamped_pose>>& path) {
+          [](shaper& self, const kept_scan& scan, const std::optional<array<stamped_pose>>& path) {
             self.shape(scan.points, path, scan.about.flags);
             return nb::find(self);
           },

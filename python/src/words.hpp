@@ -69,18 +69,18 @@ struct nanobind::detail::type_caster<g4lidar::python::path_text> {
 };
 
 /// The words of an enumeration with the values 0, 1 and 2.
-#define G4LIDAR_THREE_WORDS(Enumeration, first_word, second_word, third_word)                      \
-  template <>                                                                                      \
-  struct nanobind::detail::type_caster<Enumeration> {                                              \
-    NB_TYPE_CASTER(Enumeration, const_name("typing.Literal['" first_word "', '" second_word        \
-                                           "', '" third_word "']"))                                \
-    bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {                         \
-      return g4lidar::python::read_word(from, {first_word, second_word, third_word}, value);       \
-    }                                                                                              \
-    static handle from_cpp(Enumeration from, rv_policy, cleanup_list*) noexcept {                  \
-      constexpr std::array<const char*, 3> words{first_word, second_word, third_word};             \
-      return PyUnicode_FromString(words[static_cast<std::size_t>(from)]);                          \
-    }                                                                                              \
+#define G4LIDAR_THREE_WORDS(Enumeration, first_word, second_word, third_word)                \
+  template <>                                                                                \
+  struct nanobind::detail::type_caster<Enumeration> {                                        \
+    NB_TYPE_CASTER(Enumeration, const_name("typing.Literal['" first_word "', '" second_word  \
+                                           "', '" third_word "']"))                          \
+    bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {                   \
+      return g4lidar::python::read_word(from, {first_word, second_word, third_word}, value); \
+    }                                                                                        \
+    static handle from_cpp(Enumeration from, rv_policy, cleanup_list*) noexcept {            \
+      constexpr std::array<const char*, 3> words{first_word, second_word, third_word};       \
+      return PyUnicode_FromString(words[static_cast<std::size_t>(from)]);                    \
+    }                                                                                        \
   }
 
 /// The words of an enumeration with the values 0 and 1.

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Filters, grids, deskewing, merging, and the doctor."""
 import math
+import os
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -140,6 +142,26 @@ def test_marks() -> None:
     assert list(np.flatnonzero(unlikely["flags"] & PointFlag.UNLIKELY)) == [300]
     with pytest.raises(ValueError):
         g4lidar.mark_isolated(points, window=17)
+
+
+def test_a_shaper_gives_the_points_of_convert_bit_for_bit(tmp_path: Path) -> None:
+    tool = os.environ.get("G4_DUMP", "")
+    if not os.access(tool, os.X_OK):
+        pytest.skip("g4-dump is not built")
+    (tmp_path / "way.txt").write_text("drive forward 2 1\ndrive turn 180 90\n")
+    for words in (
+        "sim --seconds 6 --dropout 0.02 --path way.txt -o way.bin",
+        "convert way.bin way.mcap",
+        "convert way.mcap way.npy --time mono --speckle --edges --near --range 0.3: --deskew scans",
+    ):
+        subprocess.run([tool, *words.split()], cwd=tmp_path, check=True, stderr=subprocess.DEVNULL)
+    shaper = g4lidar.ScanShaper(speckle=True, edges=True, near=True, least_range_mm=300, deskew="by_scans")
+    points = []
+    with g4lidar.open(f"file:{tmp_path}/way.mcap", partial_scans=True) as lidar:
+        lidar.start()
+        for scan in lidar.scans():
+            points.append(shaper.shape(scan).kept)
+    assert np.concatenate(points).tobytes() == np.load(tmp_path / "way.npy").tobytes()
 
 
 def test_deskew_by_a_twist_and_along_poses() -> None:

@@ -90,8 +90,7 @@ TEST_F(Deskewing, ByPath_SeesTheWallFromTheFirstPlace) {
 }
 
 TEST_F(Deskewing, ALidarThatLooksBack_SeesTheWallFromTheFirstPlace) {
-  write({.shape = {.deskew = deskewing::by_path,
-                   .mount = {.pose = {0.0, 0.0, std::numbers::pi}}},
+  write({.shape = {.deskew = deskewing::by_path, .mount = {.pose = {0.0, 0.0, std::numbers::pi}}},
          .path = path_});
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F), FloatNear(4800.0F, 0.02F)));
 }

@@ -134,8 +134,9 @@ TEST(ShapingWriterSpeckle, DoesNotDependOnThePieces) {
   callback_sink sink([](std::string_view) {});
   for (const std::size_t size : {1U, 2U, 3U, 7U, 39U, 40U}) {
     times heard;
-    shaping_writer writer(std::make_unique<listener>(heard, false),
-                          {.shape = {.marks = {.speckle = speckle_limits{.window = 3}, .edges = edge_limits{}}}});
+    shaping_writer writer(
+        std::make_unique<listener>(heard, false),
+        {.shape = {.marks = {.speckle = speckle_limits{.window = 3}, .edges = edge_limits{}}}});
     for (std::size_t from = 0; from < points.size(); from += size) {
       writer.write_points(std::span(points).subspan(from, std::min(size, points.size() - from)),
                           sink);

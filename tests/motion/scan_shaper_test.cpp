@@ -107,8 +107,7 @@ TEST_F(ScanShaper, ByPath_SeesTheWallFromTheFirstPlace) {
 }
 
 TEST_F(ScanShaper, PointsOffThePath_AreFlaggedAndCountedAndKeepTheirTime) {
-  const std::array<stamped_pose, 2> first_half{path_[0],
-                                               {begin_ns + tenth_ns, {2.2, 1.0, 0.0}}};
+  const std::array<stamped_pose, 2> first_half{path_[0], {begin_ns + tenth_ns, {2.2, 1.0, 0.0}}};
   scan_shaper shaper({.deskew = deskewing::by_path, .restamps = true});
   shaper.shape(scan_of(points_), first_half);
   EXPECT_EQ(shaper.outside(), 1U);
@@ -151,8 +150,8 @@ TEST_F(ScanShaper, ByScans_WithoutAnEarlierOne_NothingMovesAndAllIsFlagged) {
 TEST_F(ScanShaper, ByScans_MovesByTheEstimateWithoutTheFilter) {
   const drive how{.twist = {0.3, 0.0, 0.4}};
   driven_lidar lidar(office(), how, 1);
-  scan_shaper shaper({.filter = {.field_of_view = sector(0.0, 10.0)},
-                      .deskew = deskewing::by_scans});
+  scan_shaper shaper(
+      {.filter = {.field_of_view = sector(0.0, 10.0)}, .deskew = deskewing::by_scans});
   scan_shaper merging({.deskew = deskewing::by_scans, .for_merging = true});
   for (int i = 0; i < 3; ++i) {
     const std::vector<point> points = lidar.revolution();
@@ -205,11 +204,11 @@ TEST_F(ScanShaper, WhatWasNearBefore_IsKnownAlthoughNobodyTookIt) {
 
 TEST_F(ScanShaper, AllocatesForTheFirstScansOnly) {
   driven_lidar lidar(office(), {.twist = {0.3, 0.0, 0.4}}, 1);
-  scan_shaper shaper({.filter = {.least_range_mm = 100.0F},
-                      .marks = {.speckle = speckle_limits{}, .edges = edge_limits{},
-                                .near = near_limits{}},
-                      .deskew = deskewing::by_scans,
-                      .restamps = true});
+  scan_shaper shaper(
+      {.filter = {.least_range_mm = 100.0F},
+       .marks = {.speckle = speckle_limits{}, .edges = edge_limits{}, .near = near_limits{}},
+       .deskew = deskewing::by_scans,
+       .restamps = true});
   const std::vector<point> first = lidar.revolution();
   shaper.shape(scan_of(first));
   EXPECT_FALSE(shaper.kept().empty());

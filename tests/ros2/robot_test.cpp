@@ -24,6 +24,8 @@
 #include "lidar.hpp"
 #include "played_clock.hpp"
 #include "subscriber.hpp"
+#include "support/cloud_rows.hpp"
+#include "support/shaped_drive.hpp"
 
 namespace ros2 {
 namespace {
@@ -333,6 +335,27 @@ TEST_F(Robot, MergedLidarsWhoseScansDoNotShowTheMotion_AreNotDeskewedAndThatIsRe
             "points are not deskewed: the scans do not show the motion");
   EXPECT_TRUE(
       comes_true([&] { return std::atoi(diagnostics["points_not_deskewed"].c_str()) > 3000; }));
+  tool.send(SIGINT);
+}
+
+TEST_F(Robot, ItsScansAreShapedAsByTheLibrary_BitForBit) {
+  const g4lidar::test::shaped_drive drive(G4_DUMP_TOOL, path("."));
+  const auto expected = g4lidar::test::cloud_rows_of(drive.recording());
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2, {.depth = 1000});
+  cli::program tool({drive.recording(), "--standby", "--speckle", "--edges", "--near", "--range",
+                     "0.3:", "--deskew", "scans"});
+  std::vector<std::string> got;
+  EXPECT_TRUE(comes_true([&] {
+    clouds.take([&](const cloud_message& cloud) {
+      got.emplace_back(reinterpret_cast<const char*>(cloud.data._buffer), cloud.data._length);
+    });
+    return got.size() >= expected.size();
+  })) << got.size();
+  ASSERT_EQ(got.size(), expected.size());
+  auto cloud = got.begin();
+  for (const std::string& rows : expected) {
+    ASSERT_TRUE(g4lidar::test::without_times(*cloud++) == rows) << cloud - got.begin();
+  }
   tool.send(SIGINT);
 }
 

@@ -19,7 +19,8 @@ merger::merger(dds::bus& on, const ros2_options& options, const std::vector<name
     throw bad_value("--merge cannot be used with --order time: a merged scan has no order of time");
   }
   if (deskew_ != deskewing::none) {
-    report_ = std::make_unique<deskew_report>(deskew_, where_odometry_is(options, options.name_space));
+    report_ =
+        std::make_unique<deskew_report>(deskew_, where_odometry_is(options, options.name_space));
   }
   if (deskew_ == deskewing::by_path && options.topics.odometry != "off") {
     driven_ = std::make_unique<odometry_subscription>(

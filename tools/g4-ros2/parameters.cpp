@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "cli/exit_code.hpp"
-#include "io/shape_files.hpp"
 #include "cli/settings.hpp"
+#include "io/shape_files.hpp"
 
 namespace g4_tool {
 namespace {
@@ -142,8 +142,8 @@ const parameter* find_parameter(std::string_view name) {
 }
 
 lidar_parameters::lidar_parameters(const common_options& how,
-                                   const std::map<std::string, std::string>& words,
-                                   bool merges, scan_shaper& shaper)
+                                   const std::map<std::string, std::string>& words, bool merges,
+                                   scan_shaper& shaper)
     : how_(how), merges_(merges), mask_(load_mask(how.mask)), shaper_(shaper) {
   shape_by(how);
   const point_filter& filter = how.filter;

@@ -35,7 +35,8 @@ class scan_messages {
                 std::string frame_id);
 
   /// On /scan: scan_shaper::for_grid().
-  void publish_scan(std::span<const point> for_grid, const grid_options& grid, const scan_times& when);
+  void publish_scan(std::span<const point> for_grid, const grid_options& grid,
+                    const scan_times& when);
   /// On /points: scan_shaper::kept().
   void publish_points(std::span<const point> kept, const scan_times& when);
   /// Whether somebody reads them. *Any thread.*

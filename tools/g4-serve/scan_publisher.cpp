@@ -66,10 +66,7 @@ double loss_window::add(const lidar_counts& counts) {
 }
 
 scan_publisher::scan_publisher(const serve_options& options, client_registry& to)
-    : options_(options),
-      registry_(to),
-      ranges_m_(options.bins),
-      settings_(unknown_settings()) {
+    : options_(options), registry_(to), ranges_m_(options.bins), settings_(unknown_settings()) {
   const g4lidar::mask mask = load_mask(options.common.mask);
   shaping_options shape = shape_of(options.common, mask);
   shape.restamps = true;  // nobody is to deskew the points of a message again
@@ -114,8 +111,7 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
     const std::span<const point> kept = shaper_.kept();
     std::vector<std::uint8_t> message;
     message.reserve(16 + 8 * kept.size());
-    put_page_scan(kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns),
-                  message);
+    put_page_scan(kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns), message);
     registry_.page_scan(std::move(message));
   }
   if (wants_scan) {

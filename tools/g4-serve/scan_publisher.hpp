@@ -89,7 +89,7 @@ class scan_publisher final : public station_listener {
   station* station_ = nullptr;
   scan_shaper shaper_;
   std::optional<deskew_report> report_;  // if it deskews
-  byte_tap bytes_;  // of the station's thread
+  byte_tap bytes_;                       // of the station's thread
   scan_rates rates_;
   std::vector<float> ranges_m_;
   nlohmann::ordered_json settings_;  // of the station's thread

@@ -51,9 +51,7 @@ void odometry_feed::load(const std::string& path) {
   }
 }
 
-void odometry_feed::load_recording(const std::string& path) {
-  all_ = recorded_odometry(path);
-}
+void odometry_feed::load_recording(const std::string& path) { all_ = recorded_odometry(path); }
 
 void odometry_feed::shift(std::int64_t shift_ns) {
   for (stamped_odometry& each : all_) each.time_ns += shift_ns;

@@ -21,8 +21,8 @@ namespace {
 /// What `parse` makes of the text in the file of that name: a variant of it and of an error with a
 /// line. Throws a failure that names the file and the line. `what_to_give` ends its sentence.
 template <class Made, class Parse>
-Made load_text(const std::string& path, std::size_t most_megabytes,
-                             const std::string& what_to_give, Parse parse) {
+Made load_text(const std::string& path, std::size_t most_megabytes, const std::string& what_to_give,
+               Parse parse) {
   input in(path, what_to_give);
   std::string text;
   std::array<std::uint8_t, 16'384> part;
