@@ -22,6 +22,7 @@
 #include "g4lidar/c/motion.h"
 #include "g4lidar/c/point.h"
 #include "g4lidar/c/recording.h"
+#include "g4lidar/c/shaper.h"
 #include "g4lidar/c/simulator.h"
 
 #endif

@@ -44,7 +44,7 @@ func run(device string) error {
 		points := unsafe.Slice(scan.points, int(scan.point_count)) // valid until the next call
 		nearest := math.Inf(1)
 		for _, each := range points {
-			if each.flags&C.G4LIDAR_NO_RETURN == 0 { // no return is not free space: see g4lidar_mark_near()
+			if each.flags&C.G4LIDAR_NO_RETURN == 0 { // no return is not free space: see near_options of g4lidar_shaper_options
 				nearest = math.Min(nearest, float64(each.range_mm)/1000)
 			}
 		}

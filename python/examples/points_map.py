@@ -19,6 +19,7 @@ def main(device: str = "", picture: str = "map.png", *, seconds: float = 3.0) ->
     estimator = g4lidar.TwistEstimator()
     x = y = yaw = 0.0  # of the lidar, in the frame of its first scan
     last_ns = 0
+    returns = g4lidar.ScanShaper(returns_only=True)
     figure = plt.figure(figsize=(8, 8))
     axes = figure.add_subplot(aspect="equal", xlabel="x in m", ylabel="y in m")
     with g4lidar.open(device) as lidar:
@@ -30,7 +31,7 @@ def main(device: str = "", picture: str = "map.png", *, seconds: float = 3.0) ->
             y += (twist.x_m_per_s * math.sin(yaw) + twist.y_m_per_s * math.cos(yaw)) * elapsed
             yaw += twist.yaw_rad_per_s * elapsed
             still, _ = g4lidar.deskew(scan.points, twist, scan.time_ns)
-            points = g4lidar.to_xy(g4lidar.filter_points(still, returns_only=True))
+            points = g4lidar.to_xy(returns.shape(still).kept)
             turn = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
             places = points @ turn + (x, y)
             axes.plot(places[:, 0], places[:, 1], "k.", markersize=0.5)

@@ -14,12 +14,12 @@ def main(device: str = "", file: str = "", *, scans: int | None = None) -> None:
     rr.init("g4lidar", spawn=not file)
     if file:
         rr.save(file)
+    returns = g4lidar.ScanShaper(returns_only=True)
     with g4lidar.open(device) as lidar:
         lidar.start()
         for number, scan in enumerate(lidar.scans(), 1):
             rr.set_time("measured", timestamp=scan.stamp)
-            returns = g4lidar.filter_points(scan.points, returns_only=True)
-            rr.log("lidar/points", rr.Points2D(g4lidar.to_xy(returns), radii=0.01))
+            rr.log("lidar/points", rr.Points2D(g4lidar.to_xy(returns.shape(scan).kept), radii=0.01))
             rr.log("lidar/frequency_hz", rr.Scalars(scan.measured_frequency_hz))
             if number == scans:
                 return

@@ -23,12 +23,12 @@ from ._g4lidar import (
     Event,
     Lidar,
     Mounting,
-    NearHistory,
     Port,
     RecordedItem,
     Recording,
     RecordingWriter,
     Scan,
+    ScanShaper,
     Scans,
     Simulator,
     StageReport,
@@ -41,12 +41,10 @@ from ._g4lidar import (
     deskew,
     doctor,
     fill_grid,
-    filter_points,
     find_lidars,
     list_ports,
     mark_bit_errors,
     mark_isolated,
-    mark_near,
     mark_veiling,
     merge_scans,
     open,
@@ -57,9 +55,9 @@ from .errors import Error
 
 __all__ = [
     "POINT_DTYPE", "POSE_DTYPE", "Decoder", "DeviceInformation", "Diagnosis", "Error", "Event", "Lidar", "Mounting",
-    "NearHistory", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "Scans", "Simulator",
+    "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "ScanShaper", "Scans", "Simulator",
     "StageReport", "Twist", "TwistEstimate", "TwistEstimator", "decode", "deskew", "doctor", "errors", "fill_grid",
-    "filter_points", "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_near", "mark_veiling",
+    "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_veiling",
     "merge_scans", "open", "to_xy",
 ]
 
@@ -75,11 +73,11 @@ class PointFlag(_enum.IntFlag):
     NO_RETURN = 1  # nothing came back: range_mm is 0 and not a range, and the way not free
     TOO_NEAR = 2  # below 100 mm, where ranges are not reliable
     REVOLUTION_START = 4  # the first sample of its revolution
-    NOT_DESKEWED = 8  # deskew() left it where it was
+    NOT_DESKEWED = 8  # its motion is not known
     UNLIKELY = 16  # its packet or its neighbours contradict it
     ISOLATED = 32  # set by mark_isolated()
     VEILING = 64  # set by mark_veiling()
-    MAY_BE_TOO_NEAR = 128  # without return, perhaps of something too near; set by mark_near()
+    MAY_BE_TOO_NEAR = 128  # without return, perhaps of something too near; set by ScanShaper
 
 
 class ScanFlag(_enum.IntFlag):

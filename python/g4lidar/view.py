@@ -16,7 +16,7 @@ def main(device: str = "", *, frames: int | None = None) -> None:
     with g4lidar.open(device) as lidar:
         lidar.start()
         for number, scan in enumerate(lidar.scans(newest=True), 1):
-            points = g4lidar.filter_points(scan.points, returns_only=True)
+            points = scan.points[scan.points["range_mm"] > 0]
             dots.set_data(np.radians(points["angle_deg"]), points["range_mm"] / 1000)
             axes.set_ylim(0, max(1.0, points["range_mm"].max(initial=0) / 1000))
             plt.pause(0.01)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Selecting and marking the points of an array.
+// Shaping scans, and marking the points of an array.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
@@ -7,14 +7,15 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "errors.hpp"
-#include "g4lidar/filter.hpp"
+#include "g4lidar/export/mask.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/plausibility.hpp"
-#include "g4lidar/too_near.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "scan.hpp"
 #include "words.hpp"
 
@@ -24,14 +25,6 @@ namespace {
 using namespace nb::literals;
 using angles = std::pair<double, double>;
 using outline = std::vector<std::pair<float, float>>;
-
-/// What point_filter takes as views.
-struct owned_filter {
-  point_filter made;
-  std::vector<sector> ignored;
-  std::vector<std::vector<corner>> corners;
-  std::vector<polygon> masks;
-};
 
 void require_numbers(std::initializer_list<double> values) {
   for (const double value : values) {
@@ -44,45 +37,144 @@ void require_finite(const angles& sector) {
     raise_impossible("the angles of a sector are finite", sector);
 }
 
-array<point> select(const array<point>& points, const std::optional<angles>& field_of_view,
-                    const std::vector<angles>& ignored_sectors, const std::vector<outline>& masks,
-                    float least_range_mm, float greatest_range_mm, bool returns_only,
-                    bool trusted_only, unsigned excluded, frame in, bool for_grid) {
+/// A scan_shaper with the memory of the scan that it shapes.
+class shaper {
+ public:
+  explicit shaper(const shaping_options& how) : made_(how) {}
+
+  void shape(const array<point>& points, const std::optional<array<stamped_pose>>& path,
+             scan_flags flags) {
+    scan source;
+    source.points = points_.emplace(points).span();
+    source.flags = flags;
+    path_.reset();
+    if (path) require_path(path_.emplace(*path).span());
+    made_.shape(source, path_ ? path_->span() : std::span<const stamped_pose>());
+  }
+  [[nodiscard]] scan_shaper& made() noexcept { return made_; }
+
+ private:
+  std::optional<elements<point>> points_;
+  std::optional<elements<stamped_pose>> path_;
+  scan_shaper made_;
+};
+
+void make_shaper(shaper* made, const std::optional<angles>& field_of_view,
+                 const std::vector<angles>& ignored_sectors, const std::vector<outline>& masks,
+                 float least_range_mm, float greatest_range_mm, bool returns_only,
+                 bool trusted_only, unsigned excluded, frame in, bool speckle, bool edges,
+                 bool near, float shortest_mm, std::uint32_t near_revolutions, deskewing deskew,
+                 const mounting& mount, bool restamps, bool for_merging) {
   require_numbers({least_range_mm, greatest_range_mm});
   if (excluded > 0xFFU) raise_impossible("excluded: flags of PointFlag", excluded);
-  owned_filter how;
-  how.made.in = in;
+  if (!(shortest_mm > 0.0F)) throw nb::value_error("shortest_mm: above 0");
+  shaping_options how{.filter = {.in = in,
+                                 .least_range_mm = least_range_mm,
+                                 .greatest_range_mm = greatest_range_mm,
+                                 .returns_only = returns_only,
+                                 .trusted_only = trusted_only,
+                                 .excluded = static_cast<point_flags>(excluded)},
+                      .deskew = deskew,
+                      .mount = mount,
+                      .restamps = restamps,
+                      .for_merging = for_merging};
+  if (speckle) how.marks.speckle.emplace();
+  if (edges) how.marks.edges.emplace();
+  if (near) how.marks.near = near_limits{shortest_mm, near_revolutions};
   if (field_of_view) {
     require_finite(*field_of_view);
-    how.made.field_of_view = sector(field_of_view->first, field_of_view->second);
+    how.filter.field_of_view = sector(field_of_view->first, field_of_view->second);
   }
+  std::vector<sector> ignored;
   for (const angles& each : ignored_sectors) {
     require_finite(each);
-    how.ignored.emplace_back(each.first, each.second);
+    ignored.emplace_back(each.first, each.second);
   }
+  mask outlines;
   for (const outline& each : masks) {
     if (each.size() < 3) raise_impossible("a mask has 3 corners or more", each.size());
-    auto& corners = how.corners.emplace_back();
+    std::vector<corner> corners;
     for (const auto& [x_m, y_m] : each) {
       if (!std::isfinite(x_m) || !std::isfinite(y_m))
         raise_impossible("the corners of a mask are finite", std::pair(x_m, y_m));
       corners.push_back({x_m, y_m});
     }
+    outlines.add(std::move(corners));
   }
-  how.masks.assign(how.corners.begin(), how.corners.end());
-  how.made.ignored_sectors = how.ignored;
-  how.made.masks = how.masks;
-  how.made.least_range_mm = least_range_mm;
-  how.made.greatest_range_mm = greatest_range_mm;
-  how.made.returns_only = returns_only;
-  how.made.trusted_only = trusted_only;
-  how.made.excluded = static_cast<point_flags>(excluded);
-  const elements<point> from(points);
-  return make_array<point>(from.span().size(), [&](std::span<point> out) {
-    return (for_grid ? filter_for_grid(from.span(), how.made, out)
-                     : filter_points(from.span(), how.made, out))
-        .size();
-  });
+  how.filter.ignored_sectors = ignored;
+  how.filter.masks = outlines.polygons();
+  new (made) shaper(how);
+}
+
+void bind_shaper(nb::module_& module) {
+  const point_filter everything;
+  const near_limits near;
+  nb::class_<shaper>(module, "ScanShaper",
+                     "Marks, filters and deskews the scans of one lidar. One thread at a time.")
+      .def("__init__", &make_shaper, nb::kw_only(), "field_of_view"_a = nb::none(),
+           "ignored_sectors"_a = std::vector<angles>{}, "masks"_a = std::vector<outline>{},
+           "least_range_mm"_a = everything.least_range_mm,
+           "greatest_range_mm"_a = everything.greatest_range_mm, "returns_only"_a = false,
+           "trusted_only"_a = false, "excluded"_a = 0, "frame"_a = frame::robot,
+           "speckle"_a = false, "edges"_a = false, "near"_a = false,
+           "shortest_mm"_a = near.shortest_mm, "near_revolutions"_a = near.revolutions,
+           "deskew"_a = deskewing::none, "mount"_a = mounting{}, "restamps"_a = false,
+           "for_merging"_a = false,
+           "Points are kept that meet every condition. Sectors are pairs of degrees (from, to), in "
+           "the sense in which the angles of `frame` grow: in 'robot', counter-clockwise from "
+           "straight ahead. `masks`: polygons of corners (x, y) in metres in the frame 'robot', "
+           "whose returns are left out. Ranges in millimetres, both limits included. "
+           "`returns_only` leaves out points without return, `trusted_only` those below 100 mm, "
+           "`excluded` those with one of these flags (PointFlag). `speckle` and `edges` leave out "
+           "what mark_isolated() and mark_veiling() flag. `near` flags points without return as "
+           "PointFlag.MAY_BE_TOO_NEAR if, in the last `near_revolutions` (0: until a return "
+           "comes), a return came from their direction from less than twice `shortest_mm` (280 at "
+           "9 kHz, 260 at 8, 100 at 4), and none that is farther since; too_near.hpp has the "
+           "numbers of what it misses and of false alarms. `deskew`: 'by_path' moves points to "
+           "where they would have been seen at the time of the first one, by the poses of the "
+           "robot on which the lidar is fixed as `mount` says; 'by_scans' by a TwistEstimator. "
+           "Points whose motion is not known stay, flagged PointFlag.NOT_DESKEWED. `restamps` "
+           "gives the others the time of the first one. `for_merging`: only the twist is "
+           "estimated, because merge_scans() deskews.")
+      .def(
+          "shape",
+          [](shaper& self, const kept_scan& scan, const std::optional<array<stamped_pose>>& path) {
+            self.shape(scan.points, path, scan.about.flags);
+            return nb::find(self);
+          },
+          "scan"_a, "path"_a = nb::none(), nb::rv_policy::reference,
+          nb::sig("def shape(self, scan: Scan, path: numpy.typing.NDArray[numpy.void] | None = "
+                  "None) -> ScanShaper"),
+          "Takes the next scan, in order, and for 'by_path' poses (an array with the dtype "
+          "POSE_DTYPE, times ascending). Call it for each scan. Returns the shaper.")
+      .def(
+          "shape",
+          [](shaper& self, const array<point>& points,
+             const std::optional<array<stamped_pose>>& path) {
+            self.shape(points, path, scan_flags::none);
+            return nb::find(self);
+          },
+          "scan"_a, "path"_a = nb::none(),
+          nb::sig("def shape(self, scan: numpy.typing.NDArray[numpy.void], path: "
+                  "numpy.typing.NDArray[numpy.void] | None = None) -> ScanShaper"),
+          "The same with the points of a whole revolution.")
+      .def_prop_ro(
+          "kept", [](shaper& self) { return array_of(self.made().kept()); },
+          "The points that are kept, as a new array. The points and poses that were given must not "
+          "have changed.")
+      .def_prop_ro(
+          "for_grid", [](shaper& self) { return array_of(self.made().for_grid()); },
+          "The same for fill_grid(): what is left out for its range, place or flag stays and is "
+          "flagged too near, so that fill_grid() gives NaN and not inf.")
+      .def_prop_ro(
+          "twist", [](shaper& self) { return self.made().twist(); },
+          "The Twist of the lidar by 'by_scans'; None if it is not known.")
+      .def_prop_ro(
+          "outside", [](shaper& self) { return self.made().outside(); },
+          "How many points of the scan, kept or not, have no known motion.")
+      .def_prop_ro(
+          "points_not_deskewed", [](shaper& self) { return self.made().points_not_deskewed(); },
+          "The sum of `outside` over all scans.");
 }
 
 /// A copy of the points that `mark` changes.
@@ -103,24 +195,7 @@ std::size_t checked_window(std::size_t window) {
 }  // namespace
 
 void bind_filters(nb::module_& module) {
-  const point_filter everything;
-  module.def("filter_points", &select, "points"_a, nb::kw_only(), "field_of_view"_a = nb::none(),
-             "ignored_sectors"_a = std::vector<angles>{}, "masks"_a = std::vector<outline>{},
-             "least_range_mm"_a = everything.least_range_mm,
-             "greatest_range_mm"_a = everything.greatest_range_mm, "returns_only"_a = false,
-             "trusted_only"_a = false, "excluded"_a = 0, "frame"_a = frame::robot,
-             "for_grid"_a = false,
-             "The points that meet every condition. Sectors are pairs of degrees (from, to), in "
-             "the sense in which the "
-             "angles of `frame` grow: in 'robot', counter-clockwise from straight ahead. `masks`: "
-             "polygons of corners "
-             "(x, y) in metres in the frame 'robot', whose returns are left out. Ranges in "
-             "millimetres, both limits "
-             "included. `returns_only` leaves out points without return, `trusted_only` those "
-             "below 100 mm, `excluded` "
-             "those with one of these flags (PointFlag). `for_grid`: what is left out for its "
-             "range, place or flag "
-             "stays and is flagged too near, so that fill_grid() gives NaN and not inf.");
+  bind_shaper(module);
   const speckle_limits speckle;
   module.def(
       "mark_isolated",
@@ -152,28 +227,6 @@ void bind_filters(nb::module_& module) {
       "A copy in which points between two surfaces, where nothing is, are flagged "
       "PointFlag.VEILING: the lines to "
       "neighbours on both sides make less than `least_angle_deg` degrees with the beam.");
-  nb::class_<near_history>(module, "NearHistory",
-                           "From which directions near returns came last, for mark_near(): one for "
-                           "each lidar. One thread at a time.")
-      .def(nb::init<>())
-      .def("reset", &near_history::reset, "Forgets all returns.");
-  const near_limits near;
-  module.def(
-      "mark_near",
-      [](const array<point>& points, near_history& history, float shortest_mm,
-         std::uint32_t revolutions) {
-        if (!(shortest_mm > 0.0F)) throw nb::value_error("shortest_mm: above 0");
-        const near_limits limits{shortest_mm, revolutions};
-        return marked(points, [&](std::span<point> all) { mark_near(all, history, limits); });
-      },
-      "points"_a, "history"_a, nb::kw_only(), "shortest_mm"_a = near.shortest_mm,
-      "revolutions"_a = near.revolutions,
-      "A copy in which points without return are flagged PointFlag.MAY_BE_TOO_NEAR if, in the last "
-      "`revolutions`, a return came from their direction from less than twice `shortest_mm` (280 "
-      "at 9 kHz, 260 at 8, 100 at 4), and none that is farther since. `revolutions` 0: until a "
-      "return comes. `points`: all points of a lidar in their order, scan by scan, before they are "
-      "filtered or deskewed. fill_grid() gives NaN there, or -inf with `near_is_minus_infinity`. "
-      "It misses some targets, and has false alarms: too_near.hpp has their numbers.");
   module.def(
       "mark_bit_errors",
       [](const array<point>& points) {

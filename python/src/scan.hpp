@@ -5,6 +5,7 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdint>
+#include <span>
 
 #include "arrays.hpp"
 #include "g4lidar/grid.hpp"
@@ -30,6 +31,9 @@ struct kept_scan {
 /// One range for each bin, in metres.
 [[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
                                      const grid_options& how);
+
+/// Raises ValueError if numbers are not finite, or times do not ascend.
+void require_path(std::span<const stamped_pose> path);
 
 void bind_scan(nb::module_& module);
 void bind_shaping(nb::module_& module);

@@ -37,14 +37,6 @@ void require_finite(std::initializer_list<double> values) {
   }
 }
 
-void require_path(std::span<const stamped_pose> path) {
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    require_finite({path[i].pose.x_m, path[i].pose.y_m, path[i].pose.yaw_rad});
-    if (i > 0 && path[i].time_ns < path[i - 1].time_ns)
-      throw nb::value_error("the times of the poses do not ascend");
-  }
-}
-
 /// `make(motion)` with the twist, or with the poses.
 template <class Make>
 auto with_motion(const motion& how, const Make& make) {
@@ -162,6 +154,14 @@ void bind_estimator(nb::module_& module) {
 }
 
 }  // namespace
+
+void require_path(std::span<const stamped_pose> path) {
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    require_finite({path[i].pose.x_m, path[i].pose.y_m, path[i].pose.yaw_rad});
+    if (i > 0 && path[i].time_ns < path[i - 1].time_ns)
+      throw nb::value_error("the times of the poses do not ascend");
+  }
+}
 
 void bind_shaping(nb::module_& module) {
   bind_motion(module);

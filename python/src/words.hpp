@@ -16,6 +16,7 @@
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/settings.hpp"
 
 namespace g4lidar::python {
@@ -67,6 +68,21 @@ struct nanobind::detail::type_caster<g4lidar::python::path_text> {
   }
 };
 
+/// The words of an enumeration with the values 0, 1 and 2.
+#define G4LIDAR_THREE_WORDS(Enumeration, first_word, second_word, third_word)                \
+  template <>                                                                                \
+  struct nanobind::detail::type_caster<Enumeration> {                                        \
+    NB_TYPE_CASTER(Enumeration, const_name("typing.Literal['" first_word "', '" second_word  \
+                                           "', '" third_word "']"))                          \
+    bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {                   \
+      return g4lidar::python::read_word(from, {first_word, second_word, third_word}, value); \
+    }                                                                                        \
+    static handle from_cpp(Enumeration from, rv_policy, cleanup_list*) noexcept {            \
+      constexpr std::array<const char*, 3> words{first_word, second_word, third_word};       \
+      return PyUnicode_FromString(words[static_cast<std::size_t>(from)]);                    \
+    }                                                                                        \
+  }
+
 /// The words of an enumeration with the values 0 and 1.
 #define G4LIDAR_WORDS(Enumeration, first_word, second_word)                                        \
   template <>                                                                                      \
@@ -80,21 +96,11 @@ struct nanobind::detail::type_caster<g4lidar::python::path_text> {
     }                                                                                              \
   }
 
-template <>
-struct nanobind::detail::type_caster<g4lidar::no_return_as> {
-  NB_TYPE_CASTER(g4lidar::no_return_as, const_name("typing.Literal['inf', 'nan', 'max']"))
-  bool from_python(handle from, std::uint32_t, cleanup_list*) noexcept {
-    return g4lidar::python::read_word(from, {"inf", "nan", "max"}, value);
-  }
-  static handle from_cpp(g4lidar::no_return_as from, rv_policy, cleanup_list*) noexcept {
-    constexpr std::array<const char*, 3> words{"inf", "nan", "max"};
-    return PyUnicode_FromString(words[static_cast<std::size_t>(from)]);
-  }
-};
-
 G4LIDAR_WORDS(g4lidar::frame, "vendor", "robot");
 G4LIDAR_WORDS(g4lidar::grid_pick, "nearest", "minimum");
 G4LIDAR_WORDS(g4lidar::scan_ends, "joined", "open");
 G4LIDAR_WORDS(g4lidar::motor_direction, "clockwise", "counter_clockwise");
 G4LIDAR_WORDS(g4lidar::packing, "none", "zstd");
 G4LIDAR_WORDS(g4lidar::scan_order, "angle", "time");
+G4LIDAR_THREE_WORDS(g4lidar::no_return_as, "inf", "nan", "max");
+G4LIDAR_THREE_WORDS(g4lidar::deskewing, "none", "by_path", "by_scans");

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Filters, grids, deskewing, merging, and the doctor."""
 import math
+import os
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -47,32 +49,81 @@ def test_no_return_is_not_free_space() -> None:
     grid = g4lidar.fill_grid(points[1:], 4, frame="vendor", no_return="max")
     assert grid[1] == grid[2] == pytest.approx(16.38375)
     assert np.isnan(g4lidar.fill_grid(points[1:], 4, frame="vendor", no_return="nan")).all()
-    history = g4lidar.NearHistory()
-    marked = g4lidar.mark_near(points, history)
+    shaper = g4lidar.ScanShaper(near=True)
+    marked = shaper.shape(points).kept
     assert list(marked["flags"]) == [0, PointFlag.NO_RETURN | PointFlag.MAY_BE_TOO_NEAR, PointFlag.NO_RETURN]
     grid = g4lidar.fill_grid(marked[1:], 4, frame="vendor")
     assert math.isnan(grid[1]) and grid[2] == math.inf
     assert g4lidar.fill_grid(marked[1:], 4, frame="vendor", near_is_minus_infinity=True)[1] == -math.inf
-    assert (g4lidar.mark_near(points, history, shortest_mm=100)["flags"] & PointFlag.MAY_BE_TOO_NEAR == 0).all()
+    assert (shaper.shape(points[2:]).kept["flags"] & PointFlag.MAY_BE_TOO_NEAR == 0).all()
+    assert shaper.shape(points[1:2]).kept["flags"][0] & PointFlag.MAY_BE_TOO_NEAR, "it remembers the first revolution"
+    far = g4lidar.ScanShaper(near=True, shortest_mm=100)
+    assert (far.shape(points).kept["flags"] & PointFlag.MAY_BE_TOO_NEAR == 0).all()
     with pytest.raises(ValueError):
-        g4lidar.mark_near(points, history, shortest_mm=0)
+        g4lidar.ScanShaper(near=True, shortest_mm=0)
     with pytest.raises(TypeError):
         g4lidar.fill_grid(points, 4, no_return="far")  # type: ignore[arg-type]
+
+
+def kept(points: Points, **options: object) -> int:
+    return len(g4lidar.ScanShaper(**options).shape(points).kept)  # type: ignore[arg-type]
 
 
 def test_filters() -> None:
     points = ring(1000, 360)
     points["range_mm"][:10] = 5000
-    assert len(g4lidar.filter_points(points, greatest_range_mm=2000)) == 350
-    assert len(g4lidar.filter_points(points, field_of_view=(-90, 90))) == 181
-    assert len(g4lidar.filter_points(points, field_of_view=(0, 90), frame="vendor")) == 91
-    assert len(g4lidar.filter_points(points, ignored_sectors=[(350, 10)], frame="vendor")) == 339
+    assert kept(points, greatest_range_mm=2000) == 350
+    assert kept(points, field_of_view=(-90, 90)) == 181
+    assert kept(points, field_of_view=(0, 90), frame="vendor") == 91
+    assert kept(points, ignored_sectors=[(350, 10)], frame="vendor") == 339
     ahead = [(0.5, -0.2), (1.5, -0.2), (1.5, 0.2), (0.5, 0.2)]
-    left = g4lidar.filter_points(points, masks=[ahead])
-    assert 360 - len(left) == 23  # within asin(0.2) of straight ahead
-    assert len(g4lidar.filter_points(points, masks=[ahead], for_grid=True)) == 360
+    left = g4lidar.ScanShaper(masks=[ahead]).shape(points)
+    assert 360 - len(left.kept) == 23  # within asin(0.2) of straight ahead
+    assert len(left.for_grid) == 360
     points["flags"][5] = PointFlag.ISOLATED
-    assert len(g4lidar.filter_points(points, excluded=PointFlag.ISOLATED)) == 359
+    assert kept(points, excluded=PointFlag.ISOLATED) == 359
+
+
+def test_a_shaper_leaves_out_what_is_marked() -> None:
+    points = ring(2000, 1286)
+    points["range_mm"][100] = 1000
+    assert kept(points, speckle=True) == 1285
+    points["range_mm"][600:] = 4000
+    points["range_mm"][600] = 3000
+    assert kept(points, edges=True) == 1285
+    assert kept(points) == 1286
+
+
+def test_a_shaper_deskews_and_counts_what_it_does_not() -> None:
+    points = ring(2000)
+    reference = int(points["time_ns"][0])
+    path = np.zeros(2, g4lidar.POSE_DTYPE)
+    path["time_ns"] = [reference, reference + 50_000_000]
+    path["yaw_rad"] = [0.0, 0.05]
+    shaper = g4lidar.ScanShaper(deskew="by_path", restamps=True)
+    moved = shaper.shape(points, path).kept
+    half = points["time_ns"] <= path["time_ns"][1]
+    expected, outside = g4lidar.deskew(points, path, reference)
+    assert shaper.outside == outside == np.count_nonzero(~half) > 300
+    assert (moved["angle_deg"] == expected["angle_deg"]).all() and (moved["flags"] == expected["flags"]).all()
+    assert (moved["time_ns"][half] == reference).all() and (moved["time_ns"][~half] == points["time_ns"][~half]).all()
+    assert ((moved["flags"] & PointFlag.NOT_DESKEWED != 0) == ~half).all()
+    assert shaper.shape(points).outside == 720 and shaper.points_not_deskewed == 720 + outside
+    with pytest.raises(ValueError, match="ascend"):
+        shaper.shape(points, path[::-1])
+    assert g4lidar.ScanShaper(deskew="by_scans").shape(points).twist is None
+
+
+def test_a_shaper_estimates_the_motion(g4_simulator: Make) -> None:
+    shaper = g4lidar.ScanShaper(deskew="by_scans")
+    with g4lidar.open(g4_simulator()) as lidar:
+        lidar.start()
+        for number, scan in enumerate(lidar.scans()):
+            shaper.shape(scan)
+            if number == 3:
+                break
+    assert shaper.twist is not None and abs(shaper.twist.x_m_per_s) < 0.1  # it stands
+    assert shaper.outside == 0 and shaper.points_not_deskewed > 1000  # of the first scan
 
 
 def test_marks() -> None:
@@ -91,6 +142,28 @@ def test_marks() -> None:
     assert list(np.flatnonzero(unlikely["flags"] & PointFlag.UNLIKELY)) == [300]
     with pytest.raises(ValueError):
         g4lidar.mark_isolated(points, window=17)
+
+
+def test_a_shaper_gives_the_points_of_convert_bit_for_bit(tmp_path: Path) -> None:
+    tool = os.environ.get("G4_DUMP", "")
+    if not os.access(tool, os.X_OK):
+        pytest.skip("g4-dump is not built")
+    (tmp_path / "way.txt").write_text("drive forward 2 1\ndrive turn 180 90\n")
+    for words in (
+        "sim --seconds 6 --dropout 0.02 --path way.txt -o way.bin",
+        "convert way.bin way.mcap",
+        "convert way.mcap way.npy --time mono --speckle --edges --near --range 0.3: --deskew scans",
+    ):
+        subprocess.run([tool, *words.split()], cwd=tmp_path, check=True, stderr=subprocess.DEVNULL)
+    shaper = g4lidar.ScanShaper(speckle=True, edges=True, near=True, least_range_mm=300, deskew="by_scans")
+    points = []
+    with g4lidar.open(f"file:{tmp_path}/way.mcap", partial_scans=True) as lidar:
+        lidar.start()
+        for scan in lidar.scans():
+            points.append(shaper.shape(scan).kept)
+    got, expected = np.concatenate(points), np.load(tmp_path / "way.npy")
+    for name in ("angle_deg", "range_mm", "time_ns", "revolution", "flags"):
+        assert got[name].tobytes() == expected[name].astype(got[name].dtype).tobytes(), name
 
 
 def test_deskew_by_a_twist_and_along_poses() -> None:
@@ -191,7 +264,7 @@ def test_filters_refuse_what_they_would_ignore() -> None:
     ]
     for options in wrong:
         with pytest.raises(ValueError):
-            g4lidar.filter_points(points, **options)  # type: ignore[arg-type]
+            kept(points, **options)
     with pytest.raises(ValueError):
         g4lidar.mark_isolated(points, near_m=math.nan)
 

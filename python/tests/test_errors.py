@@ -66,7 +66,7 @@ def test_an_impossible_value_is_repeated(g4_simulator: Make) -> None:
         (lambda: g4lidar.doctor(g4_simulator(), measuring_time=-7), "0 to 3600 s, not -7.0"),
         (lambda: g4lidar.fill_grid(points, 0), "1 to 65536 ranges, not 0"),
         (lambda: g4lidar.mark_isolated(points, window=17), "1 to 16, not 17"),
-        (lambda: g4lidar.filter_points(points, excluded=256), "not 256"),
+        (lambda: g4lidar.ScanShaper(excluded=256), "not 256"),
         (lambda: g4lidar.open(g4_simulator()).next_scan(-2), "0 or more, not -2.0"),
     ):
         with pytest.raises(ValueError, match=words):

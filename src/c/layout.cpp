@@ -11,7 +11,7 @@
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/polygon.hpp"
-#include "g4lidar/too_near.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/version.hpp"  // a different version would be a macro that is defined twice
 #include "options.hpp"
 
@@ -33,8 +33,8 @@ static_assert(offsetof(g4lidar_point, revolution) == offsetof(point, revolution)
 static_assert(offsetof(g4lidar_point, flags) == offsetof(point, flags));
 static_assert(static_cast<int>(point_flags::veiling) == G4LIDAR_VEILING);
 static_assert(static_cast<int>(point_flags::may_be_too_near) == G4LIDAR_MAY_BE_TOO_NEAR);
+static_assert(static_cast<int>(deskewing::by_scans) == G4LIDAR_DESKEW_BY_SCANS);
 static_assert(static_cast<int>(no_return_as::max) == G4LIDAR_NO_RETURN_AS_MAX);
-static_assert(sizeof(g4lidar_near_history) == sizeof(near_history));
 static_assert(static_cast<int>(point_flags::not_deskewed) == G4LIDAR_NOT_DESKEWED);
 static_assert(sizeof(g4lidar_xy) == sizeof(xy_point));
 static_assert(offsetof(g4lidar_xy, time_ns) == offsetof(xy_point, time_ns));
@@ -69,7 +69,8 @@ static_assert(offsetof(g4lidar_counts, largest_gap_ns) == 144);
 static_assert(offsetof(g4lidar_counts, extras) == 152);
 static_assert(first_size<g4lidar_grid_options> == word + 16);
 static_assert(offsetof(g4lidar_grid_options, near_is_minus_infinity) == word + 20);
-static_assert(sizeof(g4lidar_near_history) == 1440);
+static_assert(offsetof(g4lidar_shaper_options, deskew) == 6 * word);
+static_assert(first_size<g4lidar_shaper_options> == 6 * word + 8);
 static_assert(first_size<g4lidar_near_options> == word + 16);
 static_assert(offsetof(g4lidar_filter_options, field_of_view) == aligned(5 * word));
 static_assert(first_size<g4lidar_filter_options> == aligned(5 * word) + 40);

@@ -19,9 +19,6 @@ struct g4lidar_estimator {
 namespace {
 
 bool is_usable(double value) noexcept { return std::abs(value) <= max_odometry_value; }
-bool is_usable(const g4lidar_pose& pose) noexcept {
-  return is_usable(pose.x_m) && is_usable(pose.y_m) && is_usable(pose.yaw_rad);
-}
 bool is_usable(const g4lidar_twist& twist) noexcept {
   return is_usable(twist.x_m_per_s) && is_usable(twist.y_m_per_s) && is_usable(twist.yaw_rad_per_s);
 }
@@ -30,7 +27,7 @@ template <class Deskew>
 int deskewed_by(const g4lidar_point* points, std::size_t count, const g4lidar_mounting* mount,
                 g4lidar_point* out, std::size_t* outside, Deskew deskew_points) noexcept {
   if (count > 0 && (points == nullptr || out == nullptr)) return G4LIDAR_BAD_ARGUMENT;
-  if (mount != nullptr && (!is_usable(mount->pose) || !has_known_members(*mount))) {
+  if (mount != nullptr && (!g4lidar::c::is_usable(mount->pose) || !has_known_members(*mount))) {
     return G4LIDAR_BAD_ARGUMENT;
   }
   const mounting fixed = mount == nullptr ? mounting{} : mounting_of(*mount);
@@ -41,8 +38,22 @@ int deskewed_by(const g4lidar_point* points, std::size_t count, const g4lidar_mo
 
 }  // namespace
 
+bool g4lidar::c::is_usable(const g4lidar_pose& given) noexcept {
+  return ::is_usable(given.x_m) && ::is_usable(given.y_m) && ::is_usable(given.yaw_rad);
+}
+
 bool g4lidar::c::is_usable(const g4lidar_odometry& given) noexcept {
-  return ::is_usable(given.pose) && ::is_usable(given.twist);
+  return is_usable(given.pose) && ::is_usable(given.twist);
+}
+
+std::optional<std::span<const stamped_pose>> g4lidar::c::path_of(const g4lidar_stamped_pose* path,
+                                                                 std::size_t count) noexcept {
+  if (path == nullptr && count > 0) return std::nullopt;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool ascends = i == 0 || path[i - 1].time_ns <= path[i].time_ns;
+    if (!ascends || !is_usable(path[i].pose)) return std::nullopt;
+  }
+  return std::span(reinterpret_cast<const stamped_pose*>(path), count);
 }
 
 int g4lidar_deskew_by_twist(const g4lidar_point* points, size_t count, const g4lidar_twist* twist,
@@ -59,15 +70,11 @@ int g4lidar_deskew_by_path(const g4lidar_point* points, size_t count,
                            const g4lidar_stamped_pose* path, size_t path_count,
                            int64_t reference_ns, const g4lidar_mounting* mount, g4lidar_point* out,
                            size_t* outside) {
-  if (path == nullptr && path_count > 0) return G4LIDAR_BAD_ARGUMENT;
-  for (std::size_t i = 0; i < path_count; ++i) {
-    const bool ascends = i == 0 || path[i - 1].time_ns <= path[i].time_ns;
-    if (!ascends || !is_usable(path[i].pose)) return G4LIDAR_BAD_ARGUMENT;
-  }
-  const std::span poses(reinterpret_cast<const stamped_pose*>(path), path_count);
+  const auto poses = path_of(path, path_count);
+  if (!poses) return G4LIDAR_BAD_ARGUMENT;
   return deskewed_by(points, count, mount, out, outside,
                      [&](std::span<const point> in, std::span<point> to, const mounting& fixed) {
-                       return deskew(in, poses, reference_ns, to, fixed);
+                       return deskew(in, *poses, reference_ns, to, fixed);
                      });
 }
 

@@ -5,7 +5,10 @@
 #include <g4lidar/c/motion.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include "g4lidar/motion.hpp"
 
@@ -29,7 +32,12 @@ namespace g4lidar::c {
 [[nodiscard]] inline bool has_known_members(const g4lidar_mounting& given) noexcept {
   return std::ranges::all_of(given.reserved, [](std::uint8_t each) { return each == 0; });
 }
+/// Poses in the memory of the caller; nothing if a number is not within its limit, or times do not ascend.
+[[nodiscard]] std::optional<std::span<const stamped_pose>> path_of(const g4lidar_stamped_pose* path,
+                                                                   std::size_t count) noexcept;
 /// Whether all numbers are within their limits.
+[[nodiscard]] bool is_usable(const g4lidar_pose& given) noexcept;
+/// The same.
 [[nodiscard]] bool is_usable(const g4lidar_odometry& given) noexcept;
 
 }  // namespace g4lidar::c

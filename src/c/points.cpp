@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Points, grids, filters and outliers: the functions of the core for the memory of the caller.
+// Points, grids, outliers and masks: the functions of the core for the memory of the caller.
 #include <g4lidar/c/filter.h>
 #include <g4lidar/c/point.h>
 
-#include <array>
-#include <bit>
-#include <limits>
 #include <memory>
 #include <variant>
 #include <vector>
@@ -13,7 +10,6 @@
 #include "border.hpp"
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/export/mask.hpp"
-#include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/outliers.hpp"
 #include "ranges.hpp"
@@ -28,95 +24,12 @@ struct g4lidar_mask {
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr g4lidar_filter_options filter_defaults{sizeof(g4lidar_filter_options),
-                                                 nullptr,
-                                                 0,
-                                                 nullptr,
-                                                 0,
-                                                 {0.0, 360.0},
-                                                 0.0F,
-                                                 infinity,
-                                                 G4LIDAR_VENDOR,
-                                                 0,
-                                                 false,
-                                                 false,
-                                                 {}};
-constexpr g4lidar_outlier_options outlier_defaults{
-    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, 0.05F, 1, 5.0F, false, {}};
-
-constexpr bool is_frame(int value) noexcept {
-  return value == G4LIDAR_VENDOR || value == G4LIDAR_ROBOT;
-}
-constexpr frame frame_of(int value) noexcept {
-  return value == G4LIDAR_ROBOT ? frame::robot : frame::vendor;
-}
-
-/// The filter of the options, in memory on the stack; without allocation there are limits.
-class taken_filter {
- public:
-  /// Whether the options can be used.
-  [[nodiscard]] bool take(const g4lidar_filter_options* given) noexcept {
-    g4lidar_filter_options options = filter_defaults;
-    if (!take_options(given, options) || !is_frame(options.frame)) return false;
-    if (options.ignored_sector_count > sectors_.size() ||
-        (options.ignored_sectors == nullptr && options.ignored_sector_count > 0) ||
-        options.mask_count > masks_.size() ||
-        (options.masks == nullptr && options.mask_count > 0) || options.excluded_flags > 0xFF) {
-      return false;
-    }
-    for (std::size_t i = 0; i < options.ignored_sector_count; ++i) {
-      sectors_[i] = {options.ignored_sectors[i].from_deg, options.ignored_sectors[i].to_deg};
-    }
-    for (std::size_t i = 0; i < options.mask_count; ++i) {
-      const g4lidar_polygon& each = options.masks[i];
-      if (each.corners == nullptr && each.count > 0) return false;
-      masks_[i] = {reinterpret_cast<const corner*>(each.corners), each.count};
-    }
-    filter_.in = frame_of(options.frame);
-    filter_.field_of_view = {options.field_of_view.from_deg, options.field_of_view.to_deg};
-    filter_.ignored_sectors = std::span(sectors_).first(options.ignored_sector_count);
-    filter_.masks = std::span(masks_).first(options.mask_count);
-    filter_.least_range_mm = options.least_range_mm;
-    filter_.greatest_range_mm = options.greatest_range_mm;
-    filter_.returns_only = options.returns_only;
-    filter_.trusted_only = options.trusted_only;
-    filter_.excluded = static_cast<point_flags>(options.excluded_flags);
-    return true;
-  }
-  [[nodiscard]] const point_filter& filter() const noexcept { return filter_; }
-
- private:
-  std::array<sector, 256> sectors_;
-  std::array<polygon, max_mask_polygons> masks_;
-  point_filter filter_;
-};
-
-template <class Filter>
-int filtered(const g4lidar_point* points, std::size_t count, const g4lidar_filter_options* options,
-             g4lidar_point* out, std::size_t* kept, Filter filter) noexcept {
-  taken_filter taken;
-  if (kept == nullptr || (count > 0 && (points == nullptr || out == nullptr)) ||
-      !taken.take(options)) {
-    return G4LIDAR_BAD_ARGUMENT;
-  }
-  *kept = filter(points_of(points, count), taken.filter(), points_of(out, count)).size();
-  return G4LIDAR_OK;
-}
-
 template <class Mark>
 int marked_by(g4lidar_point* points, std::size_t count, const g4lidar_outlier_options* given,
               std::size_t* marked, Mark mark) noexcept {
-  g4lidar_outlier_options options = outlier_defaults;
-  const auto is_window = [](std::uint32_t value) { return value >= 1 && value <= max_window; };
-  if ((count > 0 && points == nullptr) || !take_options(given, options) ||
-      !is_window(options.window) || !is_window(options.edge_window) ||
-      !(options.least_angle_deg > 0.0F && options.least_angle_deg <= 45.0F) ||
-      !(options.near_m >= 0.0F) || !(options.near_ratio >= 0.0F)) {
-    return G4LIDAR_BAD_ARGUMENT;
-  }
-  const auto ends = options.is_piece ? scan_ends::open : scan_ends::joined;
-  const std::size_t found = mark(points_of(points, count), options, ends);
+  const auto limits = outliers_of(given);
+  if ((count > 0 && points == nullptr) || !limits) return G4LIDAR_BAD_ARGUMENT;
+  const std::size_t found = mark(points_of(points, count), *limits);
   if (marked != nullptr) *marked = found;
   return G4LIDAR_OK;
 }
@@ -157,27 +70,6 @@ int g4lidar_fill_grid(const g4lidar_point* points, size_t count,
   return G4LIDAR_OK;
 }
 
-void g4lidar_filter_options_init(g4lidar_filter_options* options, size_t size) {
-  set_defaults(options, size, filter_defaults);
-}
-
-int g4lidar_filter_points(const g4lidar_point* points, size_t count,
-                          const g4lidar_filter_options* options, g4lidar_point* out, size_t* kept) {
-  return filtered(points, count, options, out, kept,
-                  [](std::span<const point> in, const point_filter& by, std::span<point> to) {
-                    return filter_points(in, by, to);
-                  });
-}
-
-int g4lidar_filter_for_grid(const g4lidar_point* points, size_t count,
-                            const g4lidar_filter_options* options, g4lidar_point* out,
-                            size_t* kept) {
-  return filtered(points, count, options, out, kept,
-                  [](std::span<const point> in, const point_filter& by, std::span<point> to) {
-                    return filter_for_grid(in, by, to);
-                  });
-}
-
 void g4lidar_outlier_options_init(g4lidar_outlier_options* options, size_t size) {
   set_defaults(options, size, outlier_defaults);
 }
@@ -185,35 +77,17 @@ void g4lidar_outlier_options_init(g4lidar_outlier_options* options, size_t size)
 int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
                           const g4lidar_outlier_options* options, size_t* marked) {
   return marked_by(points, count, options, marked,
-                   [](std::span<point> all, const g4lidar_outlier_options& by, scan_ends ends) {
-                     return mark_isolated(all, {by.window, by.near_count, by.near_m, by.near_ratio},
-                                          ends);
+                   [](std::span<point> all, const outlier_limits& by) {
+                     return mark_isolated(all, by.speckle, by.ends);
                    });
 }
 
 int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
                          const g4lidar_outlier_options* options, size_t* marked) {
   return marked_by(points, count, options, marked,
-                   [](std::span<point> all, const g4lidar_outlier_options& by, scan_ends ends) {
-                     return mark_veiling(all, {by.edge_window, by.least_angle_deg}, ends);
+                   [](std::span<point> all, const outlier_limits& by) {
+                     return mark_veiling(all, by.edges, by.ends);
                    });
-}
-
-void g4lidar_near_options_init(g4lidar_near_options* options, size_t size) {
-  set_defaults(options, size, near_defaults);
-}
-
-int g4lidar_mark_near(g4lidar_point* points, size_t count, g4lidar_near_history* history,
-                      const g4lidar_near_options* options, size_t* marked) {
-  const auto limits = near_of(options);
-  if ((count > 0 && points == nullptr) || history == nullptr || !limits) {
-    return G4LIDAR_BAD_ARGUMENT;
-  }
-  auto known = std::bit_cast<near_history>(*history);
-  const std::size_t found = mark_near(points_of(points, count), known, *limits);
-  *history = std::bit_cast<g4lidar_near_history>(known);
-  if (marked != nullptr) *marked = found;
-  return G4LIDAR_OK;
 }
 
 int g4lidar_mask_parse(const char* text, g4lidar_mask** made, g4lidar_error* error) {

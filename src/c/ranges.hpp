@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options of grids and of mark_near(), of C as those of C++.
+// Options of grids and marks, of C as those of C++.
 #pragma once
 
 #include <g4lidar/c/filter.h>
@@ -9,6 +9,8 @@
 #include <optional>
 
 #include "g4lidar/grid.hpp"
+#include "g4lidar/outliers.hpp"
+#include "g4lidar/point.hpp"
 #include "g4lidar/too_near.hpp"
 #include "options.hpp"
 
@@ -21,7 +23,16 @@ inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options)
                                                     {},
                                                     G4LIDAR_NO_RETURN_AS_INFINITY,
                                                     0};
+inline constexpr g4lidar_outlier_options outlier_defaults{
+    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, 0.05F, 1, 5.0F, false, {}};
 inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 280.0F, 3, {}};
+
+[[nodiscard]] constexpr bool is_frame(int value) noexcept {
+  return value == G4LIDAR_VENDOR || value == G4LIDAR_ROBOT;
+}
+[[nodiscard]] constexpr frame frame_of(int value) noexcept {
+  return value == G4LIDAR_ROBOT ? frame::robot : frame::vendor;
+}
 
 /// Nothing if a member has no valid value.
 [[nodiscard]] inline std::optional<grid_options> grid_of(
@@ -44,6 +55,26 @@ inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options)
   g4lidar_near_options taken = near_defaults;
   if (!take_options(given, taken) || !(taken.shortest_mm > 0.0F)) return std::nullopt;
   return near_limits{taken.shortest_mm, taken.revolutions};
+}
+
+struct outlier_limits {
+  speckle_limits speckle;
+  edge_limits edges;
+  scan_ends ends;
+};
+/// The same.
+[[nodiscard]] inline std::optional<outlier_limits> outliers_of(
+    const g4lidar_outlier_options* given) noexcept {
+  g4lidar_outlier_options taken = outlier_defaults;
+  const auto is_window = [](std::uint32_t value) { return value >= 1 && value <= max_window; };
+  if (!take_options(given, taken) || !is_window(taken.window) || !is_window(taken.edge_window) ||
+      !(taken.least_angle_deg > 0.0F && taken.least_angle_deg <= 45.0F) ||
+      !(taken.near_m >= 0.0F) || !(taken.near_ratio >= 0.0F)) {
+    return std::nullopt;
+  }
+  return outlier_limits{{taken.window, taken.near_count, taken.near_m, taken.near_ratio},
+                        {taken.edge_window, taken.least_angle_deg},
+                        taken.is_piece ? scan_ends::open : scan_ends::joined};
 }
 
 }  // namespace g4lidar::c

@@ -11,24 +11,22 @@
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan.hpp"
-#include "g4lidar/too_near.hpp"
+#include "g4lidar/scan_shaper.hpp"
 
 namespace g4lidar {
 
 /// *Single thread.*
 class scan_ranges {
  public:
-  explicit scan_ranges(const recording_options& options) : ranges_(options.scan_bins) {}
+  explicit scan_ranges(const recording_options& options)
+      : ranges_(options.scan_bins), shaper_({.marks = {.near = options.near}}) {}
 
   /// Fills them, and returns message_header::first_bin.
   std::size_t fill(const scan& revolution, const recording_options& options) noexcept {
     std::span<const point> points = revolution.points;
     try {
-      if (options.near) {
-        marked_.assign(points.begin(), points.end());
-        static_cast<void>(mark_near(marked_, near_, *options.near));
-        points = marked_;
-      }
+      shaper_.shape(revolution);
+      points = shaper_.for_grid();
     } catch (const std::bad_alloc&) {  // without the flags
     }
     if (options.order == scan_order::time) {
@@ -43,8 +41,7 @@ class scan_ranges {
 
  private:
   std::vector<float> ranges_;
-  near_history near_;
-  std::vector<point> marked_;
+  scan_shaper shaper_;
 };
 
 }  // namespace g4lidar

@@ -78,11 +78,13 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_to_xy(nullptr, 1, G4LIDAR_ROBOT, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_to_polar(nullptr, 1, G4LIDAR_ROBOT, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_fill_grid(nullptr, 0, nullptr, nullptr, 1), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_filter_points(nullptr, 1, nullptr, nullptr, &count), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_filter_for_grid(nullptr, 0, nullptr, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_shaper_create(nullptr, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_shaper_shape(nullptr, nullptr, 0, false, nullptr, 0), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_shaper_kept(nullptr, &count), nullptr);
+  EXPECT_EQ(g4lidar_shaper_for_grid(nullptr, nullptr), nullptr);
+  EXPECT_EQ(g4lidar_shaper_outside(nullptr), 0U);
   EXPECT_EQ(g4lidar_mark_isolated(nullptr, 1, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_mark_veiling(nullptr, 1, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_mark_near(nullptr, 0, nullptr, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_deskew_by_twist(nullptr, 0, nullptr, 0, nullptr, nullptr, nullptr),
             G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_deskew_by_path(nullptr, 0, nullptr, 2, 0, nullptr, nullptr, nullptr),

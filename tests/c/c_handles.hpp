@@ -5,6 +5,7 @@
 #include <g4lidar.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,7 +30,18 @@ using simulator = owned<g4lidar_simulator, g4lidar_simulator_free>;
 using recorder = owned<g4lidar_recorder, g4lidar_recorder_free>;
 using reader = owned<g4lidar_reader, g4lidar_reader_free>;
 using report = owned<g4lidar_report, g4lidar_report_free>;
+using shaper = owned<g4lidar_shaper, g4lidar_shaper_free>;
 using ports = owned<g4lidar_ports, g4lidar_ports_free>;
+
+inline g4lidar_point at(float angle_deg, float range_mm, std::int64_t time_ns = 1) {
+  g4lidar_point made{};
+  made.angle_deg = angle_deg;
+  made.range_mm = range_mm;
+  made.time_ns = time_ns;
+  if (range_mm == 0.0F) made.flags = G4LIDAR_NO_RETURN;
+  if (range_mm > 0.0F && range_mm < 100.0F) made.flags = G4LIDAR_TOO_NEAR;
+  return made;
+}
 
 /// A simulated lidar in virtual time.
 inline simulator simulate(const char* setup = nullptr, const char* world = nullptr,

@@ -72,6 +72,13 @@ void expect_reserved_is_checked(Init init, Use use) {
   EXPECT_EQ(use(&options), G4LIDAR_BAD_ARGUMENT);
 }
 
+int result_of(const g4lidar_shaper_options& options) {
+  g4lidar_shaper* made = nullptr;
+  const int done = g4lidar_shaper_create(&options, &made, nullptr);
+  g4lidar_shaper_free(made);
+  return done;
+}
+
 TEST(COptions, ReservedBytesOfPointsAreChecked) {
   g4lidar_point point{};
   expect_reserved_is_checked<g4lidar_grid_options>(g4lidar_grid_options_init, [&](auto* options) {
@@ -80,17 +87,22 @@ TEST(COptions, ReservedBytesOfPointsAreChecked) {
   });
   expect_reserved_is_checked<g4lidar_filter_options>(
       g4lidar_filter_options_init, [&](auto* options) {
-        g4lidar_point out{};
-        std::size_t kept = 0;
-        return g4lidar_filter_points(&point, 1, options, &out, &kept);
+        g4lidar_shaper_options shape;
+        g4lidar_shaper_options_init(&shape, sizeof shape);
+        shape.filter = options;
+        return result_of(shape);
       });
   expect_reserved_is_checked<g4lidar_outlier_options>(
       g4lidar_outlier_options_init,
       [&](auto* options) { return g4lidar_mark_isolated(&point, 1, options, nullptr); });
-  g4lidar_near_history history{};
   expect_reserved_is_checked<g4lidar_near_options>(g4lidar_near_options_init, [&](auto* options) {
-    return g4lidar_mark_near(&point, 1, &history, options, nullptr);
+    g4lidar_shaper_options shape;
+    g4lidar_shaper_options_init(&shape, sizeof shape);
+    shape.near_options = options;
+    return result_of(shape);
   });
+  expect_reserved_is_checked<g4lidar_shaper_options>(
+      g4lidar_shaper_options_init, [&](auto* options) { return result_of(*options); });
 }
 
 // A recording of one revolution.

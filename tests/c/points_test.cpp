@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Coordinates, grids, filters, outliers, masks and deskewing in C, with points made by hand.
+// Coordinates, grids, outliers and deskewing in C, with points made by hand.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -11,16 +11,6 @@
 namespace {
 
 using namespace g4lidar_c_test;
-
-g4lidar_point at(float angle_deg, float range_mm, std::int64_t time_ns = 1) {
-  g4lidar_point made{};
-  made.angle_deg = angle_deg;
-  made.range_mm = range_mm;
-  made.time_ns = time_ns;
-  if (range_mm == 0.0F) made.flags = G4LIDAR_NO_RETURN;
-  if (range_mm > 0.0F && range_mm < 100.0F) made.flags = G4LIDAR_TOO_NEAR;
-  return made;
-}
 
 TEST(CPoints, ToCoordinates) {
   const std::vector<g4lidar_point> points{at(90.0F, 2000.0F), at(180.0F, 1000.0F), at(0.0F, 0.0F)};
@@ -69,113 +59,12 @@ TEST(CPoints, FillAGrid) {
   EXPECT_EQ(g4lidar_fill_grid(points.data(), 4, nullptr, ranges.data(), 0), G4LIDAR_BAD_ARGUMENT);
 }
 
-class CFilter : public testing::Test {
- protected:
-  CFilter() { g4lidar_filter_options_init(&options_, sizeof options_); }
-  /// The indices of the points that are kept.
-  std::vector<std::size_t> kept() {
-    std::vector<g4lidar_point> out(points_.size());
-    std::size_t count = 99;
-    EXPECT_EQ(g4lidar_filter_points(points_.data(), points_.size(), &options_, out.data(), &count),
-              G4LIDAR_OK);
-    std::vector<std::size_t> indices;
-    for (std::size_t i = 0; i < count; ++i) {
-      indices.push_back(static_cast<std::size_t>(out[i].time_ns));
-    }
-    return indices;
-  }
-
-  std::vector<g4lidar_point> points_{at(0.0F, 1000.0F, 0), at(90.0F, 2000.0F, 1),
-                                     at(180.0F, 0.0F, 2), at(270.0F, 50.0F, 3)};
-  g4lidar_filter_options options_;
-};
-using indices = std::vector<std::size_t>;
-
-TEST_F(CFilter, KeepsEverythingByDefault) { EXPECT_EQ(kept(), (indices{0, 1, 2, 3})); }
-
-TEST_F(CFilter, ByEachCondition) {
-  options_.least_range_mm = 100.0F;
-  EXPECT_EQ(kept(), (indices{0, 1}));
-  options_.greatest_range_mm = 1500.0F;
-  EXPECT_EQ(kept(), indices{0});
-  g4lidar_filter_options_init(&options_, sizeof options_);
-  options_.returns_only = true;
-  EXPECT_EQ(kept(), (indices{0, 1, 3}));
-  options_.trusted_only = true;
-  EXPECT_EQ(kept(), (indices{0, 1}));
-  g4lidar_filter_options_init(&options_, sizeof options_);
-  options_.excluded_flags = G4LIDAR_TOO_NEAR;
-  EXPECT_EQ(kept(), (indices{0, 1, 2}));
-  g4lidar_filter_options_init(&options_, sizeof options_);
-  options_.field_of_view = {80.0, 190.0};
-  EXPECT_EQ(kept(), (indices{1, 2}));
-  const g4lidar_sector ignored[2] = {{350.0, 10.0}, {260.0, 280.0}};
-  g4lidar_filter_options_init(&options_, sizeof options_);
-  options_.ignored_sectors = ignored;
-  options_.ignored_sector_count = 2;
-  EXPECT_EQ(kept(), (indices{1, 2}));
-  options_.frame = G4LIDAR_ROBOT;  // 0 is ahead, at 180 degrees of the device
-  EXPECT_EQ(kept(), (indices{0, 1}));
-}
-
-TEST_F(CFilter, ByMasks) {
-  g4lidar_mask* mask = nullptr;
-  g4lidar_error why;
-  // Behind the robot, around the point at 0 degrees of the device.
-  ASSERT_EQ(
-      g4lidar_mask_parse("# a mast\npolygon -1.1 -0.1 -0.9 -0.1 -0.9 0.1 -1.1 0.1\n", &mask, &why),
-      G4LIDAR_OK)
-      << why.message;
-  options_.masks = g4lidar_mask_polygons(mask, &options_.mask_count);
-  ASSERT_EQ(options_.mask_count, 1U);
-  EXPECT_EQ(options_.masks[0].count, 4U);
-  EXPECT_EQ(options_.masks[0].corners[2].y_m, 0.1F);
-  EXPECT_EQ(kept(), (indices{1, 2, 3}));
-  g4lidar_mask_free(mask);
-  EXPECT_EQ(g4lidar_mask_parse("\npolygon 1 2\n", &mask, &why), G4LIDAR_BAD_FILE);
-  EXPECT_EQ(mask, nullptr);
-  EXPECT_EQ(std::strncmp(why.message, "line 2: ", 8), 0) << why.message;
-}
-
-TEST_F(CFilter, ForAGridMarksWhatItLeavesOut) {
-  options_.least_range_mm = 1500.0F;
-  std::vector<g4lidar_point> out(points_.size());
-  std::size_t count = 0;
-  ASSERT_EQ(g4lidar_filter_for_grid(points_.data(), 4, &options_, out.data(), &count), G4LIDAR_OK);
-  ASSERT_EQ(count, 4U);
-  EXPECT_EQ(out[0].flags, G4LIDAR_TOO_NEAR);
-  EXPECT_EQ(out[1].flags, 0);
-  EXPECT_EQ(out[2].flags, G4LIDAR_NO_RETURN);
-}
-
-TEST_F(CFilter, RefusesImpossibleOptions) {
-  std::vector<g4lidar_point> out(4);
-  std::size_t count = 7;
-  const auto run = [&] {
-    return g4lidar_filter_points(points_.data(), 4, &options_, out.data(), &count);
-  };
-  options_.mask_count = 1;
-  EXPECT_EQ(run(), G4LIDAR_BAD_ARGUMENT);
-  g4lidar_filter_options_init(&options_, sizeof options_);
-  options_.ignored_sector_count = 1;
-  EXPECT_EQ(run(), G4LIDAR_BAD_ARGUMENT);
-  g4lidar_filter_options_init(&options_, sizeof options_);
-  options_.frame = 5;
-  EXPECT_EQ(run(), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(count, 7U);
-}
-
 TEST(CPoints, NoReturnAndTooNear_AreWhatTheOptionsSet) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   // A return at 0.4 m; the same beam without return, whose direction is 3.1 degrees less; another one.
   std::vector<g4lidar_point> points{at(90.0F, 400.0F), at(86.9F, 0.0F), at(180.0F, 0.0F)};
   points[1].revolution = points[2].revolution = 1;
-  g4lidar_near_history history{};
-  std::size_t marked = 0;
-  ASSERT_EQ(g4lidar_mark_near(points.data(), 3, &history, nullptr, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, 1U);
-  EXPECT_EQ(points[1].flags, G4LIDAR_NO_RETURN | G4LIDAR_MAY_BE_TOO_NEAR);
-  EXPECT_EQ(points[2].flags, G4LIDAR_NO_RETURN);
+  points[1].flags |= G4LIDAR_MAY_BE_TOO_NEAR;
   g4lidar_grid_options options;
   g4lidar_grid_options_init(&options, sizeof options);
   options.frame = G4LIDAR_VENDOR;
@@ -196,13 +85,6 @@ TEST(CPoints, NoReturnAndTooNear_AreWhatTheOptionsSet) {
   EXPECT_TRUE(std::isnan(ranges[2]));
   options.no_return = 3;
   EXPECT_EQ(fill(), G4LIDAR_BAD_ARGUMENT);
-  g4lidar_near_options limits;
-  g4lidar_near_options_init(&limits, sizeof limits);
-  limits.shortest_mm = 100.0F;
-  ASSERT_EQ(g4lidar_mark_near(points.data(), 3, &history, &limits, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, 0U) << "400 mm is not near";
-  limits.shortest_mm = 0.0F;
-  EXPECT_EQ(g4lidar_mark_near(points.data(), 3, &history, &limits, &marked), G4LIDAR_BAD_ARGUMENT);
 }
 
 TEST(COutliers, MarkSingleReturnsAndThoseBetweenSurfaces) {

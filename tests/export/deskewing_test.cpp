@@ -54,10 +54,10 @@ point ahead(float range_mm, std::int64_t time_ns) {
 
 class Deskewing : public ::testing::Test {
  protected:
-  void write(shaping_options options, bool scans = true) {
+  void write(writing_options options, bool scans = true) {
     callback_sink sink([](std::string_view) {});
     shaping_writer writer(std::make_unique<listener>(heard_, scans), options);
-    EXPECT_EQ(writer.takes_scans(), scans || options.deskew != deskewing::none);
+    EXPECT_EQ(writer.takes_scans(), scans || options.shape.deskew != deskewing::none);
     scan_record record;
     record.scan.points = points_;
     record.time_ns = begin_ns;
@@ -81,7 +81,7 @@ class Deskewing : public ::testing::Test {
 };
 
 TEST_F(Deskewing, ByPath_SeesTheWallFromTheFirstPlace) {
-  write({.deskew = deskewing::by_path, .path = path_});
+  write({.shape = {.deskew = deskewing::by_path}, .path = path_});
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F), FloatNear(5000.0F, 0.02F)));
   EXPECT_EQ(not_deskewed_, 0U);
   ASSERT_EQ(heard_.robot.size(), 1U);
@@ -90,9 +90,8 @@ TEST_F(Deskewing, ByPath_SeesTheWallFromTheFirstPlace) {
 }
 
 TEST_F(Deskewing, ALidarThatLooksBack_SeesTheWallFromTheFirstPlace) {
-  write({.deskew = deskewing::by_path,
-         .path = path_,
-         .mount = {.pose = {0.0, 0.0, std::numbers::pi}}});
+  write({.shape = {.deskew = deskewing::by_path, .mount = {.pose = {0.0, 0.0, std::numbers::pi}}},
+         .path = path_});
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F), FloatNear(4800.0F, 0.02F)));
 }
 
@@ -117,7 +116,7 @@ TEST_F(Deskewing, RevolutionsOffThePath_AreLeftOutOnRequest) {
 }
 
 TEST_F(Deskewing, PointsArePassedOnWhereNoRevolutionsAreTaken) {
-  write({.deskew = deskewing::by_path, .path = path_, .time = time_style::zero}, false);
+  write({.shape = {.deskew = deskewing::by_path}, .path = path_, .time = time_style::zero}, false);
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F), FloatNear(5000.0F, 0.02F)));
   ASSERT_EQ(heard_.points.size(), 2U);
   EXPECT_EQ(heard_.points[0].time_ns, 0);
@@ -125,14 +124,15 @@ TEST_F(Deskewing, PointsArePassedOnWhereNoRevolutionsAreTaken) {
 }
 
 TEST_F(Deskewing, FiltersSeeWhatWasMeasured) {
-  write({.filter = {.greatest_range_mm = 4950.0F}, .deskew = deskewing::by_path, .path = path_});
+  write({.shape = {.filter = {.greatest_range_mm = 4950.0F}, .deskew = deskewing::by_path},
+         .path = path_});
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F)));
 }
 
 TEST_F(Deskewing, OutsideOfThePath_PointsAreFlaggedAndCounted) {
   const std::array<stamped_pose, 2> short_path{
       {{begin_ns - tenth_ns, {}}, {begin_ns + tenth_ns / 2, {0.15, 0.0, 0.0}}}};
-  write({.deskew = deskewing::by_path, .path = short_path});
+  write({.shape = {.deskew = deskewing::by_path}, .path = short_path});
   EXPECT_THAT(ranges(), ElementsAre(FloatNear(5000.0F, 0.02F), 4900.0F));
   EXPECT_EQ(not_deskewed_, 1U);
   EXPECT_EQ(heard_.points[0].flags, point_flags::none);
@@ -140,7 +140,7 @@ TEST_F(Deskewing, OutsideOfThePath_PointsAreFlaggedAndCounted) {
 }
 
 TEST_F(Deskewing, ByScans_TheFirstRevolutionStaysAsItIs) {
-  write({.deskew = deskewing::by_scans});
+  write({.shape = {.deskew = deskewing::by_scans}});
   EXPECT_THAT(ranges(), ElementsAre(5000.0F, 4900.0F));
   EXPECT_EQ(not_deskewed_, 2U);
   EXPECT_EQ(heard_.points[0].flags, point_flags::not_deskewed);

@@ -52,7 +52,7 @@ std::vector<point> ten_points() {
 class ShapingWriter : public ::testing::Test {
  protected:
   /// Writes the points in two pieces, or as two revolutions of five.
-  bool write(const shaping_options& options, bool scans = false) {
+  bool write(const writing_options& options, bool scans = false) {
     heard_.clear();
     shaping_writer writer(std::make_unique<listener>(heard_, scans), options);
     const std::vector<point> points = ten_points();
@@ -86,11 +86,11 @@ TEST_F(ShapingWriter, ChangesNothingByDefault) {
 }
 
 TEST_F(ShapingWriter, FiltersAndCountsTimesFromTheFirstPoint) {
-  shaping_options options;
-  options.filter.least_range_mm = 2000.0F;
-  options.filter.greatest_range_mm = 6000.0F;
+  writing_options options;
+  options.shape.filter.least_range_mm = 2000.0F;
+  options.shape.filter.greatest_range_mm = 6000.0F;
   const std::array<sector, 1> ignored{sector(3.0, 4.0)};
-  options.filter.ignored_sectors = ignored;
+  options.shape.filter.ignored_sectors = ignored;
   options.time = time_style::zero;
   EXPECT_FALSE(write(options));
   EXPECT_THAT(heard_, ElementsAre(2000, 5000, 6000));
@@ -134,8 +134,9 @@ TEST(ShapingWriterSpeckle, DoesNotDependOnThePieces) {
   callback_sink sink([](std::string_view) {});
   for (const std::size_t size : {1U, 2U, 3U, 7U, 39U, 40U}) {
     times heard;
-    shaping_writer writer(std::make_unique<listener>(heard, false),
-                          {.speckle = speckle_limits{.window = 3}, .edges = edge_limits{}});
+    shaping_writer writer(
+        std::make_unique<listener>(heard, false),
+        {.shape = {.marks = {.speckle = speckle_limits{.window = 3}, .edges = edge_limits{}}}});
     for (std::size_t from = 0; from < points.size(); from += size) {
       writer.write_points(std::span(points).subspan(from, std::min(size, points.size() - from)),
                           sink);
@@ -157,7 +158,7 @@ TEST(ShapingWriterSpeckle, TheEndOfTheRangeOfTime_WritesWhatWaited) {
   times heard;
   callback_sink sink([](std::string_view) {});
   shaping_writer writer(std::make_unique<listener>(heard, false),
-                        {.speckle = speckle_limits{}, .to_ns = 6});
+                        {.shape = {.marks = {.speckle = speckle_limits{}}}, .to_ns = 6});
   const std::vector<point> points = wall_with_specks();
   writer.write_points(std::span(points).first(5), sink);
   EXPECT_THAT(heard, ElementsAre(1, 2));
@@ -187,7 +188,8 @@ TEST(ShapingWriterSpeckle, OfARevolution) {
   points.back().angle_deg = 359.75F;  // it and the first one are near each other
   callback_sink sink([](std::string_view) {});
   std::vector<std::size_t> sizes;
-  shaping_writer writer(std::make_unique<counter>(sizes), {.speckle = speckle_limits{}});
+  shaping_writer writer(std::make_unique<counter>(sizes),
+                        {.shape = {.marks = {.speckle = speckle_limits{}}}});
   scan_record record;
   record.scan.points = points;
   writer.write_scan(record, sink);
@@ -232,8 +234,8 @@ TEST(ShapingWriterNear, FlagsAcrossRevolutions_OfScansAndOfPoints_AndLeavesNothi
     for (const bool speckle : {true, false}) {
       SCOPED_TRACE(testing::Message() << scans << speckle);
       std::vector<point> kept;
-      shaping_options options{.near = near_limits{}};
-      if (speckle) options.speckle = speckle_limits{};
+      writing_options options{.shape = {.marks = {.near = near_limits{}}}};
+      if (speckle) options.shape.marks.speckle = speckle_limits{};
       shaping_writer writer(std::make_unique<keeper>(kept, scans), options);
       callback_sink sink([](std::string_view) {});
       for (std::uint32_t revolution = 0; revolution < 2; ++revolution) {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/scan_shaper.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "options.hpp"
 
 namespace ros2 {
@@ -29,9 +29,8 @@ class filtered {
         if (row.names == name) row.take(word);
       }
     }
-    shaper_ = std::make_unique<g4_tool::scan_shaper>(options_->common, g4lidar::mounting{});
-    parameters_ = std::make_unique<g4_tool::lidar_parameters>(options_->common,
-                                                              options_->filter_words, *shaper_);
+    parameters_ = std::make_unique<g4_tool::lidar_parameters>(
+        options_->common, options_->filter_words, false, *shaper_);
     for (int i = 0; i < 360; ++i) {
       g4lidar::point& made = points_.emplace_back();
       made.angle_deg = static_cast<float>(i);
@@ -51,24 +50,21 @@ class filtered {
     for (int i = 0; i < 360; ++i) all.insert(i);
     g4lidar::scan whole;
     whole.points = points_;
-    for (const auto& each : shaper_->shape(whole, {}).kept) {
+    shaper_->shape(whole);
+    for (const auto& each : shaper_->kept()) {
       all.erase(static_cast<int>(each.angle_deg));
     }
     return all;
   }
 
   /// How a grid is filled.
-  g4lidar::grid_options grid() {
-    g4lidar::scan whole;
-    whole.points = points_;
-    return shaper_->shape(whole, {}).grid;
-  }
+  [[nodiscard]] g4lidar::grid_options grid() const { return parameters_->filters().grid; }
   /// Something at 0.4 m, in a revolution of one point.
   void come_near() {
     const g4lidar::point near{.angle_deg = 100.0F, .range_mm = 400.0F};
     g4lidar::scan whole;
     whole.points = {&near, 1};
-    static_cast<void>(shaper_->shape(whole, {}));
+    shaper_->shape(whole);
   }
   /// The flagged points of the next revolution, in which that beam has no return.
   std::size_t flagged() {
@@ -76,12 +72,13 @@ class filtered {
         .angle_deg = 96.9F, .revolution = 1, .flags = g4lidar::point_flags::no_return};
     g4lidar::scan whole;
     whole.points = {&none, 1};
-    return shaper_->shape(whole, {}).for_grid.front().may_be_too_near() ? 1 : 0;
+    shaper_->shape(whole);
+    return shaper_->for_grid().front().may_be_too_near() ? 1 : 0;
   }
 
  private:
   std::shared_ptr<g4_tool::ros2_options> options_ = std::make_shared<g4_tool::ros2_options>();
-  std::unique_ptr<g4_tool::scan_shaper> shaper_;
+  std::unique_ptr<g4lidar::scan_shaper> shaper_ = std::make_unique<g4lidar::scan_shaper>();
   std::unique_ptr<g4_tool::lidar_parameters> parameters_;
   std::vector<g4lidar::point> points_;
 };

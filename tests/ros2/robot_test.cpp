@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <iterator>
@@ -20,7 +19,6 @@
 
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
-#include "io/scan_shaper.hpp"
 #include "lidar.hpp"
 #include "played_clock.hpp"
 #include "subscriber.hpp"
@@ -284,59 +282,6 @@ TEST_F(Robot, MergedLidarsFollowTheSimulatedRobot) {
   EXPECT_GT(good, points.size() * 95 / 100) << points.size();
   EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: front deskewing level"] == "0"; }));
   tool.send(SIGINT);
-}
-
-TEST_F(Robot, WithoutOdometryNothingIsDeskewedAndThatIsReported) {
-  const served_lidar lidar;
-  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
-  diagnosis diagnostics(domain_);
-  cli::program tool({lidar.path(), "--deskew", "odometry"});
-  EXPECT_TRUE(comes_true([&] { return diagnostics["g4lidar: deskewing level"] == "1"; }));
-  EXPECT_THAT(diagnostics["g4lidar: deskewing warning"],
-              ::testing::HasSubstr("no odometry on /odom"));
-  std::size_t seen = 0;
-  EXPECT_TRUE(comes_true([&] { return (seen += scans.take()) > 10; }));
-  const publisher<odometry_message> odometry(domain_, "/odom", dds::odometry);
-  std::string name = "odom";
-  auto due = std::chrono::steady_clock::now();
-  EXPECT_TRUE(comes_true([&] {
-    if (const auto now = std::chrono::steady_clock::now(); now >= due) {
-      odometry_message here{};
-      here.header.frame_id = here.child_frame_id = name.data();
-      here.pose.pose.orientation.w = 1;
-      const auto stamp =
-          std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-      here.header.stamp = {static_cast<std::int32_t>(stamp / 1'000'000'000),
-                           static_cast<std::uint32_t>(stamp % 1'000'000'000)};
-      odometry.write(here);
-      due = now + std::chrono::milliseconds(20);
-    }
-    return diagnostics["g4lidar: deskewing level"] == "0";
-  }));
-  EXPECT_GT(std::atoi(diagnostics["points_not_deskewed"].c_str()), 5000);
-  tool.send(SIGINT);
-  const std::string err = tool.wait().err;
-  const std::size_t first = err.find("no odometry on /odom");
-  EXPECT_NE(first, std::string::npos) << err;
-  EXPECT_EQ(err.rfind("no odometry on /odom"), first) << err;
-}
-
-TEST(OdometryPath, GoesOnForALittleWithTheLastVelocity) {
-  constexpr std::int64_t ms = 1'000'000;
-  g4_tool::odometry_path path;
-  EXPECT_TRUE(path.until(100 * ms).empty());
-  path.add({1000 * ms, {1, 0, 0}, {2, 0, 0}});
-  path.add({1020 * ms, {1.04, 0, 0}, {2, 0, 0}});
-  EXPECT_EQ(path.until(1010 * ms).size(), 2U);
-  const auto guessed = path.until(1070 * ms);
-  ASSERT_EQ(guessed.size(), 3U);
-  EXPECT_EQ(guessed[2].time_ns, 1070 * ms);
-  EXPECT_NEAR(guessed[2].pose.x_m, 1.14, 1e-12);
-  EXPECT_EQ(path.until(1500 * ms).size(), 2U);  // too long ago
-  path.add({1040 * ms, {1.08, 0, 0}, {2, 0, 0}});
-  EXPECT_EQ(path.until(1040 * ms).size(), 3U);
-  path.add({10 * ms, {0, 0, 0}, {}});  // another clock, or the recording again
-  EXPECT_EQ(path.until(10 * ms).size(), 1U);
 }
 
 }  // namespace

@@ -19,6 +19,8 @@
 #include "program.hpp"
 #include "scan_publisher.hpp"
 #include "support/cdr_reader.hpp"
+#include "support/cloud_rows.hpp"
+#include "support/shaped_drive.hpp"
 #include "support/test_scale.hpp"
 
 namespace {
@@ -240,6 +242,50 @@ TEST_F(Ranges, WhatMayBeTooNearIsMinusInfinity_WithTheOption) {
   options.common.marks.near = near_limits{.revolutions = near_limits::until_return};
   options.common.grid.near_is_minus_infinity = true;
   EXPECT_GE(last_with(-infinity, options), 200U);
+}
+
+class EqualShapes : public Served {
+ protected:
+  EqualShapes() {
+    EXPECT_TRUE(center_.receive(*viewer_,
+                                R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":2}]})"));
+  }
+  bool read_all() override {
+    while (const auto message = center_.take(*viewer_)) {
+      if (!message->is_text)
+        clouds_.emplace_back(message->payload->begin(), message->payload->end());
+    }
+    return true;
+  }
+
+  client_registry::client* viewer_ = center_.connect(client_kind::foxglove, nullptr);
+  std::vector<std::string> clouds_;
+};
+
+TEST_F(EqualShapes, ToThoseOfTheLibrary_BitForBit) {
+  const g4lidar::test::shaped_drive drive(G4_DUMP, path("."));
+  serve_options options;
+  options.common.filter.least_range_mm = 300.0F;
+  options.common.marks = {
+      .speckle = speckle_limits{}, .edges = edge_limits{}, .near = near_limits{}};
+  options.common.deskew = deskewing::by_scans;
+  play(drive.recording(), false, options);
+  const auto expected = g4lidar::test::cloud_rows_of(drive.recording());
+  ASSERT_EQ(clouds_.size(), expected.size());
+  auto cloud = clouds_.begin();
+  int deskewed = 0;
+  for (const std::string& rows : expected) {
+    ASSERT_GT(cloud->size(), rows.size());
+    const std::string got = cloud->substr(cloud->size() - 1 - rows.size(), rows.size());
+    ASSERT_TRUE(g4lidar::test::without_times(got) == rows) << cloud - clouds_.begin();
+    ++cloud;
+    bool is_at_one_time = true;
+    for (std::size_t at = 12; at < got.size(); at += g4lidar::test::cloud_row_size) {
+      is_at_one_time = is_at_one_time && got.substr(at, 4) == std::string(4, '\0');
+    }
+    deskewed += is_at_one_time ? 1 : 0;
+  }
+  EXPECT_GT(deskewed, 30) << "nobody is to deskew them again";
 }
 
 class Setting : public Served {

@@ -15,10 +15,10 @@ using namespace std::chrono_literals;
 /// How long the motor runs after the last subscriber has left, so that one that returns need not wait.
 constexpr auto rest_delay = 3s;
 
-common_options options_of(const ros2_options& options, const std::string& source, bool merges) {
+common_options options_of(const ros2_options& options, const named_source& which) {
   common_options made = options.common;
-  made.source = source;
-  if (merges) made.deskew = deskewing::none;  // the merger deskews
+  made.source = which.source;
+  made.mount = which.mount;
   return made;
 }
 
@@ -33,9 +33,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       merger_(into),
       index_(index),
       diagnostics_(on, options, name_space_, which.name),
-      shaper_(options_of(options, which.source, into != nullptr), which.mount.value_or(mounting{})),
-      parameters_(options_of(options, which.source, into != nullptr), options.filter_words,
-                  shaper_) {
+      parameters_(options_of(options, which), options.filter_words, into != nullptr, shaper_) {
   const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
   parameters_.fix("grid", std::int64_t{options.bins});
@@ -65,17 +63,17 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
     driven_ = std::make_unique<odometry_subscription>(
         on, full_name(name_space_, options.topics.odometry));
   }
-  if (is_by_path) {
-    deskewing_ = std::make_unique<deskew_report>(
+  if (options.common.deskew != deskewing::none && merger_ == nullptr) {
+    report_ = std::make_unique<deskew_report>(
+        options.common.deskew,
         feed_.is_known() ? "in the recording" : where_odometry_is(options, name_space_));
-    also_report([this] { return deskewing_->status(); });
+    also_report([this] { return report_->status(); });
   }
   station_options wishes = options.station;
   wishes.starts_rested = options.is_standby;
   wishes.wants_points =
       is_played || (robot_ && kind_of_source(which.source) == source_kind::simulated);
-  station_ = std::make_unique<station>(options_of(options, which.source, merger_ != nullptr),
-                                       options.source, *this, wishes);
+  station_ = std::make_unique<station>(options_of(options, which), options.source, *this, wishes);
 }
 
 lidar_node::~lidar_node() = default;
@@ -138,12 +136,13 @@ void lidar_node::on_points(std::span<const point> points) {
 void lidar_node::on_scan(const scan& whole) {
   if (whole.is_piece()) return;
   if (driven_ && !feed_.is_known()) driven_->take(path_, stamp_ns(0));
-  const std::uint64_t before = shaper_.not_deskewed();
-  const shaped_scan shaped = shaper_.shape(whole, path_.until(whole.end_ns()));
-  if (deskewing_) deskewing_->add(shaped.kept.size(), shaper_.not_deskewed() - before);
+  shaper_.shape(whole, path_.until(whole.end_ns()));
+  if (report_) report_->add(whole.size(), shaper_.outside());
   const scan_times when{whole.time_ns(), whole.duration_ns, stamp_ns(0)};
-  if (merger_ != nullptr) return merger_->add(index_, shaped, when);
-  messages_->publish(shaped, when);
+  const grid_options& grid = parameters_.filters().grid;
+  if (merger_ != nullptr) return merger_->add(index_, shaper_, grid, when);
+  if (messages_->wants_scan()) messages_->publish_scan(shaper_.for_grid(), grid, when);
+  if (messages_->wants_points()) messages_->publish_points(shaper_.kept(), when);
 }
 
 void lidar_node::on_event(const lidar_event& event) {

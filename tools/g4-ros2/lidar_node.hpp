@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "dds/bus.hpp"
-#include "deskew_report.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/scan_shaper.hpp"
+#include "io/deskew_report.hpp"
 #include "io/odometry_feed.hpp"
-#include "io/scan_shaper.hpp"
 #include "io/station.hpp"
 #include "lidar_diagnostics.hpp"
 #include "options.hpp"
@@ -86,7 +86,7 @@ class lidar_node final : public station_listener {
   std::unique_ptr<odometry_subscription> driven_;
   odometry_path path_;
   scan_shaper shaper_;
-  std::unique_ptr<deskew_report> deskewing_;  // null if it does not depend on odometry
+  std::unique_ptr<deskew_report> report_;  // null if it does not deskew
   lidar_parameters parameters_;
   std::atomic<bool> is_allowed_ = true;
   clock::time_point wanted_{};        // when it last had subscribers

@@ -13,13 +13,13 @@
 #include <vector>
 
 #include "dds/bus.hpp"
-#include "deskew_report.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/merge.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
-#include "g4lidar/twist_estimator.hpp"
-#include "io/scan_shaper.hpp"
+#include "g4lidar/scan_shaper.hpp"
+#include "io/deskew_report.hpp"
+#include "io/odometry_feed.hpp"
 #include "options.hpp"
 #include "robot_messages.hpp"
 #include "scan_messages.hpp"
@@ -33,10 +33,11 @@ class merger {
   /// Throws bad_value if there are too many. `on` and `options` outlive it.
   merger(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars);
 
-  void add(std::size_t index, const shaped_scan& scan, const scan_times& when);
+  /// The newest scan of a lidar, filled into grids as `grid` says.
+  void add(std::size_t index, scan_shaper& scan, const grid_options& grid, const scan_times& when);
   /// The robot's odometry, from now on instead of that which others publish.
   void add(const stamped_odometry& at);
-  /// Of the merged scans; more if points need odometry.
+  /// Of the merged scans; more if they are deskewed.
   [[nodiscard]] std::vector<std::function<diagnostic_status()>> reports();
   [[nodiscard]] bool is_wanted() const { return messages_.is_wanted(); }
   [[nodiscard]] scan_messages& messages() noexcept { return messages_; }
@@ -48,26 +49,31 @@ class merger {
     std::vector<point> for_grid;
     std::vector<point> kept;
     std::int64_t end_ns = 0;
-    std::optional<twist_estimator> estimator;
     std::uint64_t lost = 0;         // so many scans were published without it
     std::uint64_t lost_before = 0;  // as it was reported
   };
+  /// How the robot moves: by a twist, or by the poses; without both that is not known.
+  struct motion {
+    std::optional<twist_2d> twist;
+    std::span<const stamped_pose> path;
+  };
+  /// By the leading lidar, at the end of its scan.
+  [[nodiscard]] motion motion_of_robot(const part& leader, const scan_shaper& scan,
+                                       const scan_times& when);
   /// `which` of all parts, as one scan at `reference_ns`.
   [[nodiscard]] merged merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
-                                     std::span<const stamped_pose> path,
-                                     std::vector<point>& out) const;
+                                     const motion& moved, std::vector<point>& out) const;
   [[nodiscard]] diagnostic_status status();
-  void follow(part& leader, const scan_times& when);
 
   scan_messages messages_;
   std::unique_ptr<odometry_subscription> driven_;
-  std::unique_ptr<deskew_report> deskewing_;  // null if it does not depend on odometry
+  deskewing deskew_;
+  std::unique_ptr<deskew_report> report_;  // null if it does not deskew
   std::mutex mutex_;
   std::vector<part> parts_;
   odometry_path path_;
   bool has_odometry_ = false;  // of the robot itself
   std::uint64_t scans_ = 0;
-  std::optional<twist_2d> twist_;  // of the robot, by the scans
   std::vector<point> for_grid_;
   std::vector<point> kept_;
 };

@@ -9,6 +9,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
+#include "io/shape_files.hpp"
 
 namespace g4_tool {
 namespace {
@@ -146,13 +147,21 @@ const parameter* find_parameter(std::string_view name) {
 }
 
 lidar_parameters::lidar_parameters(const common_options& how,
-                                   const std::map<std::string, std::string>& words,
+                                   const std::map<std::string, std::string>& words, bool merges,
                                    scan_shaper& shaper)
-    : how_(how), shaper_(shaper) {
+    : how_(how), merges_(merges), mask_(load_mask(how.mask)), shaper_(shaper) {
+  shape_by(how);
   const point_filter& filter = how.filter;
   keep("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
   keep("range_max", std::min(static_cast<double>(filter.greatest_range_mm) / 1e3, 100.0));
   for (const auto& [name, word] : words) keep(name, word);
+}
+
+void lidar_parameters::shape_by(const common_options& how) {
+  shaping_options shape = shape_of(how, mask_);
+  shape.for_merging = merges_;
+  shape.restamps = true;  // nobody is to deskew the points of a message again
+  shaper_.set_options(shape);
 }
 
 void lidar_parameters::keep(std::string_view name, parameter_value value) {
@@ -236,7 +245,7 @@ std::string lidar_parameters::change(g4lidar::lidar* device, std::span<const nam
   }
   if (std::string reason = set_device(device, changes); !reason.empty()) return reason;
   if (!values.empty()) {
-    shaper_.set_filters(next);
+    shape_by(next);
     how_ = next;
     for (const auto& [name, value] : values) keep(name, value);
   }

@@ -16,8 +16,9 @@
 
 #include "cli/common_options.hpp"
 #include "cli/settings.hpp"
+#include "g4lidar/export/mask.hpp"
 #include "g4lidar/lidar.hpp"
-#include "io/scan_shaper.hpp"
+#include "g4lidar/scan_shaper.hpp"
 
 namespace g4_tool {
 
@@ -45,9 +46,13 @@ struct parameter {
 /// The values for one lidar.
 class lidar_parameters {
  public:
-  /// `how`: the filters at the start; `words`: some of them as text. `shaper` filters by them, and outlives this.
+  /// `how`: the filters at the start; `words`: some of them as text. `shaper` shapes by them, for messages of this
+  /// lidar or for merging, and outlives this. Throws a failure for a mask that cannot be read.
   lidar_parameters(const common_options& how, const std::map<std::string, std::string>& words,
-                   scan_shaper& shaper);
+                   bool merges, scan_shaper& shaper);
+
+  /// The filters now. Only in the station's thread.
+  [[nodiscard]] const common_options& filters() const noexcept { return how_; }
 
   /// What cannot change.
   void fix(std::string_view name, parameter_value value);
@@ -65,7 +70,11 @@ class lidar_parameters {
                                        std::span<const device_change> changes);
   void keep(std::string_view name, parameter_value value);
 
+  void shape_by(const common_options& how);
+
   common_options how_;
+  bool merges_;
+  g4lidar::mask mask_;
   scan_shaper& shaper_;
   mutable std::mutex mutex_;
   std::map<std::string, parameter_value, std::less<>> values_;

@@ -3,9 +3,6 @@
 
 #include <utility>
 
-#include "g4lidar/grid.hpp"
-#include "g4lidar/message/ros_messages.hpp"
-
 namespace g4_tool {
 
 std::unique_ptr<dds::publisher> publisher_of(dds::bus& on, std::string_view name_space,
@@ -28,31 +25,32 @@ scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::str
   points_ = publisher_of(on, name_space, options.topics.points, topic_of(dds::point_cloud2));
 }
 
-void scan_messages::publish(const shaped_scan& shaped, const scan_times& when) {
-  message_header header{.stamp_ns = when.first_ns + when.ahead_ns,
-                        .frame_id = frame_id_,
-                        .duration_ns = when.duration_ns,
-                        .order = options_.order};
-  if (scan_ && scan_->is_wanted()) {
-    if (options_.order == scan_order::time) {
-      header.first_bin = fill_time_grid(shaped.for_grid, when.duration_ns, ranges_, shaped.grid);
-    } else {
-      fill_grid(shaped.for_grid, ranges_, shaped.grid);
-    }
-    message_.clear();
-    put_laser_scan(ranges_, header, message_);
-    scan_->publish(message_);
-  }
-  if (points_ && points_->is_wanted()) {
-    if (!shaped.kept.empty()) header.stamp_ns = shaped.kept.front().time_ns + when.ahead_ns;
-    message_.clear();
-    put_point_cloud2(shaped.kept, header, message_);
-    points_->publish(message_);
-  }
+message_header scan_messages::header_of(const scan_times& when) const {
+  return {.stamp_ns = when.first_ns + when.ahead_ns,
+          .frame_id = frame_id_,
+          .duration_ns = when.duration_ns,
+          .order = options_.order};
 }
 
-bool scan_messages::is_wanted() const {
-  return (scan_ && scan_->is_wanted()) || (points_ && points_->is_wanted());
+void scan_messages::publish_scan(std::span<const point> for_grid, const grid_options& grid,
+                                 const scan_times& when) {
+  message_header header = header_of(when);
+  if (options_.order == scan_order::time) {
+    header.first_bin = fill_time_grid(for_grid, when.duration_ns, ranges_, grid);
+  } else {
+    fill_grid(for_grid, ranges_, grid);
+  }
+  message_.clear();
+  put_laser_scan(ranges_, header, message_);
+  scan_->publish(message_);
+}
+
+void scan_messages::publish_points(std::span<const point> kept, const scan_times& when) {
+  message_header header = header_of(when);
+  if (!kept.empty()) header.stamp_ns = kept.front().time_ns + when.ahead_ns;
+  message_.clear();
+  put_point_cloud2(kept, header, message_);
+  points_->publish(message_);
 }
 
 named_counts scan_messages::counts() const {

@@ -4,13 +4,16 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "dds/bus.hpp"
-#include "io/scan_shaper.hpp"
+#include "g4lidar/message/ros_messages.hpp"
+#include "g4lidar/grid.hpp"
+#include "g4lidar/point.hpp"
 #include "options.hpp"
 
 namespace g4_tool {
@@ -31,14 +34,23 @@ class scan_messages {
   scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
                 std::string frame_id);
 
-  /// Makes the messages that somebody reads.
-  void publish(const shaped_scan& shaped, const scan_times& when);
+  /// On /scan: scan_shaper::for_grid().
+  void publish_scan(std::span<const point> for_grid, const grid_options& grid,
+                    const scan_times& when);
+  /// On /points: scan_shaper::kept().
+  void publish_points(std::span<const point> kept, const scan_times& when);
+  /// Whether somebody reads them. *Any thread.*
+  [[nodiscard]] bool wants_scan() const { return scan_ && scan_->is_wanted(); }
+  /// The same.
+  [[nodiscard]] bool wants_points() const { return points_ && points_->is_wanted(); }
   /// Whether somebody reads one of them. *Any thread.*
-  [[nodiscard]] bool is_wanted() const;
+  [[nodiscard]] bool is_wanted() const { return wants_scan() || wants_points(); }
   /// Of those that are published. *Any thread.*
   [[nodiscard]] named_counts counts() const;
 
  private:
+  [[nodiscard]] message_header header_of(const scan_times& when) const;
+
   const ros2_options& options_;
   std::string frame_id_;
   std::unique_ptr<dds::publisher> scan_;  // null: off

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <span>
 #include <utility>
 
 #include "cli/exit_code.hpp"
@@ -11,6 +12,7 @@
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
+#include "io/shape_files.hpp"
 
 namespace g4_tool {
 namespace {
@@ -64,11 +66,13 @@ double loss_window::add(const lidar_counts& counts) {
 }
 
 scan_publisher::scan_publisher(const serve_options& options, client_registry& to)
-    : options_(options),
-      registry_(to),
-      shaper_(options.common, mounting{}),
-      ranges_m_(options.bins),
-      settings_(unknown_settings()) {}
+    : options_(options), registry_(to), ranges_m_(options.bins), settings_(unknown_settings()) {
+  const g4lidar::mask mask = load_mask(options.common.mask);
+  shaping_options shape = shape_of(options.common, mask);
+  shape.restamps = true;  // nobody is to deskew the points of a message again
+  shaper_.set_options(shape);
+  if (shape.deskew != deskewing::none) report_.emplace(shape.deskew, "");
+}
 
 void scan_publisher::on_open(opened_source& source) {
   const source_kind kind = kind_of_source(options_.common.source);
@@ -98,29 +102,27 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   const bool wants_scan = wanted.wants(channel::scan);
   const bool wants_points = wanted.wants(channel::points);
   publish_bytes(wanted.wants(channel::from_device));
-  // These need all scans, also without clients.
-  const bool has_memory = options_.common.deskew != deskewing::none || options_.common.marks.near;
-  if (!wanted.page && !wants_scan && !wants_points && !has_memory) return;
-  const shaped_scan shaped = shaper_.shape(scan, {});
+  shaper_.shape(scan);
+  if (report_) report_->add(scan.size(), shaper_.outside());
   const message_header header{.stamp_ns = station_->wall_ns(scan.time_ns()),
                               .frame_id = options_.frame_id,
                               .duration_ns = scan.duration_ns};
   if (wanted.page) {
+    const std::span<const point> kept = shaper_.kept();
     std::vector<std::uint8_t> message;
-    message.reserve(16 + 8 * shaped.kept.size());
-    put_page_scan(shaped.kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns),
-                  message);
+    message.reserve(16 + 8 * kept.size());
+    put_page_scan(kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns), message);
     registry_.page_scan(std::move(message));
   }
   if (wants_scan) {
     std::vector<std::uint8_t> message;
-    fill_grid(shaped.for_grid, ranges_m_, shaped.grid);
+    fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid);
     put_laser_scan(ranges_m_, header, message);
     registry_.publish(channel::scan, header.stamp_ns, std::move(message));
   }
   if (wants_points) {
     std::vector<std::uint8_t> message;
-    put_point_cloud2(shaped.kept, header, message);
+    put_point_cloud2(shaper_.kept(), header, message);
     registry_.publish(channel::points, header.stamp_ns, std::move(message));
   }
 }
@@ -164,7 +166,9 @@ void scan_publisher::publish_diagnostics(const page_status& status) {
   const std::string serial = identity ? std::string(identity->serial_number()) : std::string();
   const std::int64_t now_ns = wall_now_ns();
   std::vector<std::uint8_t> message;
-  put_diagnostic_array(statuses_of(status.stages, status.counts, serial), now_ns, message);
+  auto statuses = statuses_of(status.stages, status.counts, serial);
+  if (report_) statuses.emplace_back(report_->status()).hardware_id = serial;
+  put_diagnostic_array(statuses, now_ns, message);
   registry_.publish(channel::diagnostics, now_ns, std::move(message));
 }
 

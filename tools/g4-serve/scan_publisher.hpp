@@ -15,7 +15,8 @@
 #include "byte_tap.hpp"
 #include "cli/serve_verb.hpp"
 #include "client_registry.hpp"
-#include "io/scan_shaper.hpp"
+#include "g4lidar/scan_shaper.hpp"
+#include "io/deskew_report.hpp"
 #include "io/station.hpp"
 
 namespace g4_tool {
@@ -86,7 +87,8 @@ class scan_publisher final : public station_listener {
   client_registry& registry_;
   station* station_ = nullptr;
   scan_shaper shaper_;
-  byte_tap bytes_;  // of the station's thread
+  std::optional<deskew_report> report_;  // if it deskews
+  byte_tap bytes_;                       // of the station's thread
   scan_rates rates_;
   std::vector<float> ranges_m_;
   nlohmann::ordered_json settings_;  // of the station's thread

@@ -111,7 +111,7 @@ fn run() -> Result<(), String> {
     lidar.start()?;
     for _ in 0..5 {
         let (points, frequency_hz) = lidar.next_scan(5000)?;
-        // No return is not free space: see g4lidar_mark_near().
+        // No return is not free space: see near_options of g4lidar_shaper_options.
         let returns = points.iter().filter(|each| each.flags & NO_RETURN == 0);
         let nearest_mm = returns.map(|each| each.range_mm).fold(f32::INFINITY, f32::min);
         println!("{} points at {frequency_hz:.2} Hz, the nearest {:.3} m away", points.len(), nearest_mm / 1000.0);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file
- * Filters of points: ranges, directions, masks, isolated returns and veiling points. The functions are
- * pure: any thread may call them at any time; they never allocate, except those for masks.
+ * Options of filters for g4lidar_shaper: ranges, directions, masks; isolated returns and veiling points. The
+ * functions are pure: any thread may call them at any time; they never allocate, except those for masks.
  */
 #ifndef G4LIDAR_C_FILTER_H
 #define G4LIDAR_C_FILTER_H
@@ -52,18 +52,6 @@ typedef struct g4lidar_filter_options {
 /** Sets the defaults; `size` is sizeof(g4lidar_filter_options). */
 G4LIDAR_C_API void g4lidar_filter_options_init(g4lidar_filter_options* options, size_t size);
 
-/** Copies the points that are kept to `out`, which has room for `count`, and their number to `kept`.
- *  `out` may be `points`. */
-G4LIDAR_C_API int g4lidar_filter_points(const g4lidar_point* points, size_t count,
-                                        const g4lidar_filter_options* options, g4lidar_point* out,
-                                        size_t* kept);
-
-/** The same for g4lidar_fill_grid(): a return that is left out stays and is flagged
- *  G4LIDAR_TOO_NEAR, so that its bin becomes NaN and not free; points without return stay. */
-G4LIDAR_C_API int g4lidar_filter_for_grid(const g4lidar_point* points, size_t count,
-                                          const g4lidar_filter_options* options, g4lidar_point* out,
-                                          size_t* kept);
-
 /** Which returns are isolated (rain, dust, bit errors) or between two surfaces. */
 typedef struct g4lidar_outlier_options {
   size_t struct_size;   /**< Set by g4lidar_outlier_options_init(). */
@@ -91,13 +79,9 @@ G4LIDAR_C_API int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
 G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
                                        const g4lidar_outlier_options* options, size_t* marked);
 
-/** From which directions near returns came last, for g4lidar_mark_near(): one for each lidar, in the memory of
- *  the caller. All bytes are 0 at first. */
-typedef struct g4lidar_near_history {
-  uint32_t revolutions[360]; /**< Not for programs. */
-} g4lidar_near_history;
-
-/** Which directions without return are flagged by g4lidar_mark_near(). */
+/** Which points without return are flagged G4LIDAR_MAY_BE_TOO_NEAR: in directions where, in the last revolutions,
+ *  a return came from less than twice the shortest range, and none that is farther since. That misses some such
+ *  targets, and has false alarms: <g4lidar/too_near.hpp> has their numbers. */
 typedef struct g4lidar_near_options {
   size_t struct_size; /**< Set by g4lidar_near_options_init(). */
   float shortest_mm;  /**< A nearer target gives no return; 280, as at 9 kHz. Above 0. */
@@ -108,15 +92,6 @@ typedef struct g4lidar_near_options {
 
 /** Sets the defaults; `size` is sizeof(g4lidar_near_options). */
 G4LIDAR_C_API void g4lidar_near_options_init(g4lidar_near_options* options, size_t size);
-
-/** Flags as G4LIDAR_MAY_BE_TOO_NEAR the points without return in directions where, in the last revolutions,
- *  a return came from less than twice the shortest range, and none that is farther since; clears that flag on
- *  all others, and returns the number of flagged ones in `marked`, which may be NULL. `points`: all points of
- *  the lidar in their order, in pieces of any size, before they are filtered or deskewed. It misses some such
- *  targets, and has false alarms: <g4lidar/too_near.hpp> has their numbers. `options` may be NULL. */
-G4LIDAR_C_API int g4lidar_mark_near(g4lidar_point* points, size_t count,
-                                    g4lidar_near_history* history,
-                                    const g4lidar_near_options* options, size_t* marked);
 
 /** Polygons that were read from a text. */
 typedef struct g4lidar_mask g4lidar_mask;

@@ -25,7 +25,7 @@ enum g4lidar_point_flag {
   G4LIDAR_ISOLATED = 32,        /**< No other return is near; set by g4lidar_mark_isolated(). */
   G4LIDAR_VEILING = 64,         /**< Between two surfaces; set by g4lidar_mark_veiling(). */
   G4LIDAR_MAY_BE_TOO_NEAR = 128 /**< Without return, perhaps of something too near; set by
-                                     g4lidar_mark_near(). */
+                                     g4lidar_shaper. */
 };
 
 /** One measured point in the device's own frame, 24 bytes. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A writer before another writer: filters and deskews points, converts their times, and stops at a limit.
+// A writer before another writer: shapes points, converts their times, and stops at a limit.
 #pragma once
 
 #include <cstddef>
@@ -14,41 +14,23 @@
 #include "g4lidar/export/point_writer.hpp"
 #include "g4lidar/export/text_sink.hpp"
 #include "g4lidar/export/time_shift.hpp"
-#include "g4lidar/filter.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/too_near.hpp"
-#include "g4lidar/twist_estimator.hpp"
 
 namespace g4lidar {
 
-/// How a shaping_writer knows the motion by which it deskews.
-enum class deskewing : std::uint8_t {
-  none,      ///< It does not deskew.
-  by_path,   ///< From shaping_options::path.
-  by_scans,  ///< From a twist_estimator.
-};
-
 /// What a shaping_writer does. By default it changes nothing.
-struct shaping_options {
-  point_filter filter{};  ///< Which points are written. What it views outlives the writer.
-  /// Isolated returns are left out, and veiling points. Of a stream of points the last ones wait for
-  /// their neighbours: see finish().
-  std::optional<speckle_limits> speckle{};
-  std::optional<edge_limits> edges{};
-  /// Directions where a target may be too near are flagged by mark_near(), and stay.
-  std::optional<near_limits> near{};
-  /// Each revolution is deskewed to the time of its first point, after it was filtered. Points whose motion
-  /// is not known are written as they are, flagged not_deskewed. The twist_estimator takes the points as they
-  /// were before the filter; where one direction is not known, the value of its last estimate is used.
-  deskewing deskew = deskewing::none;
+struct writing_options {
+  /// How a scan_shaper shapes revolutions. A stream of points is marked and filtered in the same way; its last points
+  /// wait for their neighbours: see finish().
+  shaping_options shape{};
   /// The poses of the robot by its odometry, times ascending, of the same clock as those of the points. Also
-  /// for scan_record::robot. A view of the caller's memory.
+  /// for scan_record::robot. A view of the caller's memory, which outlives the writer.
   std::span<const stamped_pose> path{};
-  mounting mount{};           ///< For deskewing::by_path.
   bool on_path_only = false;  ///< Revolutions at whose first point `path` has no pose are left out.
-  bool for_grid = false;      ///< Filters with filter_for_grid(), for make_grid_writer().
+  bool for_grid = false;      ///< Writes scan_shaper::for_grid(), for make_grid_writer().
   time_style time = time_style::monotonic;  ///< What is written in the place of times.
   std::int64_t wall_ahead_ns = 0;   ///< For time_style::absolute: wall clock minus monotonic clock.
   bool follows_wall_clock = false;  ///< Measures that again while it runs: for live data.
@@ -60,16 +42,16 @@ struct shaping_options {
   std::uint64_t count = std::numeric_limits<std::uint64_t>::max();  ///< The most records.
 };
 
-/// Passes points or revolutions on to another writer, as `shaping_options` specify. *Single thread,
+/// Passes points or revolutions on to another writer, as `writing_options` specify. *Single thread,
 /// allocates.* Exceptions of the sink pass through.
 class G4LIDAR_API shaping_writer final : public point_writer {
  public:
   /// `inner` is not null.
-  shaping_writer(std::unique_ptr<point_writer> inner, const shaping_options& options);
+  shaping_writer(std::unique_ptr<point_writer> inner, const writing_options& options);
 
   /// As the other writer. One that deskews takes revolutions, and passes their points on.
   [[nodiscard]] bool takes_scans() const noexcept override {
-    return options_.deskew != deskewing::none || inner_->takes_scans();
+    return options_.shape.deskew != deskewing::none || inner_->takes_scans();
   }
   /// As point_writer::begin(); the first record calls it if nobody has.
   void begin(text_sink& out) override;
@@ -92,26 +74,21 @@ class G4LIDAR_API shaping_writer final : public point_writer {
  private:
   /// Those of `points` that are in the range of time.
   [[nodiscard]] std::span<const point> in_range(std::span<const point> points);
-  [[nodiscard]] bool looks_at_neighbours() const noexcept;
-  void mark(std::span<point> points, scan_ends ends) const;
-  /// A copy of `points` in `marked_near_`, marked by mark_near(); without that option `points`.
-  [[nodiscard]] std::span<const point> with_near(std::span<const point> points);
   /// The points of the stream that can be marked now, marked; `is_end`: all.
   [[nodiscard]] std::span<const point> marked_stream(std::span<const point> points, bool is_end);
-  /// Deskews the points that are left of a revolution to the time of its first point.
-  void deskew_scan(std::span<point> points, std::span<const point> whole);
-  /// Those that the filter keeps, deskewed if they are a revolution, with the times that are written.
-  [[nodiscard]] std::span<const point> shaped(std::span<const point> points);
-  void write_shaped(std::span<const point> points, text_sink& out);
+  void write_stream(std::span<const point> points, text_sink& out);
+  void pass_on(std::span<const point> points, text_sink& out);
+  /// The points with the times that are written.
+  [[nodiscard]] std::span<const point> timed(std::span<const point> points);
   void follow_wall_clock();
 
   std::unique_ptr<point_writer> inner_;
-  shaping_options options_;
+  writing_options options_;
+  scan_shaper shaper_;
+  near_history near_;          // of the stream, as the next two
+  std::vector<point> stream_;  // marked, with the neighbours of what comes next
+  std::size_t passed_on_ = 0;  // of `stream_`
   std::vector<point> shaped_;
-  near_history near_;
-  std::vector<point> marked_near_;
-  std::vector<point> marked_;  // of a stream also the neighbours of what comes next
-  std::size_t passed_on_ = 0;  // of `marked_`
   time_shift times_;
   time_shift scan_times_;
   std::optional<std::int64_t> first_ns_;
@@ -121,7 +98,6 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   std::uint64_t pieces_ = 0;
   std::uint64_t off_path_ = 0;
   std::uint64_t not_deskewed_ = 0;
-  std::optional<twist_estimator> estimator_;
 };
 
 }  // namespace g4lidar

@@ -20,53 +20,46 @@
 #include "g4lidar/wall_clock.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
-#include "io/mask_file.hpp"
-#include "io/odometry_file.hpp"
 #include "io/output.hpp"
+#include "io/shape_files.hpp"
 #include "read_loop.hpp"
 
 namespace g4_tool {
 namespace {
 
-shaping_options shape_of(const point_job& job, const common_options& common, source_kind kind) {
+/// `shape`: of the revolutions.
+writing_options how_to_write(const point_job& job, const common_options& common, source_kind kind,
+                             const shaping_options& shape) {
   const bool is_file = kind == source_kind::raw_bytes;
-  shaping_options shape;
-  shape.filter = common.filter;
-  shape.filter.in = common.frame;
-  shape.filter.ignored_sectors = common.ignored;
-  shape.filter.returns_only = job.returns_only;
-  shape.speckle = common.marks.speckle;
-  shape.edges = common.marks.edges;
-  shape.near = common.marks.near;
-  shape.deskew = common.deskew;
-  shape.mount = common.mount.value_or(mounting{});
-  shape.for_grid = job.bins > 0;
-  shape.partial_scans = job.partial;
-  if (common.count > 0) shape.count = common.count;
+  writing_options made{.shape = shape};
+  made.shape.filter.returns_only = job.returns_only;
+  made.for_grid = job.bins > 0;
+  made.partial_scans = job.partial;
+  if (common.count > 0) made.count = common.count;
   if (is_file) {
-    shape.from_ns = job.source.playback.from_ns;
-    shape.to_ns = job.source.playback.to_ns;
+    made.from_ns = job.source.playback.from_ns;
+    made.to_ns = job.source.playback.to_ns;
   }
   if (common.duration.count() > 0 && (is_file || kind == source_kind::recording)) {
-    shape.to_ns = std::min<std::int64_t>(shape.to_ns, common.duration.count());
+    made.to_ns = std::min<std::int64_t>(made.to_ns, common.duration.count());
   }
-  shape.time = common.time.value_or(is_file ? time_style::monotonic : time_style::absolute);
-  if (job.log != slam_log::none && shape.time == time_style::delta) {
+  made.time = common.time.value_or(is_file ? time_style::monotonic : time_style::absolute);
+  if (job.log != slam_log::none && made.time == time_style::delta) {
     throw bad_value("--time delta: this format needs times that do not go back");
   }
   if (is_file && !job.text && common.time &&
-      (shape.time == time_style::absolute || shape.time == time_style::monotonic)) {
+      (made.time == time_style::absolute || made.time == time_style::monotonic)) {
     throw bad_value("--time: raw bytes carry no times; use zero or delta, see --sample-rate");
   }
-  if (shape.time != time_style::absolute || is_file) return shape;
-  shape.follows_wall_clock = kind != source_kind::recording;
-  shape.wall_ahead_ns = wall_clock().ahead().count();
-  if (shape.follows_wall_clock) return shape;
-  read_items(path_of_source(common.source), {}, [&shape](const recorded_item& first) {
-    shape.wall_ahead_ns = first.wall_ns - first.time_ns;
+  if (made.time != time_style::absolute || is_file) return made;
+  made.follows_wall_clock = kind != source_kind::recording;
+  made.wall_ahead_ns = wall_clock().ahead().count();
+  if (made.follows_wall_clock) return made;
+  read_items(path_of_source(common.source), {}, [&made](const recorded_item& first) {
+    made.wall_ahead_ns = first.wall_ns - first.time_ns;
     return false;
   });
-  return shape;
+  return made;
 }
 
 /// Each revolution goes to the output, or to a file of its own.
@@ -104,16 +97,15 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
-    shaping_options shape = shape_of(job_, common_, kind_);
-    if (!common_.mask.empty()) mask_ = load_mask(common_.mask);
-    shape.filter.masks = mask_.polygons();
-    load_path(shape);
+    const g4lidar::mask mask = load_mask(common_.mask);
+    writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));
+    load_path(how);
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;
     const bool has_long_times =
-        shape.time == time_style::absolute || shape.time == time_style::monotonic;
+        how.time == time_style::absolute || how.time == time_style::monotonic;
     if (has_long_times && kind_ != source_kind::raw_bytes) job_.style.time_width = 10;
-    writer_ = std::make_unique<shaping_writer>(make_writer(), shape);
+    writer_ = std::make_unique<shaping_writer>(make_writer(), how);
   }
 
   int run() {
@@ -138,27 +130,22 @@ class point_run {
   }
 
   /// The poses of the file of --odometry, or of the recording.
-  void load_path(shaping_options& shape) {
+  void load_path(writing_options& how) {
     const bool is_needed = common_.deskew == deskewing::by_path || job_.log != slam_log::none;
     if (!common_.odometry.empty()) {
       path_ = load_odometry(common_.odometry);
     } else if (is_needed && kind_ == source_kind::recording) {
-      read_items(path_of_source(common_.source), {}, [this](const recorded_item& item) {
-        if (item.what == recorded_item::kind::odometry)
-          path_.push_back({item.time_ns, item.odometry.pose});
-        return true;
-      });
-      std::ranges::sort(path_, {}, &stamped_pose::time_ns);
-      const auto same = std::ranges::unique(path_, {}, &stamped_pose::time_ns);
-      path_.erase(same.begin(), same.end());
+      for (const stamped_odometry& each : recorded_odometry(path_of_source(common_.source))) {
+        path_.push_back({each.time_ns, each.pose});
+      }
     }
     if (path_.empty() && (common_.deskew == deskewing::by_path || job_.log == slam_log::tum)) {
       throw bad_value(in_quotes(common_.source) +
                       " has no poses of the robot: give --odometry FILE" +
                       (job_.log == slam_log::tum ? "" : ", or --deskew scans"));
     }
-    shape.path = path_;
-    shape.on_path_only = job_.log != slam_log::none && !path_.empty();
+    how.path = path_;
+    how.on_path_only = job_.log != slam_log::none && !path_.empty();
   }
 
   std::unique_ptr<point_writer> make_writer() {
@@ -335,7 +322,6 @@ class point_run {
   common_options common_;
   source_kind kind_;
   numbered_files files_;
-  g4lidar::mask mask_;
   std::vector<stamped_pose> path_;
   std::unique_ptr<shaping_writer> writer_;
   point_file_writer* point_file_ = nullptr;  // behind writer_

@@ -12,14 +12,13 @@
 
 #include "exit_code.hpp"
 #include "g4lidar/export/point_writer.hpp"
-#include "g4lidar/export/shaping_writer.hpp"
 #include "g4lidar/export/time_shift.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
-#include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/too_near.hpp"
 #include "rows.hpp"
 #include "verbs.hpp"
@@ -52,13 +51,6 @@ enum class loss_rule : unsigned char {
   exit,       ///< Ends.
   reconnect,  ///< Waits for a lost device and continues.
   wait,       ///< Also waits for a device that is not connected at the start.
-};
-
-/// The limits of the flags for points; only flags with limits are computed.
-struct mark_limits {
-  std::optional<speckle_limits> speckle;
-  std::optional<edge_limits> edges;
-  std::optional<near_limits> near;
 };
 
 struct common_options {

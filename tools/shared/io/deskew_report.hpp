@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whether there is odometry for deskewing: an event when it is missing, and a status for /diagnostics.
+// Whether the motion is known by which points are deskewed: an event when it is not, and a status for /diagnostics.
 #pragma once
 
 #include <atomic>
@@ -8,18 +8,19 @@
 #include <string>
 
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/scan_shaper.hpp"
 
 namespace g4_tool {
 
 class deskew_report {
  public:
-  /// `where`: odometry is expected: "on /odom".
-  explicit deskew_report(const std::string& where);
+  /// `where`: odometry is expected, for deskewing by_path: "on /odom".
+  deskew_report(g4lidar::deskewing how, const std::string& where);
 
-  /// A scan of `points`, of which `outside` had no odometry. The event is reported when several scans had none at all,
-  /// and again when odometry comes. *Single thread.*
+  /// A scan of `points`, of which `outside` have no known motion. The event is reported when several scans had none at
+  /// all, and again when the motion is known. *Single thread.*
   void add(std::size_t points, std::size_t outside);
-  /// A warning if there were more points without odometry since the last call. *Single thread*, another one.
+  /// A warning if there were more such points since the last call. *Single thread*, another one.
   [[nodiscard]] g4lidar::diagnostic_status status();
 
  private:

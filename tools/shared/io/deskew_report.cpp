@@ -13,9 +13,11 @@ constexpr int scans_that_decide = 5;
 
 }  // namespace
 
-deskew_report::deskew_report(const std::string& where)
-    : hint_("points are not deskewed: there is no odometry " + where +
-            " for the times of the scans") {}
+deskew_report::deskew_report(g4lidar::deskewing how, const std::string& where)
+    : hint_("points are not deskewed: " +
+            (how == g4lidar::deskewing::by_scans
+                 ? "the scans do not show the motion"
+                 : "there is no odometry " + where + " for the times of the scans")) {}
 
 void deskew_report::add(std::size_t points, std::size_t outside) {
   outside_ += outside;
@@ -24,7 +26,7 @@ void deskew_report::add(std::size_t points, std::size_t outside) {
   if (others_ < scans_that_decide) return;
   is_missing_ = is_missing;
   others_ = 0;
-  logger::info(is_missing ? hint_ + "\n" : "points are deskewed: odometry comes\n");
+  logger::info(is_missing ? hint_ + "\n" : "points are deskewed: the motion is known\n");
 }
 
 g4lidar::diagnostic_status deskew_report::status() {

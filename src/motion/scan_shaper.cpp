@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/scan_shaper.hpp"
+
+#include <utility>
+
+#include "g4lidar/deskew.hpp"
+
+namespace g4lidar {
+
+scan_shaper::scan_shaper(const shaping_options& options) { set_options(options); }
+
+void scan_shaper::set_options(const shaping_options& options) {
+  std::vector<sector> sectors(options.filter.ignored_sectors.begin(),
+                              options.filter.ignored_sectors.end());
+  std::vector<std::vector<corner>> corners;
+  for (const polygon& each : options.filter.masks) corners.emplace_back(each.begin(), each.end());
+  options_ = options;
+  sectors_ = std::move(sectors);
+  corners_ = std::move(corners);
+  masks_.assign(corners_.begin(), corners_.end());
+  point_filter& filter = options_.filter;
+  filter.ignored_sectors = sectors_;
+  filter.masks = masks_;
+  if (options_.marks.speckle) filter.excluded = filter.excluded | point_flags::isolated;
+  if (options_.marks.edges) filter.excluded = filter.excluded | point_flags::veiling;
+  if (!options_.marks.near) near_.reset();
+  if (options_.deskew != deskewing::by_scans) estimator_.reset();
+  if (options_.deskew == deskewing::by_scans && !estimator_) estimator_.emplace();
+}
+
+bool scan_shaper::deskews() const noexcept {
+  return options_.deskew != deskewing::none && !options_.for_merging;
+}
+
+void scan_shaper::shape(const scan& source, std::span<const stamped_pose> path) {
+  points_ = source.points;
+  ends_ = source.is_piece() ? scan_ends::open : scan_ends::joined;
+  needs_marks_ = options_.marks.window() > 0;
+  reference_ns_ = source.time_ns();
+  path_ = options_.deskew == deskewing::by_path ? path : std::span<const stamped_pose>();
+  kept_.points.reset();
+  for_grid_.points.reset();
+  twist_.reset();
+  if (estimator_ && !points_.empty()) {
+    const twist_estimate motion = estimator_->add(points_);
+    if (motion.is_known() || motion.status == twist_status::degenerate) twist_ = motion.twist;
+  }
+  outside_ = count_outside();
+  not_deskewed_ += outside_;
+  if (!options_.marks.near) return;
+  marked_.assign(points_.begin(), points_.end());
+  mark_near(marked_, near_, *options_.marks.near);
+  points_ = marked_;
+}
+
+std::size_t scan_shaper::count_outside() const noexcept {
+  if (!deskews()) return 0;
+  if (!twist_ && !pose_at(path_, reference_ns_)) return points_.size();
+  return static_cast<std::size_t>(std::ranges::count_if(points_, [this](const point& p) {
+    const bool is_off_path =
+        !twist_ && (p.time_ns < path_.front().time_ns || p.time_ns > path_.back().time_ns);
+    return p.time_ns == 0 || is_off_path;
+  }));
+}
+
+std::span<const point> scan_shaper::make(product& what, filtering* filtered) {
+  if (what.points) return *what.points;
+  if (needs_marks_) {
+    if (!options_.marks.near) marked_.assign(points_.begin(), points_.end());
+    options_.marks.mark_by_neighbours(marked_, ends_);
+    points_ = marked_;
+    needs_marks_ = false;
+  }
+  if (options_.filter.keeps_everything() && !deskews()) return what.points.emplace(points_);
+  if (what.memory.size() < points_.size()) what.memory.resize(points_.size());
+  const std::span<point> made = filtered(points_, options_.filter, what.memory);
+  what.points = made;
+  if (!deskews()) return made;
+  if (twist_) {
+    deskew(made, *twist_, reference_ns_);
+  } else {  // without a path it flags all of them
+    deskew(made, path_, reference_ns_, options_.mount);
+  }
+  if (!options_.restamps) return made;
+  for (point& p : made) {
+    if (!p.is_not_deskewed()) p.time_ns = reference_ns_;
+  }
+  return made;
+}
+
+std::span<const point> scan_shaper::kept() { return make(kept_, &filter_points); }
+
+std::span<const point> scan_shaper::for_grid() { return make(for_grid_, &filter_for_grid); }
+
+}  // namespace g4lidar

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+// Scans that are filtered, marked and deskewed in C, with points made by hand.
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include "c_handles.hpp"
+
+namespace {
+
+using namespace g4lidar_c_test;
+
+g4lidar_shaper_options shaper_defaults() {
+  g4lidar_shaper_options options;
+  g4lidar_shaper_options_init(&options, sizeof options);
+  return options;
+}
+
+shaper make(const g4lidar_shaper_options& options) {
+  g4lidar_shaper* made = nullptr;
+  g4lidar_error why;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &made, &why), G4LIDAR_OK) << why.message;
+  return shaper(made);
+}
+
+std::span<const g4lidar_point> kept_by(const shaper& by) {
+  std::size_t count = 99;
+  const g4lidar_point* const points = g4lidar_shaper_kept(by.get(), &count);
+  return {points, count};
+}
+
+class CFilter : public testing::Test {
+ protected:
+  CFilter() { g4lidar_filter_options_init(&options_, sizeof options_); }
+  /// The result of making a shaper by the filter, and of shaping the points.
+  int shape() {
+    g4lidar_shaper_options options = shaper_defaults();
+    options.filter = &options_;
+    g4lidar_shaper* made = nullptr;
+    const int done = g4lidar_shaper_create(&options, &made, nullptr);
+    shaper_.reset(made);
+    return done == G4LIDAR_OK
+               ? g4lidar_shaper_shape(made, points_.data(), points_.size(), false, nullptr, 0)
+               : done;
+  }
+  /// The indices of the points that are kept.
+  std::vector<std::size_t> kept() {
+    EXPECT_EQ(shape(), G4LIDAR_OK);
+    std::vector<std::size_t> indices;
+    for (const g4lidar_point& each : kept_by(shaper_)) {
+      indices.push_back(static_cast<std::size_t>(each.time_ns));
+    }
+    return indices;
+  }
+
+  std::vector<g4lidar_point> points_{at(0.0F, 1000.0F, 0), at(90.0F, 2000.0F, 1),
+                                     at(180.0F, 0.0F, 2), at(270.0F, 50.0F, 3)};
+  g4lidar_filter_options options_;
+  shaper shaper_;
+};
+using indices = std::vector<std::size_t>;
+
+TEST_F(CFilter, KeepsEverythingByDefault) { EXPECT_EQ(kept(), (indices{0, 1, 2, 3})); }
+
+TEST_F(CFilter, ByEachCondition) {
+  options_.least_range_mm = 100.0F;
+  EXPECT_EQ(kept(), (indices{0, 1}));
+  options_.greatest_range_mm = 1500.0F;
+  EXPECT_EQ(kept(), indices{0});
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.returns_only = true;
+  EXPECT_EQ(kept(), (indices{0, 1, 3}));
+  options_.trusted_only = true;
+  EXPECT_EQ(kept(), (indices{0, 1}));
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.excluded_flags = G4LIDAR_TOO_NEAR;
+  EXPECT_EQ(kept(), (indices{0, 1, 2}));
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.field_of_view = {80.0, 190.0};
+  EXPECT_EQ(kept(), (indices{1, 2}));
+  const g4lidar_sector ignored[2] = {{350.0, 10.0}, {260.0, 280.0}};
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.ignored_sectors = ignored;
+  options_.ignored_sector_count = 2;
+  EXPECT_EQ(kept(), (indices{1, 2}));
+  options_.frame = G4LIDAR_ROBOT;  // 0 is ahead, at 180 degrees of the device
+  EXPECT_EQ(kept(), (indices{0, 1}));
+}
+
+TEST_F(CFilter, ByMasks) {
+  g4lidar_mask* mask = nullptr;
+  g4lidar_error why;
+  // Behind the robot, around the point at 0 degrees of the device.
+  ASSERT_EQ(
+      g4lidar_mask_parse("# a mast\npolygon -1.1 -0.1 -0.9 -0.1 -0.9 0.1 -1.1 0.1\n", &mask, &why),
+      G4LIDAR_OK)
+      << why.message;
+  options_.masks = g4lidar_mask_polygons(mask, &options_.mask_count);
+  ASSERT_EQ(options_.mask_count, 1U);
+  EXPECT_EQ(options_.masks[0].count, 4U);
+  EXPECT_EQ(options_.masks[0].corners[2].y_m, 0.1F);
+  EXPECT_EQ(kept(), (indices{1, 2, 3}));
+  g4lidar_mask_free(mask);
+  EXPECT_EQ(g4lidar_mask_parse("\npolygon 1 2\n", &mask, &why), G4LIDAR_BAD_FILE);
+  EXPECT_EQ(mask, nullptr);
+  EXPECT_EQ(std::strncmp(why.message, "line 2: ", 8), 0) << why.message;
+}
+
+TEST_F(CFilter, ForAGridMarksWhatItLeavesOut) {
+  options_.least_range_mm = 1500.0F;
+  ASSERT_EQ(shape(), G4LIDAR_OK);
+  std::size_t count = 0;
+  const g4lidar_point* const out = g4lidar_shaper_for_grid(shaper_.get(), &count);
+  ASSERT_EQ(count, 4U);
+  EXPECT_EQ(out[0].flags, G4LIDAR_TOO_NEAR);
+  EXPECT_EQ(out[1].flags, 0);
+  EXPECT_EQ(out[2].flags, G4LIDAR_NO_RETURN);
+}
+
+TEST_F(CFilter, RefusesImpossibleOptions) {
+  options_.mask_count = 1;
+  EXPECT_EQ(shape(), G4LIDAR_BAD_ARGUMENT);
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.ignored_sector_count = 1;
+  EXPECT_EQ(shape(), G4LIDAR_BAD_ARGUMENT);
+  g4lidar_filter_options_init(&options_, sizeof options_);
+  options_.frame = 5;
+  EXPECT_EQ(shape(), G4LIDAR_BAD_ARGUMENT);
+}
+
+TEST(CShaper, FlagsWhatMayBeTooNear) {
+  // A return at 0.4 m; the same beam without return, whose direction is 3.1 degrees less; another one.
+  std::vector<g4lidar_point> points{at(90.0F, 400.0F), at(86.9F, 0.0F), at(180.0F, 0.0F)};
+  points[1].revolution = points[2].revolution = 1;
+  g4lidar_near_options limits;
+  g4lidar_near_options_init(&limits, sizeof limits);
+  g4lidar_shaper_options options = shaper_defaults();
+  options.near_options = &limits;
+  const auto flags = [&] {
+    const shaper made = make(options);
+    EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, nullptr, 0), G4LIDAR_OK);
+    return std::vector<int>{kept_by(made)[1].flags, kept_by(made)[2].flags};
+  };
+  EXPECT_EQ(flags(),
+            (std::vector<int>{G4LIDAR_NO_RETURN | G4LIDAR_MAY_BE_TOO_NEAR, G4LIDAR_NO_RETURN}));
+  limits.shortest_mm = 100.0F;
+  EXPECT_EQ(flags(), (std::vector<int>{G4LIDAR_NO_RETURN, G4LIDAR_NO_RETURN}))
+      << "400 mm is not near";
+  limits.shortest_mm = 0.0F;
+  g4lidar_shaper* made = nullptr;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &made, nullptr), G4LIDAR_BAD_ARGUMENT);
+}
+
+TEST(CShaper, LeavesOutSingleReturns_OfAPieceOthersThanOfARevolution) {
+  const std::vector<g4lidar_point> points{at(10.0F, 2000.0F), at(180.0F, 4000.0F),
+                                          at(9.9F, 2000.0F)};
+  g4lidar_outlier_options limits;
+  g4lidar_outlier_options_init(&limits, sizeof limits);
+  limits.window = 1;
+  g4lidar_shaper_options options = shaper_defaults();
+  options.speckle = &limits;
+  const shaper made = make(options);
+  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, nullptr, 0), G4LIDAR_OK);
+  EXPECT_EQ(kept_by(made).size(), 2U);
+  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, true, nullptr, 0), G4LIDAR_OK);
+  EXPECT_EQ(kept_by(made).size(), 0U);
+}
+
+TEST(CShaper, DeskewsByThePath_AndFlagsAndCountsTheRest) {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  // 1 m/s towards a wall straight ahead; the path ends before the last point.
+  const std::vector<g4lidar_point> points{at(180.0F, 3000.0F, second_ns),
+                                          at(180.0F, 2000.0F, 2 * second_ns),
+                                          at(180.0F, 1000.0F, 3 * second_ns)};
+  std::vector<g4lidar_stamped_pose> path{{second_ns, {0.0, 0.0, 0.0}},
+                                         {2 * second_ns, {1.0, 0.0, 0.0}}};
+  g4lidar_shaper_options options = shaper_defaults();
+  options.deskew = G4LIDAR_DESKEW_BY_PATH;
+  options.restamps = true;
+  const shaper made = make(options);
+  ASSERT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, path.data(), 2), G4LIDAR_OK);
+  const auto kept = kept_by(made);
+  ASSERT_EQ(kept.size(), 3U);
+  EXPECT_NEAR(kept[1].range_mm, 3000.0F, 0.02F);
+  EXPECT_EQ(kept[1].time_ns, second_ns);
+  EXPECT_EQ(kept[2].range_mm, 1000.0F);
+  EXPECT_EQ(kept[2].time_ns, 3 * second_ns);
+  EXPECT_EQ(kept[2].flags, G4LIDAR_NOT_DESKEWED);
+  EXPECT_EQ(g4lidar_shaper_outside(made.get()), 1U);
+  path[0].time_ns = 5 * second_ns;
+  EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, path.data(), 2),
+            G4LIDAR_BAD_ARGUMENT);
+  options.deskew = 3;
+  g4lidar_shaper* none = nullptr;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
+}
+
+}  // namespace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The options of a scan_shaper, and the files that it needs: --mask, --odometry, and recorded odometry.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/common_options.hpp"
+#include "g4lidar/export/mask.hpp"
+#include "g4lidar/motion.hpp"
+#include "g4lidar/scan_shaper.hpp"
+
+namespace g4_tool {
+
+/// The mask in the file of that name; none without a name. Throws a failure that names the file and the line.
+[[nodiscard]] g4lidar::mask load_mask(const std::string& path);
+
+/// What `how` says of filters, marks and deskewing, with the mask of its file. Views both.
+[[nodiscard]] g4lidar::shaping_options shape_of(const common_options& how,
+                                                const g4lidar::mask& loaded);
+
+/// The poses in the file of that name, times ascending. Throws a failure that names the file and the line.
+[[nodiscard]] std::vector<g4lidar::stamped_pose> load_odometry(const std::string& path);
+
+/// The odometry of a recording, times ascending, each once. Throws a failure.
+[[nodiscard]] std::vector<g4lidar::stamped_odometry> recorded_odometry(const std::string& path);
+
+}  // namespace g4_tool
