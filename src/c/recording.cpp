@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "border.hpp"
+#include "g4lidar/recording/replay.hpp"
 #include "handles.hpp"
 #include "motion.hpp"
 #include "ranges.hpp"
