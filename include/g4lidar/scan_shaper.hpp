@@ -120,7 +120,7 @@ class G4LIDAR_API scan_shaper {
   std::vector<polygon> masks_;
   std::optional<twist_estimator> estimator_;
   near_history near_;
-  std::span<const point> points_;  // of the scan, marked as far as marked_ says
+  std::span<const point> points_;  // of the scan, with the flags that marked_ names
   scan_ends ends_ = scan_ends::joined;
   bool needs_marks_ = false;  // by neighbours
   std::span<const stamped_pose> path_;

@@ -132,7 +132,7 @@ void bind_shaper(nb::module_& module) {
            "9 kHz, 260 at 8, 100 at 4), and none that is farther since; too_near.hpp has the "
            "numbers of what it misses and of false alarms. `deskew`: 'by_path' moves points to "
            "where they would have been seen at the time of the first one, by the poses of the "
-           "robot on which the lidar is fixed as `mount` says; 'by_scans' by a TwistEstimator. "
+           "robot on which the lidar has the pose `mount`; 'by_scans' by a TwistEstimator. "
            "Points whose motion is not known stay, flagged PointFlag.NOT_DESKEWED. `restamps` "
            "gives the others the time of the first one. `for_merging`: only the twist is "
            "estimated, because merge_scans() deskews.")

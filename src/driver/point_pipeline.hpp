@@ -106,11 +106,10 @@ class point_pipeline {
   void begin(std::uint32_t sample_rate_hz) noexcept;
   /// The stream of points has ended: the unfinished revolution becomes a piece.
   void end() noexcept;
-  /// The following bytes are from another transport; see transport::baud(). Before begin().
-  void follow(std::uint32_t baud) noexcept { decoder_.follow(baud); }
-  /// The same; their times may be earlier ones.
-  void restart(std::uint32_t baud) noexcept {
-    decoder_.forget();
+  /// The following bytes are from another transport; see transport::baud(). Before begin(). With
+  /// `times_restart` their times may be earlier ones.
+  void follow(std::uint32_t baud, bool times_restart = false) noexcept {
+    if (times_restart) decoder_.forget();
     decoder_.follow(baud);
   }
 

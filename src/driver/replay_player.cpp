@@ -274,7 +274,7 @@ void replay_player::follow_seek() {
   delivers_ = true;
   if (!connection_.is_open()) static_cast<void>(connection_.open());
   receiver_.reset(0, 0, now_ns());
-  if (connection_.is_open()) pipeline_.restart(connection_.on().baud());
+  if (connection_.is_open()) pipeline_.follow(connection_.on().baud(), true);
   if (stage_ == stage::idle) return;
   stage_ = connection_.is_open() ? stage::playing : stage::closed;
   spin_up_.forget();

@@ -211,7 +211,8 @@ recorded_device device_of(field_reader& map) {
     if (name == "frequency_chz") {
       if (const auto chz = number_in<std::uint16_t>(value)) device.frequency = scan_frequency{*chz};
     }
-    if (name == "sample_rate") take_setting(device.sample_rate, value);
+    const bool is_rate = name == "sample_rate" || name == "ranging";  // its name until 2026-11
+    if (is_rate) take_setting(device.sample_rate, value);
     if (name == "motor_direction") take_setting(device.motor, value);
     if (name == "constant_frequency") take_setting(device.constant, value);
     if (name == "low_power") take_setting(device.idle, value);

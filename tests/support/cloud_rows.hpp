@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/scan_shaper.hpp"
 
 namespace g4lidar::test {

@@ -33,7 +33,7 @@ class merger {
   /// Throws bad_value if there are too many. `on` and `options` outlive it.
   merger(dds::bus& on, const ros2_options& options, const std::vector<named_source>& lidars);
 
-  /// The newest scan of a lidar, filled into grids as `grid` says.
+  /// The newest scan of a lidar, filled into grids with the options `grid`.
   void add(std::size_t index, scan_shaper& scan, const grid_options& grid, const scan_times& when);
   /// The robot's odometry, from now on instead of that which others publish.
   void add(const stamped_odometry& at);

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "dds/bus.hpp"
-#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/grid.hpp"
+#include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/point.hpp"
 #include "options.hpp"
 

@@ -15,7 +15,7 @@ namespace g4_tool {
 /// The mask in the file of that name; none without a name. Throws a failure that names the file and the line.
 [[nodiscard]] g4lidar::mask load_mask(const std::string& path);
 
-/// What `how` says of filters, marks and deskewing, with the mask of its file. Views both.
+/// The options of `how` for filters, marks and deskewing, with the mask of its file. Views both.
 [[nodiscard]] g4lidar::shaping_options shape_of(const common_options& how,
                                                 const g4lidar::mask& loaded);
 
