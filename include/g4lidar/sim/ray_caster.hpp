@@ -20,12 +20,16 @@ inline constexpr double far_correction_deg = -7.990596267964585603;
 
 /// A wall in millimetres in the lidar's frame: x at bearing 0, y at bearing 90.
 struct seen_wall {
-  double normal_x, normal_y;      ///< Unit vector, from the lidar to the line of the wall.
-  double tangent_x, tangent_y;    ///< Unit vector.
-  double distance;                ///< Of the line of the wall, >= 0.
-  double along_begin, along_end;  ///< Where the wall begins and ends on its line.
-  double nearest, farthest;       ///< Distances of the wall's points.
-  std::uint32_t index;
+  double normal_x;      ///< Of the unit vector from the lidar to the line of the wall.
+  double normal_y;      ///< The same.
+  double tangent_x;     ///< Of the unit vector along the wall.
+  double tangent_y;     ///< The same.
+  double distance;      ///< Of the line of the wall, >= 0.
+  double along_begin;   ///< Where the wall begins on its line.
+  double along_end;     ///< Where it ends.
+  double nearest;       ///< The distance of its nearest point.
+  double farthest;      ///< The distance of its farthest point.
+  std::uint32_t index;  ///< Of the wall in the world.
 };
 
 /// A target on the beam.

@@ -17,6 +17,7 @@ namespace g4lidar::sim {
 /// pose. *Single thread. Allocates on construction only.* A copy is independent.
 class G4LIDAR_API scene_caster {
  public:
+  /// Copies what it needs of the world.
   explicit scene_caster(const world& scene);
 
   /// The pose of the lidar. The heading is not wrapped.

@@ -15,7 +15,7 @@
 namespace g4lidar::sim {
 namespace {
 
-constexpr std::array coordinates{&pose::x_m, &pose::y_m, &pose::heading_deg};
+constexpr std::array pose_numbers{&pose::x_m, &pose::y_m, &pose::heading_deg};
 
 double seconds_between(const path_point& from, const path_point& to) noexcept {
   return static_cast<double>(to.time_ns - from.time_ns) * 1e-9;
@@ -29,7 +29,7 @@ void smooth(std::span<path_point> path) noexcept {
   for (std::size_t i = 1; i + 1 < path.size(); ++i) {
     const double before_s = seconds_between(path[i - 1], path[i]);
     const double after_s = seconds_between(path[i], path[i + 1]);
-    for (const auto coordinate : coordinates) {
+    for (const auto coordinate : pose_numbers) {
       const double here = path[i].robot.at.*coordinate;
       const double before = (here - path[i - 1].robot.at.*coordinate) / before_s;
       const double after = (path[i + 1].robot.at.*coordinate - here) / after_s;
@@ -56,7 +56,7 @@ moving_pose robot_at(std::span<const path_point> path, std::int64_t time_ns) noe
   const double whole_s = seconds_between(from, to);
   const double s = static_cast<double>(time_ns - from.time_ns) * 1e-9 / whole_s;
   moving_pose robot;
-  for (const auto coordinate : coordinates) {
+  for (const auto coordinate : pose_numbers) {
     // A robot that stands has exactly the same pose at all times.
     const double way = to.robot.at.*coordinate - from.robot.at.*coordinate;
     const double begins = from.robot.per_s.*coordinate * whole_s;

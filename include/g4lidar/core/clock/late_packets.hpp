@@ -18,6 +18,7 @@ class late_packets {
 
   /// Bytes were skipped: a loss nearly always damages a packet.
   constexpr void skipped() noexcept { is_torn_ = true; }
+  /// Forgets what was seen, at the beginning of a stream.
   constexpr void reset() noexcept { is_late_ = is_torn_ = false; }
 
   /// Whether the last packet was too late.
