@@ -194,7 +194,7 @@ std::optional<std::int64_t> played_file::wall_ahead_ns() noexcept {
 }
 
 void played_file::follow_clock() noexcept {
-  set_for_ns_.reset();
+  set_for_ns_ = never_ns;
   itimerspec due{};  // of a paused clock: never
   if (clock_.is_free()) due.it_value.tv_nsec = 1;
   timerfd_settime(due_.get(), TFD_TIMER_ABSTIME, &due, nullptr);

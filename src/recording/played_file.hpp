@@ -168,8 +168,8 @@ class played_file final : public recorded_event_source {
   file_player controls_{*this};
   std::uint32_t baud_ = 0;
   std::optional<std::int64_t> wall_ahead_ns_;
-  std::optional<std::int64_t> set_for_ns_;  // the handle
-  bool is_shown_ = false;                   // next_event() has returned the next item
+  std::int64_t set_for_ns_ = never_ns;  // when the handle is readable; never_ns: not set
+  bool is_shown_ = false;               // next_event() has returned the next item
   bool may_connect_ = true;
 };
 
