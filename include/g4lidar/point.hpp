@@ -14,6 +14,7 @@
 
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/model.hpp"
 
 namespace g4lidar {
 
@@ -45,7 +46,7 @@ enum class point_flags : std::uint8_t {
 }
 
 /// Ranges below this are flagged too_near, in millimetres. (protocol: Point packets)
-inline constexpr float too_near_mm = 100.0F;
+inline constexpr float too_near_mm = g4_model.range.min_mm;
 /// The longest range that a sample can contain, in millimetres. (protocol: Point packets)
 inline constexpr float longest_range_mm = 16383.75F;
 

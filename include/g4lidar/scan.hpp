@@ -9,12 +9,13 @@
 #include <cstdint>
 #include <span>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
 
 /// The sample rate of a G4 with its default settings, in Hz. (protocol: Commands)
-inline constexpr std::uint32_t default_sample_rate_hz = 9000;
+inline constexpr std::uint32_t default_sample_rate_hz = g4_model.rates.nominal_hz;
 
 /// Why a scan is not one whole revolution between two zero packets; a set of bits.
 enum class scan_flags : std::uint8_t {

@@ -15,6 +15,7 @@
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/point_ring.hpp"
 #include "g4lidar/core/request.hpp"
@@ -66,6 +67,11 @@ std::optional<std::uint16_t> read_frequency(response_view reply) {
   return reply.as_frequency_chz();
 }
 std::optional<command_traits> look_up(command code) { return traits_of(code); }
+const model* find_model(device_information who) {
+  const model* const found = model_with_id(who.model, link_kind::two_way);
+  return found != nullptr ? found : model_named("g4");
+}
+std::uint16_t shortest(const model& which) { return shortest_range_mm(which, 9000); }
 std::array<std::uint8_t, 2> command_bytes(command code) { return encode(code); }
 std::optional<sample_rate> read_sample_rate(std::uint8_t value) {
   return reply_byte<sample_rate>(value);

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/wire_check.hpp"
 
 namespace g4lidar {
@@ -19,7 +20,7 @@ namespace g4lidar {
 /// The number of bytes of a packet before its samples.
 inline constexpr std::size_t packet_header_size = 10;
 /// The maximum number of samples in a packet of a G4.
-inline constexpr std::size_t max_samples = 80;
+inline constexpr std::size_t max_samples = g4_model.samples.max_samples;
 /// The size of the longest packet in bytes.
 inline constexpr std::size_t max_packet_size = packet_header_size + 2 * max_samples;
 /// The first two bytes of every packet.

@@ -13,6 +13,7 @@
 #include "g4lidar/core/clock/late_packets.hpp"
 #include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/point.hpp"
 
@@ -20,10 +21,12 @@ namespace g4lidar {
 
 /// What a sensor_clock cannot determine by itself.
 struct sensor_clock_options {
-  double sample_rate_hz = 9000.0;  ///< Nominal, above 0; the true rate is within 4 % of it.
+  /// Nominal, above 0; the true rate is within 4 % of it.
+  double sample_rate_hz = g4_model.rates.nominal_hz;
   std::int64_t transport_delay_ns =
-      0;                        ///< The least delay of every byte after the serial connection.
-  std::uint32_t baud = 230400;  ///< Bits per second, 10 bits per byte; 0: bytes take no time.
+      0;  ///< The least delay of every byte after the serial connection.
+  /// Bits per second, 10 bits per byte; 0: bytes take no time.
+  std::uint32_t baud = g4_model.bauds[0];
 };
 
 /// The measurement times of the samples of one packet.

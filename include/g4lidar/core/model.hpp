@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+// The table of the models of lidars, and the search in it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "g4lidar/core/model_record.hpp"
+
+namespace g4lidar {
+
+/// All models, the G4 first. Valid forever. What is not known of a model has the value that claims
+/// least: presence::unknown, a nominal rate of 0.
+inline constexpr auto models = [] {
+  using enum sample_layout;
+  using enum correction_kind;
+  using enum link_kind;
+  using enum motor_kind;
+  using enum presence;
+  constexpr sample_format g4_samples{quarter_mm, triangle, 80};
+  constexpr sample_format quarter_samples{quarter_mm, triangle};
+  constexpr sample_format flagged_samples{flagged_mm, triangle};
+  constexpr sample_format half_mm_samples{half_mm, triangle};
+  constexpr sample_format triangle_10{intensity_10, triangle};
+  constexpr sample_format triangle_8{intensity_8, triangle};
+  constexpr sample_format scl_samples{intensity_8, scl};
+  constexpr sample_format tof_8{intensity_8, correction_kind::none};
+  constexpr sample_format tof_16{intensity_16, correction_kind::none};
+  constexpr sample_format tof_mm{whole_mm, correction_kind::none};
+
+  constexpr auto fixed = [](std::uint32_t hz, std::uint16_t shortest_mm = 0) {
+    return sample_rate_list{{{{hz, shortest_mm}}}, hz, false};
+  };
+  constexpr sample_rate_list g4_rates{{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true};
+  constexpr sample_rate_list f4_rates{{{{4000}, {6000}}}, 4000, true};
+  constexpr sample_rate_list g6_rates{{{{8000, 100}, {16000, 260}, {18000, 280}}}, 18000, true};
+  constexpr sample_rate_list x3_pro_rates{{{{3000}, {4000}}}};
+  constexpr sample_rate_list s2_rates{{{{3000}, {4000}, {5000}}}};
+  constexpr sample_rate_list tg_rates{{{{10000}, {18000}, {20000}}}};
+
+  constexpr frequency_properties not_set{};
+  constexpr frequency_properties set_5_to_12{50, 120};
+  constexpr frequency_properties set_6_to_12{60, 120};
+  constexpr frequency_properties tg_frequency{30, 160, -40, 30};
+
+  constexpr firmware_difference r2_old{0x0107, quarter_mm, 0, 4};
+  constexpr firmware_difference tg_old{0x0102, half_mm, 0, 4};
+
+  // One column a field; the formatter would write one field a line.
+  // clang-format off
+  // word, name, ids, bauds, samples, link, motor,
+  // rates, frequency, range, turn, divisor of the zero angle, protection, information in CT
+  return std::to_array<model>({
+      {"g4",             "G4",             {5},     {230400},         g4_samples,      two_way, command,
+       g4_rates,         set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown},
+      {"g4-pro",         "G4 Pro",         {7},     {230400},         g4_samples,      two_way, command,
+       g4_rates,         set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown},
+      {"g5",             "G5",             {20},    {230400},         g4_samples,      two_way, command,
+       g4_rates,         set_5_to_12,  {100, 16000}, 180, 0,   unknown, unknown},
+      {"f4",             "F4",             {1},     {115200},         quarter_samples, two_way, command,
+       fixed(4000),      set_5_to_12,  {120, 12000}, 180, 0,   no,      unknown},
+      {"f4-pro",         "F4 Pro",         {8},     {230400},         quarter_samples, two_way, command,
+       f4_rates,         set_5_to_12,  {120, 12000}, 180, 0,   yes,     unknown},
+      {"g1",             "G1",             {19},    {230400},         quarter_samples, two_way, command,
+       fixed(9000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},
+      {"g2",             "G2",             {15},    {230400},         triangle_10,     two_way, command,
+       fixed(5000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},
+      {"g2a",            "G2A",            {14},    {230400},         quarter_samples, two_way, command,
+       fixed(5000),      set_5_to_12,  {100, 12000}, 180, 4,   unknown, unknown},
+      {"g2c",            "G2C",            {16},    {115200},         quarter_samples, two_way, command,
+       fixed(4000),      set_5_to_12,  {100, 12000}, 180, 4,   unknown, unknown},
+      {"g4c",            "G4C",            {18},    {115200},         quarter_samples, two_way, command,
+       fixed(4000),      set_5_to_12,  {100, 12000}, 180, 0,   unknown, unknown},
+      {"g4b",            "G4B",            {17},    {512000},         triangle_10,     two_way, command,
+       fixed(10000),     set_5_to_12,  {120, 16000}, 180, 0,   unknown, unknown},
+      {"r2",             "R2",             {9},     {230400},         quarter_samples, two_way, command,
+       fixed(5000),      set_5_to_12,  {120, 16000}, 180, 100, unknown, unknown, quarter_mm, r2_old},
+      {"g6",             "G6",             {13},    {512000},         half_mm_samples, two_way, command,
+       g6_rates,         set_5_to_12,  {100, 25000}, 180, 0,   yes,     unknown},
+      {"g7",             "G7",             {21},    {512000},         half_mm_samples, two_way, command,
+       g6_rates,         set_5_to_12,  {100, 25000}, 180, 0,   yes,     unknown},
+      {"x4",             "X4",             {6},     {128000},         flagged_samples, two_way, dtr,
+       fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      no},
+      {"x4-pro",         "X4 Pro",         {4, 6},  {128000},         flagged_samples, one_way, supply,
+       fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      yes},
+      {"x2",             "X2",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
+       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+      {"x2l",            "X2L",            {4, 6},  {115200},         flagged_samples, one_way, dtr,
+       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+      {"x3",             "X3",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
+       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+      {"x3-pro",         "X3 Pro",         {4, 6},  {115200},         flagged_samples, one_way, dtr,
+       x3_pro_rates,     not_set,      {100, 8000},  0,   0,   no,      unknown},
+      {"s2",             "S2",             {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
+       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, intensity_8},
+      {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
+       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, intensity_8},
+      {"s4",             "S4",             {4},     {115200},         flagged_samples, two_way, dtr,
+       fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+      {"s4b",            "S4B",            {4, 11}, {153600},         triangle_8,      two_way, dtr,
+       fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+      {"scl",            "SCL",            {22},    {115200},         scl_samples,     one_way, dtr,
+       fixed(3000),      not_set,      {120, 8000},  0,   0,   no,      unknown},
+      {"t-mini",         "T-mini",         {140},   {230400},         tof_8,           two_way, command,
+       fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
+      {"t-mini-pro",     "T-mini Pro",     {150},   {230400},         tof_8,           two_way, command,
+       fixed(4000),      set_6_to_12,  {20, 12000},  0,   0,   unknown, unknown},
+      {"t-mini-plus",    "T-mini Plus",    {151},   {230400},         tof_8,           two_way, command,
+       fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
+      {"t-mini-plus-sh", "T-mini Plus SH", {152},   {230400},         tof_16,          two_way, command,
+       fixed(4000),      set_6_to_12,  {50, 25000},  0,   0,   unknown, unknown},
+      {"tg15",           "TG15",           {100},   {512000},         tof_mm,          two_way, command,
+       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, whole_mm, tg_old},
+      {"tg30",           "TG30",           {101},   {512000},         tof_mm,          two_way, command,
+       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, whole_mm, tg_old},
+      {"tg50",           "TG50",           {102},   {512000},         tof_mm,          two_way, command,
+       tg_rates,         tg_frequency, {50, 50000},  180, 4,   yes,     unknown, whole_mm, tg_old},
+      {"tx8",            "TX8",            {100},   {115200},         tof_mm,          one_way, dtr,
+       fixed(4000),      not_set,      {50, 8000},   0,   0,   no,      unknown},
+      {"tx20",           "TX20",           {100},   {115200},         tof_mm,          one_way, dtr,
+       fixed(4000),      not_set,      {50, 20000},  0,   0,   no,      unknown},
+  });
+  // clang-format on
+}();
+
+/// The model that is used where none is named.
+inline constexpr const model& g4_model = models[0];
+
+/// The model with this word, or null: "x4-pro". Valid forever. *Pure.*
+[[nodiscard]] constexpr const model* model_named(std::string_view word) noexcept {
+  for (const model& each : models) {
+    if (each.word == word) return &each;
+  }
+  return nullptr;
+}
+
+/// The model whose devices, and no other model's with a connection of this kind, identify themselves
+/// with `id`; else null. Valid forever. *Pure.* A reply comes from a two-way lidar; an announcement
+/// after power-on may come from a one-way lidar.
+[[nodiscard]] constexpr const model* model_with_id(std::uint8_t id, link_kind link) noexcept {
+  if (id == 0) return nullptr;
+  const model* found = nullptr;
+  for (const model& each : models) {
+    if (each.link != link || (each.ids[0] != id && each.ids[1] != id)) continue;
+    if (found != nullptr) return nullptr;
+    found = &each;
+  }
+  return found;
+}
+
+namespace detail {
+
+/// Whether the rates of `row` are complete and in ascending order. *Pure.*
+[[nodiscard]] constexpr bool has_consistent_rates(const model& row) noexcept {
+  bool has_nominal = row.rates.nominal_hz == 0;
+  std::uint32_t last = 0;
+  bool ended = false;
+  for (const sample_rate_entry& rate : row.rates.entries) {
+    ended = ended || rate.hz == 0;
+    if (ended) {
+      if (rate.hz != 0 || rate.shortest_mm != 0) return false;
+      continue;
+    }
+    if (rate.hz <= last) return false;
+    if (rate.shortest_mm != 0 && rate.shortest_mm < row.range.min_mm) return false;
+    last = rate.hz;
+    has_nominal = has_nominal || rate.hz == row.rates.nominal_hz;
+  }
+  return last != 0 && has_nominal;
+}
+
+/// Whether the longest packet of `row` in this layout fits into the memory for a packet. *Pure.*
+[[nodiscard]] constexpr bool has_room_for(const model& row, sample_layout layout) noexcept {
+  constexpr std::size_t room = 2 * 80;
+  return row.samples.max_samples * sample_size(layout) <= room;
+}
+
+/// Whether the fields of `row` agree with each other and with the protocol. *Pure.*
+[[nodiscard]] constexpr bool is_consistent(const model& row) noexcept {
+  const auto& [min_dhz, max_dhz, reply_offset, ct_offset] = row.frequency;
+  const bool has_limits = 0 < row.range.min_mm && row.range.min_mm < row.range.max_mm &&
+                          (min_dhz < max_dhz || max_dhz == 0);
+  const bool has_names = !row.word.empty() && !row.name.empty() && row.bauds[0] != 0 &&
+                         row.ids[0] != 0 && row.ids[0] != row.ids[1];
+  const bool has_memory = row.samples.max_samples > 0 && has_room_for(row, row.samples.layout) &&
+                          has_room_for(row, row.other_layout);
+  const bool takes_commands = row.motor == motor_kind::command || row.rates.is_settable ||
+                              max_dhz != 0 || row.zero_angle_divisor != 0 ||
+                              row.protection != presence::no;
+  return has_names && has_limits && has_memory && has_consistent_rates(row) &&
+         (row.link == link_kind::two_way || !takes_commands) &&
+         (row.turn_deg == 0 || row.turn_deg == 180);
+}
+
+/// Whether all rows are consistent, and no two have the same word. *Pure.*
+[[nodiscard]] constexpr bool are_consistent() noexcept {
+  for (const model& row : models) {
+    if (!is_consistent(row) || model_named(row.word) != &row) return false;
+  }
+  return true;
+}
+
+}  // namespace detail
+
+static_assert(detail::are_consistent());
+
+}  // namespace g4lidar

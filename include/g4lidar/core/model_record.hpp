@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// What the library knows about a model of lidar: a record. A difference between models is a field.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace g4lidar {
+
+/// How the bytes of a sample are read. All numbers are little-endian; r is the 16-bit word of the
+/// range.
+enum class sample_layout : std::uint8_t {
+  quarter_mm,    ///< 2 bytes: r / 4 mm; no return if r / 4 is below 1.
+  flagged_mm,    ///< 2 bytes: r >> 2 mm, and two flags.
+  half_mm,       ///< 2 bytes: r / 2 mm.
+  whole_mm,      ///< 2 bytes: r mm.
+  intensity_10,  ///< 3 bytes: 8 bits of intensity, then r >> 2 mm and 2 upper bits of intensity.
+  intensity_8,   ///< 3 bytes: 8 bits of intensity, then r >> 2 mm and two flags.
+  intensity_16,  ///< 4 bytes: 16 bits of intensity, then r mm.
+};
+
+/// The size of a sample in bytes: 2, 3 or 4. *Pure.*
+[[nodiscard]] constexpr std::size_t sample_size(sample_layout layout) noexcept {
+  if (layout == sample_layout::intensity_16) return 4;
+  return layout < sample_layout::intensity_10 ? 2 : 3;
+}
+
+/// The bits of intensity of a sample: 0, 8, 10 or 16. *Pure.*
+[[nodiscard]] constexpr int intensity_bits(sample_layout layout) noexcept {
+  if (layout == sample_layout::intensity_16) return 16;
+  if (layout == sample_layout::intensity_10) return 10;
+  return layout == sample_layout::intensity_8 ? 8 : 0;
+}
+
+/// The second-level correction of an angle by the range.
+enum class correction_kind : std::uint8_t {
+  triangle,  ///< atan(21.8 (155.3 - d) / (155.3 d)), d in mm.
+  scl,       ///< atan(17.8 / d), d in mm.
+  none,
+};
+
+/// Whether a lidar answers commands, or sends from power-on and answers nothing.
+enum class link_kind : std::uint8_t { two_way, one_way };
+
+/// What starts and stops the motor.
+enum class motor_kind : std::uint8_t {
+  command,  ///< The commands start and stop.
+  dtr,      ///< The line DTR of the serial port.
+  supply,   ///< It turns as long as there is power.
+};
+
+/// Whether a model has a feature, as far as it is known.
+enum class presence : std::uint8_t { no, yes, unknown };
+
+/// How the samples of a packet are read.
+struct sample_format {
+  sample_layout layout = sample_layout::quarter_mm;
+  correction_kind correction = correction_kind::triangle;
+  std::uint8_t max_samples = 40;  ///< The largest LSN of a packet.
+};
+
+/// A sample rate that a model can have.
+struct sample_rate_entry {
+  std::uint32_t hz = 0;  ///< 0 in an unused entry.
+  /// The shortest range at this rate, in millimetres, by the manufacturer; 0: that of the model.
+  std::uint16_t shortest_mm = 0;
+};
+
+/// The sample rates of a model.
+struct sample_rate_list {
+  /// All that are known, unused entries at the end. Where D0 sets the rate, the place of an entry is
+  /// its code in the replies to D0 and D1.
+  std::array<sample_rate_entry, 3> entries{};
+  std::uint32_t nominal_hz = 0;  ///< Of a device as delivered; 0 if it is not known in advance.
+  bool is_settable = false;      ///< Has the commands D0 and D1.
+};
+
+/// The scan frequency of a model.
+struct frequency_properties {
+  /// The limits of what commands can set, in 0.1 Hz; 0: not by command.
+  std::uint16_t min_dhz = 0;
+  std::uint16_t max_dhz = 0;          ///< See `min_dhz`.
+  std::int16_t reply_offset_chz = 0;  ///< To be added to what replies contain, in 0.01 Hz.
+  std::int8_t ct_offset_dhz = 0;      ///< To be added to what zero packets contain, in 0.1 Hz.
+};
+
+/// The ranges of a model, in millimetres.
+struct range_limits {
+  std::uint16_t min_mm = 0;  ///< A return below this is too near to be reliable.
+  std::uint16_t max_mm = 0;  ///< By the manufacturer; a sample can contain more.
+};
+
+/// How devices with old firmware differ from their model.
+struct firmware_difference {
+  std::uint16_t last_version = 0;  ///< 256 * major + minor; 0 if there is no difference.
+  sample_layout layout = sample_layout::quarter_mm;
+  std::int8_t ct_offset_dhz = 0;  ///< As in frequency_properties.
+  std::uint8_t zero_angle_divisor = 0;
+};
+
+/// A model of lidar.
+struct model {
+  std::string_view word;  ///< Its name in options and files: "x4-pro". Valid forever.
+  std::string_view name;  ///< Its name for people: "X4 Pro". Valid forever.
+  /// The numbers with which its devices identify themselves, 0: no other. Other models may use
+  /// them, too.
+  std::array<std::uint8_t, 2> ids{};
+  std::array<std::uint32_t, 2> bauds{};  ///< Bits per second, the usual one first; 0: no other.
+  sample_format samples{};
+  link_kind link = link_kind::two_way;
+  motor_kind motor = motor_kind::command;
+  sample_rate_list rates{};
+  frequency_properties frequency{};
+  range_limits range{};
+  /// The turn from the device's frame, mirrored, to the robot's, in degrees: 0 or 180.
+  std::uint16_t turn_deg = 0;
+  /// The reply to command 93 divided by this is the offset of zero in degrees; 0: no such command.
+  std::uint8_t zero_angle_divisor = 0;
+  presence protection = presence::unknown;      ///< Command D9, power-down protection.
+  presence ct_information = presence::unknown;  ///< CT has information, and a CRC byte follows.
+  /// The layout of some of its devices; that of `samples` if there is no other.
+  sample_layout other_layout = samples.layout;
+  firmware_difference old_firmware{};
+};
+
+/// The shortest range of `which` at this sample rate in millimetres, by the manufacturer. *Pure.*
+[[nodiscard]] constexpr std::uint16_t shortest_range_mm(const model& which,
+                                                        std::uint32_t rate_hz) noexcept {
+  for (const sample_rate_entry& rate : which.rates.entries) {
+    if (rate.hz == rate_hz && rate.shortest_mm != 0) return rate.shortest_mm;
+  }
+  return which.range.min_mm;
+}
+
+}  // namespace g4lidar

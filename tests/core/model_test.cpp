@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+// The table of models against rows of text that were written from the collected facts about the
+// family, not from the table.
+#include "g4lidar/core/model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace g4lidar {
+namespace {
+
+// One model a line: word; ids; bauds; layout, with the other one behind a slash; correction; way;
+// motor; rates in kHz, with their shortest range in cm behind a colon where the rate decides it;
+// nominal rate in kHz or ?; whether D0 sets it; limits of the frequency in 0.1 Hz; offset of replies
+// in 0.01 Hz and of CT in 0.1 Hz; divisor of the zero angle; largest LSN; D9; information in CT;
+// turn; ranges in mm; bits of intensity.
+constexpr const char* expected = R"(
+g4;5;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;yes;??;180;100-16000;0
+g4-pro;7;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;yes;??;180;100-16000;0
+g5;20;230400;r/4;T;two;cmd;4:10 8:26 9:28;9;D0;50-120;0/0;-;80;??;??;180;100-16000;0
+f4;1;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;-;40;no;??;180;120-12000;0
+f4-pro;8;230400;r/4;T;two;cmd;4 6;4;D0;50-120;0/0;-;40;yes;??;180;120-12000;0
+g1;19;230400;r/4;T;two;cmd;9:28;9;-;50-120;0/0;4;40;??;??;180;100-16000;0
+g2a;14;230400;r/4;T;two;cmd;5;5;-;50-120;0/0;4;40;??;??;180;100-12000;0
+g2c;16;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;4;40;??;??;180;100-12000;0
+g4c;18;115200;r/4;T;two;cmd;4;4;-;50-120;0/0;-;40;??;??;180;100-12000;0
+r2;9;230400;r/4;T;two;cmd;5;5;-;50-120;0/0;100;40;??;??;180;120-16000;0
+g6;13;512000;r/2;T;two;cmd;8:10 16:26 18:28;18;D0;50-120;0/0;-;40;yes;??;180;100-25000;0
+g7;21;512000;r/2;T;two;cmd;8:10 16:26 18:28;18;D0;50-120;0/0;-;40;yes;??;180;100-25000;0
+x4;6;128000;r>>2;T;two;dtr;5;5;-;-;0/0;-;40;no;no;0;120-10000;0
+x4-pro;4 6;128000;r>>2;T;one;supply;5;5;-;-;0/0;-;40;no;yes;0;120-10000;0
+x2;4 6;115200;r>>2;T;one;dtr;3;3;-;-;0/0;-;40;no;??;0;100-8000;0
+x2l;4 6;115200;r>>2;T;one;dtr;3;3;-;-;0/0;-;40;no;??;0;100-8000;0
+x3;4 6;115200;r>>2;T;one;dtr;3;3;-;-;0/0;-;40;no;??;0;100-8000;0
+x3-pro;4 6;115200;r>>2;T;one;dtr;3 4;?;-;-;0/0;-;40;no;??;0;100-8000;0
+s2;4 12;115200 128000;r>>2/i8;T;one;dtr;3 4 5;?;-;-;0/0;-;40;no;yes;0;80-12000;0
+s2-pro;4 12;115200 128000;r>>2/i8;T;one;dtr;3 4 5;?;-;-;0/0;-;40;no;yes;0;80-12000;0
+s4;4;115200;r>>2;T;two;dtr;4;4;-;-;0/0;-;40;no;??;0;100-8000;0
+s4b;4 11;153600;i8;T;two;dtr;4;4;-;-;0/0;-;40;no;??;0;100-8000;8
+g2;15;230400;i10;T;two;cmd;5:28;5;-;50-120;0/0;4;40;??;??;180;100-16000;10
+g4b;17;512000;i10;T;two;cmd;10;10;-;50-120;0/0;-;40;??;??;180;120-16000;10
+scl;22;115200;i8;S;one;dtr;3;3;-;-;0/0;-;40;no;??;0;120-8000;8
+t-mini;140;230400;i8;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;50-12000;8
+t-mini-pro;150;230400;i8;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;20-12000;8
+t-mini-plus;151;230400;i8;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;50-12000;8
+t-mini-plus-sh;152;230400;i16;-;two;cmd;4;4;-;60-120;0/0;-;40;??;??;0;50-25000;16
+tg15;100;512000;mm;-;two;cmd;10 18 20;?;-;30-160;-40/30;4;40;yes;??;180;50-30000;0
+tg30;101;512000;mm;-;two;cmd;10 18 20;?;-;30-160;-40/30;4;40;yes;??;180;50-30000;0
+tg50;102;512000;mm;-;two;cmd;10 18 20;?;-;30-160;-40/30;4;40;yes;??;180;50-50000;0
+tx8;100;115200;mm;-;one;dtr;4;4;-;-;0/0;-;40;no;??;0;50-8000;0
+tx20;100;115200;mm;-;one;dtr;4;4;-;-;0/0;-;40;no;??;0;50-20000;0
+)";
+
+std::string text(sample_layout layout) {
+  switch (layout) {
+    case sample_layout::quarter_mm:
+      return "r/4";
+    case sample_layout::flagged_mm:
+      return "r>>2";
+    case sample_layout::half_mm:
+      return "r/2";
+    case sample_layout::whole_mm:
+      return "mm";
+    case sample_layout::intensity_10:
+      return "i10";
+    case sample_layout::intensity_8:
+      return "i8";
+    case sample_layout::intensity_16:
+      return "i16";
+  }
+  return "";
+}
+
+std::string text(presence what) {
+  return what == presence::yes ? "yes" : what == presence::no ? "no" : "??";
+}
+
+std::string text(correction_kind what) {
+  return what == correction_kind::triangle ? "T" : what == correction_kind::scl ? "S" : "-";
+}
+
+std::string text(motor_kind what) {
+  return what == motor_kind::command ? "cmd" : what == motor_kind::dtr ? "dtr" : "supply";
+}
+
+/// `first` and, if it is not 0, `second`.
+std::string pair_text(unsigned first, unsigned second) {
+  return std::to_string(first) + (second == 0 ? "" : " " + std::to_string(second));
+}
+
+std::string rates_text(const sample_rate_list& rates) {
+  std::ostringstream out;
+  for (const sample_rate_entry& rate : rates.entries) {
+    if (rate.hz == 0) break;
+    if (&rate != rates.entries.data()) out << ' ';
+    out << rate.hz / 1000.0;
+    if (rate.shortest_mm != 0) out << ':' << rate.shortest_mm / 10.0;
+  }
+  out << ';';
+  if (rates.nominal_hz == 0) {
+    out << '?';
+  } else {
+    out << rates.nominal_hz / 1000.0;
+  }
+  out << ';' << (rates.is_settable ? "D0" : "-");
+  return out.str();
+}
+
+/// `row` in the form of `expected`.
+std::string text(const model& row) {
+  std::ostringstream out;
+  const sample_layout layout = row.samples.layout;
+  out << row.word << ';' << pair_text(row.ids[0], row.ids[1]) << ';'
+      << pair_text(row.bauds[0], row.bauds[1]) << ';' << text(layout);
+  if (row.other_layout != layout) out << '/' << text(row.other_layout);
+  out << ';' << text(row.samples.correction) << ';'
+      << (row.link == link_kind::two_way ? "two" : "one") << ';' << text(row.motor) << ';'
+      << rates_text(row.rates) << ';';
+  const frequency_properties& frequency = row.frequency;
+  if (frequency.max_dhz == 0) {
+    out << '-';
+  } else {
+    out << frequency.min_dhz << '-' << frequency.max_dhz;
+  }
+  out << ';' << frequency.reply_offset_chz << '/' << int{frequency.ct_offset_dhz} << ';'
+      << (row.zero_angle_divisor == 0 ? "-" : std::to_string(row.zero_angle_divisor)) << ';'
+      << int{row.samples.max_samples} << ';' << text(row.protection) << ';'
+      << text(row.ct_information) << ';' << row.turn_deg << ';' << row.range.min_mm << '-'
+      << row.range.max_mm << ';' << intensity_bits(layout);
+  return out.str();
+}
+
+std::vector<std::string> expected_rows() {
+  std::vector<std::string> rows;
+  std::istringstream in(expected);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty()) rows.push_back(line);
+  }
+  return rows;
+}
+
+TEST(Model, EachRowIsAsTheFactsSay) {
+  const std::vector<std::string> rows = expected_rows();
+  EXPECT_EQ(rows.size(), models.size());
+  for (const std::string& row : rows) {
+    const model* found = model_named(row.substr(0, row.find(';')));
+    ASSERT_NE(found, nullptr) << row;
+    EXPECT_EQ(text(*found), row);
+  }
+}
+
+TEST(Model, WithoutANameItIsAG4) {
+  EXPECT_EQ(g4_model.word, "g4");
+  EXPECT_EQ(g4_model.name, "G4");
+}
+
+TEST(Model, OtherWordsNameNone) {
+  for (const char* word : {"", "G4", "g", "g44", "x4pro", "gs2"}) {
+    EXPECT_EQ(model_named(word), nullptr) << word;
+  }
+}
+
+TEST(Model, AnIdNamesAModelOnlyIfNoOtherOfItsKindUsesIt) {
+  const auto word = [](std::uint8_t id, link_kind link) {
+    const model* found = model_with_id(id, link);
+    return found == nullptr ? std::string("none") : std::string(found->word);
+  };
+  using enum link_kind;
+  EXPECT_EQ(word(5, two_way), "g4");
+  EXPECT_EQ(word(151, two_way), "t-mini-plus");
+  EXPECT_EQ(word(6, two_way), "x4");     // X4 Pro, X2, X3 use it, too, but they answer nothing
+  EXPECT_EQ(word(6, one_way), "none");   // X4 Pro, X2, X3
+  EXPECT_EQ(word(4, two_way), "none");   // S4, S4B
+  EXPECT_EQ(word(11, two_way), "s4b");   // its second id
+  EXPECT_EQ(word(12, one_way), "none");  // S2, S2 Pro
+  EXPECT_EQ(word(22, one_way), "scl");
+  EXPECT_EQ(word(22, two_way), "none");
+  EXPECT_EQ(word(100, two_way), "tg15");
+  EXPECT_EQ(word(100, one_way), "none");  // TX8, TX20
+  EXPECT_EQ(word(0, two_way), "none");
+  EXPECT_EQ(word(200, two_way), "none");
+}
+
+TEST(Model, TheShortestRangeDependsOnTheRateWhereItDoes) {
+  EXPECT_EQ(shortest_range_mm(g4_model, 4000), 100);
+  EXPECT_EQ(shortest_range_mm(g4_model, 8000), 260);
+  EXPECT_EQ(shortest_range_mm(g4_model, 9000), 280);
+  EXPECT_EQ(shortest_range_mm(*model_named("g6"), 16000), 260);
+  EXPECT_EQ(shortest_range_mm(*model_named("x4"), 5000), 120);
+  EXPECT_EQ(shortest_range_mm(*model_named("t-mini-pro"), 4000), 20);
+}
+
+TEST(Model, OldFirmwareDiffersWhereItDoes) {
+  for (const model& each : models) {
+    const std::string word(each.word);
+    const firmware_difference& old = each.old_firmware;
+    if (word == "r2") {
+      EXPECT_EQ(old.last_version, 256 + 7);
+      EXPECT_EQ(old.layout, sample_layout::quarter_mm);
+      EXPECT_EQ(old.zero_angle_divisor, 4);
+    } else if (word == "tg15" || word == "tg30" || word == "tg50") {
+      EXPECT_EQ(old.last_version, 256 + 2) << word;
+      EXPECT_EQ(old.layout, sample_layout::half_mm) << word;
+      EXPECT_EQ(old.ct_offset_dhz, 0) << word;
+      EXPECT_EQ(old.zero_angle_divisor, 4) << word;
+    } else {
+      EXPECT_EQ(old.last_version, 0) << word;
+    }
+  }
+}
+
+TEST(Model, SizesOfSamples) {
+  EXPECT_EQ(sample_size(sample_layout::quarter_mm), 2U);
+  EXPECT_EQ(sample_size(sample_layout::flagged_mm), 2U);
+  EXPECT_EQ(sample_size(sample_layout::half_mm), 2U);
+  EXPECT_EQ(sample_size(sample_layout::whole_mm), 2U);
+  EXPECT_EQ(sample_size(sample_layout::intensity_10), 3U);
+  EXPECT_EQ(sample_size(sample_layout::intensity_8), 3U);
+  EXPECT_EQ(sample_size(sample_layout::intensity_16), 4U);
+}
+
+// A line of the family sends its samples in time: 10 bits a byte, a header of 10 bytes with 40
+// samples, at the fastest rate with each baud rate. (Not those whose rate depends on the baud rate.)
+TEST(Model, TheSamplesFitIntoTheBaudRate) {
+  for (const model& each : models) {
+    std::uint32_t fastest = 0;
+    for (const sample_rate_entry& rate : each.rates.entries) fastest = std::max(fastest, rate.hz);
+    const double bytes =
+        fastest * (static_cast<double>(sample_size(each.samples.layout)) + 10.0 / 40);
+    EXPECT_LT(bytes, std::max(each.bauds[0], each.bauds[1]) / 10.0) << each.word;
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar
