@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/error.hpp"
@@ -104,7 +105,7 @@ struct find_options {
   /// Write to every serial port, also to ports without the USB bridge of a G4. Two commands of two
   /// bytes each are then sent to any device: a printer, a modem, a robot arm.
   bool probe_all_ports = false;
-  std::uint32_t baud = 230400;
+  std::uint32_t baud = g4_model.bauds[0];
   std::chrono::milliseconds probe_timeout{2500};  ///< For each port.
 };
 

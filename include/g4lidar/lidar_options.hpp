@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/recording/player.hpp"
@@ -50,7 +51,7 @@ struct lidar_options {
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
   /// Bits per second, of a serial port and of the one behind `tcp:`.
-  std::uint32_t baud = 230400;
+  std::uint32_t baud = g4_model.bauds[0];
 
   std::optional<g4lidar::sample_rate> sample_rate{};  ///< Measurements per second.
   std::optional<scan_frequency> frequency{};          ///< Revolutions per second, 5 to 12 Hz.
@@ -66,7 +67,7 @@ struct lidar_options {
 
   playback_options playback{};  ///< How a file is played.
   /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000.
-  std::uint32_t raw_sample_rate_hz = 9000;
+  std::uint32_t raw_sample_rate_hz = g4_model.rates.nominal_hz;
   /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it
   /// returns is used instead; its error ends the attempt.
   std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> wrap{};

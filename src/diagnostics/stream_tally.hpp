@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "g4lidar/core/clock/arrival_window.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "link_monitor.hpp"
 
@@ -76,7 +77,7 @@ class sample_pace {
   [[nodiscard]] double rate_hz() const noexcept;
 
  private:
-  static constexpr double nominal_ns = 1e9 / 9000.0;
+  static constexpr double nominal_ns = 1e9 / g4_model.rates.nominal_hz;
 
   arrival_window window_{nominal_ns};
   double period_ns_ = nominal_ns;

@@ -7,6 +7,7 @@
 
 #include "connection.hpp"
 #include "device_link.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "live_stage.hpp"
 #include "point_pipeline.hpp"
@@ -81,7 +82,7 @@ class live_stream {
   parts of_;
   read_pace pace_;
   device_link link_;
-  std::uint32_t sample_rate_hz_ = 9000;
+  std::uint32_t sample_rate_hz_ = g4_model.rates.nominal_hz;
 };
 
 }  // namespace g4lidar

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "revolution_forecast.hpp"
 
@@ -128,8 +129,9 @@ class read_schedule {
     return readings_ > 0 ? worth_ns : std::clamp(due_ns_, worth_ns, read_ns_ + longest_ns);
   }
 
-  std::int64_t byte_ns_ = 0;              // that a byte takes
-  std::int64_t serial_byte_ns_ = 43'402;  // the same on the serial line behind a bridge
+  std::int64_t byte_ns_ = 0;  // that a byte takes
+  // The same on the serial line behind a bridge.
+  std::int64_t serial_byte_ns_ = 10'000'000'000 / g4_model.bauds[0];
   std::int64_t longest_rest_ns_ = 0;
   std::int64_t read_ns_ = 0;   // of the last reading
   std::int64_t ahead_ns_ = 0;  // how much sooner bytes came than the baud rate allows

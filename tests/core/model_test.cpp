@@ -195,6 +195,13 @@ TEST(Model, TheShortestRangeDependsOnTheRateWhereItDoes) {
   EXPECT_EQ(shortest_range_mm(*model_named("t-mini-pro"), 4000), 20);
 }
 
+// protocol.md: 7.9906 degrees less than the first-level angle; without a correction, and for SCL, at it.
+TEST(Model, ANoReturnIsInTheDirectionOfAFarTarget) {
+  EXPECT_NEAR(no_return_correction_deg(correction_kind::triangle), -7.9906, 5e-5);
+  EXPECT_EQ(no_return_correction_deg(correction_kind::scl), 0.0);
+  EXPECT_EQ(no_return_correction_deg(correction_kind::none), 0.0);
+}
+
 TEST(Model, OldFirmwareDiffersWhereItDoes) {
   for (const model& each : models) {
     const std::string word(each.word);

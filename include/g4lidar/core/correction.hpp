@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/model_record.hpp"
 
 namespace g4lidar {
 
@@ -32,7 +33,7 @@ inline constexpr double correction_offset_mm = 21.8;
 inline constexpr double correction_zero_mm = 155.3;
 
 /// The correction of an infinitely distant target, in degrees: atan(-21.8 / 155.3).
-inline constexpr double far_correction_deg = -7.9905962679645856;
+inline constexpr double far_correction_deg = no_return_correction_deg(correction_kind::triangle);
 
 /// The arctangent in degrees, without libm. *Pure.* Within 3e-14 degrees of the true value for any
 /// finite `x`.

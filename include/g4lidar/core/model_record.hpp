@@ -41,6 +41,12 @@ enum class correction_kind : std::uint8_t {
   none,
 };
 
+/// What a correction adds to the first-level angle of a sample without return, in degrees: its limit
+/// for far targets, so that the angle is the direction in which the sensor looked. *Pure.*
+[[nodiscard]] constexpr double no_return_correction_deg(correction_kind kind) noexcept {
+  return kind == correction_kind::triangle ? -7.9905962679645856 : 0.0;  // atan(-21.8 / 155.3)
+}
+
 /// Whether a lidar answers commands, or sends from power-on and answers nothing.
 enum class link_kind : std::uint8_t { two_way, one_way };
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/transport/connector.hpp"
@@ -27,7 +28,7 @@ enum class diagnostic_activity : std::uint8_t {
 
 /// Options and callbacks of a diagnostic run. The callbacks may be empty.
 struct diagnostic_options {
-  std::uint32_t baud = 230400;
+  std::uint32_t baud = g4_model.bauds[0];
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);
   /// Called about 20 times a second; returning true ends the run. The lidar is stopped then, too.

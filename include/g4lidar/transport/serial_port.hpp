@@ -6,6 +6,7 @@
 #include <memory>
 #include <string_view>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -14,8 +15,8 @@ namespace g4lidar {
 
 /// How a port is opened. The defaults are those of a G4.
 struct serial_options {
-  std::uint32_t baud = 230400;  ///< Any rate that the port supports.
-  bool exclusive = true;        ///< Refuse a port that another program has open, and lock it.
+  std::uint32_t baud = g4_model.bauds[0];  ///< Any rate that the port supports.
+  bool exclusive = true;  ///< Refuse a port that another program has open, and lock it.
   bool low_latency =
       true;  ///< Ask the kernel driver to deliver bytes immediately, if it supports this.
 };

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string_view>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -16,7 +17,8 @@ namespace g4lidar {
 /// How a connection is made.
 struct tcp_options {
   std::chrono::milliseconds connect_timeout{3000};  ///< For all addresses of the host together.
-  std::uint32_t baud = 230400;  ///< Of the serial port at the far end; 0 if there is none.
+  std::uint32_t baud =
+      g4_model.bauds[0];  ///< Of the serial port at the far end; 0 if there is none.
 };
 
 /// Connects to bridges. The resulting transport keeps the promises of serial_port, with these
