@@ -10,6 +10,7 @@
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/detail/api.hpp"
@@ -40,6 +41,9 @@ class G4LIDAR_API bulk_decoder {
  public:
   /// Uses `wanted` if this processor has it, else `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;
+  /// For packets of this model, whose `samples` and `range` are copied.
+  explicit bulk_decoder(const model& which,
+                        instruction_set wanted = best_instruction_set()) noexcept;
 
   /// Takes bytes from the front of `input`, writes their points to the front of `out` and returns
   /// what was written. Stops when all of `input` is taken (then `input` is empty), or before a
@@ -79,6 +83,8 @@ class G4LIDAR_API bulk_decoder {
   stream_parser parser_;
   revolution_counter revolutions_;
   stream_counter counts_;
+  sample_format format_;
+  std::uint16_t shortest_mm_;
   instruction_set set_;
 };
 

@@ -2,7 +2,6 @@
 // One corrected point, and its direction and range in the two frames of reference in use.
 #pragma once
 
-#include <array>
 #if __STDC_HOSTED__
 #include <chrono>
 #endif
@@ -63,8 +62,12 @@ struct point {
   /// Which revolution since the start of the stream, the first one being 0.
   std::uint32_t revolution = 0;
   point_flags flags = point_flags::none;
-  /// Zeros: the structure has no padding, so equal points have equal bytes.
-  std::array<std::uint8_t, 3> reserved{};
+  /// The flags that the sample contains, 0 to 3; 0 if the model has none. Their meaning is not known
+  /// for certain, and 2 is the usual value on some models: do not filter by them unasked.
+  std::uint8_t sample_flags = 0;
+  /// How strong the return was, in a unit of the device; 0 if the model does not measure it. See
+  /// intensity_bits().
+  std::uint16_t intensity = 0;
 
   /// Whether nothing came back; then `range_mm` is not a range. The way is not free for it: a target
   /// that is too near gives no return either, nor does one that is too far, black, or a mirror. See
@@ -107,7 +110,7 @@ static_assert(std::is_trivially_copyable_v<point>);
 /// the correction by the range. *Pure.* Within 1e-4 degrees for ranges as decode() gives them;
 /// g4lidar::first_level_angles has the exact angles of a packet. (protocol: Point packets)
 [[nodiscard]] constexpr float raw_angle_deg(const point& p) noexcept {
-  const auto raw = static_cast<std::uint16_t>(p.range_mm * 4.0F);
+  const auto raw = static_cast<std::int32_t>(p.range_mm * 4.0F);
   return wrap_once_deg(p.angle_deg - compact_correction{}(raw));
 }
 

@@ -162,7 +162,7 @@ def test_a_shaper_gives_the_points_of_convert_bit_for_bit(tmp_path: Path) -> Non
         for scan in lidar.scans():
             points.append(shaper.shape(scan).kept)
     got, expected = np.concatenate(points), np.load(tmp_path / "way.npy")
-    for name in ("angle_deg", "range_mm", "time_ns", "revolution", "flags"):
+    for name in ("angle_deg", "range_mm", "time_ns", "revolution", "flags", "sample_flags", "intensity"):
         assert got[name].tobytes() == expected[name].astype(got[name].dtype).tobytes(), name
 
 

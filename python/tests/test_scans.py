@@ -32,7 +32,7 @@ def test_points_are_a_structured_array(g4_lidar: g4lidar.Lidar) -> None:
     g4_lidar.start()
     scan = scans_of(g4_lidar, 3)[-1]
     assert scan.points.dtype == g4lidar.POINT_DTYPE
-    assert scan.points.dtype.names == ("angle_deg", "range_mm", "time_ns", "revolution", "flags")
+    assert scan.points.dtype.names == ("angle_deg", "range_mm", "time_ns", "revolution", "flags", "sample_flags", "intensity")
     assert scan.points.dtype.itemsize == 24
     assert len(scan) == len(scan.points)
     assert scan.is_whole and scan.flags == 0

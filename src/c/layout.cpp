@@ -31,6 +31,8 @@ static_assert(offsetof(g4lidar_point, range_mm) == offsetof(point, range_mm));
 static_assert(offsetof(g4lidar_point, time_ns) == offsetof(point, time_ns));
 static_assert(offsetof(g4lidar_point, revolution) == offsetof(point, revolution));
 static_assert(offsetof(g4lidar_point, flags) == offsetof(point, flags));
+static_assert(offsetof(g4lidar_point, sample_flags) == offsetof(point, sample_flags));
+static_assert(offsetof(g4lidar_point, intensity) == offsetof(point, intensity));
 static_assert(static_cast<int>(point_flags::veiling) == G4LIDAR_VEILING);
 static_assert(static_cast<int>(point_flags::may_be_too_near) == G4LIDAR_MAY_BE_TOO_NEAR);
 static_assert(static_cast<int>(deskewing::by_scans) == G4LIDAR_DESKEW_BY_SCANS);

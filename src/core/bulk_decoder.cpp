@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <optional>
+#include <type_traits>
 #include <variant>
 
 #include "bulk_kernels.hpp"
@@ -16,34 +18,119 @@ namespace bulk {
 
 namespace {
 
-void portable_to_points(packet_view packet, std::uint32_t revolution,
+template <correction_kind Kind>
+using form_of = std::conditional_t<
+    Kind == correction_kind::triangle, compact_correction,
+    std::conditional_t<Kind == correction_kind::scl, scl_correction, no_correction>>;
+
+/// The portable code, for the samples of one layout and one correction.
+template <sample_layout Layout, correction_kind Kind>
+struct plain {
+  static void to_points(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
                         std::span<point, max_samples> out) noexcept {
-  static_cast<void>(g4lidar::decode(packet, compact_correction{}, revolution, out));
-}
-
-void portable_to_xy(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
-  std::array<point, max_samples> points;
-  portable_to_points(packet, 0, points);
-  to_xy(std::span(points).first(packet.sample_count()), to, out);
-}
-
-void portable_to_timed_points(packet_view packet, std::uint32_t revolution,
-                              const packet_times& times,
+    static_cast<void>(
+        g4lidar::decode<Layout>(packet, form_of<Kind>{}, revolution, out, shortest_mm));
+  }
+  static void to_timed_points(packet_view packet, std::uint32_t revolution,
+                              std::uint16_t shortest_mm, const packet_times& times,
                               std::span<point, max_samples> out) noexcept {
-  portable_to_points(packet, revolution, out);
-  times.write_to(out.first(packet.sample_count()));
+    to_points(packet, revolution, shortest_mm, out);
+    times.write_to(out.first(packet.sample_count()));
+  }
+  static void to_xy(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
+    std::array<point, max_samples> points;
+    to_points(packet, 0, 1, points);
+    g4lidar::to_xy(std::span(points).first(packet.sample_count()), to, out);
+  }
+  static constexpr kernels all{to_points, to_timed_points, to_xy};
+};
+
+#if G4LIDAR_HAS_AVX2_KERNELS
+/// The same, translated for AVX2.
+template <sample_layout Layout, correction_kind Kind>
+struct avx2_plain {
+  using source = plain<Layout, Kind>;
+
+  __attribute__((target("avx2,fma"), flatten)) static void to_points(
+      packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
+      std::span<point, max_samples> out) noexcept {
+    source::to_points(packet, revolution, shortest_mm, out);
+  }
+  __attribute__((target("avx2,fma"), flatten)) static void to_timed_points(
+      packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
+      const packet_times& times, std::span<point, max_samples> out) noexcept {
+    source::to_timed_points(packet, revolution, shortest_mm, times, out);
+  }
+  __attribute__((target("avx2,fma"), flatten)) static void to_xy(
+      packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
+    source::to_xy(packet, to, out);
+  }
+  static constexpr kernels all{to_points, to_timed_points, to_xy};
+};
+#endif
+
+/// A combination of layout and correction that models have.
+struct kernels_of_format {
+  sample_layout layout;
+  correction_kind correction;
+  const kernels* portable;
+  const kernels* avx2;
+};
+
+template <sample_layout Layout, correction_kind Kind>
+constexpr kernels_of_format made_for{Layout, Kind, &plain<Layout, Kind>::all,
+#if G4LIDAR_HAS_AVX2_KERNELS
+                                     &avx2_plain<Layout, Kind>::all
+#else
+                                     nullptr
+#endif
+};
+
+/// All but that of the G4.
+constexpr std::array all_formats{
+    made_for<sample_layout::flagged_mm, correction_kind::triangle>,
+    made_for<sample_layout::half_mm, correction_kind::triangle>,
+    made_for<sample_layout::half_mm, correction_kind::none>,
+    made_for<sample_layout::whole_mm, correction_kind::none>,
+    made_for<sample_layout::intensity_10, correction_kind::triangle>,
+    made_for<sample_layout::intensity_8, correction_kind::triangle>,
+    made_for<sample_layout::intensity_8, correction_kind::scl>,
+    made_for<sample_layout::intensity_8, correction_kind::none>,
+    made_for<sample_layout::intensity_16, correction_kind::none>,
+};
+
+constexpr bool is_g4s(sample_layout layout, correction_kind correction) noexcept {
+  return layout == g4_format.layout && correction == g4_format.correction;
 }
+constexpr const kernels_of_format* found_for(sample_layout layout,
+                                             correction_kind correction) noexcept {
+  for (const kernels_of_format& each : all_formats) {
+    if (each.layout == layout && each.correction == correction) return &each;
+  }
+  return nullptr;
+}
+constexpr bool has_kernels(sample_layout layout, correction_kind correction) noexcept {
+  return is_g4s(layout, correction) || found_for(layout, correction) != nullptr;
+}
+static_assert(std::ranges::all_of(models, [](const model& each) {
+  const correction_kind correction = each.samples.correction;
+  return has_kernels(each.samples.layout, correction) &&
+         has_kernels(each.other_layout, correction) &&
+         (each.old_firmware.last_version == 0 || has_kernels(each.old_firmware.layout, correction));
+}));
 
 }  // namespace
 
-const kernels portable_kernels{portable_to_points, portable_to_timed_points, portable_to_xy};
+const kernels portable_kernels = plain<g4_format.layout, g4_format.correction>::all;
 
-const kernels& kernels_of(instruction_set set) noexcept {
+const kernels& kernels_of(instruction_set set, sample_format format) noexcept {
+  const kernels_of_format* const found = found_for(format.layout, format.correction);
+  assert(found != nullptr || is_g4s(format.layout, format.correction));
 #if G4LIDAR_HAS_AVX2_KERNELS
-  if (set == instruction_set::avx2) return avx2_kernels;
+  if (set == instruction_set::avx2) return found != nullptr ? *found->avx2 : avx2_kernels;
 #endif
   static_cast<void>(set);
-  return portable_kernels;
+  return found != nullptr ? *found->portable : portable_kernels;
 }
 
 }  // namespace bulk
@@ -59,8 +146,13 @@ const char* name_of(instruction_set set) noexcept {
   return set == instruction_set::avx2 ? "AVX2" : "portable";
 }
 
-bulk_decoder::bulk_decoder(instruction_set wanted) noexcept
-    : set_(wanted == best_instruction_set() ? wanted : instruction_set::portable) {}
+bulk_decoder::bulk_decoder(instruction_set wanted) noexcept : bulk_decoder(g4_model, wanted) {}
+
+bulk_decoder::bulk_decoder(const model& which, instruction_set wanted) noexcept
+    : parser_(which.samples),
+      format_(which.samples),
+      shortest_mm_(which.range.min_mm),
+      set_(wanted == best_instruction_set() ? wanted : instruction_set::portable) {}
 
 /// The next event, and how many points were written for it.
 template <class Source, class Point, class Convert>
@@ -126,10 +218,16 @@ struct ended {
   void go_back(bytes /*to*/) const noexcept {}
 };
 
-auto points_with(instruction_set set) noexcept { return bulk::kernels_of(set).to_points; }
+auto points_with(instruction_set set, sample_format format, std::uint16_t shortest_mm) noexcept {
+  return [kernel = bulk::kernels_of(set, format).to_points, shortest_mm](
+             packet_view packet, std::uint32_t revolution,
+             std::span<point, max_samples> out) noexcept {
+    kernel(packet, revolution, shortest_mm, out);
+  };
+}
 
-auto places_with(instruction_set set, frame to) noexcept {
-  return [kernel = bulk::kernels_of(set).to_xy, to](
+auto places_with(instruction_set set, sample_format format, frame to) noexcept {
+  return [kernel = bulk::kernels_of(set, format).to_xy, to](
              packet_view packet, std::uint32_t /*revolution*/,
              std::span<xy_point, max_samples> out) noexcept { kernel(packet, to, out); };
 }
@@ -137,20 +235,20 @@ auto places_with(instruction_set set, frame to) noexcept {
 }  // namespace
 
 std::span<point> bulk_decoder::decode(bytes& input, std::span<point> out) noexcept {
-  return run(going_on{input}, points_with(set_), out);
+  return run(going_on{input}, points_with(set_, format_, shortest_mm_), out);
 }
 
 std::span<xy_point> bulk_decoder::decode_xy(bytes& input, frame to,
                                             std::span<xy_point> out) noexcept {
-  return run(going_on{input}, places_with(set_, to), out);
+  return run(going_on{input}, places_with(set_, format_, to), out);
 }
 
 std::span<point> bulk_decoder::finish(std::span<point> out) noexcept {
-  return run(ended{}, points_with(set_), out);
+  return run(ended{}, points_with(set_, format_, shortest_mm_), out);
 }
 
 std::span<xy_point> bulk_decoder::finish_xy(frame to, std::span<xy_point> out) noexcept {
-  return run(ended{}, places_with(set_, to), out);
+  return run(ended{}, places_with(set_, format_, to), out);
 }
 
 }  // namespace g4lidar

@@ -4,6 +4,7 @@
 
 #if G4LIDAR_HAS_AVX2_KERNELS
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <numbers>
@@ -113,10 +114,11 @@ G4LIDAR_AVX2 void store_eight(floats angle, floats range, words revolution, word
              _mm256_unpackhi_epi32(revolution.v, swapped), times.next(), out + 4);
 }
 
-/// False if there is a sample below 100 mm, which is rare: the portable kernel processes it.
+/// False if there is a sample below 100 mm or `shortest_mm`, which is rare: the portable kernel
+/// processes it.
 template <class Times>
-G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, Times times,
-                          std::span<point, max_samples> out) {
+G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
+                          Times times, std::span<point, max_samples> out) {
   const eights<point_order> raw(packet);
   per_packet<floats> range;
   const first_level_angles<float> angles(packet);
@@ -134,8 +136,8 @@ G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, Times ti
     const floats correction = choose(no_return, correction_of(sample), far);
     angle[i] = first + times_plus(raw.places(i), step, correction);
   }
-  if (any(equal(unsigned_min(nearest, every(static_cast<int>(nearest_raw) - least_range_raw - 1)),
-                nearest))) {
+  const int least = std::max<int>(nearest_raw, 4 * shortest_mm) - least_range_raw;
+  if (any(equal(unsigned_min(nearest, every(least - 1)), nearest))) {
     return false;
   }
   if (touches_zero(packet)) {
@@ -152,16 +154,17 @@ G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, Times ti
 }
 
 __attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint32_t revolution,
+                                                   std::uint16_t shortest_mm,
                                                    std::span<point, max_samples> out) noexcept {
-  if (!convert(packet, revolution, no_times(), out)) {
-    portable_kernels.to_points(packet, revolution, out);
+  if (!convert(packet, revolution, shortest_mm, no_times(), out)) {
+    portable_kernels.to_points(packet, revolution, shortest_mm, out);
   }
 }
 __attribute__((target("avx2,fma"))) void to_timed_points(
-    packet_view packet, std::uint32_t revolution, const packet_times& times,
-    std::span<point, max_samples> out) noexcept {
-  if (!convert(packet, revolution, running_times(times), out)) {
-    portable_kernels.to_timed_points(packet, revolution, times, out);
+    packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
+    const packet_times& times, std::span<point, max_samples> out) noexcept {
+  if (!convert(packet, revolution, shortest_mm, running_times(times), out)) {
+    portable_kernels.to_timed_points(packet, revolution, shortest_mm, times, out);
   }
 }
 

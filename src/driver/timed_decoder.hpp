@@ -9,6 +9,7 @@
 
 #include "core/bulk_kernels.hpp"
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/plausibility.hpp"
@@ -18,8 +19,10 @@ namespace g4lidar {
 /// *Single thread, never allocates.*
 class timed_decoder {
  public:
-  explicit timed_decoder(std::int64_t transport_delay_ns) noexcept
-      : transport_delay_ns_(transport_delay_ns) {}
+  explicit timed_decoder(std::int64_t transport_delay_ns, const model& which = g4_model) noexcept
+      : transport_delay_ns_(transport_delay_ns),
+        shortest_mm_(which.range.min_mm),
+        to_points_(bulk::kernels_of(best_instruction_set(), which.samples).to_timed_points) {}
 
   /// The following bytes are from another transport; see transport::baud(). Before begin().
   void follow(std::uint32_t baud) noexcept {
@@ -47,7 +50,7 @@ class timed_decoder {
     const bool fits = angles_.fits(packet);
     if (times.lost > 0) angles_.lost();  // or the angles are wrong: the next packet decides
     if (!found.suspect) {
-      to_points_(packet, found.revolution, times, out);
+      to_points_(packet, found.revolution, shortest_mm_, times, out);
       found.points = out.first(packet.sample_count());
       if (!fits) mark_unlikely(out.first(packet.sample_count()));
     }
@@ -86,16 +89,16 @@ class timed_decoder {
     const auto wire_ns = static_cast<std::int64_t>(behind) * byte_ns_;
     if (last_packet_ns_ != 0) return wire_ns > longest_batch_ns ? wire_ns / 2 : wire_ns;
     const std::size_t count = std::min<std::size_t>(first.sample_count(), 40);
-    const auto samples =
-        static_cast<double>(behind * count) / static_cast<double>(packet_size(count));
+    const auto samples = static_cast<double>(behind * count) /
+                         static_cast<double>(packet_size(count, first.layout()));
     return std::max(wire_ns, static_cast<std::int64_t>(0.95 * samples * period_ns()));
   }
 
   std::int64_t transport_delay_ns_;
+  std::uint16_t shortest_mm_;
+  decltype(bulk::kernels::to_timed_points) to_points_;
   std::optional<std::uint32_t> baud_;  // of its transport
   std::int64_t byte_ns_ = 0;           // the time of a byte
-  decltype(bulk::kernels::to_timed_points) to_points_ =
-      bulk::kernels_of(best_instruction_set()).to_timed_points;
   sensor_clock clock_;
   revolution_counter revolutions_;
   angle_check angles_;

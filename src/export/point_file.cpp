@@ -35,18 +35,18 @@ bytes bytes_of(std::string_view text) noexcept {
 
 // ---- NumPy -------------------------------------------------------------------------------------
 
-/// A point of the array has the layout of point: the flags and their three zeros are one number.
+/// A point of the array has the layout of point.
 constexpr std::size_t npy_point_size = 24;
 static_assert(sizeof(point) == npy_point_size);
 
-/// The header of an array of `count` points, format version 1.0: always 192 bytes.
+/// The header of an array of `count` points, format version 1.0: always 256 bytes.
 std::string npy_header(std::uint64_t count) {
-  constexpr std::size_t size = 192;
+  constexpr std::size_t size = 256;
   const std::string begin = std::string("\x93NUMPY\x01\x00", 8) + little_endian(size - 10, 2);
   const std::string fields =
       "{'descr': [('angle_deg', '<f4'), ('range_mm', '<f4'), ('time_ns', '<i8'), ('revolution', "
-      "'<u4'), "
-      "('flags', '<u4')], 'fortran_order': False, 'shape': (" +
+      "'<u4'), ('flags', '|u1'), ('sample_flags', '|u1'), ('intensity', '<u2')], "
+      "'fortran_order': False, 'shape': (" +
       std::to_string(count) + ",)}";
   return padded(begin + fields, size - 1) + '\n';
 }
@@ -56,7 +56,8 @@ void put_npy_point(char* at, const point& p) noexcept {
                            std::uint64_t{std::bit_cast<std::uint32_t>(p.range_mm)} << 32U);
   digits::put_word(at + 8, static_cast<std::uint64_t>(p.time_ns));
   digits::put_word(at + 16,
-                   p.revolution | std::uint64_t{static_cast<std::uint8_t>(p.flags)} << 32U);
+                   p.revolution | std::uint64_t{static_cast<std::uint8_t>(p.flags)} << 32U |
+                       std::uint64_t{p.sample_flags} << 40U | std::uint64_t{p.intensity} << 48U);
 }
 
 class npy_writer : public point_file_writer {

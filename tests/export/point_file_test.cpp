@@ -54,7 +54,7 @@ std::string file(point_file_format format, const std::vector<point>& points, std
   return begin + all.substr(begin.size());
 }
 
-constexpr std::size_t npy_header_size = 192;
+constexpr std::size_t npy_header_size = 256;
 constexpr std::string_view npy_points{
     "\x00\x00\xb4\x42\x00\x00\xfa\x44\x08\x07\x06\x05\x04\x03\x02\x01\x07\x00\x00\x00\x04\x00\x00"
     "\x00"
@@ -67,13 +67,14 @@ constexpr std::string_view npy_points{
 TEST(PointFile, Npy_HasEveryByteOfTheSpecification) {
   const std::string npy = file(point_file_format::npy, three_points());
   ASSERT_EQ(npy.size(), npy_header_size + 72);
-  EXPECT_EQ(npy.substr(0, 10), std::string("\x93NUMPY\x01\x00\xb6\x00", 10));
+  EXPECT_EQ(npy.substr(0, 10), std::string("\x93NUMPY\x01\x00\xf6\x00", 10));
   const std::string header = npy.substr(10, npy_header_size - 10);
   EXPECT_THAT(
       header,
-      StartsWith(
-          "{'descr': [('angle_deg', '<f4'), ('range_mm', '<f4'), ('time_ns', '<i8'), "
-          "('revolution', '<u4'), ('flags', '<u4')], 'fortran_order': False, 'shape': (3,)} "));
+      StartsWith("{'descr': [('angle_deg', '<f4'), ('range_mm', '<f4'), ('time_ns', '<i8'), "
+                 "('revolution', '<u4'), ('flags', '|u1'), "
+                 "('sample_flags', '|u1'), ('intensity', '<u2')], 'fortran_order': False, 'shape': "
+                 "(3,)} "));
   EXPECT_EQ(header.back(), '\n');
   EXPECT_EQ(npy.substr(npy_header_size), npy_points);
   EXPECT_EQ(file(point_file_format::npy, three_points(), 3), npy) << "in one piece";

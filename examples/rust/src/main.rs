@@ -28,7 +28,8 @@ struct Point {
     time_ns: i64,
     revolution: u32,
     flags: u8,
-    reserved: [u8; 3],
+    sample_flags: u8,
+    intensity: u16,
 }
 
 /// The beginning of g4lidar_scan: it is only read through a pointer.

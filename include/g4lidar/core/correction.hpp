@@ -18,10 +18,10 @@ namespace g4lidar {
 //
 //     atan(21.8 * (155.3 - d) / (155.3 * d)) degrees = atan(21.8 / d - 21.8 / 155.3)
 //
-// All forms take the raw sample (quarters of a millimetre) and return degrees to be added. A sample
-// below least_range_raw is not a range: it has the correction of an infinitely distant target, so
-// that the angle is the direction in which the sensor looked. (protocol: Point packets, second
-// level, no return)
+// All forms take a range in quarters of a millimetre, which is the raw sample of a G4, and return
+// degrees to be added. What is below least_range_raw is not a range: it has the correction of an
+// infinitely distant target, so that the angle is the direction in which the sensor looked.
+// (protocol: Point packets, second level, no return)
 
 /// The least raw sample that is a range. In smaller ones the 14 upper bits are 0: nothing came back,
 /// and the lower two bits are flags. (protocol: Point packets, no return)
@@ -66,9 +66,10 @@ inline constexpr double far_correction_deg = no_return_correction_deg(correction
 /// The formula in double precision. *Pure.* For reference, tests and tables; about 10 ns per sample
 /// on a desktop processor.
 struct exact_correction {
-  /// For a raw sample, in degrees.
-  [[nodiscard]] constexpr double operator()(std::uint16_t raw) const noexcept {
-    if (raw < least_range_raw) return far_correction_deg;
+  /// For a range in quarters of a millimetre, in degrees. Below `least` it is none.
+  [[nodiscard]] constexpr double operator()(std::int32_t raw,
+                                            std::int32_t least = least_range_raw) const noexcept {
+    if (raw < least) return far_correction_deg;
     const double range_mm = raw / 4.0;
     return arctangent_deg(correction_offset_mm * (correction_zero_mm - range_mm) /
                           (correction_zero_mm * range_mm));
@@ -99,12 +100,11 @@ struct compact_correction {
       57.2957485712F,  -19.0970140142F, 11.4353011874F,   -8.01804181227F, 5.70921625447F,
       -3.59175127002F, 1.71076904796F,  -0.515605582546F, 0.0713759217089F};
 
-  /// For a raw sample, in degrees.
-  [[nodiscard]] constexpr float operator()(std::uint16_t raw) const noexcept {
+  /// For a range in quarters of a millimetre, in degrees. Below `least` it is none.
+  [[nodiscard]] constexpr float operator()(std::int32_t raw,
+                                           std::int32_t least = least_range_raw) const noexcept {
     // A sample without range counts as a very long range; a branch would prevent vectorization.
-    const auto whole = static_cast<std::int32_t>(raw);
-    const auto sample =
-        static_cast<float>(whole + ((whole - least_range_raw) >> 31 & 1'000'000'000));
+    const auto sample = static_cast<float>(raw + ((raw - least) >> 31 & 1'000'000'000));
     const float t = (zero_raw - sample) / (below_0 + below_1 * sample);
     return centre_deg + t * arctangent_ratio(t * t);
   }
@@ -139,6 +139,25 @@ class table_correction {
 
  private:
   std::array<float, 65536> degrees_{};
+};
+
+/// The correction of an SCL, atan(17.8 / d), in single precision, as in compact_correction. *Pure.*
+/// Within 2e-5 degrees of the formula for every sample; 0 for no return.
+struct scl_correction {
+  /// For a range in quarters of a millimetre, in degrees.
+  [[nodiscard]] constexpr float operator()(std::int32_t raw) const noexcept {
+    // atan(x) = 45 + atan((x - 1) / (x + 1)), and x is 71.2 / raw.
+    const auto sample = static_cast<float>(raw);
+    const float t = (71.2F - sample) / (71.2F + sample);
+    const float degrees = 45.0F + t * compact_correction::arctangent_ratio(t * t);
+    return masked(~negative_mask(sample - least_range_raw), degrees);
+  }
+};
+
+/// The angles of the device are those of its returns. *Pure.*
+struct no_correction {
+  /// 0 for every range.
+  [[nodiscard]] constexpr float operator()(std::int32_t /*raw*/) const noexcept { return 0.0F; }
 };
 
 /// The corrections that decode() accepts: sample in, degrees out, in the precision of the

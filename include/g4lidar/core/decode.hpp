@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -44,20 +45,73 @@ struct decoded {
   bool suspect = false;                     ///< The angles of its samples are not known.
 };
 
-/// The flags of a sample that follow from its range. *Pure*, and without a branch.
-[[nodiscard]] constexpr point_flags flag_of(std::uint16_t raw) noexcept {
+/// How the word of a range is read. *Pure*, and without a branch.
+template <sample_layout Layout>
+struct range_word {
+  /// Whether its lower two bits are not part of the range.
+  static constexpr bool has_low_bits = Layout == sample_layout::flagged_mm ||
+                                       Layout == sample_layout::intensity_8 ||
+                                       Layout == sample_layout::intensity_10;
+  /// The unit of the word, in quarters of a millimetre.
+  static constexpr std::int32_t unit = Layout == sample_layout::half_mm        ? 2
+                                       : Layout == sample_layout::whole_mm     ? 4
+                                       : Layout == sample_layout::intensity_16 ? 4
+                                                                               : 1;
+  /// The least range, in quarters of a millimetre. Less is no return.
+  static constexpr std::int32_t least = unit == 1 ? std::int32_t{least_range_raw} : unit;
+
+  /// In quarters of a millimetre; below `least` for no return.
+  [[nodiscard]] static constexpr std::int32_t quarters(std::uint16_t raw) noexcept {
+    return has_low_bits ? raw & 0xFFFC : raw * unit;
+  }
+  /// The correction of its range.
+  template <correction_form Form>
+  [[nodiscard]] static constexpr auto correction(const Form& form, std::uint16_t raw) noexcept {
+    if constexpr (requires { form(quarters(raw), least); } && least != least_range_raw) {
+      return form(quarters(raw), least);
+    } else if constexpr (unit == 1 && !has_low_bits) {
+      return form(raw);
+    } else {
+      return form(quarters(raw));
+    }
+  }
+};
+
+/// The flags of a sample that follow from its range; below `shortest_mm` it is too near. *Pure*, and
+/// without a branch.
+template <sample_layout Layout = g4_layout>
+[[nodiscard]] constexpr point_flags flag_of(
+    std::uint16_t raw, std::int32_t shortest_mm = g4_model.range.min_mm) noexcept {
   static_assert(static_cast<int>(point_flags::too_near) - 1 ==
                 static_cast<int>(point_flags::no_return));
-  constexpr auto too_near_raw = static_cast<std::uint16_t>(4 * too_near_mm);
-  const int near = raw < too_near_raw;
-  const int no_return = raw < least_range_raw;
+  using word = range_word<Layout>;
+  const int near = word::quarters(raw) < 4 * shortest_mm;
+  const int no_return = word::quarters(raw) < word::least;
   return static_cast<point_flags>(2 * near - no_return);
 }
 
 /// The range of a sample in millimetres, 0 for no return. *Pure*, and without a branch.
+template <sample_layout Layout = g4_layout>
 [[nodiscard]] constexpr float range_mm_of(std::uint16_t raw) noexcept {
-  const auto whole = static_cast<std::int32_t>(raw);
-  return static_cast<float>(whole < least_range_raw ? 0 : whole) * 0.25F;
+  using word = range_word<Layout>;
+  const std::int32_t whole = word::quarters(raw);
+  return static_cast<float>(whole < word::least ? 0 : whole) * 0.25F;
+}
+
+/// The flags that a sample contains, by the word of its range. *Pure.*
+template <sample_layout Layout>
+[[nodiscard]] constexpr std::uint8_t sample_flags_of(std::uint16_t raw) noexcept {
+  constexpr bool has_flags =
+      range_word<Layout>::has_low_bits && Layout != sample_layout::intensity_10;
+  return static_cast<std::uint8_t>(has_flags ? raw & 3U : 0U);
+}
+
+/// The intensity of a sample, by what is before the word of its range, and that word. *Pure.*
+template <sample_layout Layout>
+[[nodiscard]] constexpr std::uint16_t intensity_of(std::uint16_t before,
+                                                   std::uint16_t raw) noexcept {
+  constexpr bool has_upper_bits = Layout == sample_layout::intensity_10;
+  return static_cast<std::uint16_t>(before | (has_upper_bits ? (raw & 3U) << 8 : 0U));
 }
 
 /// The first-level angles of a packet that is not suspect, in degrees: sample `i` is at `first` +
@@ -94,11 +148,14 @@ struct first_level_angles {
 
 /// Writes the corrected points of `packet` to the front of `out`, which has room for the longest
 /// packet, and returns them with the properties of the packet. *Pure, never allocates.* A suspect
-/// packet gives no points. Times are 0, not known. (protocol: Point packets)
-template <correction_form Form>
+/// packet gives no points. Times are 0, not known. Returns below `shortest_mm` are too near. A packet
+/// of another layout is an assertion. (protocol: Point packets)
+template <sample_layout Layout = g4_layout, correction_form Form>
 constexpr decoded decode(packet_view packet, const Form& correction, std::uint32_t revolution,
-                         std::span<point, max_samples> out) noexcept {
+                         std::span<point, max_samples> out,
+                         std::uint16_t shortest_mm = g4_model.range.min_mm) noexcept {
   using real = decltype(correction(std::uint16_t{}));
+  assert(packet.layout() == Layout);
   decoded result = without_points(packet, revolution);
   if (result.suspect) return result;
 
@@ -115,14 +172,22 @@ constexpr decoded decode(packet_view packet, const Form& correction, std::uint32
     real* const angles_here = angles_deg.data() + from;
     const auto place = static_cast<std::int32_t>(from);
     for (std::int32_t i = 0; i < at_once; ++i) {
-      const real turned = static_cast<real>(place + i) * angles.step + correction(raw_here[i]);
+      const real turned = static_cast<real>(place + i) * angles.step +
+                          range_word<Layout>::correction(correction, raw_here[i]);
       angles_here[i] = wrap_once_deg(angles.first + turned);
     }
   }
   for (std::size_t i = 0; i < count; ++i) {
     auto angle_deg = static_cast<float>(angles_deg[i]);
     if constexpr (sizeof(real) > sizeof(float)) angle_deg = wrap_once_deg(angle_deg);
-    out[i] = {angle_deg, range_mm_of(raw[i]), 0, revolution, flag_of(raw[i]), {}};
+    const std::uint16_t before = sample_size(Layout) == 2 ? 0 : packet.intensity_word(i);
+    out[i] = {angle_deg,
+              range_mm_of<Layout>(raw[i]),
+              0,
+              revolution,
+              flag_of<Layout>(raw[i], shortest_mm),
+              sample_flags_of<Layout>(raw[i]),
+              intensity_of<Layout>(before, raw[i])};
   }
   if (result.starts_revolution) out[0].flags = out[0].flags | point_flags::revolution_start;
   result.points = out.first(count);

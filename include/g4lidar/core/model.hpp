@@ -127,6 +127,10 @@ inline constexpr auto models = [] {
 
 /// The model that is used where none is named.
 inline constexpr const model& g4_model = models[0];
+/// How its samples are read.
+inline constexpr sample_format g4_format = g4_model.samples;
+/// How its samples are laid out.
+inline constexpr sample_layout g4_layout = g4_format.layout;
 
 /// The model with this word, or null: "x4-pro". Valid forever. *Pure.*
 [[nodiscard]] constexpr const model* model_named(std::string_view word) noexcept {

@@ -55,10 +55,11 @@ namespace detail {
 
 /// Whether `data`, whose first byte is AA, begins with a packet or a time packet. *Pure.* Not
 /// inlined: otherwise compilers spend 50 instructions more on each byte that arrives alone.
-[[nodiscard, gnu::noinline]] constexpr wire_check check_aa(bytes data) noexcept {
+[[nodiscard, gnu::noinline]] constexpr wire_check check_aa(bytes data,
+                                                           sample_format format) noexcept {
   static_assert(packet_start[0] == time_packet_start[0]);
   const bool is_time = data.size() > 1 && data[1] == time_packet_start[1];
-  return is_time ? check_time_packet(data) : check_packet(data);
+  return is_time ? check_time_packet(data) : check_packet(data, format);
 }
 
 /// The kind of a valid front. *Pure.*
@@ -75,11 +76,12 @@ namespace detail {
 /// time packet and by `size` at each skip, it gives the same events as stream_parser for that input,
 /// divided in any way. At a refused start the step is one byte, so that a packet hidden behind the
 /// start is found. A skipped byte that a refused start had claimed has the reason of that start,
-/// until a valid one begins.
-[[nodiscard]] constexpr front what_stands_at_front(bytes data) noexcept {
+/// until a valid one begins. `format` is that of the packets.
+[[nodiscard]] constexpr front what_stands_at_front(bytes data,
+                                                   sample_format format = g4_format) noexcept {
   const bool maybe_packet = data[0] == packet_start[0];
   if (maybe_packet || data[0] == response_start[0]) {
-    const wire_check check = maybe_packet ? detail::check_aa(data) : check_response(data);
+    const wire_check check = maybe_packet ? detail::check_aa(data, format) : check_response(data);
     switch (check.state) {
       case wire_state::valid:
         return {detail::kind_of_front(data), skip_reason::noise, check.size, check.size};
@@ -103,6 +105,9 @@ namespace detail {
 /// At every moment: bytes in = bytes of packets, responses and time packets + bytes skipped + held().
 class stream_parser {
  public:
+  /// For packets of this format; packets of another one are skipped and counted.
+  explicit constexpr stream_parser(sample_format format = g4_format) noexcept : format_(format) {}
+
   /// The next event in `input`. Removes the taken bytes from the front of `input`. Returns nothing
   /// when all of it is taken; then at most one unfinished packet or response is held for the next call. The
   /// views in an event are valid until the next call of any function, and at most as long as the
@@ -113,7 +118,7 @@ class stream_parser {
       if (!in_place && !top_up(input)) return std::nullopt;
       const bytes data = in_place ? input : held_bytes();
       if (data.empty()) return std::nullopt;
-      const front found = what_stands_at_front(data);
+      const front found = what_stands_at_front(data, format_);
       if (found.kind == front_kind::incomplete) {
         if (in_place) hold(input);
         needed_ = found.size;
@@ -147,7 +152,7 @@ class stream_parser {
       return std::nullopt;
     }
     const bytes data = held_bytes();
-    front found = what_stands_at_front(data);
+    front found = what_stands_at_front(data, format_);
     if (found.kind == front_kind::incomplete) {
       found = {front_kind::skip, skip_reason::truncated, 1, data.size()};
     }
@@ -224,7 +229,8 @@ class stream_parser {
                                                           bytes data) const noexcept {
     using made = std::optional<event>;
     const bytes whole = data.first(taken);
-    if (found.kind == front_kind::packet) return made(std::in_place, packet_view(whole));
+    if (found.kind == front_kind::packet)
+      return made(std::in_place, packet_view(whole, format_.layout));
     if (found.kind == front_kind::response) return made(std::in_place, response_view(whole));
     if (found.kind == front_kind::time_packet) return made(std::in_place, time_packet_view(whole));
     return made(std::in_place, skipped{taken, claim_.reason, data[taken - 1]});
@@ -235,6 +241,7 @@ class stream_parser {
   std::size_t held_ = 0;    // bytes of the carry in use
   std::size_t needed_ = 1;  // with fewer held bytes than this nothing new can be decided
   claim claim_;
+  sample_format format_;
 };
 
 }  // namespace g4lidar
