@@ -50,6 +50,9 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
+  /// What sends the bytes; not null, and valid as long as the lidar. Another model than the G4 is known
+  /// for files of raw bytes only.
+  const g4lidar::model* model = &g4_model;
   /// Bits per second, of a serial port and of the one behind `tcp:`.
   std::uint32_t baud = g4_model.bauds[0];
 
@@ -66,8 +69,9 @@ struct lidar_options {
   lidar_tuning tuning{};       ///< Times and speeds of the connection.
 
   playback_options playback{};  ///< How a file is played.
-  /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000.
-  std::uint32_t raw_sample_rate_hz = g4_model.rates.nominal_hz;
+  /// Samples per second of raw bytes in a file, which contain no times; 1 to 1,000,000. If it is not
+  /// given, first_rate_hz() of the model.
+  std::optional<std::uint32_t> raw_sample_rate_hz{};
   /// Called with the connector of each attempt to open, if it is set: to record, to observe. What it
   /// returns is used instead; its error ends the attempt.
   std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> wrap{};

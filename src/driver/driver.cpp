@@ -19,7 +19,8 @@ std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& o
 
 lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options)
     : parts_{connection(std::move(from), options.device),
-             point_pipeline(options.tuning.transport_delay.count(), options.partial_scans),
+             point_pipeline(options.tuning.transport_delay.count(), options.partial_scans,
+                            *options.model),
              {}},
       feeder_(make_feeder(parts_, options)),
       points_(8192) {}

@@ -13,6 +13,8 @@ namespace g4lidar {
 /// *Single thread, never allocates.*
 class event_reader {
  public:
+  explicit event_reader(sample_format format = g4_format) noexcept : parser_(format) {}
+
   /// The bytes of one read; valid until they are parsed. Only if the bytes before are parsed.
   void feed(bytes reading, std::int64_t arrival_ns) noexcept {
     input_ = reading;

@@ -68,9 +68,10 @@ std::optional<error> problem_with(const lidar_options& options) noexcept {
   if (!within(options.tuning.transport_delay, 0ns, 1'000'000'000ns)) {
     return bad("transport_delay: 0 to 1 s", options.tuning.transport_delay.count(), " ns");
   }
-  if (!within(options.raw_sample_rate_hz, 1U, 1'000'000U)) {
-    return bad("raw_sample_rate_hz: 1 to 1000000", options.raw_sample_rate_hz, "");
+  if (options.raw_sample_rate_hz && !within(*options.raw_sample_rate_hz, 1U, 1'000'000U)) {
+    return bad("raw_sample_rate_hz: 1 to 1000000", *options.raw_sample_rate_hz, "");
   }
+  if (options.model == nullptr) return bad("model: null");
   return std::nullopt;
 }
 

@@ -80,9 +80,10 @@ class ring_on_demand {
 /// So a scan is delivered before the following bytes are parsed, and nothing here calls back.
 class point_pipeline {
  public:
-  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans)
+  point_pipeline(std::int64_t transport_delay_ns, bool partial_scans, const model& which = g4_model)
       : partial_scans_(partial_scans),
-        decoder_(transport_delay_ns),
+        input_(which.samples),
+        decoder_(transport_delay_ns, which),
         storage_(largest_scan),
         assembler_(storage_.all()) {}
 

@@ -8,8 +8,6 @@
 #include "feeder.hpp"
 #include "recording/played_file.hpp"
 
-#include "g4lidar/core/model.hpp"
-
 namespace g4lidar {
 
 /// *Single thread.* The actions of the recorded driver are repeated at the same places, so the same
@@ -66,7 +64,7 @@ class replay_player final : public feeder {
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
   bool is_released_ = false;
-  std::uint32_t sample_rate_hz_ = g4_model.rates.nominal_hz;
+  std::uint32_t sample_rate_hz_;
   std::uint64_t reconnects_ = 0;
 };
 

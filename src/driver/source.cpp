@@ -67,12 +67,17 @@ std::string path_of_source(std::string_view name) {
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
   const std::string path = path_of_source(options.device);
+  const bool is_raw = kind_of_source(options.device) == source_kind::raw_bytes;
+  if (!is_raw && options.model->word != g4_model.word) {
+    return failure(task::opening, problem::bad_option, "model: for files of raw bytes only");
+  }
   switch (kind_of_source(options.device)) {
     case source_kind::recording:
       return replay::open(path, options.playback, options.is_cancelled);
     case source_kind::raw_bytes:
-      return open_raw_bytes(path, options.raw_sample_rate_hz, options.playback,
-                            options.is_cancelled);
+      return open_raw_bytes(path,
+                            options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
+                            options.playback, options.is_cancelled, options.model->samples);
     case source_kind::simulated:
       return connect_simulated(options);
     case source_kind::device:

@@ -21,6 +21,7 @@ class timed_decoder {
  public:
   explicit timed_decoder(std::int64_t transport_delay_ns, const model& which = g4_model) noexcept
       : transport_delay_ns_(transport_delay_ns),
+        layout_(which.samples.layout),
         shortest_mm_(which.range.min_mm),
         to_points_(bulk::kernels_of(best_instruction_set(), which.samples).to_timed_points) {}
 
@@ -29,7 +30,8 @@ class timed_decoder {
     if (baud == baud_) return;  // the clock may continue
     baud_ = baud;
     byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
-    clock_ = sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud});
+    clock_ =
+        sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud, .layout = layout_});
   }
   /// The following bytes may be earlier ones. Before follow().
   void forget() noexcept { baud_.reset(); }
@@ -95,6 +97,7 @@ class timed_decoder {
   }
 
   std::int64_t transport_delay_ns_;
+  sample_layout layout_;
   std::uint16_t shortest_mm_;
   decltype(bulk::kernels::to_timed_points) to_points_;
   std::optional<std::uint32_t> baud_;  // of its transport

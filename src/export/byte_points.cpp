@@ -3,7 +3,7 @@
 
 #include <variant>
 
-#include "g4lidar/core/correction.hpp"
+#include "core/bulk_kernels.hpp"
 
 namespace g4lidar {
 namespace {
@@ -20,10 +20,13 @@ scan_record record_of(const g4lidar::scan& scan) {
 
 }  // namespace
 
-byte_points::byte_points(point_writer& writer, text_sink& out, std::uint32_t rate_hz)
+byte_points::byte_points(point_writer& writer, text_sink& out, std::uint32_t rate_hz,
+                         const model& which)
     : out_(out),
       writer_(writer),
       by_scan_(writer.takes_scans()),
+      format_(which.samples),
+      shortest_mm_(which.range.min_mm),
       clock_(rate_hz),
       scan_storage_(by_scan_ ? max_scan_points : 1),
       assembler_(scan_storage_) {
@@ -54,8 +57,12 @@ void byte_points::take(const event& found) {
 
 void byte_points::take(g4lidar::packet_view packet) {
   if (counts_.packets == 1) writer_.begin(out_);
-  g4lidar::decoded decoded =
-      g4lidar::decode(packet, g4lidar::compact_correction{}, revolutions_.count(packet), points_);
+  g4lidar::decoded decoded = without_points(packet, revolutions_.count(packet));
+  if (!decoded.suspect) {
+    bulk::kernels_of(instruction_set::portable, format_)
+        .to_points(packet, decoded.revolution, shortest_mm_, points_);
+    decoded.points = std::span(points_).first(packet.sample_count());
+  }
   for (g4lidar::point& p : std::span(points_).first(decoded.points.size())) {
     p.time_ns = clock_.now_ns();
     clock_.tick();

@@ -12,11 +12,17 @@ namespace {
 template <frame Frame, length_unit Unit>
 class csv_points final : public point_writer {
  public:
+  explicit csv_points(const text_style& style)
+      : has_intensity_(style.intensity), has_sample_flags_(style.sample_flags) {}
+
   [[nodiscard]] bool takes_scans() const noexcept override { return false; }
 
   void begin(text_sink& out) override {
-    out.write(Unit == length_unit::metres ? "scan,angle_deg,range_m,time_ns\n"
-                                          : "scan,angle_deg,range_mm,time_ns\n");
+    out.write(Unit == length_unit::metres ? "scan,angle_deg,range_m,time_ns"
+                                          : "scan,angle_deg,range_mm,time_ns");
+    if (has_intensity_) out.write(",intensity");
+    if (has_sample_flags_) out.write(",sample_flags");
+    out.write("\n");
   }
 
   void write_points(std::span<const point> points, text_sink& out) override {
@@ -30,8 +36,9 @@ class csv_points final : public point_writer {
   }
 
  private:
-  // 10 digits of the scan, 11 characters of the angle, 11 of the range, 20 of the time, and flags.
-  static constexpr std::size_t max_row = 64;
+  // 10 digits of the scan, 11 characters of the angle, 11 of the range, 20 of the time, 5 of the
+  // intensity, 1 of the flags.
+  static constexpr std::size_t max_row = 72;
   static constexpr std::size_t most_rows = 512;
 
   char* put_row(char* at, const point& p) noexcept {
@@ -46,6 +53,14 @@ class csv_points final : public point_writer {
     at += is_negative ? 1 : 0;
     const auto number = static_cast<std::uint64_t>(p.time_ns);
     at = time_.put(at, is_negative ? std::uint64_t{0} - number : number);
+    if (has_intensity_) {
+      *at++ = ',';
+      at = digits::put_number(at, p.intensity);
+    }
+    if (has_sample_flags_) {
+      *at++ = ',';
+      at = digits::put_number(at, p.sample_flags);
+    }
     *at++ = '\n';
     return at;
   }
@@ -57,6 +72,8 @@ class csv_points final : public point_writer {
     scan_length_ = end + 1 - scan_text_.data();
   }
 
+  bool has_intensity_;
+  bool has_sample_flags_;
   std::uint32_t scan_ = 0;
   std::ptrdiff_t scan_length_ = 2;
   std::array<char, 32> scan_text_{'0', ','};
@@ -64,10 +81,10 @@ class csv_points final : public point_writer {
 };
 
 template <frame Frame>
-std::unique_ptr<point_writer> make_csv_points(length_unit unit) {
+std::unique_ptr<point_writer> make_csv_points(const text_style& style) {
   using enum length_unit;
-  if (unit == millimetres) return std::make_unique<csv_points<Frame, millimetres>>();
-  return std::make_unique<csv_points<Frame, metres>>();
+  if (style.unit == millimetres) return std::make_unique<csv_points<Frame, millimetres>>(style);
+  return std::make_unique<csv_points<Frame, metres>>(style);
 }
 
 /// A row per revolution.
@@ -97,8 +114,8 @@ class csv_scans final : public point_writer {
 
 std::unique_ptr<point_writer> make_csv_writer(const text_style& style) {
   if (style.scans) return std::make_unique<csv_scans>();
-  if (style.to == frame::vendor) return make_csv_points<frame::vendor>(style.unit);
-  return make_csv_points<frame::robot>(style.unit);
+  if (style.to == frame::vendor) return make_csv_points<frame::vendor>(style);
+  return make_csv_points<frame::robot>(style);
 }
 
 }  // namespace g4lidar

@@ -41,6 +41,10 @@ class jsonl_points final : public point_writer {
     at = put_angle_column(put_text(at, ",\"angle_deg\":"), p, style_.to);
     at = put_range_column(put_text(at, range_name_), p, style_.unit);
     at = digits::put_signed(put_text(at, ",\"time_ns\":"), p.time_ns);
+    if (style_.intensity) at = digits::put_number(put_text(at, ",\"intensity\":"), p.intensity);
+    if (style_.sample_flags) {
+      at = digits::put_number(put_text(at, ",\"sample_flags\":"), p.sample_flags);
+    }
     at = put_bool(put_text(at, ",\"no_return\":"), p.is_no_return());
     at = put_bool(put_text(at, ",\"too_near\":"), p.is_too_near());
     for (const detail::doubt& each : detail::doubts) {
@@ -79,6 +83,14 @@ class jsonl_scans final : public point_writer {
                  [this](char* at, const point& p) { return put_range_column(at, p, style_.unit); });
     write_column(scan, "time_ns", out,
                  [](char* at, const point& p) { return digits::put_signed(at, p.time_ns); });
+    if (style_.intensity) {
+      write_column(scan, "intensity", out,
+                   [](char* at, const point& p) { return digits::put_number(at, p.intensity); });
+    }
+    if (style_.sample_flags) {
+      write_column(scan, "sample_flags", out,
+                   [](char* at, const point& p) { return digits::put_number(at, p.sample_flags); });
+    }
     out.write("}\n");
   }
 

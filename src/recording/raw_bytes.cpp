@@ -112,14 +112,15 @@ class counted_items final : public item_source {
   /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
   counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled)
+                std::function<bool()> is_cancelled, sample_format format)
       : fd_(std::move(fd)),
         file_begin_(at),
         name_(std::move(name)),
         rate_hz_(sample_rate_hz),
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(saturating_add(file_begin_ns, to_ns)),
-        is_cancelled_(std::move(is_cancelled)) {}
+        is_cancelled_(std::move(is_cancelled)),
+        format_(format) {}
 
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     while (true) {
@@ -137,14 +138,14 @@ class counted_items final : public item_source {
     read_ = 0;
     begin_ = parsed_ = end_ = 0;
     samples_ = 0;
-    parser_ = stream_parser();
+    parser_ = stream_parser(format_);
     return {};
   }
   [[nodiscard]] std::int64_t first_ns() const noexcept override { return file_begin_ns; }
   [[nodiscard]] std::int64_t last_ns() noexcept override {
     if (!last_ns_) {
       counted_items all(fd_, file_begin_, name_, static_cast<std::uint32_t>(rate_hz_), 0, never_ns,
-                        is_cancelled_);
+                        is_cancelled_, format_);
       for (auto piece = all.find_piece(); piece && !piece->empty();) piece = all.find_piece();
       last_ns_ = all.now_ns_;
     }
@@ -203,7 +204,8 @@ class counted_items final : public item_source {
   std::int64_t now_ns_ = file_begin_ns;
   std::optional<std::int64_t> last_ns_;
   std::int64_t samples_ = 0;
-  stream_parser parser_;
+  sample_format format_;
+  stream_parser parser_{format_};
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
   off_t read_ = 0;          // of the file
   std::size_t begin_ = 0;   // of the bytes that were not returned yet
@@ -216,7 +218,8 @@ class counted_items final : public item_source {
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::uint32_t sample_rate_hz,
                                                   const playback_options& options,
-                                                  std::function<bool()> is_cancelled) {
+                                                  std::function<bool()> is_cancelled,
+                                                  sample_format format) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
   const bool is_standard = name == "-";
   owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
@@ -237,7 +240,7 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   auto items = std::make_unique<counted_items>(
       std::make_shared<const owned_fd>(std::move(fd)), at, title, sample_rate_hz,
       file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
-      std::move(is_cancelled));
+      std::move(is_cancelled), format);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
                                                   recorded_device{}, std::move(waits)));

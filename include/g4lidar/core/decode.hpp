@@ -101,9 +101,7 @@ template <sample_layout Layout = g4_layout>
 /// The flags that a sample contains, by the word of its range. *Pure.*
 template <sample_layout Layout>
 [[nodiscard]] constexpr std::uint8_t sample_flags_of(std::uint16_t raw) noexcept {
-  constexpr bool has_flags =
-      range_word<Layout>::has_low_bits && Layout != sample_layout::intensity_10;
-  return static_cast<std::uint8_t>(has_flags ? raw & 3U : 0U);
+  return static_cast<std::uint8_t>(has_sample_flags(Layout) ? raw & 3U : 0U);
 }
 
 /// The intensity of a sample, by what is before the word of its range, and that word. *Pure.*

@@ -34,6 +34,11 @@ enum class sample_layout : std::uint8_t {
   return layout == sample_layout::intensity_8 ? 8 : 0;
 }
 
+/// Whether a sample contains two flags. *Pure.*
+[[nodiscard]] constexpr bool has_sample_flags(sample_layout layout) noexcept {
+  return layout == sample_layout::flagged_mm || layout == sample_layout::intensity_8;
+}
+
 /// The second-level correction of an angle by the range.
 enum class correction_kind : std::uint8_t {
   triangle,  ///< atan(21.8 (155.3 - d) / (155.3 d)), d in mm.
@@ -130,6 +135,15 @@ struct model {
   sample_layout other_layout = samples.layout;
   firmware_difference old_firmware{};
 };
+
+/// The sample rate of `which` to begin with: the nominal one, or the highest if it is not known. *Pure.*
+[[nodiscard]] constexpr std::uint32_t first_rate_hz(const model& which) noexcept {
+  std::uint32_t highest = 0;
+  for (const sample_rate_entry& rate : which.rates.entries) {
+    if (rate.hz > highest) highest = rate.hz;
+  }
+  return which.rates.nominal_hz != 0 ? which.rates.nominal_hz : highest;
+}
 
 /// The shortest range of `which` at this sample rate in millimetres, by the manufacturer. *Pure.*
 [[nodiscard]] constexpr std::uint16_t shortest_range_mm(const model& which,

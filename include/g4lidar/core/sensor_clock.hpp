@@ -27,6 +27,7 @@ struct sensor_clock_options {
       0;  ///< The least delay of every byte after the serial connection.
   /// Bits per second, 10 bits per byte; 0: bytes take no time.
   std::uint32_t baud = g4_model.bauds[0];
+  sample_layout layout = g4_layout;  ///< Of the packets.
 };
 
 /// The measurement times of the samples of one packet.
@@ -232,7 +233,7 @@ class sensor_clock {
   [[nodiscard]] constexpr std::int64_t measured_before(std::int64_t count,
                                                        std::int64_t arrival_ns) noexcept {
     arrival_ns_ = std::max(arrival_ns_, arrival_ns);
-    const std::size_t size = packet_size(static_cast<std::size_t>(count));
+    const std::size_t size = packet_size(static_cast<std::size_t>(count), options_.layout);
     return part_.take_limit(size, arrival_ns_ - line_time_ns(size)) - options_.transport_delay_ns;
   }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/sample_clock.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
@@ -28,8 +29,10 @@ namespace g4lidar {
 /// construction*; exceptions of the sink are passed on.
 class G4LIDAR_API byte_points {
  public:
-  /// `writer` and `out` must outlive this. `sample_rate_hz`: 1 to 10^9.
-  byte_points(point_writer& writer, text_sink& out, std::uint32_t sample_rate_hz);
+  /// `writer` and `out` must outlive this. `sample_rate_hz`: 1 to 10^9. The bytes are those of a lidar
+  /// like `which`, whose `samples` and `range` are copied.
+  byte_points(point_writer& writer, text_sink& out, std::uint32_t sample_rate_hz,
+              const model& which = g4_model);
 
   /// Adds the next bytes, in pieces of any size.
   void take(g4lidar::bytes data);
@@ -52,7 +55,9 @@ class G4LIDAR_API byte_points {
   point_writer& writer_;
   bool by_scan_;
   std::uint64_t bytes_ = 0;
-  stream_parser parser_;
+  sample_format format_;
+  std::uint16_t shortest_mm_;
+  stream_parser parser_{format_};
   stream_counter counts_;
   revolution_counter revolutions_;
   angle_check angles_;

@@ -36,7 +36,9 @@ struct text_style {
   /// jsonl: points are written as they arrive, without the key `partial`, which is known only at
   /// the end of the revolution.
   bool as_they_come = false;
-  unsigned time_width = 5;  ///< text: the width of the seconds, in digits.
+  bool intensity = false;     ///< csv, jsonl: points have `intensity`.
+  bool sample_flags = false;  ///< csv, jsonl: points have `sample_flags`.
+  unsigned time_width = 5;    ///< text: the width of the seconds, in digits.
 };
 
 /// A revolution and what is written with it.
@@ -61,6 +63,7 @@ struct scan_record {
 /// | `angle_deg` | degrees in style.to, six decimals: vendor in [0, 360), robot in [-180, 180) |
 /// | `range_mm` or `range_m` | two or five decimals; 0: no return, which is not free space |
 /// | `time_ns` | point::time_ns |
+/// | `intensity`, `sample_flags` | those of the point; each only if the style has it |
 ///
 /// More columns may follow; the columns above do not change their position. jsonl has keys with the
 /// same names, and `no_return`, `too_near` and `partial` (true, false); `not_deskewed`, `unlikely`,
@@ -77,7 +80,8 @@ struct scan_record {
 /// | `reported_hz`, `measured_hz` | the rotation frequency; empty where it is not known |
 ///
 /// jsonl has keys with the same names (null if not known), `suspect_samples`, and arrays of the
-/// points: `angle_deg`, `range_mm` or `range_m`, `time_ns`.
+/// points: `angle_deg`, `range_mm` or `range_m`, `time_ns`, and if the style has them `intensity`,
+/// `sample_flags`.
 class G4LIDAR_API point_writer {
  public:
   point_writer() = default;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/message/ros_messages.hpp"
@@ -32,10 +33,12 @@ namespace g4lidar {
 /// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
 /// it is set: while it returns true, reading fails with cancelled.
 ///
+/// `format`: how the samples of its packets are read.
+///
 /// Fails with bad_option and system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
     const std::string& path, std::uint32_t sample_rate_hz, const playback_options& options = {},
-    std::function<bool()> is_cancelled = {});
+    std::function<bool()> is_cancelled = {}, sample_format format = g4_format);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// whoever wrote it, is a recording.

@@ -97,6 +97,7 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
+    use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
     writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));
     load_path(how);
@@ -115,6 +116,22 @@ class point_run {
 
  private:
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
+  /// The columns of the model, and what is not known of it.
+  void use_model() {
+    const g4lidar::model& which = *job_.source.model;
+    job_.style.intensity = intensity_bits(which.samples.layout) > 0;
+    job_.style.sample_flags = has_sample_flags(which.samples.layout);
+    if (which.word == g4lidar::g4_model.word) return;
+    if (kind_ != source_kind::raw_bytes) throw bad_value("--model: for files of raw bytes only");
+    const bool needs_turn = common_.frame == frame::robot || !common_.mask.empty() ||
+                            common_.deskew != deskewing::none || job_.file != scan_file::none ||
+                            job_.log != slam_log::none;
+    if (needs_turn && which.turn_deg != g4lidar::g4_model.turn_deg) {
+      throw bad_value(
+          fmt::format("--model {}: only in the vendor frame, without --mask and --deskew, as text",
+                      which.word));
+    }
+  }
   void choose_files() {
     if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
     files_ = numbered_files_of(common_.output, job_.keeps_existing);
@@ -206,7 +223,9 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    byte_points way(*writer_, out, job_.source.raw_sample_rate_hz);
+    const g4lidar::model& which = *job_.source.model;
+    byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(which)),
+                    which);
     bool has_text = false;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       if (way.bytes() == 0) has_text = looks_like_text(got);

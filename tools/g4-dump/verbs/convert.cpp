@@ -181,8 +181,10 @@ void copy_recording(const convert_options& options, output& out) {
 
 /// Writes a part of raw bytes; their times are counted.
 void copy_bytes(const convert_options& options, output& out) {
-  const auto from = value_of(
-      open_raw_bytes(path_of_source(options.in()), options.points.source.raw_sample_rate_hz));
+  const auto from = value_of(open_raw_bytes(path_of_source(options.in()),
+                                            options.points.source.raw_sample_rate_hz.value_or(
+                                                first_rate_hz(*options.points.source.model)),
+                                            {}, {}, options.points.source.model->samples));
   const std::int64_t begin_ns = from->now_ns();
   const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;

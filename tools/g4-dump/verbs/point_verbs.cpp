@@ -52,6 +52,8 @@ constexpr const char* point_columns =
   angle_deg  direction of the point
   range_mm   distance (range_m with --unit m); 0: no return, which is not free space
   time_ns    time of the point
+  intensity, sample_flags  what the samples of another --model contain: the strength of the return,
+             and two flags, 0 to 3, whose meaning is not known for certain
 
 More columns may follow in later versions. jsonl has the same names, and no_return and too_near
 (below 100 mm: not reliable); not_deskewed, unlikely, isolated, veiling and may_be_too_near only if
@@ -110,10 +112,11 @@ verb make_dump_verb() {
   return {.name = "dump",
           .summary = "Print points (the default command)",
           .arguments = {source_argument(common)},
-          .options = joined(output_row(common), checked(format_row(job->style.format), refuse_pcd),
-                            sample_rate_row(job->source.raw_sample_rate_hz), ending_rows(common),
-                            filter_rows(common), near_row(common.marks.near), shape_rows(common),
-                            device_rows(common)),
+          .options =
+              joined(output_row(common), checked(format_row(job->style.format), refuse_pcd),
+                     model_row(job->source.model), sample_rate_row(job->source.raw_sample_rate_hz),
+                     ending_rows(common), filter_rows(common), near_row(common.marks.near),
+                     shape_rows(common), device_rows(common)),
           .details = fmt::format("{}\n\n{}\n\n{}", point_columns, shape_text, ending_text),
           .examples = {{"g4-dump", "Print the points of the only G4"},
                        {"g4-dump -n 1000 -f csv -o points.csv", "Write 1000 points to a csv file"},
@@ -150,9 +153,9 @@ verb make_scan_verb() {
           flag_row("--partial", "Write pieces of revolutions, too", job->partial),
           choice_row("--pcd-data", "Data of pcd files (binary)", job->data,
                      choices<pcd_data>{{"binary", pcd_data::binary}, {"ascii", pcd_data::ascii}}),
-          sample_rate_row(job->source.raw_sample_rate_hz), ending_rows(common), filter_rows(common),
-          near_row(common.marks.near), grid_rows(common.grid), shape_rows(common),
-          device_rows(common)),
+          model_row(job->source.model), sample_rate_row(job->source.raw_sample_rate_hz),
+          ending_rows(common), filter_rows(common), near_row(common.marks.near),
+          grid_rows(common.grid), shape_rows(common), device_rows(common)),
       .details =
           fmt::format("{}\n\n{}\n\n{}\n\n{}", scan_columns, formats_text, shape_text, ending_text),
       .examples = {{"g4-dump scan -n 5", "Print five revolutions"},
@@ -184,7 +187,7 @@ verb make_decode_verb() {
               joined(output_row(common), format_row(job->style.format, "Output format (csv)"),
                      flag_row("--scans", "A record for each revolution", job->style.scans),
                      flag_row("--valid", "Leave out points without a return", job->returns_only),
-                     sample_rate_row(job->source.raw_sample_rate_hz),
+                     model_row(job->source.model), sample_rate_row(job->source.raw_sample_rate_hz),
                      choice_row("--stats", "Form of the counts on standard error (words)",
                                 job->json_counts, choices<bool>{{"words", false}, {"json", true}}),
                      ending_rows(common), filter_rows(common), near_row(common.marks.near),

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <iterator>
+#include <optional>
 #include <ranges>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "suggestion.hpp"
 #include "verbs.hpp"
 
@@ -133,10 +135,13 @@ template <class Target, class Value>
 }
 
 /// --sample-rate: samples a second of raw bytes.
-[[nodiscard]] inline option_row sample_rate_row(std::uint32_t& into) {
+[[nodiscard]] inline option_row sample_rate_row(std::optional<std::uint32_t>& into) {
   return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (9000)", into, 1U,
                     1'000'000U);
 }
+
+/// --model: what sent raw bytes.
+[[nodiscard]] option_row model_row(const g4lidar::model*& into);
 
 /// The kinds of fault of a simulated lidar.
 [[nodiscard]] std::vector<std::string> fault_names();
