@@ -168,4 +168,33 @@ TEST(Dump, InvalidOptions_AreRefused) {
   refused({"--grid", "3"}, "unknown option");
 }
 
+/// Two valid packets of one sample of 3 bytes each, worked out by hand: 1000 mm with flags 2 at 90
+/// degrees and with 1 at 91.
+const std::string t_mini_bytes(
+    "\xAA\x55\x01\x01\x01\x2D\x01\x2D\x0E\x5B\x07\xA2\x0F"
+    "\xAA\x55\x00\x01\x81\x2D\x81\x2D\x8A\x5B\x81\xA1\x0F",
+    26);
+
+TEST(Dump, PointsOfAnotherModel) {
+  const outcome done = run({"dump", "-", "--model", "t-mini-pro", "-f", "csv", "-q"}, t_mini_bytes);
+  EXPECT_EQ(done.out,
+            "scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n"
+            "0,90.000000,1000.00,0,7,2\n"
+            "0,91.000000,1000.00,250000,129,1\n");
+  EXPECT_EQ(done.code, 0);
+}
+
+TEST(Dump, AModelThatIsNone) {
+  const outcome done = run({"dump", "-", "--model", "x44"}, t_mini_bytes);
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, "));
+}
+
+TEST(Dump, AModelThatIsTurnedOtherwiseIsRefusedInTheRobotsFrame) {
+  const outcome done = run({"dump", "-", "--model", "x4", "--frame", "robot"}, t_mini_bytes);
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.err, HasSubstr("only in the vendor frame"));
+  EXPECT_EQ(run({"dump", "sim:", "--model", "x4", "-n", "1"}).code, 2);
+}
+
 }  // namespace

@@ -144,7 +144,7 @@ std::vector<std::string> expected_rows() {
   return rows;
 }
 
-TEST(Model, EachRowIsAsTheFactsSay) {
+TEST(Model, EachRowHasTheKnownValues) {
   const std::vector<std::string> rows = expected_rows();
   EXPECT_EQ(rows.size(), models.size());
   for (const std::string& row : rows) {

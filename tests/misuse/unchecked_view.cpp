@@ -5,7 +5,7 @@
 
 bool misuse(g4lidar::bytes data) {
 #ifdef MISUSE
-  const g4lidar::packet_view packet(data);
+  const g4lidar::packet_view packet(data, g4lidar::g4_layout);
   return packet.is_zero();
 #else
   const auto packet = g4lidar::packet_view::from(data);

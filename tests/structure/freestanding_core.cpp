@@ -69,7 +69,7 @@ std::optional<std::uint16_t> read_frequency(response_view reply) {
 std::optional<command_traits> look_up(command code) { return traits_of(code); }
 const model* find_model(device_information who) {
   const model* const found = model_with_id(who.model, link_kind::two_way);
-  return found != nullptr ? found : model_named("g4");
+  return found != nullptr ? found : model_named({"g4", 2});
 }
 std::uint16_t shortest(const model& which) { return shortest_range_mm(which, 9000); }
 std::array<std::uint8_t, 2> command_bytes(command code) { return encode(code); }

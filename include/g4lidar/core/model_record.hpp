@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "g4lidar/detail/cpp20.hpp"
+
 namespace g4lidar {
 
 /// How the bytes of a sample are read. All numbers are little-endian; r is the 16-bit word of the

@@ -123,13 +123,10 @@ class point_run {
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     if (which.word == g4lidar::g4_model.word) return;
     if (kind_ != source_kind::raw_bytes) throw bad_value("--model: for files of raw bytes only");
-    const bool needs_turn = common_.frame == frame::robot || !common_.mask.empty() ||
-                            common_.deskew != deskewing::none || job_.file != scan_file::none ||
-                            job_.log != slam_log::none;
-    if (needs_turn && which.turn_deg != g4lidar::g4_model.turn_deg) {
-      throw bad_value(
-          fmt::format("--model {}: only in the vendor frame, without --mask and --deskew, as text",
-                      which.word));
+    const bool turns = common_.frame == frame::robot || !common_.mask.empty() ||
+                       common_.deskew != deskewing::none || has_scan_files();
+    if (turns && which.turn_deg != g4lidar::g4_model.turn_deg) {
+      throw bad_value("--model: only in the vendor frame, as text, without --mask and --deskew");
     }
   }
   void choose_files() {
