@@ -128,9 +128,10 @@ class eights {
   /// bytes, shifted. A packet shorter than that is usually a zero packet of one sample.
   [[nodiscard]] static G4LIDAR_AVX2 __m128i last_of(packet_view packet) {
     const std::size_t count = packet.sample_count() % lanes;
-    if (packet.sample_count() == 1) return _mm_cvtsi32_si128(packet.sample(0));
+    if (packet.sample_count() == 1)
+      return _mm_cvtsi32_si128(load_u16(packet.data(), packet_header_size));
     if (packet.data().size() < 2 * lanes) {
-      return _mm_cvtsi32_si128(packet.sample(0) | packet.sample(1) << 16);
+      return _mm_cvtsi32_si128(static_cast<int>(load_u32(packet.data(), packet_header_size)));
     }
     static constexpr auto moves = [] {
       std::array<char, 4 * lanes> of_bytes{};

@@ -109,7 +109,7 @@ TEST_F(Convert, FilesOfAllPoints_HaveAsManyPointsAsTheCsv) {
   const long points = static_cast<long>(cli::lines_of(text("a.csv")).size()) - 1;
   EXPECT_GT(points, 10'000);
   EXPECT_EQ(points_in(text("a.npy")), points);
-  EXPECT_EQ(text("a.npy").size(), 192U + static_cast<std::size_t>(points) * 24);
+  EXPECT_EQ(text("a.npy").size(), 256U + static_cast<std::size_t>(points) * 24);
   EXPECT_THAT(text("a.npz"), HasSubstr(text("a.npy")));
   const auto returns = cli::lines_of(text("a.xyz")).size();
   EXPECT_THAT(text("a.ply"), HasSubstr("\nelement vertex " + std::to_string(returns) + " "));

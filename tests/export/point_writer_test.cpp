@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -72,45 +71,6 @@ std::string scan_as(const text_style& style, const scan_record& record) {
     writer->begin(out);
     writer->write_scan(record, out);
   });
-}
-
-TEST(Csv, HasTheColumnsThatTheStyleHas) {
-  std::vector<point> points{made(90.0F, 1234.5F, 7)};
-  points[0].intensity = 65'535;
-  points[0].sample_flags = 3;
-  EXPECT_EQ(points_as({.intensity = true, .sample_flags = true}, points),
-            "scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n"
-            "0,90.000000,1234.50,7,65535,3\n");
-  EXPECT_EQ(points_as({.intensity = true}, points),
-            "scan,angle_deg,range_mm,time_ns,intensity\n0,90.000000,1234.50,7,65535\n");
-  EXPECT_EQ(points_as({.sample_flags = true}, points),
-            "scan,angle_deg,range_mm,time_ns,sample_flags\n0,90.000000,1234.50,7,3\n");
-}
-
-TEST(Csv, TheLongestRowFits) {
-  point longest =
-      made(359.999969F, 99'999'999.0F, std::numeric_limits<std::int64_t>::min(), 4'294'967'295);
-  longest.intensity = 65'535;
-  longest.sample_flags = 3;
-  const std::vector<point> points(5000, longest);
-  const std::string text = points_as({.intensity = true, .sample_flags = true}, points);
-  EXPECT_EQ(std::ranges::count(text, '\n'), 5001);
-  EXPECT_THAT(text, EndsWith(",-9223372036854775808,65535,3\n"));
-}
-
-TEST(Jsonl, HasTheKeysThatTheStyleHas) {
-  std::vector<point> points{made(90.0F, 1234.5F, 7)};
-  points[0].intensity = 1023;
-  points[0].sample_flags = 2;
-  const auto object = json::parse(points_as(
-      {.format = text_format::jsonl, .as_they_come = true, .intensity = true, .sample_flags = true},
-      points));
-  EXPECT_EQ(object["intensity"], 1023);
-  EXPECT_EQ(object["sample_flags"], 2);
-  const std::string without =
-      points_as({.format = text_format::jsonl, .as_they_come = true}, points);
-  EXPECT_FALSE(json::parse(without).contains("intensity"));
-  EXPECT_FALSE(json::parse(without).contains("sample_flags"));
 }
 
 TEST(Csv, OfPoints) {

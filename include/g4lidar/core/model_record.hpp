@@ -25,8 +25,8 @@ enum class sample_layout : std::uint8_t {
 
 /// The size of a sample in bytes: 2, 3 or 4. *Pure.*
 [[nodiscard]] constexpr std::size_t sample_size(sample_layout layout) noexcept {
-  if (layout == sample_layout::intensity_16) return 4;
-  return layout < sample_layout::intensity_10 ? 2 : 3;
+  const std::size_t has_intensity = layout >= sample_layout::intensity_10 ? 1 : 0;
+  return 2 + has_intensity + (layout == sample_layout::intensity_16 ? 1 : 0);
 }
 
 /// The bits of intensity of a sample: 0, 8, 10 or 16. *Pure.*

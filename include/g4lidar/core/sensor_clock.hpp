@@ -70,7 +70,10 @@ class sensor_clock {
  public:
   /// An option out of range is an assertion.
   explicit constexpr sensor_clock(const sensor_clock_options& options = {}) noexcept
-      : options_(options), nominal_ns_(1e9 / options.sample_rate_hz), window_(nominal_ns_) {
+      : options_(options),
+        sample_size_(sample_size(options.layout)),
+        nominal_ns_(1e9 / options.sample_rate_hz),
+        window_(nominal_ns_) {
     assert(options.sample_rate_hz > 0.0);
     line_.period_ns = nominal_ns_;
     restart();
@@ -233,7 +236,7 @@ class sensor_clock {
   [[nodiscard]] constexpr std::int64_t measured_before(std::int64_t count,
                                                        std::int64_t arrival_ns) noexcept {
     arrival_ns_ = std::max(arrival_ns_, arrival_ns);
-    const std::size_t size = packet_size(static_cast<std::size_t>(count), options_.layout);
+    const std::size_t size = packet_header_size + static_cast<std::size_t>(count) * sample_size_;
     return part_.take_limit(size, arrival_ns_ - line_time_ns(size)) - options_.transport_delay_ns;
   }
 
@@ -318,6 +321,7 @@ class sensor_clock {
   }
 
   sensor_clock_options options_;
+  std::size_t sample_size_;
   double nominal_ns_;
   sample_counter counter_;
   arrival_window window_;
