@@ -29,7 +29,7 @@ class shaped_drive {
     std::ifstream file(begin_ + ".npy", std::ios::binary);
     std::ostringstream all;
     all << file.rdbuf();
-    constexpr std::size_t header = 192;  // then points with the layout of g4lidar::point
+    constexpr std::size_t header = 256;  // then points with the layout of g4lidar::point
     if (all.str().size() > header) bytes_ = all.str().substr(header);
     EXPECT_GT(bytes_.size(), 24U * 20'000U);
   }
