@@ -20,7 +20,6 @@
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
 #include "lidar.hpp"
-#include "played_clock.hpp"
 #include "subscriber.hpp"
 
 namespace ros2 {
@@ -157,19 +156,6 @@ TEST_F(Robot, TheTimeOfARecordingGoesOnWhereItBeginsAgain) {
   EXPECT_TRUE(std::ranges::is_sorted(stamps, std::less_equal()));
   EXPECT_TRUE(std::ranges::is_sorted(reports));
   tool.send(SIGINT);
-}
-
-TEST(PlayedClock, GoesOnAfterTheNewestStamp) {
-  g4_tool::played_clock clock;
-  EXPECT_EQ(clock.now_ns(), 0);
-  clock.begin(5'000'000'000);
-  EXPECT_EQ(clock.now_ns(), 5'000'000'000);
-  EXPECT_EQ(clock.stamp_ns(6'000'000'000), 6'000'000'000);
-  clock.reach(8'000'000'000);
-  clock.reach(7'000'000'000);
-  clock.begin(5'000'000'000);
-  EXPECT_GT(clock.now_ns(), 8'000'000'000);
-  EXPECT_EQ(clock.stamp_ns(6'000'000'000), clock.now_ns() + 1'000'000'000);
 }
 
 TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {
