@@ -214,12 +214,15 @@ void background_reader::thread::seek(std::int64_t position_ns) {
 void background_reader::thread::give_events(bool is_over) {
   while (const auto found = device_->next_event()) {
     const bool is_loss = found->what == lidar_event::kind::lost;
-    if (is_loss && found->reason == problem::end_of_input && played() != nullptr) continue;
+    const bool is_return = found->what == lidar_event::kind::reconnected;
+    // A file is at its end, or begins again.
+    const bool is_of_file = is_loss ? found->reason == problem::end_of_input
+                                    : is_return && state() != reader_state::lost;
+    if (is_of_file && played() != nullptr) continue;
     if (is_loss && !is_over) {
       set_state(reader_state::lost, error(task::reading, found->reason, device_->name()));
     }
-    if (found->what == lidar_event::kind::reconnected)
-      set_state(rests_ ? reader_state::resting : reader_state::running);
+    if (is_return) set_state(rests_ ? reader_state::resting : reader_state::running);
     listener_.on_event(*found);
   }
 }

@@ -81,11 +81,22 @@ sim::world load_scene(const sim::setup& setup, const output* out) {
   return scene;
 }
 
+namespace {
+
+/// Whether a name at which nothing is was to be a file's.
+bool is_file_name(std::string_view name) {
+  return name.ends_with(".mcap") || name.ends_with(".bin") || name.ends_with(".raw");
+}
+
+}  // namespace
+
 lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.baud = options.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
-  if (options.on_loss == loss_rule::wait) how.device_wait = std::chrono::milliseconds::max();
+  // A file that is missing is not waited for.
+  if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
+    how.device_wait = std::chrono::milliseconds::max();
   if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
   return how;
 }
@@ -97,7 +108,7 @@ failure failure_of(const common_options& options, const g4lidar::error& why) {
     return failure(why, why.doing() == task::reading);
   }
   // Neither a port nor a file: the message depends on what it looks like.
-  const bool is_file = name.ends_with(".mcap") || name.ends_with(".bin") || name.ends_with(".raw");
+  const bool is_file = is_file_name(name);
   return failure(
       is_file ? exit_code::bad_file : exit_code::no_device,
       fmt::format("there is no {} {}. Check the name; g4-dump list shows the serial ports.",
