@@ -300,6 +300,8 @@ TEST_F(ReaderListener, RestedRecording_StandsUntilItGoesOn) {
 TEST_F(ReaderListener, Recording_Loops) {
   begin(recording(3), {.playback = {.loop = true}});
   EXPECT_TRUE(heard.wait_for_scans(40)) << "it holds less than 20";
+  EXPECT_THAT(heard.states, ElementsAre("running"));
+  EXPECT_THAT(heard.events, ::testing::Not(::testing::Contains("reconnected")));
   EXPECT_EQ(heard.opened, 1);
 }
 
