@@ -96,11 +96,9 @@ void lidar_node::change(std::vector<named_value> wanted, std::function<void(std:
 }
 
 void lidar_node::on_open(g4lidar::lidar& device) {
-  feed_.restart();
-  player_ = is_played_ ? device.player() : nullptr;
-  if (player_ != nullptr) {
-    begin_ns_ = player_->begin_ns();
-    now_ns_ = stamp_ns(begin_ns_);
+  if (is_played_) {
+    feed_.follow(*device.player());
+    now_ns_ = stamp_ns(device.player()->begin_ns());
   }
   if (feed_.is_known() && device_->simulation() == nullptr) return;
   feed_.follow(device_->simulation());
@@ -115,20 +113,8 @@ void lidar_node::on_open(g4lidar::lidar& device) {
   }
 }
 
-void lidar_node::follow_round(std::int64_t time_ns) {
-  // Points are a little older than their bytes, and rounds further apart.
-  constexpr std::int64_t largest_age_ns = 5'000'000;
-  const std::int64_t begin_ns = player_->begin_ns();
-  if (begin_ns == begin_ns_ || time_ns < begin_ns - largest_age_ns) return;
-  feed_.shift(begin_ns - std::exchange(begin_ns_, begin_ns));
-  feed_.restart();
-}
-
 void lidar_node::on_points(std::span<const point> points) {
-  if (player_ != nullptr) {
-    follow_round(points.front().time_ns);
-    now_ns_ = std::max(now_ns_.load(), stamp_ns(points.back().time_ns));
-  }
+  if (is_played_) now_ns_ = std::max(now_ns_.load(), stamp_ns(points.back().time_ns));
   if (!robot_) return;
   feed_.follow(points, [this](const stamped_odometry& at) {
     merger_ == nullptr ? path_.add(at) : merger_->add(at);

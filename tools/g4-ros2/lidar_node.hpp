@@ -71,8 +71,6 @@ class lidar_node final : public reader_listener {
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const {
     return device_->reader().wall_ns(time_ns);
   }
-  /// These are the next points of a recording, perhaps the first ones of a round.
-  void follow_round(std::int64_t time_ns);
 
   const ros2_options& options_;
   named_source which_;
@@ -81,10 +79,8 @@ class lidar_node final : public reader_listener {
   std::size_t index_;
   std::unique_ptr<scan_messages> messages_;  // null if its scans are merged
   lidar_diagnostics diagnostics_;
-  odometry_feed feed_;  // of the thread of the reader, as player_, robot_, path_ and shaper_
+  odometry_feed feed_;  // of the thread of the reader, as robot_, path_ and shaper_
   std::optional<robot_messages> robot_;
-  player* player_ = nullptr;              // of a recording
-  std::int64_t begin_ns_ = 0;             // of the round to which feed_ belongs
   std::atomic<std::int64_t> now_ns_ = 0;  // the newest stamp of a recording
   bool is_played_ = false;                // a recording
   std::unique_ptr<dds::publisher> place_;
