@@ -23,6 +23,7 @@ from ._g4lidar import (
     Event,
     Lidar,
     Mounting,
+    Player,
     Port,
     RecordedItem,
     Recording,
@@ -55,9 +56,9 @@ from .errors import Error
 
 __all__ = [
     "POINT_DTYPE", "POSE_DTYPE", "Decoder", "DeviceInformation", "Diagnosis", "Error", "Event", "Lidar", "Mounting",
-    "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "ScanShaper", "Scans", "Simulator",
-    "StageReport", "Twist", "TwistEstimate", "TwistEstimator", "decode", "deskew", "doctor", "errors", "fill_grid",
-    "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_veiling",
+    "Player", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "ScanShaper", "Scans",
+    "Simulator", "StageReport", "Twist", "TwistEstimate", "TwistEstimator", "decode", "deskew", "doctor", "errors",
+    "fill_grid", "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_veiling",
     "merge_scans", "open", "to_xy",
 ]
 

@@ -4,7 +4,9 @@
 
 #include <nanobind/nanobind.h>
 
+#include <cstdint>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "g4lidar/error.hpp"
@@ -32,6 +34,13 @@ template <class Value>
 /// Raises the error, if there is one.
 inline void check(const result<void>& given) {
   if (!given) raise(given.error());
+}
+
+/// Nanoseconds of a time since the beginning of a file, or of a delay. Raises ValueError.
+[[nodiscard]] inline std::int64_t in_ns(double seconds) {
+  if (!(seconds >= 0.0 && seconds <= 1e9))
+    raise_impossible("a number of seconds is 0 to 1e9", seconds);
+  return static_cast<std::int64_t>(seconds * 1e9);
 }
 
 /// Defines what g4lidar/errors.py needs.

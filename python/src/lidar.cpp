@@ -197,13 +197,6 @@ void bind_control(Class& made) {
            "open.")
       .def("release", &live_lidar::release,
            "Closes the connection, and leaves the device as it is. Never waits.")
-      .def("seek", &live_lidar::seek, "seconds"_a,
-           "Continues a recording at this time since its beginning, as it began with `begin` of "
-           "open(): also after its end, "
-           "in a loop, and from another thread. Revolutions, counts and events begin anew; with "
-           "`loop` the "
-           "later rounds begin there. "
-           "Raises BadOption for anything else than a recording.")
       .def("wake", &live_lidar::wake,
            "Makes a waiting call of another thread, or the next call, raise Cancelled, once. Any "
            "thread.")
@@ -331,6 +324,7 @@ void bind_lidar(nb::module_& module) {
       "for one lidar wait for each other. After os.fork() the child cannot use it.");
   bind_control(made);
   bind_reading(made);
+  bind_player(module, made);
   module.def("_close_all", &live_lidar::close_all);
 }
 

@@ -35,7 +35,9 @@ live_lidar::milliseconds in_milliseconds(double seconds) {
 }
 
 live_lidar::live_lidar(lidar&& opened, foundation on)
-    : on_(std::move(on)), lidar_(std::make_shared<lidar>(std::move(opened))) {
+    : on_(std::move(on)),
+      lidar_(std::make_unique<lidar>(std::move(opened))),
+      has_player_(lidar_->player() != nullptr) {
   if (!on_.mutex) on_.mutex = std::make_shared<std::timed_mutex>();
   all_lidars().push_back(this);
 }
@@ -53,7 +55,7 @@ live_lidar::~live_lidar() {
   }
   // The device, its port and its locks belong to the parent, or to a thread that has not ended: nothing is stopped or
   // restored.
-  new std::shared_ptr(std::move(lidar_));
+  static_cast<void>(lidar_.release());
   new foundation(std::move(on_));
 }
 
@@ -65,34 +67,19 @@ live_lidar::lock live_lidar::locked(bool wakes) {
 }
 
 void live_lidar::start() {
-  may_stop_ = !on_.has_own_clock;
+  may_stop_ = !on_.is_virtual;
   run([](lidar& on) { return on.start(); });
-  is_started_ = true;
 }
 
 void live_lidar::stop() {
   run([](lidar& on) { return on.stop(); });
   may_stop_ = false;
-  is_started_ = false;
 }
 
 void live_lidar::wake() {
   process_.check("this lidar");
   woken_ = true;
   lidar_->wake();
-  notice_.give();
-}
-
-void live_lidar::seek(double seconds) {
-  process_.check("this lidar");
-  if (closed_) raise(error(task::reading, problem::gone, "this lidar, which was closed"));
-  if (!on_.open_at) raise_bad_option("seek() is for recordings that are not recorded again");
-  const auto opened = std::make_shared<lidar>(on_.open_at(seconds));
-  const lock held = locked(true);
-  if (closed_) return;  // by another thread during the wait
-  lidar_->release();
-  lidar_ = opened;
-  if (is_started_) static_cast<void>(lidar_->start());  // a recording starts always
   notice_.give();
 }
 
@@ -103,8 +90,7 @@ void live_lidar::close() {
   result<void> written;
   try {
     do {
-      const std::shared_ptr<lidar> on = lidar_;
-      const interruption signals(*on);
+      const interruption signals(*lidar_);
       if (PyErr_CheckSignals() != 0) throw nb::python_error();
       auto held = locked(true);
       const auto stop = [may = may_stop_](lidar& to) { return may ? to.stop() : result<void>(); };
@@ -130,17 +116,16 @@ void live_lidar::release() {
   notice_.give();
 }
 
-nb::object live_lidar::keep(copied_scan& found) {
-  found.about.points = found.points;
-  return nb::cast(
-      kept_scan(found.about, on_.has_own_clock ? on_.wall_ahead_ns : wall_clock().ahead().count()));
+bool live_lidar::counts_time(lidar& on) const {
+  const player* const of = on.player();
+  return on_.is_virtual || (of != nullptr && of->speed() == 0);
 }
 
 nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
   const auto due = std::chrono::steady_clock::now() + timeout;
   const auto wait = [&](lidar& on) -> result<std::optional<copied_scan>> {
     // Less after a signal, but for clocks other than that of the caller.
-    const auto left = on_.has_own_clock
+    const auto left = counts_time(on)
                           ? timeout
                           : std::chrono::ceil<milliseconds>(due - std::chrono::steady_clock::now());
     const auto found = on.next_scan(std::max(left, milliseconds(0)));
@@ -152,16 +137,23 @@ nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
       on_.recording->scan(*found);
       if (const auto why = on_.recording->take_error()) return tl::unexpected(*why);
     }
-    return copied_scan{*found, {found->points.begin(), found->points.end()}};
+    player* const of = on.player();
+    const std::int64_t ahead_ns = of != nullptr ? of->wall_ns(found->time_ns()) - found->time_ns()
+                                  : on_.is_virtual ? 0
+                                                   : wall_clock().ahead().count();
+    return copied_scan{*found, {found->points.begin(), found->points.end()}, ahead_ns};
   };
-  return run(wait,
-             [&](std::optional<copied_scan>& found) { return found ? keep(*found) : nb::none(); });
+  return run(wait, [](std::optional<copied_scan>& found) {
+    if (!found) return nb::object(nb::none());
+    found->about.points = found->points;
+    return nb::cast(kept_scan(found->about, found->wall_ahead_ns));
+  });
 }
 
 /// The newest scan that has arrived; at least `found`. What is raised during that is raised by the next call.
 nb::object live_lidar::newer(nb::object found) {
   try {
-    while (!on_.plays_at_once) {
+    while (!look([](lidar& on) { return on.player() != nullptr && on.player()->speed() == 0; })) {
       nb::object next = next_scan(milliseconds(0), true);
       if (next.is_none()) break;
       found = std::move(next);
@@ -187,7 +179,7 @@ nb::object live_lidar::poll_scan(bool newest) {
 nb::object live_lidar::next_deadline() {
   const std::int64_t due_ns = look([](lidar& on) { return on.next_deadline_ns(); });
   if (due_ns == never_ns) return nb::none();
-  return nb::float_(on_.has_own_clock ? 0.0 : static_cast<double>(due_ns) * 1e-9);
+  return nb::float_(on_.is_virtual ? 0.0 : static_cast<double>(due_ns) * 1e-9);
 }
 
 nb::object live_lidar::advance(milliseconds step, milliseconds left, bool newest) {
@@ -201,7 +193,7 @@ nb::object live_lidar::advance(milliseconds step, milliseconds left, bool newest
     }
   } catch (nb::python_error& raised) {
     if (is_error(raised, "Reconnecting")) return nb::none();
-    const bool has_ended = on_.has_own_clock && is_error(raised, "EndOfInput");
+    const bool has_ended = is_error(raised, "EndOfInput");
     const bool was_closed = closed_ && (is_error(raised, "Cancelled") || is_error(raised, "Gone"));
     if (!has_ended && !was_closed) throw;
   }
@@ -216,7 +208,8 @@ nb::object live_lidar::next_in_loop(std::optional<milliseconds> timeout, bool ne
     const auto wait = std::max(std::chrono::ceil<milliseconds>(left), milliseconds(0));
     nb::object found = advance(slice, wait, newest);
     if (!found.is_none()) return found;
-    left -= on_.has_own_clock ? std::min(slice, wait) : clock::now() - begin;
+    const bool is_counted = look([this](lidar& on) { return counts_time(on); });
+    left -= is_counted ? std::min(slice, wait) : clock::now() - begin;
   }
 }
 

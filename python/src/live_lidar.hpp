@@ -7,7 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -32,10 +31,7 @@ struct foundation {
   std::shared_ptr<void> simulation;             ///< Outlives the lidar.
   std::shared_ptr<recording_writer> recording;  ///< To which the lidar is recorded; outlives it.
   std::shared_ptr<std::timed_mutex> mutex;      ///< Shared by all users of a virtual clock.
-  std::function<lidar(double)> open_at;         ///< A recording at so many seconds; raises errors.
-  std::int64_t wall_ahead_ns = 0;  ///< Wall clock minus the clock of the lidar, if `has_own_clock`.
-  bool has_own_clock = false;      ///< A recording, or virtual time.
-  bool plays_at_once = false;      ///< A recording that is read as fast as possible.
+  bool is_virtual = false;                      ///< A simulation in virtual time.
 };
 
 /// The lidar of Python's class Lidar. Calls of several threads wait for each other, without the GIL. No code in Python
@@ -65,6 +61,12 @@ class live_lidar {
     const lock held = locked();
     return call(*lidar_);
   }
+  /// The value of `call(player)` with the player of a file; raises its error, BadOption for another lidar, and Gone after
+  /// close(). Calls of other threads that wait begin to wait again.
+  template <class Call>
+  auto with_player(const Call& call);
+  /// Whether there is one.
+  [[nodiscard]] bool has_player() const noexcept { return has_player_ && !closed_; }
 
   void start();
   void stop();
@@ -73,8 +75,6 @@ class live_lidar {
   void release();
   /// Wakes a waiting call of another thread.
   void wake();
-  /// Continues at this time of a recording. Raises BadOption, if this is none.
-  void seek(double seconds);
   /// The next scan; empty at the timeout, if `may_time_out`.
   [[nodiscard]] nb::object next_scan(milliseconds timeout, bool may_time_out = false);
   /// For a loop: a scan, or None if none came within `step`. Raises StopIteration at the end of a recording, and after
@@ -105,6 +105,7 @@ class live_lidar {
   struct copied_scan {
     scan about;
     std::vector<point> points;
+    std::int64_t wall_ahead_ns;
   };
 
   using lock = std::unique_lock<std::timed_mutex>;
@@ -114,25 +115,25 @@ class live_lidar {
   /// `call(lidar)` with the mutex and without the GIL.
   template <class Call>
   auto alone(lock held, const Call& call);
-  [[nodiscard]] nb::object keep(copied_scan& found);
+  /// Whether timeouts are in a time that passes by reading alone.
+  [[nodiscard]] bool counts_time(lidar& on) const;
   [[nodiscard]] nb::object newer(nb::object found);
 
   foundation on_;
-  std::shared_ptr<lidar> lidar_;  // another one after seek()
+  std::unique_ptr<lidar> lidar_;
+  bool has_player_;
   process process_;
   notice notice_;
   std::atomic<bool> woken_{false};  // by wake(), not by a signal
   std::atomic<bool> closed_{false};
-  bool is_started_ = false;
-  bool may_stop_ = false;  // started, and neither stopped nor lost, in real time
+  bool may_stop_ = false;  // started, and neither stopped nor lost
   std::uint64_t dropped_ = 0;
 };
 
 template <class Call>
 auto live_lidar::alone(lock held, const Call& call) {
-  const std::shared_ptr<lidar> on = lidar_;
   const without_gil free;
-  auto given = call(*on);
+  auto given = call(*lidar_);
   held.unlock();  // nobody waits for the GIL with the mutex
   return given;
 }
@@ -140,12 +141,9 @@ auto live_lidar::alone(lock held, const Call& call) {
 template <class Call, class Then>
 auto live_lidar::run(const Call& call, const Then& then) {
   while (true) {
-    const std::shared_ptr<lidar> on = lidar_;
-    const interruption signals(*on);
+    const interruption signals(*lidar_);
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    auto held = locked();
-    if (on != lidar_) continue;  // seek() of another thread
-    auto given = alone(std::move(held), call);
+    auto given = alone(locked(), call);
     if (given) {
       if constexpr (std::is_void_v<typename decltype(given)::value_type>) {
         return;
@@ -153,7 +151,7 @@ auto live_lidar::run(const Call& call, const Then& then) {
         return then(*given);
       }
     }
-    // After the handler of a signal that does not raise, and after seek(), the call goes on.
+    // After the handler of a signal that does not raise, and after a call of the player, the call goes on.
     const bool goes_on = given.error() == problem::cancelled && !woken_.exchange(false) && !closed_;
     if (goes_on) continue;
     if (given.error().is_fatal()) may_stop_ = false;
@@ -161,10 +159,26 @@ auto live_lidar::run(const Call& call, const Then& then) {
   }
 }
 
+template <class Call>
+auto live_lidar::with_player(const Call& call) {
+  process_.check("this lidar");
+  if (closed_) raise(error(task::reading, problem::gone, "this lidar, which was closed"));
+  auto given = [&]() -> std::invoke_result_t<Call, player&> {
+    const lock held = locked(true);
+    if (player* const of = lidar_->player()) return call(*of);
+    return failure(task::configuring, problem::bad_option,
+                   "player: only recordings and raw bytes have one");
+  }();
+  notice_.give();
+  if (!given) raise(given.error());
+  if constexpr (!std::is_void_v<typename decltype(given)::value_type>) return *given;
+}
+
 /// A timeout in seconds.
 [[nodiscard]] live_lidar::milliseconds in_milliseconds(double seconds);
 
 void bind_lidar(nb::module_& module);
 void bind_opening(nb::module_& module);
+void bind_player(nb::module_& module, nb::class_<live_lidar>& of);
 
 }  // namespace g4lidar::python

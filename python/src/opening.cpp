@@ -5,7 +5,6 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
-#include <sys/stat.h>
 
 #include <atomic>
 #include <chrono>
@@ -19,7 +18,6 @@
 
 #include "background.hpp"
 #include "g4lidar/discovery.hpp"
-#include "g4lidar/recording/reader.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/serial_port.hpp"
@@ -34,32 +32,20 @@ namespace {
 using namespace nb::literals;
 using device_name = std::variant<path_text, simulator*>;
 
-/// How recordings and raw bytes are played, and whether the lidar is recorded.
+/// How files are played.
 struct playing {
   double speed;
   bool loop;
   double begin;
   std::optional<double> end;
 
-  /// Raises BadOption if anything is given that is only for recordings.
+  /// Raises BadOption if anything is given that is only for files.
   void refuse_for(const std::string& what) const {
     if (speed == 0.0 && !loop && begin == 0.0 && !end) return;
-    raise_bad_option("speed, loop, begin and end are for recordings, not for " + what);
+    raise_bad_option("speed, loop, begin and end are for recordings and raw bytes, not for " +
+                     what);
   }
 };
-
-std::int64_t in_ns(double seconds) {
-  if (!(seconds >= 0.0 && seconds <= 1e9))
-    raise_impossible("a number of seconds is 0 to 1e9", seconds);
-  return static_cast<std::int64_t>(seconds * 1e9);
-}
-
-/// Wall clock minus the clock of the recording.
-std::int64_t wall_ahead_of(const std::string& path) {
-  auto reader = value_of(recording_reader::open(path, {.is_cancelled = handler_raises}));
-  const auto first = value_of(reader.next());
-  return first ? first->wall_ns - first->time_ns : 0;
-}
 
 /// The connector for a file, without waiting. Signals end the opening; later they wake the lidar, which
 /// reads without the GIL.
@@ -70,27 +56,6 @@ std::unique_ptr<connector> open_file(lidar_options options) {
   *is_opening = false;
   if (PyErr_Occurred() != nullptr) throw nb::python_error();
   return made;
-}
-
-/// What a recording or raw bytes are played on.
-void follow_clock_of_file(const lidar_options& options, source_kind kind, foundation& on) {
-  const std::string path = path_of_source(options.device);
-  struct stat found{};
-  if (::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode)) return;
-  on.has_own_clock = true;
-  if (kind == source_kind::recording) {
-    on.plays_at_once = options.playback.speed == 0.0;
-    on.wall_ahead_ns = wall_ahead_of(path);
-    on.open_at = [how = options](double seconds) mutable {
-      how.playback.from_ns = in_ns(seconds);
-      return value_of(lidar::open(open_file(how), how));
-    };
-    return;
-  }
-  on.plays_at_once = true;
-  // The clock of raw bytes begins at 1 s, and their wall clock at the time of the file.
-  on.wall_ahead_ns =
-      (std::int64_t{found.st_mtim.tv_sec} - 1) * 1'000'000'000 + found.st_mtim.tv_nsec;
 }
 
 /// What needs no time to open: a file, or a simulation in virtual time. Null for all else, which
@@ -104,7 +69,7 @@ std::unique_ptr<connector> connect(const device_name& device, lidar_options& opt
       const auto& alive = simulated.in_virtual_time();
       on.simulation = alive;
       on.mutex = simulated.mutex();
-      on.has_own_clock = true;
+      on.is_virtual = true;
       return std::make_unique<sim::virtual_connector>(alive->device, alive->clock);
     }
     options.device = simulated.path();
@@ -113,15 +78,9 @@ std::unique_ptr<connector> connect(const device_name& device, lidar_options& opt
   }
   options.device = std::get<path_text>(device).text;
   const source_kind kind = kind_of_source(options.device);
-  if (kind != source_kind::recording) {
-    how.refuse_for(kind == source_kind::raw_bytes ? "raw bytes"
-                   : options.device.empty()       ? "a device"
-                                                  : options.device);
-  }
-  if (kind != source_kind::recording && kind != source_kind::raw_bytes) return nullptr;
-  auto made = open_file(options);
-  follow_clock_of_file(options, kind, on);
-  return made;
+  if (kind == source_kind::recording || kind == source_kind::raw_bytes) return open_file(options);
+  how.refuse_for(options.device.empty() ? "a device" : options.device);
+  return nullptr;
 }
 
 live_lidar* open_lidar(const device_name& device, lidar_options options, const playing& how,
@@ -133,11 +92,10 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
     as.overwrite = overwrite;
     on.recording =
         std::make_shared<recording_writer>(value_of(recording_writer::create(record->text, as)));
-    if (on.simulation && on.has_own_clock) {  // virtual time goes on from now
+    if (on.is_virtual) {  // virtual time goes on from now
       const auto now = std::chrono::system_clock::now().time_since_epoch();
       on.recording->set_wall_clock(std::chrono::nanoseconds(now).count() - from->now_ns());
     }
-    on.open_at = nullptr;  // the times of a recording do not go back
   }
   const auto opening = std::make_shared<std::atomic<progress>>(progress::running);
   options.wrap = [opening, recorder = on.recording](std::unique_ptr<connector> inner) {
@@ -297,7 +255,8 @@ void bind_opening(nb::module_& module) {
       "least delay between measurement and arrival, `device_wait` how long to wait for a device "
       "that is not there "
       "yet (float('inf'): without limit).\n\n"
-      "Of a recording: `speed` 1 plays it as fast as it was recorded, 0 as fast as it is read; "
+      "Of a recording, or of raw bytes: `speed` 1 plays it as fast as it was recorded, 0 as fast "
+      "as it is read; "
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
       "second. `record`: the "

@@ -52,12 +52,6 @@ std::string_view kind_of(const recorded_item& item) {
 
 nb::bytes bytes_of(bytes data) { return nb::bytes(data.data(), data.size()); }
 
-std::int64_t in_ns(double seconds) {
-  if (!(seconds >= 0.0 && seconds <= 1e9))
-    raise_impossible("a number of seconds is 0 to 1e9", seconds);
-  return static_cast<std::int64_t>(seconds * 1e9);
-}
-
 /// Python's class Recording: a reader that can be set to another place.
 class recording {
  public:

@@ -55,10 +55,17 @@ def begin_of(path: Path) -> int:
     return next(item.time_ns for item in g4lidar.Recording(path) if item.kind == "opened")
 
 
+def player_of(lidar: g4lidar.Lidar) -> g4lidar.Player:
+    assert lidar.player is not None
+    return lidar.player
+
+
 def test_seek_in_an_open_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
     path, scans = recorded
     with g4lidar.open(path, end=3) as lidar:
-        lidar.seek(2)
+        player = player_of(lidar)
+        player.seek(2)
+        assert player.position == pytest.approx(2)
         with pytest.raises(errors.NotScanning):
             lidar.next_scan()
         lidar.start()
@@ -67,22 +74,26 @@ def test_seek_in_an_open_recording(recorded: tuple[Path, list[g4lidar.Scan]]) ->
             wanted = [scan.points.tobytes() for scan in other.scans()]
         assert [scan.points.tobytes() for scan in lidar.scans()] == wanted
         for seconds in (2.5, 0.0, 1.5):  # after the end, back, and ahead
-            lidar.seek(seconds)
+            player.seek(seconds)
             found = lidar.next_scan()
             assert 0 <= found.time_ns - begin_of(path) - seconds * 1e9 < 0.8e9
-        lidar.seek(0)
+        player.seek(0)
         # In a loop.
         times = []
         for scan in lidar.scans():
             times.append(scan.time_ns)
             if len(times) == 2:
-                lidar.seek(2)
+                player.seek(2)
         assert times[0] < times[1] < begin_of(path) + 2_000_000_000 <= times[2] and len(times) == 2 + len(wanted)
-        for wrong in (-1.0, math.nan, 60.0):  # 60 s is after `end`
+        for wrong in (-1.0, math.nan):
             with pytest.raises(ValueError):
-                lidar.seek(wrong)
+                player.seek(wrong)
+        player.seek(1e6)  # the end
+        with pytest.raises(errors.EndOfInput):
+            lidar.next_scan()
+    assert lidar.player is None
     with pytest.raises(errors.Gone):
-        lidar.seek(0)
+        player.seek(0)
 
 
 def test_seek_wakes_another_thread(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
@@ -93,25 +104,76 @@ def test_seek_wakes_another_thread(recorded: tuple[Path, list[g4lidar.Scan]]) ->
         waiting = threading.Thread(target=lambda: found.extend(len(scan) for scan in lidar.scans(timeout=None)))
         waiting.start()
         time.sleep(0.2)
-        lidar.seek(60)
+        player_of(lidar).seek(60)
         waiting.join(PATIENCE)
         assert not waiting.is_alive()
 
 
-def test_what_is_no_recording_refuses_what_is_for_recordings(
+def test_pause_and_speed_from_another_thread(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    with g4lidar.open(path, speed=1e-6) as lidar:
+        player = player_of(lidar)
+        lidar.start()
+        player.pause()
+        assert player.is_paused and player.speed == 1e-6
+        found: list[int] = []
+        waiting = threading.Thread(target=lambda: found.extend(len(scan) for scan in lidar.scans(timeout=0.01)))
+        waiting.start()
+        waiting.join(0.5)
+        assert waiting.is_alive() and not found and player.position < 0.001  # a pause is no timeout
+        player.speed = 1000
+        player.pause(False)
+        waiting.join(PATIENCE)
+        assert not waiting.is_alive() and len(found) >= len(scans) and not player.is_paused
+        assert player.position == pytest.approx(player.length) and player.length == pytest.approx(3.3, abs=0.5)
+        with pytest.raises(errors.BadOption):
+            player.speed = 1e9
+
+
+def test_a_loop_that_is_set_and_ended(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:
+    path, scans = recorded
+    with g4lidar.open(path) as lidar:
+        player = player_of(lidar)
+        player.set_loop(True)
+        lidar.start()
+        stamps = []
+        for scan in lidar.scans():
+            stamps.append(scan.stamp)
+            if len(stamps) == 2 * len(scans) + 2:
+                player.set_loop(False)
+        assert stamps == sorted(stamps) and len(stamps) >= 2 * len(scans) + 2
+
+
+def test_raw_bytes_are_played(recorded: tuple[Path, list[g4lidar.Scan]], raw: Path) -> None:
+    path, scans = recorded
+    with g4lidar.open(raw, begin=1, end=2) as lidar:
+        lidar.start()
+        assert 5 <= len(list(lidar.scans())) <= 7
+        assert player_of(lidar).length == pytest.approx(3.0, abs=0.5)  # without the time before the scan
+
+
+@pytest.fixture
+def raw(recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path) -> Path:
+    """The bytes of the recording."""
+    made = tmp_path / "raw.bin"
+    items = g4lidar.Recording(recorded[0])
+    made.write_bytes(b"".join(item.data for item in items if item.kind == "from_device"))
+    return made
+
+
+def test_what_is_no_file_refuses_what_is_for_files(
     g4_simulator: Make, recorded: tuple[Path, list[g4lidar.Scan]], tmp_path: Path
 ) -> None:
-    path, _ = recorded
-    raw = tmp_path / "raw.bin"
-    raw.write_bytes(b"".join(item.data for item in g4lidar.Recording(path) if item.kind == "from_device"))
-    for device in (g4_simulator(), "sim:", raw, "/dev/ttyUSB99"):
+    for device in (g4_simulator(), "sim:", "/dev/ttyUSB99"):
         wrong: list[dict[str, Any]] = [{"begin": 1.0}, {"end": 1.0}, {"speed": 1.0}, {"loop": True}]
         for options in wrong:
-            with pytest.raises(errors.BadOption, match="recordings"):
+            with pytest.raises(errors.BadOption, match="recordings and raw bytes"):
                 g4lidar.open(device, **options)
-    for device, record in ((g4_simulator(), None), (raw, None), (path, tmp_path / "again.mcap")):
-        with g4lidar.open(device, record=record) as lidar, pytest.raises(errors.BadOption, match="recordings"):
-            lidar.seek(0)
+    with g4lidar.open(g4_simulator()) as lidar:
+        assert lidar.player is None
+    with g4lidar.open(recorded[0], record=tmp_path / "again.mcap") as lidar:  # its times do not go back
+        with pytest.raises(errors.BadOption, match="seek"):
+            player_of(lidar).seek(0)
 
 
 def test_items_of_a_recording(recorded: tuple[Path, list[g4lidar.Scan]]) -> None:

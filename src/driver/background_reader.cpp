@@ -2,142 +2,110 @@
 #include "g4lidar/background_reader.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <chrono>
-#include <mutex>
-#include <system_error>
-#include <thread>
 #include <utility>
 
-#include "driver.hpp"
-#include "event_queue.hpp"
-#include "scan_queue.hpp"
+#include "reader_thread.hpp"
+#include "recording/played_file.hpp"
 
 namespace g4lidar {
 
-struct G4LIDAR_HIDDEN background_reader::state {
-  explicit state(lidar&& given) noexcept : device(std::move(given)) {}
+std::string_view name_of(reader_state state) noexcept {
+  constexpr std::array<std::string_view, 5> names{"opening", "running", "resting", "lost", "ended"};
+  return names[static_cast<std::size_t>(state)];
+}
 
-  void run() {
-    while (!stopping.load(std::memory_order_acquire)) {
-      const auto waited = wait(longest_wait);
-      publish();
-      if (waited || !waited.error().is_fatal()) continue;
-      const std::lock_guard lock(mutex);
-      failure = waited.error();
-      scans.end();
-      return;
-    }
-  }
+reader_listener::~reader_listener() = default;
 
-  /// Waits until a scan arrives, or something is due.
-  result<void> wait(lidar::milliseconds timeout) {
-    const auto scan = device.next_scan(timeout);
-    detail.store(scan ? error_detail::usual : scan.error().detail(), std::memory_order_relaxed);
-    if (!scan) return tl::unexpected(scan.error());
-    scans.put(*scan);
-    return {};
-  }
-
-  void publish() {
-    const std::lock_guard lock(mutex);
-    counts = device.counts();
-    while (const auto found = device.next_event()) events.put(*found);
-  }
-
-  void stop() noexcept {
-    stopping.store(true, std::memory_order_release);
-    if (!thread.joinable()) return;
-    device.wake();
-    thread.join();
-    // The thread may have ended without being woken.
-    const auto stopped = device.stop();
-    if (!stopped && stopped.error() == problem::cancelled) static_cast<void>(device.stop());
-    while (wait(lidar::milliseconds(0))) {  // what was measured before the stop
-    }
-    scans.end();
-    publish();
-  }
-
-  static constexpr std::chrono::milliseconds longest_wait{100};
-
-  lidar device;
-  scan_queue scans;
-  std::atomic<bool> stopping = false;
-  std::atomic<error_detail> detail = error_detail::usual;  // why no scan has come
-  mutable std::mutex mutex;                                // protects the following members
-  lidar_counts counts;
-  event_queue events;
-  std::optional<error> failure;
-  std::mutex stop_mutex;  // for stop() by several threads at once
-  std::thread thread;
-};
-
-background_reader::background_reader(std::unique_ptr<state> made) noexcept
-    : state_(std::move(made)) {}
+background_reader::background_reader(std::unique_ptr<thread> made) noexcept
+    : thread_(std::move(made)) {}
+background_reader::background_reader(const lidar_options& options, const reader_options& how,
+                                     reader_listener* listener)
+    : thread_(std::make_unique<thread>(options, how, listener)) {}
 background_reader::background_reader(background_reader&&) noexcept = default;
 
 background_reader& background_reader::operator=(background_reader&& other) noexcept {
   if (this != &other) {
     stop();
-    state_ = std::move(other.state_);
+    thread_ = std::move(other.thread_);
   }
   return *this;
 }
 
 background_reader::~background_reader() { stop(); }
 
-result<background_reader> background_reader::start(lidar&& device) {
-  auto made = std::make_unique<state>(std::move(device));
-  if (auto started = made->device.start(); !started) return tl::unexpected(started.error());
-  try {
-    made->thread = std::thread([running = made.get()] { running->run(); });
-  } catch (const std::system_error& refused) {
-    return g4lidar::failure(task::starting, problem::system, "a thread", refused.code().value());
-  }
-  return background_reader(std::move(made));
+result<background_reader> background_reader::start(lidar&& device, const reader_options& how) {
+  background_reader made(std::make_unique<thread>(std::move(device), how));
+  if (auto started = made.start(); !started) return tl::unexpected(started.error());
+  return made;
 }
 
+result<void> background_reader::start() { return thread_ ? thread_->start() : moved_from(); }
+
 void background_reader::stop() noexcept {
-  if (state_ == nullptr) return;
-  const std::lock_guard lock(state_->stop_mutex);
-  state_->stop();
+  if (thread_) thread_->stop();
 }
 
 view_result<scan> background_reader::next_scan(lidar::milliseconds timeout) {
-  if (state_ == nullptr) return moved_from();
+  if (!thread_) return moved_from();
   constexpr lidar::milliseconds longest = std::chrono::hours(24 * 365);
   const auto wait = std::clamp(timeout, lidar::milliseconds(0), longest);
-  if (const auto found = state_->scans.take(std::chrono::steady_clock::now() + wait)) return *found;
+  if (thread_->queue) {
+    const auto until = std::chrono::steady_clock::now() + wait;
+    if (const auto found = thread_->queue->scans.take(until)) return *found;
+  }
   if (const auto why = failed()) return tl::unexpected(*why);
-  const bool stopped = state_->stopping.load(std::memory_order_acquire);
+  const bool stopped = thread_->requests.has_to_stop();
   if (stopped) return g4lidar::failure(task::reading, problem::not_scanning);
-  return g4lidar::failure(task::reading, problem::timeout, {}, 0,
-                          state_->detail.load(std::memory_order_relaxed));
+  return g4lidar::failure(task::reading, problem::timeout, {}, 0, thread_->detail.load());
 }
 
 const lidar_ring& background_reader::points() const noexcept {
-  return state_ ? state_->device.points() : empty_ring();
+  return thread_ ? thread_->points() : empty_ring();
 }
 
 std::optional<error> background_reader::failed() const {
-  if (state_ == nullptr) return moved_from().value();
-  const std::lock_guard lock(state_->mutex);
-  return state_->failure;
+  return thread_ ? thread_->view.failed() : moved_from().value();
 }
 
 lidar_counts background_reader::counts() const {
-  if (state_ == nullptr) return {};
-  const std::lock_guard lock(state_->mutex);
-  lidar_counts all = state_->counts;
-  all.scans_missed += state_->scans.missed();
+  if (!thread_) return {};
+  lidar_counts all = thread_->view.counts();
+  if (thread_->queue) all.scans_missed += thread_->queue->scans.missed();
   return all;
 }
 
 std::optional<lidar_event> background_reader::next_event() {
-  if (state_ == nullptr) return std::nullopt;
-  const std::lock_guard lock(state_->mutex);
-  return state_->events.take();
+  return thread_ && thread_->queue ? thread_->queue->next_event() : std::nullopt;
+}
+
+reader_status background_reader::status() const {
+  if (thread_) return thread_->view.status();
+  return {.state = reader_state::ended, .why = moved_from().value()};
+}
+
+void background_reader::rest(bool rests) {
+  if (thread_) thread_->requests.add([&](reader_request& all) { all.rests = rests; });
+}
+void background_reader::ask(std::function<void(lidar*)> what) {
+  if (!thread_) return;
+  thread_->requests.add([&](reader_request& all) { all.questions.push_back(std::move(what)); });
+}
+void background_reader::pause(bool pauses) {
+  if (thread_) thread_->requests.add([&](reader_request& all) { all.pauses = pauses; });
+}
+result<void> background_reader::set_speed(double speed) {
+  if (const auto wrong = problem_with({.speed = speed})) return tl::unexpected(*wrong);
+  if (thread_) thread_->requests.add([&](reader_request& all) { all.speed = speed; });
+  return {};
+}
+void background_reader::seek(std::int64_t position_ns) {
+  if (thread_) thread_->requests.add([&](reader_request& all) { all.seek_ns = position_ns; });
+}
+
+std::int64_t background_reader::wall_ns(std::int64_t time_ns) const noexcept {
+  return thread_ ? thread_->wall_ns(time_ns) : time_ns;
 }
 
 }  // namespace g4lidar

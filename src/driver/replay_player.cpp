@@ -244,10 +244,10 @@ void replay_player::play_state(const recorded_event& what) {
   pipeline_.begin(rate);
 }
 
-/// This depends on the bytes only.
+/// This depends on the bytes only. What is left to do is due at once, by every clock.
 std::int64_t replay_player::next_deadline_ns() const noexcept {
   if (stage_ == stage::closed) return never_ns;
-  return stage_ >= stage::ending || !pipeline_.is_empty() ? now_ns() : never_ns;
+  return stage_ >= stage::ending || !pipeline_.is_empty() ? 0 : never_ns;
 }
 
 /// The caller's time, converted with the playback speed.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -16,11 +15,11 @@
 
 namespace g4lidar {
 
-/// The last `depth` scans that were not taken yet. One thread writes, one takes. *Allocates on
+/// The last scans that were not taken yet. One thread writes, one takes. *Allocates on
 /// open.*
 class scan_queue {
  public:
-  scan_queue() {
+  explicit scan_queue(std::size_t depth) : slots_(depth + 1) {
     for (slot& each : slots_) each.points.reserve(largest_scan);
   }
 
@@ -28,7 +27,7 @@ class scan_queue {
   void put(const scan& found) {
     {
       const std::lock_guard lock(mutex_);
-      if (size_ == depth) {
+      if (size_ + 1 == slots_.size()) {
         --size_;
         ++missed_;
       }
@@ -38,11 +37,12 @@ class scan_queue {
       to.about.points = to.points;
       put_ = (put_ + 1) % slots_.size();
       ++size_;
+      has_ended_ = false;
     }
     changed_.notify_one();
   }
 
-  /// No more scans follow.
+  /// No more scans follow, until put() is called again.
   void end() {
     {
       const std::lock_guard lock(mutex_);
@@ -73,13 +73,12 @@ class scan_queue {
     std::vector<point> points;
     scan about;
   };
-  static constexpr std::size_t depth = 4;
   static constexpr std::size_t largest_scan = 8192;  // the largest that a lidar gives
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::array<slot, depth + 1> slots_;  // the waiting ones, and the one that was taken last
-  std::size_t put_ = 0;                // the index of the next one
+  std::vector<slot> slots_;  // the waiting ones, and the one that was taken last
+  std::size_t put_ = 0;      // the index of the next one
   std::size_t size_ = 0;
   std::uint64_t missed_ = 0;
   bool has_ended_ = false;

@@ -253,8 +253,9 @@ result<void> file_player::seek(std::int64_t position_ns) noexcept {
   return {};
 }
 
+std::int64_t file_player::begin_ns() noexcept { return of_.items().first_ns(); }
 std::int64_t file_player::position_ns() noexcept {
-  const std::int64_t since_ns = saturating_sub(of_.clock().now_ns(), of_.items().first_ns());
+  const std::int64_t since_ns = saturating_sub(of_.clock().now_ns(), begin_ns());
   return std::clamp<std::int64_t>(since_ns, 0, length_ns());
 }
 

@@ -108,6 +108,7 @@ class file_player final : public player {
   void set_loop(bool loops) noexcept override;
   [[nodiscard]] result<void> seek(std::int64_t position_ns) noexcept override;
   [[nodiscard]] std::int64_t position_ns() noexcept override;
+  [[nodiscard]] std::int64_t begin_ns() noexcept override;
   [[nodiscard]] std::int64_t length_ns() noexcept override;
   [[nodiscard]] std::int64_t wall_ns(std::int64_t time_ns) noexcept override;
 

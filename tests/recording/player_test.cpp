@@ -149,6 +149,7 @@ TEST_F(Player, Loop_BeginsAgainAtLaterTimes) {
   on.set_loop(true);
   std::size_t points = 0;
   std::int64_t last_ns = 0;
+  const std::int64_t begin_ns = on.begin_ns();
   while (2 * points < 3 * once) {
     const auto found = device.wait_scan(500ms);
     ASSERT_TRUE(found) << found.error().message();
@@ -157,6 +158,9 @@ TEST_F(Player, Loop_BeginsAgainAtLaterTimes) {
     points += found->size();
   }
   EXPECT_LE(on.position_ns(), on.length_ns());
+  EXPECT_NEAR(static_cast<double>(on.begin_ns() - begin_ns), static_cast<double>(on.length_ns()),
+              20e6)
+      << "in the second round";
   on.set_loop(false);
   EXPECT_GT(rest_of(device).size(), 0U);
 }

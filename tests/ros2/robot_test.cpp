@@ -20,7 +20,6 @@
 #include "cli/program.hpp"
 #include "diagnosis.hpp"
 #include "lidar.hpp"
-#include "played_clock.hpp"
 #include "subscriber.hpp"
 
 namespace ros2 {
@@ -133,6 +132,34 @@ TEST_F(Robot, ItsWayInARecordingWithTheTime) {
   tool.send(SIGINT);
 }
 
+TEST_F(Robot, ItsOdometryGoesOnWhereTheRecordingBeginsAgain) {
+  const std::string file = path("way.mcap");
+  cli::write_file(path("way.txt"), "drive forward 0.5 0.5\n");
+  make_recording(file, 3, "--path " + path("way.txt") + " --odometry " + path("way.odo"),
+                 "--odometry " + path("way.odo"));
+  subscriber<odometry_message> odometry(domain_, "/odom", dds::odometry, {.depth = 5000});
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan, {.depth = 100});
+  cli::program tool({file, "--standby", "--loop", "--playback-speed", "10"});
+  std::vector<double> times;
+  std::vector<double> ways;
+  double scan_s = 0;
+  EXPECT_TRUE(comes_true([&] {
+    odometry.take([&](const odometry_message& at) {
+      times.push_back(seconds_of(at.header.stamp));
+      ways.push_back(at.pose.pose.position.x);
+    });
+    scans.take([&](const scan_message& at) { scan_s = seconds_of(at.header.stamp); });
+    return !times.empty() && times.back() - times.front() > 10;
+  }));
+  EXPECT_TRUE(std::ranges::is_sorted(times));
+  EXPECT_NEAR(times.back(), scan_s, 3.0);
+  // In each round it begins where it began.
+  int beginnings = 0;
+  for (std::size_t i = 1; i < ways.size(); ++i) beginnings += ways[i] < ways[i - 1] - 0.4 ? 1 : 0;
+  EXPECT_GE(beginnings, 2);
+  tool.send(SIGINT);
+}
+
 TEST_F(Robot, TheTimeOfARecordingGoesOnWhereItBeginsAgain) {
   const std::string file = path("stand.mcap");
   make_recording(file, 3);
@@ -157,19 +184,6 @@ TEST_F(Robot, TheTimeOfARecordingGoesOnWhereItBeginsAgain) {
   EXPECT_TRUE(std::ranges::is_sorted(stamps, std::less_equal()));
   EXPECT_TRUE(std::ranges::is_sorted(reports));
   tool.send(SIGINT);
-}
-
-TEST(PlayedClock, GoesOnAfterTheNewestStamp) {
-  g4_tool::played_clock clock;
-  EXPECT_EQ(clock.now_ns(), 0);
-  clock.begin(5'000'000'000);
-  EXPECT_EQ(clock.now_ns(), 5'000'000'000);
-  EXPECT_EQ(clock.stamp_ns(6'000'000'000), 6'000'000'000);
-  clock.reach(8'000'000'000);
-  clock.reach(7'000'000'000);
-  clock.begin(5'000'000'000);
-  EXPECT_GT(clock.now_ns(), 8'000'000'000);
-  EXPECT_EQ(clock.stamp_ns(6'000'000'000), clock.now_ns() + 1'000'000'000);
 }
 
 TEST_F(Robot, MergedLidarsSeeTheWallsWhereTheyAre) {

@@ -171,7 +171,7 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   EXPECT_EQ(hello["allow_set"], false);
   EXPECT_EQ(hello["recording"]["length_s"], 2.5);
   EXPECT_EQ(hello["frame"], "robot");
-  page_status status{.state = station_state::lost, .why = "gone", .loss = 0.25};
+  page_status status{.state = g4lidar::reader_state::lost, .why = "gone", .loss = 0.25};
   status.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
   status.stages.back().find(g4lidar::diagnosis::bits_flipped);
   status.stages.back().add("lost_percent", 3.5);

@@ -10,14 +10,13 @@ constexpr std::chrono::seconds diagnostics_interval{1};
 /// The prefix of all statuses, which is replaced before they are published.
 constexpr std::string_view program_name = "g4lidar: ";
 
-diagnostic_status status_of_state(const station& device) {
-  const station_state state = device.state();
-  const bool is_bad = state == station_state::opening || state == station_state::lost;
+diagnostic_status status_of_state(const reader_status& now, const std::string& why) {
+  const bool is_bad = now.state == reader_state::opening || now.state == reader_state::lost;
   diagnostic_status made{.level = is_bad ? diagnostic_level::error : diagnostic_level::ok,
                          .name = "g4lidar: state",
-                         .message = std::string(name_of(state)),
-                         .values = {{"device", device.name()}}};
-  if (is_bad && !device.why().empty()) made.message += ": " + in_tool_words(device.why());
+                         .message = std::string(name_of(now.state)),
+                         .values = {{"device", now.name}}};
+  if (is_bad && !why.empty()) made.message += ": " + why;
   return made;
 }
 
@@ -54,16 +53,16 @@ lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
   if (!name.empty()) prefix_.append(name).append(" ");
 }
 
-void lidar_diagnostics::update(const station& device, const scan_messages& messages,
+void lidar_diagnostics::update(const source_reader& device, const scan_messages& messages,
                                std::int64_t stamp_ns) {
   const auto now = clock::now();
   if (!topic_ || now < due_ || stamp_ns == 0) return;
   due_ = now + diagnostics_interval;
   if (!topic_->is_wanted()) return;
-  const auto who = device.identity();
-  const std::string serial(who ? who->serial_number() : "");
-  auto statuses = statuses_of(device.stages(), device.counts(), serial);
-  statuses.insert(statuses.begin(), status_of_state(device));
+  const reader_status state = device.reader().status();
+  const std::string serial(state.information ? state.information->serial_number() : "");
+  auto statuses = statuses_of(device.stages(), device.reader().counts(), serial);
+  statuses.insert(statuses.begin(), status_of_state(state, device.why()));
   statuses.push_back(topics_.status(messages.counts()));
   for (const auto& each : more_) statuses.push_back(each());
   for (diagnostic_status& each : statuses) {

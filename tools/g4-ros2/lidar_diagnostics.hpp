@@ -13,7 +13,7 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
-#include "io/station.hpp"
+#include "io/source_reader.hpp"
 #include "options.hpp"
 #include "scan_messages.hpp"
 
@@ -44,7 +44,7 @@ class lidar_diagnostics {
   void also_report(std::function<diagnostic_status()> what) { more_.push_back(std::move(what)); }
   /// Publishes once a second, if there are subscribers. `stamp_ns`: the time since 1970; 0: unknown, nothing is
   /// published.
-  void update(const station& device, const scan_messages& messages, std::int64_t stamp_ns);
+  void update(const source_reader& device, const scan_messages& messages, std::int64_t stamp_ns);
 
  private:
   using clock = std::chrono::steady_clock;

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "merger.hpp"
@@ -47,17 +49,14 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
     if (place_) place_->publish(place_message(options, frame_id, *which.mount));
   }
   const bool is_by_path = options.common.deskew == deskewing::by_path && merger_ == nullptr;
-  const bool is_played = kind_of_source(which.source) == source_kind::recording;
-  if (is_played) {
-    feed_.load_recording(path_of_source(which.source));
-    time_.emplace();
-  }
+  is_played_ = kind_of_source(which.source) == source_kind::recording;
+  if (is_played_) feed_.load_recording(path_of_source(which.source));
   // Merged lidars have one robot, which belongs to the first lidar.
   if (merger_ == nullptr || index == 0) {
     const bool is_known =
         feed_.is_known() || kind_of_source(which.source) == source_kind::simulated;
     robot_.emplace(on, options, merger_ == nullptr ? name_space_ : options.name_space,
-                   robot_knowledge{is_known, index == 0 && is_played});
+                   robot_knowledge{is_known, index == 0 && is_played_});
   }
   if (is_by_path && !feed_.is_known() && options.topics.odometry != "off") {
     driven_ = std::make_unique<odometry_subscription>(
@@ -69,11 +68,11 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
         feed_.is_known() ? "in the recording" : where_odometry_is(options, name_space_));
     also_report([this] { return report_->status(); });
   }
-  station_options wishes = options.station;
-  wishes.starts_rested = options.is_standby;
-  wishes.wants_points =
-      is_played || (robot_ && kind_of_source(which.source) == source_kind::simulated);
-  station_ = std::make_unique<station>(options_of(options, which), options.source, *this, wishes);
+  const bool wants_points =
+      is_played_ || (robot_ && kind_of_source(which.source) == source_kind::simulated);
+  device_ = std::make_unique<source_reader>(
+      options_of(options, which), options.source, *this,
+      reader_options{.wants_points = wants_points, .starts_rested = options.is_standby});
 }
 
 lidar_node::~lidar_node() = default;
@@ -85,52 +84,43 @@ bool lidar_node::is_wanted() const {
 void lidar_node::update() {
   const auto now = clock::now();
   if (!options_.is_standby || is_wanted()) wanted_ = now;
-  station_->rest(!is_allowed_ || now - wanted_ > rest_delay);
+  device_->reader().rest(!is_allowed_ || now - wanted_ > rest_delay);
   const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
-  diagnostics_.update(*station_, messages_ ? *messages_ : merger_->messages(),
-                      time_ ? time_->now_ns() : wall.count());
+  diagnostics_.update(*device_, messages_ ? *messages_ : merger_->messages(),
+                      is_played_ ? now_ns_.load() : wall.count());
 }
 
 void lidar_node::change(std::vector<named_value> wanted, std::function<void(std::string)> done) {
-  station_->ask([this, what = std::move(wanted), after = std::move(done)](g4lidar::lidar* lidar) {
-    after(parameters_.change(lidar, what));
-  });
+  device_->reader().ask([this, what = std::move(wanted), after = std::move(done)](
+                            g4lidar::lidar* lidar) { after(parameters_.change(lidar, what)); });
 }
 
-std::int64_t lidar_node::stamp_ns(std::int64_t time_ns) const {
-  const std::int64_t wall_ns = station_->wall_ns(time_ns);
-  return time_ ? time_->stamp_ns(wall_ns) : wall_ns;
-}
-
-void lidar_node::on_open(opened_source& source) {
-  feed_.restart();
-  if (time_ && source.recording() != nullptr) {
-    time_->begin(station_->wall_ns(source.recording()->first_ns()));
+void lidar_node::on_open(g4lidar::lidar& device) {
+  if (is_played_) {
+    feed_.follow(*device.player());
+    now_ns_ = stamp_ns(device.player()->begin_ns());
   }
-  if (feed_.is_known() && source.simulation() == nullptr) return;
-  feed_.follow(source.simulation());
+  if (feed_.is_known() && device_->simulation() == nullptr) return;
+  feed_.follow(device_->simulation());
   for (const setting_change& each : options_.settings) {
-    const auto done = source.lidar().ask(change_to(each.value));
+    const auto done = device.ask(change_to(each.value));
     if (!done) logger::info(in_tool_words(done.error().message()) + "\n");
   }
   if (const auto kind = kind_of_source(which_.source);
       kind == source_kind::device || kind == source_kind::simulated) {
-    parameters_.fix("serial_number", std::string(source.lidar().information().serial_number()));
-    parameters_.read_device(source.lidar());
+    parameters_.fix("serial_number", std::string(device.information().serial_number()));
+    parameters_.read_device(device);
   }
 }
 
 void lidar_node::on_points(std::span<const point> points) {
-  if (!robot_ || points.empty()) return;
+  if (is_played_) now_ns_ = std::max(now_ns_.load(), stamp_ns(points.back().time_ns));
+  if (!robot_) return;
   feed_.follow(points, [this](const stamped_odometry& at) {
     merger_ == nullptr ? path_.add(at) : merger_->add(at);
-    const std::int64_t at_ns = stamp_ns(at.time_ns);
-    robot_->publish(at, at_ns);
-    if (time_) time_->reach(at_ns);
+    robot_->publish(at, stamp_ns(at.time_ns));
   });
-  const std::int64_t now_ns = stamp_ns(points.back().time_ns);
-  if (time_) time_->reach(now_ns);
-  robot_->publish_clock(now_ns);
+  robot_->publish_clock(stamp_ns(points.back().time_ns));
 }
 
 void lidar_node::on_scan(const scan& whole) {
@@ -146,14 +136,15 @@ void lidar_node::on_scan(const scan& whole) {
 }
 
 void lidar_node::on_event(const lidar_event& event) {
-  logger::info(fmt::format("{}: {}\n", station_->name(), name_of(event.what)));
+  logger::info(fmt::format("{}: {}\n", device_->reader().status().name, name_of(event.what)));
 }
 
-void lidar_node::on_state(station_state state, std::string_view why) {
+void lidar_node::on_state(reader_state state, const std::optional<error>& /*why*/) {
+  std::string why = device_->why();
   // The failure of the only lidar is reported at the end of the program.
-  if (state == station_state::ended && options_.sources.size() <= 1) why = {};
+  if (state == reader_state::ended && options_.sources.size() <= 1) why.clear();
   logger::info(fmt::format("{}{}: {}{}{}\n", which_.name.empty() ? "lidar" : "lidar ", which_.name,
-                           name_of(state), why.empty() ? "" : ". ", in_tool_words(why)));
+                           name_of(state), why.empty() ? "" : ". ", why));
 }
 
 }  // namespace g4_tool

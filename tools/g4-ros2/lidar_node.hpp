@@ -11,7 +11,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -21,11 +20,10 @@
 #include "g4lidar/scan_shaper.hpp"
 #include "io/deskew_report.hpp"
 #include "io/odometry_feed.hpp"
-#include "io/station.hpp"
+#include "io/source_reader.hpp"
 #include "lidar_diagnostics.hpp"
 #include "options.hpp"
 #include "parameters.hpp"
-#include "played_clock.hpp"
 #include "robot_messages.hpp"
 #include "scan_messages.hpp"
 
@@ -33,7 +31,7 @@ namespace g4_tool {
 
 class merger;
 
-class lidar_node final : public station_listener {
+class lidar_node final : public reader_listener {
  public:
   /// `into`: merges its scans, as number `index`; null: it has its own topics. `on`, `options` and `into`
   /// outlive it.
@@ -56,21 +54,23 @@ class lidar_node final : public station_listener {
   }
 
   [[nodiscard]] const std::string& name() const noexcept { return which_.name; }
-  [[nodiscard]] station& device() noexcept { return *station_; }
+  [[nodiscard]] source_reader& device() noexcept { return *device_; }
   [[nodiscard]] const std::string& name_space() const noexcept { return name_space_; }
 
-  void on_open(opened_source& source) override;
+  void on_open(g4lidar::lidar& device) override;
   void on_scan(const scan& whole) override;
   void on_points(std::span<const point> points) override;
   void on_event(const lidar_event& event) override;
-  void on_state(station_state state, std::string_view why) override;
+  void on_state(reader_state state, const std::optional<error>& why) override;
 
  private:
   using clock = std::chrono::steady_clock;
 
   [[nodiscard]] bool is_wanted() const;
-  /// The stamp of a point::time_ns. Only in the station's thread.
-  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const;
+  /// The stamp of a point::time_ns. Only in the thread of the reader.
+  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const {
+    return device_->reader().wall_ns(time_ns);
+  }
 
   const ros2_options& options_;
   named_source which_;
@@ -79,9 +79,10 @@ class lidar_node final : public station_listener {
   std::size_t index_;
   std::unique_ptr<scan_messages> messages_;  // null if its scans are merged
   lidar_diagnostics diagnostics_;
-  odometry_feed feed_;  // of the station's thread, as robot_, path_ and shaper_
+  odometry_feed feed_;  // of the thread of the reader, as robot_, path_ and shaper_
   std::optional<robot_messages> robot_;
-  std::optional<played_clock> time_;  // of a recording
+  std::atomic<std::int64_t> now_ns_ = 0;  // the newest stamp of a recording
+  bool is_played_ = false;                // a recording
   std::unique_ptr<dds::publisher> place_;
   std::unique_ptr<odometry_subscription> driven_;
   odometry_path path_;
@@ -89,8 +90,8 @@ class lidar_node final : public station_listener {
   std::unique_ptr<deskew_report> report_;  // null if it does not deskew
   lidar_parameters parameters_;
   std::atomic<bool> is_allowed_ = true;
-  clock::time_point wanted_{};        // when it last had subscribers
-  std::unique_ptr<station> station_;  // destroyed first
+  clock::time_point wanted_{};             // when it last had subscribers
+  std::unique_ptr<source_reader> device_;  // destroyed first
 };
 
 }  // namespace g4_tool

@@ -78,7 +78,7 @@ class node {
   /// Whether all lidars have ended.
   [[nodiscard]] bool has_ended() const {
     return std::ranges::all_of(
-        lidars_, [](const auto& each) { return each->device().state() == station_state::ended; });
+        lidars_, [](const auto& each) { return each->device().state() == reader_state::ended; });
   }
 
   [[nodiscard]] std::exception_ptr failure_of_any() const {

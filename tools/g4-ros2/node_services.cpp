@@ -264,8 +264,8 @@ bool node_services::command(dds::service& via, const dds::caller& from, bool run
                                             : "the motor turns";
   for (lidar_node* const each : lidars_) {
     each->allow(runs);
-    const station_state state = each->device().state();
-    if (state == station_state::running || state == station_state::resting) continue;
+    const reader_state state = each->device().state();
+    if (state == reader_state::running || state == reader_state::resting) continue;
     words += "; " + (each->name().empty() ? "the lidar" : each->name()) + " is not connected now";
   }
   const auto held = std::make_shared<reply_with<std_srvs_srv_dds__Trigger_Response_>>();

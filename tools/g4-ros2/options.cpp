@@ -133,7 +133,8 @@ option_rows device_and_player_rows(ros2_options& options) {
   return joined(
       in_group("Device", joined(set, flag_row("--standby", "Rest the motor while nobody subscribes",
                                               options.is_standby))),
-      device_rows(options.common), player_rows(options.station.speed, options.station.loops));
+      device_rows(options.common),
+      player_rows(options.source.playback.speed, options.source.playback.loop));
 }
 
 /// no_return of "--no-return".

@@ -16,7 +16,6 @@
 #include "cli/verbs.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "io/source.hpp"
-#include "io/station.hpp"
 
 namespace g4_tool {
 
@@ -55,8 +54,7 @@ using named_mounting = std::pair<std::string, mounting>;
 struct ros2_options {
   /// Of every lidar; without its source. The filters use the robot's frame.
   common_options common;
-  lidar_options source;
-  station_options station;
+  lidar_options source{.playback = {.speed = 1}};
   std::vector<std::string> sources;  ///< "SOURCE", or "NAME=SOURCE".
   std::vector<named_mounting> mounts;
   std::vector<setting_change> settings;

@@ -186,7 +186,7 @@ void lidar_parameters::read_device(g4lidar::lidar& device) {
     if (given)
       keep(each.name, value_of(maybe_answer(*given)));
     else if (given.error().is_fatal())
-      return;  // the next read of the station finds it
+      return;  // the next read of the lidar finds it
   }
 }
 

@@ -51,15 +51,15 @@ class lidar_parameters {
   lidar_parameters(const common_options& how, const std::map<std::string, std::string>& words,
                    bool merges, scan_shaper& shaper);
 
-  /// The filters now. Only in the station's thread.
+  /// The filters now. Only in the thread of the reader.
   [[nodiscard]] const common_options& filters() const noexcept { return how_; }
 
   /// What cannot change.
   void fix(std::string_view name, parameter_value value);
-  /// Asks the device for its settings, before a scan. Only in the station's thread.
+  /// Asks the device for its settings, before a scan. Only in the thread of the reader.
   void read_device(g4lidar::lidar& device);
   /// Sets all of them, or none: why not, or empty. `device`: null while there is none. Blocks as lidar::ask(). Only in
-  /// the station's thread.
+  /// the thread of the reader.
   [[nodiscard]] std::string change(g4lidar::lidar* device, std::span<const named_value> wanted);
   /// *Any thread.*
   [[nodiscard]] parameter_value value(const parameter& of) const;

@@ -16,7 +16,7 @@
 #include "client_registry.hpp"
 #include "io/interrupt.hpp"
 #include "io/service_watch.hpp"
-#include "io/station.hpp"
+#include "io/source_reader.hpp"
 #include "scan_publisher.hpp"
 #include "web_server.hpp"
 
@@ -43,9 +43,8 @@ class lidar_server {
                    .play = [this](const play_request& wanted) { publisher_.play(wanted); }},
                   [this] { wake(); }),
         publisher_(options, registry_),
-        station_(options.common, publisher_.how_to_open(), publisher_,
-                 {.loops = options.loops, .speed = options.speed}) {
-    publisher_.attach(station_);
+        reader_(options.common, publisher_.how_to_open(), publisher_) {
+    publisher_.attach(reader_);
     server_ =
         std::make_unique<web_server>(options.address, options.port, options.origins, registry_);
     served_ = server_.get();
@@ -54,7 +53,7 @@ class lidar_server {
   lidar_server(const lidar_server&) = delete;
   lidar_server& operator=(const lidar_server&) = delete;
   ~lidar_server() {
-    station_.stop();  // the motor first
+    reader_.stop();  // the motor first
     served_ = nullptr;
     server_.reset();
   }
@@ -64,12 +63,12 @@ class lidar_server {
     using namespace std::chrono_literals;
     using clock = std::chrono::steady_clock;
     for (const std::string& url : urls_) logger::info(url + '\n');
-    station_.start();
+    reader_.start();
     time_limits limits(options_.common.duration, std::chrono::nanoseconds(0));
     clock::time_point due = clock::now();
     while (!limits.is_over()) {
       if (wait_for_input(-1, -1, std::min(due, limits.end())) == wake::interrupt) return;
-      if (const auto why = station_.failure()) std::rethrow_exception(why);
+      if (const auto why = reader_.failure()) std::rethrow_exception(why);
       publisher_.tick();
       report();
       due = std::max(due + 500ms, clock::now());
@@ -82,16 +81,16 @@ class lidar_server {
   }
 
   void report() {
-    if (station_.state() != station_state::opening) watch_.ready();
+    if (reader_.state() != reader_state::opening) watch_.ready();
     watch_.alive();
-    watch_.status(fmt::format("{}, {} at {}", name_of(station_.state()),
+    watch_.status(fmt::format("{}, {} at {}", name_of(reader_.state()),
                               counted(registry_.client_count(), "client"), urls_.front()));
   }
 
   const serve_options options_;
   client_registry registry_;
   scan_publisher publisher_;
-  station station_;
+  source_reader reader_;
   std::unique_ptr<web_server> server_;
   std::atomic<web_server*> served_ = nullptr;
   std::vector<std::string> urls_;

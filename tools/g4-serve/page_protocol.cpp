@@ -172,10 +172,10 @@ std::string status_text(const page_status& status) {
       {"health", verdict_of(status.stages, diagnostic_stage::health)},
       {"stages", json::array()}};
   for (const stage_report& stage : status.stages) made["stages"].push_back(json_of(stage));
-  if (status.player) {
-    made["position_s"] = status.player->position_s;
-    made["paused"] = status.player->is_paused;
-    made["speed"] = status.player->speed;
+  if (status.playback) {
+    made["position_s"] = static_cast<double>(status.playback->position_ns) * 1e-9;
+    made["paused"] = status.playback->is_paused;
+    made["speed"] = status.playback->speed;
   }
   return json_line(made);
 }

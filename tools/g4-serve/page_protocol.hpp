@@ -11,9 +11,11 @@
 #include <variant>
 #include <vector>
 
+#include "cli/exit_code.hpp"
+#include "g4lidar/background_reader.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/point.hpp"
-#include "io/station.hpp"
 
 namespace g4_tool {
 
@@ -55,7 +57,7 @@ struct page_hello {
 
 /// The contents of a status.
 struct page_status {
-  station_state state = station_state::opening;
+  reader_state state = reader_state::opening;
   std::string why{};
   std::optional<double> scan_rate_hz{};    ///< Received scans per second.
   std::optional<double> sample_rate_hz{};  ///< Of the last scan.
@@ -63,7 +65,7 @@ struct page_status {
   double loss = 0;                         ///< The ratio of lost samples in the last ten seconds.
   lidar_counts counts{};
   std::vector<stage_report> stages{};
-  std::optional<playback> player{};
+  std::optional<playback_status> playback{};
 };
 [[nodiscard]] std::string status_text(const page_status& status);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -21,6 +22,9 @@ using namespace std::chrono_literals;
 
 constexpr auto rate_window = 3s;
 constexpr double ns_in_s = 1e9;
+// Of a playback.
+constexpr double least_speed = 0.01;
+constexpr double largest_speed = 100.0;
 
 double seconds_of(std::int64_t ns) { return static_cast<double>(ns) / ns_in_s; }
 
@@ -56,7 +60,7 @@ void scan_rates::put(page_status& into, clock::time_point now) const {
 double loss_window::add(const lidar_counts& counts) {
   constexpr std::size_t ticks = 20;
   const sums now{counts.stream.points, counts.samples_lost};
-  // The counts restart at 0 when a recording is opened again.
+  // The counts restart at 0 when the lidar is opened again.
   if (!sums_.empty() && now.points < sums_.back().points) sums_.clear();
   sums_.push_back(now);
   if (sums_.size() > ticks + 1) sums_.pop_front();
@@ -74,25 +78,25 @@ scan_publisher::scan_publisher(const serve_options& options, client_registry& to
   if (shape.deskew != deskewing::none) report_.emplace(shape.deskew, "");
 }
 
-void scan_publisher::on_open(opened_source& source) {
+void scan_publisher::on_open(g4lidar::lidar& device) {
   const source_kind kind = kind_of_source(options_.common.source);
   if (kind == source_kind::device || kind == source_kind::simulated) {
     for (const setting_info& each : all_settings()) {
-      settings_[std::string(each.name)] = json_of(read_setting(source.lidar(), each));
+      settings_[std::string(each.name)] = json_of(read_setting(device, each));
     }
   }
   send_hello(true);
 }
 
 void scan_publisher::send_hello(bool sends) {
-  const auto player = station_->player();
+  const reader_status now = reader().status();
   registry_.send_hello(
-      hello_text(
-          {.source = options_.common.source.empty() ? station_->name() : options_.common.source,
-           .device = station_->identity(),
-           .allows_set = options_.allows_set,
-           .settings = settings_,
-           .recording_s = player ? std::optional(player->length_s) : std::nullopt}),
+      hello_text({.source = options_.common.source.empty() ? now.name : options_.common.source,
+                  .device = now.information,
+                  .allows_set = options_.allows_set,
+                  .settings = settings_,
+                  .recording_s = now.playback ? std::optional(seconds_of(now.playback->length_ns))
+                                              : std::nullopt}),
       sends);
 }
 
@@ -104,7 +108,7 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   publish_bytes(wanted.wants(channel::from_device));
   shaper_.shape(scan);
   if (report_) report_->add(scan.size(), shaper_.outside());
-  const message_header header{.stamp_ns = station_->wall_ns(scan.time_ns()),
+  const message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
                               .frame_id = options_.frame_id,
                               .duration_ns = scan.duration_ns};
   if (wanted.page) {
@@ -130,7 +134,7 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
 /// Publishes one message per revolution.
 void scan_publisher::publish_bytes(bool is_wanted) {
   if (std::vector<std::uint8_t> message = bytes_.take(); is_wanted && !message.empty()) {
-    registry_.publish(channel::from_device, station_->wall_ns(bytes_.arrival_ns()),
+    registry_.publish(channel::from_device, reader().wall_ns(bytes_.arrival_ns()),
                       std::move(message));
   }
   bytes_.want(is_wanted);
@@ -138,22 +142,23 @@ void scan_publisher::publish_bytes(bool is_wanted) {
 
 void scan_publisher::on_event(const lidar_event& event) {
   const std::string what(name_of(event.what));
-  logger::info(fmt::format("{}: {}\n", station_->name(), what));
-  registry_.event(event_text(what, seconds_of(station_->wall_ns(event.time_ns))));
+  logger::info(fmt::format("{}: {}\n", reader().status().name, what));
+  registry_.event(event_text(what, seconds_of(reader().wall_ns(event.time_ns))));
 }
 
-void scan_publisher::on_state(station_state state, std::string_view why) {
-  if (state == station_state::opening && !why.empty()) {
-    logger::info(fmt::format("{} Trying again.\n", why));
+void scan_publisher::on_state(reader_state state, const std::optional<error>& why) {
+  if (state == reader_state::opening && why) {
+    logger::info(fmt::format("{} Trying again.\n", source_->why()));
   }
 }
 
 void scan_publisher::tick() {
-  page_status status{.state = station_->state(),
-                     .why = station_->why(),
-                     .counts = station_->counts(),
-                     .stages = station_->stages(),
-                     .player = station_->player()};
+  const reader_status now = reader().status();
+  page_status status{.state = now.state,
+                     .why = source_->why(),
+                     .counts = reader().counts(),
+                     .stages = source_->stages(),
+                     .playback = now.playback};
   rates_.put(status, scan_rates::clock::now());
   status.loss = loss_.add(status.counts);
   registry_.status(status_text(status));
@@ -162,8 +167,8 @@ void scan_publisher::tick() {
 }
 
 void scan_publisher::publish_diagnostics(const page_status& status) {
-  const auto identity = station_->identity();
-  const std::string serial = identity ? std::string(identity->serial_number()) : std::string();
+  const auto known = reader().status().information;
+  const std::string serial(known ? known->serial_number() : "");
   const std::int64_t now_ns = wall_now_ns();
   std::vector<std::uint8_t> message;
   auto statuses = statuses_of(status.stages, status.counts, serial);
@@ -179,7 +184,7 @@ void scan_publisher::set(const set_request& wanted, std::function<void(const std
   } catch (const bad_value& reason) {
     return done(reason.what());
   }
-  station_->ask([this, checked = std::move(word), then = std::move(done)](g4lidar::lidar* lidar) {
+  reader().ask([this, checked = std::move(word), then = std::move(done)](g4lidar::lidar* lidar) {
     execute(lidar, checked, then);
   });
 }
@@ -197,9 +202,15 @@ void scan_publisher::execute(g4lidar::lidar* lidar, const std::string& word,
 }
 
 void scan_publisher::play(const play_request& wanted) {
-  if (wanted.paused) station_->pause(*wanted.paused);
-  if (wanted.speed) station_->set_speed(*wanted.speed);
-  if (wanted.seek_s) station_->seek(*wanted.seek_s);
+  if (wanted.paused) reader().pause(*wanted.paused);
+  if (wanted.speed) {
+    const double speed = std::clamp(*wanted.speed, least_speed, largest_speed);
+    static_cast<void>(reader().set_speed(*wanted.speed > 0 ? speed : 0));
+  }
+  if (wanted.seek_s) {
+    constexpr double longest_s = 1e9;
+    reader().seek(static_cast<std::int64_t>(std::clamp(*wanted.seek_s, 0.0, longest_s) * ns_in_s));
+  }
 }
 
 }  // namespace g4_tool

@@ -8,8 +8,8 @@
 #include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "byte_tap.hpp"
@@ -17,7 +17,7 @@
 #include "client_registry.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "io/deskew_report.hpp"
-#include "io/station.hpp"
+#include "io/source_reader.hpp"
 
 namespace g4_tool {
 
@@ -51,23 +51,24 @@ class loss_window {
   std::deque<sums> sums_;
 };
 
-class scan_publisher final : public station_listener {
+class scan_publisher final : public reader_listener {
  public:
   /// Throws a failure if the mask cannot be read. `to` outlives this.
   scan_publisher(const serve_options& options, client_registry& to);
   /// Call it before `from` is started. `from` outlives this.
-  void attach(station& from) { station_ = &from; }
-  /// The options for opening the source. This outlives the station.
+  void attach(source_reader& from) { source_ = &from; }
+  /// The options for opening the source. This outlives the reader.
   [[nodiscard]] lidar_options how_to_open() {
-    return {.wrap = for_each_connection(
+    return {.playback = {.speed = options_.speed, .loop = options_.loops},
+            .wrap = for_each_connection(
                 [this](auto inner) { return bytes_.observe(std::move(inner)); })};
   }
 
-  // In the station's thread.
-  void on_open(opened_source& source) override;
+  // In the thread of the reader.
+  void on_open(g4lidar::lidar& device) override;
   void on_scan(const g4lidar::scan& scan) override;
   void on_event(const lidar_event& event) override;
-  void on_state(station_state state, std::string_view why) override;
+  void on_state(reader_state state, const std::optional<error>& why) override;
 
   /// Publishes status and diagnostics. Call it twice a second, in one thread.
   void tick();
@@ -77,6 +78,7 @@ class scan_publisher final : public station_listener {
   void play(const play_request& wanted);
 
  private:
+  [[nodiscard]] background_reader& reader() const { return source_->reader(); }
   void send_hello(bool sends);
   void execute(g4lidar::lidar* lidar, const std::string& word,
                const std::function<void(const std::string&)>& done);
@@ -85,13 +87,13 @@ class scan_publisher final : public station_listener {
 
   const serve_options options_;
   client_registry& registry_;
-  station* station_ = nullptr;
+  source_reader* source_ = nullptr;
   scan_shaper shaper_;
   std::optional<deskew_report> report_;  // if it deskews
-  byte_tap bytes_;                       // of the station's thread
+  byte_tap bytes_;                       // of the thread of the reader
   scan_rates rates_;
   std::vector<float> ranges_m_;
-  nlohmann::ordered_json settings_;  // of the station's thread
+  nlohmann::ordered_json settings_;  // of the thread of the reader
   loss_window loss_;                 // of tick(), like the next member
   unsigned ticks_ = 0;
 };

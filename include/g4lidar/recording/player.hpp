@@ -46,6 +46,8 @@ class G4LIDAR_API player {
   [[nodiscard]] virtual result<void> seek(std::int64_t position_ns) noexcept = 0;
   /// Where it is, in the round that is played.
   [[nodiscard]] virtual std::int64_t position_ns() noexcept = 0;
+  /// The time of position 0, as a point::time_ns of the round that is played.
+  [[nodiscard]] virtual std::int64_t begin_ns() noexcept = 0;
   /// From the first to the last byte, whatever is played of it. Raw bytes are read to their end for it, the
   /// first time.
   [[nodiscard]] virtual std::int64_t length_ns() noexcept = 0;

@@ -14,11 +14,11 @@
 #include "g4lidar/owned_scan.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
-#include "io/station.hpp"
-#include "io/station_board.hpp"
+#include "io/source_reader.hpp"
 #include "verbs/verbs.hpp"
 #include "view/picture.hpp"
 #include "view/screen.hpp"
+#include "view/wake_descriptor.hpp"
 
 namespace g4_tool {
 namespace {
@@ -34,8 +34,7 @@ constexpr std::chrono::nanoseconds longest_wait = 20s;
 
 struct view_job {
   shared_options common = std::make_shared<common_options>();
-  lidar_options source{};
-  station_options wishes{};
+  lidar_options source{.playback = {.speed = 1}};
   view_settings settings{};
   std::optional<glyphs> how{};
   bool once = false;
@@ -43,8 +42,8 @@ struct view_job {
   int rows = 24;
 };
 
-/// What the thread of the station gives to that of the screen.
-class newest final : public station_listener {
+/// What the thread of the reader gives to that of the screen.
+class newest final : public reader_listener {
  public:
   /// `keeps`: the first one at a steady speed stays.
   explicit newest(bool keeps) : keeps_(keeps) {}
@@ -61,13 +60,15 @@ class newest final : public station_listener {
       scan_ = found;
       is_new_ = true;
     }
-    bell_.ring();
+    wake_.wake();
   }
   void on_event(const lidar_event& what) override {
     const std::lock_guard lock(mutex_);
     event_ = name_of(what.what);
   }
-  void on_state(station_state /*state*/, std::string_view /*why*/) override { bell_.ring(); }
+  void on_state(reader_state /*state*/, const std::optional<error>& /*why*/) override {
+    wake_.wake();
+  }
 
   /// The newest revolution, if it was not taken yet.
   [[nodiscard]] bool take(owned_scan& into, std::string& event) {
@@ -81,10 +82,10 @@ class newest final : public station_listener {
     const std::lock_guard lock(mutex_);
     return is_steady_;
   }
-  void wait(clock::time_point until, int other) const { bell_.wait(other, until); }
+  void wait(clock::time_point until, int other) const { wake_.wait(other, until); }
 
  private:
-  bell bell_;
+  wake_descriptor wake_;
   mutable std::mutex mutex_;
   owned_scan scan_;
   std::string event_;
@@ -98,22 +99,22 @@ class newest final : public station_listener {
 class viewer {
  public:
   explicit viewer(const view_job& job)
-      : job_(job), settings_(job.settings), station_(*job.common, job.source, newest_, job.wishes) {
+      : job_(job), settings_(job.settings), reader_(*job.common, job.source, newest_) {
     const blocked_signals handled_by_this_thread;
-    station_.start();
+    reader_.start();
   }
 
   int run() {
     {
       screen terminal(wants_color(STDOUT_FILENO));
-      while (!is_over_ && interrupt() == 0 && !station_.failure() && !limits_.is_over()) {
+      while (!is_over_ && interrupt() == 0 && !reader_.failure() && !limits_.is_over()) {
         update();
         terminal.show(picture(terminal.columns(), terminal.rows()));
         wait(terminal);
       }
     }
-    station_.stop();
-    if (const auto failure = station_.failure()) std::rethrow_exception(failure);
+    reader_.stop();
+    if (const auto failure = reader_.failure()) std::rethrow_exception(failure);
     return exit_code_now();
   }
 
@@ -121,13 +122,13 @@ class viewer {
     output out(job_.common->output);
     const auto until =
         clock::now() + (job_.common->duration > 0ns ? job_.common->duration : longest_wait);
-    while (!newest_.is_steady() && interrupt() == 0 && clock::now() < until &&
-           !station_.failure() && station_.state() != station_state::ended) {
+    while (!newest_.is_steady() && interrupt() == 0 && clock::now() < until && !reader_.failure() &&
+           reader_.state() != reader_state::ended) {
       newest_.wait(std::min(until, clock::now() + 100ms), interrupt_handle());
     }
     update();
-    station_.stop();
-    if (const auto failure = station_.failure()) std::rethrow_exception(failure);
+    reader_.stop();
+    if (const auto failure = reader_.failure()) std::rethrow_exception(failure);
     if (interrupt() != 0) return exit_code_now();
     if (scan_.view().empty()) throw failure(exit_code::lost, "no revolution has come.");
     const canvas shown = picture(job_.columns, job_.rows);
@@ -149,23 +150,24 @@ class viewer {
     if (!event.empty()) facts_.event = event;
     if (const auto now = clock::now(); now >= facts_due_) {
       facts_due_ = now + facts_pause;
-      facts_.stages = station_.stages();
+      facts_.stages = reader_.stages();
     }
-    const lidar_counts counts = station_.counts();
+    const lidar_counts counts = reader_.reader().counts();
     const auto all = static_cast<double>(counts.stream.points + counts.samples_lost);
     facts_.lost_percent = all > 0 ? 100.0 * static_cast<double>(counts.samples_lost) / all : -1;
     facts_.checksum_errors =
         static_cast<std::int64_t>(counts.stream.skipped(skip_reason::bad_checksum));
     facts_.scans = static_cast<std::int64_t>(counts.scans);
-    facts_.name = job_.common->source.empty() ? station_.name() : job_.common->source;
-    facts_.state = name_of(station_.state());
-    facts_.why = station_.why();
-    if (const auto who = station_.identity()) {
+    const reader_status status = reader_.reader().status();
+    facts_.name = job_.common->source.empty() ? status.name : job_.common->source;
+    facts_.state = name_of(status.state);
+    facts_.why = reader_.why();
+    if (const auto& who = status.information) {
       facts_.serial.assign(who->serial_digits.begin(), who->serial_digits.end());
     }
-    if (const auto player = station_.player()) {
-      facts_.position_s = player->position_s;
-      facts_.length_s = player->length_s;
+    if (const auto& where = status.playback) {
+      facts_.position_s = static_cast<double>(where->position_ns) * 1e-9;
+      facts_.length_s = static_cast<double>(where->length_ns) * 1e-9;
     }
   }
 
@@ -217,7 +219,9 @@ class viewer {
         settings_.is_frozen = !settings_.is_frozen;
         break;
       case ' ':
-        if (const auto player = station_.player()) station_.pause(!player->is_paused);
+        if (const auto where = reader_.reader().status().playback) {
+          reader_.reader().pause(!where->is_paused);
+        }
         break;
       case 'f':
         radar.frame = radar.frame == frame::robot ? frame::vendor : frame::robot;
@@ -241,7 +245,7 @@ class viewer {
   glyphs glyphs_ = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
   view_settings settings_;
   newest newest_{job_.once};
-  station station_;
+  source_reader reader_;
   owned_scan scan_;
   view_facts facts_;
   time_limits limits_{job_.once ? 0ns : job_.common->duration, 0ns};
@@ -309,7 +313,7 @@ verb make_view_verb() {
                          choices<glyphs>{{"braille", glyphs::braille}, {"ascii", glyphs::ascii}}),
               flag_row("--once", "Print one revolution and end", job->once), size,
               output_row(common), duration_row(common),
-              flag_row("--loop", "A recording begins again at its end", job->wishes.loops),
+              flag_row("--loop", "A recording begins again at its end", job->source.playback.loop),
               sample_rate_row(job->source.raw_sample_rate_hz), device),
           .details = view_details,
           .examples = {{"g4-dump view", "The only G4"},

@@ -37,6 +37,12 @@ std::span<const stamped_pose> odometry_path::until(std::int64_t time_ns) {
 void odometry_feed::follow(const sim::simulated_source* carried) {
   robot_ = carried == nullptr ? std::nullopt : carried->robot;
   begin_ns_ = robot_ ? carried->begin_ns : 0;
+  has_begun_ = false;
+}
+
+void odometry_feed::follow(g4lidar::player& played) {
+  player_ = &played;
+  begin_ns_ = played.begin_ns();
 }
 
 void odometry_feed::load(const std::string& path) {
@@ -57,8 +63,18 @@ void odometry_feed::shift(std::int64_t shift_ns) {
   for (stamped_odometry& each : all_) each.time_ns += shift_ns;
 }
 
+void odometry_feed::follow_round(std::int64_t time_ns) {
+  // Points are a little older than their bytes, and rounds are further apart.
+  constexpr std::int64_t largest_age_ns = 5'000'000;
+  const std::int64_t begin_ns = player_->begin_ns();
+  if (begin_ns == begin_ns_ || time_ns < begin_ns - largest_age_ns) return;
+  shift(begin_ns - std::exchange(begin_ns_, begin_ns));
+  has_begun_ = false;
+}
+
 void odometry_feed::follow(std::span<const point> points, const taker& take) {
   if (points.empty()) return;
+  if (player_ != nullptr) follow_round(points.front().time_ns);
   if (all_.empty() && robot_) return follow_robot(points, take);
   if (all_.empty()) return;
   if (!std::exchange(has_begun_, true)) {

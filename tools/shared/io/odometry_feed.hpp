@@ -36,16 +36,17 @@ class odometry_feed {
  public:
   using taker = std::function<void(const g4lidar::stamped_odometry&)>;
 
-  /// That of a file or a recording has precedence. Null: none.
+  /// That of a file or a recording has precedence. Null: none. From now on points can be earlier ones again.
   void follow(const sim::simulated_source* carried);
+  /// The recording of load_recording() is played: its poses are given in each round. Valid as long as points are
+  /// given.
+  void follow(g4lidar::player& played);
   /// The file of --odometry. Throws a failure.
   void load(const std::string& path);
   /// What a recording holds. Throws a failure.
   void load_recording(const std::string& path);
   /// The times of the file are those of the source plus `shift_ns`.
   void shift(std::int64_t shift_ns);
-  /// From now on points can be earlier ones again.
-  void restart() noexcept { has_begun_ = false; }
 
   /// Whether there is any.
   [[nodiscard]] bool is_known() const noexcept { return robot_ || !all_.empty(); }
@@ -53,10 +54,12 @@ class odometry_feed {
   void follow(std::span<const g4lidar::point> points, const taker& take);
 
  private:
+  void follow_round(std::int64_t time_ns);
   void follow_robot(std::span<const g4lidar::point> points, const taker& take);
 
   std::optional<sim::odometry> robot_;
-  std::int64_t begin_ns_ = 0;  // of the robot
+  g4lidar::player* player_ = nullptr;
+  std::int64_t begin_ns_ = 0;  // of the robot, or of the round that is played
   std::int64_t last_ns_ = 0;   // of the robot
   std::vector<g4lidar::stamped_odometry> all_;
   std::size_t next_ = 0;

@@ -31,21 +31,6 @@ class tapped_connector final : public forwarding_connector {
   transport_tap tap_;
 };
 
-/// A name that is neither a port nor a file: the message depends on what it looks like.
-void refuse_unknown_name(const std::string& source, const g4lidar::error& why) {
-  const std::string_view name = source;
-  if (why.code() != g4lidar::problem::no_port || name.empty() || name.starts_with("/dev/") ||
-      name.starts_with("serial:") || name.starts_with("usb:")) {
-    return;
-  }
-  const bool is_file = name.ends_with(".mcap") || name.ends_with(".bin") || name.ends_with(".raw");
-  throw failure(
-      is_file ? exit_code::bad_file : exit_code::no_device,
-      fmt::format("there is no {} {}. Check the name; g4-dump list shows the serial ports.",
-                  is_file ? "file" : "port or file", in_quotes(source)),
-      name_of(why.code()));
-}
-
 }  // namespace
 
 std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> for_each_connection(
@@ -96,12 +81,43 @@ sim::world load_scene(const sim::setup& setup, const output* out) {
   return scene;
 }
 
-opened_source::opened_source(const common_options& options, lidar_options how) {
+namespace {
+
+/// Whether a name at which nothing is was to be a file's.
+bool is_file_name(std::string_view name) {
+  return name.ends_with(".mcap") || name.ends_with(".bin") || name.ends_with(".raw");
+}
+
+}  // namespace
+
+lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.baud = options.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
-  if (options.on_loss == loss_rule::wait) how.device_wait = std::chrono::milliseconds::max();
+  // A file that is missing is not waited for.
+  if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
+    how.device_wait = std::chrono::milliseconds::max();
   if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
+  return how;
+}
+
+failure failure_of(const common_options& options, const g4lidar::error& why) {
+  const std::string_view name = options.source;
+  if (why.code() != g4lidar::problem::no_port || name.empty() || name.starts_with("/dev/") ||
+      name.starts_with("serial:") || name.starts_with("usb:")) {
+    return failure(why, why.doing() == task::reading);
+  }
+  // Neither a port nor a file: the message depends on what it looks like.
+  const bool is_file = is_file_name(name);
+  return failure(
+      is_file ? exit_code::bad_file : exit_code::no_device,
+      fmt::format("there is no {} {}. Check the name; g4-dump list shows the serial ports.",
+                  is_file ? "file" : "port or file", in_quotes(options.source)),
+      name_of(why.code()));
+}
+
+opened_source::opened_source(const common_options& options, lidar_options how) {
+  how = options_for(options, std::move(how));
   how.wrap = [this, wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {
     played_ = replay::reader_of(*from);
     simulation_ = simulation_of(*from);
@@ -110,8 +126,7 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
   auto opened = g4lidar::lidar::open(how);
   if (!opened) {
     if (interrupt() != 0 || opened.error() == problem::cancelled) throw interrupted();
-    refuse_unknown_name(options.source, opened.error());
-    throw failure(opened.error());
+    throw failure_of(options, opened.error());
   }
   lidar_.emplace(std::move(*opened));
   logger::verbose(fmt::format("opened {}\n", lidar_->name()));

@@ -28,6 +28,11 @@ using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<t
 [[nodiscard]] std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>
 for_each_connection(transport_tap tap);
 
+/// `how` with device, baud, reconnect and waiting of the options. Signals cancel.
+[[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
+/// The error of a lidar that was opened so, in the words of the tool.
+[[nodiscard]] failure failure_of(const common_options& options, const g4lidar::error& why);
+
 /// The lidar behind the word SOURCE, and what else is there.
 class opened_source {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a station reported, for tests that wait for it.
+// What a listener of a background_reader got, for tests that wait for it.
 #pragma once
 
 #include <algorithm>
@@ -8,44 +8,41 @@
 #include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "io/station.hpp"
+#include "g4lidar/background_reader.hpp"
 #include "support/patience.hpp"
 
 namespace g4lidar::test {
 
 /// Remembers what came, and waits for it.
-class station_record : public g4_tool::station_listener {
+class reader_record : public reader_listener {
  public:
-  void on_open(g4_tool::opened_source& /*source*/) override {
+  void on_open(lidar& /*device*/) override {
+    change([&] { ++opened; });
+  }
+  void on_scan(const scan& found) override {
     change([&] {
-      ++opened;
-      scans_since_opening = 0;
+      scans.push_back(found.revolution);
+      points += found.size();
+      last_size = found.size();
+      last_time_ns = found.time_ns();
+      last_scan_wall_ns = of == nullptr ? 0 : of->wall_ns(found.time_ns());
     });
   }
-  void on_scan(const g4lidar::scan& scan) override {
-    change([&] {
-      scans.push_back(scan.revolution);
-      ++scans_since_opening;
-      points += scan.size();
-      last_size = scan.size();
-      last_scan_wall_ns = of == nullptr ? 0 : of->wall_ns(scan.time_ns());
-    });
-  }
-  void on_points(std::span<const g4lidar::point> some) override {
+  void on_points(std::span<const point> some) override {
     change([&] { live_points += some.size(); });
   }
-  void on_event(const g4lidar::lidar_event& event) override {
-    change([&] { events.emplace_back(name_of(event.what)); });
+  void on_event(const lidar_event& what) override {
+    change([&] { events.emplace_back(name_of(what.what)); });
   }
-  void on_state(g4_tool::station_state state, std::string_view why) override {
+  void on_state(reader_state state, const std::optional<error>& why) override {
     change([&] {
       states.emplace_back(name_of(state));
-      whys.emplace_back(why);
+      if (why) whys.push_back(*why);
     });
   }
 
@@ -74,18 +71,18 @@ class station_record : public g4_tool::station_listener {
 
   std::mutex mutex;
   std::condition_variable changed;
-  g4_tool::station* of = nullptr;
+  background_reader* of = nullptr;
   int opened = 0;
   std::vector<std::uint32_t> scans;
-  std::size_t scans_since_opening = 0;
   std::size_t points = 0;
   std::size_t last_size = 0;
   std::size_t live_points = 0;
+  std::int64_t last_time_ns = 0;
   std::int64_t last_scan_wall_ns = 0;
   std::vector<std::string> events;
   std::vector<std::string> states;
   std::ptrdiff_t states_seen = 0;
-  std::vector<std::string> whys;
+  std::vector<error> whys;
 
  private:
   template <class Change>

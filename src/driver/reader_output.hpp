@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// What the thread of a background_reader gives to other threads.
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include "event_queue.hpp"
+#include "g4lidar/background_reader.hpp"
+#include "scan_queue.hpp"
+
+namespace g4lidar {
+
+/// Keeps scans and events until they are taken.
+class reader_queue final : public reader_listener {
+ public:
+  explicit reader_queue(std::size_t depth) : scans(depth) {}
+
+  void on_scan(const scan& found) override { scans.put(found); }
+  void on_event(const lidar_event& what) override {
+    const std::lock_guard lock(mutex_);
+    events_.put(what);
+  }
+  void on_state(reader_state state, const std::optional<error>& /*why*/) override {
+    if (state == reader_state::ended) scans.end();
+  }
+  /// *Any thread.*
+  [[nodiscard]] std::optional<lidar_event> next_event() {
+    const std::lock_guard lock(mutex_);
+    return events_.take();
+  }
+
+  scan_queue scans;
+
+ private:
+  std::mutex mutex_;
+  event_queue events_;
+};
+
+/// The state of a reader, which its thread alone changes.
+class reader_view {
+ public:
+  template <class Change>
+  void change(Change what) {
+    const std::lock_guard lock(mutex_);
+    what(status_, counts_);
+  }
+  /// Only in the thread.
+  [[nodiscard]] const reader_status& own() const noexcept { return status_; }
+
+  // ---- any thread ----
+  [[nodiscard]] reader_status status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+  }
+  [[nodiscard]] lidar_counts counts() const {
+    const std::lock_guard lock(mutex_);
+    return counts_;
+  }
+  [[nodiscard]] std::optional<error> failed() const {
+    const std::lock_guard lock(mutex_);
+    return status_.state == reader_state::ended ? status_.why : std::nullopt;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  reader_status status_;
+  lidar_counts counts_;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The thread of a background_reader: opens the lidar, reads it, rests it, and opens it again.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "driver.hpp"
+#include "g4lidar/background_reader.hpp"
+#include "g4lidar/wall_clock.hpp"
+#include "reader_output.hpp"
+#include "reader_requests.hpp"
+
+namespace g4lidar {
+
+/// *Any thread*, except for what belongs to the thread: wall_ns() and the private part.
+class G4LIDAR_HIDDEN background_reader::thread {
+ public:
+  thread(const lidar_options& options, const reader_options& how, reader_listener* listener);
+  /// Of an open lidar, which is never opened again.
+  thread(lidar&& given, const reader_options& how);
+
+  [[nodiscard]] result<void> start();
+  void stop() noexcept;
+  /// Of the lidar that was given.
+  [[nodiscard]] const lidar_ring& points() const noexcept {
+    return is_given_ ? device_->points() : empty_ring();
+  }
+  [[nodiscard]] std::int64_t wall_ns(std::int64_t time_ns) noexcept;
+
+  reader_requests requests;
+  reader_view view;
+  std::optional<reader_queue> queue;                       // where there is no listener
+  std::atomic<error_detail> detail = error_detail::usual;  // why no scan has come
+
+ private:
+  using clock = std::chrono::steady_clock;
+  /// How a file is played.
+  struct playback {
+    double speed = 0;
+    bool is_paused = false;
+    bool shows_one = false;  // scan, although it is paused
+  };
+
+  void run() noexcept;
+  /// Does what was requested. False if the thread is to end.
+  bool serve();
+  void open();
+  void close();
+  void start_scan();
+  void read();
+  void rest();
+  void seek(std::int64_t position_ns);
+  /// Waits without a scan, and lets the driver do what is due.
+  void look();
+  /// Gives what comes within this time, or returns why nothing came.
+  std::optional<error> take(lidar::milliseconds longest);
+  void give_events(bool is_over);
+  /// Opens it again later, or ends.
+  void fail(const error& why);
+  void end(const error& why);
+  void set_state(reader_state state, const std::optional<error>& why = {});
+  void follow_playback();
+  void show_device();
+  void publish();
+  [[nodiscard]] player* played() noexcept { return device_ ? device_->player() : nullptr; }
+  [[nodiscard]] reader_state state() const noexcept { return view.own().state; }
+
+  lidar_options options_;
+  reader_options how_;
+  reader_listener& listener_;
+  std::optional<lidar> device_;
+  bool is_given_ = false;
+  bool is_started_ = false;
+  bool rests_ = false;
+  playback playback_;
+  clock::time_point retry_at_{};
+  std::optional<clock::time_point> failing_since_;
+  wall_clock wall_;
+  clock::time_point wall_due_{};
+  std::mutex stop_mutex_;  // for stop() by several threads at once
+  std::thread thread_;
+};
+
+}  // namespace g4lidar
