@@ -34,8 +34,8 @@ typedef struct G4LIDAR_C_SHARED g4lidar_point {
   float angle_deg;
   float range_mm;  /**< The distance in millimetres, 0 for no return, which is not free space. */
   int64_t time_ns; /**< When it was measured, by the monotonic clock; 0 where it is not known. */
-  uint32_t revolution; /**< Which revolution since the start of the stream, from 0. */
-  uint8_t flags;       /**< g4lidar_point_flag. */
+  uint32_t revolution;  /**< Which revolution since the start of the stream, from 0. */
+  uint8_t flags;        /**< g4lidar_point_flag. */
   uint8_t sample_flags; /**< The flags that the sample contains, 0 to 3; 0 if the model has none. */
   uint16_t intensity;   /**< In a unit of the device; 0 if the model does not measure it. */
 } g4lidar_point;
