@@ -45,7 +45,7 @@ std::optional<error> problem_with(const lidar_options& options) noexcept {
   if (options.baud == 0) return bad("baud: above 0");
   const auto may_be = [](const auto& setting) { return !setting || is_valid(*setting); };
   if (!may_be(options.sample_rate)) return bad("sample_rate: khz_4, khz_8 or khz_9");
-  if (!may_be(options.frequency)) {
+  if (options.frequency && !is_valid(*options.frequency)) {
     return bad("frequency: 500 to 1200 (5 to 12 Hz)", options.frequency->chz, "");
   }
   if (!may_be(options.direction)) return bad("direction: clockwise or counter_clockwise");

@@ -107,6 +107,7 @@ option_row model_row(const g4lidar::model*& into) {
         const g4lidar::model* const found = g4lidar::model_named(word);
         if (found != nullptr) return found;
         std::vector<std::string_view> words;
+        words.reserve(g4lidar::models.size());
         for (const g4lidar::model& each : g4lidar::models) words.push_back(each.word);
         throw bad_value(fmt::format("'{}' is not one of {}", word, fmt::join(words, ", ")));
       });
