@@ -177,8 +177,8 @@ namespace detail {
 
 /// Whether the longest packet of `row` in this layout fits into the memory for a packet. *Pure.*
 [[nodiscard]] constexpr bool has_room_for(const model& row, sample_layout layout) noexcept {
-  constexpr std::size_t room = 2 * 80;
-  return std::size_t{row.samples.max_samples} * sample_size(layout) <= room;
+  constexpr std::size_t room = std::size_t{2} * 80;
+  return row.samples.max_samples * sample_size(layout) <= room;
 }
 
 /// Whether the fields of `row` agree with each other and with the protocol. *Pure.*
