@@ -2,6 +2,7 @@
 #include "reader_thread.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -44,7 +45,8 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
                                   reader_listener* listener)
     : options_(options),
       how_(how),
-      listener_(listener != nullptr ? *listener : queue.emplace(depth_of(how))),
+      listener_(listener != nullptr ? *listener
+                                    : *(queue = std::make_unique<reader_queue>(depth_of(how)))),
       playback_{.speed = options.playback.speed} {
   options_.is_cancelled = [this, inner = options.is_cancelled] {
     return requests.has_to_stop() || (inner && inner());
@@ -53,8 +55,11 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
 }
 
 background_reader::thread::thread(lidar&& given, const reader_options& how)
-    : how_(how), listener_(queue.emplace(depth_of(how))), is_given_(true) {
-  device_.emplace(std::move(given));
+    : queue(std::make_unique<reader_queue>(depth_of(how))),
+      how_(how),
+      listener_(*queue),
+      device_(std::make_unique<lidar>(std::move(given))),
+      is_given_(true) {
   if (player* const file = played()) {
     playback_ = {.speed = file->speed(), .is_paused = file->is_paused()};
   }
@@ -112,7 +117,7 @@ bool background_reader::thread::serve() {
   if (now.pauses) playback_ = {.speed = playback_.speed, .is_paused = *now.pauses};
   if (std::exchange(rests_, now.rests) != rests_ || now.speed || now.pauses) follow_playback();
   const bool is_there = state() == reader_state::running || state() == reader_state::resting;
-  for (const auto& question : now.questions) question(device_ && is_there ? &*device_ : nullptr);
+  for (const auto& question : now.questions) question(is_there ? device_.get() : nullptr);
   if (now.seek_ns) seek(*now.seek_ns);
   publish();
   return true;
@@ -123,7 +128,7 @@ void background_reader::thread::open() {
   used.device_wait = 0ms;  // this thread waits
   auto opened = lidar::open(used);
   if (!opened) return fail(opened.error());
-  device_.emplace(*std::move(opened));
+  device_ = std::make_unique<lidar>(*std::move(opened));
   is_started_ = false;
   follow_playback();
   show_device();

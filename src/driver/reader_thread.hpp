@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -34,7 +35,7 @@ class G4LIDAR_HIDDEN background_reader::thread {
 
   reader_requests requests;
   reader_view view;
-  std::optional<reader_queue> queue;                       // where there is no listener
+  std::unique_ptr<reader_queue> queue;                     // where there is no listener
   std::atomic<error_detail> detail = error_detail::usual;  // why no scan has come
 
  private:
@@ -73,7 +74,7 @@ class G4LIDAR_HIDDEN background_reader::thread {
   lidar_options options_;
   reader_options how_;
   reader_listener& listener_;
-  std::optional<lidar> device_;
+  std::unique_ptr<lidar> device_;
   bool is_given_ = false;
   bool is_started_ = false;
   bool rests_ = false;

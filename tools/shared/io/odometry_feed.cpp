@@ -75,7 +75,7 @@ void odometry_feed::follow_round(std::int64_t time_ns) {
 void odometry_feed::follow(std::span<const point> points, const taker& take) {
   if (points.empty()) return;
   if (player_ != nullptr) follow_round(points.front().time_ns);
-  if (all_.empty() && robot_) return follow_robot(points, take);
+  if (all_.empty() && robot_) return follow_robot(*robot_, points, take);
   if (all_.empty()) return;
   if (!std::exchange(has_begun_, true)) {
     const auto first =
@@ -88,12 +88,13 @@ void odometry_feed::follow(std::span<const point> points, const taker& take) {
   }
 }
 
-void odometry_feed::follow_robot(std::span<const point> points, const taker& take) {
+void odometry_feed::follow_robot(sim::odometry& robot, std::span<const point> points,
+                                 const taker& take) {
   while (last_ns_ < points.back().time_ns) {
-    const sim::odometry_sample at = robot_->next();
+    const sim::odometry_sample at = robot.next();
     const std::int64_t time_ns = at.time_ns + begin_ns_;
     // What was before the first point is of no use.
-    if (has_begun_ || robot_->next_ns() + begin_ns_ > points.front().time_ns) {
+    if (has_begun_ || robot.next_ns() + begin_ns_ > points.front().time_ns) {
       has_begun_ = true;
       take({time_ns,
             {at.x_m, at.y_m, at.yaw_rad},

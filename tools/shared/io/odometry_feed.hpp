@@ -55,7 +55,8 @@ class odometry_feed {
 
  private:
   void follow_round(std::int64_t time_ns);
-  void follow_robot(std::span<const g4lidar::point> points, const taker& take);
+  void follow_robot(sim::odometry& robot, std::span<const g4lidar::point> points,
+                    const taker& take);
 
   std::optional<sim::odometry> robot_;
   g4lidar::player* player_ = nullptr;
