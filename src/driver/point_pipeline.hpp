@@ -85,7 +85,7 @@ class point_pipeline {
         input_(which.samples),
         decoder_(transport_delay_ns, which),
         storage_(largest_scan),
-        assembler_(storage_.all()) {}
+        assembler_(storage_.all(), which) {}
 
   /// The bytes of one read at a time, and the place in them. Fed only if is_empty().
   [[nodiscard]] event_reader& input() noexcept { return input_; }

@@ -11,6 +11,29 @@
 
 namespace g4lidar {
 
+/// The model that is used where none is named. An object of its own: a program that uses no other
+/// model does not contain the table.
+inline constexpr model g4_model{
+    .word = "g4",
+    .name = "G4",
+    .ids = {5},
+    .bauds = {230400},
+    .samples = {sample_layout::quarter_mm, correction_kind::triangle, 80},
+    .link = link_kind::two_way,
+    .motor = motor_kind::command,
+    .rates = {{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true},
+    .frequency = {50, 120},
+    .range = {100, 16000},
+    .turn_deg = 180,
+    .zero_angle_divisor = 0,
+    .protection = presence::yes,
+    .ct_information = presence::unknown,
+};
+/// How its samples are read.
+inline constexpr sample_format g4_format = g4_model.samples;
+/// How its samples are laid out.
+inline constexpr sample_layout g4_layout = g4_format.layout;
+
 /// All models, the G4 first. Valid forever. What is not known of a model has the value that claims
 /// least: presence::unknown, a nominal rate of 0.
 inline constexpr auto models = [] {
@@ -19,7 +42,6 @@ inline constexpr auto models = [] {
   using enum link_kind;
   using enum motor_kind;
   using enum presence;
-  constexpr sample_format g4_samples{quarter_mm, triangle, 80};
   constexpr sample_format quarter_samples{quarter_mm, triangle};
   constexpr sample_format flagged_samples{flagged_mm, triangle};
   constexpr sample_format half_mm_samples{half_mm, triangle};
@@ -33,7 +55,6 @@ inline constexpr auto models = [] {
   constexpr auto fixed = [](std::uint32_t hz, std::uint16_t shortest_mm = 0) {
     return sample_rate_list{{{{hz, shortest_mm}}}, hz, false};
   };
-  constexpr sample_rate_list g4_rates{{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true};
   constexpr sample_rate_list f4_rates{{{{4000}, {6000}}}, 4000, true};
   constexpr sample_rate_list g6_rates{{{{8000, 100}, {16000, 260}, {18000, 280}}}, 18000, true};
   constexpr sample_rate_list x3_pro_rates{{{{3000}, {4000}}}};
@@ -53,12 +74,11 @@ inline constexpr auto models = [] {
   // word, name, ids, bauds, samples, link, motor,
   // rates, frequency, range, turn, divisor of the zero angle, protection, information in CT
   return std::to_array<model>({
-      {"g4",             "G4",             {5},     {230400},         g4_samples,      two_way, command,
-       g4_rates,         set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown},
-      {"g4-pro",         "G4 Pro",         {7},     {230400},         g4_samples,      two_way, command,
-       g4_rates,         set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown},
-      {"g5",             "G5",             {20},    {230400},         g4_samples,      two_way, command,
-       g4_rates,         set_5_to_12,  {100, 16000}, 180, 0,   unknown, unknown},
+      g4_model,
+      {"g4-pro",         "G4 Pro",         {7},     {230400},         g4_format,       two_way, command,
+       g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown},
+      {"g5",             "G5",             {20},    {230400},         g4_format,       two_way, command,
+       g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   unknown, unknown},
       {"f4",             "F4",             {1},     {115200},         quarter_samples, two_way, command,
        fixed(4000),      set_5_to_12,  {120, 12000}, 180, 0,   no,      unknown},
       {"f4-pro",         "F4 Pro",         {8},     {230400},         quarter_samples, two_way, command,
@@ -124,13 +144,6 @@ inline constexpr auto models = [] {
   });
   // clang-format on
 }();
-
-/// The model that is used where none is named.
-inline constexpr const model& g4_model = models[0];
-/// How its samples are read.
-inline constexpr sample_format g4_format = g4_model.samples;
-/// How its samples are laid out.
-inline constexpr sample_layout g4_layout = g4_format.layout;
 
 /// The model with this word, or null: "x4-pro". Valid forever. *Pure.*
 [[nodiscard]] constexpr const model* model_named(std::string_view word) noexcept {

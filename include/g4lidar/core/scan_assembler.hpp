@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/point.hpp"
@@ -41,8 +42,12 @@ class scan_assembler {
  public:
   /// Fills scans into `storage`, which the caller owns and which outlives this object. Its size
   /// limits a scan: 9 kHz at 5 Hz makes 1,800 points. Not empty.
-  explicit constexpr scan_assembler(std::span<point> storage) noexcept : storage_(storage) {
+  /// The scans are of a lidar of the model `which`, which is valid as long as they are.
+  explicit constexpr scan_assembler(std::span<point> storage,
+                                    const model& which = g4_model) noexcept
+      : storage_(storage), sample_rate_hz_(first_rate_hz(which)) {
     assert(!storage.empty());
+    scan_.model = &which;
   }
 
   /// The nominal sample rate of the next packets, for the scans.
@@ -277,7 +282,9 @@ class scan_assembler {
     std::copy(at(given_), at(used_), at(0));
     used_ -= given_;
     given_ = 0;
+    const model& which = *scan_.model;
     scan_ = {};
+    scan_.model = &which;
     if (used_ > 0) scan_.revolution = storage_.front().revolution;
     flags_ = next_flags_;
     next_flags_ = scan_flags::none;
@@ -301,7 +308,7 @@ class scan_assembler {
   scan scan_;
   scan_flags flags_ = scan_flags::start_missing;
   scan_flags next_flags_ = scan_flags::none;  // of the points beyond the turn, and of the next scan
-  std::uint32_t sample_rate_hz_ = default_sample_rate_hz;
+  std::uint32_t sample_rate_hz_;
   std::int32_t at_ = unknown;       // the first-level angle last seen, 1/64 degree
   std::int32_t turned_ = 0;         // since the last zero angle, 1/64 degree
   std::int32_t first_turned_ = 0;   // the same at the first point
