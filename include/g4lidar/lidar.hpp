@@ -29,8 +29,8 @@ namespace g4lidar {
 
 class scan_range;
 
-/// The points of at least the last two seconds.
-using lidar_ring = point_ring<16384>;
+/// The points of at least the last 1.8 seconds.
+using lidar_ring = point_ring<std::dynamic_extent>;
 
 /// One G4. *Single thread* except wake() and the readers of points(). *Allocates on open* and when
 /// it reconnects. It starts no thread: it makes progress only within its calls. A moved-from lidar

@@ -45,8 +45,9 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
                                   reader_listener* listener)
     : options_(options),
       how_(how),
-      listener_(listener != nullptr ? *listener
-                                    : *(queue = std::make_unique<reader_queue>(depth_of(how)))),
+      listener_(listener != nullptr
+                    ? *listener
+                    : *(queue = std::make_unique<reader_queue>(depth_of(how), *options.model))),
       playback_{.speed = options.playback.speed} {
   options_.is_cancelled = [this, inner = options.is_cancelled] {
     return requests.has_to_stop() || (inner && inner());
@@ -55,7 +56,8 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
 }
 
 background_reader::thread::thread(lidar&& given, const reader_options& how)
-    : queue(std::make_unique<reader_queue>(depth_of(how))),
+    // A model with larger scans than a G4 makes it grow once.
+    : queue(std::make_unique<reader_queue>(depth_of(how), g4_model)),
       how_(how),
       listener_(*queue),
       device_(std::make_unique<lidar>(std::move(given))),
