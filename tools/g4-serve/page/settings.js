@@ -23,7 +23,7 @@ function field_of(row) {
   if (row.values) {
     const select = document.createElement('select');
     select.add(new Option('unknown', ''));
-    for (const value of row.values) select.add(new Option(value));
+    for (const value of row.values) select.add(new Option(value, value));
     select.options[0].disabled = true;
     return select;
   }
