@@ -185,8 +185,8 @@ void background_reader::thread::rest() {
 }
 
 void background_reader::thread::look() {
-  requests.wait(std::min(clock::now() + longest_wait, device_->next_deadline()));
-  const auto done = device_->process();
+  requests.wait(std::min(clock::now() + longest_wait, device_->event_loop().next_deadline()));
+  const auto done = device_->event_loop().process();
   const bool is_over = !done && done.error().is_fatal();
   give_events(is_over);
   if (is_over) fail(done.error());
