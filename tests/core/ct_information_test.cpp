@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the CT bytes of a revolution say, and when they are not believed.
+// What the CT bytes of a revolution contain, and when they are not believed.
 #include "g4lidar/core/ct_information.hpp"
 
 #include <gtest/gtest.h>

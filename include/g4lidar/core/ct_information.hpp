@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What one-way lidars say about themselves: in the CT bytes of a revolution.
+// How one-way lidars identify themselves: by the CT bytes of a revolution.
 #pragma once
 
 #include <array>

@@ -159,15 +159,15 @@ struct expected_rate {
   double tolerance = 0.0;
 };
 
-/// What is known of the sample rate of a device of the model `which`, which is `told_hz` by its reply,
+/// What is known of the sample rate of a device of the model `which`, which is `given_hz` by its reply,
 /// by its model or by the user. A reply is true within 4 %. A device that cannot be asked may have
 /// another firmware than the table: 10 %. Where the table has several rates and no reply tells which,
 /// it is between the lowest and the highest of them, and 10 % beyond. *Pure.*
 [[nodiscard]] constexpr expected_rate expected_rate_of(const model& which,
-                                                       std::uint32_t told_hz) noexcept {
+                                                       std::uint32_t given_hz) noexcept {
   constexpr double beyond = 0.1;
-  if (which.rates.is_settable) return {static_cast<double>(told_hz), 0.04};
-  if (which.rates.nominal_hz != 0) return {static_cast<double>(told_hz), beyond};
+  if (which.rates.is_settable) return {static_cast<double>(given_hz), 0.04};
+  if (which.rates.nominal_hz != 0) return {static_cast<double>(given_hz), beyond};
   const double lowest_hz = which.rates.entries[0].hz;  // they ascend
   const double shortest_s = 1.0 / ((1.0 + beyond) * highest_rate_hz(which));
   const double longest_s = 1.0 / ((1.0 - beyond) * lowest_hz);

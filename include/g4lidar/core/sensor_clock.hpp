@@ -74,7 +74,6 @@ class sensor_clock {
   explicit constexpr sensor_clock(const sensor_clock_options& options = {}) noexcept
       : options_(options),
         sample_size_(sample_size(options.layout)),
-        widest_(margin * options.rate_tolerance),
         nominal_ns_(1e9 / options.sample_rate_hz),
         window_(nominal_ns_) {
     assert(options.sample_rate_hz > 0.0 && options.rate_tolerance < 0.5);
@@ -133,12 +132,12 @@ class sensor_clock {
   }
   /// The same with another nominal sample rate, above 0.
   constexpr void reset(double sample_rate_hz) noexcept {
-    reset({sample_rate_hz, widest_ / margin});
+    reset({sample_rate_hz, options_.rate_tolerance});
   }
   /// The same with another tolerance.
   constexpr void reset(expected_rate rate) noexcept {
     assert(rate.hz > 0.0 && rate.tolerance < 0.5);
-    widest_ = margin * rate.tolerance;
+    options_.rate_tolerance = rate.tolerance;
     nominal_ns_ = 1e9 / rate.hz;
     line_.period_ns = nominal_ns_;
     window_ = arrival_window(nominal_ns_);
@@ -217,8 +216,8 @@ class sensor_clock {
   static constexpr double early_ns = 1e6;
   /// If the count of lost samples is uncertain by more than this, no times can be derived.
   static constexpr double most_doubt_ns = 1e6;
-  /// The limit of the difference of the period from the nominal one has this margin.
-  static constexpr double margin = 1.25;
+  /// The limit of the difference of the period from the nominal one, with a margin.
+  [[nodiscard]] constexpr double widest() const noexcept { return 1.25 * options_.rate_tolerance; }
   /// The limit of the error of a rate that was learnt.
   static constexpr double known_rate = 300e-6;
   /// The assumed delay of packets until it is known, and its minimum.
@@ -251,8 +250,8 @@ class sensor_clock {
   /// Clears the window. The rate is kept: a device that starts again has the same oscillator.
   constexpr void restart() noexcept {
     const double slope = line_.period_ns / nominal_ns_ - 1.0;
-    const double doubt = rate_known_ ? known_rate : 2.0 * widest_;
-    slopes_ = {std::max(-widest_, slope - doubt), std::min(widest_, slope + doubt)};
+    const double doubt = rate_known_ ? known_rate : 2.0 * widest();
+    slopes_ = {std::max(-widest(), slope - doubt), std::min(widest(), slope + doubt)};
     window_.clear();
     started_ = false;
     late_.reset();
@@ -286,7 +285,7 @@ class sensor_clock {
     if (!window_.add(next, line_.period_ns)) return missed;
     if (window_.span_ns() > enough_ns) {
       rate_known_ = true;
-      slopes_ = {-widest_, widest_};
+      slopes_ = {-widest(), widest()};
     }
     line_ = window_.fit(slopes_, mean_late_ns_);
     return missed;
@@ -330,7 +329,6 @@ class sensor_clock {
 
   sensor_clock_options options_;
   std::size_t sample_size_;
-  double widest_;  // the limit of the difference of the period from the nominal one
   double nominal_ns_;
   sample_counter counter_;
   arrival_window window_;

@@ -127,8 +127,8 @@ TEST_P(Family, PiecesOfEverySizeGiveThePackets) {
   }
 }
 
-// The information was written by another program; ct-info-synth.txt states what it is.
-TEST(FamilyInformation, TheRevolutionSaysWhoItIs) {
+// The information was written by another program; ct-info-synth.txt has its contents.
+TEST(FamilyInformation, TheRevolutionIdentifiesItsLidar) {
   std::ifstream file(family / "ct-info-synth.bin", std::ios::binary);
   if (!file) GTEST_SKIP() << "There is no directory shared/family beside the project.";
   const std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
