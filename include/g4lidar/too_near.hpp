@@ -20,6 +20,9 @@ struct near_limits {
   /// For how many revolutions after the last near return a direction is flagged; until_return, 0:
   /// until a return comes from there.
   std::uint32_t revolutions = 3;
+  /// How the angles of the points are corrected: that of the model. A scan_shaper uses that of the
+  /// scan's model instead.
+  correction_kind correction = g4_format.correction;
 
   /// A value of `revolutions`, for alarms: a target that stays too near stays flagged.
   static constexpr std::uint32_t until_return = 0;
@@ -40,7 +43,8 @@ class near_history {
   /// is farther since then.
   constexpr bool add(const point& p, const near_limits& limits) noexcept {
     // The angle of the head, as a near and a far target on the same beam have different directions.
-    std::uint32_t& last = near_[static_cast<std::size_t>(raw_angle_deg(p)) % directions];
+    const float head_deg = raw_angle_deg(p, limits.correction);
+    std::uint32_t& last = near_[static_cast<std::size_t>(head_deg) % directions];
     if (!p.is_no_return()) {
       last = p.range_mm < 2.0F * limits.shortest_mm ? p.revolution + 1 : 0;
       return false;

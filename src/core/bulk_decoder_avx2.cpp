@@ -30,7 +30,7 @@ G4LIDAR_AVX2 words none(words raw) { return less(raw, every(least_range_raw)); }
 /// from its middle; but the remaining corrections are within 6.3 degrees of the middle, so three
 /// terms of the series are sufficient for 3e-8 degrees.
 constexpr std::uint32_t nearest_raw = 400;
-static_assert(nearest_raw == static_cast<std::uint32_t>(4 * too_near_mm));
+static_assert(nearest_raw == 4 * g4_model.range.min_mm);
 
 G4LIDAR_AVX2 floats correction_of(floats sample) {
   const floats t = (every(797.3080408F) - sample) /
@@ -245,8 +245,8 @@ class directions {
 /// No arctangent is needed: the correction is an angle in the right-angled triangle with the legs d
 /// and u = 21.8 - (21.8 / 155.3) d, so the range along the first-level angle and across it follow
 /// from the sides, and a rotation by that angle is sufficient. In the robot's frame angles grow in
-/// the other direction, from 180 degrees on.
-__attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to,
+/// the other direction, from `turn_deg` on.
+__attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to, std::uint16_t turn_deg,
                                                std::span<xy_point, max_samples> out) noexcept {
   constexpr auto offset_raw = static_cast<float>(4.0 * correction_offset_mm);
   constexpr auto slope = static_cast<float>(-correction_offset_mm / correction_zero_mm);
@@ -265,8 +265,9 @@ __attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to,
     along[i] = share_or_nan * d;
     across[i] = share_or_nan * u;
   }
-  const directions turn(every(mirrored ? 180.0F - angles.first : angles.first),
-                        every(angles.step * sign), raw.count());
+  const directions turn(
+      every(mirrored ? static_cast<float>(turn_deg) - angles.first : angles.first),
+      every(angles.step * sign), raw.count());
   for (std::size_t i = 0; i < raw.count(); ++i) {
     const auto [sine, cosine] = turn[i];
     store_eight(times_minus(along[i], cosine, across[i] * sine),

@@ -117,14 +117,14 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   times_.come(record.time_ns);
   scan_times_.come(record.time_ns);
   shaper_.shape(record.scan, options_.path);
-  const std::span<const point> points = options_.for_grid ? shaper_.for_grid() : shaper_.kept();
+  const scan shaped = options_.for_grid ? shaper_.for_grid() : shaper_.kept();
   if (shaper_.outside() > 0) {
     not_deskewed_ +=
-        static_cast<std::uint64_t>(std::ranges::count_if(points, &point::is_not_deskewed));
+        static_cast<std::uint64_t>(std::ranges::count_if(shaped, &point::is_not_deskewed));
   }
-  if (!inner_->takes_scans()) return pass_on(points, out);
+  if (!inner_->takes_scans()) return pass_on(shaped.points, out);
   scan_record changed = record;
-  changed.scan.points = timed(points);
+  changed.scan.points = timed(shaped.points);
   changed.time_ns = scan_times_.of(record.time_ns);
   changed.robot = robot.value_or(record.robot);
   inner_->write_scan(changed, out);
