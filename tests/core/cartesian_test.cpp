@@ -165,8 +165,8 @@ TEST(CoordinateFrames, Bearings_AreInTheHalfOpenRange) {
   constexpr float pi = std::numbers::pi_v<float>;
   for (const float angle_deg : angles()) {
     for (const float range_mm : {0.0F, 1000.0F}) {
-      for (const auto [to, turn_deg] : {std::pair{frame::robot, 180}, std::pair{frame::robot, 0},
-                                        std::pair{frame::vendor, 0}}) {
+      for (const auto& [to, turn_deg] : {std::pair{frame::robot, 180}, std::pair{frame::robot, 0},
+                                         std::pair{frame::vendor, 0}}) {
         const auto turn = static_cast<std::uint16_t>(turn_deg);
         const point p = at(angle_deg, range_mm);
         const float direction = p.angle_deg;

@@ -44,7 +44,7 @@ void expect_seen(const point& got, const point& p, const pose_2d& then, const po
     ASSERT_LE(off_deg, 1e-4);
     return;
   }
-  const double way_mm = test::way_mm(then, reference, mount, turn_deg);
+  const double way_mm = test::way_mm(then, reference, mount);
   const auto measured_mm = static_cast<double>(p.range_mm);
   if (way_mm < 0.5 * measured_mm) {
     ASSERT_LE(off_deg, 1e-4) << p.angle_deg << " degrees, " << p.range_mm << " mm, way " << way_mm;

@@ -185,7 +185,7 @@ TEST(PointFilter, Masks_AreInTheRobotsFrame) {
 TEST(PointFilter, TurnOfALidar_DecidesWhereTheRobotsFrameIs) {
   const std::array<corner, 3> outline{{{0.5F, -0.5F}, {0.5F, 0.5F}, {2.0F, 0.0F}}};  // ahead
   const std::array<polygon, 1> masks{{polygon(outline)}};
-  for (const std::uint16_t turn_deg : {0, 180}) {
+  for (const std::uint16_t turn_deg : {std::uint16_t{0}, std::uint16_t{180}}) {
     const auto ahead_deg = static_cast<float>(turn_deg);
     const point_filter front{
         .in = frame::robot, .turn_deg = turn_deg, .field_of_view = {-10.0, 10.0}};

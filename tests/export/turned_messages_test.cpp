@@ -30,6 +30,7 @@ namespace g4lidar::test {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::FloatEq;
 using ::testing::HasSubstr;
 
 constexpr double pi = std::numbers::pi;
@@ -47,7 +48,7 @@ struct laser_scan {
   /// Whether a range is about there.
   [[nodiscard]] bool has(double x, double y) const {
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const double angle = static_cast<double>(angle_min) + static_cast<double>(i) * increment;
+      const auto angle = static_cast<double>(angle_min + static_cast<float>(i) * increment);
       const auto range = static_cast<double>(ranges[i]);
       if (std::hypot(range * std::cos(angle) - x, range * std::sin(angle) - y) < 1e-5) return true;
     }
@@ -78,11 +79,11 @@ TEST(TurnedMessages, LaserScan_HasTheLimitsOfTheModel) {
     const laser_scan read = read_scan(ranges, {.model = model_named(name)});
     return std::array{read.range_min, read.range_max};
   };
-  EXPECT_THAT(limits("g4"), ElementsAre(0.1F, 16.38375F));
-  EXPECT_THAT(limits("x4"), ElementsAre(0.12F, 16.383F));
-  EXPECT_THAT(limits("g6"), ElementsAre(0.1F, 32.7675F));
-  EXPECT_THAT(limits("t-mini-pro"), ElementsAre(0.02F, 16.383F));
-  EXPECT_THAT(limits("tg50"), ElementsAre(0.05F, 65.535F));
+  EXPECT_THAT(limits("g4"), ElementsAre(FloatEq(0.1F), FloatEq(16.38375F)));
+  EXPECT_THAT(limits("x4"), ElementsAre(FloatEq(0.12F), FloatEq(16.383F)));
+  EXPECT_THAT(limits("g6"), ElementsAre(FloatEq(0.1F), FloatEq(32.7675F)));
+  EXPECT_THAT(limits("t-mini-pro"), ElementsAre(FloatEq(0.02F), FloatEq(16.383F)));
+  EXPECT_THAT(limits("tg50"), ElementsAre(FloatEq(0.05F), FloatEq(65.535F)));
 }
 
 TEST(TurnedMessages, LaserScan_ByAngle) {
