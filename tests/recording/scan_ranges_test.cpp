@@ -26,7 +26,8 @@ std::vector<float> recorded_ranges(const recording_options& how, const char* mod
   writer.scan({.points = points, .model = model_named(model)});
   EXPECT_TRUE(writer.close());
   const auto file = bytes_of(path.text());
-  cdr_reader read(mcap_messages(std::string(file.begin(), file.end()), "/scan").at(0));
+  const auto messages = mcap_messages(std::string(file.begin(), file.end()), "/scan");
+  cdr_reader read(messages.at(0));
   static_cast<void>(read.number<std::uint64_t>());
   static_cast<void>(read.text());
   for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(read.number<float>());
