@@ -138,7 +138,7 @@ TEST(CDeskew, MovesAPointByTheWayOfTheRobot) {
 }
 
 // A model that is not turned looks at its 0 degrees, and its 270 degrees are to the left.
-TEST(CTurn, PointsAreTurnedAsTheCallerSays) {
+TEST(CTurn, PointsAreTurnedByTheArgument) {
   const std::array<g4lidar_point, 2> points{at(0.0F, 3000.0F, second), at(270.0F, 500.0F, second)};
   std::array<g4lidar_xy, 2> xy{};
   std::array<g4lidar_polar, 2> polar{};

@@ -75,17 +75,20 @@ TEST(Grid, NoReturn_BecomesWhatTheOptionSets) {
 TEST(Grid, AScan_IsTurnedAsItsModel_WhichHasTheLongestRange) {
   const std::vector<point> points{at(0, 1000), at(90, 2000), at(180, 0), at(270, 4000)};
   std::array<float, 4> ranges_m{};
+  const auto quarter_mm = [](float range_m) { return std::lround(range_m * 4000.0F); };
   const auto filled = [&](const char* name) {
     const scan seen{.points = points, .model = model_named(name)};
     fill_grid(seen, ranges_m, {.no_return = no_return_as::max});
-    return std::vector<float>(ranges_m.begin(), ranges_m.end());
+    std::vector<long> made;
+    for (const float range_m : ranges_m) made.push_back(quarter_mm(range_m));
+    return made;
   };
-  EXPECT_EQ(filled("x4"), (std::vector{16.383F, 2.0F, 1.0F, 4.0F}));
-  EXPECT_EQ(filled("t-mini-plus-sh"), (std::vector{65.535F, 2.0F, 1.0F, 4.0F}));
-  EXPECT_EQ(filled("g4"), (std::vector{1.0F, 4.0F, 16.38375F, 2.0F}));
-  EXPECT_EQ(filled("g6"), (std::vector{1.0F, 4.0F, 32.7675F, 2.0F}));
-  EXPECT_EQ(filled("tg30"), (std::vector{1.0F, 4.0F, 65.535F, 2.0F}));
-  // Loose points: as the options say, else as those of a G4.
+  EXPECT_EQ(filled("x4"), (std::vector{65532L, 8000L, 4000L, 16000L}));
+  EXPECT_EQ(filled("t-mini-plus-sh"), (std::vector{262140L, 8000L, 4000L, 16000L}));
+  EXPECT_EQ(filled("g4"), (std::vector{4000L, 16000L, 65535L, 8000L}));
+  EXPECT_EQ(filled("g6"), (std::vector{4000L, 16000L, 131070L, 8000L}));
+  EXPECT_EQ(filled("tg30"), (std::vector{4000L, 16000L, 262140L, 8000L}));
+  // Points that are not in a scan: by the options, and by default as those of a G4.
   EXPECT_EQ(grid_of(points, 4, {.turn_deg = 0})[2], 1.0F);
   EXPECT_EQ(grid_of(points, 4)[0], 1.0F);
   EXPECT_EQ(place_in_grid(90.0F, frame::robot, 4, 0).bin, 1U);
