@@ -48,8 +48,7 @@ void scan_shaper::shape(const scan& source, std::span<const stamped_pose> path) 
   not_deskewed_ += outside_;
   if (!options_.marks.near) return;
   marked_.assign(source_.begin(), source_.end());
-  options_.marks.near->correction = source.model->samples.correction;
-  mark_near(marked_, near_, *options_.marks.near);
+  mark_near(marked_, near_, *options_.marks.near, source.model->samples.correction);
   source_.points = marked_;
 }
 

@@ -56,25 +56,6 @@ TEST(MarkNear, NoReturnAfterANearReturn_IsFlaggedForThreeRevolutions) {
   EXPECT_EQ(flagged({60, 0}), ".x") << "what is below 100 mm is a near return, too";
 }
 
-TEST(MarkNear, TheBeamIsThatOfTheModelsCorrection) {
-  // Without a correction a near return and a no-return of one beam have the same direction.
-  for (int angle = 0; angle < 360; ++angle) {
-    const float angle_deg = static_cast<float>(angle) + 0.5F;
-    const auto marked = [&](correction_kind kind, float none_deg) {
-      std::array<point, 2> points{
-          {{.angle_deg = angle_deg, .range_mm = 300.0F},
-           {.angle_deg = none_deg, .revolution = 1, .flags = point_flags::no_return}}};
-      near_history history;
-      return mark_near(points, history, {.correction = kind});
-    };
-    ASSERT_EQ(marked(correction_kind::none, angle_deg), 1U) << angle;
-    ASSERT_EQ(marked(correction_kind::triangle, angle_deg), 0U) << angle;
-    // atan(17.8 / 300) is 3.3956 degrees.
-    ASSERT_EQ(marked(correction_kind::scl, wrap_deg(angle_deg - 3.3956F)), 1U) << angle;
-    ASSERT_EQ(marked(correction_kind::scl, angle_deg), 0U) << angle;
-  }
-}
-
 TEST(MarkNear, NoReturnWithoutANearReturnBefore_IsNotFlagged) {
   EXPECT_EQ(flagged({0, 0, 0}), "...");
   EXPECT_EQ(flagged({560, 0, 0}), "...") << "twice the shortest range is not near";
@@ -99,6 +80,21 @@ TEST(MarkNear, ComparesBeams_NotCorrectedDirections) {
   for (std::size_t i = 0; i < 60; ++i) {
     EXPECT_EQ(points[40 + i].may_be_too_near(), i >= 10 && i < 50) << i;
   }
+}
+
+// A T-mini has no correction: the directions of its points are those of its beams.
+TEST(MarkNear, TheBeamsAreThoseOfTheModel) {
+  const auto count_of = [](correction_kind correction) {
+    std::vector<point> points(2);
+    points[0].angle_deg = points[1].angle_deg = 100.5F;
+    points[0].range_mm = 300.0F;
+    points[1].revolution = 1;
+    points[1].flags = point_flags::no_return;
+    near_history history;
+    return mark_near(points, history, {}, correction);
+  };
+  EXPECT_EQ(count_of(correction_kind::none), 1U);
+  EXPECT_EQ(count_of(correction_kind::triangle), 0U) << "a G4 has measured them on two beams";
 }
 
 // None is at a whole degree, where rounding decides between two places.

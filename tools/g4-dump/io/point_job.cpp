@@ -33,9 +33,7 @@ writing_options how_to_write(const point_job& job, const common_options& common,
   const bool is_file = kind == source_kind::raw_bytes;
   writing_options made{.shape = shape};
   made.shape.filter.returns_only = job.returns_only;
-  const g4lidar::model& which = *job.source.model;  // of points; revolutions have their own
-  made.shape.filter.turn_deg = which.turn_deg;
-  if (made.shape.marks.near) made.shape.marks.near->correction = which.samples.correction;
+  made.model = job.source.model;
   made.for_grid = job.bins > 0;
   made.partial_scans = job.partial;
   if (common.count > 0) made.count = common.count;
