@@ -17,7 +17,8 @@ int report(const g4lidar::error& why) {
 void use(const g4lidar::scan& scan, g4lidar::near_history& history) {
   std::vector<g4lidar::point> points(scan.begin(), scan.end());
   const auto too_near =  // what stays too near stays flagged
-      mark_near(points, history, {.revolutions = g4lidar::near_limits::until_return});
+      mark_near(points, history, {.revolutions = g4lidar::near_limits::until_return},
+                scan.model->samples.correction);
   const g4lidar::point* nearest = nullptr;
   for (const g4lidar::point& p : scan) {
     if (p.is_no_return() || p.is_too_near()) continue;  // not reliable
@@ -28,7 +29,7 @@ void use(const g4lidar::scan& scan, g4lidar::near_history& history) {
   if (nearest == nullptr) {
     std::printf("no return");
   } else {
-    const auto seen = to_polar(*nearest, g4lidar::frame::robot);  // x forward, y to the left
+    const auto seen = to_polar(*nearest, g4lidar::frame::robot, scan.model->turn_deg);
     std::printf("the nearest %.3f m away, %+.2f rad from ahead", static_cast<double>(seen.range_m),
                 static_cast<double>(seen.bearing_rad));
   }

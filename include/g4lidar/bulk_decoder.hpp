@@ -41,7 +41,7 @@ class G4LIDAR_API bulk_decoder {
  public:
   /// Uses `wanted` if this processor has it, else `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;
-  /// For packets of this model, whose `samples` and `range` are copied.
+  /// For packets of this model, whose `samples`, `range` and `turn_deg` are copied.
   explicit bulk_decoder(const model& which,
                         instruction_set wanted = best_instruction_set()) noexcept;
 
@@ -51,7 +51,7 @@ class G4LIDAR_API bulk_decoder {
   /// byte. Memory of `out` behind the returned points may be overwritten.
   [[nodiscard]] std::span<point> decode(bytes& input, std::span<point> out) noexcept;
 
-  /// The same, but writes the positions of the points in frame `to`, within 1e-6 of the range of
+  /// The same, but writes the positions of the points in frame `to` of the model, within 1e-6 of the range of
   /// the exact ones; both coordinates are NaN for a point without return. Calls for points and for
   /// positions may alternate in one stream.
   [[nodiscard]] std::span<xy_point> decode_xy(bytes& input, frame to,
@@ -85,6 +85,7 @@ class G4LIDAR_API bulk_decoder {
   stream_counter counts_;
   sample_format format_;
   std::uint16_t shortest_mm_;
+  std::uint16_t turn_deg_;
   instruction_set set_;
 };
 

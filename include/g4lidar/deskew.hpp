@@ -22,7 +22,8 @@ struct deskewed {
 ///
 /// The results are in the lidar's own frame, as the points are: `angle_deg` and `range_mm` are those that the lidar
 /// would have measured from that place. `time_ns` and `revolution` stay. Of a point without return only the direction
-/// turns. The flags stay those of the measurement: a return whose range falls below 100 mm is not flagged too_near.
+/// turns. The flags stay those of the measurement: a return whose range falls below the shortest one is not flagged
+/// too_near. `turn_deg` is that of the model, 0 or 180; the default is the G4's.
 ///
 /// A point with `time_ns` 0, or at whose time the motion has no pose, is copied as it is, flagged not_deskewed, and
 /// counted; without a pose for `reference_ns`, this is every point. A point that is deskewed loses that flag. Because
@@ -34,45 +35,53 @@ struct deskewed {
 /// Uses 2 KiB of stack. *Pure, never allocates.*
 constexpr deskewed deskew(std::span<const point> points, const twist_2d& twist,
                           std::int64_t reference_ns, std::span<point> out,
-                          const mounting& mount = {}) noexcept {
+                          const mounting& mount = {},
+                          std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
   return {out.first(points.size()),
-          detail::move_points(points, out, detail::motion_by_twist(twist, reference_ns, mount))};
+          detail::move_points(points, out,
+                              detail::motion_by_twist(twist, reference_ns, {mount, turn_deg}))};
 }
 
 /// The same with poses of the robot in a fixed frame, times ascending. Between two poses the twist is constant. There
 /// are no poses before the first time and after the last one.
 constexpr deskewed deskew(std::span<const point> points, std::span<const stamped_pose> path,
                           std::int64_t reference_ns, std::span<point> out,
-                          const mounting& mount = {}) noexcept {
+                          const mounting& mount = {},
+                          std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
   return {out.first(points.size()),
-          detail::move_points(points, out, detail::motion_on_path(path, reference_ns, mount))};
+          detail::move_points(points, out,
+                              detail::motion_on_path(path, reference_ns, {mount, turn_deg}))};
 }
 
 /// The same with a function that gives the pose at a time; slower, because it is called for each point.
 template <motion_function Function>
 constexpr deskewed deskew(std::span<const point> points, const Function& motion,
                           std::int64_t reference_ns, std::span<point> out,
-                          const mounting& mount = {}) {
+                          const mounting& mount = {}, std::uint16_t turn_deg = g4_model.turn_deg) {
   return {out.first(points.size()),
-          detail::move_points(points, out,
-                              detail::motion_by_function<Function>(motion, reference_ns, mount))};
+          detail::move_points(
+              points, out,
+              detail::motion_by_function<Function>(motion, reference_ns, {mount, turn_deg}))};
 }
 
 /// The same, in place.
 constexpr deskewed deskew(std::span<point> points, const twist_2d& twist, std::int64_t reference_ns,
-                          const mounting& mount = {}) noexcept {
-  return deskew(points, twist, reference_ns, points, mount);
+                          const mounting& mount = {},
+                          std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
+  return deskew(points, twist, reference_ns, points, mount, turn_deg);
 }
 /// The same, in place.
 constexpr deskewed deskew(std::span<point> points, std::span<const stamped_pose> path,
-                          std::int64_t reference_ns, const mounting& mount = {}) noexcept {
-  return deskew(points, path, reference_ns, points, mount);
+                          std::int64_t reference_ns, const mounting& mount = {},
+                          std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
+  return deskew(points, path, reference_ns, points, mount, turn_deg);
 }
 /// The same, in place.
 template <motion_function Function>
 constexpr deskewed deskew(std::span<point> points, const Function& motion,
-                          std::int64_t reference_ns, const mounting& mount = {}) {
-  return deskew(std::span<const point>(points), motion, reference_ns, points, mount);
+                          std::int64_t reference_ns, const mounting& mount = {},
+                          std::uint16_t turn_deg = g4_model.turn_deg) {
+  return deskew(std::span<const point>(points), motion, reference_ns, points, mount, turn_deg);
 }
 
 }  // namespace g4lidar

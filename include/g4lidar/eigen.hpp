@@ -7,12 +7,14 @@
 #include <cassert>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <ranges>
 #include <span>
 #include <type_traits>
 
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4lidar {
 
@@ -57,14 +59,18 @@ template <xy_range Points>
 }
 
 /// Writes x and y in metres in frame `to` to the columns of `out`, which has one for each point.
-/// Points without return become NaN. *Never allocates.*
-inline void to_xy(std::span<const point> points, frame to,
-                  Eigen::Ref<Eigen::Matrix2Xf> out) noexcept {
+/// Points without return become NaN. *Never allocates.* `turn_deg` is that of the model, 0 or 180.
+inline void to_xy(std::span<const point> points, frame to, Eigen::Ref<Eigen::Matrix2Xf> out,
+                  std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
   assert(out.cols() == static_cast<Eigen::Index>(points.size()));
   for (Eigen::Index i = 0; i < out.cols(); ++i) {
-    const xy_point xy = to_xy(points[static_cast<std::size_t>(i)], to);
+    const xy_point xy = to_xy(points[static_cast<std::size_t>(i)], to, turn_deg);
     out.col(i) << xy.x_m, xy.y_m;
   }
+}
+/// The same for the points of a scan, turned as its model.
+inline void to_xy(const scan& source, frame to, Eigen::Ref<Eigen::Matrix2Xf> out) noexcept {
+  to_xy(source.points, to, out, source.model->turn_deg);
 }
 
 /// Transforms all points by `motion`: from the lidar's frame to the robot's, or from the robot's

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 
@@ -48,6 +49,9 @@ struct point_filter {
   /// The frame of the sectors: vendor, clockwise from the cable; or robot, counter-clockwise from
   /// straight ahead, where -90 to 90 is the front half.
   frame in = frame::vendor;
+  /// model::turn_deg of the lidar, 0 or 180, for sectors in the robot's frame and for masks. A
+  /// scan_shaper uses that of the scan's model instead.
+  std::uint16_t turn_deg = g4_model.turn_deg;
   sector field_of_view{};  ///< Points in other directions are left out.
   std::span<const sector>
       ignored_sectors{};  ///< Points in one of them are left out. A view of the caller's memory.
@@ -67,7 +71,7 @@ struct point_filter {
   /// Whether the direction is in the field of view and in no ignored sector. *Pure.*
   [[nodiscard]] constexpr bool has_direction(const point& p) const noexcept {
     if (field_of_view.is_everything() && ignored_sectors.empty()) return true;
-    const auto degrees = static_cast<double>(bearing_deg(p.angle_deg, in));
+    const auto degrees = static_cast<double>(bearing_deg(p.angle_deg, in, turn_deg));
     if (!field_of_view.has(degrees)) return false;
     for (const sector& ignored : ignored_sectors) {
       if (ignored.has(degrees)) return false;
@@ -81,7 +85,7 @@ struct point_filter {
   /// Whether the place is inside of no mask. *Pure.*
   [[nodiscard]] constexpr bool has_place(const point& p) const noexcept {
     if (masks.empty() || p.is_no_return()) return true;
-    const xy_point at = to_xy(p, frame::robot);
+    const xy_point at = to_xy(p, frame::robot, turn_deg);
     for (const polygon& mask : masks) {
       if (is_inside({at.x_m, at.y_m}, mask)) return false;
     }

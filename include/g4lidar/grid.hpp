@@ -11,6 +11,7 @@
 
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4lidar {
 
@@ -26,7 +27,7 @@ enum class grid_pick : std::uint8_t {
 enum class no_return_as : std::uint8_t {
   infinity,  ///< +infinity, as REP 117 has it for "no return within the range".
   nan,       ///< NaN: nothing is known.
-  max,       ///< longest_range_mm, the range_max of a LaserScan, for programs that want numbers.
+  max,       ///< The longest range, the range_max of a LaserScan, for programs that want numbers.
 };
 
 /// How to fill a grid. The defaults are those of a ROS LaserScan that begins at -pi.
@@ -44,17 +45,37 @@ struct grid_options {
   /// Whether a direction flagged may_be_too_near is -infinity, as REP 117 has it for targets that are
   /// too near. By default it is NaN. Without mark_near() no direction has this flag.
   bool near_is_minus_infinity = false;
+  /// model::turn_deg of the lidar, 0 or 180. With a scan, that of its model is used instead.
+  std::uint16_t turn_deg = g4_model.turn_deg;
+  /// For no_return_as::max, in millimetres: longest_range_mm() of the lidar's samples. With a scan,
+  /// that of its model is used instead.
+  float longest_mm = longest_range_mm(g4_layout);
+
+  /// The same options for a lidar like `which`. *Pure.*
+  [[nodiscard]] constexpr grid_options with(const model& which) const noexcept {
+    grid_options made = *this;
+    made.turn_deg = which.turn_deg;
+    made.longest_mm = longest_range_mm(which.samples.layout);
+    return made;
+  }
 };
 
+/// A number of bins that leaves few of them empty: four fifths of the samples of a revolution at
+/// 10 Hz, 720 for a G4. *Pure.*
+[[nodiscard]] constexpr std::uint32_t default_bins(const model& which) noexcept {
+  return first_rate_hz(which) * 2 / 25;
+}
+
 /// The bin that contains a direction (clockwise degrees in [0, 360), as in a point) in a grid of
-/// `bins` bins, and the distance from the middle of the bin. *Pure.*
+/// `bins` bins, and the distance from the middle of the bin. *Pure.* `turn_deg` as for bearing_deg().
 struct grid_place {
   std::size_t bin;
   float off_middle_deg;  ///< At most half a bin, plus rounding.
 };
-[[nodiscard]] constexpr grid_place place_in_grid(float direction, frame to,
-                                                 std::size_t bins) noexcept {
-  const float bearing = bearing_deg(direction, to);
+[[nodiscard]] constexpr grid_place place_in_grid(
+    float direction, frame to, std::size_t bins,
+    std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
+  const float bearing = bearing_deg(direction, to, turn_deg);
   const float from_first = to == frame::robot ? wrap_once_deg(bearing + 180.0F) : bearing;
   const float width = 360.0F / static_cast<float>(bins);
   const auto bin = static_cast<std::size_t>(from_first / width + 0.5F);
@@ -76,14 +97,17 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
     if (p.is_no_return()) return p.may_be_too_near() ? perhaps_near : no_return;
     return p.is_too_near() && !options.keep_too_near ? unusable : usable;
   };
+  const auto place_of = [&](const point& p) {
+    return place_in_grid(p.angle_deg, options.to, ranges_m.size(), options.turn_deg);
+  };
   const auto better = [&](const point& p, float off, const point& than) {
     if (worth(p) != worth(than)) return worth(p) > worth(than);
     if (options.pick == grid_pick::minimum) return p.range_mm < than.range_mm;
-    return off < place_in_grid(than.angle_deg, options.to, ranges_m.size()).off_middle_deg;
+    return off < place_of(than).off_middle_deg;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const point& p = points[i];
-    const grid_place place = place_in_grid(p.angle_deg, options.to, ranges_m.size());
+    const grid_place place = place_of(p);
     if (!takes(p, place.bin)) continue;
     float& slot = ranges_m[place.bin];
     if (slot < 0.0F || better(p, place.off_middle_deg, points[static_cast<std::size_t>(slot)])) {
@@ -92,7 +116,7 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  constexpr std::array<float, 3> of_no_return{infinity, nan, longest_range_mm * 0.001F};
+  const std::array<float, 3> of_no_return{infinity, nan, options.longest_mm * 0.001F};
   const auto value_of = [&](const point& p) {
     switch (worth(p)) {
       case no_return:
@@ -119,6 +143,12 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {}) noexcept {
   fill_grid(points, ranges_m, options, [](const point&, std::size_t) { return true; });
+}
+
+/// The same for the points of a scan, turned as its model, which also has the longest range.
+constexpr void fill_grid(const scan& source, std::span<float> ranges_m,
+                         const grid_options& options = {}) noexcept {
+  fill_grid(source.points, ranges_m, options.with(*source.model));
 }
 
 }  // namespace g4lidar

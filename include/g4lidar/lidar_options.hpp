@@ -50,9 +50,8 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
-  /// What sends the bytes; not null, and valid as long as the lidar. Another model than the G4 is known
-  /// for files of raw bytes only. frame::robot, masks and grids turn every point as that of a G4: for a
-  /// model with another turn use frame::vendor.
+  /// What sends the bytes; not null, and valid as long as the lidar and its scans. Another model than the
+  /// G4 is known for files of raw bytes only.
   const g4lidar::model* model = &g4_model;
   /// Bits per second, of a serial port and of the one behind `tcp:`.
   std::uint32_t baud = g4_model.bauds[0];

@@ -20,6 +20,7 @@ namespace g4lidar {
 struct mounted_scan {
   std::span<const point> points;  ///< Its newest complete scan; empty if there is none.
   mounting mount;
+  std::uint16_t turn_deg = g4_model.turn_deg;  ///< That of its model, 0 or 180.
 };
 
 /// What merge_scans() made.
@@ -39,7 +40,7 @@ inline constexpr std::int64_t fresh_scan_ns = 500'000'000;
 
 namespace detail {
 
-/// `make(mount)` gives the places of a lidar that is mounted so.
+/// `make(view)` gives the places of a lidar that is mounted so.
 template <class Make>
 constexpr merged merge_scans(std::span<const mounted_scan> lidars, std::int64_t reference_ns,
                              std::span<point> out, std::int64_t fresh_ns, const Make& make) {
@@ -56,11 +57,12 @@ constexpr merged merge_scans(std::span<const mounted_scan> lidars, std::int64_t 
     assert(out.size() - count >= scan.size());
     const std::span<point> here = out.subspan(count, scan.size());
     std::copy(scan.begin(), scan.end(), here.begin());
-    if (lidars[i].mount.upside_down) {
-      for (point& p : here) p.angle_deg = wrap_once_deg(-p.angle_deg);
-    }
-    const mounting upright{lidars[i].mount.pose, false};
-    result.outside += move_points(here, here, make(upright), as_measured(upright.pose, false));
+    // As directions of a lidar with the turn of a G4 and its top up.
+    const float side = lidars[i].mount.upside_down ? -1.0F : 1.0F;
+    const auto turn = static_cast<float>(g4_model.turn_deg - lidars[i].turn_deg);
+    for (point& p : here) p.angle_deg = wrap_once_deg(turn + side * p.angle_deg);
+    const mounted_view view{.mount = {lidars[i].mount.pose, false}, .seen = viewpoint::robot};
+    result.outside += move_points(here, here, make(view), view.axes()(view.mount.pose));
     count += scan.size();
   }
   result.points = out.first(count);
@@ -71,9 +73,9 @@ constexpr merged merge_scans(std::span<const mounted_scan> lidars, std::int64_t 
 
 /// The scans of up to 32 lidars as one scan, deskewed with the constant twist of the robot to `reference_ns`.
 ///
-/// The points are those that a lidar at the origin of the robot, with its top up, would have measured at that time:
-/// to_xy(), fill_grid() and filters give and take the robot's own frame with frame::robot. A lidar may be mounted upside
-/// down, and turn at any frequency. `time_ns`, `revolution` and flags are those of the measurement. The direction of a
+/// The points are those that a G4 at the origin of the robot, with its top up, would have measured at that time:
+/// to_xy(), fill_grid() and filters give and take the robot's own frame with frame::robot and their default turn. A lidar
+/// may be mounted upside down, have any turn, and turn at any frequency. `time_ns`, `revolution` and flags are those of the measurement. The direction of a
 /// point without return is that of an infinitely distant target. A lidar is lost if it has no points or if the time of
 /// the last one is not known or farther than `fresh_ns` from `reference_ns`; the others are merged.
 ///
@@ -84,18 +86,20 @@ constexpr merged merge_scans(std::span<const mounted_scan> lidars, std::int64_t 
 constexpr merged merge_scans(std::span<const mounted_scan> lidars, const twist_2d& twist,
                              std::int64_t reference_ns, std::span<point> out,
                              std::int64_t fresh_ns = fresh_scan_ns) noexcept {
-  return detail::merge_scans(lidars, reference_ns, out, fresh_ns, [&](const mounting& mount) {
-    return detail::motion_by_twist(twist, reference_ns, mount, detail::viewpoint::robot);
-  });
+  return detail::merge_scans(lidars, reference_ns, out, fresh_ns,
+                             [&](const detail::mounted_view& view) {
+                               return detail::motion_by_twist(twist, reference_ns, view);
+                             });
 }
 
 /// The same with poses of the robot in a fixed frame, times ascending.
 constexpr merged merge_scans(std::span<const mounted_scan> lidars,
                              std::span<const stamped_pose> path, std::int64_t reference_ns,
                              std::span<point> out, std::int64_t fresh_ns = fresh_scan_ns) noexcept {
-  return detail::merge_scans(lidars, reference_ns, out, fresh_ns, [&](const mounting& mount) {
-    return detail::motion_on_path(path, reference_ns, mount, detail::viewpoint::robot);
-  });
+  return detail::merge_scans(lidars, reference_ns, out, fresh_ns,
+                             [&](const detail::mounted_view& view) {
+                               return detail::motion_on_path(path, reference_ns, view);
+                             });
 }
 
 /// The same with a function that gives the pose at a time.
@@ -103,10 +107,10 @@ template <motion_function Function>
 constexpr merged merge_scans(std::span<const mounted_scan> lidars, const Function& motion,
                              std::int64_t reference_ns, std::span<point> out,
                              std::int64_t fresh_ns = fresh_scan_ns) {
-  return detail::merge_scans(lidars, reference_ns, out, fresh_ns, [&](const mounting& mount) {
-    return detail::motion_by_function<Function>(motion, reference_ns, mount,
-                                                detail::viewpoint::robot);
-  });
+  return detail::merge_scans(
+      lidars, reference_ns, out, fresh_ns, [&](const detail::mounted_view& view) {
+        return detail::motion_by_function<Function>(motion, reference_ns, view);
+      });
 }
 
 }  // namespace g4lidar

@@ -21,7 +21,7 @@ namespace g4lidar {
 enum class point_flags : std::uint8_t {
   none = 0,
   no_return = 1,  ///< Nothing came back: `range_mm` is 0 and not a range, and the way not free.
-  too_near = 2,   ///< Below 100 mm, where range and correction are not reliable.
+  too_near = 2,   ///< Below the model's shortest range, 100 mm for a G4: not reliable.
   revolution_start = 4,   ///< The sample of a zero packet, the first one of its revolution.
   not_deskewed = 8,       ///< deskew() left it where it was: its time or the motion is not known.
   unlikely = 16,          ///< Its packet or its neighbours contradict it; see plausibility.hpp.
@@ -43,11 +43,6 @@ enum class point_flags : std::uint8_t {
 [[nodiscard]] constexpr point_flags without(point_flags flags, point_flags left_out) noexcept {
   return static_cast<point_flags>(static_cast<unsigned>(flags) & ~static_cast<unsigned>(left_out));
 }
-
-/// Ranges below this are flagged too_near, in millimetres. (protocol: Point packets)
-inline constexpr float too_near_mm = g4_model.range.min_mm;
-/// The longest range that a sample can contain, in millimetres. (protocol: Point packets)
-inline constexpr float longest_range_mm = 16383.75F;
 
 /// One measured point in the device's own frame. Trivially copyable, 24 bytes, no padding.
 struct point {
@@ -75,7 +70,8 @@ struct point {
   [[nodiscard]] constexpr bool is_no_return() const noexcept {
     return (flags & point_flags::no_return) != point_flags::none;
   }
-  /// Whether the return came from below 100 mm: an object is there, but its range is not reliable.
+  /// Whether the return came from below the shortest range of the model (100 mm for a G4): an object
+  /// is there, but its range is not reliable.
   [[nodiscard]] constexpr bool is_too_near() const noexcept {
     return (flags & point_flags::too_near) != point_flags::none;
   }
@@ -129,8 +125,9 @@ enum class frame : std::uint8_t {
   /// The device's own: angles grow clockwise seen from above, 0 at the cable exit; x at 0 degrees, y
   /// at 90 degrees clockwise.
   vendor,
-  /// The robot's, REP 103: angles grow counter-clockwise, x forward, y to the left; forward is
-  /// opposite the cable exit. The device's frame mirrored and turned by 180 degrees.
+  /// The robot's, REP 103: angles grow counter-clockwise, x forward, y to the left. The device's
+  /// frame mirrored and turned by model::turn_deg: of a G4 forward is opposite the cable exit, of a
+  /// model with a turn of 0 it is 0 degrees of the device.
   robot,
 };
 
@@ -141,23 +138,26 @@ struct polar {
 };
 
 /// `direction` (clockwise degrees in [0, 360), as in a point) as degrees in [0, 360) of frame `to`.
-/// *Pure.*
-[[nodiscard]] constexpr float bearing_deg(float direction, frame to) noexcept {
-  return to == frame::robot ? wrap_once_deg(180.0F - direction) : direction;
+/// `turn_deg` is that of the model, 0 or 180: in frame::robot a direction is `turn_deg` - `direction`.
+/// The default is the G4's. *Pure.*
+[[nodiscard]] constexpr float bearing_deg(float direction, frame to,
+                                          std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
+  return to == frame::robot ? wrap_once_deg(static_cast<float>(turn_deg) - direction) : direction;
 }
 
-/// A point's direction and range in frame `to`. *Pure.*
-[[nodiscard]] constexpr polar to_polar(const point& p, frame to) noexcept {
-  const float turned = bearing_deg(p.angle_deg, to);
+/// A point's direction and range in frame `to`; `turn_deg` as for bearing_deg(). *Pure.*
+[[nodiscard]] constexpr polar to_polar(const point& p, frame to,
+                                       std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
+  const float turned = bearing_deg(p.angle_deg, to, turn_deg);
   const float centred = turned >= 180.0F ? turned - 360.0F : turned;
   return {centred * (std::numbers::pi_v<float> / 180.0F), p.range_mm * 0.001F};
 }
 
 /// Writes all of `points` in frame `to` to the front of `out`, which is at least as long, and
-/// returns what was written. *Pure.*
-constexpr std::span<polar> to_polar(std::span<const point> points, frame to,
-                                    std::span<polar> out) noexcept {
-  for (std::size_t i = 0; i < points.size(); ++i) out[i] = to_polar(points[i], to);
+/// returns what was written. *Pure.* `turn_deg` as for bearing_deg().
+constexpr std::span<polar> to_polar(std::span<const point> points, frame to, std::span<polar> out,
+                                    std::uint16_t turn_deg = g4_model.turn_deg) noexcept {
+  for (std::size_t i = 0; i < points.size(); ++i) out[i] = to_polar(points[i], to, turn_deg);
   return out.first(points.size());
 }
 

@@ -42,8 +42,9 @@ enum class scan_flags : std::uint8_t {
 }
 
 /// One revolution, or a piece of one: a range of points. A view: `points` is in the storage of the
-/// assembler. g4lidar::owned_scan is a copy to keep. In a frame of reference: to_xy(scan.points,
-/// frame::robot, out) of cartesian.hpp, and bearing_deg() of point.hpp for the angle of a point.
+/// assembler. g4lidar::owned_scan is a copy to keep. In a frame of reference: to_xy(scan,
+/// frame::robot, out) of cartesian.hpp, and bearing_deg(angle, frame::robot, scan.model->turn_deg)
+/// of point.hpp for the angle of a point.
 struct scan {
   std::span<const point> points;  ///< In the order in which they were measured.
   /// The number of zero packets before it; scans that were cut by the angle have the same number.
@@ -132,6 +133,12 @@ struct scan {
     return turns * static_cast<float>(sample_rate_hz) / static_cast<float>(size());
   }
 };
+
+/// Writes all points of a scan in frame `to`, turned as its model, to the front of `out`, which is at
+/// least as long, and returns what was written. *Pure.*
+constexpr std::span<polar> to_polar(const scan& source, frame to, std::span<polar> out) noexcept {
+  return to_polar(source.points, to, out, source.model->turn_deg);
+}
 
 }  // namespace g4lidar
 

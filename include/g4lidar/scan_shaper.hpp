@@ -90,10 +90,10 @@ class G4LIDAR_API scan_shaper {
   /// its points: only what depends on earlier scans is done here.
   void shape(const scan& source, std::span<const stamped_pose> path = {});
 
-  /// The points that the filter keeps. Made by the first call; a view, valid until the next shape().
-  [[nodiscard]] std::span<const point> kept();
+  /// The scan with the points that the filter keeps. Made by the first call; a view, valid until the next shape().
+  [[nodiscard]] scan kept();
   /// The same for fill_grid(): see filter_for_grid().
-  [[nodiscard]] std::span<const point> for_grid();
+  [[nodiscard]] scan for_grid();
   /// The twist of the lidar's own frame by deskewing::by_scans, in m/s and rad/s; nothing if it is not known.
   [[nodiscard]] const std::optional<twist_2d>& twist() const noexcept { return twist_; }
   /// How many points of the scan, filtered or not, have no known motion; 0 if it does not deskew.
@@ -112,7 +112,8 @@ class G4LIDAR_API scan_shaper {
                                      std::span<point>) noexcept;
   [[nodiscard]] bool deskews() const noexcept;
   [[nodiscard]] std::size_t count_outside() const noexcept;
-  [[nodiscard]] std::span<const point> make(product& what, filtering* filtered);
+  [[nodiscard]] std::span<const point> points_of(product& what, filtering* filtered);
+  [[nodiscard]] scan make(product& what, filtering* filtered);
 
   shaping_options options_;
   std::vector<sector> sectors_;  // of the filter, as the next ones
@@ -120,11 +121,9 @@ class G4LIDAR_API scan_shaper {
   std::vector<polygon> masks_;
   std::optional<twist_estimator> estimator_;
   near_history near_;
-  std::span<const point> points_;  // of the scan, with the flags that marked_ names
-  scan_ends ends_ = scan_ends::joined;
+  scan source_;               // its points have the flags that marked_ names
   bool needs_marks_ = false;  // by neighbours
   std::span<const stamped_pose> path_;
-  std::int64_t reference_ns_ = 0;
   std::optional<twist_2d> twist_;
   std::vector<point> marked_;
   product kept_;

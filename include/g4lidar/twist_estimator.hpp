@@ -10,6 +10,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4lidar {
 
@@ -52,7 +53,7 @@ struct twist_estimate {
 ///
 ///     twist_estimator estimator;
 ///     while (auto scan = lidar->next_scan(500ms)) {
-///       const twist_estimate motion = estimator.add(scan->points);
+///       const twist_estimate motion = estimator.add(*scan);
 ///       if (motion.is_known()) use(motion.twist);
 ///     }
 class G4LIDAR_API twist_estimator {
@@ -65,8 +66,15 @@ class G4LIDAR_API twist_estimator {
 
   /// The twist during the revolution before `points` and `points`, the points of the next revolution in the order in
   /// which they were measured. *Never allocates, never waits.* Of more than 2048 returns, every second, third, ... one
-  /// is used. Successive estimates share a revolution, thus their errors are correlated.
-  [[nodiscard]] twist_estimate add(std::span<const point> points) noexcept;
+  /// is used. Successive estimates share a revolution, thus their errors are correlated. `turn_deg` and `shortest_mm`
+  /// are those of the model; the defaults are the G4's. Nearer returns are not used.
+  [[nodiscard]] twist_estimate add(std::span<const point> points,
+                                   std::uint16_t turn_deg = g4_model.turn_deg,
+                                   std::uint16_t shortest_mm = g4_model.range.min_mm) noexcept;
+  /// The same with those of the scan's model.
+  [[nodiscard]] twist_estimate add(const scan& source) noexcept {
+    return add(source.points, source.model->turn_deg, source.model->range.min_mm);
+  }
 
   /// Forgets all scans.
   void reset() noexcept;

@@ -25,13 +25,13 @@ def main(device: str = "", picture: str = "map.png", *, seconds: float = 3.0) ->
     with g4lidar.open(device) as lidar:
         lidar.start()
         for scan in lidar.scans():
-            twist = estimator.add(scan.points).twist
+            twist = estimator.add(scan.points, scan.turn_deg).twist
             elapsed = (scan.time_ns - last_ns) * 1e-9 if last_ns else 0.0
             x += (twist.x_m_per_s * math.cos(yaw) - twist.y_m_per_s * math.sin(yaw)) * elapsed
             y += (twist.x_m_per_s * math.sin(yaw) + twist.y_m_per_s * math.cos(yaw)) * elapsed
             yaw += twist.yaw_rad_per_s * elapsed
-            still, _ = g4lidar.deskew(scan.points, twist, scan.time_ns)
-            points = g4lidar.to_xy(returns.shape(still).kept)
+            still, _ = g4lidar.deskew(scan.points, twist, scan.time_ns, turn_deg=scan.turn_deg)
+            points = g4lidar.to_xy(returns.shape(still).kept, turn_deg=scan.turn_deg)
             turn = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
             places = points @ turn + (x, y)
             axes.plot(places[:, 0], places[:, 1], "k.", markersize=0.5)

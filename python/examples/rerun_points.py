@@ -19,7 +19,8 @@ def main(device: str = "", file: str = "", *, scans: int | None = None) -> None:
         lidar.start()
         for number, scan in enumerate(lidar.scans(), 1):
             rr.set_time("measured", timestamp=scan.stamp)
-            rr.log("lidar/points", rr.Points2D(g4lidar.to_xy(returns.shape(scan).kept), radii=0.01))
+            places = g4lidar.to_xy(returns.shape(scan).kept, turn_deg=scan.turn_deg)
+            rr.log("lidar/points", rr.Points2D(places, radii=0.01))
             rr.log("lidar/frequency_hz", rr.Scalars(scan.measured_frequency_hz))
             if number == scans:
                 return

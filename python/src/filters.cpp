@@ -42,11 +42,9 @@ class shaper {
  public:
   explicit shaper(const shaping_options& how) : made_(how) {}
 
-  void shape(const array<point>& points, const std::optional<array<stamped_pose>>& path,
-             scan_flags flags) {
-    scan source;
+  void shape(scan source, const array<point>& points,
+             const std::optional<array<stamped_pose>>& path) {
     source.points = points_.emplace(points).span();
-    source.flags = flags;
     path_.reset();
     if (path) require_path(path_.emplace(*path).span());
     made_.shape(source, path_ ? path_->span() : std::span<const stamped_pose>());
@@ -124,7 +122,8 @@ void bind_shaper(nb::module_& module) {
            "the sense in which the angles of `frame` grow: in 'robot', counter-clockwise from "
            "straight ahead. `masks`: polygons of corners (x, y) in metres in the frame 'robot', "
            "whose returns are left out. Ranges in millimetres, both limits included. "
-           "`returns_only` leaves out points without return, `trusted_only` those below 100 mm, "
+           "`returns_only` leaves out points without return, `trusted_only` those that are too "
+           "near, "
            "`excluded` those with one of these flags (PointFlag). `speckle` and `edges` leave out "
            "what mark_isolated() and mark_veiling() flag. `near` flags points without return as "
            "PointFlag.MAY_BE_TOO_NEAR if, in the last `near_revolutions` (0: until a return "
@@ -139,7 +138,7 @@ void bind_shaper(nb::module_& module) {
       .def(
           "shape",
           [](shaper& self, const kept_scan& scan, const std::optional<array<stamped_pose>>& path) {
-            self.shape(scan.points, path, scan.about.flags);
+            self.shape(scan.about, scan.points, path);
             return nb::find(self);
           },
           "scan"_a, "path"_a = nb::none(), nb::rv_policy::reference,
@@ -151,19 +150,19 @@ void bind_shaper(nb::module_& module) {
           "shape",
           [](shaper& self, const array<point>& points,
              const std::optional<array<stamped_pose>>& path) {
-            self.shape(points, path, scan_flags::none);
+            self.shape(scan(), points, path);
             return nb::find(self);
           },
           "scan"_a, "path"_a = nb::none(),
           nb::sig("def shape(self, scan: numpy.typing.NDArray[numpy.void], path: "
                   "numpy.typing.NDArray[numpy.void] | None = None) -> ScanShaper"),
-          "The same with the points of a whole revolution.")
+          "The same with the points of a whole revolution of a G4.")
       .def_prop_ro(
-          "kept", [](shaper& self) { return array_of(self.made().kept()); },
+          "kept", [](shaper& self) { return array_of(self.made().kept().points); },
           "The points that are kept, as a new array. The points and poses that were given must not "
           "have changed.")
       .def_prop_ro(
-          "for_grid", [](shaper& self) { return array_of(self.made().for_grid()); },
+          "for_grid", [](shaper& self) { return array_of(self.made().for_grid().points); },
           "The same for fill_grid(): what is left out for its range, place or flag stays and is "
           "flagged too near, so that fill_grid() gives NaN and not inf.")
       .def_prop_ro(

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scan.hpp"
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,14 +26,20 @@ kept_scan::kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns)
   about.points = {};
 }
 
-array<float> to_xy_array(const array<point>& points, frame to) {
+std::uint16_t checked_turn(unsigned turn_deg) {
+  if (turn_deg != 0 && turn_deg != 180) raise_impossible("turn_deg: 0 or 180", turn_deg);
+  return static_cast<std::uint16_t>(turn_deg);
+}
+
+array<float> to_xy_array(const array<point>& points, frame to, unsigned turn_deg) {
+  const std::uint16_t turn = checked_turn(turn_deg);
   const elements<point> from(points);
   const std::span<const point> all = from.span();
   array<float> made{new_array(element::single, all.size(), 2)};
   const buffer memory(made.object, true);
   const std::span<float> out = memory.as<float>();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const xy_point place = to_xy(all[i], to);
+    const xy_point place = to_xy(all[i], to, turn);
     out[2 * i] = place.x_m;
     out[2 * i + 1] = place.y_m;
   }
@@ -47,19 +56,32 @@ array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_
 
 namespace {
 
-nb::bytes laser_scan(const kept_scan& scan, std::size_t bins, const std::string& frame_id,
-                     no_return_as no_return) {
-  const array<float> ranges = to_ranges(scan.points, bins, {.no_return = no_return});
+/// The header of its messages.
+message_header header_of(const kept_scan& scan, const std::string& frame_id) {
+  return {.stamp_ns = scan.time_ns + scan.wall_ahead_ns,
+          .frame_id = frame_id,
+          .duration_ns = scan.about.duration_ns,
+          .model = scan.about.model};
+}
+
+/// Turned, and with the number of ranges, of its model.
+array<float> ranges_of(const kept_scan& scan, std::optional<std::size_t> bins,
+                       const grid_options& how) {
+  const model& of = *scan.about.model;
+  return to_ranges(scan.points, bins.value_or(default_bins(of)), how.with(of));
+}
+
+nb::bytes laser_scan(const kept_scan& scan, std::optional<std::size_t> bins,
+                     const std::string& frame_id, no_return_as no_return) {
+  const array<float> ranges = ranges_of(scan, bins, {.no_return = no_return});
   std::vector<std::uint8_t> out;
-  put_laser_scan(elements<float>(ranges).span(),
-                 {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
+  put_laser_scan(elements<float>(ranges).span(), header_of(scan, frame_id), out);
   return nb::bytes(out.data(), out.size());
 }
 
 nb::bytes point_cloud2(const kept_scan& scan, const std::string& frame_id) {
   std::vector<std::uint8_t> out;
-  put_point_cloud2(elements<point>(scan.points).span(),
-                   {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
+  put_point_cloud2(elements<point>(scan.points).span(), header_of(scan, frame_id), out);
   return nb::bytes(out.data(), out.size());
 }
 
@@ -90,6 +112,12 @@ void bind_scan(nb::module_& module) {
           "is_piece", [](const kept_scan& s) { return s.about.is_piece(); },
           "Whether it is only a part of a turn. All other scans are revolutions, although data may "
           "be lost.")
+      .def_prop_ro(
+          "model", [](const kept_scan& s) { return s.about.model->word; },
+          "The model of the lidar: 'g4', 'x4', ...")
+      .def_prop_ro(
+          "turn_deg", [](const kept_scan& s) { return s.about.model->turn_deg; },
+          "The turn from the frame 'vendor' to 'robot': 180 for a G4, 0 for others.")
       .def_ro("time_ns", &kept_scan::time_ns,
               "When its first point was measured, in nanoseconds of the monotonic clock "
               "(time.monotonic_ns); 0 if "
@@ -121,29 +149,33 @@ void bind_scan(nb::module_& module) {
               "The measured rotation frequency, in Hz; 0 if it cannot be determined.")
       .def_ro("measured_sample_rate_hz", &kept_scan::measured_sample_rate_hz, "Samples per second.")
       .def(
-          "xy", [](const kept_scan& s, frame to) { return to_xy_array(s.points, to); },
+          "xy",
+          [](const kept_scan& s, frame to) {
+            return to_xy_array(s.points, to, s.about.model->turn_deg);
+          },
           "frame"_a = frame::robot,
-          "x and y of each point in metres, an array of two columns. 'robot': x ahead (opposite "
-          "the cable exit), y to "
+          "x and y of each point in metres, an array of two columns. 'robot': x ahead (of a G4 "
+          "opposite the cable exit), y to "
           "the left. 'vendor': x at 0 degrees, y at 90 degrees clockwise. Both are NaN for a point "
           "without return.")
       .def(
           "ranges",
-          [](const kept_scan& s, std::size_t n, frame to, grid_pick pick, bool keep_too_near,
-             no_return_as no_return) {
-            return to_ranges(s.points, n, {to, pick, keep_too_near, no_return});
+          [](const kept_scan& s, std::optional<std::size_t> n, frame to, grid_pick pick,
+             bool keep_too_near, no_return_as no_return) {
+            return ranges_of(s, n, {to, pick, keep_too_near, no_return});
           },
-          "n"_a = 720, "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
+          "n"_a = nb::none(), "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
           "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
-          "The scan on a grid of `n` directions (1 to 65536), in metres: inf where nothing came "
-          "back (or `no_return`: 'nan', 'max' for 16.38375), NaN where nothing is known. inf is "
+          "The scan on a grid of `n` directions (1 to 65536; by default by the model, 720 for a "
+          "G4), in metres: inf where nothing came back (or `no_return`: 'nan', 'max' for the "
+          "longest range, 16.38375 for a G4), NaN where nothing is known. inf is "
           "not free space: what is nearer than 0.28 m may give no return; see mark_near(). In the "
           "frame 'robot' range 0 is at -180 degrees, and the next ones follow "
           "counter-clockwise; in "
           "'vendor' range 0 is at 0 degrees, and the next ones follow clockwise. Of several points "
           "in a bin it takes "
           "the 'nearest' to the middle of the bin, or the one with the 'minimum' range.")
-      .def("laser_scan", &laser_scan, "bins"_a = 720, "frame_id"_a = "laser",
+      .def("laser_scan", &laser_scan, "bins"_a = nb::none(), "frame_id"_a = "laser",
            "no_return"_a = no_return_as::infinity,
            "The scan as a sensor_msgs/msg/LaserScan in CDR, with the ranges of ranges(bins): for "
            "ROS 2, zenoh and MCAP.")

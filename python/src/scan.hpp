@@ -26,8 +26,10 @@ struct kept_scan {
   float measured_frequency_hz;
 };
 
-/// Points in frame `to`, two columns.
-[[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to);
+/// Points in frame `to`, two columns; `turn_deg` is that of the model.
+[[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to, unsigned turn_deg);
+/// Raises ValueError if it is the turn of no model.
+[[nodiscard]] std::uint16_t checked_turn(unsigned turn_deg);
 /// One range for each bin, in metres.
 [[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
                                      const grid_options& how);

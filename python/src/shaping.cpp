@@ -29,6 +29,9 @@ using namespace nb::literals;
 
 /// A constant twist, or poses with times.
 using motion = std::variant<twist_2d, array<stamped_pose>>;
+/// Points, how the lidar is mounted, and its turn.
+using merged_lidar =
+    std::variant<std::pair<array<point>, mounting>, std::tuple<array<point>, mounting, unsigned>>;
 
 void require_finite(std::initializer_list<double> values) {
   for (const double value : values) {
@@ -50,29 +53,34 @@ auto with_motion(const motion& how, const Make& make) {
 }
 
 std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, const motion& how,
-                                                   std::int64_t reference_ns,
-                                                   const mounting& mount) {
+                                                   std::int64_t reference_ns, const mounting& mount,
+                                                   unsigned turn_deg) {
+  const std::uint16_t turn = checked_turn(turn_deg);
   const elements<point> from(points);
   std::size_t outside = 0;
   auto made = make_array<point>(from.span().size(), [&](std::span<point> out) {
     outside = with_motion(how, [&](const auto& moved) {
-      return deskew(from.span(), moved, reference_ns, out, mount).outside;
+      return deskew(from.span(), moved, reference_ns, out, mount, turn).outside;
     });
   });
   return {std::move(made), outside};
 }
 
 std::tuple<array<point>, std::size_t, std::vector<bool>> merge_arrays(
-    const std::vector<std::pair<array<point>, mounting>>& lidars, const motion& how,
-    std::int64_t reference_ns, double fresh) {
+    const std::vector<merged_lidar>& lidars, const motion& how, std::int64_t reference_ns,
+    double fresh) {
   if (lidars.size() > 32) raise_impossible("at most 32 lidars", lidars.size());
   if (!(fresh >= 0.0 && fresh <= 3600.0)) raise_impossible("fresh: 0 to 3600 seconds", fresh);
   std::deque<elements<point>> kept;
   std::vector<mounted_scan> scans;
   std::size_t count = 0;
-  for (const auto& [points, mount] : lidars) {
-    scans.push_back({kept.emplace_back(points).span(), mount});
+  const auto take = [&](const array<point>& points, const mounting& mount,
+                        unsigned turn_deg = g4_model.turn_deg) {
+    scans.push_back({kept.emplace_back(points).span(), mount, checked_turn(turn_deg)});
     count += scans.back().points.size();
+  };
+  for (const merged_lidar& each : lidars) {
+    std::visit([&take](const auto& parts) { std::apply(take, parts); }, each);
   }
   merged result;
   auto made = make_array<point>(count, [&](std::span<point> out) {
@@ -144,12 +152,12 @@ void bind_estimator(nb::module_& module) {
       .def(nb::init<>())
       .def(
           "add",
-          [](twist_estimator& estimator, const array<point>& points) {
-            return estimator.add(elements<point>(points).span());
+          [](twist_estimator& estimator, const array<point>& points, unsigned turn_deg) {
+            return estimator.add(elements<point>(points).span(), checked_turn(turn_deg));
           },
-          "points"_a,
+          "points"_a, "turn_deg"_a = g4_model.turn_deg,
           "The twist during the revolution before `points` and `points`, those of the next "
-          "revolution.")
+          "revolution. `turn_deg`: Scan.turn_deg.")
       .def("reset", &twist_estimator::reset, "Forgets all scans.");
 }
 
@@ -167,30 +175,35 @@ void bind_shaping(nb::module_& module) {
   bind_motion(module);
   bind_estimator(module);
   module.def("to_xy", &to_xy_array, "points"_a, "frame"_a = frame::robot,
-             "x and y of each point in metres: see Scan.xy().");
+             "turn_deg"_a = g4_model.turn_deg,
+             "x and y of each point in metres: see Scan.xy(). `turn_deg`: Scan.turn_deg.");
   module.def(
       "fill_grid",
       [](const array<point>& points, std::size_t n, frame to, grid_pick pick, bool keep_too_near,
-         no_return_as no_return, bool near_is_minus_infinity) {
-        return to_ranges(points, n, {to, pick, keep_too_near, no_return, near_is_minus_infinity});
+         no_return_as no_return, bool near_is_minus_infinity, unsigned turn_deg, float longest_mm) {
+        return to_ranges(points, n,
+                         {to, pick, keep_too_near, no_return, near_is_minus_infinity,
+                          checked_turn(turn_deg), longest_mm});
       },
       "points"_a, "n"_a = 720, "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
       "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
-      "near_is_minus_infinity"_a = false,
-      "The points on a grid of `n` directions, in metres: see Scan.ranges().");
+      "near_is_minus_infinity"_a = false, "turn_deg"_a = g4_model.turn_deg,
+      "longest_mm"_a = longest_range_mm(g4_layout),
+      "The points on a grid of `n` directions, in metres: see Scan.ranges(). `turn_deg`: "
+      "Scan.turn_deg. `longest_mm`: what 'max' is, in millimetres.");
   module.def("deskew", &deskew_array, "points"_a, "motion"_a, "reference_ns"_a,
-             "mount"_a = mounting{},
+             "mount"_a = mounting{}, "turn_deg"_a = g4_model.turn_deg,
              "The points as seen from where the lidar was at `reference_ns` (nanoseconds of the "
              "monotonic clock), while the "
              "robot moved with a constant Twist, or along poses (an array with the dtype "
              "POSE_DTYPE, times ascending). "
              "Returns new points, and how many of them were left where they were and flagged "
              "PointFlag.NOT_DESKEWED, because "
-             "their time or the motion is not known.");
+             "their time or the motion is not known. `turn_deg`: Scan.turn_deg.");
   module.def("merge_scans", &merge_arrays, "lidars"_a, "motion"_a, "reference_ns"_a,
              "fresh"_a = static_cast<double>(fresh_scan_ns) * 1e-9,
-             "The points of up to 32 lidars, each with its Mounting, as those of one lidar at the "
-             "robot's origin, deskewed to "
+             "The points of up to 32 lidars, each with its Mounting, and its Scan.turn_deg if that "
+             "is not 180, as those of one G4 at the robot's origin, deskewed to "
              "`reference_ns`. Returns the points; how many were not deskewed; and for each lidar "
              "whether it is lost: without "
              "points, or with a last point farther than `fresh` seconds from `reference_ns`.");

@@ -38,6 +38,10 @@ void fill(g4lidar_scan& out, const scan& from) noexcept {
   out.turned_deg = from.turned_deg;
   out.is_whole = from.is_whole();
   out.is_piece = from.is_piece();
+  out.turn_deg = from.model->turn_deg;
+  out.longest_range_mm = longest_range_mm(from.model->samples.layout);
+  out.default_bins = default_bins(*from.model);
+  out.model = literal(from.model->word);
 }
 
 static_assert(G4LIDAR_SAMPLE_RATE == 1 && G4LIDAR_SCAN_FREQUENCY == 2 &&

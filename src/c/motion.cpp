@@ -8,6 +8,7 @@
 #include "g4lidar/deskew.hpp"
 #include "g4lidar/twist_estimator.hpp"
 #include "motion.hpp"
+#include "ranges.hpp"
 
 using namespace g4lidar;
 using namespace g4lidar::c;
@@ -25,8 +26,10 @@ bool is_usable(const g4lidar_twist& twist) noexcept {
 
 template <class Deskew>
 int deskewed_by(const g4lidar_point* points, std::size_t count, const g4lidar_mounting* mount,
-                g4lidar_point* out, std::size_t* outside, Deskew deskew_points) noexcept {
+                unsigned turn_deg, g4lidar_point* out, std::size_t* outside,
+                Deskew deskew_points) noexcept {
   if (count > 0 && (points == nullptr || out == nullptr)) return G4LIDAR_BAD_ARGUMENT;
+  if (!is_turn(turn_deg)) return G4LIDAR_BAD_ARGUMENT;
   if (mount != nullptr && (!g4lidar::c::is_usable(mount->pose) || !has_known_members(*mount))) {
     return G4LIDAR_BAD_ARGUMENT;
   }
@@ -57,24 +60,26 @@ std::optional<std::span<const stamped_pose>> g4lidar::c::path_of(const g4lidar_s
 }
 
 int g4lidar_deskew_by_twist(const g4lidar_point* points, size_t count, const g4lidar_twist* twist,
-                            int64_t reference_ns, const g4lidar_mounting* mount, g4lidar_point* out,
-                            size_t* outside) {
+                            int64_t reference_ns, const g4lidar_mounting* mount, unsigned turn_deg,
+                            g4lidar_point* out, size_t* outside) {
   if (twist == nullptr || !is_usable(*twist)) return G4LIDAR_BAD_ARGUMENT;
-  return deskewed_by(points, count, mount, out, outside,
+  return deskewed_by(points, count, mount, turn_deg, out, outside,
                      [&](std::span<const point> in, std::span<point> to, const mounting& fixed) {
-                       return deskew(in, twist_of(*twist), reference_ns, to, fixed);
+                       return deskew(in, twist_of(*twist), reference_ns, to, fixed,
+                                     static_cast<std::uint16_t>(turn_deg));
                      });
 }
 
 int g4lidar_deskew_by_path(const g4lidar_point* points, size_t count,
                            const g4lidar_stamped_pose* path, size_t path_count,
-                           int64_t reference_ns, const g4lidar_mounting* mount, g4lidar_point* out,
-                           size_t* outside) {
+                           int64_t reference_ns, const g4lidar_mounting* mount, unsigned turn_deg,
+                           g4lidar_point* out, size_t* outside) {
   const auto poses = path_of(path, path_count);
   if (!poses) return G4LIDAR_BAD_ARGUMENT;
-  return deskewed_by(points, count, mount, out, outside,
+  return deskewed_by(points, count, mount, turn_deg, out, outside,
                      [&](std::span<const point> in, std::span<point> to, const mounting& fixed) {
-                       return deskew(in, *poses, reference_ns, to, fixed);
+                       return deskew(in, *poses, reference_ns, to, fixed,
+                                     static_cast<std::uint16_t>(turn_deg));
                      });
 }
 
@@ -86,11 +91,13 @@ int g4lidar_estimator_create(g4lidar_estimator** estimator, g4lidar_error* error
 }
 
 int g4lidar_estimator_add(g4lidar_estimator* estimator, const g4lidar_point* points, size_t count,
-                          g4lidar_twist_estimate* estimate) {
-  if (estimator == nullptr || estimate == nullptr || (count > 0 && points == nullptr)) {
+                          unsigned turn_deg, g4lidar_twist_estimate* estimate) {
+  if (!is_turn(turn_deg) || estimator == nullptr || estimate == nullptr ||
+      (count > 0 && points == nullptr)) {
     return G4LIDAR_BAD_ARGUMENT;
   }
-  const twist_estimate found = estimator->made.add(points_of(points, count));
+  const twist_estimate found =
+      estimator->made.add(points_of(points, count), static_cast<std::uint16_t>(turn_deg));
   *estimate = {};
   estimate->twist = {found.twist.x_m_per_s, found.twist.y_m_per_s, found.twist.yaw_rad_per_s};
   std::copy(found.covariance.begin(), found.covariance.end(), estimate->covariance);

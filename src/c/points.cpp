@@ -36,19 +36,25 @@ int marked_by(g4lidar_point* points, std::size_t count, const g4lidar_outlier_op
 
 }  // namespace
 
-int g4lidar_to_xy(const g4lidar_point* points, size_t count, int frame, g4lidar_xy* out) {
-  if (!is_frame(frame) || (count > 0 && (points == nullptr || out == nullptr))) {
+int g4lidar_to_xy(const g4lidar_point* points, size_t count, int frame, unsigned turn_deg,
+                  g4lidar_xy* out) {
+  if (!is_frame(frame) || !is_turn(turn_deg) ||
+      (count > 0 && (points == nullptr || out == nullptr))) {
     return G4LIDAR_BAD_ARGUMENT;
   }
-  to_xy(points_of(points, count), frame_of(frame), {reinterpret_cast<xy_point*>(out), count});
+  to_xy(points_of(points, count), frame_of(frame), {reinterpret_cast<xy_point*>(out), count},
+        static_cast<std::uint16_t>(turn_deg));
   return G4LIDAR_OK;
 }
 
-int g4lidar_to_polar(const g4lidar_point* points, size_t count, int frame, g4lidar_polar* out) {
-  if (!is_frame(frame) || (count > 0 && (points == nullptr || out == nullptr))) {
+int g4lidar_to_polar(const g4lidar_point* points, size_t count, int frame, unsigned turn_deg,
+                     g4lidar_polar* out) {
+  if (!is_frame(frame) || !is_turn(turn_deg) ||
+      (count > 0 && (points == nullptr || out == nullptr))) {
     return G4LIDAR_BAD_ARGUMENT;
   }
-  to_polar(points_of(points, count), frame_of(frame), {reinterpret_cast<polar*>(out), count});
+  to_polar(points_of(points, count), frame_of(frame), {reinterpret_cast<polar*>(out), count},
+           static_cast<std::uint16_t>(turn_deg));
   return G4LIDAR_OK;
 }
 

@@ -22,7 +22,9 @@ inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options)
                                                     false,
                                                     {},
                                                     G4LIDAR_NO_RETURN_AS_INFINITY,
-                                                    0};
+                                                    0,
+                                                    g4_model.turn_deg,
+                                                    longest_range_mm(g4_layout)};
 inline constexpr g4lidar_outlier_options outlier_defaults{
     sizeof(g4lidar_outlier_options), 2, 1, 0.05F, 0.05F, 1, 5.0F, false, {}};
 inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 280.0F, 3, {}};
@@ -34,19 +36,28 @@ inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options)
   return value == G4LIDAR_ROBOT ? frame::robot : frame::vendor;
 }
 
+/// Whether it is the turn of a model.
+[[nodiscard]] constexpr bool is_turn(unsigned turn_deg) noexcept {
+  return turn_deg == 0 || turn_deg == 180;
+}
+
 /// Nothing if a member has no valid value.
 [[nodiscard]] inline std::optional<grid_options> grid_of(
     const g4lidar_grid_options& given) noexcept {
   const auto is_up_to = [](std::int32_t value, int most) { return value >= 0 && value <= most; };
   if (!is_up_to(given.frame, G4LIDAR_ROBOT) || !is_up_to(given.pick, G4LIDAR_MINIMUM) ||
       !is_up_to(given.no_return, G4LIDAR_NO_RETURN_AS_MAX) ||
-      !is_up_to(given.near_is_minus_infinity, 1)) {
+      !is_up_to(given.near_is_minus_infinity, 1) || !is_turn(given.turn_deg) ||
+      !(given.longest_range_mm > 0.0F)) {
     return std::nullopt;
   }
   return grid_options{given.frame == G4LIDAR_ROBOT ? frame::robot : frame::vendor,
                       given.pick == G4LIDAR_MINIMUM ? grid_pick::minimum : grid_pick::nearest,
-                      given.keep_too_near, static_cast<no_return_as>(given.no_return),
-                      given.near_is_minus_infinity == 1};
+                      given.keep_too_near,
+                      static_cast<no_return_as>(given.no_return),
+                      given.near_is_minus_infinity == 1,
+                      static_cast<std::uint16_t>(given.turn_deg),
+                      given.longest_range_mm};
 }
 
 /// Nothing if the options cannot be used; with NULL the defaults.

@@ -35,7 +35,7 @@ constexpr g4lidar_recorder_options recorder_defaults{sizeof(g4lidar_recorder_opt
                                                      0,
                                                      0,
                                                      0,
-                                                     720,
+                                                     0,
                                                      false,
                                                      false,
                                                      false,
@@ -71,7 +71,7 @@ recording_options options_of(const g4lidar_recorder_options& given) {
   if (given.frame_id != nullptr) made.frame_id = given.frame_id;
   if (given.points_topic != nullptr) made.points_topic = given.points_topic;
   if (given.mount != nullptr) made.mount = mounting_of(*given.mount);
-  made.scan_bins = given.scan_bins;
+  if (given.scan_bins != 0) made.scan_bins = given.scan_bins;
   made.scans = !given.without_scans;
   return made;
 }

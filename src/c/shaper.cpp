@@ -19,6 +19,7 @@ using namespace g4lidar::c;
 
 struct g4lidar_shaper {
   scan_shaper made;
+  const model* of;
 };
 
 namespace {
@@ -44,7 +45,8 @@ constexpr g4lidar_shaper_options shaper_defaults{sizeof(g4lidar_shaper_options),
                                                  nullptr,
                                                  G4LIDAR_DESKEW_NONE,
                                                  false,
-                                                 {}};
+                                                 {},
+                                                 nullptr};
 
 /// The filter of the options, and the memory of what it views.
 class taken_filter {
@@ -111,7 +113,7 @@ template <class Take>
 const g4lidar_point* taken_points(g4lidar_shaper* shaper, std::size_t* count, Take take) noexcept {
   if (shaper == nullptr || count == nullptr) return nullptr;
   try {
-    const std::span<const point> points = take(shaper->made);
+    const std::span<const point> points = take(shaper->made).points;
     *count = points.size();
     return reinterpret_cast<const g4lidar_point*>(points.data());
   } catch (const std::bad_alloc&) {
@@ -141,8 +143,9 @@ int g4lidar_shaper_create(const g4lidar_shaper_options* options, g4lidar_shaper*
     if (!take_options(options, taken)) return refuse(error, bad_options);
     taken_filter filter;
     const auto how = shaping_of(taken, filter);
-    if (!how) return refuse(error, "an option of the shaper has no valid value");
-    *shaper = new g4lidar_shaper{scan_shaper(*how)};
+    const model* const of = taken.model == nullptr ? &g4_model : model_named(taken.model);
+    if (!how || of == nullptr) return refuse(error, "an option of the shaper has no valid value");
+    *shaper = new g4lidar_shaper{scan_shaper(*how), of};
     return succeed(error);
   });
 }
@@ -153,6 +156,7 @@ int g4lidar_shaper_shape(g4lidar_shaper* shaper, const g4lidar_point* points, si
   if (shaper == nullptr || (count > 0 && points == nullptr) || !poses) return G4LIDAR_BAD_ARGUMENT;
   scan source;
   source.points = points_of(points, count);
+  source.model = shaper->of;
   if (is_piece) source.flags = scan_flags::end_missing;
   return guarded(nullptr, [&] {
     shaper->made.shape(source, *poses);

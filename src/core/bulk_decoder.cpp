@@ -37,10 +37,11 @@ struct plain {
     to_points(packet, revolution, shortest_mm, out);
     times.write_to(out.first(packet.sample_count()));
   }
-  static void to_xy(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
+  static void to_xy(packet_view packet, frame to, std::uint16_t turn_deg,
+                    std::span<xy_point, max_samples> out) noexcept {
     std::array<point, max_samples> points;
     to_points(packet, 0, 1, points);
-    g4lidar::to_xy(std::span(points).first(packet.sample_count()), to, out);
+    g4lidar::to_xy(std::span(points).first(packet.sample_count()), to, out, turn_deg);
   }
   static constexpr kernels all{to_points, to_timed_points, to_xy};
 };
@@ -86,6 +87,7 @@ bulk_decoder::bulk_decoder(const model& which, instruction_set wanted) noexcept
     : parser_(which.samples),
       format_(which.samples),
       shortest_mm_(which.range.min_mm),
+      turn_deg_(which.turn_deg),
       set_(wanted == best_instruction_set() ? wanted : instruction_set::portable) {}
 
 /// The next event, and how many points were written for it.
@@ -160,10 +162,11 @@ auto points_with(instruction_set set, sample_format format, std::uint16_t shorte
   };
 }
 
-auto places_with(instruction_set set, sample_format format, frame to) noexcept {
-  return [kernel = bulk::kernels_of(set, format).to_xy, to](
+auto places_with(instruction_set set, sample_format format, frame to,
+                 std::uint16_t turn_deg) noexcept {
+  return [kernel = bulk::kernels_of(set, format).to_xy, to, turn_deg](
              packet_view packet, std::uint32_t /*revolution*/,
-             std::span<xy_point, max_samples> out) noexcept { kernel(packet, to, out); };
+             std::span<xy_point, max_samples> out) noexcept { kernel(packet, to, turn_deg, out); };
 }
 
 }  // namespace
@@ -174,7 +177,7 @@ std::span<point> bulk_decoder::decode(bytes& input, std::span<point> out) noexce
 
 std::span<xy_point> bulk_decoder::decode_xy(bytes& input, frame to,
                                             std::span<xy_point> out) noexcept {
-  return run(going_on{input}, places_with(set_, format_, to), out);
+  return run(going_on{input}, places_with(set_, format_, to, turn_deg_), out);
 }
 
 std::span<point> bulk_decoder::finish(std::span<point> out) noexcept {
@@ -182,7 +185,7 @@ std::span<point> bulk_decoder::finish(std::span<point> out) noexcept {
 }
 
 std::span<xy_point> bulk_decoder::finish_xy(frame to, std::span<xy_point> out) noexcept {
-  return run(ended{}, places_with(set_, format_, to), out);
+  return run(ended{}, places_with(set_, format_, to, turn_deg_), out);
 }
 
 }  // namespace g4lidar

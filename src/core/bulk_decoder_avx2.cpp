@@ -33,7 +33,7 @@ G4LIDAR_AVX2 words none(words quarters) {
 /// from its middle; but the remaining corrections are within 6.3 degrees of the middle, so three
 /// terms of the series are sufficient for 3e-8 degrees.
 constexpr std::uint32_t nearest_raw = 400;
-static_assert(nearest_raw == static_cast<std::uint32_t>(4 * too_near_mm));
+static_assert(nearest_raw == 4 * g4_model.range.min_mm);
 
 G4LIDAR_AVX2 floats triangle_correction(floats sample) {
   const floats t = (every(797.3080408F) - sample) /
@@ -257,9 +257,9 @@ class directions {
 /// No arctangent is needed: the correction is an angle in the right-angled triangle with the legs d
 /// and u = 21.8 - (21.8 / 155.3) d, so the range along the first-level angle and across it follow
 /// from the sides, and a rotation by that angle is sufficient. Of an SCL u is 17.8. In the robot's frame angles grow in
-/// the other direction, from 180 degrees on.
+/// the other direction, from `turn_deg` on.
 template <sample_layout Layout, correction_kind Kind>
-G4LIDAR_AVX2 void convert_to_xy(packet_view packet, frame to,
+G4LIDAR_AVX2 void convert_to_xy(packet_view packet, frame to, std::uint16_t turn_deg,
                                 std::span<xy_point, max_samples> out) noexcept {
   constexpr bool is_scl = Kind == correction_kind::scl;
   constexpr auto offset_raw = static_cast<float>(is_scl ? 71.2 : 4.0 * correction_offset_mm);
@@ -285,8 +285,9 @@ G4LIDAR_AVX2 void convert_to_xy(packet_view packet, frame to,
       across[i] = share_or_nan * u;
     }
   }
-  const directions turn(every(mirrored ? 180.0F - angles.first : angles.first),
-                        every(angles.step * sign), raw.count());
+  const directions turn(
+      every(mirrored ? static_cast<float>(turn_deg) - angles.first : angles.first),
+      every(angles.step * sign), raw.count());
   for (std::size_t i = 0; i < raw.count(); ++i) {
     const auto [sine, cosine] = turn[i];
     xy_point* const here = out.data() + lanes * i;
@@ -316,8 +317,9 @@ struct avx2_kernels {
     }
   }
   __attribute__((target("avx2,fma"))) static void to_xy(
-      packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
-    convert_to_xy<Layout, Kind>(packet, to, out);
+      packet_view packet, frame to, std::uint16_t turn_deg,
+      std::span<xy_point, max_samples> out) noexcept {
+    convert_to_xy<Layout, Kind>(packet, to, turn_deg, out);
   }
   static const kernels& portable() noexcept {
     return kernels_of(instruction_set::portable, {Layout, Kind});

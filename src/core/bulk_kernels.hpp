@@ -24,7 +24,9 @@ struct kernels {
   /// With their times.
   void (*to_timed_points)(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
                           const packet_times& times, std::span<point, max_samples> out) noexcept;
-  void (*to_xy)(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept;
+  /// `turn_deg` is that of the model.
+  void (*to_xy)(packet_view packet, frame to, std::uint16_t turn_deg,
+                std::span<xy_point, max_samples> out) noexcept;
 };
 
 /// The kernels of `Kernels` for a combination of layout and correction that models have; another

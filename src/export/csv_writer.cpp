@@ -13,7 +13,9 @@ template <frame Frame, length_unit Unit>
 class csv_points final : public point_writer {
  public:
   explicit csv_points(const text_style& style)
-      : has_intensity_(style.intensity), has_sample_flags_(style.sample_flags) {}
+      : has_intensity_(style.intensity),
+        has_sample_flags_(style.sample_flags),
+        turn_deg_(style.turn_deg) {}
 
   [[nodiscard]] bool takes_scans() const noexcept override { return false; }
 
@@ -44,7 +46,7 @@ class csv_points final : public point_writer {
   char* put_row(char* at, const point& p) noexcept {
     if (p.revolution != scan_) keep_scan(p.revolution);
     std::memcpy(at, scan_text_.data(), 16);
-    at = put_angle_column<Frame>(at + scan_length_, p);
+    at = put_angle_column<Frame>(at + scan_length_, p, turn_deg_);
     *at++ = ',';
     at = put_range_column<Unit>(at, p);
     *at++ = ',';
@@ -74,6 +76,7 @@ class csv_points final : public point_writer {
 
   bool has_intensity_;
   bool has_sample_flags_;
+  std::uint16_t turn_deg_;
   std::uint32_t scan_ = 0;
   std::ptrdiff_t scan_length_ = 2;
   std::array<char, 32> scan_text_{'0', ','};

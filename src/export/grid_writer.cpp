@@ -33,7 +33,7 @@ class grid_writer final : public point_writer {
   }
 
   void write_scan(const scan_record& record, text_sink& out) override {
-    fill_grid(record.scan.points, ranges_m_, how_);
+    fill_grid(record.scan, ranges_m_, how_);
     const std::string scan = std::to_string(record.scan.revolution);
     const std::string time_ns = std::to_string(record.time_ns);
     const std::string partial = record.scan.is_partial() ? "true" : "false";

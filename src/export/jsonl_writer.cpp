@@ -22,12 +22,15 @@ class jsonl_points final : public point_writer {
   [[nodiscard]] bool takes_scans() const noexcept override { return !style_.as_they_come; }
 
   void write_points(std::span<const point> points, text_sink& out) override {
-    for (const point& p : points) out.wrote(put_text(put_point(out.room(max_object), p), "}\n"));
+    for (const point& p : points) {
+      out.wrote(put_text(put_point(out.room(max_object), p, style_.turn_deg), "}\n"));
+    }
   }
 
   void write_scan(const scan_record& record, text_sink& out) override {
     for (const point& p : record.scan.points) {
-      char* at = put_text(put_point(out.room(max_object), p), ",\"partial\":");
+      char* at = put_point(out.room(max_object), p, record.scan.model->turn_deg);
+      at = put_text(at, ",\"partial\":");
       at = put_bool(at, record.scan.is_partial());
       out.wrote(put_text(at, "}\n"));
     }
@@ -36,9 +39,9 @@ class jsonl_points final : public point_writer {
  private:
   static constexpr std::size_t max_object = 384;
 
-  char* put_point(char* at, const point& p) const noexcept {
+  char* put_point(char* at, const point& p, std::uint16_t turn_deg) const noexcept {
     at = digits::put_number(put_text(at, "{\"scan\":"), p.revolution);
-    at = put_angle_column(put_text(at, ",\"angle_deg\":"), p, style_.to);
+    at = put_angle_column(put_text(at, ",\"angle_deg\":"), p, style_.to, turn_deg);
     at = put_range_column(put_text(at, range_name_), p, style_.unit);
     at = digits::put_signed(put_text(at, ",\"time_ns\":"), p.time_ns);
     if (style_.intensity) at = digits::put_number(put_text(at, ",\"intensity\":"), p.intensity);
@@ -77,8 +80,9 @@ class jsonl_scans final : public point_writer {
               ",\"turned_deg\":" + with_decimals(static_cast<double>(scan.turned_deg), 2) +
               ",\"reported_hz\":" + if_known(reported_hz(scan), 1, "null") +
               ",\"measured_hz\":" + if_known(record.measured_hz, 3, "null"));
-    write_column(scan, "angle_deg", out,
-                 [this](char* at, const point& p) { return put_angle_column(at, p, style_.to); });
+    write_column(scan, "angle_deg", out, [&](char* at, const point& p) {
+      return put_angle_column(at, p, style_.to, scan.model->turn_deg);
+    });
     write_column(scan, style_.unit == length_unit::metres ? "range_m" : "range_mm", out,
                  [this](char* at, const point& p) { return put_range_column(at, p, style_.unit); });
     write_column(scan, "time_ns", out,

@@ -11,8 +11,8 @@ namespace g4lidar {
 namespace {
 
 /// 28 bytes.
-void write_binary(const point& p, frame to, text_sink& out) {
-  const cloud_point shown = in_cloud(p, to);
+void write_binary(const point& p, frame to, std::uint16_t turn_deg, text_sink& out) {
+  const cloud_point shown = in_cloud(p, to, turn_deg);
   char* at = out.room(28);
   for (const float field : {shown.x_m, shown.y_m, 0.0F, shown.range_m, shown.angle_deg}) {
     digits::put_word(at,
@@ -23,15 +23,16 @@ void write_binary(const point& p, frame to, text_sink& out) {
   out.wrote(at + sizeof p.time_ns);
 }
 
-void write_ascii(const point& p, frame to, text_sink& out) {
-  const cloud_point shown = in_cloud(p, to);
+void write_ascii(const point& p, frame to, std::uint16_t turn_deg, text_sink& out) {
+  const cloud_point shown = in_cloud(p, to, turn_deg);
   out.write(shortest(shown.x_m) + " " + shortest(shown.y_m) + " 0 " + shortest(shown.range_m) +
             " " + shortest(shown.angle_deg) + " " + std::to_string(p.time_ns) + "\n");
 }
 
 }  // namespace
 
-void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out) {
+void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out,
+               std::uint16_t turn_deg) {
   const bool is_binary = data == pcd_data::binary;
   const std::string count = std::to_string(returns_in(points));
   out.write(
@@ -51,7 +52,7 @@ void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink
   out.write(is_binary ? "DATA binary\n" : "DATA ascii\n");
   for (const point& p : points) {
     if (p.is_no_return()) continue;
-    is_binary ? write_binary(p, to, out) : write_ascii(p, to, out);
+    is_binary ? write_binary(p, to, turn_deg, out) : write_ascii(p, to, turn_deg, out);
   }
 }
 

@@ -169,7 +169,7 @@ class npz_writer final : public npy_writer {
 
 class ply_writer final : public point_file_writer {
  public:
-  explicit ply_writer(frame to) : to_(to) {}
+  ply_writer(frame to, std::uint16_t turn_deg) : to_(to), turn_deg_(turn_deg) {}
 
   void begin(text_sink& out) override { out.write(first_bytes()); }
 
@@ -177,7 +177,7 @@ class ply_writer final : public point_file_writer {
     constexpr std::size_t vertex_size = 5 * sizeof(float) + sizeof(double) + sizeof(std::uint32_t);
     for (const point& p : points) {
       if (p.is_no_return()) continue;
-      const cloud_point v = in_cloud(p, to_);
+      const cloud_point v = in_cloud(p, to_, turn_deg_);
       char* at = out.room(vertex_size + digits::slack);
       for (const float field : {v.x_m, v.y_m, 0.0F, v.range_m, v.angle_deg}) {
         digits::put_word(
@@ -204,17 +204,18 @@ class ply_writer final : public point_file_writer {
 
  private:
   frame to_;
+  std::uint16_t turn_deg_;
   std::uint64_t count_ = 0;
 };
 
 class xyz_writer final : public point_file_writer {
  public:
-  explicit xyz_writer(frame to) : to_(to) {}
+  xyz_writer(frame to, std::uint16_t turn_deg) : to_(to), turn_deg_(turn_deg) {}
 
   void write_points(std::span<const point> points, text_sink& out) override {
     for (const point& p : points) {
       if (p.is_no_return()) continue;
-      const cloud_point v = in_cloud(p, to_);
+      const cloud_point v = in_cloud(p, to_, turn_deg_);
       out.write(shortest(v.x_m) + " " + shortest(v.y_m) + " 0\n");
     }
   }
@@ -224,22 +225,24 @@ class xyz_writer final : public point_file_writer {
 
  private:
   frame to_;
+  std::uint16_t turn_deg_;
 };
 
 }  // namespace
 
-std::unique_ptr<point_file_writer> make_point_file_writer(point_file_format format, frame to) {
+std::unique_ptr<point_file_writer> make_point_file_writer(point_file_format format, frame to,
+                                                          std::uint16_t turn_deg) {
   switch (format) {
     case point_file_format::npy:
       return std::make_unique<npy_writer>();
     case point_file_format::npz:
       return std::make_unique<npz_writer>();
     case point_file_format::ply:
-      return std::make_unique<ply_writer>(to);
+      return std::make_unique<ply_writer>(to, turn_deg);
     case point_file_format::xyz:
       break;
   }
-  return std::make_unique<xyz_writer>(to);
+  return std::make_unique<xyz_writer>(to, turn_deg);
 }
 
 }  // namespace g4lidar

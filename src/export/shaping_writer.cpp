@@ -8,11 +8,20 @@
 #include "g4lidar/wall_clock.hpp"
 
 namespace g4lidar {
+namespace {
+
+shaping_options shape_of(const writing_options& options) {
+  shaping_options made = options.shape;
+  made.filter.turn_deg = options.model->turn_deg;
+  return made;
+}
+
+}  // namespace
 
 shaping_writer::shaping_writer(std::unique_ptr<point_writer> inner, const writing_options& options)
     : inner_(std::move(inner)),
       options_(options),
-      shaper_(options.shape),
+      shaper_(shape_of(options)),
       times_(options.time, options.wall_ahead_ns),
       scan_times_(options.time, options.wall_ahead_ns) {
   options_.shape.filter = {};  // the shaper has it, with a copy of what it views
@@ -52,7 +61,10 @@ std::span<const point> shaping_writer::marked_stream(std::span<const point> poin
   const std::size_t old = passed_on_ - std::min(passed_on_, window);
   stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(old));
   stream_.insert(stream_.end(), points.begin(), points.end());
-  if (marks.near) mark_near(std::span(stream_).last(points.size()), near_, *marks.near);
+  if (marks.near) {
+    mark_near(std::span(stream_).last(points.size()), near_, *marks.near,
+              options_.model->samples.correction);
+  }
   marks.mark_by_neighbours(stream_, scan_ends::open);
   const std::size_t from = passed_on_ - old;
   const std::size_t waiting = is_end ? 0 : window;
@@ -117,14 +129,14 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
   times_.come(record.time_ns);
   scan_times_.come(record.time_ns);
   shaper_.shape(record.scan, options_.path);
-  const std::span<const point> points = options_.for_grid ? shaper_.for_grid() : shaper_.kept();
+  const scan shaped = options_.for_grid ? shaper_.for_grid() : shaper_.kept();
   if (shaper_.outside() > 0) {
     not_deskewed_ +=
-        static_cast<std::uint64_t>(std::ranges::count_if(points, &point::is_not_deskewed));
+        static_cast<std::uint64_t>(std::ranges::count_if(shaped, &point::is_not_deskewed));
   }
-  if (!inner_->takes_scans()) return pass_on(points, out);
+  if (!inner_->takes_scans()) return pass_on(shaped.points, out);
   scan_record changed = record;
-  changed.scan.points = timed(points);
+  changed.scan.points = timed(shaped.points);
   changed.time_ns = scan_times_.of(record.time_ns);
   changed.robot = robot.value_or(record.robot);
   inner_->write_scan(changed, out);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <string>
@@ -31,10 +32,12 @@ class carmen_writer final : public point_writer {
 
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
   void write_scan(const scan_record& record, text_sink& out) override {
-    fill_grid(record.scan.points, ranges_m_, {.pick = grid_pick::minimum});
+    fill_grid(record.scan, ranges_m_, {.pick = grid_pick::minimum});
     // Seen from above the angles of a lidar that hangs upside down grow clockwise; the first bin is behind it.
     if (mount_.upside_down) std::reverse(ranges_m_.begin() + 1, ranges_m_.end());
+    const float longest_m = longest_range_mm(record.scan.model->samples.layout) * 0.001F;
     write_carmen_scan({.ranges_m = ranges_m_,
+                       .max_range_m = std::max(carmen_scan{}.max_range_m, std::ceil(longest_m)),
                        .robot = record.robot,
                        .mount = mount_.pose,
                        .stamp_ns = record.time_ns},

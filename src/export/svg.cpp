@@ -22,7 +22,7 @@ std::string circle(int radius_cm) { return "<circle r=\"" + std::to_string(radiu
 
 }  // namespace
 
-void write_svg(std::span<const point> points, text_sink& out) {
+void write_svg(std::span<const point> points, text_sink& out, std::uint16_t turn_deg) {
   float furthest_mm = 1000.0F;
   for (const point& p : points) {
     if (is_drawn(p)) furthest_mm = std::max(furthest_mm, p.range_mm);
@@ -46,7 +46,8 @@ void write_svg(std::span<const point> points, text_sink& out) {
             "Z\" fill=\"#d04030\"/>\n<path d=\"");
   for (const point& p : points) {
     if (!is_drawn(p)) continue;
-    const xy_point place = to_xy(p, frame::robot);  // x forward is up, y to the left is left
+    const xy_point place =
+        to_xy(p, frame::robot, turn_deg);  // x forward is up, y to the left is left
     out.write("M");
     out.write(centimetres(-place.y_m) + " " + centimetres(-place.x_m) + "h0");
   }

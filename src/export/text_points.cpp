@@ -91,12 +91,12 @@ std::optional<point> point_lines::point_of(const fields& found) const {
   if (!has_place || !is_possible) return std::nullopt;
   if (!found.scan.empty() && !read_number(found.scan, made.revolution)) return std::nullopt;
   if (!found.time.empty() && !read_number(found.time, made.time_ns)) return std::nullopt;
-  if (frame_ == frame::robot) angle_deg = 180.0F - angle_deg;
+  if (frame_ == frame::robot) angle_deg = static_cast<float>(model_->turn_deg) - angle_deg;
   if (angle_deg < 0.0F) angle_deg += 360.0F;
   made.angle_deg = angle_deg < 360.0F ? angle_deg : angle_deg - 360.0F;
   made.range_mm = range * mm_;
   if (made.range_mm == 0.0F) made.flags = point_flags::no_return;
-  if (made.range_mm > 0.0F && made.range_mm < too_near_mm) {
+  if (made.range_mm > 0.0F && made.range_mm < model_->range.min_mm) {
     made.flags = point_flags::too_near;
   }
   return made;
@@ -116,8 +116,9 @@ std::optional<read_point> point_lines::read(std::string_view line) {
   return read;
 }
 
-text_points::text_points(text_source form, frame in, point_writer& writer, text_sink& out)
-    : lines_(form, in), writer_(writer), out_(out), by_scan_(writer.takes_scans()) {
+text_points::text_points(text_source form, frame in, point_writer& writer, text_sink& out,
+                         const model& which)
+    : lines_(form, in, which), writer_(writer), out_(out), by_scan_(writer.takes_scans()) {
   gathered_.reserve(by_scan_ ? largest_scan : 512);
   is_header_due_ = form == text_source::csv;
 }
@@ -179,6 +180,7 @@ void text_points::hand_over(bool cut) {
   using enum scan_flags;
   scan_record shown;
   shown.scan.points = gathered_;
+  shown.scan.model = &lines_.model();
   shown.scan.revolution = gathered_.front().revolution;
   // If the lines do not contain it, it is not known whether the first and the last one are
   // complete.

@@ -46,7 +46,7 @@ class point_columns final : public point_writer {
     };
     right(6, [&](char* to) { return digits::put_number(to, p.revolution); });
     right(2, [](char* to) { return to; });
-    right(9, [&](char* to) { return put_angle_column<2>(to, p, style_.to); });
+    right(9, [&](char* to) { return put_angle_column<2>(to, p, style_.to, style_.turn_deg); });
     right(2, [](char* to) { return to; });
     right(9, [&](char* to) {
       return p.is_no_return() ? digits::put_text(to, "-") : put_range_column(to, p, style_.unit);

@@ -18,17 +18,17 @@ namespace g4lidar {
 
 /// The angle in `Frame` with this number of decimals, at most 11 characters and digits::slack.
 template <frame Frame, unsigned Decimals = 6>
-char* put_angle_column(char* at, const point& p) noexcept {
+char* put_angle_column(char* at, const point& p, std::uint16_t turn_deg) noexcept {
   if constexpr (Frame == frame::robot) {
-    const float degrees = bearing_deg(p.angle_deg, Frame);
+    const float degrees = bearing_deg(p.angle_deg, Frame, turn_deg);
     return digits::put_signed_angle<Decimals>(at, static_cast<double>(degrees));
   }
   return digits::put_angle<Decimals>(at, static_cast<double>(p.angle_deg));
 }
 template <unsigned Decimals = 6>
-char* put_angle_column(char* at, const point& p, frame to) noexcept {
-  return to == frame::robot ? put_angle_column<frame::robot, Decimals>(at, p)
-                            : put_angle_column<frame::vendor, Decimals>(at, p);
+char* put_angle_column(char* at, const point& p, frame to, std::uint16_t turn_deg) noexcept {
+  return to == frame::robot ? put_angle_column<frame::robot, Decimals>(at, p, turn_deg)
+                            : put_angle_column<frame::vendor, Decimals>(at, p, turn_deg);
 }
 
 /// The range: millimetres with two decimals, metres with five, so that no digit is lost.

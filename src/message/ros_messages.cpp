@@ -110,10 +110,6 @@ geometry_msgs/Quaternion rotation
 
 namespace {
 
-/// Reliable ranges, in metres.
-constexpr float least_range_m = too_near_mm * 0.001F;
-constexpr float greatest_range_m = longest_range_mm * 0.001F;
-
 void put_all(cdr_writer& message, std::span<const double> values) {
   for (const double value : values) message.put(value);
 }
@@ -206,7 +202,10 @@ void put_laser_scan(std::span<const float> ranges_m, const message_header& heade
   const bool is_by_time = header.order == scan_order::time;
   const std::size_t first = is_by_time ? header.first_bin % bins : 0;
   const float increment = 2 * pi / static_cast<float>(bins);
-  const float least = -pi + increment * static_cast<float>(first);
+  // Of bin 0: by angle it is behind; by time it is 0 degrees of the device, mirrored like the frame.
+  const float begin = is_by_time && header.model->turn_deg == 0 ? 0.0F : -pi;
+  const float from_begin = begin + increment * static_cast<float>(first);
+  const float least = from_begin < pi ? from_begin : from_begin - 2 * pi;
   const float duration_s = static_cast<float>(header.duration_ns) * 1e-9F;
   cdr_writer message(out);
   put_header(message, header.stamp_ns, header.frame_id);
@@ -215,8 +214,8 @@ void put_laser_scan(std::span<const float> ranges_m, const message_header& heade
   message.put(increment);
   message.put(is_by_time ? duration_s / static_cast<float>(bins) : 0.0F);
   message.put(duration_s);
-  message.put(least_range_m);
-  message.put(greatest_range_m);
+  message.put(static_cast<float>(header.model->range.min_mm) * 0.001F);
+  message.put(longest_range_mm(header.model->samples.layout) * 0.001F);
   message.put(static_cast<std::uint32_t>(bins));
   for (const float range_m : ranges_m.subspan(first)) message.put(range_m);
   for (const float range_m : ranges_m.first(first)) message.put(range_m);
@@ -240,14 +239,14 @@ void put_point_cloud2(std::span<const point> points, const message_header& heade
   message.put(count * point_size);  // the length of `data`, whose numbers are at multiples of 4
   for (const point& p : points) {
     if (p.is_no_return()) continue;
-    const xy_point place = to_xy(p, frame::robot);
+    const xy_point place = to_xy(p, frame::robot, header.model->turn_deg);
     const std::int64_t since_ns = p.time_ns - points.front().time_ns;
     message.put(place.x_m);
     message.put(left * place.y_m);
     message.put(0.0F);
     message.put(static_cast<std::uint32_t>(
         std::clamp<std::int64_t>(since_ns, 0, std::numeric_limits<std::uint32_t>::max())));
-    const polar measured = to_polar(p, frame::robot);
+    const polar measured = to_polar(p, frame::robot, header.model->turn_deg);
     message.put(measured.range_m);
     message.put(left * measured.bearing_rad);
   }

@@ -14,9 +14,9 @@ constexpr std::size_t fewest_returns = 60;
 constexpr float farthest_mm = 60'000.0F;
 
 /// Whether its coordinates can be computed with: a caller may give any bytes.
-bool is_usable(const point& p) noexcept {
-  return p.range_mm >= too_near_mm && p.range_mm < farthest_mm && p.angle_deg >= 0.0F &&
-         p.angle_deg < 360.0F;
+bool is_usable(const point& p, std::uint16_t shortest_mm) noexcept {
+  return p.range_mm >= static_cast<float>(shortest_mm) && p.range_mm < farthest_mm &&
+         p.angle_deg >= 0.0F && p.angle_deg < 360.0F;
 }
 
 bool times_ascend(std::span<const point> points) noexcept {
@@ -29,33 +29,36 @@ bool times_ascend(std::span<const point> points) noexcept {
 
 }  // namespace
 
-void scan_points::load(std::span<const point> points) noexcept {
+void scan_points::load(std::span<const point> points, std::uint16_t turn_deg,
+                       std::uint16_t shortest_mm) noexcept {
   size_ = 0;
-  why_unusable_ = read(points);
+  why_unusable_ = read(points, turn_deg, shortest_mm);
   if (why_unusable_) return;
   drop_isolated();
   if (size_ < fewest_returns) why_unusable_ = twist_status::too_few_returns;
 }
 
-std::optional<twist_status> scan_points::read(std::span<const point> points) noexcept {
+std::optional<twist_status> scan_points::read(std::span<const point> points, std::uint16_t turn_deg,
+                                              std::uint16_t shortest_mm) noexcept {
   if (points.empty()) return twist_status::too_few_returns;
   if (!times_ascend(points)) return twist_status::no_times;
   first_ns_ = points.front().time_ns;
   last_ns_ = points.back().time_ns;
   profile_.fill(0);
-  const auto returns = static_cast<std::size_t>(std::ranges::count_if(points, is_usable));
+  const auto returns = static_cast<std::size_t>(std::ranges::count_if(
+      points, [shortest_mm](const point& p) { return is_usable(p, shortest_mm); }));
   const std::size_t step = (returns + most_returns - 1) / most_returns;
   std::size_t index = 0;
   for (const point& p : points) {
-    if (!is_usable(p)) continue;
+    if (!is_usable(p, shortest_mm)) continue;
     if (index++ % step != 0) continue;
-    const xy_point at = to_xy(p, frame::robot);
+    const xy_point at = to_xy(p, frame::robot, turn_deg);
     own_.x[size_] = static_cast<double>(at.x_m);
     own_.y[size_] = static_cast<double>(at.y_m);
     seconds_[size_] = static_cast<double>(p.time_ns - first_ns_) * 1e-9;
     ++size_;
-    profile_[std::min(directions - 1,
-                      static_cast<std::size_t>(bearing_deg(p.angle_deg, frame::robot)))] =
+    const float bearing = bearing_deg(p.angle_deg, frame::robot, turn_deg);
+    profile_[std::min(directions - 1, static_cast<std::size_t>(bearing))] =
         static_cast<std::int32_t>(p.range_mm);
   }
   return std::nullopt;

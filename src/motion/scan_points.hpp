@@ -25,8 +25,9 @@ struct positions {
 /// The returns of a scan in the order in which they were measured, without isolated ones.
 class scan_points {
  public:
-  /// Replaces the contents.
-  void load(std::span<const point> points) noexcept;
+  /// Replaces the contents: the returns from `shortest_mm` on, of a lidar with this turn.
+  void load(std::span<const point> points, std::uint16_t turn_deg,
+            std::uint16_t shortest_mm) noexcept;
   void clear() noexcept { why_unusable_ = twist_status::first_scan; }
 
   /// Why it cannot be compared with other scans.
@@ -48,7 +49,9 @@ class scan_points {
   }
 
  private:
-  [[nodiscard]] std::optional<twist_status> read(std::span<const point> points) noexcept;
+  [[nodiscard]] std::optional<twist_status> read(std::span<const point> points,
+                                                 std::uint16_t turn_deg,
+                                                 std::uint16_t shortest_mm) noexcept;
   void drop_isolated() noexcept;
 
   positions own_;  // in the lidar's own frame

@@ -33,63 +33,70 @@ bool scan_shaper::deskews() const noexcept {
 }
 
 void scan_shaper::shape(const scan& source, std::span<const stamped_pose> path) {
-  points_ = source.points;
-  ends_ = source.is_piece() ? scan_ends::open : scan_ends::joined;
+  source_ = source;
+  options_.filter.turn_deg = source.model->turn_deg;
   needs_marks_ = options_.marks.window() > 0;
-  reference_ns_ = source.time_ns();
   path_ = options_.deskew == deskewing::by_path ? path : std::span<const stamped_pose>();
   kept_.points.reset();
   for_grid_.points.reset();
   twist_.reset();
-  if (estimator_ && !points_.empty()) {
-    const twist_estimate motion = estimator_->add(points_);
+  if (estimator_ && !source.empty()) {
+    const twist_estimate motion = estimator_->add(source);
     if (motion.is_known() || motion.status == twist_status::degenerate) twist_ = motion.twist;
   }
   outside_ = count_outside();
   not_deskewed_ += outside_;
   if (!options_.marks.near) return;
-  marked_.assign(points_.begin(), points_.end());
+  marked_.assign(source_.begin(), source_.end());
   mark_near(marked_, near_, *options_.marks.near, source.model->samples.correction);
-  points_ = marked_;
+  source_.points = marked_;
 }
 
 std::size_t scan_shaper::count_outside() const noexcept {
   if (!deskews()) return 0;
-  if (!twist_ && !pose_at(path_, reference_ns_)) return points_.size();
-  return static_cast<std::size_t>(std::ranges::count_if(points_, [this](const point& p) {
+  if (!twist_ && !pose_at(path_, source_.time_ns())) return source_.size();
+  return static_cast<std::size_t>(std::ranges::count_if(source_, [this](const point& p) {
     const bool is_off_path =
         !twist_ && (p.time_ns < path_.front().time_ns || p.time_ns > path_.back().time_ns);
     return p.time_ns == 0 || is_off_path;
   }));
 }
 
-std::span<const point> scan_shaper::make(product& what, filtering* filtered) {
+scan scan_shaper::make(product& what, filtering* filtered) {
+  scan made = source_;
+  made.points = points_of(what, filtered);
+  return made;
+}
+
+std::span<const point> scan_shaper::points_of(product& what, filtering* filtered) {
   if (what.points) return *what.points;
   if (needs_marks_) {
-    if (!options_.marks.near) marked_.assign(points_.begin(), points_.end());
-    options_.marks.mark_by_neighbours(marked_, ends_);
-    points_ = marked_;
+    if (!options_.marks.near) marked_.assign(source_.begin(), source_.end());
+    options_.marks.mark_by_neighbours(marked_,
+                                      source_.is_piece() ? scan_ends::open : scan_ends::joined);
+    source_.points = marked_;
     needs_marks_ = false;
   }
-  if (options_.filter.keeps_everything() && !deskews()) return what.points.emplace(points_);
-  if (what.memory.size() < points_.size()) what.memory.resize(points_.size());
-  const std::span<point> made = filtered(points_, options_.filter, what.memory);
+  if (options_.filter.keeps_everything() && !deskews()) return what.points.emplace(source_.points);
+  if (what.memory.size() < source_.size()) what.memory.resize(source_.size());
+  const std::span<point> made = filtered(source_.points, options_.filter, what.memory);
   what.points = made;
   if (!deskews()) return made;
+  const std::int64_t reference_ns = source_.time_ns();
   if (twist_) {
-    deskew(made, *twist_, reference_ns_);
+    deskew(made, *twist_, reference_ns, {}, source_.model->turn_deg);
   } else {  // without a path it flags all of them
-    deskew(made, path_, reference_ns_, options_.mount);
+    deskew(made, path_, reference_ns, options_.mount, source_.model->turn_deg);
   }
   if (!options_.restamps) return made;
   for (point& p : made) {
-    if (!p.is_not_deskewed()) p.time_ns = reference_ns_;
+    if (!p.is_not_deskewed()) p.time_ns = reference_ns;
   }
   return made;
 }
 
-std::span<const point> scan_shaper::kept() { return make(kept_, &filter_points); }
+scan scan_shaper::kept() { return make(kept_, &filter_points); }
 
-std::span<const point> scan_shaper::for_grid() { return make(for_grid_, &filter_for_grid); }
+scan scan_shaper::for_grid() { return make(for_grid_, &filter_for_grid); }
 
 }  // namespace g4lidar

@@ -38,12 +38,13 @@ twist_estimator::twist_estimator(twist_estimator&&) noexcept = default;
 twist_estimator& twist_estimator::operator=(twist_estimator&&) noexcept = default;
 twist_estimator::~twist_estimator() = default;
 
-twist_estimate twist_estimator::add(std::span<const point> points) noexcept {
+twist_estimate twist_estimator::add(std::span<const point> points, std::uint16_t turn_deg,
+                                    std::uint16_t shortest_mm) noexcept {
   state& s = *state_;
   const scan_points& before = s.scans[s.newest];
   s.newest = 1 - s.newest;
   scan_points& after = s.scans[s.newest];
-  after.load(points);
+  after.load(points, turn_deg, shortest_mm);
   const twist_status why = comparability(before, after);
   const twist_estimate made = why == twist_status::known ? s.search.find(before, after, s.last)
                                                          : unknown_twist(why, s.last);

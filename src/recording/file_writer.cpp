@@ -140,7 +140,8 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   const std::span<const point> points = revolution.points;
   message_header header{.frame_id = options_.frame_id,
                         .duration_ns = revolution.duration_ns,
-                        .order = options_.order};
+                        .order = options_.order,
+                        .model = revolution.model};
   const auto put_stamped = [&](topic id, std::size_t size, auto put_message) {
     put(id, last_ns_, size, [&](mcap::record_text& out) {
       header.stamp_ns = wall_.at(points.front().time_ns);
@@ -150,7 +151,7 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   if (options_.scans) {
     ++counts_.scans;
     header.first_bin = ranges_.fill(revolution, options_);
-    put_stamped(topic::scan, options_.scan_bins * sizeof(float),
+    put_stamped(topic::scan, ranges_.ranges_m().size_bytes(),
                 [&](auto& out) { put_laser_scan(ranges_.ranges_m(), header, out); });
   }
   if (channels_.has(topic::points)) {

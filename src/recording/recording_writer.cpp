@@ -54,7 +54,7 @@ std::optional<error> problem_with(const recording_options& options) noexcept {
   if (options.rotate_time < 0s || options.rotate_time > 10 * 365 * 24h) {
     return bad("rotate_time: 0, or at least 1 s");
   }
-  if (options.scan_bins == 0 || options.scan_bins > largest_grid)
+  if (options.scan_bins && (*options.scan_bins == 0 || *options.scan_bins > largest_grid))
     return bad("scan_bins: 1 to 65536");
   if (!is_topic(options.topic)) return bad("topic: a whole name as ROS has them, like /front/scan");
   if (is_our_own(options.topic)) return bad("topic: one of the recording's own");

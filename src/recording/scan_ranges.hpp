@@ -2,6 +2,7 @@
 // The ranges of the LaserScan messages of a recording.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <new>
 #include <span>
@@ -19,22 +20,26 @@ namespace g4lidar {
 class scan_ranges {
  public:
   explicit scan_ranges(const recording_options& options)
-      : ranges_(options.scan_bins), shaper_({.marks = {.near = options.near}}) {}
+      : shaper_({.marks = {.near = options.near}}) {
+    ranges_.reserve(options.scan_bins.value_or(
+        default_bins(*std::ranges::max_element(models, {}, default_bins))));
+  }
 
   /// Fills them, and returns message_header::first_bin.
-  std::size_t fill(const scan& revolution, const recording_options& options) noexcept {
-    std::span<const point> points = revolution.points;
+  std::size_t fill(scan revolution, const recording_options& options) noexcept {
+    const std::size_t bins = options.scan_bins.value_or(default_bins(*revolution.model));
+    ranges_.resize(std::clamp<std::size_t>(bins, 1, ranges_.capacity()));
     try {
       shaper_.shape(revolution);
-      points = shaper_.for_grid();
+      revolution = shaper_.for_grid();
     } catch (const std::bad_alloc&) {  // without the flags
     }
     if (options.order == scan_order::time) {
-      return fill_time_grid(points, revolution.duration_ns, ranges_, options.grid);
+      return fill_time_grid(revolution, ranges_, options.grid);
     }
     grid_options how = options.grid;
     how.to = frame::robot;
-    fill_grid(points, ranges_, how);
+    fill_grid(revolution, ranges_, how);
     return 0;
   }
   [[nodiscard]] std::span<const float> ranges_m() const noexcept { return ranges_; }

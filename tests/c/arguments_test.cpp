@@ -75,8 +75,8 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_simulator_take_truth(nullptr, nullptr, 0, &count), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_simulator_next_odometry(nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_port_monitor_next(nullptr, &plugged, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_to_xy(nullptr, 1, G4LIDAR_ROBOT, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_to_polar(nullptr, 1, G4LIDAR_ROBOT, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_to_xy(nullptr, 1, G4LIDAR_ROBOT, 180, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_to_polar(nullptr, 1, G4LIDAR_ROBOT, 180, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_fill_grid(nullptr, 0, nullptr, nullptr, 1), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_shaper_create(nullptr, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_shaper_shape(nullptr, nullptr, 0, false, nullptr, 0), G4LIDAR_BAD_ARGUMENT);
@@ -85,11 +85,11 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_shaper_outside(nullptr), 0U);
   EXPECT_EQ(g4lidar_mark_isolated(nullptr, 1, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_mark_veiling(nullptr, 1, nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_deskew_by_twist(nullptr, 0, nullptr, 0, nullptr, nullptr, nullptr),
+  EXPECT_EQ(g4lidar_deskew_by_twist(nullptr, 0, nullptr, 0, nullptr, 180, nullptr, nullptr),
             G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_deskew_by_path(nullptr, 0, nullptr, 2, 0, nullptr, nullptr, nullptr),
+  EXPECT_EQ(g4lidar_deskew_by_path(nullptr, 0, nullptr, 2, 0, nullptr, 180, nullptr, nullptr),
             G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_estimator_add(nullptr, nullptr, 0, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_estimator_add(nullptr, nullptr, 0, 180, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_descriptor(nullptr), -1);
   EXPECT_EQ(g4lidar_poll_timeout_ms(nullptr), -1);
   EXPECT_EQ(g4lidar_deadline_ns(nullptr), INT64_MAX);

@@ -20,6 +20,10 @@ TEST(CLidar, GivesWholeRevolutions) {
   EXPECT_NEAR(scan->turned_deg, 360.0F, 1.0F);
   EXPECT_NEAR(scan->reported_frequency_hz, 7.0F, 0.11F);
   EXPECT_FALSE(scan->is_piece);
+  EXPECT_STREQ(scan->model, "g4");
+  EXPECT_EQ(scan->turn_deg, 180);
+  EXPECT_EQ(scan->longest_range_mm, 16383.75F);
+  EXPECT_EQ(scan->default_bins, 720U);
   EXPECT_EQ(scan->flags, 0U);
   EXPECT_EQ(scan->time_ns, scan->points[0].time_ns);
   EXPECT_EQ(scan->end_ns, scan->time_ns + scan->duration_ns);

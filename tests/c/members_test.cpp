@@ -154,7 +154,7 @@ g4lidar_point deskewed(float angle_deg, const g4lidar_twist& twist, const g4lida
   point.angle_deg = angle_deg;
   point.range_mm = 3000.0F;
   point.time_ns = second;
-  EXPECT_EQ(g4lidar_deskew_by_twist(&point, 1, &twist, 2 * second, &mount, &point, nullptr),
+  EXPECT_EQ(g4lidar_deskew_by_twist(&point, 1, &twist, 2 * second, &mount, 180, &point, nullptr),
             G4LIDAR_OK);
   return point;
 }

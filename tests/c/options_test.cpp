@@ -185,7 +185,7 @@ TEST(COptions, ReservedBytesOfAMountingAreChecked) {
   g4lidar_mounting mount{};
   g4lidar_point out{};
   const auto use = [&] {
-    return g4lidar_deskew_by_twist(&point, 1, &twist, 0, &mount, &out, nullptr);
+    return g4lidar_deskew_by_twist(&point, 1, &twist, 0, &mount, 180, &out, nullptr);
   };
   EXPECT_EQ(use(), G4LIDAR_OK);
   mount.reserved[6] = 1;

@@ -15,22 +15,22 @@ using namespace g4lidar_c_test;
 TEST(CPoints, ToCoordinates) {
   const std::vector<g4lidar_point> points{at(90.0F, 2000.0F), at(180.0F, 1000.0F), at(0.0F, 0.0F)};
   std::vector<g4lidar_xy> xy(3);
-  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_VENDOR, xy.data()), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_VENDOR, 180, xy.data()), G4LIDAR_OK);
   EXPECT_NEAR(xy[0].x_m, 0.0F, 1e-6F);
   EXPECT_NEAR(xy[0].y_m, 2.0F, 1e-6F);
   EXPECT_NEAR(xy[1].x_m, -1.0F, 1e-6F);
   EXPECT_TRUE(std::isnan(xy[2].x_m) && std::isnan(xy[2].y_m));
   // The robot looks away from the cable: 180 degrees is ahead.
-  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_ROBOT, xy.data()), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_to_xy(points.data(), 3, G4LIDAR_ROBOT, 180, xy.data()), G4LIDAR_OK);
   EXPECT_NEAR(xy[1].x_m, 1.0F, 1e-6F);
   EXPECT_NEAR(xy[0].y_m, 2.0F, 1e-6F);
   EXPECT_EQ(xy[0].time_ns, 1);
   std::vector<g4lidar_polar> polar(3);
-  ASSERT_EQ(g4lidar_to_polar(points.data(), 3, G4LIDAR_ROBOT, polar.data()), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_to_polar(points.data(), 3, G4LIDAR_ROBOT, 180, polar.data()), G4LIDAR_OK);
   EXPECT_NEAR(polar[0].bearing_rad, std::numbers::pi_v<float> / 2.0F, 1e-6F);
   EXPECT_NEAR(polar[0].range_m, 2.0F, 1e-6F);
-  EXPECT_EQ(g4lidar_to_xy(points.data(), 3, 2, xy.data()), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(g4lidar_to_xy(nullptr, 0, G4LIDAR_ROBOT, nullptr), G4LIDAR_OK);
+  EXPECT_EQ(g4lidar_to_xy(points.data(), 3, 2, 180, xy.data()), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_to_xy(nullptr, 0, G4LIDAR_ROBOT, 180, nullptr), G4LIDAR_OK);
 }
 
 TEST(CPoints, FillAGrid) {
@@ -120,37 +120,82 @@ TEST(CDeskew, MovesAPointByTheWayOfTheRobot) {
   const g4lidar_twist twist{1.0, 0.0, 0.0};
   g4lidar_point moved{};
   std::size_t outside = 7;
-  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, nullptr, &moved, &outside),
+  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, nullptr, 180, &moved, &outside),
             G4LIDAR_OK);
   EXPECT_EQ(outside, 0U);
   EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
   EXPECT_NEAR(moved.angle_deg, 180.0F, 1e-3F);
   // The same by a path, and with a lidar that looks back.
   const g4lidar_stamped_pose path[2] = {{0, {0.0, 0.0, 0.0}}, {3 * second, {3.0, 0.0, 0.0}}};
-  ASSERT_EQ(g4lidar_deskew_by_path(&ahead, 1, path, 2, 2 * second, nullptr, &moved, &outside),
+  ASSERT_EQ(g4lidar_deskew_by_path(&ahead, 1, path, 2, 2 * second, nullptr, 180, &moved, &outside),
             G4LIDAR_OK);
   EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
   g4lidar_mounting back{};
   back.pose.yaw_rad = std::numbers::pi;
-  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, &back, &moved, &outside),
+  ASSERT_EQ(g4lidar_deskew_by_twist(&ahead, 1, &twist, 2 * second, &back, 180, &moved, &outside),
             G4LIDAR_OK);
   EXPECT_NEAR(moved.range_mm, 4000.0F, 0.02F);
+}
+
+// A model that is not turned looks at its 0 degrees, and its 270 degrees are to the left.
+TEST(CTurn, PointsAreTurnedByTheArgument) {
+  const std::array<g4lidar_point, 2> points{at(0.0F, 3000.0F, second), at(270.0F, 500.0F, second)};
+  std::array<g4lidar_xy, 2> xy{};
+  std::array<g4lidar_polar, 2> polar{};
+  ASSERT_EQ(g4lidar_to_xy(points.data(), 2, G4LIDAR_ROBOT, 0, xy.data()), G4LIDAR_OK);
+  EXPECT_NEAR(xy[0].x_m, 3.0F, 1e-5F);
+  EXPECT_NEAR(xy[1].y_m, 0.5F, 1e-5F);
+  ASSERT_EQ(g4lidar_to_polar(points.data(), 2, G4LIDAR_ROBOT, 0, polar.data()), G4LIDAR_OK);
+  EXPECT_NEAR(polar[1].bearing_rad, std::numbers::pi / 2, 1e-5);
+  EXPECT_EQ(g4lidar_to_xy(points.data(), 2, G4LIDAR_ROBOT, 90, xy.data()), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_to_polar(points.data(), 2, G4LIDAR_ROBOT, 90, polar.data()),
+            G4LIDAR_BAD_ARGUMENT);
+
+  g4lidar_grid_options options;
+  g4lidar_grid_options_init(&options, sizeof options);
+  EXPECT_EQ(options.turn_deg, 180U);
+  EXPECT_EQ(options.longest_range_mm, 16383.75F);
+  std::array<float, 4> ranges{};
+  ASSERT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_OK);
+  EXPECT_FLOAT_EQ(ranges[0], 3.0F) << "behind";
+  options.turn_deg = 0;
+  ASSERT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_OK);
+  EXPECT_FLOAT_EQ(ranges[2], 3.0F) << "ahead";
+  EXPECT_FLOAT_EQ(ranges[3], 0.5F) << "to the left";
+  options.no_return = G4LIDAR_NO_RETURN_AS_MAX;
+  options.longest_range_mm = 65535.0F;
+  const g4lidar_point none = at(0.0F, 0.0F, second);
+  ASSERT_EQ(g4lidar_fill_grid(&none, 1, &options, ranges.data(), 1), G4LIDAR_OK);
+  EXPECT_EQ(ranges[0], 65.535F);
+  options.turn_deg = 90;
+  EXPECT_EQ(g4lidar_fill_grid(points.data(), 2, &options, ranges.data(), 4), G4LIDAR_BAD_ARGUMENT);
+
+  // 1 m/s ahead.
+  const g4lidar_twist twist{1.0, 0.0, 0.0};
+  g4lidar_point moved{};
+  ASSERT_EQ(
+      g4lidar_deskew_by_twist(points.data(), 1, &twist, 2 * second, nullptr, 0, &moved, nullptr),
+      G4LIDAR_OK);
+  EXPECT_NEAR(moved.range_mm, 2000.0F, 0.02F);
+  EXPECT_EQ(
+      g4lidar_deskew_by_twist(points.data(), 1, &twist, 2 * second, nullptr, 1, &moved, nullptr),
+      G4LIDAR_BAD_ARGUMENT);
 }
 
 TEST(CDeskew, CountsWhatIsOutsideAndRefusesImpossiblePaths) {
   g4lidar_point points[2] = {at(180.0F, 3000.0F, 0), at(180.0F, 3000.0F, 9 * second)};
   const g4lidar_stamped_pose path[2] = {{1, {0.0, 0.0, 0.0}}, {3 * second, {3.0, 0.0, 0.0}}};
   std::size_t outside = 0;
-  ASSERT_EQ(g4lidar_deskew_by_path(points, 2, path, 2, second, nullptr, points, &outside),
+  ASSERT_EQ(g4lidar_deskew_by_path(points, 2, path, 2, second, nullptr, 180, points, &outside),
             G4LIDAR_OK);
   EXPECT_EQ(outside, 2U);
   EXPECT_EQ(points[0].flags, G4LIDAR_NOT_DESKEWED);
   EXPECT_EQ(points[1].range_mm, 3000.0F);
   const g4lidar_stamped_pose descending[2] = {path[1], path[0]};
-  EXPECT_EQ(g4lidar_deskew_by_path(points, 2, descending, 2, 1, nullptr, points, nullptr),
+  EXPECT_EQ(g4lidar_deskew_by_path(points, 2, descending, 2, 1, nullptr, 180, points, nullptr),
             G4LIDAR_BAD_ARGUMENT);
   const g4lidar_twist impossible{std::nan(""), 0.0, 0.0};
-  EXPECT_EQ(g4lidar_deskew_by_twist(points, 2, &impossible, 1, nullptr, points, nullptr),
+  EXPECT_EQ(g4lidar_deskew_by_twist(points, 2, &impossible, 1, nullptr, 180, points, nullptr),
             G4LIDAR_BAD_ARGUMENT);
 }
 
@@ -165,7 +210,8 @@ TEST(CDeskew, EstimatesTheTwistOfADrivingRobot) {
   for (int i = 0; i < 20; ++i) {
     const g4lidar_scan* scan = next_whole(it);
     ASSERT_NE(scan, nullptr);
-    ASSERT_EQ(g4lidar_estimator_add(estimator, scan->points, scan->point_count, &estimate),
+    ASSERT_EQ(g4lidar_estimator_add(estimator, scan->points, scan->point_count, scan->turn_deg,
+                                    &estimate),
               G4LIDAR_OK);
     if (i == 0) {
       EXPECT_EQ(estimate.status, G4LIDAR_TWIST_FIRST_SCAN);

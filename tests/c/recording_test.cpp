@@ -298,7 +298,7 @@ TEST_F(CRecording, FailsWithTheReason) {
   EXPECT_EQ(why.system_errno, EEXIST);
   g4lidar_recorder_options wish;
   g4lidar_recorder_options_init(&wish, sizeof wish);
-  wish.scan_bins = 0;
+  wish.scan_bins = 65537;
   wish.overwrite = true;
   EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), &wish, &into, &why), G4LIDAR_BAD_OPTION);
   EXPECT_EQ(into, nullptr);

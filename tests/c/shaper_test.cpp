@@ -151,6 +151,39 @@ TEST(CShaper, FlagsWhatMayBeTooNear) {
   EXPECT_EQ(g4lidar_shaper_create(&options, &made, nullptr), G4LIDAR_BAD_ARGUMENT);
 }
 
+TEST(CShaper, ShapesTheScansOfItsModel) {
+  // A T-mini looks at its 0 degrees, and does not correct angles: 90 degrees without return are the beam of before.
+  std::vector<g4lidar_point> points{at(90.0F, 400.0F), at(90.0F, 0.0F), at(0.0F, 1000.0F)};
+  points[1].revolution = points[2].revolution = 1;
+  const g4lidar_sector ahead{-10.0, 10.0};
+  g4lidar_near_options limits;
+  g4lidar_near_options_init(&limits, sizeof limits);
+  g4lidar_filter_options filter;
+  g4lidar_filter_options_init(&filter, sizeof filter);
+  filter.frame = G4LIDAR_ROBOT;
+  filter.ignored_sectors = &ahead;
+  filter.ignored_sector_count = 1;
+  g4lidar_shaper_options options = shaper_defaults();
+  EXPECT_EQ(options.model, nullptr);
+  options.near_options = &limits;
+  options.filter = &filter;
+  const auto flags = [&](const char* model) {
+    options.model = model;
+    const shaper made = make(options);
+    EXPECT_EQ(g4lidar_shaper_shape(made.get(), points.data(), 3, false, nullptr, 0), G4LIDAR_OK);
+    std::vector<int> all;
+    for (const g4lidar_point& each : kept_by(made)) all.push_back(each.flags);
+    return all;
+  };
+  EXPECT_EQ(flags("t-mini-pro"),
+            (std::vector<int>{0, G4LIDAR_NO_RETURN | G4LIDAR_MAY_BE_TOO_NEAR}));
+  EXPECT_EQ(flags("g4"), (std::vector<int>{0, G4LIDAR_NO_RETURN, 0}));
+  EXPECT_EQ(flags(nullptr), flags("g4"));
+  options.model = "g44";
+  g4lidar_shaper* none = nullptr;
+  EXPECT_EQ(g4lidar_shaper_create(&options, &none, nullptr), G4LIDAR_BAD_ARGUMENT);
+}
+
 TEST(CShaper, LeavesOutSingleReturns_OfAPieceOthersThanOfARevolution) {
   const std::vector<g4lidar_point> points{at(10.0F, 2000.0F), at(180.0F, 4000.0F),
                                           at(9.9F, 2000.0F)};

@@ -190,10 +190,7 @@ TEST(Dump, AModelThatIsNone) {
   EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, "));
 }
 
-TEST(Dump, AModelThatIsTurnedOtherwiseIsRefusedInTheRobotsFrame) {
-  const outcome done = run({"dump", "-", "--model", "x4", "--frame", "robot"}, t_mini_bytes);
-  EXPECT_EQ(done.code, 2);
-  EXPECT_THAT(done.err, HasSubstr("only in the vendor frame"));
+TEST(Dump, AModelIsForRawBytesOnly) {
   EXPECT_EQ(run({"dump", "sim:", "--model", "x4", "-n", "1"}).code, 2);
 }
 

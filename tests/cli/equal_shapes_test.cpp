@@ -23,7 +23,7 @@ TEST_F(EqualShapes, OfTheLibrary) {
   while (const auto scan = opened->next_scan(std::chrono::milliseconds(500))) {
     shaper.shape(*scan);
     const auto kept = shaper.kept();
-    points.append(reinterpret_cast<const char*>(kept.data()), kept.size_bytes());
+    points.append(reinterpret_cast<const char*>(kept.data()), kept.points.size_bytes());
   }
   EXPECT_EQ(points.size(), drive.bytes().size());
   EXPECT_TRUE(points == drive.bytes());

@@ -9,14 +9,18 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/correction.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4lidar {
 namespace {
@@ -59,6 +63,36 @@ static_assert(bearing_deg(90.0F, frame::robot) == 90.0F);
 static_assert(bearing_deg(0.0F, frame::robot) == 180.0F);
 static_assert(bearing_deg(270.0F, frame::robot) == 270.0F);
 static_assert(bearing_deg(123.0F, frame::vendor) == 123.0F);
+
+// An X4 looks at its 0 degrees: nothing is turned, only mirrored.
+constexpr std::uint16_t not_turned = 0;
+static_assert(lies_at(to_xy(at(0, 2000), frame::robot, not_turned), 2, 0), "in front");
+static_assert(lies_at(to_xy(at(90, 2000), frame::robot, not_turned), 0, -2), "to the right");
+static_assert(lies_at(to_xy(at(180, 2000), frame::robot, not_turned), -2, 0), "behind");
+static_assert(lies_at(to_xy(at(270, 2000), frame::robot, not_turned), 0, 2), "to the left");
+static_assert(lies_at(to_xy(at(330, 1000), frame::robot, not_turned), 0.8660254, 0.5));
+static_assert(lies_at(to_xy(at(30, 1000), frame::vendor, not_turned), 0.8660254, 0.5));
+static_assert(bearing_deg(0.0F, frame::robot, not_turned) == 0.0F);
+static_assert(bearing_deg(90.0F, frame::robot, not_turned) == 270.0F);
+static_assert(bearing_deg(270.0F, frame::robot, not_turned) == 90.0F);
+static_assert(bearing_deg(123.0F, frame::vendor, not_turned) == 123.0F);
+
+TEST(CoordinateFrames, AScan_IsTurnedAsItsModel) {
+  const std::array<point, 2> points{at(0, 2000), at(270, 1000)};
+  scan seen{.points = points, .model = model_named("x4")};
+  std::array<xy_point, 2> places{};
+  std::array<polar, 2> directions{};
+  EXPECT_TRUE(lies_at(to_xy(seen, frame::robot, places)[0], 2, 0));
+  EXPECT_TRUE(lies_at(places[1], 0, 1));
+  EXPECT_FLOAT_EQ(to_polar(seen, frame::robot, directions)[1].bearing_rad,
+                  std::numbers::pi_v<float> / 2);
+  EXPECT_TRUE(lies_at(to_xy(seen.points, frame::robot, places)[1], 0, -1)) << "as a G4";
+  seen.model = model_named("tg30");
+  EXPECT_TRUE(lies_at(to_xy(seen, frame::robot, places)[0], -2, 0));
+  EXPECT_FLOAT_EQ(to_polar(seen, frame::robot, directions)[1].bearing_rad,
+                  -std::numbers::pi_v<float> / 2);
+  EXPECT_TRUE(lies_at(to_xy(seen, frame::vendor, places)[1], 0, -1));
+}
 
 TEST(CoordinateFrames, PolarBearingsByHand) {
   constexpr float pi = std::numbers::pi_v<float>;
@@ -131,16 +165,18 @@ TEST(CoordinateFrames, Bearings_AreInTheHalfOpenRange) {
   constexpr float pi = std::numbers::pi_v<float>;
   for (const float angle_deg : angles()) {
     for (const float range_mm : {0.0F, 1000.0F}) {
-      for (const frame to : {frame::robot, frame::vendor}) {
+      for (const auto& [to, turn_deg] : {std::pair{frame::robot, 180}, std::pair{frame::robot, 0},
+                                         std::pair{frame::vendor, 0}}) {
+        const auto turn = static_cast<std::uint16_t>(turn_deg);
         const point p = at(angle_deg, range_mm);
         const float direction = p.angle_deg;
-        const float turned = bearing_deg(direction, to);
+        const float turned = bearing_deg(direction, to, turn);
         ASSERT_GE(turned, 0.0F);
         ASSERT_LT(turned, 360.0F) << direction;
-        const float bearing_rad = to_polar(p, to).bearing_rad;
+        const float bearing_rad = to_polar(p, to, turn).bearing_rad;
         ASSERT_GE(bearing_rad, -pi) << angle_deg;
         ASSERT_LT(bearing_rad, pi) << angle_deg;
-        const double ideal = to == frame::robot ? 180.0 - static_cast<double>(direction)
+        const double ideal = to == frame::robot ? turn_deg - static_cast<double>(direction)
                                                 : static_cast<double>(direction);
         const double off = static_cast<double>(bearing_rad) - radians(ideal);
         ASSERT_LT(std::fabs(std::remainder(off, 2.0 * std::numbers::pi)), 5e-7) << angle_deg;
@@ -173,6 +209,9 @@ TEST(Cartesian, IsWithinItsBoundOfLibm) {
            std::fabs(static_cast<double>(vendor.y_m) - range_m * std::sin(truth)) / range_m});
       ASSERT_EQ(robot.x_m, -vendor.x_m);
       ASSERT_EQ(robot.y_m, vendor.y_m);
+      const xy_point ahead = to_xy(at(angle_deg, range_mm), frame::robot, not_turned);
+      ASSERT_EQ(ahead.x_m, vendor.x_m);
+      ASSERT_EQ(ahead.y_m, -vendor.y_m);
     }
   }
   EXPECT_LT(worst, 2e-7);
@@ -201,7 +240,7 @@ TEST(Cartesian, WritesAllPointsAndNoMore) {
   EXPECT_TRUE(std::isnan(written[1].x_m));
   EXPECT_FLOAT_EQ(written[2].x_m, 2.0F);
   EXPECT_EQ(out[3].x_m, 5.0F);
-  EXPECT_TRUE(to_xy({}, frame::robot, out).empty());
+  EXPECT_TRUE(to_xy(std::span<const point>(), frame::robot, out).empty());
 }
 
 }  // namespace

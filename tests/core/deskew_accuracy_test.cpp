@@ -29,8 +29,8 @@ constexpr double pi = std::numbers::pi;
 
 /// `got` is `p` seen again, within the documented bounds.
 void expect_seen(const point& got, const point& p, const pose_2d& then, const pose_2d& reference,
-                 const mounting& mount) {
-  const test::direction_and_range expected = seen_again(p, then, reference, mount);
+                 const mounting& mount, std::uint16_t turn_deg) {
+  const test::direction_and_range expected = seen_again(p, then, reference, mount, turn_deg);
   const auto angle_deg = static_cast<double>(got.angle_deg);
   const auto range_mm = static_cast<double>(got.range_mm);
   ASSERT_GE(got.angle_deg, 0.0F);
@@ -66,11 +66,12 @@ TEST(Deskew, Twist_AgreesWithTheReference) {
     const twist_2d twist{fast * any(source), fast * any(source),
                          i % 5 == 0 ? 0.0 : fast * any(source)};
     const mounting mount = i % 4 == 0 ? mounting{} : any_mounting(source);
+    const std::uint16_t turn_deg = source() % 2 == 0 ? 0 : 180;
     const std::vector<point> points = some_points(source, 700, i % 2 == 0 ? 0.0 : 0.02);
     // Before, within and after the points.
     const std::int64_t reference_ns = begin_ns + static_cast<std::int64_t>(any(source) * 2e8);
     std::vector<point> out(points.size());
-    const deskewed got = deskew(points, twist, reference_ns, out, mount);
+    const deskewed got = deskew(points, twist, reference_ns, out, mount, turn_deg);
     ASSERT_EQ(got.outside, 0U);
     ASSERT_EQ(got.points.data(), out.data());
     ASSERT_EQ(got.points.size(), points.size());
@@ -78,7 +79,7 @@ TEST(Deskew, Twist_AgreesWithTheReference) {
     const pose_2d reference = driven(origin, twist, seconds_of(reference_ns));
     for (std::size_t k = 0; k < points.size(); ++k) {
       expect_seen(out[k], points[k], driven(origin, twist, seconds_of(points[k].time_ns)),
-                  reference, mount);
+                  reference, mount, turn_deg);
       if (testing::Test::HasFatalFailure()) return;
     }
   }
@@ -125,18 +126,19 @@ TEST(Deskew, PathAndFunction_AgreeWithTheReference) {
     const std::vector<stamped_pose> path =
         any_path(source, step_ns, static_cast<std::size_t>(110'000'000 / step_ns) + 2);
     const mounting mount = i % 4 == 0 ? mounting{} : any_mounting(source);
+    const std::uint16_t turn_deg = source() % 2 == 0 ? 0 : 180;
     const std::vector<point> points = some_points(source, 900, 0.0);  // 100 ms
     const std::int64_t reference_ns = begin_ns + static_cast<std::int64_t>(source() % 110'000'000U);
     std::vector<point> out(points.size());
-    ASSERT_EQ(deskew(points, path, reference_ns, out, mount).outside, 0U);
+    ASSERT_EQ(deskew(points, path, reference_ns, out, mount, turn_deg).outside, 0U);
     std::vector<point> by_function(points.size());
     const auto motion = [&](std::int64_t time_ns) { return on_path(path, time_ns); };
-    ASSERT_EQ(deskew(points, motion, reference_ns, by_function, mount).outside, 0U);
+    ASSERT_EQ(deskew(points, motion, reference_ns, by_function, mount, turn_deg).outside, 0U);
     const pose_2d reference = on_path(path, reference_ns);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const pose_2d then = on_path(path, points[k].time_ns);
-      expect_seen(out[k], points[k], then, reference, mount);
-      expect_seen(by_function[k], points[k], then, reference, mount);
+      expect_seen(out[k], points[k], then, reference, mount, turn_deg);
+      expect_seen(by_function[k], points[k], then, reference, mount, turn_deg);
       if (testing::Test::HasFatalFailure()) return;
     }
   }

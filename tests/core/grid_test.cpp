@@ -28,7 +28,7 @@ constexpr point at(float angle_deg, float range_mm) {
   p.range_mm = range_mm;
   if (range_mm == 0.0F) {
     p.flags = point_flags::no_return;
-  } else if (range_mm < too_near_mm) {
+  } else if (range_mm < 100.0F) {
     p.flags = point_flags::too_near;
   }
   return p;
@@ -69,6 +69,38 @@ TEST(Grid, NoReturn_BecomesWhatTheOptionSets) {
   EXPECT_TRUE(std::isnan(range_at_90(no_return_as::nan)));
   EXPECT_EQ(range_at_90(no_return_as::max), 16.38375F);
   EXPECT_EQ(grid_options{}.no_return, no_return_as::infinity);
+}
+
+// In the robot's frame bin 0 is behind; the next ones are to the right, ahead and to the left.
+TEST(Grid, AScan_IsTurnedAsItsModel_WhichHasTheLongestRange) {
+  const std::vector<point> points{at(0, 1000), at(90, 2000), at(180, 0), at(270, 4000)};
+  std::array<float, 4> ranges_m{};
+  const auto quarter_mm = [](float range_m) { return std::lround(range_m * 4000.0F); };
+  const auto filled = [&](const char* name) {
+    const scan seen{.points = points, .model = model_named(name)};
+    fill_grid(seen, ranges_m, {.no_return = no_return_as::max});
+    std::vector<long> made;
+    for (const float range_m : ranges_m) made.push_back(quarter_mm(range_m));
+    return made;
+  };
+  EXPECT_EQ(filled("x4"), (std::vector{65532L, 8000L, 4000L, 16000L}));
+  EXPECT_EQ(filled("t-mini-plus-sh"), (std::vector{262140L, 8000L, 4000L, 16000L}));
+  EXPECT_EQ(filled("g4"), (std::vector{4000L, 16000L, 65535L, 8000L}));
+  EXPECT_EQ(filled("g6"), (std::vector{4000L, 16000L, 131070L, 8000L}));
+  EXPECT_EQ(filled("tg30"), (std::vector{4000L, 16000L, 262140L, 8000L}));
+  // Points that are not in a scan: by the options, and by default as those of a G4.
+  EXPECT_EQ(grid_of(points, 4, {.turn_deg = 0})[2], 1.0F);
+  EXPECT_EQ(grid_of(points, 4)[0], 1.0F);
+  EXPECT_EQ(place_in_grid(90.0F, frame::robot, 4, 0).bin, 1U);
+  EXPECT_EQ(place_in_grid(90.0F, frame::robot, 4).bin, 3U);
+}
+
+TEST(Grid, DefaultNumberOfBins_IsFourFifthsOfTheSamplesAt10Hz) {
+  EXPECT_EQ(default_bins(g4_model), 720U);
+  for (const auto& [name, bins] : std::vector<std::pair<const char*, std::uint32_t>>{
+           {"x2", 240}, {"x4", 400}, {"t-mini-pro", 320}, {"g6", 1440}, {"tg30", 1600}}) {
+    EXPECT_EQ(default_bins(*model_named(name)), bins) << name;
+  }
 }
 
 TEST(Grid, ADirectionThatMayBeTooNear_IsNotFree) {

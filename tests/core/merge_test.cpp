@@ -39,7 +39,8 @@ double room_mm(double x_m, double y_m, double bearing_rad) {
 /// A revolution of a lidar on a robot that drives with `twist` from the middle of the room at `begin_ns`; it ends at
 /// `end_ns`. Nothing comes back from directions within `silent_deg` of the cable.
 std::vector<point> revolution(const twist_2d& twist, const mounting& mount, std::int64_t end_ns,
-                              double frequency_hz, double silent_deg = 0.0) {
+                              double frequency_hz, double silent_deg = 0.0,
+                              double turn_deg = 180.0) {
   const auto count = static_cast<std::int64_t>(9000.0 / frequency_hz);
   std::vector<point> points;
   for (std::int64_t i = 0; i < count; ++i) {
@@ -49,7 +50,7 @@ std::vector<point> revolution(const twist_2d& twist, const mounting& mount, std:
     const pose_2d robot = test::driven({}, twist, static_cast<double>(p.time_ns - begin_ns) * 1e-9);
     const test::place_mm origin = test::out_of(robot, test::on_robot(0.0, 0.0, mount));
     const test::place_mm ahead =
-        test::out_of(robot, test::on_robot(static_cast<double>(p.angle_deg), 1.0, mount));
+        test::out_of(robot, test::on_robot(static_cast<double>(p.angle_deg), 1.0, mount, turn_deg));
     const double bearing = std::atan2(ahead.y - origin.y, ahead.x - origin.x);
     const bool silent = static_cast<double>(p.angle_deg) < silent_deg ||
                         static_cast<double>(p.angle_deg) > 360.0 - silent_deg;
@@ -105,6 +106,24 @@ TEST(Merge, TwoLidarsOnAMovingRobot_SeeOneRoom) {
   const auto motion = [&](std::int64_t time_ns) { return pose_at(path, time_ns); };
   EXPECT_EQ(merge_scans(lidars, motion, reference_ns, out).outside, 0U);
   expect_on_walls(out, driving, reference_ns);
+}
+
+TEST(Merge, LidarsOfDifferentTurns_SeeOneRoom) {
+  for (const bool upside_down : {false, true}) {
+    const mounting place{{0.4, 0.1, 0.5}, upside_down};
+    const std::vector<point> a =
+        revolution(driving, place, begin_ns + 200'000'000, 7.0, 0.0, 0.0);  // not turned
+    const std::vector<point> b = revolution(driving, rear, begin_ns + 230'000'000, 11.0);
+    const std::int64_t reference_ns = begin_ns + 210'000'000;
+    const std::array<mounted_scan, 2> lidars{{{a, place, 0}, {b, rear}}};
+    std::vector<point> out(a.size() + b.size());
+    const merged got = merge_scans(lidars, driving, reference_ns, out);
+    EXPECT_EQ(got.lost, 0U);
+    EXPECT_EQ(got.outside, 0U);
+    expect_on_walls(got.points, driving, reference_ns);
+    const point& first = got.points.front();
+    EXPECT_EQ(first.time_ns, a.front().time_ns);
+  }
 }
 
 TEST(Merge, GridAroundTheRobot_HoldsTheRoom) {

@@ -24,7 +24,7 @@ point at(float angle_deg, float range_mm = 1000.0F) {
   p.angle_deg = angle_deg;
   p.range_mm = range_mm;
   if (range_mm == 0.0F) p.flags = point_flags::no_return;
-  if (range_mm > 0.0F && range_mm < too_near_mm) p.flags = point_flags::too_near;
+  if (range_mm > 0.0F && range_mm < 100.0F) p.flags = point_flags::too_near;
   return p;
 }
 
@@ -180,6 +180,24 @@ TEST(PointFilter, Masks_AreInTheRobotsFrame) {
     EXPECT_TRUE(filter.keeps(at(180, 800.0F)));
     EXPECT_TRUE(filter.keeps(at(180, 0.0F))) << "a point without return has no place";
   }
+}
+
+TEST(PointFilter, TurnOfALidar_DecidesWhereTheRobotsFrameIs) {
+  const std::array<corner, 3> outline{{{0.5F, -0.5F}, {0.5F, 0.5F}, {2.0F, 0.0F}}};  // ahead
+  const std::array<polygon, 1> masks{{polygon(outline)}};
+  for (const std::uint16_t turn_deg : {std::uint16_t{0}, std::uint16_t{180}}) {
+    const auto ahead_deg = static_cast<float>(turn_deg);
+    const point_filter front{
+        .in = frame::robot, .turn_deg = turn_deg, .field_of_view = {-10.0, 10.0}};
+    EXPECT_TRUE(front.keeps(at(ahead_deg)));
+    EXPECT_FALSE(front.keeps(at(180.0F - ahead_deg)));
+    const point_filter masked{.turn_deg = turn_deg, .masks = masks};
+    EXPECT_FALSE(masked.keeps(at(ahead_deg)));
+    EXPECT_TRUE(masked.keeps(at(180.0F - ahead_deg)));
+  }
+  const point_filter left{.in = frame::robot, .turn_deg = 0, .field_of_view = {80.0, 100.0}};
+  EXPECT_TRUE(left.keeps(at(270.0F)));
+  EXPECT_FALSE(left.keeps(at(90.0F)));
 }
 
 TEST(PointFilter, Excluded_LeavesOutFlaggedPoints) {

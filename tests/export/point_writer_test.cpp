@@ -26,7 +26,7 @@ point made(float angle_deg, float range_mm, std::int64_t time_ns, std::uint32_t 
   point p{
       .angle_deg = angle_deg, .range_mm = range_mm, .time_ns = time_ns, .revolution = revolution};
   if (range_mm == 0.0F) p.flags = point_flags::no_return;
-  if (range_mm > 0.0F && range_mm < too_near_mm) p.flags = point_flags::too_near;
+  if (range_mm > 0.0F && range_mm < 100.0F) p.flags = point_flags::too_near;
   return p;
 }
 

@@ -92,6 +92,7 @@ struct drive {
   double outliers = 0.03;
   double yaw_rad_per_s2 = 0.0;   ///< An acceleration, for a lidar that turns on the spot.
   double first_angle_deg = 0.0;  ///< Of the head, at the first sample.
+  double turn_deg = 180.0;  ///< In its own frame a direction is this minus the angle of a point.
 };
 
 /// Where something is.
@@ -117,10 +118,10 @@ inline place moved(const pose_2d& pose, const place& at) {
 }
 
 /// A point in the lidar's own frame, from its angle and range.
-inline place own_place(const point& p) {
-  const double angle = static_cast<double>(p.angle_deg) * std::numbers::pi / 180.0;
+inline place own_place(const point& p, double turn_deg = 180.0) {
+  const double bearing = (turn_deg - static_cast<double>(p.angle_deg)) * std::numbers::pi / 180.0;
   const double range = static_cast<double>(p.range_mm) * 0.001;
-  return {-range * std::cos(angle), range * std::sin(angle)};
+  return {range * std::cos(bearing), range * std::sin(bearing)};
 }
 
 class driven_lidar {
@@ -183,7 +184,7 @@ class driven_lidar {
       made.flags = point_flags::no_return;
     } else {
       made.range_mm = static_cast<float>(1000.0 * range);
-      truth = moved(pose, own_place(made));
+      truth = moved(pose, own_place(made, how_.turn_deg));
       made.range_mm += static_cast<float>(1000.0 * how_.noise_m * normal());
     }
     truth_.push_back(truth);
@@ -197,7 +198,7 @@ class driven_lidar {
 
   /// The distance to the nearest surface in metres, 0 if none is within 0.1 to 16 m.
   [[nodiscard]] double cast(const pose_2d& pose, double angle_deg, double seconds) const {
-    const double bearing = pose.yaw_rad + std::numbers::pi - angle_deg * std::numbers::pi / 180.0;
+    const double bearing = pose.yaw_rad + (how_.turn_deg - angle_deg) * std::numbers::pi / 180.0;
     const double dx = std::cos(bearing);
     const double dy = std::sin(bearing);
     double nearest = 16.0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,8 @@
 #include <vector>
 
 #include "driven_lidar.hpp"
+#include "g4lidar/cartesian.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/grid.hpp"
 #include "support/allocation_count.hpp"
 #include "support/moving_lidar.hpp"
@@ -51,6 +54,71 @@ class ScanShaper : public ::testing::Test {
   const std::array<stamped_pose, 2> path_{
       {{begin_ns - tenth_ns, {2.0, 1.0, 0.0}}, {begin_ns + 3 * tenth_ns, {2.4, 1.0, 0.0}}}};
 };
+
+// An X4 looks at its 0 degrees. On the same path it sees the wall there, and its 270 degrees are to the left.
+TEST_F(ScanShaper, AScan_IsTurnedAsItsModel) {
+  std::array<point, 3> points{at(0.0F, 5000.0F, begin_ns), at(0.0F, 4900.0F, begin_ns + tenth_ns),
+                              at(270.0F, 1000.0F, begin_ns + 2 * tenth_ns)};
+  scan seen = scan_of(points);
+  seen.model = model_named("x4");
+  scan_shaper by_path({.deskew = deskewing::by_path});
+  by_path.shape(seen, path_);
+  const scan kept = by_path.kept();
+  EXPECT_EQ(kept.model, seen.model);
+  EXPECT_THAT(ranges_of(kept), ElementsAre(FloatNear(5000.0F, 0.02F), FloatNear(5000.0F, 0.02F),
+                                           FloatNear(std::hypot(1000.0F, 200.0F), 0.02F)));
+  std::array<xy_point, 3> places{};
+  to_xy(kept, frame::robot, places);
+  EXPECT_NEAR(places[2].x_m, 0.2F, 1e-4F);
+  EXPECT_NEAR(places[2].y_m, 1.0F, 1e-4F);
+
+  const std::array<corner, 3> outline{{{-0.1F, 0.9F}, {0.1F, 0.9F}, {0.0F, 1.2F}}};
+  const std::array<polygon, 1> on_the_left{{polygon(outline)}};
+  scan_shaper masked({.filter = {.masks = on_the_left}});
+  masked.shape(seen);
+  EXPECT_THAT(ranges_of(masked.kept()), ElementsAre(5000.0F, 4900.0F));
+  scan_shaper ahead({.filter = {.in = frame::robot, .field_of_view = {-45.0, 45.0}}});
+  ahead.shape(seen);
+  EXPECT_THAT(ranges_of(ahead.kept()), ElementsAre(5000.0F, 4900.0F));
+  seen.model = &g4_model;
+  ahead.shape(seen);
+  EXPECT_TRUE(ahead.kept().empty());
+}
+
+TEST_F(ScanShaper, ByScans_FindsTheTwistOfALidarThatIsNotTurned) {
+  const twist_2d twist{0.6, 0.2, 0.5};
+  driven_lidar lidar(office(), {.twist = twist, .turn_deg = 0.0}, 5);
+  scan_shaper shaper({.deskew = deskewing::by_scans});
+  double error_mm = 0.0;
+  double as_measured_mm = 0.0;
+  std::size_t count = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<point> points = lidar.revolution();
+    scan seen = scan_of(points);
+    seen.model = model_named("x4");
+    shaper.shape(seen);
+    if (i == 0) continue;
+    ASSERT_TRUE(shaper.twist());
+    EXPECT_NEAR(shaper.twist()->x_m_per_s, twist.x_m_per_s, 0.03);
+    EXPECT_NEAR(shaper.twist()->y_m_per_s, twist.y_m_per_s, 0.03);
+    EXPECT_NEAR(shaper.twist()->yaw_rad_per_s, twist.yaw_rad_per_s, 0.01);
+    const pose_2d first = lidar.pose_at(points.front().time_ns);
+    const scan kept = shaper.kept();
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      const place truth = lidar.truth()[k];
+      if (std::isnan(truth.x)) continue;
+      const auto off_mm = [&](const point& p) {
+        const place in_world = moved(first, own_place(p, 0.0));
+        return 1000.0 * std::hypot(in_world.x - truth.x, in_world.y - truth.y);
+      };
+      error_mm += off_mm(kept[k]);
+      as_measured_mm += off_mm(points[k]);
+      ++count;
+    }
+  }
+  EXPECT_GT(as_measured_mm / static_cast<double>(count), 50.0);
+  EXPECT_LT(error_mm, 0.25 * as_measured_mm);
+}
 
 TEST_F(ScanShaper, ByDefault_GivesThePointsThatItGot) {
   scan_shaper shaper;

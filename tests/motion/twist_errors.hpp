@@ -38,7 +38,8 @@ inline twist_estimate estimate(const surroundings& around, const drive& how, std
   driven_lidar lidar(around, how, seed);
   twist_estimator estimator;
   twist_estimate made;
-  for (int i = 0; i < count; ++i) made = estimator.add(lidar.revolution());
+  for (int i = 0; i < count; ++i)
+    made = estimator.add(lidar.revolution(), static_cast<std::uint16_t>(how.turn_deg));
   return made;
 }
 

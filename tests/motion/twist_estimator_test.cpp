@@ -43,8 +43,9 @@ struct cold_starts {
 };
 cold_starts start_cold(const surroundings& around, const std::vector<drive>& drives) {
   cold_starts all;
-  for (const drive& how : drives) {
+  for (drive how : drives) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      how.turn_deg = seed <= 2 ? 180.0 : 0.0;
       const twist_estimate made = estimate(around, how, seed);
       if (!made.is_known()) {
         ++all.unknown;

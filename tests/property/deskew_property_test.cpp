@@ -57,10 +57,11 @@ TEST(DeskewProperty, AnyPath_LeavesWhatIsOutside_AndKeepsPlacesInTheWorld) {
     const auto [x, y, yaw] =
         *rc::gen::arbitrary<std::tuple<std::int16_t, std::int16_t, std::int16_t>>();
     const mounting mount{{part(x), part(y), 3.0 * part(yaw)}, x % 2 == 0};
+    const std::uint16_t turn_deg = y % 2 == 0 ? 0 : 180;
     const std::int64_t reference_ns = *rc::gen::inRange<std::int64_t>(-10'000'000, 10'000'000);
 
     std::vector<point> out(points.size());
-    const deskewed got = deskew(points, path, reference_ns, out, mount);
+    const deskewed got = deskew(points, path, reference_ns, out, mount, turn_deg);
     RC_ASSERT(got.points.size() == points.size());
     const auto reference = pose_at(path, reference_ns);
     std::size_t outside = 0;
@@ -82,8 +83,9 @@ TEST(DeskewProperty, AnyPath_LeavesWhatIsOutside_AndKeepsPlacesInTheWorld) {
       }
       // The same place in the world.
       const auto in_world = [&](const point& measured, const pose_2d& robot) {
-        return test::out_of(robot, test::on_robot(static_cast<double>(measured.angle_deg),
-                                                  static_cast<double>(measured.range_mm), mount));
+        return test::out_of(
+            robot, test::on_robot(static_cast<double>(measured.angle_deg),
+                                  static_cast<double>(measured.range_mm), mount, turn_deg));
       };
       const test::place_mm before = in_world(p, *then);
       const test::place_mm after = in_world(out[i], *reference);

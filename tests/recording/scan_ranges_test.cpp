@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "made_recording.hpp"
 #include "support/cdr_reader.hpp"
@@ -14,6 +15,39 @@
 
 namespace g4lidar::test {
 namespace {
+
+/// The ranges of the only LaserScan of a recording.
+std::vector<float> recorded_ranges(const recording_options& how, const char* model) {
+  const temporary_path path;
+  auto writer = made_writer(path.text(), how);
+  record_readings(writer, 0, 10);
+  const std::array<point, 2> points{
+      {{.angle_deg = 0.0F, .range_mm = 1000.0F}, {.angle_deg = 270.0F, .range_mm = 2000.0F}}};
+  writer.scan({.points = points, .model = model_named(model)});
+  EXPECT_TRUE(writer.close());
+  const auto file = bytes_of(path.text());
+  const auto messages = mcap_messages(std::string(file.begin(), file.end()), "/scan");
+  cdr_reader read(messages.at(0));
+  static_cast<void>(read.number<std::uint64_t>());
+  static_cast<void>(read.text());
+  for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(read.number<float>());
+  std::vector<float> ranges(read.number<std::uint32_t>());
+  for (float& each : ranges) each = read.number<float>();
+  return ranges;
+}
+
+TEST(ScanRanges, TheModelOfAScan_DecidesTheTurnAndTheNumberOfRanges) {
+  const std::vector<float> of_x2 = recorded_ranges({}, "x2");
+  ASSERT_EQ(of_x2.size(), 240U);
+  EXPECT_EQ(of_x2[120], 1.0F) << "ahead";
+  EXPECT_EQ(of_x2[180], 2.0F) << "to the left";
+  const std::vector<float> of_g4 = recorded_ranges({}, "g4");
+  ASSERT_EQ(of_g4.size(), 720U);
+  EXPECT_EQ(of_g4[0], 1.0F) << "behind";
+  EXPECT_EQ(of_g4[180], 2.0F) << "to the right";
+  EXPECT_EQ(recorded_ranges({}, "tg30").size(), 1600U);
+  EXPECT_EQ(recorded_ranges({.scan_bins = 4}, "x2").size(), 4U);
+}
 
 /// In the bin of 90 degrees a return at 0.4 m and then none; in that of 180 degrees none.
 TEST(ScanRanges, DirectionsWithoutReturn_BecomeWhatTheOptionsSet) {

@@ -73,7 +73,7 @@ class filtered {
     g4lidar::scan whole;
     whole.points = {&none, 1};
     shaper_->shape(whole);
-    return shaper_->for_grid().front().may_be_too_near() ? 1 : 0;
+    return shaper_->for_grid().points.front().may_be_too_near() ? 1 : 0;
   }
 
  private:

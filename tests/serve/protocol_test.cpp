@@ -137,7 +137,7 @@ TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
       {.angle_deg = 0.0F, .range_mm = 0.0F, .flags = g4lidar::point_flags::no_return},
       {.angle_deg = 90.0F, .range_mm = 500.0F}};  // clockwise from the cable: left
   std::vector<std::uint8_t> data{7};
-  put_page_scan(points, 42, true, 1.5, data);
+  put_page_scan({.points = points, .revolution = 42}, 1.5, data);
   data.erase(data.begin());
   ASSERT_EQ(data.size(), 16U + 2 * 8);
   EXPECT_EQ(data[0], 0x10);
@@ -149,6 +149,19 @@ TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
   EXPECT_NEAR(number_at<float>(data, 20), 0.0F, 1e-5F);
   EXPECT_NEAR(number_at<float>(data, 24), 0.0F, 1e-5F);
   EXPECT_NEAR(number_at<float>(data, 28), 0.5F, 1e-5F);
+}
+
+TEST(PageScan, IsTurnedAsItsModel) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  const std::vector<g4lidar::point> points{{.angle_deg = 270.0F, .range_mm = 2000.0F}};
+  std::vector<std::uint8_t> data;
+  put_page_scan({.points = points,
+                 .flags = g4lidar::scan_flags::data_lost,
+                 .model = g4lidar::model_named("x4")},
+                1.5, data);
+  EXPECT_EQ(data[1], 0);
+  EXPECT_NEAR(number_at<float>(data, 16), 0.0F, 1e-5F);
+  EXPECT_NEAR(number_at<float>(data, 20), 2.0F, 1e-5F);  // to the left
 }
 
 TEST(PageTexts, AdviceIsNotForACommandLine) {

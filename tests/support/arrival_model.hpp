@@ -38,7 +38,7 @@ struct options {
   double outage_s = 0.0;
   double baud = 230400.0;  ///< 0: bytes take no time.
   sample_layout layout = g4_layout;
-  double delay_ns = 0.0;   ///< Of all bytes, after the connection.
+  double delay_ns = 0.0;  ///< Of all bytes, after the connection.
   std::int64_t start_ns = 1'000'000'000'000;
 };
 

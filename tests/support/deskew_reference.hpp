@@ -46,9 +46,10 @@ struct place_mm {
           start.y_m + std::sin(direction) * x + std::cos(direction) * y, start.yaw_rad + turn};
 }
 
-/// A point in the frame of its robot, while the robot is where its frame is.
-[[nodiscard]] inline place_mm on_robot(double angle_deg, double range_mm, const mounting& mount) {
-  const double bearing = (180.0 - angle_deg) * (std::numbers::pi / 180.0);
+/// A point of a lidar with this turn in the frame of its robot, while the robot is where its frame is.
+[[nodiscard]] inline place_mm on_robot(double angle_deg, double range_mm, const mounting& mount,
+                                       double turn_deg = 180.0) {
+  const double bearing = (turn_deg - angle_deg) * (std::numbers::pi / 180.0);
   const double side = mount.upside_down ? -1.0 : 1.0;
   return out_of(mount.pose, {range_mm * std::cos(bearing), side * range_mm * std::sin(bearing)});
 }
@@ -60,24 +61,25 @@ struct direction_and_range {
 };
 
 /// The inverse of on_robot().
-[[nodiscard]] inline direction_and_range from_robot(place_mm at, const mounting& mount) {
+[[nodiscard]] inline direction_and_range from_robot(place_mm at, const mounting& mount,
+                                                    double turn_deg = 180.0) {
   const place_mm own = into(mount.pose, at);
   const double side = mount.upside_down ? -1.0 : 1.0;
-  return {180.0 - std::atan2(side * own.y, own.x) * (180.0 / std::numbers::pi),
+  return {turn_deg - std::atan2(side * own.y, own.x) * (180.0 / std::numbers::pi),
           std::hypot(own.x, own.y)};
 }
 
 /// `p`, measured while the robot was at `then`, as seen from the lidar while the robot is at `reference`.
 [[nodiscard]] inline direction_and_range seen_again(const point& p, const pose_2d& then,
-                                                    const pose_2d& reference,
-                                                    const mounting& mount) {
+                                                    const pose_2d& reference, const mounting& mount,
+                                                    double turn_deg = 180.0) {
   if (p.is_no_return()) {
     const double turn = (then.yaw_rad - reference.yaw_rad) * (180.0 / std::numbers::pi);
     return {static_cast<double>(p.angle_deg) + (mount.upside_down ? turn : -turn), 0.0};
   }
-  const place_mm fixed = out_of(
-      then, on_robot(static_cast<double>(p.angle_deg), static_cast<double>(p.range_mm), mount));
-  return from_robot(into(reference, fixed), mount);
+  const place_mm fixed = out_of(then, on_robot(static_cast<double>(p.angle_deg),
+                                               static_cast<double>(p.range_mm), mount, turn_deg));
+  return from_robot(into(reference, fixed), mount, turn_deg);
 }
 
 /// The way of the lidar between two poses of the robot, in millimetres.

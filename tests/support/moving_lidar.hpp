@@ -23,7 +23,7 @@ inline point at(float angle_deg, float range_mm, std::int64_t time_ns) {
   p.time_ns = time_ns;
   p.revolution = 7;
   if (range_mm == 0.0F) p.flags = point_flags::no_return;
-  if (range_mm > 0.0F && range_mm < too_near_mm) p.flags = point_flags::too_near;
+  if (range_mm > 0.0F && range_mm < 100.0F) p.flags = point_flags::too_near;
   return p;
 }
 

@@ -38,7 +38,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       parameters_(options_of(options, which), options.filter_words, into != nullptr, shaper_) {
   const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
-  parameters_.fix("grid", std::int64_t{options.bins});
+  parameters_.fix("grid", std::int64_t{options.bins.value_or(default_bins(*options.source.model))});
   parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");
   if (merger_ == nullptr) {
     messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);

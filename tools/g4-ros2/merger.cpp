@@ -41,8 +41,10 @@ void merger::add(std::size_t index, scan_shaper& scan, const grid_options& grid,
   const auto take = [](std::vector<point>& to, std::span<const point> from) {
     to.assign(from.begin(), from.end());
   };
-  take(here.for_grid, scan.for_grid());
-  if (wants_points) take(here.kept, scan.kept());
+  const g4lidar::scan for_grid = scan.for_grid();
+  take(here.for_grid, for_grid.points);
+  here.model = for_grid.model;
+  if (wants_points) take(here.kept, scan.kept().points);
   here.end_ns = when.first_ns + when.duration_ns;
   const bool is_leader = std::ranges::none_of(
       std::span(parts_).first(index),
@@ -54,9 +56,24 @@ void merger::add(std::size_t index, scan_shaper& scan, const grid_options& grid,
   ++scans_;
   for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].lost += std::uint64_t{all.is_lost(i)};
   if (report_) report_->add(all.points.size(), all.outside);
-  if (messages_.wants_scan()) messages_.publish_scan(all.points, grid, merged_at);
+  const g4lidar::model which = merged_model();
+  g4lidar::scan made{.points = all.points, .model = &which};
+  if (messages_.wants_scan()) messages_.publish_scan(made, grid, merged_at);
   if (!wants_points) return;
-  messages_.publish_points(merged_points(&part::kept, here.end_ns, moved, kept_).points, merged_at);
+  made.points = merged_points(&part::kept, here.end_ns, moved, kept_).points;
+  messages_.publish_points(made, merged_at);
+}
+
+g4lidar::model merger::merged_model() const {
+  const auto longest_of = [](const part& each) {
+    return longest_range_mm(each.model->samples.layout);
+  };
+  g4lidar::model made = *std::ranges::max_element(parts_, {}, longest_of)->model;
+  made.turn_deg = g4_model.turn_deg;
+  for (const part& each : parts_) {
+    made.range.min_mm = std::min(made.range.min_mm, each.model->range.min_mm);
+  }
+  return made;
 }
 
 void merger::add(const stamped_odometry& at) {
@@ -86,7 +103,7 @@ merged merger::merged_points(std::vector<point> part::* which, std::int64_t refe
   std::vector<mounted_scan> lidars;
   std::size_t count = 0;
   for (const part& each : parts_) {
-    lidars.push_back({each.*which, each.place});
+    lidars.push_back({each.*which, each.place, each.model->turn_deg});
     count += (each.*which).size();
   }
   out.resize(count);

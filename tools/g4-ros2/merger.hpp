@@ -46,6 +46,7 @@ class merger {
   struct part {
     std::string name;
     mounting place;
+    const g4lidar::model* model = &g4_model;
     std::vector<point> for_grid;
     std::vector<point> kept;
     std::int64_t end_ns = 0;
@@ -60,6 +61,8 @@ class merger {
   /// By the leading lidar, at the end of its scan.
   [[nodiscard]] motion motion_of_robot(const part& leader, const scan_shaper& scan,
                                        const scan_times& when);
+  /// What measures merged scans: it is turned as merge_scans() turns points, and has the ranges of all parts.
+  [[nodiscard]] g4lidar::model merged_model() const;
   /// `which` of all parts, as one scan at `reference_ns`.
   [[nodiscard]] merged merged_points(std::vector<point> part::* which, std::int64_t reference_ns,
                                      const motion& moved, std::vector<point>& out) const;

@@ -64,7 +64,7 @@ struct ros2_options {
   frame_names frames;
   delivery transport;
   scan_order order = scan_order::angle;
-  std::uint32_t bins = 720;
+  std::optional<std::uint32_t> bins;  ///< default_bins() of the model.
   /// The values of the filters, as their options take them, by the names of the parameters.
   std::map<std::string, std::string> filter_words{
       {"edges", "off"},   {"fov", "-180:180"},  {"ignore", ""},    {"near", "off"},

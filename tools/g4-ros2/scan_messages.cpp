@@ -15,7 +15,7 @@ std::unique_ptr<dds::publisher> publisher_of(dds::bus& on, std::string_view name
 
 scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::string_view name_space,
                              std::string frame_id)
-    : options_(options), frame_id_(std::move(frame_id)), ranges_(options.bins) {
+    : options_(options), frame_id_(std::move(frame_id)) {
   const auto topic_of = [&options](const dds::message_type& type) {
     return dds::topic{.type = &type,
                       .is_reliable = options.transport.is_reliable,
@@ -25,18 +25,20 @@ scan_messages::scan_messages(dds::bus& on, const ros2_options& options, std::str
   points_ = publisher_of(on, name_space, options.topics.points, topic_of(dds::point_cloud2));
 }
 
-message_header scan_messages::header_of(const scan_times& when) const {
+message_header scan_messages::header_of(const model& which, const scan_times& when) const {
   return {.stamp_ns = when.first_ns + when.ahead_ns,
           .frame_id = frame_id_,
           .duration_ns = when.duration_ns,
-          .order = options_.order};
+          .order = options_.order,
+          .model = &which};
 }
 
-void scan_messages::publish_scan(std::span<const point> for_grid, const grid_options& grid,
+void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
                                  const scan_times& when) {
-  message_header header = header_of(when);
+  message_header header = header_of(*for_grid.model, when);
+  ranges_.resize(options_.bins.value_or(default_bins(*for_grid.model)));
   if (options_.order == scan_order::time) {
-    header.first_bin = fill_time_grid(for_grid, when.duration_ns, ranges_, grid);
+    header.first_bin = fill_time_grid(for_grid, ranges_, grid);
   } else {
     fill_grid(for_grid, ranges_, grid);
   }
@@ -45,11 +47,11 @@ void scan_messages::publish_scan(std::span<const point> for_grid, const grid_opt
   scan_->publish(message_);
 }
 
-void scan_messages::publish_points(std::span<const point> kept, const scan_times& when) {
-  message_header header = header_of(when);
-  if (!kept.empty()) header.stamp_ns = kept.front().time_ns + when.ahead_ns;
+void scan_messages::publish_points(const scan& kept, const scan_times& when) {
+  message_header header = header_of(*kept.model, when);
+  if (!kept.empty()) header.stamp_ns = kept.time_ns() + when.ahead_ns;
   message_.clear();
-  put_point_cloud2(kept, header, message_);
+  put_point_cloud2(kept.points, header, message_);
   points_->publish(message_);
 }
 

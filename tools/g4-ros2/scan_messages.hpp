@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,7 +12,7 @@
 #include "dds/bus.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
-#include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 #include "options.hpp"
 
 namespace g4_tool {
@@ -35,10 +34,9 @@ class scan_messages {
                 std::string frame_id);
 
   /// On /scan: scan_shaper::for_grid().
-  void publish_scan(std::span<const point> for_grid, const grid_options& grid,
-                    const scan_times& when);
+  void publish_scan(const scan& for_grid, const grid_options& grid, const scan_times& when);
   /// On /points: scan_shaper::kept().
-  void publish_points(std::span<const point> kept, const scan_times& when);
+  void publish_points(const scan& kept, const scan_times& when);
   /// Whether somebody reads them. *Any thread.*
   [[nodiscard]] bool wants_scan() const { return scan_ && scan_->is_wanted(); }
   /// The same.
@@ -49,7 +47,7 @@ class scan_messages {
   [[nodiscard]] named_counts counts() const;
 
  private:
-  [[nodiscard]] message_header header_of(const scan_times& when) const;
+  [[nodiscard]] message_header header_of(const model& which, const scan_times& when) const;
 
   const ros2_options& options_;
   std::string frame_id_;

@@ -204,18 +204,17 @@ std::string status_text(const page_status& status) {
   return json_line(made);
 }
 
-void put_page_scan(std::span<const point> points, std::uint32_t revolution, bool is_whole,
-                   double stamp_s, std::vector<std::uint8_t>& out) {
+void put_page_scan(const scan& revolution, double stamp_s, std::vector<std::uint8_t>& out) {
   const std::size_t begin = out.size();
   out.push_back(0x10);
-  out.push_back(is_whole ? 1 : 0);
+  out.push_back(revolution.is_whole() ? 1 : 0);
   put_little(std::uint16_t{0}, out);
-  put_little(revolution, out);
+  put_little(revolution.revolution, out);
   put_little(std::bit_cast<std::uint64_t>(stamp_s), out);
   std::uint16_t count = 0;
-  for (const point& p : points) {
+  for (const point& p : revolution) {
     if (p.is_no_return() || count == UINT16_MAX) continue;
-    const xy_point at = to_xy(p, frame::robot);
+    const xy_point at = to_xy(p, frame::robot, revolution.model->turn_deg);
     put_little(std::bit_cast<std::uint32_t>(at.x_m), out);
     put_little(std::bit_cast<std::uint32_t>(at.y_m), out);
     ++count;

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,7 +14,7 @@
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
-#include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4_tool {
 
@@ -70,7 +69,6 @@ struct page_status {
 [[nodiscard]] std::string status_text(const page_status& status);
 
 /// Appends the binary message of a revolution: its returns in the robot's frame.
-void put_page_scan(std::span<const point> points, std::uint32_t revolution, bool is_whole,
-                   double stamp_s, std::vector<std::uint8_t>& out);
+void put_page_scan(const scan& revolution, double stamp_s, std::vector<std::uint8_t>& out);
 
 }  // namespace g4_tool

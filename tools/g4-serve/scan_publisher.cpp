@@ -70,7 +70,7 @@ double loss_window::add(const lidar_counts& counts) {
 }
 
 scan_publisher::scan_publisher(const serve_options& options, client_registry& to)
-    : options_(options), registry_(to), ranges_m_(options.bins), settings_(unknown_settings()) {
+    : options_(options), registry_(to), settings_(unknown_settings()) {
   const g4lidar::mask mask = load_mask(options.common.mask);
   shaping_options shape = shape_of(options.common, mask);
   shape.restamps = true;  // nobody is to deskew the points of a message again
@@ -110,23 +110,25 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   if (report_) report_->add(scan.size(), shaper_.outside());
   const message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
                               .frame_id = options_.frame_id,
-                              .duration_ns = scan.duration_ns};
+                              .duration_ns = scan.duration_ns,
+                              .model = scan.model};
   if (wanted.page) {
-    const std::span<const point> kept = shaper_.kept();
+    const g4lidar::scan kept = shaper_.kept();
     std::vector<std::uint8_t> message;
     message.reserve(16 + 8 * kept.size());
-    put_page_scan(kept, scan.revolution, scan.is_whole(), seconds_of(header.stamp_ns), message);
+    put_page_scan(kept, seconds_of(header.stamp_ns), message);
     registry_.page_scan(std::move(message));
   }
   if (wants_scan) {
     std::vector<std::uint8_t> message;
+    ranges_m_.resize(options_.bins.value_or(default_bins(*scan.model)));
     fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid);
     put_laser_scan(ranges_m_, header, message);
     registry_.publish(channel::scan, header.stamp_ns, std::move(message));
   }
   if (wants_points) {
     std::vector<std::uint8_t> message;
-    put_point_cloud2(shaper_.kept(), header, message);
+    put_point_cloud2(shaper_.kept().points, header, message);
     registry_.publish(channel::points, header.stamp_ns, std::move(message));
   }
 }

@@ -52,18 +52,18 @@ typedef struct g4lidar_mounting {
  *  which has room for as many and may be `points`. `mount` may be NULL: the lidar is at the origin
  *  of the robot. `outside`, which may be NULL, gets the number of points whose time is not known;
  *  they stay where they are, flagged G4LIDAR_NOT_DESKEWED. The other points must not be deskewed
- *  again. Any thread; never allocates. */
+ *  again. `turn_deg`: g4lidar_scan::turn_deg, 180 for a G4. Any thread; never allocates. */
 G4LIDAR_C_API int g4lidar_deskew_by_twist(const g4lidar_point* points, size_t count,
                                           const g4lidar_twist* twist, int64_t reference_ns,
-                                          const g4lidar_mounting* mount, g4lidar_point* out,
-                                          size_t* outside);
+                                          const g4lidar_mounting* mount, unsigned turn_deg,
+                                          g4lidar_point* out, size_t* outside);
 
 /** The same with poses of the robot, times ascending. Between two poses the twist is constant; points
  *  before the first and after the last pose are outside, and all are if `reference_ns` is. */
 G4LIDAR_C_API int g4lidar_deskew_by_path(const g4lidar_point* points, size_t count,
                                          const g4lidar_stamped_pose* path, size_t path_count,
                                          int64_t reference_ns, const g4lidar_mounting* mount,
-                                         g4lidar_point* out, size_t* outside);
+                                         unsigned turn_deg, g4lidar_point* out, size_t* outside);
 
 /** Estimates the motion of a lidar from its scans alone. */
 typedef struct g4lidar_estimator g4lidar_estimator;
@@ -92,9 +92,10 @@ typedef struct g4lidar_twist_estimate {
 G4LIDAR_C_API int g4lidar_estimator_create(g4lidar_estimator** estimator, g4lidar_error* error);
 
 /** The twist during the revolution before `points` and `points`, those of the next revolution in the
- *  order of measurement. Never allocates. */
+ *  order of measurement. `turn_deg`: g4lidar_scan::turn_deg, 180 for a G4. Never allocates. */
 G4LIDAR_C_API int g4lidar_estimator_add(g4lidar_estimator* estimator, const g4lidar_point* points,
-                                        size_t count, g4lidar_twist_estimate* estimate);
+                                        size_t count, unsigned turn_deg,
+                                        g4lidar_twist_estimate* estimate);
 
 /** Releases an estimator. */
 G4LIDAR_C_API void g4lidar_estimator_free(g4lidar_estimator* estimator);

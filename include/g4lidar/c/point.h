@@ -18,7 +18,7 @@ extern "C" {
 enum g4lidar_point_flag {
   G4LIDAR_NO_RETURN =
       1, /**< Nothing came back: `range_mm` is 0 and not a range, and the way not free. */
-  G4LIDAR_TOO_NEAR = 2,         /**< Below 100 mm, where range and correction are not reliable. */
+  G4LIDAR_TOO_NEAR = 2, /**< Below the model's shortest range, 100 mm for a G4: not reliable. */
   G4LIDAR_REVOLUTION_START = 4, /**< The first sample of its revolution. */
   G4LIDAR_NOT_DESKEWED = 8,     /**< Deskewing left it where it was. */
   G4LIDAR_UNLIKELY = 16,        /**< Its packet or its neighbours contradict it. */
@@ -56,8 +56,9 @@ typedef struct G4LIDAR_C_SHARED g4lidar_polar {
 /** The frames of reference. (protocol: Frames of reference) */
 enum g4lidar_frame {
   G4LIDAR_VENDOR = 0, /**< The device's own: clockwise, 0 at the cable exit. */
-  G4LIDAR_ROBOT =
-      1 /**< REP 103: counter-clockwise, x forward (opposite the cable), y to the left. */
+  /** REP 103: counter-clockwise, x forward (of a G4 opposite the cable), y to the left. A direction
+   *  there is the turn of the model, 0 or 180, minus that in the device's frame. */
+  G4LIDAR_ROBOT = 1
 };
 
 /** Why a scan is not one whole revolution; a set of bits. */
@@ -89,15 +90,20 @@ typedef struct g4lidar_scan {
   float turned_deg;              /**< The turn from its first point to the next scan: about 360. */
   bool is_whole;                 /**< One revolution without known loss. */
   bool is_piece;                 /**< Only a part of a turn. */
+  uint16_t turn_deg;             /**< The turn of its model for G4LIDAR_ROBOT, 0 or 180. */
+  float longest_range_mm;        /**< The longest range that a sample of its model can contain. */
+  uint32_t default_bins;         /**< Bins of a grid of which few are empty: 720 for a G4. */
+  const char* model;             /**< The word of its model, "g4". Valid forever. */
 } g4lidar_scan;
 
-/** Writes `count` points as x and y in `frame`, a g4lidar_frame, to `out`, which is as long. */
+/** Writes `count` points as x and y in `frame`, a g4lidar_frame, to `out`, which is as long. `turn_deg`:
+ *  g4lidar_scan::turn_deg, 180 for a G4. */
 G4LIDAR_C_API int g4lidar_to_xy(const g4lidar_point* points, size_t count, int frame,
-                                g4lidar_xy* out);
+                                unsigned turn_deg, g4lidar_xy* out);
 
 /** Writes `count` points as directions and ranges in `frame` to `out`, which is as long. */
 G4LIDAR_C_API int g4lidar_to_polar(const g4lidar_point* points, size_t count, int frame,
-                                   g4lidar_polar* out);
+                                   unsigned turn_deg, g4lidar_polar* out);
 
 /** Which point determines the range of a bin of a grid. */
 enum g4lidar_grid_pick {
@@ -110,7 +116,7 @@ enum g4lidar_grid_pick {
 enum g4lidar_no_return_as {
   G4LIDAR_NO_RETURN_AS_INFINITY = 0, /**< +infinity (REP 117). */
   G4LIDAR_NO_RETURN_AS_NAN = 1,      /**< NaN. */
-  G4LIDAR_NO_RETURN_AS_MAX = 2       /**< 16.38375 m, the range_max of a LaserScan. */
+  G4LIDAR_NO_RETURN_AS_MAX = 2       /**< The longest range, the range_max of a LaserScan. */
 };
 
 /** How to fill a grid. */
@@ -124,6 +130,8 @@ typedef struct g4lidar_grid_options {
   int32_t no_return;   /**< A g4lidar_no_return_as; G4LIDAR_NO_RETURN_AS_INFINITY. */
   int32_t
       near_is_minus_infinity; /**< 1: what is flagged G4LIDAR_MAY_BE_TOO_NEAR is -infinity; 0: NaN. */
+  uint32_t turn_deg;          /**< g4lidar_scan::turn_deg; 180, that of a G4. */
+  float longest_range_mm;     /**< g4lidar_scan::longest_range_mm; 16383.75, that of a G4. */
 } g4lidar_grid_options;
 
 /** Sets the defaults, those of a ROS LaserScan; `size` is sizeof(g4lidar_grid_options). */

@@ -26,7 +26,7 @@ typedef struct g4lidar_recorder_options {
   uint64_t rotate_bytes;
   int32_t rotate_s;    /**< The same for its duration in seconds; 0: never. */
   int32_t chunk_ms;    /**< A crash loses at most this much, 10 to 10000; 500. */
-  uint32_t scan_bins;  /**< Ranges in each LaserScan, 1 to 65536; 720. */
+  uint32_t scan_bins;  /**< Ranges in each LaserScan, 1 to 65536; 0, g4lidar_scan::default_bins. */
   bool compressed;     /**< Whether zstd is used; see g4lidar_has_feature(). */
   bool overwrite;      /**< Whether an existing file may be replaced. */
   bool without_scans;  /**< Write no LaserScan messages: only bytes. */

@@ -32,6 +32,7 @@ typedef struct g4lidar_shaper_options {
   int32_t deskew;                /**< A g4lidar_deskewing; none. */
   bool restamps;       /**< Whether deskewed points get the time to which they were deskewed. */
   uint8_t reserved[3]; /**< 0. */
+  const char* model;   /**< g4lidar_scan::model of the lidar; NULL: a G4. */
 } g4lidar_shaper_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_shaper_options). */

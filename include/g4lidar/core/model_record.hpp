@@ -127,7 +127,8 @@ struct model {
   sample_rate_list rates{};
   frequency_properties frequency{};
   range_limits range{};
-  /// The turn from the device's frame, mirrored, to the robot's, in degrees: 0 or 180.
+  /// The turn from the device's frame, mirrored, to the robot's, in degrees: 0 or 180. A direction
+  /// in the robot's frame is this minus that in the device's.
   std::uint16_t turn_deg = 0;
   /// The reply to command 93 divided by this is the offset of zero in degrees; 0: no such command.
   std::uint8_t zero_angle_divisor = 0;
@@ -189,6 +190,15 @@ struct expected_rate {
 [[nodiscard]] constexpr int range_units_per_mm(sample_layout layout) noexcept {
   if (layout == sample_layout::half_mm) return 2;
   return layout == sample_layout::whole_mm || layout == sample_layout::intensity_16 ? 1 : 4;
+}
+
+/// The longest range that a sample of this layout can contain, in millimetres. *Pure.*
+[[nodiscard]] constexpr float longest_range_mm(sample_layout layout) noexcept {
+  using enum sample_layout;
+  constexpr float largest_word = 65535.0F;
+  if (layout == quarter_mm) return largest_word / 4.0F;
+  if (layout == half_mm) return largest_word / 2.0F;
+  return layout == whole_mm || layout == intensity_16 ? largest_word : 16383.0F;
 }
 
 /// The shortest range of `which` at this sample rate in millimetres, by the manufacturer. *Pure.*

@@ -63,37 +63,49 @@ enum class viewpoint : std::uint8_t {
   robot,  ///< From the origin of the robot at the reference time; the lidar has its top up.
 };
 
+/// A lidar on a robot, and from where its points are to be seen.
+struct mounted_view {
+  mounting mount;
+  std::uint16_t turn_deg = g4_model.turn_deg;  ///< Of the lidar.
+  viewpoint seen = viewpoint::lidar;
+
+  [[nodiscard]] constexpr vendor_axes axes() const noexcept {
+    return {mount.upside_down, turn_deg};
+  }
+};
+
 /// A constant twist of the robot.
-[[nodiscard]] constexpr constant_motion motion_by_twist(
-    const twist_2d& twist, std::int64_t reference_ns, const mounting& mount,
-    viewpoint seen = viewpoint::lidar) noexcept {
-  const pose_2d start = seen == viewpoint::robot ? mount.pose : pose_2d{};
-  return {.start = as_measured(start, mount.upside_down),
-          .twist = as_measured(seen_from(mount.pose, twist), mount.upside_down),
+[[nodiscard]] constexpr constant_motion motion_by_twist(const twist_2d& twist,
+                                                        std::int64_t reference_ns,
+                                                        const mounted_view& view) noexcept {
+  const pose_2d start = view.seen == viewpoint::robot ? view.mount.pose : pose_2d{};
+  return {.start = view.axes()(start),
+          .twist = view.axes()(seen_from(view.mount.pose, twist)),
           .start_ns = reference_ns};
 }
 
 /// Poses of the robot in a fixed frame, as places of the lidar.
 class seen_places {
  public:
-  constexpr seen_places(const std::optional<pose_2d>& reference, const mounting& mount,
-                        viewpoint seen) noexcept
-      : known_(reference), mount_(mount) {
+  constexpr seen_places(const std::optional<pose_2d>& reference, const mounted_view& view) noexcept
+      : known_(reference), mounted_at_(view.mount.pose), axes_(view.axes()) {
     if (!reference) return;
-    from_reference_ = inverse(seen == viewpoint::robot ? *reference : *reference * mount.pose);
+    from_reference_ =
+        inverse(view.seen == viewpoint::robot ? *reference : *reference * mounted_at_);
   }
   /// Whether there is a pose for the reference time.
   [[nodiscard]] constexpr bool known() const noexcept { return known_; }
   [[nodiscard]] constexpr pose_2d place(const pose_2d& robot) const noexcept {
-    return as_measured(from_reference_ * (robot * mount_.pose), mount_.upside_down);
+    return axes_(from_reference_ * (robot * mounted_at_));
   }
   [[nodiscard]] constexpr twist_2d twist(const twist_2d& robot) const noexcept {
-    return as_measured(seen_from(mount_.pose, robot), mount_.upside_down);
+    return axes_(seen_from(mounted_at_, robot));
   }
 
  private:
   bool known_;
-  mounting mount_;
+  pose_2d mounted_at_;
+  vendor_axes axes_;
   pose_2d from_reference_;
 };
 
@@ -101,8 +113,8 @@ class seen_places {
 class motion_on_path {
  public:
   constexpr motion_on_path(std::span<const stamped_pose> path, std::int64_t reference_ns,
-                           const mounting& mount, viewpoint seen = viewpoint::lidar) noexcept
-      : path_(path), places_(pose_at(path, reference_ns), mount, seen) {}
+                           const mounted_view& view) noexcept
+      : path_(path), places_(pose_at(path, reference_ns), view) {}
 
   /// As constant_motion::load().
   [[nodiscard]] constexpr std::size_t load(std::span<const point> points,
@@ -142,8 +154,8 @@ template <class Function>
 class motion_by_function {
  public:
   constexpr motion_by_function(const Function& function, std::int64_t reference_ns,
-                               const mounting& mount, viewpoint seen = viewpoint::lidar)
-      : function_(&function), places_(function(reference_ns), mount, seen) {}
+                               const mounted_view& view)
+      : function_(&function), places_(function(reference_ns), view) {}
 
   /// As constant_motion::load().
   [[nodiscard]] constexpr std::size_t load(std::span<const point> points, point_block& block) {

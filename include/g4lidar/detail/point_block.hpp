@@ -20,16 +20,27 @@ namespace g4lidar::detail {
 // Here poses are in the lidar's own frame (frame::vendor): x at 0 degrees, y at 90 degrees, and yaw as the angles of
 // the points grow. So the arithmetic is the same for a lidar that hangs with its top down.
 
-/// `pose`, given in frame::robot of the lidar, in frame::vendor. *Pure.* (protocol: Frames of reference)
-[[nodiscard]] constexpr pose_2d as_measured(const pose_2d& pose, bool upside_down) noexcept {
-  const double side = upside_down ? -1.0 : 1.0;
-  return {-pose.x_m, side * pose.y_m, -side * pose.yaw_rad};
-}
-/// The same for a twist.
-[[nodiscard]] constexpr twist_2d as_measured(const twist_2d& twist, bool upside_down) noexcept {
-  const double side = upside_down ? -1.0 : 1.0;
-  return {-twist.x_m_per_s, side * twist.y_m_per_s, -side * twist.yaw_rad_per_s};
-}
+/// From frame::robot of a lidar to its frame::vendor: the factors of x, y and yaw, 1 or -1.
+/// (protocol: Frames of reference)
+class vendor_axes {
+ public:
+  /// `turn_deg` is that of the model, 0 or 180.
+  constexpr vendor_axes(bool upside_down, std::uint16_t turn_deg) noexcept
+      : x_(turn_deg == 0 ? 1.0 : -1.0), yaw_(upside_down ? 1.0 : -1.0) {}
+
+  /// *Pure.*
+  [[nodiscard]] constexpr pose_2d operator()(const pose_2d& pose) const noexcept {
+    return {x_ * pose.x_m, x_ * yaw_ * pose.y_m, yaw_ * pose.yaw_rad};
+  }
+  /// The same for a twist.
+  [[nodiscard]] constexpr twist_2d operator()(const twist_2d& twist) const noexcept {
+    return {x_ * twist.x_m_per_s, x_ * yaw_ * twist.y_m_per_s, yaw_ * twist.yaw_rad_per_s};
+  }
+
+ private:
+  double x_;
+  double yaw_;
+};
 
 /// `a` where `mask` has all bits set, `b` where it has none. *Pure.*
 [[nodiscard]] constexpr float chosen(std::uint32_t mask, float a, float b) noexcept {

@@ -8,6 +8,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/export/text_sink.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4lidar {
 
@@ -25,6 +26,13 @@ enum class pcd_data : std::uint8_t {
 /// | `range_m` | float | metres |
 /// | `angle_deg` | float | degrees in frame `to`: vendor in [0, 360), robot in [-180, 180) |
 /// | `time_ns` | 64-bit signed integer | point::time_ns |
-G4LIDAR_API void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out);
+///
+/// `turn_deg` is that of the model, 0 or 180.
+G4LIDAR_API void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out,
+                           std::uint16_t turn_deg = g4_model.turn_deg);
+/// The same for the points of a scan, turned as its model.
+inline void write_pcd(const scan& source, frame to, pcd_data data, text_sink& out) {
+  write_pcd(source.points, to, data, out, source.model->turn_deg);
+}
 
 }  // namespace g4lidar

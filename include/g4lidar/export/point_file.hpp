@@ -35,8 +35,8 @@ class G4LIDAR_API point_file_writer : public point_writer {
   [[nodiscard]] virtual std::string first_bytes() const = 0;
 };
 
-/// The writer for `format`. `to` is the frame of ply and xyz.
+/// The writer for `format`. `to` is the frame of ply and xyz, and `turn_deg` that of the model, 0 or 180.
 [[nodiscard]] G4LIDAR_API std::unique_ptr<point_file_writer> make_point_file_writer(
-    point_file_format format, frame to);
+    point_file_format format, frame to, std::uint16_t turn_deg = g4_model.turn_deg);
 
 }  // namespace g4lidar

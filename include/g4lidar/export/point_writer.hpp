@@ -32,6 +32,8 @@ struct text_style {
   text_format format = text_format::csv;
   bool scans = false;        ///< One record per revolution, not per point.
   frame to = frame::vendor;  ///< The frame of the written angles.
+  /// model::turn_deg of the lidar, 0 or 180, for points; revolutions have that of their model.
+  std::uint16_t turn_deg = g4_model.turn_deg;
   length_unit unit = length_unit::millimetres;
   /// jsonl: points are written as they arrive, without the key `partial`, which is known only at
   /// the end of the revolution.

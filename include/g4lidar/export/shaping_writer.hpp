@@ -26,6 +26,8 @@ struct writing_options {
   /// How a scan_shaper shapes revolutions. A stream of points is marked and filtered in the same way; its last points
   /// wait for their neighbours: see finish().
   shaping_options shape{};
+  /// The model of the lidar, for a stream of points; revolutions have that of their scan. Not null.
+  const g4lidar::model* model = &g4_model;
   /// The poses of the robot by its odometry, times ascending, of the same clock as those of the points. Also
   /// for scan_record::robot. A view of the caller's memory, which outlives the writer.
   std::span<const stamped_pose> path{};

@@ -30,14 +30,18 @@ struct read_point {
 /// optionally scan and time_ns), in any order, among any others. *Single thread.*
 class G4LIDAR_API point_lines {
  public:
-  /// `in`: the frame of the angles in the text.
-  point_lines(text_source form, frame in) noexcept : form_(form), frame_(in) {}
+  /// `in`: the frame of the angles in the text. `which`: the model of the lidar, for the turn of that
+  /// frame and the shortest range; it outlives this.
+  point_lines(text_source form, frame in, const g4lidar::model& which = g4_model) noexcept
+      : form_(form), frame_(in), model_(&which) {}
 
   /// The point of a line without its line end; nothing if it contains none, like the header line of
   /// csv.
   [[nodiscard]] std::optional<read_point> read(std::string_view line);
   /// Whether the header line of csv lacks the columns that points need.
   [[nodiscard]] bool is_foreign() const noexcept { return is_foreign_; }
+  /// The model of the lidar.
+  [[nodiscard]] const g4lidar::model& model() const noexcept { return *model_; }
 
  private:
   static constexpr std::size_t no_column = 1000;
@@ -61,6 +65,7 @@ class G4LIDAR_API point_lines {
 
   text_source form_;
   g4lidar::frame frame_;
+  const g4lidar::model* model_;
   columns columns_;
   bool has_names_ = false;
   bool is_foreign_ = false;
@@ -72,8 +77,9 @@ class G4LIDAR_API point_lines {
 /// *Single thread, allocates on construction.*
 class G4LIDAR_API text_points {
  public:
-  /// `writer` and `out` must outlive this.
-  text_points(text_source form, frame in, point_writer& writer, text_sink& out);
+  /// `writer`, `out` and `which`, the model of the lidar, must outlive this.
+  text_points(text_source form, frame in, point_writer& writer, text_sink& out,
+              const model& which = g4_model);
 
   /// Adds the next text, in pieces of any size.
   void take(std::string_view text);

@@ -15,6 +15,7 @@
 #include "g4lidar/grid.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
+#include "g4lidar/scan.hpp"
 
 namespace g4lidar {
 
@@ -35,6 +36,8 @@ struct message_header {
   std::int64_t duration_ns = 0;  ///< From the first point to the first one of the next revolution.
   scan_order order = scan_order::angle;  ///< See scan_order; also of a PointCloud2, for its frame.
   std::size_t first_bin = 0;             ///< In the order of time: where the revolution begins.
+  /// The model of the lidar, for the limits of its ranges and its turn. Not null.
+  const g4lidar::model* model = &g4_model;
 };
 
 /// The name and the definition of a message, as recordings contain them. Valid forever.
@@ -56,9 +59,15 @@ struct message_schema {
                                                      std::int64_t duration_ns,
                                                      std::span<float> ranges_m,
                                                      grid_options how = {}) noexcept;
+/// The same for the points of a scan, with its duration and the longest range of its model.
+[[nodiscard]] inline std::size_t fill_time_grid(const scan& source, std::span<float> ranges_m,
+                                                const grid_options& how = {}) noexcept {
+  return fill_time_grid(source.points, source.duration_ns, ranges_m, how.with(*source.model));
+}
 
-/// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is 0.1 m (ranges below are not reliable),
-/// range_max 16.38375 m (the maximum of the protocol), angle_increment 2 pi / bins. Without
+/// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is the shortest range of the model (0.1 m
+/// for a G4; ranges below are not reliable), range_max the longest one that its samples can contain
+/// (16.38375 m for a G4), angle_increment 2 pi / bins. Without
 /// intensities. +infinity is not free space: a target nearer than the shortest range of the lidar
 /// (0.28 m at 9 kHz, more than range_min) may give no return; see too_near.hpp and grid_options. Allocates beyond the capacity of `out`.
 ///

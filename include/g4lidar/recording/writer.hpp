@@ -53,8 +53,9 @@ struct recording_options {
   /// different from the topics of the recording itself.
   std::string topic = "/scan";
   std::string frame_id = "laser";  ///< Of the LaserScan and PointCloud2 messages.
-  std::uint32_t scan_bins = 720;   ///< The number of ranges in each LaserScan, 1 to 65536.
-  bool scans = true;               ///< Whether revolutions are recorded as LaserScan messages.
+  /// The number of ranges in each LaserScan, 1 to 65536; by default default_bins() of the scan's model.
+  std::optional<std::uint32_t> scan_bins{};
+  bool scans = true;  ///< Whether revolutions are recorded as LaserScan messages.
   /// The order of the ranges of a LaserScan. In the order of time `frame_id` is a frame with z down.
   scan_order order = scan_order::angle;
   /// How the ranges of a LaserScan are filled; its frame is that of `order`.

@@ -66,7 +66,8 @@ void expect_same(std::span<const point> got, std::span<const point> expected) {
   EXPECT_LE(worst, angle_bound_deg);
 }
 
-void expect_same_places(std::span<const xy_point> got, bytes packet, frame to) {
+void expect_same_places(std::span<const xy_point> got, bytes packet, frame to,
+                        std::uint16_t turn_deg = 180) {
   const std::vector<reference::sample> expected = reference::samples_of(packet);
   ASSERT_EQ(got.size(), expected.size());
   for (std::size_t i = 0; i < got.size(); ++i) {
@@ -77,8 +78,11 @@ void expect_same_places(std::span<const xy_point> got, bytes packet, frame to) {
       continue;
     }
     const double native = angle_deg * std::numbers::pi / 180.0;
-    const double x_m = range_mm / 1000.0 * std::cos(native) * (to == frame::robot ? -1.0 : 1.0);
-    const double y_m = range_mm / 1000.0 * std::sin(native);
+    const bool is_mirrored = to == frame::robot;
+    const double x_side = is_mirrored && turn_deg == 180 ? -1.0 : 1.0;
+    const double y_side = is_mirrored && turn_deg == 0 ? -1.0 : 1.0;
+    const double x_m = range_mm / 1000.0 * std::cos(native) * x_side;
+    const double y_m = range_mm / 1000.0 * std::sin(native) * y_side;
     const double off =
         std::hypot(static_cast<double>(got[i].x_m) - x_m, static_cast<double>(got[i].y_m) - y_m);
     ASSERT_LE(off, place_bound * range_mm / 1000.0) << "raw " << raw << " at " << angle_deg;
@@ -108,6 +112,12 @@ class BulkDecoder : public testing::TestWithParam<instruction_set> {
       input = data;
       expect_same_places(decoder.decode_xy(input, to, places), data, to);
     }
+    model turned_otherwise = g4_model;
+    turned_otherwise.turn_deg = 0;
+    bulk_decoder other(turned_otherwise, GetParam());
+    std::vector<xy_point> places(max_samples);
+    input = data;
+    expect_same_places(other.decode_xy(input, frame::robot, places), data, frame::robot, 0);
   }
 };
 

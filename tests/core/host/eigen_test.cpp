@@ -152,6 +152,15 @@ TEST(EigenXy, AgreesWithToXyInBothFrames) {
   }
 }
 
+TEST(EigenConversion, AScan_IsTurnedAsItsModel) {
+  const std::vector<point> points{{.angle_deg = 90.0F, .range_mm = 2000.0F}};
+  Eigen::Matrix2Xf matrix(2, 1);
+  to_xy(scan{.points = points, .model = model_named("x4")}, frame::robot, matrix);
+  EXPECT_NEAR(matrix(1, 0), -2.0F, 1e-6F);
+  to_xy(points, frame::robot, matrix);
+  EXPECT_NEAR(matrix(1, 0), 2.0F, 1e-6F);
+}
+
 TEST(EigenTransform, RotatesAndTranslates) {
   // The lidar is 0.2 m in front of the robot's centre and 0.1 m to its left, rotated left by 90
   // degrees: a target 2 m ahead of it is 2 m to the robot's left.

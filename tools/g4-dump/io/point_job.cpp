@@ -33,6 +33,7 @@ writing_options how_to_write(const point_job& job, const common_options& common,
   const bool is_file = kind == source_kind::raw_bytes;
   writing_options made{.shape = shape};
   made.shape.filter.returns_only = job.returns_only;
+  made.model = job.source.model;
   made.for_grid = job.bins > 0;
   made.partial_scans = job.partial;
   if (common.count > 0) made.count = common.count;
@@ -71,16 +72,16 @@ class scan_file_writer final : public point_writer {
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
 
   void write_scan(const scan_record& record, text_sink& out) override {
-    if (!files_) return write(record.scan.points, out);
+    if (!files_) return write(record.scan, out);
     output file(files_(number_++));
-    write(record.scan.points, file);
+    write(record.scan, file);
     file.commit();
   }
 
  private:
-  void write(std::span<const point> points, text_sink& out) const {
-    if (format_ == scan_file::svg) return write_svg(points, out);
-    write_pcd(points, frame_, data_, out);
+  void write(const scan& revolution, text_sink& out) const {
+    if (format_ == scan_file::svg) return write_svg(revolution, out);
+    write_pcd(revolution, frame_, data_, out);
   }
 
   scan_file format_;
@@ -116,18 +117,14 @@ class point_run {
 
  private:
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
-  /// The columns of the model, and what is not known of it.
+  /// The columns and the turn of the model.
   void use_model() {
     const g4lidar::model& which = *job_.source.model;
     job_.style.intensity = intensity_bits(which.samples.layout) > 0;
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
+    job_.style.turn_deg = which.turn_deg;
     if (which.word == g4lidar::g4_model.word) return;
     if (kind_ != source_kind::raw_bytes) throw bad_value("--model: for files of raw bytes only");
-    const bool turns = common_.frame == frame::robot || !common_.mask.empty() ||
-                       common_.deskew != deskewing::none || has_scan_files();
-    if (turns && which.turn_deg != g4lidar::g4_model.turn_deg) {
-      throw bad_value("--model: only in the vendor frame, as text, without --mask and --deskew");
-    }
   }
   void choose_files() {
     if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
@@ -164,7 +161,7 @@ class point_run {
 
   std::unique_ptr<point_writer> make_writer() {
     if (job_.point_file) {
-      auto writer = make_point_file_writer(*job_.point_file, common_.frame);
+      auto writer = make_point_file_writer(*job_.point_file, common_.frame, job_.style.turn_deg);
       point_file_ = writer.get();
       return writer;
     }
@@ -244,7 +241,7 @@ class point_run {
 
   std::uint64_t read_text(input& in, output& out) {
     if (!job_.text) return 0;
-    text_points way(*job_.text, job_.text_frame, *writer_, out);
+    text_points way(*job_.text, job_.text_frame, *writer_, out, *job_.source.model);
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       way.take({reinterpret_cast<const char*>(got.data()), got.size()});
     });

@@ -145,6 +145,7 @@ class viewer {
       const scan now = scan_.view();
       facts_.frequency_hz = static_cast<double>(now.measured_frequency_hz());
       facts_.sample_rate_hz = static_cast<double>(now.measured_sample_rate_hz());
+      settings_.radar.turn_deg = now.model->turn_deg;
       if (!settings_.is_zoomed) update_range(now);
     }
     if (!event.empty()) facts_.event = event;

@@ -103,7 +103,7 @@ void draw_radar(canvas& on, const cell_area& in, std::span<const point> points,
   const bool is_robot = view.frame == g4lidar::frame::robot;
   for (const point& each : points) {
     if (each.is_no_return()) continue;
-    const g4lidar::xy_point at = g4lidar::to_xy(each, view.frame);
+    const g4lidar::xy_point at = g4lidar::to_xy(each, view.frame, view.turn_deg);
     const auto side_m = static_cast<double>(at.y_m);  // to the left in the robot frame only
     to.dot(on, is_robot ? -side_m : side_m, static_cast<double>(at.x_m), ink::points);
   }

@@ -2,6 +2,7 @@
 // Draws a revolution on a canvas, seen from above: rings with their ranges, and the returns.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "canvas.hpp"
@@ -14,6 +15,7 @@ struct radar_view {
   g4lidar::frame frame = g4lidar::frame::robot;
   double range_m = 8.0;  ///< From the middle to the nearest edge.
   bool grid = true;
+  std::uint16_t turn_deg = g4lidar::g4_model.turn_deg;  ///< Of the lidar's model.
 };
 
 /// The zoom range that shows nearly all returns; the largest one if there are none.

@@ -54,7 +54,7 @@ option_rows scan_rows(serve_options& options) {
                  options.common.frame),
        choice_row("--deskew", "Deskew each revolution by the scans alone", options.common.deskew,
                   choices<deskewing>{{"scans", deskewing::by_scans}}),
-       number_row("--grid", "N", "Ranges of each LaserScan (720)", options.bins, 1U, 65536U),
+       number_row("--grid", "N", "Ranges of each LaserScan (G4: 720)", options.bins, 1U, 65536U),
        text_row("--frame-id", "NAME", "frame_id of the messages for Foxglove (laser)",
                 options.frame_id, completion::nothing)});
 }

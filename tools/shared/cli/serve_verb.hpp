@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct serve_options {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8765;  ///< 0: any free port.
   bool allows_set = false;
-  std::vector<std::string> origins;  ///< Of other web pages that may connect.
-  std::uint32_t bins = 720;          ///< Ranges of a LaserScan.
+  std::vector<std::string> origins;   ///< Of other web pages that may connect.
+  std::optional<std::uint32_t> bins;  ///< Ranges of a LaserScan; default_bins() of the model.
   std::string frame_id = "laser";
   double speed = 1.0;  ///< Of the playback of a recording.
   bool loops = false;
