@@ -32,7 +32,7 @@ device::machine::machine(const world& scene, const device_options& options,
       head(options),
       options_(options),
       faults_(faults, options.scanner.seed),
-      sampler_(scene, options.scanner),
+      sampler_(scene, scanner_of(options)),
       wire_(options.baud),
       garbage_(stream_for(options.scanner.seed, purpose::garbage)) {
   assert(problem_with(options).empty());
@@ -43,6 +43,7 @@ device::machine::machine(const world& scene, const device_options& options,
     power_on(true);
   } else {
     keep_motor();
+    if (options.one_way) begin_at_full_speed();
   }
   advance(0);
 }
@@ -145,7 +146,7 @@ void device::machine::fault_edge() noexcept {
     power_on(options_.settings_outlive_power);
   }
   if (faults_.begins(fault_kind::scanning) && state_ == state::idle) {
-    if (now_ns_ == 0) head.jump(settings.scan_frequency_chz * std::uint32_t{10}, 0);
+    if (now_ns_ == 0) return begin_at_full_speed();
     begin_scan();
   }
 }
@@ -178,6 +179,7 @@ void device::machine::booted() noexcept {
   if (options_.boot_text) wire_.send(text_bytes(boot_words), now_ns_);
   if (options_.boot_information) send(answer_with(options_.info));
   keep_motor();
+  if (options_.one_way) static_cast<void>(obey_start());
 }
 
 // The motor has lowered the supply voltage too far.

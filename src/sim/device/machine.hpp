@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The events in a simulated G4, one after the other, independent of the calls from outside. So the
+// The events in a simulated lidar, one after the other, independent of the calls from outside. So the
 // behaviour does not depend on how often it is called.
 #pragma once
 
@@ -177,6 +177,7 @@ class G4LIDAR_HIDDEN device::machine {
 
   // Scanning.
   void begin_scan() noexcept;
+  void begin_at_full_speed() noexcept;
   void stop_scan() noexcept;
   void end_scan() noexcept;
   void keep_motor() noexcept;

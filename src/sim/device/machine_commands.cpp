@@ -14,7 +14,8 @@ void device::machine::host_byte_arrives() noexcept {
   if (faults_.find(fault_kind::baud) != nullptr) {
     byte = static_cast<std::uint8_t>(garbage_.next() >> 56);
   }
-  if (!is_up() || faults_.find(fault_kind::deaf) != nullptr) return from_host_.ignore();
+  const bool is_deaf = options_.one_way || faults_.find(fault_kind::deaf) != nullptr;
+  if (!is_up() || is_deaf) return from_host_.ignore();
   from_host_.hear(byte, now_ns_, options_.reaction_ns);
 }
 

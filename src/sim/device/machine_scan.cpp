@@ -17,6 +17,11 @@ void device::machine::begin_scan() noexcept {
   measure();
 }
 
+void device::machine::begin_at_full_speed() noexcept {
+  head.jump(settings.scan_frequency_chz * std::uint32_t{10}, now_ns_);
+  begin_scan();
+}
+
 /// A second stop does not delay the end. A device that sends nothing yet has nothing left to send.
 void device::machine::stop_scan() noexcept {
   if (!is_scanning()) return;

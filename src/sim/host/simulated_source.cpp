@@ -32,6 +32,11 @@ result<simulated_source> open_simulated(std::string_view source) {
     return refused(problem::bad_option, "sim:", wrong->message);
   }
   const setup& wish = std::get<setup>(read);
+  if (wish.device.one_way) {
+    return refused(problem::bad_option, "sim:",
+                   "a lidar that answers nothing cannot be opened yet; its bytes are those of "
+                   "g4-dump sim --model");
+  }
   auto scene = load_world(wish.world_file);
   if (const auto* wrong = std::get_if<world_error>(&scene)) return refused(wish.world_file, *wrong);
   world& in = std::get<world>(scene);
