@@ -78,7 +78,8 @@ std::vector<seen_event> events_of(const buffer& stream, const sample_format& for
       expect(gone->count > 0 && taken + gone->count <= stream.size(), "skipped what is not there");
       taken += gone->count;
       expect(gone->last == stream[taken - 1], "another last byte");
-      all.insert(all.end(), gone->count, {found.index(), static_cast<std::size_t>(gone->reason), {}});
+      all.insert(all.end(), gone->count,
+                 {found.index(), static_cast<std::size_t>(gone->reason), {}});
       return;
     }
     const bytes data = std::visit(
@@ -90,8 +91,9 @@ std::vector<seen_event> events_of(const buffer& stream, const sample_format& for
           }
         },
         found);
-    expect(std::equal(data.begin(), data.end(), stream.begin() + static_cast<std::ptrdiff_t>(taken)),
-           "bytes that were not given");
+    expect(
+        std::equal(data.begin(), data.end(), stream.begin() + static_cast<std::ptrdiff_t>(taken)),
+        "bytes that were not given");
     taken += data.size();
     all.push_back({found.index(), 0, buffer(data.begin(), data.end())});
   };

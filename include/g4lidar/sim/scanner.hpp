@@ -70,7 +70,7 @@ struct sample_truth {
   std::uint16_t raw;
   std::uint16_t intensity;  ///< As sent; 0 if samples have none, and for no return.
   std::uint8_t flags;       ///< The same.
-  pose lidar;         ///< The pose of the lidar at `time_ns`; its heading is not wrapped.
+  pose lidar;               ///< The pose of the lidar at `time_ns`; its heading is not wrapped.
 };
 
 /// A packet as the device sends it, and the true values of its samples.

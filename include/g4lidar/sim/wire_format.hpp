@@ -54,8 +54,8 @@ struct wire_format {
   beam_shape beam = triangle_beam;
   /// Samples per second, for each sample_rate in turn; 0: the model has no such rate.
   std::array<std::uint32_t, 3> rates_hz{4000, 8000, 9000};
-  std::uint16_t min_frequency_chz = 500;   ///< Revolutions per 100 s, at least.
-  std::uint16_t max_frequency_chz = 1200;  ///< The same, at most.
+  std::uint16_t min_frequency_chz = 500;    ///< Revolutions per 100 s, at least.
+  std::uint16_t max_frequency_chz = 1200;   ///< The same, at most.
   std::uint8_t max_samples = most_samples;  ///< In a packet.
   std::int8_t ct_offset_dhz = 0;  ///< What is missing in the reported frequency, in 0.1 Hz.
   std::uint8_t usual_flags = 0;   ///< Of most returns, where samples have flags.

@@ -43,7 +43,8 @@ ray_caster::ray_caster(const world& scene, const beam_shape& shape) : shape_(sha
       width = 360.0 - width;
     }
     constexpr double margin = 0.01;
-    const double begin = first - correction_deg(std::max(w.nearest, least_range_mm), shape_) - margin;
+    const double begin =
+        first - correction_deg(std::max(w.nearest, least_range_mm), shape_) - margin;
     const double end = first + width - correction_deg(w.farthest, shape_) + margin;
     constexpr double per_degree = static_cast<double>(sectors) / 360.0;
     const bool all_round = w.distance < least_range_mm || end - begin >= 359.0;

@@ -40,7 +40,8 @@ std::string_view problem_with(const device_options& options) noexcept {
   }
   if (options.highest_frequency_chz < options.scanner.scan_frequency_chz ||
       options.highest_frequency_chz > options.scanner.format.max_frequency_chz) {
-    return "the highest scan frequency must be from the device's own to that of the model, 12 Hz of "
+    return "the highest scan frequency must be from the device's own to that of the model, 12 Hz "
+           "of "
            "a G4";
   }
   if (options.motor_drift_ppm > 100'000 || options.free_motor_drift_ppm > 100'000) {

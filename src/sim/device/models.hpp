@@ -46,7 +46,7 @@ struct old_version {
 /// By default what most models of the G series have.
 struct simulated_model {
   std::string_view word;
-  std::array<std::uint8_t, 2> ids{};  ///< In the device information; 0: no other.
+  std::array<std::uint8_t, 2> ids{};            ///< In the device information; 0: no other.
   std::array<std::uint32_t, 2> bauds{230'400};  ///< The usual one first; 0: no other.
 
   sample_code code = quarter_code;
@@ -71,7 +71,7 @@ struct simulated_model {
   std::uint16_t farthest_mm = 16'000;
   bool is_turned = true;
 
-  std::uint8_t zero_divisor = 0;  ///< Of the answer to 93; 0: no such command.
+  std::uint8_t zero_divisor = 0;               ///< Of the answer to 93; 0: no such command.
   knowledge protection = knowledge::unknown;   ///< D9.
   knowledge information = knowledge::unknown;  ///< In CT.
   leading_byte leading = leading_byte::nothing;
@@ -86,15 +86,15 @@ struct simulated_model {
 namespace rows {
 
 // `of` with another name and other ids.
-[[nodiscard]] constexpr simulated_model named(simulated_model of, std::string_view word, std::uint8_t id,
-                                std::uint8_t other_id = 0) noexcept {
+[[nodiscard]] constexpr simulated_model named(simulated_model of, std::string_view word,
+                                              std::uint8_t id, std::uint8_t other_id = 0) noexcept {
   of.word = word;
   of.ids = {id, other_id};
   return of;
 }
 
 [[nodiscard]] constexpr simulated_model with_range(simulated_model of, std::uint16_t nearest_mm,
-                                     std::uint16_t farthest_mm) noexcept {
+                                                   std::uint16_t farthest_mm) noexcept {
   of.nearest_mm = nearest_mm;
   of.farthest_mm = farthest_mm;
   return of;
@@ -111,7 +111,8 @@ namespace rows {
   return of;
 }
 
-[[nodiscard]] constexpr simulated_model with_zero_angle(simulated_model of, std::uint8_t divisor) noexcept {
+[[nodiscard]] constexpr simulated_model with_zero_angle(simulated_model of,
+                                                        std::uint8_t divisor) noexcept {
   of.zero_divisor = divisor;
   return of;
 }
@@ -220,17 +221,10 @@ inline constexpr auto x_models = [] {
   scl.beam = scl_beam;
 
   return std::array{
-      named(x4, "x4", 6),
-      named(x4_pro, "x4-pro", 4, 6),
-      named(x2, "x2", 4, 6),
-      named(x2, "x2l", 4, 6),
-      named(x2, "x3", 4, 6),
-      named(x3_pro, "x3-pro", 4, 6),
-      named(s2, "s2", 4, 12),
-      named(s2, "s2-pro", 4, 12),
-      named(s4, "s4", 4),
-      named(s4b, "s4b", 4, 11),
-      named(scl, "scl", 22),
+      named(x4, "x4", 6),       named(x4_pro, "x4-pro", 4, 6), named(x2, "x2", 4, 6),
+      named(x2, "x2l", 4, 6),   named(x2, "x3", 4, 6),         named(x3_pro, "x3-pro", 4, 6),
+      named(s2, "s2", 4, 12),   named(s2, "s2-pro", 4, 12),    named(s4, "s4", 4),
+      named(s4b, "s4b", 4, 11), named(scl, "scl", 22),
   };
 }();
 
@@ -287,8 +281,8 @@ inline constexpr auto time_of_flight_models = [] {
 
 /// All models, the G4 first.
 inline constexpr auto simulated_models = [] {
-  std::array<simulated_model, rows::g_models.size() + rows::x_models.size() +
-                                  rows::time_of_flight_models.size()>
+  std::array<simulated_model,
+             rows::g_models.size() + rows::x_models.size() + rows::time_of_flight_models.size()>
       all{};
   auto end = std::copy(rows::g_models.begin(), rows::g_models.end(), all.begin());
   end = std::copy(rows::x_models.begin(), rows::x_models.end(), end);

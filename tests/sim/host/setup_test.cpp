@@ -171,9 +171,10 @@ TEST_F(SimSetup, TheOrderOfTheOptionsIsFree) {
 TEST_F(SimSetup, InvalidTexts_AreRefused) {
   EXPECT_THAT(refusal("/dev/ttyUSB0"), HasSubstr("does not begin with sim:"));
   EXPECT_THAT(refusal("sim:?colour=red"), StartsWith("'colour' is not one of baud, batch_min_ns,"));
-  EXPECT_THAT(refusal("sim:colour"),
-              HasSubstr("boots_at_start, fault, firmware, model, model_id, other_layout, path, seed, "
-                        "serial, world"));
+  EXPECT_THAT(
+      refusal("sim:colour"),
+      HasSubstr("boots_at_start, fault, firmware, model, model_id, other_layout, path, seed, "
+                "serial, world"));
   EXPECT_THAT(refusal("sim:?&"), StartsWith("'' is not one of baud"));
   EXPECT_EQ(refusal("sim:?seed=-1"), "seed: '-1' is not in the range 0 to 18446744073709551615");
   EXPECT_EQ(refusal("sim:?seed="), "seed: '' is not in the range 0 to 18446744073709551615");

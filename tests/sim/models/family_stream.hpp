@@ -21,7 +21,8 @@ namespace g4lidar::test {
 struct family_model {
   std::string word;
   std::string like;  ///< Its format in reference::wire_formats.
-  double rate_hz;    ///< What is simulated: the usual rate, else the fastest that its connection carries.
+  double
+      rate_hz;  ///< What is simulated: the usual rate, else the fastest that its connection carries.
   double nearest_mm;
   double farthest_mm;
   double turn_deg;  ///< From angle 0 to where the lidar looks.

@@ -122,7 +122,8 @@ TEST(SimOneWay, TheReferenceOfTheCrc) {
 
 TEST(SimModels, ACrcByteIsSentWhereItIsKnown) {
   const auto sends = [](const std::string& word) {
-    const auto all = revolutions_of(test::stream_of(test::options_of(word), 3 * second).bytes, word);
+    const auto all =
+        revolutions_of(test::stream_of(test::options_of(word), 3 * second).bytes, word);
     EXPECT_GT(all.size(), 5U) << word;
     std::size_t fitting = 0;
     std::size_t none = 0;
@@ -133,11 +134,9 @@ TEST(SimModels, ACrcByteIsSentWhereItIsKnown) {
     if (fitting == all.size()) return std::string("crc");
     return std::string(none == all.size() ? "nothing" : "a byte");
   };
-  const std::map<std::string, std::string> others{{"g4", "a byte"},     {"g4-pro", "a byte"},
-                                                  {"g5", "a byte"},     {"x4-pro", "crc"},
-                                                  {"s2", "crc"},        {"s2-pro", "crc"},
-                                                  {"tg15", "crc"},      {"tg30", "crc"},
-                                                  {"tg50", "crc"}};
+  const std::map<std::string, std::string> others{
+      {"g4", "a byte"},  {"g4-pro", "a byte"}, {"g5", "a byte"}, {"x4-pro", "crc"}, {"s2", "crc"},
+      {"s2-pro", "crc"}, {"tg15", "crc"},      {"tg30", "crc"},  {"tg50", "crc"}};
   for (const test::family_model& each : test::family_models) {
     const auto other = others.find(each.word);
     EXPECT_EQ(sends(each.word), other == others.end() ? "nothing" : other->second) << each.word;

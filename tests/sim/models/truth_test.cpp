@@ -137,7 +137,8 @@ TEST_P(SimModel, TheRobotSeesTheSameWorld) {
         (looks_deg + GetParam().turn_deg - static_cast<double>(p.angle_deg)) / degrees;
     const double x = room.lidar.x_m + range_mm / 1000.0 * std::cos(direction);
     const double y = room.lidar.y_m + range_mm / 1000.0 * std::sin(direction);
-    const double slack_mm = 0.5 + range_mm * angle_slack_deg(GetParam().format(), range_mm) / degrees;
+    const double slack_mm =
+        0.5 + range_mm * angle_slack_deg(GetParam().format(), range_mm) / degrees;
     ASSERT_LT(from_walls_m(room, x, y) * 1000.0, slack_mm + 0.01) << range_mm;
   }
   EXPECT_GT(returns, 500U);
