@@ -33,9 +33,8 @@ result<simulated_source> open_simulated(std::string_view source) {
   }
   const setup& wish = std::get<setup>(read);
   if (wish.device.one_way) {
-    return refused(problem::bad_option, "sim:",
-                   "a lidar that answers nothing cannot be opened yet; its bytes are those of "
-                   "g4-dump sim --model");
+    return failure(task::opening, problem::bad_option,
+                   "sim: of a model that answers nothing (only a G4 can be opened)");
   }
   auto scene = load_world(wish.world_file);
   if (const auto* wrong = std::get_if<world_error>(&scene)) return refused(wish.world_file, *wrong);

@@ -123,7 +123,7 @@ TEST_F(SimSetup, AnotherModel_IsRefusedByName) {
   const auto one_way = lidar::open(options);
   ASSERT_FALSE(one_way);
   EXPECT_EQ(one_way.error(), problem::bad_option);
-  EXPECT_THAT(one_way.error().message(), HasSubstr("a lidar that answers nothing"));
+  EXPECT_THAT(one_way.error().message(), HasSubstr("a model that answers nothing"));
 }
 
 TEST_F(SimSetup, OpenQuestionsOfTheProtocol) {

@@ -239,11 +239,13 @@ TEST(SimModels, FlagsAndIntensityAreThoseOfTheModel) {
 // All that a G4 is not is set back, too.
 TEST(SimModels, AModelAfterAnother_IsAsIfItWereTheFirst) {
   for (const test::family_model& each : test::family_models) {
-    sim::device_options twice = test::options_of("tg15");
-    ASSERT_TRUE(sim::use_model(twice, each.word));
-    EXPECT_EQ(test::stream_of(twice, second / 2).bytes,
-              test::stream_of(test::options_of(each.word), second / 2).bytes)
-        << each.word;
+    const byte_vector alone = test::stream_of(test::options_of(each.word), second / 2).bytes;
+    for (const char* const before : {"tg15", "x4-pro"}) {
+      sim::device_options twice = test::options_of(before);
+      ASSERT_TRUE(sim::use_model(twice, each.word));
+      EXPECT_EQ(test::stream_of(twice, second / 2).bytes, alone)
+          << each.word << " after " << before;
+    }
   }
 }
 
