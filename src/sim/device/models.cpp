@@ -22,10 +22,10 @@ const simulated_model* find_model(std::string_view word) noexcept {
 std::size_t first_rate(const simulated_model& of, const sample_code& code) noexcept {
   const std::size_t quarters = 4 * code.size() + 1;
   std::size_t best = 0;
-  for (std::size_t i = 0; i < of.rates.size(); ++i) {
-    const std::uint32_t hz = of.rates[i].hz;
+  for (std::size_t i = 0; i < of.rates.rows.size(); ++i) {
+    const std::uint32_t hz = of.rates.rows[i].hz;
     if (hz == 0) break;
-    if (hz == of.usual_hz) return i;
+    if (hz == of.rates.usual_hz) return i;
     if (hz * quarters * 10 / 4 <= of.bauds[0]) best = i;
   }
   return best;
@@ -33,7 +33,7 @@ std::size_t first_rate(const simulated_model& of, const sample_code& code) noexc
 
 // 7 Hz, or 10 Hz if the model has no less than 6 Hz and can be set to it.
 std::uint16_t first_frequency_chz(const simulated_model& of) noexcept {
-  return of.steps_frequency && of.slowest_dhz >= 60 ? 1000 : 700;
+  return of.frequency.is_stepped && of.frequency.slowest_dhz >= 60 ? 1000 : 700;
 }
 
 unsigned digits(const device_information& info, std::size_t from, std::size_t count) noexcept {
@@ -80,11 +80,13 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
   wire_format& format = scanner.format;
   format.code = other_layout ? *of.other_code : is_old ? of.old.code : of.code;
   format.beam = of.beam;
-  for (std::size_t i = 0; i < of.rates.size(); ++i) format.rates_hz[i] = of.rates[i].hz;
-  format.min_frequency_chz = static_cast<std::uint16_t>(of.slowest_dhz * 10);
-  format.max_frequency_chz = static_cast<std::uint16_t>(of.fastest_dhz * 10);
+  for (std::size_t i = 0; i < format.rates_hz.size(); ++i) {
+    format.rates_hz[i] = of.rates.rows[i].hz;
+  }
+  format.min_frequency_chz = static_cast<std::uint16_t>(of.frequency.slowest_dhz * 10);
+  format.max_frequency_chz = static_cast<std::uint16_t>(of.frequency.fastest_dhz * 10);
   format.max_samples = of.max_samples;
-  format.ct_offset_dhz = is_old ? of.old.ct_offset_dhz : of.ct_offset_dhz;
+  format.ct_offset_dhz = is_old ? of.old.ct_offset_dhz : of.frequency.ct_offset_dhz;
   format.usual_flags = of.usual_flags;
   format.is_turned = of.is_turned;
 
@@ -92,10 +94,10 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
   scanner.sample_rate = static_cast<sample_rate>(rate);
   scanner.scan_frequency_chz = first_frequency_chz(of);
   scanner.index_deg = of.index_deg;
-  scanner.reports_frequency = of.reports_frequency;
-  const std::uint16_t nearest_mm = of.rates[rate].nearest_mm;
-  scanner.min_range_mm = nearest_mm != 0 ? nearest_mm : of.nearest_mm;
-  scanner.max_range_mm = of.farthest_mm;
+  scanner.reports_frequency = of.frequency.is_reported;
+  const std::uint16_t nearest_mm = of.rates.rows[rate].nearest_mm;
+  scanner.min_range_mm = nearest_mm != 0 ? nearest_mm : of.range.nearest_mm;
+  scanner.max_range_mm = of.range.farthest_mm;
 
   options.info.model = of.ids[0];
   options.baud = of.bauds[0];

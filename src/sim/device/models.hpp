@@ -35,6 +35,27 @@ struct rate_row {
   std::uint16_t nearest_mm = 0;  ///< At this rate; 0: that of the model.
 };
 
+struct rate_table {
+  std::array<rate_row, 3> rows{};
+  std::uint32_t usual_hz = 0;  ///< Of these, as delivered; 0: not known.
+  bool are_stepped = false;    ///< By D0.
+};
+
+/// The scan frequency, in 0.1 Hz.
+struct frequency_row {
+  std::uint16_t slowest_dhz = 50;
+  std::uint16_t fastest_dhz = 120;
+  bool is_stepped = true;              ///< By 09 to 0C.
+  bool is_reported = true;             ///< In zero packets.
+  std::int16_t answer_offset_chz = 0;  ///< To be added to answers, in 0.01 Hz.
+  std::int8_t ct_offset_dhz = 0;       ///< To be added to zero packets.
+};
+
+struct range_row {
+  std::uint16_t nearest_mm = 100;
+  std::uint16_t farthest_mm = 16'000;
+};
+
 /// What devices with old firmware have instead.
 struct old_version {
   std::uint16_t last = 0;  ///< 256 * major + minor; 0: no difference.
@@ -58,28 +79,16 @@ struct simulated_model {
   bool answers = true;
   drive driven_by = drive::commands;
 
-  std::array<rate_row, 3> rates{};
-  std::uint32_t usual_hz = 0;  ///< Of these, as delivered; 0: not known.
-  bool steps_rate = false;     ///< By D0.
-
-  std::uint16_t slowest_dhz = 50;   ///< Revolutions in 10 s.
-  std::uint16_t fastest_dhz = 120;  ///< The same.
-  bool steps_frequency = true;      ///< By 09 to 0C.
-  std::uint16_t index_deg = 0;      ///< Where a revolution begins.
-
-  std::uint16_t nearest_mm = 100;
-  std::uint16_t farthest_mm = 16'000;
+  rate_table rates{};
+  frequency_row frequency{};
+  std::uint16_t index_deg = 0;  ///< Where a revolution begins.
+  range_row range{};
   bool is_turned = true;
 
   std::uint8_t zero_divisor = 0;               ///< Of the answer to 93; 0: no such command.
   knowledge protection = knowledge::unknown;   ///< D9.
   knowledge information = knowledge::unknown;  ///< In CT.
   leading_byte leading = leading_byte::nothing;
-
-  std::int16_t answer_offset_chz = 0;  ///< To be added to answers with a frequency.
-  std::int8_t ct_offset_dhz = 0;       ///< The same for zero packets.
-  bool reports_frequency = true;       ///< In zero packets.
-
   old_version old{};
 };
 
@@ -95,14 +104,12 @@ namespace rows {
 
 [[nodiscard]] constexpr simulated_model with_range(simulated_model of, std::uint16_t nearest_mm,
                                                    std::uint16_t farthest_mm) noexcept {
-  of.nearest_mm = nearest_mm;
-  of.farthest_mm = farthest_mm;
+  of.range = {nearest_mm, farthest_mm};
   return of;
 }
 
 [[nodiscard]] constexpr simulated_model with_rate(simulated_model of, std::uint32_t hz) noexcept {
-  of.rates = {{{hz}}};
-  of.usual_hz = hz;
+  of.rates = {{{{hz}}}, hz};
   return of;
 }
 
@@ -121,9 +128,7 @@ namespace rows {
 inline constexpr auto g_models = [] {
   simulated_model g4{.word = "g4", .ids = {5}};
   g4.max_samples = 80;
-  g4.rates = {{{4000, 100}, {8000, 260}, {9000, 280}}};
-  g4.usual_hz = 9000;
-  g4.steps_rate = true;
+  g4.rates = {{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true};
   g4.protection = knowledge::present;
   g4.leading = leading_byte::random;
   simulated_model g5 = named(g4, "g5", 20);
@@ -132,13 +137,11 @@ inline constexpr auto g_models = [] {
   simulated_model f4 = with_baud(with_rate(with_range({}, 120, 12'000), 4000), 115'200);
   f4.protection = knowledge::absent;
   simulated_model f4_pro = with_range({}, 120, 12'000);
-  f4_pro.rates = {{{4000}, {6000}}};
-  f4_pro.usual_hz = 4000;
-  f4_pro.steps_rate = true;
+  f4_pro.rates = {{{{4000}, {6000}}}, 4000, true};
   f4_pro.protection = knowledge::present;
 
   simulated_model g1 = with_zero_angle(with_rate({}, 9000), 4);
-  g1.rates[0].nearest_mm = 280;
+  g1.rates.rows[0].nearest_mm = 280;
   const simulated_model g2a = with_zero_angle(with_rate(with_range({}, 100, 12'000), 5000), 4);
   const simulated_model g2c = with_baud(with_rate(g2a, 4000), 115'200);
   const simulated_model g4c = with_zero_angle(g2c, 0);
@@ -147,14 +150,12 @@ inline constexpr auto g_models = [] {
 
   simulated_model g6 = with_baud(with_range({}, 100, 25'000), 512'000);
   g6.code = half_code;
-  g6.rates = {{{8000, 100}, {16'000, 260}, {18'000, 280}}};
-  g6.usual_hz = 18'000;
-  g6.steps_rate = true;
+  g6.rates = {{{{8000, 100}, {16'000, 260}, {18'000, 280}}}, 18'000, true};
   g6.protection = knowledge::present;
 
   simulated_model g2 = with_zero_angle(with_rate({}, 5000), 4);
   g2.code = bright_10_code;
-  g2.rates[0].nearest_mm = 280;
+  g2.rates.rows[0].nearest_mm = 280;
   simulated_model g4b = with_baud(with_rate(with_range({}, 120, 16'000), 10'000), 512'000);
   g4b.code = bright_10_code;
 
@@ -181,37 +182,35 @@ inline constexpr auto x_models = [] {
   simulated_model x4 = with_baud(with_rate(with_range({}, 120, 10'000), 5000), 128'000);
   x4.code = flagged_code;
   x4.driven_by = drive::dtr_line;
-  x4.steps_frequency = false;
+  x4.frequency.is_stepped = false;
   x4.is_turned = false;
   x4.protection = knowledge::absent;
   const simulated_model s4 = with_baud(with_rate(with_range(x4, 100, 8000), 4000), 115'200);
   x4.information = knowledge::absent;
   x4.index_deg = 348;
-  x4.reports_frequency = false;
+  x4.frequency.is_reported = false;
 
   simulated_model one_way = s4;
   one_way.answers = false;
-  one_way.slowest_dhz = 40;
-  one_way.fastest_dhz = 80;
+  one_way.frequency.slowest_dhz = 40;
+  one_way.frequency.fastest_dhz = 80;
   const simulated_model x2 = with_rate(one_way, 3000);
 
   simulated_model x3_pro = one_way;
-  x3_pro.rates = {{{3000}, {4000}}};
-  x3_pro.usual_hz = 0;
-  x3_pro.slowest_dhz = 60;
-  x3_pro.fastest_dhz = 120;
+  x3_pro.rates = {{{{3000}, {4000}}}};
+  x3_pro.frequency.slowest_dhz = 60;
+  x3_pro.frequency.fastest_dhz = 120;
 
   simulated_model informing = one_way;
   informing.information = knowledge::present;
   informing.leading = leading_byte::crc;
   simulated_model x4_pro = with_baud(with_rate(with_range(informing, 120, 10'000), 5000), 128'000);
   x4_pro.driven_by = drive::power;
-  x4_pro.slowest_dhz = 50;
-  x4_pro.fastest_dhz = 120;
+  x4_pro.frequency.slowest_dhz = 50;
+  x4_pro.frequency.fastest_dhz = 120;
   simulated_model s2 = with_range(informing, 80, 12'000);
   s2.bauds = {115'200, 128'000};
-  s2.rates = {{{3000}, {4000}, {5000}}};
-  s2.usual_hz = 0;
+  s2.rates = {{{{3000}, {4000}, {5000}}}};
   s2.other_code = bright_8_code;
 
   simulated_model s4b = with_baud(s4, 153'600);
@@ -236,7 +235,7 @@ inline constexpr auto time_of_flight_models = [] {
   simulated_model t_mini = with_rate(straight, 4000);
   t_mini.code = bright_8_code;
   t_mini.usual_flags = 2;
-  t_mini.slowest_dhz = 60;
+  t_mini.frequency.slowest_dhz = 60;
   t_mini.is_turned = false;
   simulated_model sh = with_range(t_mini, 50, 25'000);
   sh.code = bright_16_code;
@@ -244,23 +243,23 @@ inline constexpr auto time_of_flight_models = [] {
 
   simulated_model tg = with_baud(with_zero_angle(straight, 4), 512'000);
   tg.code = mm_code;
-  tg.rates = {{{10'000}, {18'000}, {20'000}}};
-  tg.slowest_dhz = 30;
-  tg.fastest_dhz = 160;
+  tg.rates = {{{{10'000}, {18'000}, {20'000}}}};
+  tg.frequency.slowest_dhz = 30;
+  tg.frequency.fastest_dhz = 160;
   tg.index_deg = 108;
   tg.protection = knowledge::present;
   tg.leading = leading_byte::crc;
-  tg.answer_offset_chz = -40;
-  tg.ct_offset_dhz = 30;
+  tg.frequency.answer_offset_chz = -40;
+  tg.frequency.ct_offset_dhz = 30;
   tg.old = {0x0102, half_code, 4, 0};
 
   simulated_model tx = with_baud(with_rate(straight, 4000), 115'200);
   tx.code = mm_code;
   tx.answers = false;
   tx.driven_by = drive::dtr_line;
-  tx.slowest_dhz = 40;
-  tx.fastest_dhz = 80;
-  tx.steps_frequency = false;
+  tx.frequency.slowest_dhz = 40;
+  tx.frequency.fastest_dhz = 80;
+  tx.frequency.is_stepped = false;
   tx.is_turned = false;
   tx.protection = knowledge::absent;
 

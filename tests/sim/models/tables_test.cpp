@@ -95,20 +95,21 @@ TEST(SimModelTables, AgreeInEachField) {
     same("link", ours.link == link_kind::two_way, its.answers);
     same("motor", text_of(ours.motor), text_of(its.driven_by));
     for (std::size_t i = 0; i < 3; ++i) {
-      same("rate", ours.rates.entries[i].hz, its.rates[i].hz);
-      same("shortest range by rate", ours.rates.entries[i].shortest_mm, its.rates[i].nearest_mm);
+      same("rate", ours.rates.entries[i].hz, its.rates.rows[i].hz);
+      same("shortest range by rate", ours.rates.entries[i].shortest_mm,
+           its.rates.rows[i].nearest_mm);
     }
-    same("nominal rate", ours.rates.nominal_hz, its.usual_hz);
-    same("is_settable", ours.rates.is_settable, its.steps_rate);
-    same("whether the frequency can be set", ours.frequency.max_dhz != 0, its.steps_frequency);
-    if (its.steps_frequency) {
-      same("min_dhz", ours.frequency.min_dhz, its.slowest_dhz);
-      same("max_dhz", ours.frequency.max_dhz, its.fastest_dhz);
+    same("nominal rate", ours.rates.nominal_hz, its.rates.usual_hz);
+    same("is_settable", ours.rates.is_settable, its.rates.are_stepped);
+    same("whether the frequency can be set", ours.frequency.max_dhz != 0, its.frequency.is_stepped);
+    if (its.frequency.is_stepped) {
+      same("min_dhz", ours.frequency.min_dhz, its.frequency.slowest_dhz);
+      same("max_dhz", ours.frequency.max_dhz, its.frequency.fastest_dhz);
     }
-    same("reply_offset_chz", ours.frequency.reply_offset_chz, its.answer_offset_chz);
-    same("ct_offset_dhz", ours.frequency.ct_offset_dhz, its.ct_offset_dhz);
-    same("min_mm", ours.range.min_mm, its.nearest_mm);
-    same("max_mm", ours.range.max_mm, its.farthest_mm);
+    same("reply_offset_chz", ours.frequency.reply_offset_chz, its.frequency.answer_offset_chz);
+    same("ct_offset_dhz", ours.frequency.ct_offset_dhz, its.frequency.ct_offset_dhz);
+    same("min_mm", ours.range.min_mm, its.range.nearest_mm);
+    same("max_mm", ours.range.max_mm, its.range.farthest_mm);
     same("turn_deg", int{ours.turn_deg}, its.is_turned ? 180 : 0);
     same("zero_angle_divisor", ours.zero_angle_divisor, its.zero_divisor);
     same("protection", text_of(ours.protection), text_of(its.protection));
