@@ -112,7 +112,7 @@ TEST_F(SimSetup, AModelByItsName) {
             "model: 'x4' has one layout of samples only");
 }
 
-// Only G4s can be opened. One that answers says what it is; one that does not is refused at once.
+// Only G4s can be opened. A model that answers is refused after its answer, another one before it is read.
 TEST_F(SimSetup, AnotherModel_IsRefusedByName) {
   lidar_options options;
   options.device = "sim:?model=x4";

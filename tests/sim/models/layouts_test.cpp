@@ -118,7 +118,7 @@ TEST_P(SimLayout, ReadAsEachOther_ItIsCountedAndBounded) {
       ASSERT_TRUE(p.range_mm >= 0.0F && p.range_mm <= 65'535.0F) << p.range_mm;
     }
     if (sample_size(as.samples.layout) == sample_size(own().samples.layout)) {
-      EXPECT_EQ(counts.packets, packets) << "the bytes cannot tell";
+      EXPECT_EQ(counts.packets, packets) << "the same size";
       continue;
     }
     // Zero packets with small values, and a packet with the next one, may fit by chance.
