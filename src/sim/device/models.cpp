@@ -52,7 +52,7 @@ std::array<std::uint8_t, 16> ct_information(const device_information& info,
   const unsigned number = digits(info, 8, 8);
   std::array<unsigned, 16> sevens{};  // of packet k in place k - 1
   sevens[2] = wrong & 0x3FU;
-  sevens[3] = info.hardware << 4U | (info.firmware_major & 15U);
+  sevens[3] = unsigned{info.hardware} << 4U | (info.firmware_major & 15U);
   sevens[4] = info.firmware_minor;
   sevens[6] = info.model & 15U;
   sevens[8] = (digits(info, 0, 4) - 2020) << 2U | (number >> 19 & 3U);
