@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Makes the fuzz targets' seed corpora anew: corpus/parser from the transcripts' bytes, and
-corpus/decode from packets worth a look. What they look like stands at the head of each target."""
+corpus/decode from packets worth a look; with the program g4-dump as the argument, also
+corpus/layouts, from simulated lidars. What they look like stands at the head of each target."""
 import pathlib
+import subprocess
+import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 TRANSCRIPTS = HERE.parent / "tests" / "transcripts"
@@ -59,5 +62,19 @@ def decode_corpus():
         (out / name).write_bytes(data)
 
 
+def layouts_corpus(g4_dump):
+    out = fresh("layouts")
+    models = ["g4", "x4", "g6", "tg15", "g2", "s4b", "scl", "t-mini", "t-mini-plus-sh"]
+    for number, model in enumerate(models):
+        command = [g4_dump, "sim", "--model", model, "--seconds", "0.4", "--dropout", "0.1"]
+        stream = subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout
+        zero = max(at for at in range(len(stream) - 4) if stream[at:at + 2] == b"\xaa\x55" and stream[at + 2] & 1)
+        whole = stream[zero - 200:zero + 200]
+        (out / model).write_bytes(bytes([number, 14]) + whole)
+        (out / (model + "_sealed")).write_bytes(bytes([number, 9]) + bytes(b ^ (i % 61 == 50) for i, b in enumerate(whole)))
+
+
 parser_corpus()
 decode_corpus()
+if len(sys.argv) > 1:
+    layouts_corpus(sys.argv[1])

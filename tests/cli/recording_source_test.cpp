@@ -167,10 +167,10 @@ TEST_F(RecordingSource, InAPipe_IsNotRecordedAsNoise) {
 }
 
 TEST(AnotherModel, HasAnExitCodeOfItsOwn) {
-  const outcome done = run({"info", "sim:?model=4", "--json-errors"});
+  const outcome done = run({"info", "sim:?model_id=4", "--json-errors"});
   EXPECT_EQ(done.code, 7);
   EXPECT_THAT(done.err, HasSubstr("\"problem\":\"other_device\""));
-  EXPECT_THAT(run({"dump", "sim:?model=256"}).err, HasSubstr("'256'"));
+  EXPECT_THAT(run({"dump", "sim:?model_id=256"}).err, HasSubstr("'256'"));
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST_F(Publish, ThePlaceOfTheLidarForWhoeverComesLate) {
 }
 
 TEST_F(Publish, AnotherModelEndsItWithTheReason) {
-  cli::program tool({"sim:?model=4"});
+  cli::program tool({"sim:?model_id=4"});
   const cli::outcome end = tool.wait();
   EXPECT_EQ(end.code, 7);
   EXPECT_NE(end.err.find("is not a G4"), std::string::npos) << end.err;

@@ -5,7 +5,8 @@
 # - a header of include/g4lidar has a place in the table, and includes headers that precede it there;
 # - a source or header of src/<directory> includes headers of the layer of this directory and of
 #   lower ones, and of itself; some headers of src have a layer of their own;
-# - the simulator, include/g4lidar/sim and src/sim, uses layers 0 and 1 and itself; its connections
+# - the simulator, include/g4lidar/sim and src/sim, uses layers 0 and 1 and itself, but of core/ only
+#   angle, bytes, command and response: nothing that reads its packets; its connections
 #   to programs (sim/virtual_port, sim/pty_port, sim/setup, sim/simulated_source, src/sim/host) also use error,
 #   transport and connector;
 # - src/driver/source, which opens `sim:`, and the C interface, src/c, also use the public headers of the simulator;
@@ -84,7 +85,9 @@ macro(check_sim file other)
        "^(error|transport/transport|transport/connector)$")
       set(may_see_transports ON)
     endif()
-    if(NOT DEFINED layer_of_${other})
+    if("${other}" MATCHES "^core/" AND NOT "${other}" MATCHES "^core/(angle|bytes|command|response)$")
+      list(APPEND faults "${file} includes ${other}: the simulator shares no code with what reads its packets")
+    elseif(NOT DEFINED layer_of_${other})
       list(APPEND faults "${file} includes ${other}, which has no layer")
     elseif(NOT may_see_transports AND layer_of_${other} GREATER 1)
       list(APPEND faults "${file} includes ${other} of layer ${layer_of_${other}}; the simulator may use layers 0 and 1 only")

@@ -61,6 +61,8 @@ tree(sim_no_door ${headers}/sim/world.hpp "#include \"g4lidar/error.hpp\"")
 expect(sim_no_door "includes error of layer 2")
 tree(sim_door_too_far ${headers}/sim/pty_port.hpp "#include \"g4lidar/roof.hpp\"")
 expect(sim_door_too_far "includes roof of layer 2")
+tree(sim_parser ${headers}/sim/world.hpp "#include \"g4lidar/core/packet.hpp\"")
+expect(sim_parser "include/g4lidar/sim/world.hpp includes core/packet: the simulator shares no code")
 tree(sim_circle ${headers}/sim/world.hpp "#include \"g4lidar/sim/ray.hpp\"" ${headers}/sim/ray.hpp
      "#include \"g4lidar/sim/world.hpp\"")
 expect(sim_circle "a circle of includes among or above: sim/ray, sim/world")

@@ -18,8 +18,6 @@ endif()
 # Classes that may be larger, and why.
 set(larger
     device_options # of the simulator: one member for each property of a G4 that docs/sim_device.md lists
-    # To be divided.
-    machine
 )
 
 function(sources variable) # <directory>...

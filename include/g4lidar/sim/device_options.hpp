@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The properties of a simulated G4: its stored settings, and the choice for each open question.
+// The properties of a simulated lidar: its stored settings, and the choice for each open question.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "g4lidar/detail/api.hpp"
@@ -39,7 +40,8 @@ enum class disturbance : std::uint8_t {
   ignored,     ///< No answer, and it is not executed.
 };
 
-/// All properties of a device that are not faults. By default a healthy G4, as far as it is known.
+/// All properties of a device that are not faults. By default a healthy G4, as far as it is known;
+/// use_model() makes it another model.
 struct device_options {
   /// Measurement options, and the seed of everything random here. Its scan frequency and sample rate
   /// are the defaults of the device; `start_deg` is not used: each start has a random angle.
@@ -52,6 +54,9 @@ struct device_options {
       3,
       {'2', '0', '2', '1', '1', '0', '1', '0', '0', '0', '0', '7', '0', '0', '7', '3'}};
   health condition{health_status::ok, 0};
+
+  /// It sends from power-on, answers nothing, and ignores what is sent to it.
+  bool one_way = false;
 
   // The connection.
   std::uint32_t baud = 230'400;
@@ -84,6 +89,8 @@ struct device_options {
   bool stray_before_zero = true;  ///< A random byte before every zero packet.
   bool ct_crc =
       false;  ///< That byte is the CRC of the revolution, as newer devices of the family send it.
+  /// CT of the packets behind a zero packet has health, versions and numbers, as with one-way models.
+  bool ct_information = false;
   std::int64_t time_packet_ns = 0;  ///< The interval of time packets; 0: none, as a G4.
   bool stop_truncates = true;       ///< A stop truncates the packet that is being sent.
   bool boot_text = true;            ///< ASCII after a restart and after power-on.
@@ -119,5 +126,19 @@ struct device_options {
 
 /// What is wrong with `options`, a sentence for people; empty if nothing is. *Pure.*
 [[nodiscard]] G4LIDAR_API std::string_view problem_with(const device_options& options) noexcept;
+
+/// Sets all in which a model of the family differs from a G4: what it sends, its rates, its ranges, its
+/// number in the answer to 90. `word` is its name, such as "x4-pro"; `other_layout` selects the other
+/// samples of the S2 and S2 Pro. If `options.info` has a firmware before a change of the samples, as a
+/// TG15 up to 1.2, they are the old ones. Returns false, and changes nothing, if there is no such
+/// model, or no other layout. A device answers commands as a G4, whatever it is.
+[[nodiscard]] G4LIDAR_API bool use_model(device_options& options, std::string_view word,
+                                         bool other_layout = false) noexcept;
+
+/// The names of the models, in the order of the table. Valid forever. *Pure.*
+[[nodiscard]] G4LIDAR_API std::span<const std::string_view> model_words() noexcept;
+
+/// The options of the scanner of a device, with what its CT bytes contain, for a scanner without a device. *Pure.*
+[[nodiscard]] G4LIDAR_API scanner_options scanner_of(const device_options& options) noexcept;
 
 }  // namespace g4lidar::sim

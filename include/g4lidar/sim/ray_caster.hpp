@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the beam of a G4 hits: rays that are curved by the inverse of the second-level correction.
+// What the beam of a lidar hits: rays that are curved by the inverse of the second-level correction.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,32 @@
 
 namespace g4lidar::sim {
 
+/// The limit of the correction of a G4 for far targets, in degrees.
+inline constexpr double far_correction_deg = -7.990596267964585603;
+
+/// The curve of a beam: the correction of a target at d mm is the angle whose tangent is
+/// offset_mm / d - slope.
+struct beam_shape {
+  double offset_mm;      ///< k: of the laser from the axis.
+  double slope;          ///< c: the beam crosses the centre line at offset_mm / slope, if not 0.
+  double inflection_mm;  ///< The range at which its curvature changes its sign.
+  double far_deg;        ///< The limit of the correction for far targets, in degrees.
+};
+
+/// No change of the curvature.
+inline constexpr double no_inflection_mm = 1e12;
+/// Of a G4 and most others: it crosses the centre line at 155.3 mm.
+inline constexpr beam_shape triangle_beam{21.8, 21.8 / 155.3, 232.7808551523369427,
+                                          far_correction_deg};
+/// Of an SCL, whose laser is parallel to the centre line.
+inline constexpr beam_shape scl_beam{17.8, 0.0, no_inflection_mm, 0.0};
+/// Of a lidar that measures the time of flight: no correction.
+inline constexpr beam_shape straight_beam{0.0, 0.0, no_inflection_mm, 0.0};
+
 /// The second-level correction of a target at `range_mm` > 0, in degrees, in double precision and
 /// written independently of the core. *Pure.* (protocol: Point packets, second-level correction)
-[[nodiscard]] G4LIDAR_API double correction_deg(double range_mm) noexcept;
-
-/// The limit of the correction for far targets, in degrees.
-inline constexpr double far_correction_deg = -7.990596267964585603;
+[[nodiscard]] G4LIDAR_API double correction_deg(double range_mm,
+                                                const beam_shape& shape = triangle_beam) noexcept;
 
 /// A wall in millimetres in the lidar's frame: x at bearing 0, y at bearing 90.
 struct seen_wall {
@@ -45,13 +65,14 @@ struct sighting {
 class G4LIDAR_API ray_caster {
  public:
   /// `scene` is copied as far as needed.
-  explicit ray_caster(const world& scene);
+  explicit ray_caster(const world& scene, const beam_shape& shape = triangle_beam);
 
   /// The nearest target on the beam at `first_level_deg` in [0, 360), at any distance; nothing if
   /// the beam hits no wall. Targets nearer than 1 mm are not seen.
   [[nodiscard]] std::optional<sighting> cast(double first_level_deg) const noexcept;
 
  private:
+  beam_shape shape_;
   std::vector<seen_wall> walls_;  // the nearest first
   std::vector<std::uint32_t>
       candidates_;  // indices into walls_, sector by sector, in the order of walls_

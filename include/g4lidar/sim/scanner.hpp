@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The measuring part of a simulated G4: a rotating head, its samples, and its packets.
+// The measuring part of a simulated lidar: a rotating head, its samples, and its packets.
 #pragma once
 
 #include <array>
@@ -10,11 +10,11 @@
 #include <string_view>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/core/packet.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/settings.hpp"
 #include "g4lidar/sim/random.hpp"
 #include "g4lidar/sim/scene_caster.hpp"
+#include "g4lidar/sim/wire_format.hpp"
 #include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {
@@ -29,9 +29,11 @@ enum class turning : std::uint8_t {
 /// Settings and quality of the device. By default a G4 without errors.
 struct scanner_options {
   std::uint64_t seed = 1;                  ///< The seed of all random values below.
+  wire_format format{};                    ///< That of the model.
   std::uint16_t scan_frequency_chz = 700;  ///< Revolutions per 100 s, constant; 500 to 1200.
+  /// Selects one of the rates of the format: 4, 8 or 9 kHz of a G4.
   g4lidar::sample_rate sample_rate = g4lidar::sample_rate::khz_9;
-  std::size_t samples_per_packet = 40;  ///< 1 to 80.
+  std::size_t samples_per_packet = 40;  ///< 1 to that of the format, 80.
   double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
   /// The angle at the first sample, [0, 360); drawn at random where not given.
   std::optional<double> start_deg = std::nullopt;
@@ -47,6 +49,8 @@ struct scanner_options {
   double sample_rate_ratio = 1.0;
   double sample_rate_drift_ppm = 0.0;
   std::uint8_t ordinary_ct = 0;  ///< CT of packets that are not zero packets; its bit 0 is ignored.
+  /// What CT of the packets 1 to 16 behind a zero packet contains in addition; see scanner_of().
+  std::array<std::uint8_t, 16> information{};
 };
 
 /// What is wrong with `options`, a sentence for people; empty if nothing is. *Pure.*
@@ -62,8 +66,11 @@ struct sample_truth {
   double
       bearing_deg;  ///< The direction of the target, clockwise, [0, 360); without a target, of an infinitely distant one.
   double range_mm;  ///< Of the target, at any distance and without noise; 0: there is none.
-  std::uint16_t raw;  ///< As sent: quarters of a millimetre, 0 for no return.
-  pose lidar;         ///< The pose of the lidar at `time_ns`; its heading is not wrapped.
+  /// As sent: in units of the format, of a G4 quarters of a millimetre; 0 for no return.
+  std::uint16_t raw;
+  std::uint16_t intensity;  ///< As sent; 0 if samples have none, and for no return.
+  std::uint8_t flags;       ///< The same.
+  pose lidar;               ///< The pose of the lidar at `time_ns`; its heading is not wrapped.
 };
 
 /// A packet as the device sends it, and the true values of its samples.
@@ -71,6 +78,9 @@ struct sent_packet {
   bytes data;                             ///< Valid until the next call of the scanner.
   std::span<const sample_truth> samples;  ///< The same number, in order; valid as long as `data`.
   std::int64_t complete_ns;  ///< When the last sample was measured: the packet is not sent before.
+  /// Of the CT bytes of all packets since the last zero packet, without this one. Some models send it
+  /// before a zero packet.
+  std::uint8_t crc;
 };
 
 /// What a device sends first when scanning starts: the reply to the start command, 7 bytes. Valid
@@ -109,7 +119,7 @@ class G4LIDAR_API scanner {
   [[nodiscard]] sample_truth measure() noexcept;
   [[nodiscard]] std::uint16_t raw_sample(double range_mm) noexcept;
   void turn_on() noexcept;
-  [[nodiscard]] bytes packet_of(std::size_t samples, bool zero) noexcept;
+  [[nodiscard]] std::uint8_t next_ct(bool zero) noexcept;
   void keep_rate() noexcept;
   void set_step() noexcept;
 
@@ -127,8 +137,10 @@ class G4LIDAR_API scanner {
   std::uint64_t index_ = 0;
   std::uint64_t revolution_ = 0;
   bool at_index_;  // the index has passed since the last sample
-  std::array<sample_truth, max_samples> truths_{};
-  std::array<std::uint8_t, max_packet_size> packet_{};
+  std::uint8_t crc_ = 0;
+  std::size_t since_zero_ = scanner_options{}.information.size();  // packets; more do not matter
+  std::array<sample_truth, most_samples> truths_{};
+  std::array<std::uint8_t, longest_packet> packet_{};
 };
 
 }  // namespace g4lidar::sim

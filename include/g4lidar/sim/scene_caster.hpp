@@ -17,8 +17,9 @@ namespace g4lidar::sim {
 /// pose. *Single thread. Allocates on construction only.* A copy is independent.
 class G4LIDAR_API scene_caster {
  public:
-  /// Copies what it needs of the world.
-  explicit scene_caster(const world& scene);
+  /// Copies what it needs of the world. `is_turned`: angle 0 is opposite to where the lidar looks.
+  explicit scene_caster(const world& scene, const beam_shape& shape = triangle_beam,
+                        bool is_turned = true);
 
   /// The pose of the lidar. The heading is not wrapped.
   [[nodiscard]] pose lidar_at(std::int64_t time_ns) const noexcept;
@@ -37,8 +38,9 @@ class G4LIDAR_API scene_caster {
   [[nodiscard]] G4LIDAR_HIDDEN std::optional<sighting> cast_at_walls(
       double first_level_deg, const way_of_beam& way) noexcept;
 
+  beam_shape shape_;
   std::vector<path_point> path_;
-  pose cable_;  // of the angle 0, in the frame of the robot
+  pose zero_;   // of the angle 0, in the frame of the robot
   pose fixed_;  // of the lidar, without a path
   ray_caster caster_;
   ray_caster mirrored_caster_;

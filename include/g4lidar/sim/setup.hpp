@@ -25,6 +25,7 @@ struct setup {
   std::string path_file;   ///< For load_path(); empty: the path of the world.
   device_options device;
   std::vector<fault> faults;
+  bool other_layout = false;  ///< For use_model(), of a `model` that follows.
 };
 
 /// Why a text is not a setup: a sentence without a full stop, for people.
@@ -32,16 +33,17 @@ struct setup_error {
   std::string message;
 };
 
-/// Sets what "NAME=VALUE" names: `world`, `path`, `seed`, `serial`, `model`, `firmware`, a further `fault`, or
-/// the member of device_options of that name (docs/sim_device.md lists them). Returns what is wrong, a sentence
-/// without a full stop; empty if nothing is. Does not check the values against each other: see
+/// Sets what "NAME=VALUE" names: `world`, `path`, `seed`, `serial`, `model`, `model_id`, `firmware`, `other_layout`, a
+/// further `fault`, or the member of device_options of that name (docs/sim_device.md lists them). `model` is a word
+/// for use_model(): what selects it comes before it, and what changes it behind it. Returns what is wrong, a
+/// sentence without a full stop; empty if nothing is. Does not check the values against each other: see
 /// problem_with(). Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::string set(setup& into, std::string_view word);
 
 /// Whether the name of a source is that of a simulated lidar: "sim:...". *Pure.*
 [[nodiscard]] G4LIDAR_API bool is_simulated(std::string_view source) noexcept;
 
-/// The setup of "sim:?NAME=VALUE&NAME=VALUE", with %41 read as A; "sim:" is a healthy device in the
+/// The setup of "sim:?NAME=VALUE&NAME=VALUE" in any order, with %41 read as A; "sim:" is a healthy device in the
 /// built-in world. Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::variant<setup, setup_error> parse_setup(std::string_view source);
 

@@ -12,6 +12,9 @@
 // It is on a disc where F(d) = |P(d) - C|^2 - radius^2 = 0. F is convex from 100 mm on, for the
 // discs that a world may have. So Newton steps from the nearest range at which a hit is possible
 // never pass the first root. Nearer than that, steps of 1 mm search for it.
+//
+// The inflection of a shape is where 0 = 3k - 2cd + 2(k - cd) q^2. With c = 0 there is none, and with
+// k = c = 0 the beam is straight: then f is a straight line, too, and F a parabola.
 #include "sim/exact.hpp"
 
 #include "beam.hpp"
@@ -26,7 +29,6 @@
 namespace g4lidar::sim {
 namespace {
 
-constexpr double inflection = 232.7808551523369427;  // mm; 0 = 3k - 2cd + 2(k - cd) q^2
 constexpr double slack = 1e-6;  // mm; walls are extended by it, so that corners are closed
 
 double squared(double x) noexcept { return x * x; }
@@ -36,6 +38,7 @@ struct gap {
   double slope;   // N.e - c N.n
   double offset;  // k N.n
   double h;
+  beam_shape shape;
 
   struct value {
     double f;
@@ -43,8 +46,8 @@ struct gap {
   };
 
   [[nodiscard]] value at(double d) const noexcept {
-    const double k_by_d = beam_offset_mm / d;
-    const double q = k_by_d - beam_slope;
+    const double k_by_d = shape.offset_mm / d;
+    const double q = k_by_d - shape.slope;
     const double g = std::sqrt(1.0 + q * q);
     return {slope * d + offset - h * g, slope + h * q * k_by_d / (d * g)};
   }
@@ -114,10 +117,11 @@ struct disc_gap {
   double centre_e;
   double centre_n;
   double radius;
+  beam_shape shape;
 
   [[nodiscard]] gap::value at(double d) const noexcept {
-    const double k_by_d = beam_offset_mm / d;
-    const double q = k_by_d - beam_slope;
+    const double k_by_d = shape.offset_mm / d;
+    const double q = k_by_d - shape.slope;
     const double g = std::sqrt(1.0 + q * q);
     const double along = d / g;
     const double along_slope = (1.0 + q * k_by_d / (g * g)) / g;
@@ -143,8 +147,8 @@ std::optional<double> first_root(const disc_gap& f, end at, double not_beyond) n
 
 }  // namespace
 
-double correction_deg(double range_mm) noexcept {
-  return atan_deg(beam_offset_mm / range_mm - beam_slope);
+double correction_deg(double range_mm, const beam_shape& shape) noexcept {
+  return atan_deg(shape.offset_mm / range_mm - shape.slope);
 }
 
 seen_wall as_seen(const wall& w, const pose& from, const sin_cos& heading,
@@ -187,12 +191,15 @@ std::optional<double> meet(const seen_wall& target, const beam& ray,
                            double not_beyond_mm) noexcept {
   const double along_e = target.normal_x * ray.e_x + target.normal_y * ray.e_y;
   const double along_n = target.normal_y * ray.e_x - target.normal_x * ray.e_y;
-  const gap f{along_e - beam_slope * along_n, beam_offset_mm * along_n, target.distance};
+  const double offset_mm = ray.shape.offset_mm;
+  const double slope = ray.shape.slope;
+  const double inflection = ray.shape.inflection_mm;
+  const gap f{along_e - slope * along_n, offset_mm * along_n, target.distance, ray.shape};
 
   const double begin = std::max(target.nearest - slack, least_range_mm);
   const double end = std::min(target.farthest + slack, not_beyond_mm);
   const auto on_wall = [&](double d) {
-    const double q = beam_offset_mm / d - beam_slope;
+    const double q = offset_mm / d - slope;
     const double t_e = target.tangent_x * ray.e_x + target.tangent_y * ray.e_y;
     const double t_n = target.tangent_y * ray.e_x - target.tangent_x * ray.e_y;
     const double along = d * (t_e + q * t_n) / std::sqrt(1.0 + q * q);
@@ -214,7 +221,7 @@ std::optional<double> meet(const seen_disc& target, const beam& ray,
                            double not_beyond_mm) noexcept {
   constexpr double convex_from = 100.0;
   const disc_gap f{target.x * ray.e_x + target.y * ray.e_y, target.y * ray.e_x - target.x * ray.e_y,
-                   target.radius};
+                   target.radius, ray.shape};
   const double distance = std::sqrt(squared(target.x) + squared(target.y));
   const double begin = std::max(std::fabs(distance - target.radius) - slack, least_range_mm);
   const double last = std::min(distance + target.radius + slack, not_beyond_mm);

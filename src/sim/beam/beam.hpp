@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The curved beam of a G4, and where it meets one wall or one disc.
+// The curved beam of a lidar, and where it meets one wall or one disc.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,16 @@
 
 namespace g4lidar::sim {
 
-inline constexpr double beam_offset_mm = 21.8;      // k: of the laser
-inline constexpr double beam_slope = 21.8 / 155.3;  // c: it crosses the centre line at 155.3 mm
-inline constexpr double least_range_mm = 1.0;       // nearer targets are not seen
+inline constexpr double least_range_mm = 1.0;  // nearer targets are not seen
 
-/// The direction of the beam in the lidar's frame (see seen_wall), a unit vector.
+/// A beam, and its direction in the lidar's frame (see seen_wall), a unit vector.
 struct beam {
   double e_x, e_y;
+  beam_shape shape;
 };
-[[nodiscard]] inline beam beam_at(double first_level_deg) noexcept {
+[[nodiscard]] inline beam beam_at(double first_level_deg, const beam_shape& shape) noexcept {
   const sin_cos direction = sin_cos_deg(first_level_deg);
-  return {direction.cosine, direction.sine};
+  return {direction.cosine, direction.sine, shape};
 }
 
 /// A disc in millimetres in the lidar's frame.
@@ -49,8 +48,8 @@ struct seen_disc {
 /// The first wall on a beam, of walls in that order.
 class wall_search {
  public:
-  explicit wall_search(double first_level_deg) noexcept
-      : first_level_deg_(first_level_deg), ray_(beam_at(first_level_deg)) {}
+  wall_search(double first_level_deg, const beam_shape& shape) noexcept
+      : first_level_deg_(first_level_deg), ray_(beam_at(first_level_deg, shape)) {}
 
   /// Returns false if neither this wall nor a later one can be the first.
   bool take(const seen_wall& candidate) noexcept {
@@ -64,7 +63,8 @@ class wall_search {
   }
   [[nodiscard]] std::optional<sighting> found() const noexcept {
     if (!wall_) return std::nullopt;
-    return sighting{best_, wrap_once_deg(first_level_deg_ + correction_deg(best_)), *wall_};
+    return sighting{best_, wrap_once_deg(first_level_deg_ + correction_deg(best_, ray_.shape)),
+                    *wall_};
   }
 
  private:

@@ -18,7 +18,7 @@ constexpr std::size_t sectors = 720;
 
 }  // namespace
 
-ray_caster::ray_caster(const world& scene) {
+ray_caster::ray_caster(const world& scene, const beam_shape& shape) : shape_(shape) {
   const sin_cos heading = sin_cos_deg(scene.lidar.heading_deg);
   walls_.reserve(scene.walls.size());
   for (const wall& w : scene.walls) {
@@ -43,8 +43,9 @@ ray_caster::ray_caster(const world& scene) {
       width = 360.0 - width;
     }
     constexpr double margin = 0.01;
-    const double begin = first - correction_deg(std::max(w.nearest, least_range_mm)) - margin;
-    const double end = first + width - correction_deg(w.farthest) + margin;
+    const double begin =
+        first - correction_deg(std::max(w.nearest, least_range_mm), shape_) - margin;
+    const double end = first + width - correction_deg(w.farthest, shape_) + margin;
     constexpr double per_degree = static_cast<double>(sectors) / 360.0;
     const bool all_round = w.distance < least_range_mm || end - begin >= 359.0;
     const auto from = static_cast<std::size_t>((begin + 360.0) * per_degree);
@@ -64,7 +65,7 @@ std::optional<sighting> ray_caster::cast(double first_level_deg) const noexcept 
   constexpr double per_degree = static_cast<double>(sectors) / 360.0;
   const std::size_t sector =
       std::min(static_cast<std::size_t>(first_level_deg * per_degree), sectors - 1);
-  wall_search search(first_level_deg);
+  wall_search search(first_level_deg, shape_);
   for (std::uint32_t i = sector_begin_[sector]; i < sector_begin_[sector + 1]; ++i) {
     if (!search.take(walls_[candidates_[i]])) break;
   }

@@ -11,6 +11,7 @@
 
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/response.hpp"
+#include "packet_encoder.hpp"
 #include "sim/purpose.hpp"
 
 namespace g4lidar::sim {
@@ -43,33 +44,58 @@ double slow_wave(std::int64_t time_ns) noexcept {
 // The true sample rate in 0.001 Hz.
 std::uint64_t true_rate_mhz(const scanner_options& options, std::int64_t time_ns) noexcept {
   const double drift = options.sample_rate_drift_ppm * 1e-6 * slow_wave(time_ns);
-  const double nominal = 1000.0 * to_hz(options.sample_rate);
+  const auto code = static_cast<std::size_t>(options.sample_rate);
+  const double nominal = 1000.0 * options.format.rates_hz[code];
   return static_cast<std::uint64_t>(nominal * options.sample_rate_ratio * (1.0 + drift) + 0.5);
 }
 
-// A wire angle: the nearest 1/64 of a degree, and the check bit.
-std::uint16_t wire_angle(double degrees) noexcept {
-  const auto nearest = static_cast<unsigned>(degrees * 64.0 + 0.5);
-  return static_cast<std::uint16_t>((nearest % turn_64ths) << 1 | 1U);
+// Walls reflect 0.3 to 0.9 of what a perfectly bright one does, and of that half comes back from 4 m.
+std::uint16_t intensity_of(const sighting& target, const sample_code& code) noexcept {
+  const double reflected = 0.3 + 0.15 * (target.wall % 5);
+  const double far = target.range_mm / 4000.0;
+  return static_cast<std::uint16_t>(code.brightest() * reflected / (1.0 + far * far) + 0.5);
+}
+
+// A few samples have more flags than most. Also some without a return have flags.
+std::uint8_t flags_of(const sample_truth& sample, std::uint8_t usual) noexcept {
+  if (sample.raw != 0) return sample.index % 21 == 0 ? usual | 1U : usual;
+  if (sample.index % 37 == 0) return 3;
+  return sample.index % 13 == 0 ? 1 : 0;
+}
+
+std::string_view problem_with(const wire_format& format, const scanner_options& options) noexcept {
+  const bool has_rate = format.rates_hz[static_cast<std::size_t>(options.sample_rate)] != 0;
+  const sample_code& code = format.code;
+  if (!has_rate || code.intensity_bytes > 2 || code.units_per_mm == 0 ||
+      code.size() * format.max_samples > longest_packet - packet_head_bytes) {
+    return "the format must have the sample rate, and packets that fit";
+  }
+  return {};
 }
 
 }  // namespace
 
 std::string_view problem_with(const scanner_options& options) noexcept {
-  if (options.scan_frequency_chz < min_scan_frequency_chz ||
-      options.scan_frequency_chz > max_scan_frequency_chz) {
-    return "the scan frequency must be 5 to 12 Hz";
+  const wire_format& format = options.format;
+  if (const std::string_view problem = problem_with(format, options); !problem.empty()) {
+    return problem;
   }
-  if (options.samples_per_packet < 1 || options.samples_per_packet > max_samples) {
-    return "a packet must hold 1 to 80 samples";
+  if (options.scan_frequency_chz < format.min_frequency_chz ||
+      options.scan_frequency_chz > format.max_frequency_chz) {
+    return "the scan frequency must be one of the model: 5 to 12 Hz of a G4";
+  }
+  if (options.samples_per_packet < 1 || options.samples_per_packet > format.max_samples) {
+    return "a packet must hold 1 to 80 samples, or 40, by the model";
   }
   if (!is_angle(options.index_deg)) return "the index angle must be 0 to below 360 degrees";
   if (options.start_deg && !is_angle(*options.start_deg)) {
     return "the start angle must be 0 to below 360 degrees";
   }
-  if (!(options.min_range_mm >= 0.25 && options.max_range_mm >= options.min_range_mm &&
-        options.max_range_mm <= 16383.75)) {
-    return "the ranges must be 0.25 to 16383.75 mm, the least first";
+  const double unit_mm = 1.0 / format.code.units_per_mm;
+  if (!(options.min_range_mm >= unit_mm && options.max_range_mm >= options.min_range_mm &&
+        options.max_range_mm <= format.code.largest() * unit_mm)) {
+    return "the ranges must be such as samples can contain: 0.25 to 16383.75 mm of a G4, the least "
+           "first";
   }
   if (!(options.noise_mm >= 0.0 && options.noise_mm <= 1e6 && options.noise_ratio >= 0.0 &&
         options.noise_ratio <= 1.0)) {
@@ -92,7 +118,7 @@ static_assert(response_layouts[0].kind == response_kind::scan_started);
 
 scanner::scanner(const world& scene, const scanner_options& options)
     : options_(options),
-      caster_(scene),
+      caster_(scene, options.format.beam, options.format.is_turned),
       noise_(stream_for(options.seed, purpose::noise)),
       dropouts_(stream_for(options.seed, purpose::dropouts)),
       speed_mhz_(options.scan_frequency_chz * std::uint32_t{10}),
@@ -125,6 +151,7 @@ void scanner::resume(std::int64_t at_ns, std::uint64_t phase) noexcept {
   index_then_ = index_;
   phase_ = phase;
   at_index_ = false;
+  since_zero_ = options_.information.size();
 }
 
 // A packet's samples are equidistant: whatever changes, changes between packets.
@@ -148,7 +175,12 @@ sent_packet scanner::next() noexcept {
     truths_[count++] = measure();
     turn_on();
   } while (count < at_most && !at_index_);
-  return {packet_of(count, zero), {truths_.data(), count}, truths_[count - 1].time_ns};
+  const std::uint8_t before = crc_;
+  const std::uint8_t ct = next_ct(zero);
+  crc_ = crc_with(zero ? std::uint8_t{0} : crc_, ct);
+  const std::span<const sample_truth> samples(truths_.data(), count);
+  return {encode_packet(packet_, ct, samples, options_.format.code), samples,
+          samples.back().time_ns, before};
 }
 
 sample_truth scanner::measure() noexcept {
@@ -158,15 +190,19 @@ sample_truth scanner::measure() noexcept {
   truth.revolution = revolution_;
   const double since_index = static_cast<double>(phase_ >> 11) * 0x1p-53 * 360.0;
   truth.first_level_deg = wrap_once_deg(options_.index_deg + since_index);
-  truth.bearing_deg = wrap_once_deg(truth.first_level_deg + far_correction_deg);
+  const wire_format& format = options_.format;
+  truth.bearing_deg = wrap_once_deg(truth.first_level_deg + format.beam.far_deg);
   truth.lidar = caster_.lidar_at(truth.time_ns);
   const bool is_mirrored = turning_ == turning::mirrored;
-  if (const std::optional<sighting> target =
-          caster_.cast(truth.first_level_deg, truth.lidar, truth.time_ns, is_mirrored)) {
+  const std::optional<sighting> target =
+      caster_.cast(truth.first_level_deg, truth.lidar, truth.time_ns, is_mirrored);
+  if (target) {
     truth.bearing_deg = target->bearing_deg;
     truth.range_mm = target->range_mm;
   }
   truth.raw = raw_sample(truth.range_mm);
+  if (truth.raw != 0) truth.intensity = intensity_of(*target, format.code);
+  if (format.code.lower == lower_bits::flags) truth.flags = flags_of(truth, format.usual_flags);
   return truth;
 }
 
@@ -179,7 +215,7 @@ std::uint16_t scanner::raw_sample(double range_mm) noexcept {
   const double spread = options_.noise_mm + options_.noise_ratio * range_mm;
   const double measured = range_mm + error * spread;
   if (measured < options_.min_range_mm || measured > options_.max_range_mm) return 0;
-  return static_cast<std::uint16_t>(measured * 4.0 + 0.5);
+  return static_cast<std::uint16_t>(measured * options_.format.code.units_per_mm + 0.5);
 }
 
 void scanner::turn_on() noexcept {
@@ -193,23 +229,17 @@ void scanner::turn_on() noexcept {
   }
 }
 
-bytes scanner::packet_of(std::size_t samples, bool zero) noexcept {
-  const std::span<std::uint8_t> out(packet_);
-  const unsigned frequency_dhz = std::min((speed_mhz_ + 50U) / 100U, 127U);
-  const unsigned reported = options_.reports_frequency ? frequency_dhz : 0U;
-  const unsigned ordinary = options_.ordinary_ct & 0xFEU;
-  packet_[0] = packet_start[0];
-  packet_[1] = packet_start[1];
-  packet_[2] = static_cast<std::uint8_t>(zero ? reported << 1 | 1U : ordinary);
-  packet_[3] = static_cast<std::uint8_t>(samples);
-  store_u16(out, 4, wire_angle(truths_[0].first_level_deg));
-  store_u16(out, 6, wire_angle(truths_[samples - 1].first_level_deg));
-  for (std::size_t i = 0; i < samples; ++i) {
-    store_u16(out, packet_size(i), truths_[i].raw);
+std::uint8_t scanner::next_ct(bool zero) noexcept {
+  since_zero_ = zero ? 0 : since_zero_ + 1;
+  if (!zero) {
+    const bool has_more = since_zero_ <= options_.information.size();
+    const unsigned more = has_more ? options_.information[since_zero_ - 1] : 0U;
+    return static_cast<std::uint8_t>((options_.ordinary_ct | more) & 0xFEU);
   }
-  const bytes packet = bytes(packet_).first(packet_size(samples));
-  store_u16(out, 8, packet_checksum(packet));
-  return packet;
+  if (!options_.reports_frequency) return 1;
+  const auto frequency_dhz = static_cast<int>((speed_mhz_ + 50U) / 100U);
+  const int reported = std::clamp(frequency_dhz - options_.format.ct_offset_dhz, 0, 127);
+  return static_cast<std::uint8_t>(reported * 2 + 1);
 }
 
 }  // namespace g4lidar::sim

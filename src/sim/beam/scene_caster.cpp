@@ -18,7 +18,6 @@
 namespace g4lidar::sim {
 namespace {
 
-constexpr double strip_m = beam_offset_mm * 1e-3;
 constexpr double strip_slack_m = 1e-6;
 
 wall mirrored_at(const pose& lidar, wall w) noexcept {
@@ -27,8 +26,12 @@ wall mirrored_at(const pose& lidar, wall w) noexcept {
   return w;
 }
 
-world fixed_world(const world& scene, bool is_mirrored) {
-  world fixed{{}, placed(scene.lidar, cable_pose(scene.mounted_at))};
+pose zero_pose(const world& scene, bool is_turned) noexcept {
+  return is_turned ? cable_pose(scene.mounted_at) : scene.mounted_at;
+}
+
+world fixed_world(const world& scene, const pose& zero, bool is_mirrored) {
+  world fixed{{}, placed(scene.lidar, zero)};
   if (!scene.path.empty()) return fixed;
   for (const wall& w : scene.walls) {
     fixed.walls.push_back(is_mirrored ? mirrored_at(fixed.lidar, w) : w);
@@ -53,20 +56,23 @@ struct G4LIDAR_HIDDEN scene_caster::way_of_beam {
   sin_cos heading;
   bool is_mirrored;
   beam ray;  // in the lidar's frame
+  double strip_m;
   double e_x, e_y;
   double u_x, u_y;  // n + c e
 
-  way_of_beam(double first_level_deg, const pose& from, bool mirrored) noexcept
+  way_of_beam(double first_level_deg, const beam_shape& shape, const pose& from,
+              bool mirrored) noexcept
       : lidar(from),
         heading(sin_cos_deg(from.heading_deg)),
         is_mirrored(mirrored),
-        ray(beam_at(first_level_deg)) {
+        ray(beam_at(first_level_deg, shape)),
+        strip_m(shape.offset_mm * 1e-3) {
     const double right_x = mirrored ? -heading.sine : heading.sine;
     const double right_y = mirrored ? heading.cosine : -heading.cosine;
     e_x = ray.e_x * heading.cosine + ray.e_y * right_x;
     e_y = ray.e_x * heading.sine + ray.e_y * right_y;
-    u_x = ray.e_x * right_x - ray.e_y * heading.cosine + beam_slope * e_x;
-    u_y = ray.e_x * right_y - ray.e_y * heading.sine + beam_slope * e_y;
+    u_x = ray.e_x * right_x - ray.e_y * heading.cosine + shape.slope * e_x;
+    u_y = ray.e_x * right_y - ray.e_y * heading.sine + shape.slope * e_y;
   }
 
   [[nodiscard]] bool may_meet(const wall& w) const noexcept {
@@ -101,12 +107,13 @@ struct G4LIDAR_HIDDEN scene_caster::way_of_beam {
   }
 };
 
-scene_caster::scene_caster(const world& scene)
-    : path_(scene.path),
-      cable_(cable_pose(scene.mounted_at)),
-      fixed_(placed(scene.lidar, cable_)),
-      caster_(fixed_world(scene, false)),
-      mirrored_caster_(fixed_world(scene, true)),
+scene_caster::scene_caster(const world& scene, const beam_shape& shape, bool is_turned)
+    : shape_(shape),
+      path_(scene.path),
+      zero_(zero_pose(scene, is_turned)),
+      fixed_(placed(scene.lidar, zero_)),
+      caster_(fixed_world(scene, zero_, false), shape),
+      mirrored_caster_(fixed_world(scene, zero_, true), shape),
       walls_(path_.empty() ? std::vector<wall>{} : scene.walls),
       near_beam_(walls_.size()),
       first_disc_(static_cast<std::uint32_t>(scene.walls.size())) {
@@ -115,7 +122,7 @@ scene_caster::scene_caster(const world& scene)
 }
 
 pose scene_caster::lidar_at(std::int64_t time_ns) const noexcept {
-  return path_.empty() ? fixed_ : placed(robot_at(path_, time_ns).at, cable_);
+  return path_.empty() ? fixed_ : placed(robot_at(path_, time_ns).at, zero_);
 }
 
 std::optional<sighting> scene_caster::cast_at_walls(double first_level_deg,
@@ -129,7 +136,7 @@ std::optional<sighting> scene_caster::cast_at_walls(double first_level_deg,
   }
   const auto last = near_beam_.begin() + static_cast<std::ptrdiff_t>(count);
   std::sort(near_beam_.begin(), last, is_tried_before);
-  wall_search search(first_level_deg);
+  wall_search search(first_level_deg, shape_);
   for (auto next = near_beam_.begin(); next != last && search.take(*next);) ++next;
   return search.found();
 }
@@ -139,7 +146,7 @@ std::optional<sighting> scene_caster::cast(double first_level_deg, const pose& l
   if (path_.empty() && discs_.empty()) {
     return (is_mirrored ? mirrored_caster_ : caster_).cast(first_level_deg);
   }
-  const way_of_beam way(first_level_deg, lidar, is_mirrored);
+  const way_of_beam way(first_level_deg, shape_, lidar, is_mirrored);
   std::optional<sighting> met = cast_at_walls(first_level_deg, way);
   for (std::uint32_t i = 0; i < discs_.size(); ++i) {
     const auto& [d, rounds_per_s] = discs_[i];
@@ -151,8 +158,8 @@ std::optional<sighting> scene_caster::cast(double first_level_deg, const pose& l
     if (!way.may_meet(x, y, d.radius_m)) continue;
     const auto range = meet(way.seen(x, y, d.radius_m), way.ray, met ? met->range_mm : 1e9);
     if (!range) continue;
-    met =
-        sighting{*range, wrap_once_deg(first_level_deg + correction_deg(*range)), first_disc_ + i};
+    met = sighting{*range, wrap_once_deg(first_level_deg + correction_deg(*range, shape_)),
+                   first_disc_ + i};
   }
   return met;
 }

@@ -50,7 +50,7 @@ void device::replug(std::int64_t now_ns) noexcept {
   machine_->hold_unplugged(false);
 }
 
-std::int64_t device::next_plug_ns() const noexcept { return machine_->next_edge_ns(); }
+std::int64_t device::next_plug_ns() const noexcept { return machine_->faults.next_edge_ns(); }
 
 std::uint64_t device::replugs() const noexcept { return machine_->plug.replugs(); }
 bool device::is_scanning() const noexcept { return machine_->is_scanning(); }
@@ -64,7 +64,7 @@ std::uint32_t device::motor_mhz(std::int64_t now_ns) const noexcept {
 bool device::is_idle_and_silent(std::int64_t now_ns) const noexcept {
   const bool idle = is_up() && !is_scanning() && machine_->is_silent();
   const bool rests = !motor_turns() || settings().idle_power == low_power::off;
-  return idle && rests && machine_->is_settled(now_ns);
+  return idle && rests && machine_->next_event().at_ns > now_ns;
 }
 
 const device_settings& device::settings() const noexcept { return machine_->settings; }
@@ -74,9 +74,9 @@ std::uint64_t device::log_missed() const noexcept { return machine_->log.missed(
 void device::clear_log() noexcept { machine_->log.clear(); }
 
 std::size_t device::take_truth(std::span<sent_sample> out) noexcept {
-  return machine_->truths.take(out);
+  return machine_->output.truths.take(out);
 }
-std::uint64_t device::truth_missed() const noexcept { return machine_->truths.missed(); }
+std::uint64_t device::truth_missed() const noexcept { return machine_->output.truths.missed(); }
 
 std::uint64_t device::bytes_delivered() const noexcept { return machine_->to_host.delivered(); }
 std::uint64_t device::bytes_overflowed() const noexcept { return machine_->to_host.overflowed(); }

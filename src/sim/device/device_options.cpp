@@ -39,8 +39,10 @@ std::string_view problem_with(const device_options& options) noexcept {
     return "the motor must gain 0.1 to 100000 Hz a second";
   }
   if (options.highest_frequency_chz < options.scanner.scan_frequency_chz ||
-      options.highest_frequency_chz > max_scan_frequency_chz) {
-    return "the highest scan frequency must be from the device's own to 12 Hz";
+      options.highest_frequency_chz > options.scanner.format.max_frequency_chz) {
+    return "the highest scan frequency must be from the device's own to that of the model, 12 Hz "
+           "of "
+           "a G4";
   }
   if (options.motor_drift_ppm > 100'000 || options.free_motor_drift_ppm > 100'000) {
     return "the motor must drift by at most a tenth";

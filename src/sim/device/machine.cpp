@@ -23,26 +23,26 @@ bytes text_bytes(std::string_view text) noexcept {
 
 }  // namespace
 
-device::machine::machine(const world& scene, const device_options& options,
-                         std::span<const fault> faults)
-    : to_host(options),
-      truths(options.truth_capacity),
-      log(options.log_capacity),
-      settings(first_settings(options)),
-      head(options),
-      options_(options),
-      faults_(faults, options.scanner.seed),
-      sampler_(scene, options.scanner),
-      wire_(options.baud),
-      garbage_(stream_for(options.scanner.seed, purpose::garbage)) {
+device::machine::machine(const world& scene, const device_options& wanted,
+                         std::span<const fault> with_faults)
+    : options(wanted),
+      faults(with_faults, wanted.scanner.seed),
+      to_host(wanted),
+      output(scene, options, faults),
+      log(wanted.log_capacity),
+      settings(first_settings(wanted)),
+      head(wanted),
+      answers_(options, faults),
+      garbage_(stream_for(wanted.scanner.seed, purpose::garbage)) {
   assert(problem_with(options).empty());
-  assert(std::all_of(faults.begin(), faults.end(),
+  assert(std::all_of(with_faults.begin(), with_faults.end(),
                      [](const fault& f) { return problem_with(f).empty(); }));
   use_settings();
   if (options.boots_at_start) {
     power_on(true);
   } else {
     keep_motor();
+    if (options.one_way) begin_scan(true);
   }
   advance(0);
 }
@@ -52,18 +52,18 @@ device::machine::event device::machine::next_event() const noexcept {
   const auto consider = [&first](std::int64_t at_ns, happening what) {
     if (at_ns < first.at_ns) first = {at_ns, what};
   };
-  consider(faults_.next_edge_ns(), happening::fault_edge);
+  consider(faults.next_edge_ns(), happening::fault_edge);
   consider(from_host_.next_byte_ns(), happening::host_byte);
   consider(from_host_.next_command_ns(), happening::command_due);
-  consider(answers_.next_ns(), happening::answer_due);
-  consider(sampler_.next_ns(), happening::packet_measured);
-  consider(sampler_.end_ns(), happening::scan_end);
+  consider(answers_.queue.next_ns(), happening::answer_due);
+  consider(output.samples.next_ns(), happening::packet_measured);
+  consider(output.samples.end_ns(), happening::scan_end);
   if (is_scanning() && settings.protection == power_down_protection::on) {
-    consider(fed_ns_ + options_.protection_ns, happening::protection);
+    consider(fed_ns_ + options.protection_ns, happening::protection);
   }
   consider(booted_ns_, happening::booted);
   consider(death_ns_, happening::death);
-  consider(wire_.next_ns(), happening::byte_sent);
+  consider(output.line.next_ns(), happening::byte_sent);
   consider(to_host.next_ns(), happening::batch_done);
   return first;
 }
@@ -86,9 +86,11 @@ void device::machine::handle(happening what) noexcept {
     case happening::command_due:
       return execute(from_host_.take_command());
     case happening::answer_due:
-      return answers_.take_due(now_ns_, [this](const answer_bytes& due) { send(due); });
+      return answers_.queue.take_due(
+          now_ns_, [this](const answer_bytes& due) { output.send(due, is_scanning(), now_ns_); });
     case happening::packet_measured:
-      return packet_measured();
+      output.send_packet(now_ns_);
+      return output.measure(head, settings.direction);
     case happening::scan_end:
       return end_scan();
     case happening::protection:
@@ -99,9 +101,9 @@ void device::machine::handle(happening what) noexcept {
     case happening::death:
       return death();
     case happening::byte_sent:
-      return byte_sent();
+      return output.byte_sent(to_host, now_ns_);
     case happening::batch_done:
-      return to_host.flush(faults_);
+      return to_host.flush(faults);
   }
 }
 
@@ -109,10 +111,10 @@ void device::machine::handle(happening what) noexcept {
 std::int64_t device::machine::next_ns(std::int64_t now_ns) const noexcept {
   if (to_host.available() > 0) return now_ns;
   std::int64_t next = next_event().at_ns;
-  if (to_host.next_ns() != forever_ns && next == wire_.next_ns()) {
+  if (to_host.next_ns() != forever_ns && next == output.line.next_ns()) {
     // More bytes for an open batch end no wait; anything else may.
     next = to_host.next_ns();
-    for (const std::int64_t at : {faults_.next_edge_ns(), booted_ns_, death_ns_}) {
+    for (const std::int64_t at : {faults.next_edge_ns(), booted_ns_, death_ns_}) {
       next = std::min(next, at);
     }
   }
@@ -120,43 +122,42 @@ std::int64_t device::machine::next_ns(std::int64_t now_ns) const noexcept {
 }
 
 bool device::machine::is_silent() const noexcept {
-  return wire_.is_silent() && to_host.next_ns() == forever_ns && from_host_.is_empty() &&
-         answers_.next_ns() == forever_ns;
+  return output.line.is_silent() && to_host.next_ns() == forever_ns && from_host_.is_empty() &&
+         answers_.queue.next_ns() == forever_ns;
 }
 
 void device::machine::write(bytes from_host) noexcept {
-  if (plug.is_in()) from_host_.write(from_host, options_.baud, now_ns_);
+  if (plug.is_in()) from_host_.write(from_host, options.baud, now_ns_);
 }
 
 void device::machine::fault_edge() noexcept {
-  faults_.set_time(now_ns_);
-  if (plug.update(faults_.find(fault_kind::unplug) != nullptr)) {
+  faults.set_time(now_ns_);
+  if (plug.update(faults.find(fault_kind::unplug) != nullptr)) {
     if (plug.is_in()) {
       browned_out_ = false;
-      power_on(options_.settings_outlive_power);
+      power_on(options.settings_outlive_power);
     } else {
       power_off();
       to_host.reset();
       from_host_.unplug();
     }
   }
-  if (browned_out_ && faults_.find(fault_kind::brown_out) == nullptr) {
+  if (browned_out_ && faults.find(fault_kind::brown_out) == nullptr) {
     browned_out_ = false;
-    power_on(options_.settings_outlive_power);
+    power_on(options.settings_outlive_power);
   }
-  if (faults_.begins(fault_kind::scanning) && state_ == state::idle) {
-    if (now_ns_ == 0) head.jump(settings.scan_frequency_chz * std::uint32_t{10}, 0);
-    begin_scan();
+  if (faults.begins(fault_kind::scanning) && state_ == state::idle) {
+    begin_scan(now_ns_ == 0);
   }
 }
 
 void device::machine::power_off() noexcept {
   state_ = state::off;
   booted_ns_ = death_ns_ = forever_ns;
-  sampler_.end();
-  answers_.clear();
+  output.samples.end();
+  answers_.queue.clear();
   from_host_.power_off();
-  wire_.reset();
+  output.line.reset();
   stopped_by_protection_ = false;
   keep_motor();
 }
@@ -164,30 +165,31 @@ void device::machine::power_off() noexcept {
 void device::machine::power_on(bool keep_settings) noexcept {
   power_off();
   if (!keep_settings) {
-    settings = first_settings(options_);
+    settings = first_settings(options);
     use_settings();
   }
-  answers_.boot();
+  answers_.queue.boot();
   state_ = state::booting;
-  booted_ns_ = now_ns_ + options_.boot_ns;
+  booted_ns_ = now_ns_ + options.boot_ns;
 }
 
 void device::machine::booted() noexcept {
   booted_ns_ = forever_ns;
   state_ = state::idle;
-  if (options_.boot_text) wire_.send(text_bytes(boot_words), now_ns_);
-  if (options_.boot_information) send(answer_with(options_.info));
+  if (options.boot_text) output.line.send(text_bytes(boot_words), now_ns_);
+  if (options.boot_information) output.send(answer_with(options.info), false, now_ns_);
   keep_motor();
+  if (options.one_way) static_cast<void>(obey_start());
 }
 
 // The motor has lowered the supply voltage too far.
 void device::machine::death() noexcept {
   death_ns_ = forever_ns;
-  if (faults_.find(fault_kind::brown_out) != nullptr) {
+  if (faults.find(fault_kind::brown_out) != nullptr) {
     power_off();
     browned_out_ = true;
-  } else if (faults_.find(fault_kind::reboot) != nullptr) {
-    power_on(options_.settings_outlive_power);
+  } else if (faults.find(fault_kind::reboot) != nullptr) {
+    power_on(options.settings_outlive_power);
   }
 }
 

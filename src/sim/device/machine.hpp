@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The events in a simulated G4, one after the other, independent of the calls from outside. So the
+// The events in a simulated lidar, one after the other, independent of the calls from outside. So the
 // behaviour does not depend on how often it is called.
 #pragma once
 
@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
+#include "answerer.hpp"
 #include "bridge.hpp"
 #include "command_queues.hpp"
 #include "fault_injector.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "motor.hpp"
-#include "sampler.hpp"
 #include "settings.hpp"
-#include "wire.hpp"
+#include "transmitter.hpp"
 
 namespace g4lidar::sim {
 
@@ -63,73 +63,8 @@ class command_log {
   std::uint64_t missed_ = 0;
 };
 
-/// The samples that were sent, for comparisons. When it is full, it drops the oldest entries.
-class truth_log {
- public:
-  explicit truth_log(std::size_t capacity) : samples_(capacity) {}
-
-  void add(const transmission& sent, bool whole, std::int64_t now_ns) noexcept {
-    const std::size_t capacity = samples_.size();
-    for (std::uint8_t i = 0; i < sent.count; ++i) {
-      if (size_ == capacity) {
-        ++missed_;
-        if (capacity == 0) continue;
-        first_ = (first_ + 1) % capacity;
-        --size_;
-      }
-      samples_[(first_ + size_++) % capacity] = {sent.truths[i], sent.packet, now_ns, i,
-                                                 sent.count,     sent.zero,   whole};
-    }
-  }
-  std::size_t take(std::span<sent_sample> out) noexcept {
-    std::size_t count = 0;
-    for (; count < out.size() && size_ > 0; ++count, --size_) {
-      out[count] = samples_[first_];
-      first_ = (first_ + 1) % samples_.size();
-    }
-    return count;
-  }
-  [[nodiscard]] std::uint64_t missed() const noexcept { return missed_; }
-
- private:
-  std::vector<sent_sample> samples_;  // a ring
-  std::size_t first_ = 0;
-  std::size_t size_ = 0;
-  std::uint64_t missed_ = 0;
-};
-
 class G4LIDAR_HIDDEN device::machine {
  public:
-  machine(const world& scene, const device_options& options, std::span<const fault> faults);
-
-  void advance(std::int64_t to_ns) noexcept;
-  void write(bytes from_host) noexcept;
-  [[nodiscard]] std::int64_t next_ns(std::int64_t now_ns) const noexcept;
-  [[nodiscard]] bool is_silent() const noexcept;
-  /// Whether advance() has processed everything up to this time.
-  [[nodiscard]] bool is_settled(std::int64_t now_ns) const noexcept {
-    return next_event().at_ns > now_ns;
-  }
-
-  void hold_unplugged(bool held) noexcept {
-    plug.hold_unplugged(held);
-    fault_edge();
-  }
-  [[nodiscard]] std::int64_t next_edge_ns() const noexcept { return faults_.next_edge_ns(); }
-
-  // The state for the host.
-  bridge to_host;
-  truth_log truths;
-  command_log log;
-  device_settings settings;
-  motor head;
-  usb_plug plug;
-
-  [[nodiscard]] bool is_up() const noexcept { return state_ >= state::idle; }
-  [[nodiscard]] bool is_scanning() const noexcept { return state_ == state::scanning; }
-
- private:
-  enum class state : std::uint8_t { off, booting, idle, scanning };
   // Events at the same time happen in this order.
   enum class happening : std::uint8_t {
     fault_edge,
@@ -149,7 +84,33 @@ class G4LIDAR_HIDDEN device::machine {
     happening what;
   };
 
+  machine(const world& scene, const device_options& options, std::span<const fault> faults);
+
+  void advance(std::int64_t to_ns) noexcept;
+  void write(bytes from_host) noexcept;
   [[nodiscard]] event next_event() const noexcept;
+  [[nodiscard]] std::int64_t next_ns(std::int64_t now_ns) const noexcept;
+  [[nodiscard]] bool is_silent() const noexcept;
+  void hold_unplugged(bool held) noexcept {
+    plug.hold_unplugged(held);
+    fault_edge();
+  }
+
+  [[nodiscard]] bool is_up() const noexcept { return state_ >= state::idle; }
+  [[nodiscard]] bool is_scanning() const noexcept { return state_ == state::scanning; }
+
+  const device_options options;
+  // The state for the host.
+  fault_injector faults;
+  bridge to_host;
+  transmitter output;
+  command_log log;
+  device_settings settings;
+  motor head;
+  usb_plug plug;
+
+ private:
+  enum class state : std::uint8_t { off, booting, idle, scanning };
   void handle(happening what) noexcept;
 
   // Power and plug.
@@ -166,30 +127,16 @@ class G4LIDAR_HIDDEN device::machine {
   [[nodiscard]] bool obey_setting(command code) noexcept;
   void use_settings() noexcept;
   [[nodiscard]] bool obey_start() noexcept;
-  [[nodiscard]] health condition() const noexcept;
-  void restart() noexcept;
-
-  // Answers.
-  void answer(answer_bytes what, std::int64_t later_ns = 0) noexcept;
-  [[nodiscard]] answer_bytes another_than(const answer_bytes& right) noexcept;
-  void forget_header() noexcept;
-  void send(const answer_bytes& what) noexcept;
+  void answer(const answer_bytes& what, std::int64_t later_ns = 0) noexcept;
 
   // Scanning.
-  void begin_scan() noexcept;
+  void begin_scan(bool at_full_speed = false) noexcept;
   void stop_scan() noexcept;
   void end_scan() noexcept;
   void keep_motor() noexcept;
-  void measure() noexcept;
-  void packet_measured() noexcept;
-  void byte_sent() noexcept;
 
-  device_options options_;
-  fault_injector faults_;
   command_receiver from_host_;
-  answer_queue answers_;
-  sampler sampler_;
-  wire wire_;
+  answerer answers_;
   random_stream garbage_;
 
   std::int64_t now_ns_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rotating head of a simulated G4 with its scanner: the packet that is being measured.
+// The rotating head of a simulated lidar with its scanner: the packet that is being measured.
 #pragma once
 
 #include <array>
@@ -47,12 +47,9 @@ class sampler {
     const sent_packet packet = scanner_.next();
     if (jolts) scanner_.set_turning(turning::clockwise);
     std::optional<std::uint8_t> stray;
-    const bool is_zero = (packet.data[2] & 1U) != 0;
-    if (options.stray_before_zero && is_zero) {
-      stray = options.ct_crc ? crc_ : static_cast<std::uint8_t>(strays_.next() >> 56);
+    if (options.stray_before_zero && (packet.data[2] & 1U) != 0) {
+      stray = options.ct_crc ? packet.crc : static_cast<std::uint8_t>(strays_.next() >> 56);
     }
-    if (is_zero) crc_ = 0;
-    add_to_crc(packet.data[2]);
     measured_.assign(packet, stray);
     complete_ns_ = packet.complete_ns;
   }
@@ -77,20 +74,10 @@ class sampler {
   }
 
  private:
-  /// CRC-8 with the polynomial x^8 + x^5 + x^4 + 1, the lowest bit first.
-  void add_to_crc(std::uint8_t ct) noexcept {
-    crc_ = static_cast<std::uint8_t>(crc_ ^ ct);
-    for (int bit = 0; bit < 8; ++bit) {
-      const bool is_out = (crc_ & 1U) != 0;
-      crc_ = static_cast<std::uint8_t>(crc_ >> 1 ^ (is_out ? 0x8C : 0));
-    }
-  }
-
   scanner scanner_;
   random_stream phases_;
   random_stream strays_;
   transmission measured_;
-  std::uint8_t crc_ = 0;       // of the CT bytes of this revolution
   std::uint64_t packets_ = 0;  // sent ones
   std::int64_t clock_due_ns_ = 0;
   std::int64_t complete_ns_ = forever_ns;

@@ -6,6 +6,7 @@
 #include "settings.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace g4lidar::sim {
 namespace {
@@ -29,7 +30,7 @@ answer_bytes set(Setting& stored, Setting wanted) noexcept {
 
 answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
                   const device_options& options) noexcept {
-  constexpr int least = min_scan_frequency_chz;
+  const int least = options.scanner.format.min_frequency_chz;
   const int most = options.highest_frequency_chz;
   const int wanted = frequency_chz + by_chz;
   const bool possible = wanted >= least && wanted <= most;
@@ -39,8 +40,11 @@ answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
   return answer_with_frequency(frequency_chz);
 }
 
-sample_rate next_of(sample_rate now) noexcept {
-  return static_cast<sample_rate>((static_cast<unsigned>(now) + 1U) % 3U);
+// The first one behind the last one.
+sample_rate next_of(sample_rate now, const wire_format& format) noexcept {
+  const std::size_t next = static_cast<std::size_t>(now) + 1;
+  const bool is_there = next < format.rates_hz.size() && format.rates_hz[next] != 0;
+  return is_there ? static_cast<sample_rate>(next) : sample_rate::khz_4;
 }
 
 power_down_protection other_than(power_down_protection now) noexcept {
@@ -113,7 +117,7 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
     case command::constant_frequency_off:
       return set(now.constancy, constant_frequency::off);
     case command::sample_rate_next:
-      return set(now.sample_rate, next_of(now.sample_rate));
+      return set(now.sample_rate, next_of(now.sample_rate, options.scanner.format));
     case command::sample_rate_query:
       return set(now.sample_rate, now.sample_rate);
     case command::protection_toggle:

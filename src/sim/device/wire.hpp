@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "g4lidar/core/packet.hpp"
 #include "g4lidar/sim/fault.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "ring.hpp"
@@ -17,14 +16,14 @@ namespace g4lidar::sim {
 
 /// Bytes that belong together: an answer, a text, or a packet with the true values of its samples.
 struct transmission {
-  std::array<std::uint8_t, 1 + max_packet_size> data;
+  std::array<std::uint8_t, 1 + longest_packet> data;
   std::uint8_t size = 0;
   std::uint8_t begin = 0;  ///< Of the packet; a stray byte may precede it.
   std::uint8_t count = 0;  ///< Of samples; 0: no packet.
   bool zero = false;
   bool damaged = false;
   std::uint64_t packet = 0;
-  std::array<sample_truth, max_samples> truths;
+  std::array<sample_truth, most_samples> truths;
 
   void assign(bytes content) noexcept;
   void assign(const sent_packet& sent, std::optional<std::uint8_t> stray) noexcept;

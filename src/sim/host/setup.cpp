@@ -36,7 +36,7 @@ using member =
                  bool options::*, turning options::*, at_limit options::*, disturbance options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 42> members{{
+constexpr std::array<std::pair<std::string_view, member>, 44> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -54,6 +54,8 @@ constexpr std::array<std::pair<std::string_view, member>, 42> members{{
     {"stray_after_start", &options::stray_after_start},
     {"stray_before_zero", &options::stray_before_zero},
     {"ct_crc", &options::ct_crc},
+    {"ct_information", &options::ct_information},
+    {"one_way", &options::one_way},
     {"time_packet_ns", &options::time_packet_ns},
     {"stop_truncates", &options::stop_truncates},
     {"boot_text", &options::boot_text},
@@ -163,7 +165,8 @@ std::string set_member(device_options& device, std::string_view name, std::strin
     known.append(each).append(", ");
   }
   return refused(name,
-                 "is not one of " + known + "fault, firmware, model, path, seed, serial, world");
+                 "is not one of " + known +
+                     "fault, firmware, model, model_id, other_layout, path, seed, serial, world");
 }
 
 // "3.2"
@@ -173,6 +176,22 @@ std::string read_firmware(device_information& info, std::string_view value) {
   const bool is_read = read_into(info.firmware_major, major).empty() &&
                        read_into(info.firmware_minor, minor).empty();
   return is_read ? "" : refused(value, "is not a firmware version such as 3.2");
+}
+
+std::string read_model(setup& into, std::string_view value) {
+  if (use_model(into.device, value, into.other_layout)) return {};
+  std::string known;
+  for (const std::string_view word : model_words()) {
+    if (word == value) return refused(value, "has one layout of samples only");
+    known.append(known.empty() ? "" : ", ").append(word);
+  }
+  return refused(value, "is not one of " + known);
+}
+
+// The order in which the parts of a text are taken: what selects a model, the model, what changes it.
+int turn_of(std::string_view word) noexcept {
+  if (word.starts_with("firmware=") || word.starts_with("other_layout=")) return 0;
+  return word.starts_with("model=") ? 1 : 2;
 }
 
 // "a%41" is "aA".
@@ -224,7 +243,9 @@ std::string set(setup& into, std::string_view word) {
     return {};
   }
   if (name == "seed") return named(name, read_into(into.device.scanner.seed, value));
-  if (name == "model") return named(name, read_into(into.device.info.model, value));
+  if (name == "other_layout") return named(name, read_into(into.other_layout, value));
+  if (name == "model") return named(name, read_model(into, value));
+  if (name == "model_id") return named(name, read_into(into.device.info.model, value));
   if (name == "firmware") return read_firmware(into.device.info, value);
   if (name == "fault") return add_fault(into.faults, value);
   if (name != "serial") return set_member(into.device, name, value);
@@ -242,11 +263,16 @@ std::variant<setup, setup_error> parse_setup(std::string_view source) {
   if (!is_simulated(source)) return setup_error{refused(source, "does not begin with sim:")};
   source.remove_prefix(prefix.size());
   if (source.starts_with('?')) source.remove_prefix(1);
-  setup read;
+  std::vector<std::string> words;
   while (!source.empty()) {
     const std::string_view piece = source.substr(0, source.find('&'));
     source.remove_prefix(std::min(piece.size() + 1, source.size()));
-    if (std::string wrong = set(read, decoded(piece)); !wrong.empty()) return setup_error{wrong};
+    words.push_back(decoded(piece));
+  }
+  std::ranges::stable_sort(words, {}, turn_of);
+  setup read;
+  for (const std::string& word : words) {
+    if (std::string wrong = set(read, word); !wrong.empty()) return setup_error{wrong};
   }
   const std::string_view problem = problem_with(read.device);
   if (!problem.empty()) return setup_error{std::string(problem)};

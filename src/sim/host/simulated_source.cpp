@@ -32,6 +32,10 @@ result<simulated_source> open_simulated(std::string_view source) {
     return refused(problem::bad_option, "sim:", wrong->message);
   }
   const setup& wish = std::get<setup>(read);
+  if (wish.device.one_way) {
+    return failure(task::opening, problem::bad_option,
+                   "sim: of a model that answers nothing (only a G4 can be opened)");
+  }
   auto scene = load_world(wish.world_file);
   if (const auto* wrong = std::get_if<world_error>(&scene)) return refused(wish.world_file, *wrong);
   world& in = std::get<world>(scene);

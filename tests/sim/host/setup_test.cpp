@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "g4lidar/lidar.hpp"
 #include "g4lidar/sim/setup.hpp"
 #include "support/patience.hpp"
 
@@ -67,7 +68,7 @@ TEST_F(SimSetup, TheShortestText_IsAHealthyDevice) {
 
 TEST_F(SimSetup, EveryKindOfValue) {
   const sim::setup found = read(
-      "sim:?world=a%20room%3D1.txt&seed=18446744073709551615&serial=0000000000000042&model=255"
+      "sim:?world=a%20room%3D1.txt&seed=18446744073709551615&serial=0000000000000042&model_id=255"
       "&fault=unplug@5s%2B2s&fault=flip&boot_text=false&boots_at_start=true&baud=115200"
       "&header_ns=1.5s&silence_ns=2&standstill_ns=0");
   EXPECT_EQ(found.world_file, "a room=1.txt");
@@ -85,6 +86,44 @@ TEST_F(SimSetup, EveryKindOfValue) {
   EXPECT_EQ(found.device.header_ns, 1'500'000'000);
   EXPECT_EQ(found.device.silence_ns, 2'000'000'000) << "a number alone is seconds";
   EXPECT_EQ(found.device.standstill_ns, 0);
+}
+
+TEST_F(SimSetup, AModelByItsName) {
+  const sim::device_options x2 = read("sim:?model=x2").device;
+  EXPECT_TRUE(x2.one_way);
+  EXPECT_EQ(x2.baud, 115'200U);
+  EXPECT_EQ(x2.info.model, 4);
+  const sim::setup changed =
+      read("sim:?baud=9600&ct_crc=true&model_id=9&one_way=false&seed=3&model=x2");
+  EXPECT_EQ(changed.device.baud, 9600U) << "whatever the order";
+  EXPECT_TRUE(changed.device.ct_crc);
+  EXPECT_EQ(changed.device.info.model, 9);
+  EXPECT_FALSE(changed.device.one_way);
+  EXPECT_EQ(changed.device.scanner.seed, 3U);
+  const auto code = [](const char* source) { return read(source).device.scanner.format.code; };
+  EXPECT_EQ(code("sim:?model=s2-pro").size(), 2U);
+  EXPECT_EQ(code("sim:?model=s2-pro&other_layout=true").size(), 3U);
+  EXPECT_EQ(code("sim:?model=tg30").units_per_mm, 1);
+  EXPECT_EQ(code("sim:?model=tg30&firmware=1.2").units_per_mm, 2);
+  EXPECT_EQ(code("sim:?model=tg30&firmware=1.3").units_per_mm, 1);
+  EXPECT_EQ(code("sim:").units_per_mm, 4);
+  EXPECT_THAT(refusal("sim:?model=x5"), StartsWith("model: 'x5' is not one of g4, g4-pro, "));
+  EXPECT_EQ(refusal("sim:?model=x4&other_layout=true"),
+            "model: 'x4' has one layout of samples only");
+}
+
+// Only G4s can be opened. A model that answers is refused after its answer, another one before it is read.
+TEST_F(SimSetup, AnotherModel_IsRefusedByName) {
+  lidar_options options;
+  options.device = "sim:?model=x4";
+  const auto two_way = lidar::open(options);
+  ASSERT_FALSE(two_way);
+  EXPECT_EQ(two_way.error(), problem::other_device);
+  options.device = "sim:?model=x4-pro";
+  const auto one_way = lidar::open(options);
+  ASSERT_FALSE(one_way);
+  EXPECT_EQ(one_way.error(), problem::bad_option);
+  EXPECT_THAT(one_way.error().message(), HasSubstr("a model that answers nothing"));
 }
 
 TEST_F(SimSetup, OpenQuestionsOfTheProtocol) {
@@ -132,12 +171,14 @@ TEST_F(SimSetup, TheOrderOfTheOptionsIsFree) {
 TEST_F(SimSetup, InvalidTexts_AreRefused) {
   EXPECT_THAT(refusal("/dev/ttyUSB0"), HasSubstr("does not begin with sim:"));
   EXPECT_THAT(refusal("sim:?colour=red"), StartsWith("'colour' is not one of baud, batch_min_ns,"));
-  EXPECT_THAT(refusal("sim:colour"),
-              HasSubstr("boots_at_start, fault, firmware, model, path, seed, serial, world"));
+  EXPECT_THAT(
+      refusal("sim:colour"),
+      HasSubstr("boots_at_start, fault, firmware, model, model_id, other_layout, path, seed, "
+                "serial, world"));
   EXPECT_THAT(refusal("sim:?&"), StartsWith("'' is not one of baud"));
   EXPECT_EQ(refusal("sim:?seed=-1"), "seed: '-1' is not in the range 0 to 18446744073709551615");
   EXPECT_EQ(refusal("sim:?seed="), "seed: '' is not in the range 0 to 18446744073709551615");
-  EXPECT_EQ(refusal("sim:?model=256"), "model: '256' is not in the range 0 to 255");
+  EXPECT_EQ(refusal("sim:?model_id=256"), "model_id: '256' is not in the range 0 to 255");
   EXPECT_EQ(refusal("sim:?baud=9600x"), "baud: '9600x' is not in the range 0 to 4294967295");
   EXPECT_EQ(refusal("sim:?boot_text"), "boot_text: '' is not one of false, true");
   EXPECT_EQ(refusal("sim:?while_scanning=never"),
@@ -161,7 +202,7 @@ TEST_F(SimSetup, InvalidTexts_AreRefused) {
 }
 
 TEST_F(SimSetup, SeveralDevicesDifferInSeedAndSerial) {
-  sim::setup first = read("sim:?seed=7&serial=0000000000000042&model=4");
+  sim::setup first = read("sim:?seed=7&serial=0000000000000042&model_id=4");
   const auto made = sim::several(first.device, 4, {"1234567890123456", "0000000000000043"});
   ASSERT_EQ(made.size(), 4U);
   EXPECT_EQ(made[0].info.serial_number(), "1234567890123456");

@@ -6,6 +6,8 @@
 #include <cerrno>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
@@ -127,8 +129,8 @@ constexpr const char* sim_details =
     R"(The same options give the same bytes on every computer: the response to the start command, and
 all packets that were complete before N seconds. Columns of --truth: index, time_ns, scan,
 first_level_deg, bearing_deg (direction of the target), range_mm (its distance, exact; 0: no
-target), raw (as sent, in quarters of a millimeter), lidar_x_m, lidar_y_m, lidar_heading_deg
-(where the lidar was). Lines of --odometry: time_ns, x and y in m, yaw_rad, counted from where the
+target), raw (as sent, of a G4 in quarters of a millimeter), intensity and sample_flags if the
+model has them, lidar_x_m, lidar_y_m, lidar_heading_deg (where the lidar was). Lines of --odometry: time_ns, x and y in m, yaw_rad, counted from where the
 robot was at time 0.
 
 With --link PATH the command serves a device that answers commands, on a pseudo-terminal to
@@ -145,6 +147,9 @@ void set(sim::setup& setup, const std::string& word) {
 
 option_rows file_rows(sim_options& options) {
   return {
+      // First: the other options change what it sets.
+      {"--model", "MODEL", "The model (g4): x4, t-mini-pro, ...; see docs/sim.md",
+       [&options](const std::string& word) { set(options.setup, "model=" + word); }},
       number_row("--seconds", "N", "Duration of the scan (10)", options.seconds, 0.0, 1e9),
       {"--seed", "S", "Seed of the random numbers (1)",
        [&options](const std::string& word) { set(options.setup, "seed=" + word); }},
@@ -178,20 +183,32 @@ option_rows odometry_rows(sim_options& options) {
   return in_group("Odometry of a lidar that moves", rows);
 }
 
+/// The sample rate of the model with this number of samples per second.
+sample_rate rate_of(const std::string& word, const sim::wire_format& format) {
+  std::vector<std::string> known;
+  for (const std::uint32_t hz : format.rates_hz) {
+    if (hz != 0) known.push_back(std::to_string(hz));
+  }
+  const auto found = std::ranges::find(known, word);
+  if (found == known.end()) {
+    throw bad_value(fmt::format("'{}' is not one of {}", word, fmt::join(known, ", ")));
+  }
+  return static_cast<sample_rate>(found - known.begin());
+}
+
 option_rows scanner_rows(sim::scanner_options& scanner) {
   const auto number = [](const char* name, const char* value, const char* help, auto& into) {
     return number_row(name, value, help, into, -1e9, 1e9);
   };
   const auto centihertz = [](const std::string& word) {
-    return static_cast<std::uint16_t>(number_of(word, 5.0, 12.0) * 100.0 + 0.5);
+    return static_cast<std::uint16_t>(number_of(word, 3.0, 16.0) * 100.0 + 0.5);
   };
-  return {value_row("--frequency", "HZ", "Revolutions per second, 5 to 12 (7)",
+  return {value_row("--frequency", "HZ", "Revolutions per second, of a G4 5 to 12 (7)",
                     scanner.scan_frequency_chz, centihertz),
-          choice_row("--sample-rate", "Samples per second (9000)", scanner.sample_rate,
-                     choices<sample_rate>{{"4000", sample_rate::khz_4},
-                                          {"8000", sample_rate::khz_8},
-                                          {"9000", sample_rate::khz_9}}),
-          number_row("--samples", "N", "Samples in a packet, 1 to 80 (40)",
+          value_row("--sample-rate", "HZ", "Samples per second, of a G4 4000, 8000 or 9000 (9000)",
+                    scanner.sample_rate,
+                    [&scanner](const std::string& word) { return rate_of(word, scanner.format); }),
+          number_row("--samples", "N", "Samples in a packet, 1 to 80, or 40 by the model (40)",
                      scanner.samples_per_packet, std::size_t{1}, std::size_t{80}),
           number("--start-deg", "DEG", "Angle of the first sample (random)", scanner.start_deg),
           number("--index-deg", "DEG", "Angle at which a revolution starts (0)", scanner.index_deg),

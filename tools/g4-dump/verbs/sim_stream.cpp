@@ -19,7 +19,7 @@
 namespace g4_tool {
 namespace {
 
-void write_truth(std::span<const sim::sample_truth> samples, output& out) {
+void write_truth(std::span<const sim::sample_truth> samples, bool has_more, output& out) {
   using namespace g4lidar::digits;
   constexpr std::size_t max_row = 240;
   for (const sim::sample_truth& sample : samples) {
@@ -35,6 +35,10 @@ void write_truth(std::span<const sim::sample_truth> samples, output& out) {
     put(put_angle<6>(at, sample.bearing_deg));
     put(put_fixed<3>(at, sample.range_mm));
     put(put_number(at, sample.raw));
+    if (has_more) {
+      put(put_number(at, sample.intensity));
+      put(put_number(at, sample.flags));
+    }
     const sim::pose& lidar = sample.lidar;
     const double turns = std::floor(lidar.heading_deg / 360.0);
     out.wrote(fmt::format_to(at, "{:.6f},{:.6f},{:.6f}\n", lidar.x_m, lidar.y_m,
@@ -65,13 +69,16 @@ int write_stream(const sim_options& options) {
                   "raw bytes are not for a terminal. Give a file with -o FILE, or a pipe: "
                   "g4-dump sim | g4-dump decode");
   }
+  const sim::device_options& device = options.setup.device;
+  const sim::sample_code& code = device.scanner.format.code;
+  const bool has_more = code.brightest() != 0 || code.lower == sim::lower_bits::flags;
   std::optional<output> truth;
   if (!options.truth.empty()) {
     truth.emplace(options.truth);
     refuse_same_file(out.id(), *truth);
-    truth->write(
-        "index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw,"
-        "lidar_x_m,lidar_y_m,lidar_heading_deg\n");
+    truth->write("index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw,");
+    if (has_more) truth->write("intensity,sample_flags,");
+    truth->write("lidar_x_m,lidar_y_m,lidar_heading_deg\n");
   }
   std::optional<output> way;
   if (!options.odometry_file.empty()) {
@@ -83,14 +90,16 @@ int write_stream(const sim_options& options) {
     out.write({reinterpret_cast<const char*>(data.data()), data.size()});
   };
   const sim::world scene = load_scene(options.setup, &out);
-  sim::scanner scanner(scene, options.setup.device.scanner);
+  sim::scanner scanner(scene, sim::scanner_of(device));
   const auto end_ns = static_cast<std::int64_t>(std::llround(options.seconds * 1e9));
   write(sim::scan_start_reply());
   while (interrupt() == 0 && !out.is_closed()) {
     const sim::sent_packet packet = scanner.next();
     if (packet.complete_ns >= end_ns) break;
+    const bool is_zero = (packet.data[2] & 1U) != 0;
+    if (device.ct_crc && is_zero) write({&packet.crc, 1});
     write(packet.data);
-    if (truth) write_truth(packet.samples, *truth);
+    if (truth) write_truth(packet.samples, has_more, *truth);
   }
   if (way) write_odometry(scene, options, end_ns, *way);
   // Files of an interrupted simulation are not kept, because it can be repeated.
