@@ -74,6 +74,7 @@ enum class error_detail : std::uint8_t {
   bad_name,      ///< bad_option: the name of a lidar that is none.
   simulated,     ///< bad_option, bad_file: no simulated lidar can be made of what `sim:` names.
   no_simulator,  ///< bad_option: `sim:`, in a library that was built without the simulator.
+  unknown_model,  ///< bad_file: a recording of a model, or in a version, that is not known.
 };
 
 /// One error. Trivially copyable, never allocates.

@@ -50,10 +50,11 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
-  /// What sends the bytes; not null, and valid as long as the lidar. Another model than the G4 is known
-  /// for files of raw bytes only. frame::robot, masks and grids turn every point as that of a G4: for a
+  /// What sends the bytes; valid as long as the lidar. Null: what a recording states, and else a G4.
+  /// Another model than the G4 is known for files only, and a recording of another model than this
+  /// one is refused with bad_option. frame::robot, masks and grids turn every point as that of a G4: for a
   /// model with another turn use frame::vendor.
-  const g4lidar::model* model = &g4_model;
+  const g4lidar::model* model = nullptr;
   /// Bits per second, of a serial port and of the one behind `tcp:`.
   std::uint32_t baud = g4_model.bauds[0];
 

@@ -37,29 +37,41 @@ array<float> to_xy_array(const array<point>& points, frame to) {
   return made;
 }
 
-array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how) {
+array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how,
+                       std::span<float> intensities) {
   if (bins < 1 || bins > 65536) raise_impossible("a grid has 1 to 65536 ranges", bins);
   const elements<point> from(points);
   if (from.span().size() > (std::size_t{1} << 24))
     throw nb::value_error("more than 16777216 points");
-  return make_array<float>(bins, [&](std::span<float> out) { fill_grid(from.span(), out, how); });
+  return make_array<float>(bins, [&](std::span<float> out) {
+    fill_grid(from.span(), out, how, intensities);
+  });
 }
 
 namespace {
 
 nb::bytes laser_scan(const kept_scan& scan, std::size_t bins, const std::string& frame_id,
                      no_return_as no_return) {
-  const array<float> ranges = to_ranges(scan.points, bins, {.no_return = no_return});
+  std::vector<float> intensities(has_intensity(*scan.about.model) ? bins : 0);
+  const array<float> ranges = to_ranges(scan.points, bins, {.no_return = no_return}, intensities);
   std::vector<std::uint8_t> out;
   put_laser_scan(elements<float>(ranges).span(),
-                 {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
+                 {.stamp_ns = scan.time_ns + scan.wall_ahead_ns,
+                  .frame_id = frame_id,
+                  .duration_ns = scan.about.duration_ns,
+                  .intensities = intensities},
+                 out);
   return nb::bytes(out.data(), out.size());
 }
 
 nb::bytes point_cloud2(const kept_scan& scan, const std::string& frame_id) {
   std::vector<std::uint8_t> out;
   put_point_cloud2(elements<point>(scan.points).span(),
-                   {scan.time_ns + scan.wall_ahead_ns, frame_id, scan.about.duration_ns}, out);
+                   {.stamp_ns = scan.time_ns + scan.wall_ahead_ns,
+                    .frame_id = frame_id,
+                    .duration_ns = scan.about.duration_ns,
+                    .has_intensity = has_intensity(*scan.about.model)},
+                   out);
   return nb::bytes(out.data(), out.size());
 }
 

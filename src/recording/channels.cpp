@@ -76,6 +76,7 @@ channel_set::channel_set(const recording_options& options)
     : scan_topic_(options.topic), points_topic_(options.points_topic) {
   if (!points_topic_.empty()) add(topic::points);
   if (options.mount) add(topic::tf_static);
+  if (options.model != nullptr) model_ = options.model;
 }
 
 std::uint32_t channel_set::count() const noexcept {
@@ -101,14 +102,20 @@ void channel_set::put_schemas(record_text& out, const channel_set* without) cons
 void channel_set::put_channels(record_text& out) const {
   for (const topic_words& channel : topics) {
     if (!has(channel.id)) continue;
+    std::string name(channel.name);
+    if (channel.id == topic::scan) name = scan_topic_;
+    if (channel.id == topic::points) name = points_topic_;
+    word_map words{{"offered_qos_profiles", ""}};
+    if (channel.is_of_connection() && model_->word != g4_model.word) {
+      name.insert(connection_prefix.size(), model_version);
+      words.emplace_back(model_key, model_->word);
+    }
     const std::size_t record = out.begin(opcode::channel);
     out.put(static_cast<std::uint16_t>(channel.id));
     out.put(channel.schema);
-    out.put(channel.id == topic::scan     ? std::string_view(scan_topic_)
-            : channel.id == topic::points ? std::string_view(points_topic_)
-                                          : channel.name);
+    out.put(std::string_view(name));
     out.put("cdr");
-    put_map(out, {{"offered_qos_profiles", ""}});
+    put_map(out, words);
     out.end(record);
   }
 }

@@ -29,6 +29,10 @@ constexpr std::uint64_t near_enough = std::uint64_t{64} << 10U;
 /// Odometry may be recorded by this time later than what else has its time.
 constexpr std::int64_t late_ns = 1'000'000'000;
 
+/// The begin of the names of channels that state a version.
+constexpr std::string_view version_prefix = "/g4lidar/v";
+static_assert(version_prefix.starts_with(mcap::connection_prefix));
+
 /// The sum of two of them does not overflow.
 bool is_a_time(std::int64_t time_ns) noexcept {
   constexpr std::int64_t age = std::int64_t{1} << 62U;  // 146 years
@@ -60,6 +64,10 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
   if (auto good = check(); !good) return good;
   const bool is_ours = std::any_of(channels_.begin(), channels_.begin() + index_of(topic::scan),
                                    [](const auto& id) { return id.has_value(); });
+  if (!is_ours && !refused_.empty()) {
+    return failure(task::opening, problem::bad_file, path_ + ", " + refused_, 0,
+                   error_detail::unknown_model);
+  }
   if (!is_ours || (!first && damage().any())) {
     return failure(task::opening, problem::bad_file, path_);
   }
@@ -114,15 +122,30 @@ void recording_reader::file_reader::read_front() {
   }
 }
 
-void recording_reader::file_reader::take_channel(field_reader record) noexcept {
+void recording_reader::file_reader::take_channel(field_reader record) {
   const auto id = record.take<std::uint16_t>();
   static_cast<void>(record.take<std::uint16_t>());
-  const std::string_view name = record.take_text();
+  std::string name(record.take_text());
   const std::string_view encoding = record.take_text();
   if (!record.is_good() || encoding != "cdr") return;
+  if (name.starts_with(version_prefix) && !take_model(record, name)) return;
   for (const mcap::topic_words& known : mcap::all_topics()) {
     if (known.is_read() && known.name == name) channels_[index_of(known.id)] = id;
   }
+}
+
+/// Whether the version in the name of a channel, which is removed, and the model in its metadata are known.
+bool recording_reader::file_reader::take_model(field_reader metadata, std::string& name) {
+  const std::string_view rest = std::string_view(name).substr(mcap::connection_prefix.size());
+  const std::string word = mcap::word_in(metadata, mcap::model_key);
+  const model* const stated = rest.starts_with(mcap::model_version) ? model_named(word) : nullptr;
+  if (model_ == nullptr) model_ = stated;
+  if (stated == nullptr || stated != model_) {
+    refused_ = name + (word.empty() ? "" : " of the model " + word);
+    return false;
+  }
+  name.erase(mcap::connection_prefix.size(), mcap::model_version.size());
+  return true;
 }
 
 void recording_reader::file_reader::take_metadata(field_reader record) {
@@ -192,7 +215,7 @@ void recording_reader::file_reader::find_end() {
 }
 
 /// Of items that are not odometry. Removes the records up to it.
-std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& records) noexcept {
+std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& records) {
   field_reader rest(records);
   while (!rest.is_at_end()) {
     const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
@@ -207,7 +230,7 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& 
 }
 
 /// The same of the records that follow; they are not read.
-std::optional<std::int64_t> recording_reader::file_reader::first_time_ahead() noexcept {
+std::optional<std::int64_t> recording_reader::file_reader::first_time_ahead() {
   const auto sequence = sequence_;
   bytes records = records_;
   const auto time_ns = first_time_in(records);

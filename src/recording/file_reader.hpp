@@ -26,6 +26,9 @@ class recording_reader::file_reader {
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept { return device_; }
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept { return digest_; }
+  [[nodiscard]] const g4lidar::model& model() const noexcept {
+    return model_ != nullptr ? *model_ : g4_model;
+  }
   [[nodiscard]] std::int64_t first_ns() const noexcept { return first_ns_; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
   [[nodiscard]] const recording_damage& damage() const noexcept;
@@ -43,13 +46,14 @@ class recording_reader::file_reader {
   void seek(std::int64_t from_ns);
   [[nodiscard]] std::optional<std::uint64_t> chunk_before(std::int64_t from_ns);
   void find_end();
-  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes& records) noexcept;
-  [[nodiscard]] std::optional<std::int64_t> first_time_ahead() noexcept;
+  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes& records);
+  [[nodiscard]] std::optional<std::int64_t> first_time_ahead();
 
   [[nodiscard]] std::optional<recorded_item> advance();
   [[nodiscard]] std::optional<recorded_item> read();
   [[nodiscard]] std::optional<recorded_item> item_in(mcap::field_reader record) noexcept;
-  void take_channel(mcap::field_reader record) noexcept;
+  void take_channel(mcap::field_reader record);
+  [[nodiscard]] bool take_model(mcap::field_reader metadata, std::string& name);
   void take_metadata(mcap::field_reader record);
   [[nodiscard]] bool skips(std::uint32_t sequence) noexcept;
 
@@ -58,6 +62,8 @@ class recording_reader::file_reader {
   std::unique_ptr<mcap::chunk_source> chunks_;
   bytes records_;  // of the block, not read yet
   std::array<std::optional<std::uint16_t>, mcap::topic_count> channels_;
+  const g4lidar::model* model_ = nullptr;  // null: none was stated yet
+  std::string refused_;                    // what channels state that cannot be read
   std::optional<recorded_device> device_;
   std::optional<recorded_digest> digest_;
   mutable recording_damage damage_;

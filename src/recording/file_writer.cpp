@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t largest_piece = std::size_t{64} << 10U;
 /// Size of a message of any kind without its data.
 constexpr std::size_t message_room = 2048;
-/// Size of a point in a PointCloud2.
-constexpr std::size_t point_room = 24;
+/// Size of a point in a PointCloud2, with its intensity.
+constexpr std::size_t point_room = 28;
 
 std::int64_t ns_of(std::chrono::nanoseconds time) noexcept { return time.count(); }
 
@@ -140,7 +140,8 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   const std::span<const point> points = revolution.points;
   message_header header{.frame_id = options_.frame_id,
                         .duration_ns = revolution.duration_ns,
-                        .order = options_.order};
+                        .order = options_.order,
+                        .has_intensity = has_intensity(*revolution.model)};
   const auto put_stamped = [&](topic id, std::size_t size, auto put_message) {
     put(id, last_ns_, size, [&](mcap::record_text& out) {
       header.stamp_ns = wall_.at(points.front().time_ns);
@@ -150,7 +151,8 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   if (options_.scans) {
     ++counts_.scans;
     header.first_bin = ranges_.fill(revolution, options_);
-    put_stamped(topic::scan, options_.scan_bins * sizeof(float),
+    header.intensities = ranges_.intensities();
+    put_stamped(topic::scan, 2 * options_.scan_bins * sizeof(float),
                 [&](auto& out) { put_laser_scan(ranges_.ranges_m(), header, out); });
   }
   if (channels_.has(topic::points)) {
@@ -201,6 +203,19 @@ void recording_writer::file_writer::device(const recorded_device& known) noexcep
     }
     return file_->add_metadata(mcap::device_metadata, mcap::words_of(known));
   }));
+}
+
+result<void> recording_writer::file_writer::take_model(const model& which) {
+  const std::string_view now = channels_.model().word;
+  if (is_closed_ || now == which.word) return {};
+  const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
+  if (options_.model != nullptr || has_begun) {
+    return failure(task::opening, problem::bad_option,
+                   "model: " + std::string(which.word) + ", and the recording is of a " +
+                       std::string(now));
+  }
+  channels_.set_model(which);
+  return file_->begin(channels_);
 }
 
 // ---- chunks and files ---------------------------------------------------------------------------

@@ -128,7 +128,8 @@ void lidar_node::on_scan(const scan& whole) {
   if (driven_ && !feed_.is_known()) driven_->take(path_, stamp_ns(0));
   shaper_.shape(whole, path_.until(whole.end_ns()));
   if (report_) report_->add(whole.size(), shaper_.outside());
-  const scan_times when{whole.time_ns(), whole.duration_ns, stamp_ns(0)};
+  const scan_times when{whole.time_ns(), whole.duration_ns, stamp_ns(0),
+                        has_intensity(*whole.model)};
   const grid_options& grid = parameters_.filters().grid;
   if (merger_ != nullptr) return merger_->add(index_, shaper_, grid, when);
   if (messages_->wants_scan()) messages_->publish_scan(shaper_.for_grid(), grid, when);

@@ -29,16 +29,19 @@ message_header scan_messages::header_of(const scan_times& when) const {
   return {.stamp_ns = when.first_ns + when.ahead_ns,
           .frame_id = frame_id_,
           .duration_ns = when.duration_ns,
-          .order = options_.order};
+          .order = options_.order,
+          .has_intensity = when.has_intensity};
 }
 
 void scan_messages::publish_scan(std::span<const point> for_grid, const grid_options& grid,
                                  const scan_times& when) {
   message_header header = header_of(when);
+  intensities_.resize(when.has_intensity ? ranges_.size() : 0);
+  header.intensities = intensities_;
   if (options_.order == scan_order::time) {
-    header.first_bin = fill_time_grid(for_grid, when.duration_ns, ranges_, grid);
+    header.first_bin = fill_time_grid(for_grid, when.duration_ns, ranges_, grid, intensities_);
   } else {
-    fill_grid(for_grid, ranges_, grid);
+    fill_grid(for_grid, ranges_, grid, intensities_);
   }
   message_.clear();
   put_laser_scan(ranges_, header, message_);

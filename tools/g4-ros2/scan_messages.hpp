@@ -23,6 +23,7 @@ struct scan_times {
   std::int64_t first_ns = 0;     ///< Of its first point, by the clock of the points.
   std::int64_t duration_ns = 0;  ///< Until the first point of the next one.
   std::int64_t ahead_ns = 0;     ///< The wall clock minus the clock of the points.
+  bool has_intensity = false;    ///< Whether the points have an intensity.
 };
 
 /// The counts of topics by their names.
@@ -56,6 +57,7 @@ class scan_messages {
   std::unique_ptr<dds::publisher> scan_;  // null: off
   std::unique_ptr<dds::publisher> points_;
   std::vector<float> ranges_;
+  std::vector<float> intensities_;  // empty: the points have none
   std::vector<std::uint8_t> message_;
 };
 

@@ -108,9 +108,10 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   publish_bytes(wanted.wants(channel::from_device));
   shaper_.shape(scan);
   if (report_) report_->add(scan.size(), shaper_.outside());
-  const message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
-                              .frame_id = options_.frame_id,
-                              .duration_ns = scan.duration_ns};
+  message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
+                        .frame_id = options_.frame_id,
+                        .duration_ns = scan.duration_ns,
+                        .has_intensity = has_intensity(*scan.model)};
   if (wanted.page) {
     const std::span<const point> kept = shaper_.kept();
     std::vector<std::uint8_t> message;
@@ -120,7 +121,9 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   }
   if (wants_scan) {
     std::vector<std::uint8_t> message;
-    fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid);
+    intensities_.resize(header.has_intensity ? ranges_m_.size() : 0);
+    header.intensities = intensities_;
+    fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid, intensities_);
     put_laser_scan(ranges_m_, header, message);
     registry_.publish(channel::scan, header.stamp_ns, std::move(message));
   }

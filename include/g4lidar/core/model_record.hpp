@@ -138,6 +138,11 @@ struct model {
   firmware_difference old_firmware{};
 };
 
+/// Whether `which` measures the intensity of returns. *Pure.*
+[[nodiscard]] constexpr bool has_intensity(const model& which) noexcept {
+  return intensity_bits(which.samples.layout) > 0;
+}
+
 /// The sample rate of `which` to begin with: the nominal one, or the highest if it is not known. *Pure.*
 [[nodiscard]] constexpr std::uint32_t first_rate_hz(const model& which) noexcept {
   std::uint32_t highest = 0;

@@ -13,7 +13,7 @@ namespace g4lidar {
 
 /// The encoding of the fields of a cloud.
 enum class pcd_data : std::uint8_t {
-  binary,  ///< Little-endian, 28 bytes per point.
+  binary,  ///< Little-endian, 28 bytes per point, 32 with intensity.
   ascii,   ///< One line per point, numbers with all their digits.
 };
 
@@ -25,6 +25,8 @@ enum class pcd_data : std::uint8_t {
 /// | `range_m` | float | metres |
 /// | `angle_deg` | float | degrees in frame `to`: vendor in [0, 360), robot in [-180, 180) |
 /// | `time_ns` | 64-bit signed integer | point::time_ns |
-G4LIDAR_API void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out);
+/// | `intensity` | float | point::intensity, if `has_intensity` |
+G4LIDAR_API void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out,
+                           bool has_intensity = false);
 
 }  // namespace g4lidar
