@@ -82,6 +82,9 @@ struct lidar_options {
   std::function<bool()> is_cancelled{};
 };
 
+/// The words of all models: "g4, g4-pro, ...". Allocates.
+[[nodiscard]] G4LIDAR_API std::string model_words();
+
 /// What is wrong with `options`, as an error that names the option; nothing if all can be used. *Pure.*
 [[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;
 

@@ -132,11 +132,14 @@ live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
                              bool reconnect, bool partial_scans, double answer_time,
                              double stall_time, double longest_backoff, double batch,
                              double transport_delay, double speed, bool loop, double begin,
-                             std::optional<double> end, std::uint32_t raw_sample_rate_hz,
+                             std::optional<double> end,
+                             std::optional<std::uint32_t> raw_sample_rate_hz,
+                             const std::optional<std::string>& model,
                              const std::optional<path_text>& record, bool overwrite,
                              double device_wait) {
   const wanted_settings wanted{frequency_hz, sample_rate_hz, direction, constant, idle, protection};
   lidar_options options;
+  options.model = model_of(model);
   options.baud = baud;
   for (const answer& value : wanted.values()) set_option(options, value);
   options.reconnect = reconnect;
@@ -236,7 +239,7 @@ void bind_opening(nb::module_& module) {
       "batch"_a = seconds(usual.tuning.batch),
       "transport_delay"_a = seconds(usual.tuning.transport_delay), "speed"_a = 0.0,
       "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(),
-      "raw_sample_rate_hz"_a = default_sample_rate_hz, "record"_a = nb::none(),
+      "raw_sample_rate_hz"_a = nb::none(), "model"_a = nb::none(), "record"_a = nb::none(),
       "overwrite"_a = false, "device_wait"_a = 0.0,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
       "`device`: '' for the only G4; "
@@ -259,7 +262,8 @@ void bind_opening(nb::module_& module) {
       "as it is read; "
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
-      "second. `record`: the "
+      "second (None: as the model). `model`: what sent the bytes of a file, 'x4'; None: what a "
+      "recording states, and raw bytes show. `record`: the "
       "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }

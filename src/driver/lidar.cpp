@@ -74,6 +74,15 @@ std::optional<error> problem_with(const lidar_options& options) noexcept {
   return std::nullopt;
 }
 
+std::string model_words() {
+  std::string all;
+  for (const model& each : models) {
+    if (!all.empty()) all += ", ";
+    all += each.word;
+  }
+  return all;
+}
+
 std::string_view name_of(lidar_event::kind what) noexcept {
   constexpr std::array<std::string_view, 11> names{
       "lost",        "reconnected", "found_scanning", "protection_starved", "protection_found_on",

@@ -19,6 +19,7 @@
 
 #include "core/saturating.hpp"
 #include "format.hpp"
+#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
@@ -218,7 +219,39 @@ class counted_items final : public item_source {
   std::size_t end_ = 0;
 };
 
+owned_fd open_bytes(const std::string& name) noexcept {
+  return owned_fd(name == "-" ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
+                              : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+}
+
+/// Of the regular file from `at` on.
+const model& model_in(const owned_fd& fd, off_t at) {
+  constexpr std::size_t enough = std::size_t{64} << 10U;
+  constexpr off_t most = off_t{1} << 20U;
+  layout_recogniser seen;
+  std::vector<std::uint8_t> piece(enough);
+  for (off_t read = 0; read < most && (read == 0 || seen.sample_bytes() == 0);) {
+    const ssize_t count =
+        uninterrupted([&] { return ::pread(fd.get(), piece.data(), piece.size(), at + read); });
+    if (count <= 0) {
+      seen.finish();
+      break;
+    }
+    seen.take(bytes(piece).first(static_cast<std::size_t>(count)));
+    read += count;
+  }
+  return seen.most_likely();
+}
+
 }  // namespace
+
+const model& model_of_bytes(const std::string& path) {
+  struct stat file{};
+  const bool is_known = (path == "-" ? ::fstat(0, &file) : ::stat(path.c_str(), &file)) == 0;
+  if (!is_known || !S_ISREG(file.st_mode)) return g4_model;
+  const owned_fd fd = open_bytes(path);
+  return model_in(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0));
+}
 
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::optional<std::uint32_t> sample_rate_hz,
@@ -226,22 +259,20 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::function<bool()> is_cancelled,
                                                   const model* which) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
-  const bool is_standard = name == "-";
-  owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
-                          : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+  owned_fd fd = open_bytes(name);
   if (fd.get() < 0) return failure(task::opening, problem::system, name, errno);
   struct stat file{};
   const bool is_known = ::fstat(fd.get(), &file) == 0;
   if (is_known && S_ISDIR(file.st_mode)) {
     return failure(task::opening, problem::bad_file, name, EISDIR);
   }
-  std::string title = is_standard ? "standard input" : name;
+  std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
     return std::make_unique<pipe_connector>(
         std::make_unique<pipe_transport>(std::move(fd), std::move(title)), which);
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
-  const model& sent_by = which != nullptr ? *which : g4_model;
+  const model& sent_by = which != nullptr ? *which : model_in(fd, at);
   auto waits = std::make_shared<waker>(real_system_calls());
   auto items = std::make_unique<counted_items>(
       std::make_shared<const owned_fd>(std::move(fd)), at, title,

@@ -34,13 +34,20 @@ namespace g4lidar {
 /// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
 /// it is set: while it returns true, reading fails with cancelled.
 ///
-/// `which`: what sent the bytes; valid as long as the connector. Null: a G4.
+/// `which`: what sent the bytes; valid as long as the connector. Null: model_of_bytes() of a regular
+/// file, else a G4.
 ///
 /// Fails with bad_option and system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
     const std::string& path, std::optional<std::uint32_t> sample_rate_hz,
     const playback_options& options = {}, std::function<bool()> is_cancelled = {},
     const model* which = nullptr);
+
+/// What sent the bytes in the regular file at `path`, or in that from which standard input comes for
+/// "-": what layout_recogniser finds in the first 64 KiB, and in up to 1 MiB until the size of a
+/// sample is decided. The G4 if that shows nothing, and of everything that is not a regular file.
+/// Nothing is taken from standard input. Valid forever. Allocates.
+[[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// whoever wrote it, is a recording.

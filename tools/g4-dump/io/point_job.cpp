@@ -65,8 +65,13 @@ writing_options how_to_write(const point_job& job, const common_options& common,
 /// Each revolution goes to the output, or to a file of its own.
 class scan_file_writer final : public point_writer {
  public:
-  scan_file_writer(scan_file format, frame frame, pcd_data data, numbered_files files)
-      : format_(format), frame_(frame), data_(data), files_(std::move(files)) {}
+  scan_file_writer(scan_file format, frame frame, pcd_data data, bool has_intensity,
+                   numbered_files files)
+      : format_(format),
+        frame_(frame),
+        data_(data),
+        has_intensity_(has_intensity),
+        files_(std::move(files)) {}
 
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
 
@@ -80,12 +85,13 @@ class scan_file_writer final : public point_writer {
  private:
   void write(std::span<const point> points, text_sink& out) const {
     if (format_ == scan_file::svg) return write_svg(points, out);
-    write_pcd(points, frame_, data_, out);
+    write_pcd(points, frame_, data_, out, has_intensity_);
   }
 
   scan_file format_;
   frame frame_;
   pcd_data data_;
+  bool has_intensity_;
   numbered_files files_;
   std::uint64_t number_ = 0;
 };
@@ -97,6 +103,8 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
+    model_ = job_.text ? &g4lidar::g4_model : &model_of(common_);
+    common_.model = model_;
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
     writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));
@@ -118,11 +126,10 @@ class point_run {
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
   /// The columns of the model, and what is not known of it.
   void use_model() {
-    const g4lidar::model& which = *job_.source.model;
+    const g4lidar::model& which = *model_;
     job_.style.intensity = intensity_bits(which.samples.layout) > 0;
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     if (which.word == g4lidar::g4_model.word) return;
-    if (kind_ != source_kind::raw_bytes) throw bad_value("--model: for files of raw bytes only");
     const bool turns = common_.frame == frame::robot || !common_.mask.empty() ||
                        common_.deskew != deskewing::none || has_scan_files();
     if (turns && which.turn_deg != g4lidar::g4_model.turn_deg) {
@@ -164,12 +171,13 @@ class point_run {
 
   std::unique_ptr<point_writer> make_writer() {
     if (job_.point_file) {
-      auto writer = make_point_file_writer(*job_.point_file, common_.frame);
+      auto writer = make_point_file_writer(*job_.point_file, common_.frame, has_intensity(*model_));
       point_file_ = writer.get();
       return writer;
     }
     if (has_scan_files()) {
-      return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
+      return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data,
+                                                has_intensity(*model_), files_);
     }
     if (job_.log == slam_log::carmen)
       return make_carmen_writer(job_.bins, common_.mount.value_or(mounting{}));
@@ -220,7 +228,7 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    const g4lidar::model& which = *job_.source.model;
+    const g4lidar::model& which = *model_;
     byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(which)),
                     which);
     bool has_text = false;
@@ -337,6 +345,7 @@ class point_run {
   point_job job_;
   common_options common_;
   source_kind kind_;
+  const g4lidar::model* model_ = nullptr;
   numbered_files files_;
   std::vector<stamped_pose> path_;
   std::unique_ptr<shaping_writer> writer_;
