@@ -104,7 +104,7 @@ class point_run {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
     model_ = job_.text ? &g4lidar::g4_model : &model_of(common_);
-    common_.model = model_;
+    common_.expected.model = model_;
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
     writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));

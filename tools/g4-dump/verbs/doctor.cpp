@@ -147,9 +147,9 @@ int examine(const doctor_options& options) {
     throw bad_value("doctor examines a device or a file, not standard input");
   }
   diagnostic_options how;
-  how.baud = options.baud;
+  how.baud = options.expected.baud;
   const source_kind kind = kind_of_source(options.source);
-  how.model = kind == source_kind::raw_bytes ? &model_of(options) : options.model;
+  how.model = kind == source_kind::raw_bytes ? &model_of(options) : options.expected.model;
   if (how.model != nullptr && kind != source_kind::raw_bytes && kind != source_kind::recording) {
     throw bad_value("--model: for recordings and files of raw bytes");
   }

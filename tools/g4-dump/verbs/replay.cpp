@@ -42,7 +42,7 @@ void verify(const std::string& path, const g4lidar::model* which) {
   const std::string title = in_quotes(path);
   recording_job job;
   job.common.source = path;
-  job.common.model = which;
+  job.common.expected.model = which;
   job.path = "/dev/null";
   job.made.overwrite = true;
   job.made.scans = job.shows_counts = false;
@@ -97,7 +97,7 @@ int run(const replay_verb_options& options) {
         " is not a recording. Give a file made by g4-dump record; g4-dump dump reads raw bytes.");
   }
   if (!options.verify) return run(options.job);
-  verify(path_of_source(name), options.job.common->model);
+  verify(path_of_source(name), options.job.common->expected.model);
   return exit_code_now();
 }
 

@@ -222,14 +222,14 @@ option_row format_row(text_format& into, const char* help) {
 }
 
 option_rows baud_row(common_options& options) {
-  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)", options.baud, 1U,
+  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)", options.expected.baud, 1U,
                                         10'000'000U)});
 }
 
 option_row model_row(common_options& options) {
   return value_row(
       "--model", "MODEL", "What sent the bytes of a file: g4, x4, t-mini-pro (as they show)",
-      options.model, [](const std::string& word) {
+      options.expected.model, [](const std::string& word) {
         const g4lidar::model* const found = g4lidar::model_named(word);
         if (found != nullptr) return found;
         throw bad_value(fmt::format("'{}' is not one of {}", word, g4lidar::model_words()));

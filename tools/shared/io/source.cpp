@@ -115,10 +115,10 @@ std::string_view words_for(sample_layout layout) {
 
 const g4lidar::model& model_of(const common_options& options) {
   const source_kind kind = kind_of_source(options.source);
-  if (options.model != nullptr && kind != source_kind::recording) return *options.model;
+  if (options.expected.model != nullptr && kind != source_kind::recording) return *options.expected.model;
   const g4lidar::model& found = *value_of(model_of_source(options.source));
-  if (options.model != nullptr && options.model->word != found.word) {
-    throw bad_value(fmt::format("--model: {}, and {} is of a {}", options.model->word,
+  if (options.expected.model != nullptr && options.expected.model->word != found.word) {
+    throw bad_value(fmt::format("--model: {}, and {} is of a {}", options.expected.model->word,
                                 in_quotes(options.source), found.word));
   }
   if (kind == source_kind::raw_bytes && found.word != g4_model.word) {
@@ -130,9 +130,9 @@ const g4lidar::model& model_of(const common_options& options) {
 
 lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
-  how.model = options.model;
+  how.model = options.expected.model;
   if (kind_of_source(options.source) == source_kind::raw_bytes) how.model = &model_of(options);
-  how.baud = options.baud;
+  how.baud = options.expected.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
