@@ -126,8 +126,7 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {},
                          std::span<float> intensities = {}) noexcept {
-  fill_grid(
-      points, ranges_m, options, [](const point&, std::size_t) { return true; }, intensities);
+  fill_grid(points, ranges_m, options, [](const point&, std::size_t) { return true; }, intensities);
 }
 
 }  // namespace g4lidar

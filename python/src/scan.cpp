@@ -43,9 +43,8 @@ array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_
   const elements<point> from(points);
   if (from.span().size() > (std::size_t{1} << 24))
     throw nb::value_error("more than 16777216 points");
-  return make_array<float>(bins, [&](std::span<float> out) {
-    fill_grid(from.span(), out, how, intensities);
-  });
+  return make_array<float>(
+      bins, [&](std::span<float> out) { fill_grid(from.span(), out, how, intensities); });
 }
 
 namespace {

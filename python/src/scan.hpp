@@ -30,8 +30,7 @@ struct kept_scan {
 [[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to);
 /// One range for each bin, in metres. `intensities` is empty, or gets that of each bin.
 [[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
-                                     const grid_options& how,
-                                     std::span<float> intensities = {});
+                                     const grid_options& how, std::span<float> intensities = {});
 
 /// Raises ValueError if numbers are not finite, or times do not ascend.
 void require_path(std::span<const stamped_pose> path);

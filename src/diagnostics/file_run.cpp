@@ -149,7 +149,8 @@ class file_run {
     baud.add("responses", counts.responses);
     if (find_other_layout(baud, layout_, model_)) {
       log_.report(std::move(baud));
-      return log_.skip_from(diagnostic_stage::answers, "The packets are not those of a " + std::string(model_.name) + ".");
+      return log_.skip_from(diagnostic_stage::answers,
+                            "The packets are not those of a " + std::string(model_.name) + ".");
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
     if (found) baud.find(*found);

@@ -58,7 +58,8 @@ void find_other_speed(stage_report& rate, double samples_per_s, double samples_p
   if (is_known_rate && is_possible) return;
   rate.find(diagnosis::other_device);
   rate.outcome = std::min(rate.outcome, stage_verdict::warn);
-  rate.remark = "A " + std::string(wanted.name) + " measures " + list_of(rates) + " samples per second";
+  rate.remark =
+      "A " + std::string(wanted.name) + " measures " + list_of(rates) + " samples per second";
   if (most_hz > 0.0) {
     rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
                    std::to_string(std::lround(most_hz)) + " Hz";
@@ -232,15 +233,13 @@ void report_loss(stage_log& log, const stream_statistics& measured) {
   log.report(std::move(loss));
 }
 
-bool find_other_layout(stage_report& report, const layout_recogniser& seen,
-                       const model& wanted) {
+bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted) {
   const std::size_t size = seen.sample_bytes();
   const std::size_t wanted_size = sample_size(wanted.samples.layout);
   if (size == 0 || size == wanted_size) return false;
   report.add("bytes_per_sample", size);
   report.find(diagnosis::other_device);
-  report.remark =
-      "The packets have " + std::to_string(size) + " bytes per sample; those of a " +
+  report.remark = "The packets have " + std::to_string(size) + " bytes per sample; those of a " +
                   std::string(wanted.name) + " have " + std::to_string(wanted_size) + ".";
   return true;
 }

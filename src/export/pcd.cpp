@@ -47,14 +47,12 @@ void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink
                             "SIZE 4 4 4 4 4 8 4\nTYPE F F F F F I F\nCOUNT 1 1 1 1 1 1 1\n"
                           : "FIELDS x y z range_m angle_deg time_ns\n"
                             "SIZE 4 4 4 4 4 8\nTYPE F F F F F I\nCOUNT 1 1 1 1 1 1\n");
-  out.write(
-      "WIDTH " +
-      count +
-      "\n"
-      "HEIGHT 1\n"
-      "VIEWPOINT 0 0 0 1 0 0 0\n"
-      "POINTS " +
-      count + "\n");
+  out.write("WIDTH " + count +
+            "\n"
+            "HEIGHT 1\n"
+            "VIEWPOINT 0 0 0 1 0 0 0\n"
+            "POINTS " +
+            count + "\n");
   out.write(is_binary ? "DATA binary\n" : "DATA ascii\n");
   for (const point& p : points) {
     if (p.is_no_return()) continue;

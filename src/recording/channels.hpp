@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -81,5 +82,34 @@ class channel_set {
   std::string scan_topic_;
   std::string points_topic_;
 };
+
+/// The channels that a reader has found in a file, and the model that they state.
+class found_channels {
+ public:
+  /// Takes the content of the record of a channel.
+  void take(field_reader record);
+
+  [[nodiscard]] bool has(topic which) const noexcept { return ids_[index_of(which)].has_value(); }
+  [[nodiscard]] bool is(topic which, std::uint16_t id) const noexcept {
+    return ids_[index_of(which)] == id;
+  }
+  /// Whether there are any of the connection to a lidar.
+  [[nodiscard]] bool has_connection() const noexcept;
+  [[nodiscard]] const g4lidar::model& model() const noexcept {
+    return model_ != nullptr ? *model_ : g4_model;
+  }
+  /// The last one of a version or a model that is not known; empty: there was none.
+  [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
+
+ private:
+  [[nodiscard]] bool take_model(field_reader metadata, std::string& name);
+
+  std::array<std::optional<std::uint16_t>, topic_count> ids_;
+  const g4lidar::model* model_ = nullptr;  // null: none was stated yet
+  std::string refused_;
+};
+
+/// Of the messages of a chunk.
+[[nodiscard]] payload_digest payload_of(bytes records) noexcept;
 
 }  // namespace g4lidar::mcap

@@ -67,8 +67,7 @@ class mcap_file {
  public:
   /// Creates it, and writes the records before the chunks.
   [[nodiscard]] static result<mcap_file> create(const std::string& path,
-                                                const channel_set& channels,
-                                                bool overwrite);
+                                                const channel_set& channels, bool overwrite);
   mcap_file(mcap_file&&) noexcept = default;
 
   /// `packed`: the records compressed with zstd, or empty.

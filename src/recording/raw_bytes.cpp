@@ -274,11 +274,11 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
   const model& sent_by = which != nullptr ? *which : model_in(fd, at);
   auto waits = std::make_shared<waker>(real_system_calls());
-  auto items = std::make_unique<counted_items>(
-      std::make_shared<const owned_fd>(std::move(fd)), at, title,
-      sample_rate_hz.value_or(first_rate_hz(sent_by)),
-      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
-      std::move(is_cancelled), sent_by);
+  auto items =
+      std::make_unique<counted_items>(std::make_shared<const owned_fd>(std::move(fd)), at, title,
+                                      sample_rate_hz.value_or(first_rate_hz(sent_by)),
+                                      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
+                                      options.to_ns, std::move(is_cancelled), sent_by);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
                                                   recorded_device{}, std::move(waits)));

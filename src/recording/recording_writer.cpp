@@ -35,7 +35,8 @@ bool is_topic(std::string_view name) noexcept {
 
 /// Names with another meaning for a reader.
 bool is_our_own(std::string_view name) noexcept {
-  const std::string_view in_group = name.substr(std::min(name.size(), mcap::connection_prefix.size()));
+  const std::string_view in_group =
+      name.substr(std::min(name.size(), mcap::connection_prefix.size()));
   if (name.starts_with(mcap::connection_prefix) && in_group.starts_with(mcap::model_version)) {
     return true;
   }

@@ -19,21 +19,23 @@ namespace g4lidar {
 class scan_ranges {
  public:
   explicit scan_ranges(const recording_options& options)
-      : ranges_(options.scan_bins), intensities_(options.scan_bins), shaper_({.marks = {.near = options.near}}) {}
+      : ranges_(options.scan_bins),
+        intensities_(options.scan_bins),
+        shaper_({.marks = {.near = options.near}}) {}
 
   /// Fills them, and returns message_header::first_bin.
   std::size_t fill(const scan& revolution, const recording_options& options) noexcept {
     std::span<const point> points = revolution.points;
     has_intensity_ = has_intensity(*revolution.model);
-    const std::span<float> intensities = std::span(intensities_).first(has_intensity_ ? ranges_.size() : 0);
+    const std::span<float> intensities =
+        std::span(intensities_).first(has_intensity_ ? ranges_.size() : 0);
     try {
       shaper_.shape(revolution);
       points = shaper_.for_grid();
     } catch (const std::bad_alloc&) {  // without the flags
     }
     if (options.order == scan_order::time) {
-      return fill_time_grid(points, revolution.duration_ns, ranges_, options.grid,
-                            intensities);
+      return fill_time_grid(points, revolution.duration_ns, ranges_, options.grid, intensities);
     }
     grid_options how = options.grid;
     how.to = frame::robot;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "support/family_reference.hpp"
 #include "program.hpp"
+#include "support/family_reference.hpp"
 
 namespace {
 

@@ -151,8 +151,9 @@ TEST(Bytes, OfAnotherModelAreFoundByTheirLayout) {
           "The packets have " + std::to_string(size) + " bytes per sample; those of a G4 have 2.");
       const examined recognised = in_file(all);
       EXPECT_EQ(recognised.diagnoses(), "") << size << recognised;
-      EXPECT_EQ(std::get<std::string>(recognised.at(diagnostic_stage::port).measurements.at(1).value),
-                size == 3 ? "t-mini-pro" : "t-mini-plus-sh");
+      EXPECT_EQ(
+          std::get<std::string>(recognised.at(diagnostic_stage::port).measurements.at(1).value),
+          size == 3 ? "t-mini-pro" : "t-mini-plus-sh");
       const examined other = in_file(all, model_named(size == 3 ? "t-mini-plus-sh" : "scl"));
       EXPECT_EQ(other.diagnoses(), "other_device") << size << other;
     }

@@ -49,8 +49,7 @@ void merger::add(std::size_t index, scan_shaper& scan, const grid_options& grid,
       [&here](const part& earlier) { return here.end_ns - earlier.end_ns < fresh_scan_ns; });
   if (!is_leader) return;
   const motion moved = motion_of_robot(here, scan, when);
-  const scan_times merged_at{here.end_ns, when.duration_ns, when.ahead_ns,
-                             when.has_intensity};
+  const scan_times merged_at{here.end_ns, when.duration_ns, when.ahead_ns, when.has_intensity};
   const merged all = merged_points(&part::for_grid, here.end_ns, moved, for_grid_);
   ++scans_;
   for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].lost += std::uint64_t{all.is_lost(i)};

@@ -65,33 +65,27 @@ writing_options how_to_write(const point_job& job, const common_options& common,
 /// Each revolution goes to the output, or to a file of its own.
 class scan_file_writer final : public point_writer {
  public:
-  scan_file_writer(scan_file format, frame frame, pcd_data data, bool has_intensity,
-                   numbered_files files)
-      : format_(format),
-        frame_(frame),
-        data_(data),
-        has_intensity_(has_intensity),
-        files_(std::move(files)) {}
+  scan_file_writer(scan_file format, frame frame, pcd_data data, numbered_files files)
+      : format_(format), frame_(frame), data_(data), files_(std::move(files)) {}
 
   [[nodiscard]] bool takes_scans() const noexcept override { return true; }
 
   void write_scan(const scan_record& record, text_sink& out) override {
-    if (!files_) return write(record.scan.points, out);
+    if (!files_) return write(record.scan, out);
     output file(files_(number_++));
-    write(record.scan.points, file);
+    write(record.scan, file);
     file.commit();
   }
 
  private:
-  void write(std::span<const point> points, text_sink& out) const {
-    if (format_ == scan_file::svg) return write_svg(points, out);
-    write_pcd(points, frame_, data_, out, has_intensity_);
+  void write(const g4lidar::scan& of, text_sink& out) const {
+    if (format_ == scan_file::svg) return write_svg(of.points, out);
+    write_pcd(of.points, frame_, data_, out, has_intensity(*of.model));
   }
 
   scan_file format_;
   frame frame_;
   pcd_data data_;
-  bool has_intensity_;
   numbered_files files_;
   std::uint64_t number_ = 0;
 };
@@ -176,8 +170,7 @@ class point_run {
       return writer;
     }
     if (has_scan_files()) {
-      return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data,
-                                                has_intensity(*model_), files_);
+      return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
     }
     if (job_.log == slam_log::carmen)
       return make_carmen_writer(job_.bins, common_.mount.value_or(mounting{}));

@@ -222,8 +222,8 @@ option_row format_row(text_format& into, const char* help) {
 }
 
 option_rows baud_row(common_options& options) {
-  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)", options.expected.baud, 1U,
-                                        10'000'000U)});
+  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)",
+                                        options.expected.baud, 1U, 10'000'000U)});
 }
 
 option_row model_row(common_options& options) {

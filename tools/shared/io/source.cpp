@@ -115,7 +115,8 @@ std::string_view words_for(sample_layout layout) {
 
 const g4lidar::model& model_of(const common_options& options) {
   const source_kind kind = kind_of_source(options.source);
-  if (options.expected.model != nullptr && kind != source_kind::recording) return *options.expected.model;
+  if (options.expected.model != nullptr && kind != source_kind::recording)
+    return *options.expected.model;
   const g4lidar::model& found = *value_of(model_of_source(options.source));
   if (options.expected.model != nullptr && options.expected.model->word != found.word) {
     throw bad_value(fmt::format("--model: {}, and {} is of a {}", options.expected.model->word,
