@@ -97,8 +97,7 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
-    model_ = job_.text ? &g4lidar::g4_model : &model_of(common_);
-    common_.expected.model = model_;
+    common_.expected.model = job_.text ? &g4lidar::g4_model : &model_of(common_);
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
     writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));
@@ -120,10 +119,9 @@ class point_run {
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
   /// The columns of the model, and what is not known of it.
   void use_model() {
-    const g4lidar::model& which = *model_;
+    const g4lidar::model& which = *common_.expected.model;
     job_.style.intensity = intensity_bits(which.samples.layout) > 0;
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
-    if (which.word == g4lidar::g4_model.word) return;
     const bool turns = common_.frame == frame::robot || !common_.mask.empty() ||
                        common_.deskew != deskewing::none || has_scan_files();
     if (turns && which.turn_deg != g4lidar::g4_model.turn_deg) {
@@ -165,7 +163,8 @@ class point_run {
 
   std::unique_ptr<point_writer> make_writer() {
     if (job_.point_file) {
-      auto writer = make_point_file_writer(*job_.point_file, common_.frame, has_intensity(*model_));
+      auto writer = make_point_file_writer(*job_.point_file, common_.frame,
+                                           has_intensity(*common_.expected.model));
       point_file_ = writer.get();
       return writer;
     }
@@ -221,7 +220,7 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    const g4lidar::model& which = *model_;
+    const g4lidar::model& which = *common_.expected.model;
     byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(which)),
                     which);
     bool has_text = false;
@@ -338,7 +337,6 @@ class point_run {
   point_job job_;
   common_options common_;
   source_kind kind_;
-  const g4lidar::model* model_ = nullptr;
   numbered_files files_;
   std::vector<stamped_pose> path_;
   std::unique_ptr<shaping_writer> writer_;
