@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cassert>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -64,7 +65,7 @@ struct grid_place {
 
 /// Like fill_grid() below, of the points for which `takes(point, bin)` is true. `intensities` is empty,
 /// or as long as `ranges_m`, and gets those of the points that determine the ranges, 0 where none does.
-template <class Takes>
+template <std::predicate<const point&, std::size_t> Takes>
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options, Takes takes,
                          std::span<float> intensities = {}) noexcept {

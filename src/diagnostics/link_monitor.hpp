@@ -46,7 +46,8 @@ struct observer {
 /// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*
 class event_splitter {
  public:
-  explicit event_splitter(sample_format format = g4_format) noexcept : parser_(format) {}
+  event_splitter() = default;
+  explicit event_splitter(sample_format format) noexcept : parser_(format) {}
 
   [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
   void take(bytes input, std::int64_t arrival_ns, const observer& to);

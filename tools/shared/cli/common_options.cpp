@@ -10,6 +10,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "g4lidar/lidar_options.hpp"
+
 namespace g4_tool {
 
 global_options& our_global_options() noexcept {

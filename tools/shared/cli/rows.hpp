@@ -135,8 +135,8 @@ template <class Target, class Value>
 
 /// --sample-rate: samples a second of raw bytes.
 [[nodiscard]] inline option_row sample_rate_row(std::optional<std::uint32_t>& into) {
-  return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (as the model)", into, 1U,
-                    1'000'000U);
+  return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (as the model)", into,
+                    1U, 1'000'000U);
 }
 
 /// The kinds of fault of a simulated lidar.
