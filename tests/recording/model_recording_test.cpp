@@ -229,8 +229,9 @@ TEST_F(ModelRecording, ACutOffFileStatesTheModel) {
   for (int i = 0; i < 30; ++i) writer.from_device(stream_.data, begin_ns + i * 100 * ms);
   ASSERT_TRUE(writer.close());
   std::filesystem::resize_file(file, std::filesystem::file_size(file) * 2 / 3);
-  const auto reader = recording_reader::open(file);
+  auto reader = recording_reader::open(file);
   ASSERT_TRUE(reader) << reader.error().message();
+  EXPECT_TRUE(reader->for_each([](const recorded_item&) { return true; }));
   EXPECT_TRUE(reader->damage().is_cut_off);
   EXPECT_EQ(reader->model().word, "t-mini-pro");
 }
