@@ -13,11 +13,17 @@ SLACK = 0.5
 
 # name in the table, benchmark, reference, the least promised ratio and its column
 RATIOS = [
-    ("points, `bulk_decoder`", "points_in_bulk", "copy_points", 0.5, ["20480", "2048000"]),
+    ("points, `bulk_decoder`", "points_in_bulk/g4", "copy_points", 0.5, ["20480", "2048000"]),
     ("x and y, `bulk_decoder`", "places_in_bulk", "copy_places", 0.25, ["20480", "2048000"]),
     ("points, core with the table", "points_table", "points_libm", 5.0, ["20480"]),
     ("points, core with the compact form", "points_compact", "points_libm", None, []),
 ]
+# The layouts of samples: a model of each, compared with the points of a G4, in the cache.
+LAYOUTS = {"x4": "2 bytes, mm and flags", "g6": "2 bytes, half mm", "tg30": "2 bytes, mm, no correction",
+           "g2": "3 bytes, 10 bits of intensity", "s4b": "3 bytes, 8 bits and flags",
+           "scl": "3 bytes, correction of an SCL", "t_mini": "3 bytes, no correction",
+           "t_mini_plus_sh": "4 bytes, no correction"}
+LAYOUT_RATIO = 0.5
 LIMITS = [  # bytes per second
     ("framing and checksum", "parse_whole", "20480", 5e9),
     ("the same, a byte at a time", "parse_by_byte", "20480", 100e6),
@@ -63,6 +69,13 @@ def main():
                 held(f"{name}, {SIZES[size]}", ratio, least)
         promised = "" if least is None else f"{least:g} " + " and ".join(SIZES[s] for s in where)
         print(f"| {name} | {against_words[other]} | " + " | ".join(cells) + f" | {promised} |")
+    print()
+    print("| points of a layout, `bulk_decoder` | points per second, relative to a G4 | promised |")
+    print("|---|---|---|")
+    for model, layout in LAYOUTS.items():
+        ratio = found[f"points_in_bulk/{model}/20480"] / found["points_in_bulk/g4/20480"]
+        print(f"| {layout} | {ratio:.2f} | {LAYOUT_RATIO} |")
+        held(layout, ratio, LAYOUT_RATIO)
     print()
     for name, mine, size, least in LIMITS:
         value = found[f"{mine}/{size}"]

@@ -20,6 +20,7 @@
 #include "g4lidar/deskew.hpp"
 #include "g4lidar/sim/scanner.hpp"
 #include "g4lidar/sim/world.hpp"
+#include "recode.hpp"
 
 namespace {
 
@@ -118,11 +119,12 @@ void points_by_core(benchmark::State& state) {
   count_bytes(state, input.points * sizeof(point));
 }
 
-void points_in_bulk(benchmark::State& state) {
-  const recording input = make_recording(static_cast<std::size_t>(state.range(0)));
+void points_in_bulk(benchmark::State& state, const model& which) {
+  recording input = make_recording(static_cast<std::size_t>(state.range(0)));
+  input.data = bench::recoded(input.data, which);
   std::vector<point> out(input.points + max_samples);
   for (auto _ : state) {
-    bulk_decoder decoder;
+    bulk_decoder decoder(which);
     bytes rest = input.data;
     benchmark::DoNotOptimize(decoder.decode(rest, out).size());
     benchmark::ClobberMemory();
@@ -196,7 +198,16 @@ BENCHMARK(points_by_core<libm_correction>)->Name("points_libm")->Apply(sizes);
 BENCHMARK(points_by_core<exact_correction>)->Name("points_exact")->Apply(sizes);
 BENCHMARK(points_by_core<table_correction>)->Name("points_table")->Apply(sizes);
 BENCHMARK(points_by_core<compact_correction>)->Name("points_compact")->Apply(sizes);
-BENCHMARK(points_in_bulk)->Apply(sizes);
+BENCHMARK_CAPTURE(points_in_bulk, g4, g4_model)->Apply(sizes);
+BENCHMARK_CAPTURE(points_in_bulk, x4, *model_named("x4"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, g6, *model_named("g6"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, tg30, *model_named("tg30"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, g2, *model_named("g2"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, s4b, *model_named("s4b"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, scl, *model_named("scl"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, t_mini, *model_named("t-mini"))->Arg(cache_points);
+BENCHMARK_CAPTURE(points_in_bulk, t_mini_plus_sh, *model_named("t-mini-plus-sh"))
+    ->Arg(cache_points);
 BENCHMARK(places_in_bulk)->Apply(sizes);
 BENCHMARK(deskew_twist)->Apply(sizes);
 BENCHMARK(deskew_path)->Apply(sizes);

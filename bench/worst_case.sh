@@ -17,16 +17,17 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "${CXX:-g++}" -std=c++20 -O2 -DNDEBUG -Iinclude bench/worst_case/worst_case.cpp -o "$work/worst_case"
 
-# instructions NAME PIECE BYTES: the number of executed instructions.
+# instructions NAME PIECE BYTES [MODEL]: the number of executed instructions.
 instructions() {
   valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work/worst_case" run "$@" 2>&1 |
     sed -n 's/.*Collected : //p'
 }
 
-# cost NAME PIECE: tenths of an instruction per byte.
+# cost NAME[/MODEL] PIECE: tenths of an instruction per byte.
 cost() {
-  local short=20000 long=60000
-  echo $(((($(instructions "$1" "$2" "$long")) - $(instructions "$1" "$2" "$short")) * 10 / (long - short)))
+  local short=20000 long=60000 name=${1%%/*} model=g4
+  if [[ $1 == */* ]]; then model=${1#*/}; fi
+  echo $(((($(instructions "$name" "$2" "$long" "$model")) - $(instructions "$name" "$2" "$short" "$model")) * 10 / (long - short)))
 }
 
 failed=0
@@ -43,6 +44,10 @@ check() {
 }
 
 mapfile -t names < <("$work/worst_case" list | cut -f1)
+# Samples of 3 and of 4 bytes.
+for name in overlapping_40 noise aa_55 info_in_info; do
+  names+=("$name/t-mini" "$name/t-mini-plus-sh")
+done
 if [[ ${1-} == search ]]; then
   for piece in 1 2 3 7 1000000; do
     mapfile -t found < <("$work/worst_case" search "${2-60}" "$piece" "$piece" | cut -d' ' -f2)
@@ -51,9 +56,9 @@ if [[ ${1-} == search ]]; then
 fi
 
 echo "Instructions per byte, by the size of the pieces (bound: $bound_cut; all in one: $bound_in_bulk)"
-printf '%-26s%10s%10s%10s%10s\n' input 1 2 7 all
+printf '%-30s%10s%10s%10s%10s\n' input 1 2 7 all
 for name in "${names[@]}"; do
-  printf '%-26.26s' "$name"
+  printf '%-30.30s' "$name"
   for piece in 1 2 7; do check "$name" "$piece" $bound_cut; done
   check "$name" 1000000 $bound_in_bulk
   echo

@@ -78,11 +78,12 @@ int main(int count, char** words) {
   auto lidar = g4lidar::lidar::open(options);
   if (!lidar) return report(lidar.error());
   if (auto started = lidar->start(); !started) return report(started.error());
+  g4lidar::lidar_event_loop loop = lidar->event_loop();
   int code = 0;
   while (true) {
-    std::array<pollfd, 2> waiting{{{signals, POLLIN, 0}, {lidar->native_handle(), POLLIN, 0}}};
+    std::array<pollfd, 2> waiting{{{signals, POLLIN, 0}, {loop.native_handle(), POLLIN, 0}}};
     const int ready =
-        poll(waiting.data(), waiting.size(), milliseconds_until(lidar->next_deadline()));
+        poll(waiting.data(), waiting.size(), milliseconds_until(loop.next_deadline()));
     if (ready < 0 && errno != EINTR) {
       code = report("poll");
       break;

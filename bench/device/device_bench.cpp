@@ -8,8 +8,8 @@
 // without the driver.
 //   device_bench flood MEGABYTES  bytes per second from a pty, relative to a reader that only counts
 //                                 and the driver on bytes in memory, one after the other
-//   device_bench memory SCANS [BURST [judged]]  scans from memory, in bursts of so many bytes, for counting
-//                                 instructions; `judged`: with a running_diagnosis
+//   device_bench memory SCANS [BURST [judged|MODEL]]  scans from memory, in bursts of so many bytes, for counting
+//                                 instructions; `judged`: with a running_diagnosis; MODEL: in its layout of samples
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/resource.h>
@@ -32,6 +32,7 @@
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "memory_connector.hpp"
+#include "recode.hpp"
 #include "support/allocation_count.hpp"
 
 namespace {
@@ -251,13 +252,17 @@ struct memory_run {
   double bytes_per_s = 0.0;
 };
 
-memory_run read_memory(int scans, int burst, bool is_judged = false) {
-  const bench::recording revolutions = bench::record(20);
+memory_run read_memory(int scans, int burst, bool is_judged = false,
+                       const model& which = g4_model) {
+  bench::recording revolutions = bench::record(20);
+  revolutions.data = bench::recoded(revolutions.data, which);
   running_diagnosis judge;
   std::unique_ptr<connector> from = std::make_unique<bench::memory_connector>(
       revolutions, static_cast<std::size_t>(scans), static_cast<std::size_t>(burst));
   if (is_judged) from = judge.observe(std::move(from));
-  auto opened = lidar::open(std::move(from));
+  lidar_options options;
+  options.model = &which;
+  auto opened = lidar::open(std::move(from), options);
   if (!opened) fail(opened.error());
   if (auto started = opened->start(); !started) fail(started.error());
   memory_run all;
@@ -273,8 +278,14 @@ memory_run read_memory(int scans, int burst, bool is_judged = false) {
   return all;
 }
 
-int memory(int scans, int burst, bool is_judged) {
-  const memory_run all = read_memory(scans, burst, is_judged);
+int memory(int scans, int burst, std::string_view how) {
+  const bool is_judged = how == "judged";
+  const model* const which = is_judged ? &g4_model : model_named(how);
+  if (which == nullptr) {
+    std::fprintf(stderr, "no model has this name: %s\n", how.data());
+    return 2;
+  }
+  const memory_run all = read_memory(scans, burst, is_judged, *which);
   std::printf("samples %zu\nscans %zu\n", all.samples, all.whole);
   return 0;
 }
@@ -314,7 +325,9 @@ int main(int argc, char** argv) {
   if (mode == "delay") return delay(amount, pace);
   if (mode == "stream") return stream(amount, pace);
   if (mode == "flood") return flood(amount);
-  if (mode == "memory") return memory(amount, argc > 3 ? std::atoi(argv[3]) : 256, argc > 4);
+  if (mode == "memory") {
+    return memory(amount, argc > 3 ? std::atoi(argv[3]) : 256, argc > 4 ? argv[4] : "g4");
+  }
   std::fprintf(stderr, "device_bench delay|stream|flood|memory AMOUNT: see the source\n");
   return 2;
 }

@@ -3,7 +3,7 @@
 // searches for more expensive input.
 //
 //   worst_case list                         the names of the inputs
-//   worst_case run NAME PIECE BYTES         parses BYTES bytes of that input in pieces of PIECE
+//   worst_case run NAME PIECE BYTES [MODEL] parses BYTES bytes of that input in pieces of PIECE
 //   worst_case hex NAME                     one period of it
 //   worst_case search SECONDS SEED PIECE    searches; prints the most expensive ones in hex and ns/byte
 //   worst_case run HEX PIECE BYTES          like above, with the period HEX
@@ -22,6 +22,7 @@
 #include <variant>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 
 namespace {
@@ -84,6 +85,10 @@ std::vector<input> inputs() {
       {"overlapping_79",
        "the same with 79 samples: the checksum's loop ends unevenly",
        {0xAA, 0x55, 0x00, 0x4F, 0x01}},
+      {"overlapping_40",
+       "the same with 40 samples, the most of other models: of 3 bytes, the checksum runs over 130 "
+       "bytes",
+       {0xAA, 0x55, 0x00, 0x28, 0x01}},
       {"headers_8",
        "a header of 79 samples every 8 bytes",
        {0xAA, 0x55, 0x00, 0x4F, 0x01, 0x10, 0x01, 0x12}},
@@ -115,8 +120,9 @@ std::vector<input> inputs() {
 
 std::size_t checksum_of_events = 0;  // so that the work is not optimised away
 
-void parse(const buffer& data, std::size_t piece) {
-  g4lidar::stream_parser parser;
+void parse(const buffer& data, std::size_t piece,
+           g4lidar::sample_format format = g4lidar::g4_format) {
+  g4lidar::stream_parser parser(format);
   std::size_t sum = 0;
   for (std::size_t from = 0; from < data.size(); from += piece) {
     parser.feed(g4lidar::bytes(data).subspan(from, std::min(piece, data.size() - from)),
@@ -280,8 +286,14 @@ int main(int count, char** arguments) {
     for (const input& known : inputs()) std::printf("%s\t%s\n", known.name, known.what);
   } else if (words.size() == 2 && words[0] == "hex") {
     std::printf("%s\n", to_hex(period_of(words[1])).c_str());
-  } else if (words.size() == 4 && words[0] == "run") {
-    parse(stretched(period_of(words[1]), std::stoul(words[3])), std::stoul(words[2]));
+  } else if ((words.size() == 4 || words.size() == 5) && words[0] == "run") {
+    const g4lidar::model* const which = g4lidar::model_named(words.size() == 5 ? words[4] : "g4");
+    if (which == nullptr) {
+      std::fprintf(stderr, "no model has this name: %s\n", words[4].c_str());
+      return 2;
+    }
+    parse(stretched(period_of(words[1]), std::stoul(words[3])), std::stoul(words[2]),
+          which->samples);
     std::printf("%zu\n", checksum_of_events);
   } else if (words.size() == 4 && words[0] == "search") {
     search(std::stod(words[1]), static_cast<unsigned>(std::stoul(words[2])), std::stoul(words[3]));

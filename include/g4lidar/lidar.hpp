@@ -28,9 +28,10 @@
 namespace g4lidar {
 
 class scan_range;
+class lidar_event_loop;
 
-/// The points of at least the last two seconds.
-using lidar_ring = point_ring<16384>;
+/// The points of at least the last 1.8 seconds.
+using lidar_ring = point_ring<std::dynamic_extent>;
 
 /// One G4. *Single thread* except wake() and the readers of points(). *Allocates on open* and when
 /// it reconnects. It starts no thread: it makes progress only within its calls. A moved-from lidar
@@ -105,9 +106,6 @@ class G4LIDAR_API lidar {
   [[nodiscard]] view_result<scan> wait_scan(milliseconds timeout);
   /// The same as a range: `for (const auto& scan : lidar.scans(500ms))`; see scan_range.
   [[nodiscard]] scan_range scans(milliseconds timeout) & noexcept;
-  /// For event loops that wait like wait_scan(): for how long from now no scan is due. 0: one is
-  /// due, and a wait ends at its timeout; milliseconds::max() while a lost lidar is looked for.
-  [[nodiscard]] milliseconds scan_due_in() const noexcept;
   /// All points since the last call, at least one; valid until the next call. The first call begins
   /// with the current revolution; earlier points count as missed. Errors: as next_scan().
   [[nodiscard]] view_result<std::span<const point>> next_points(milliseconds timeout);
@@ -117,16 +115,8 @@ class G4LIDAR_API lidar {
   /// a move.
   [[nodiscard]] const lidar_ring& points() const noexcept;
 
-  /// For an event loop: poll native_handle() for reading until next_deadline(), then call
-  /// process(), which never waits, or next_scan(0ms) until it times out. The handle does not change
-  /// at a reconnect; it is -1 if the transport has none.
-  [[nodiscard]] int native_handle() const noexcept;
-  /// The latest time for the next call; time_point::max() if only bytes are awaited.
-  [[nodiscard]] std::chrono::steady_clock::time_point next_deadline() const noexcept;
-  /// The same in nanoseconds of std::chrono::steady_clock; never_ns of transport.hpp for never.
-  [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
-  /// Processes what has arrived. Scans that next_scan() does not take are counted as missed.
-  [[nodiscard]] result<void> process();
+  /// What an event loop of the program needs. Valid as long as this lidar, until it is moved.
+  [[nodiscard]] lidar_event_loop event_loop() & noexcept;
 
   /// Makes a waiting call, or the next one, return early with cancelled, once. The next calls
   /// continue what the woken call had begun, and the same call continues it to its end: start(),
@@ -180,9 +170,34 @@ class G4LIDAR_API lidar {
   [[nodiscard]] std::optional<lidar_event> next_event() noexcept;
 
  private:
+  friend class lidar_event_loop;
   class driver;
   explicit lidar(std::unique_ptr<driver> made) noexcept;
   std::unique_ptr<driver> driver_;
+};
+
+/// A lidar in an event loop of the program, which waits for other things, too: poll native_handle()
+/// for reading until next_deadline(), then call process(), which never waits, or next_scan(0ms) until
+/// it times out. *Single thread*: that of the lidar.
+class G4LIDAR_API lidar_event_loop {
+ public:
+  /// It does not change at a reconnect; it is -1 if the transport has none.
+  [[nodiscard]] int native_handle() const noexcept;
+  /// The latest time for the next call; time_point::max() if only bytes are awaited.
+  [[nodiscard]] std::chrono::steady_clock::time_point next_deadline() const noexcept;
+  /// The same in nanoseconds of std::chrono::steady_clock; never_ns of transport.hpp for never.
+  [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
+  /// Processes what has arrived. Scans that next_scan() does not take are counted as missed.
+  [[nodiscard]] result<void> process();
+  /// For a loop that waits like wait_scan(): for how long from now no scan is due. 0: one is due, and
+  /// a wait ends at its timeout; milliseconds::max() while a lost lidar is looked for.
+  [[nodiscard]] lidar::milliseconds scan_due_in() const noexcept;
+
+ private:
+  friend class lidar;
+  explicit lidar_event_loop(lidar& of) noexcept : of_(&of) {}
+
+  lidar* of_;
 };
 
 /// The scans of a lidar as an input range. It ends at the first error of lidar::wait_scan(), whose

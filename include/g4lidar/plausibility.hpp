@@ -100,8 +100,8 @@ namespace detail {
 /// the samples two before and two after it.
 [[nodiscard]] constexpr bool has_one_wrong_bit(std::int32_t far, std::int32_t before,
                                                std::int32_t raw, std::int32_t after,
-                                               std::int32_t far_on,
-                                               const bit_error_limits& limits) noexcept {
+                                               std::int32_t far_on, const bit_error_limits& limits,
+                                               int units_per_mm) noexcept {
   const auto magnitude = [](std::int32_t x) { return x < 0 ? -x : x; };
   if (raw == 0) return false;
   // Where nothing comes back, a return of one bit.
@@ -109,7 +109,7 @@ namespace detail {
   if (before == 0 || after == 0 || far == 0 || far_on == 0) return false;
   const std::int32_t middle = (before + after) / 2;
   const auto ratio = static_cast<std::int32_t>(limits.smooth_ratio * static_cast<float>(middle));
-  const auto least = static_cast<std::int32_t>(4.0F * limits.smooth_mm);
+  const auto least = static_cast<std::int32_t>(static_cast<float>(units_per_mm) * limits.smooth_mm);
   const std::int32_t smooth = ratio > least ? ratio : least;
   if (magnitude(before - after) > 2 * smooth || magnitude(far - before) > smooth ||
       magnitude(far_on - after) > smooth) {
@@ -129,17 +129,18 @@ namespace detail {
 /// neighbours on each side as point_flags::unlikely; no flag is cleared. Returns how many were
 /// flagged. The first two and last two points are not judged. *Pure, never allocates*, linear. The
 /// points are those of decode(), in the order of measurement. A thin object whose distance to the
-/// surface behind it is by chance a power of two of quarter millimetres is flagged, too: so such
-/// points are marked, and never left out by themselves.
-constexpr std::size_t mark_bit_errors(std::span<point> points,
-                                      const bit_error_limits& limits = {}) noexcept {
-  const auto raw = [&points](std::size_t i) {
-    return static_cast<std::int32_t>(points[i].range_mm * 4.0F);
+/// surface behind it is by chance a power of two of the unit of the samples is flagged, too: so such
+/// points are marked, and never left out by themselves. `layout` is that of the samples.
+constexpr std::size_t mark_bit_errors(std::span<point> points, const bit_error_limits& limits = {},
+                                      sample_layout layout = g4_layout) noexcept {
+  const int units = range_units_per_mm(layout);
+  const auto raw = [&points, units](std::size_t i) {
+    return static_cast<std::int32_t>(points[i].range_mm * static_cast<float>(units));
   };
   std::size_t marked = 0;
   for (std::size_t i = 2; i + 2 < points.size(); ++i) {
-    if (!detail::has_one_wrong_bit(raw(i - 2), raw(i - 1), raw(i), raw(i + 1), raw(i + 2),
-                                   limits)) {
+    if (!detail::has_one_wrong_bit(raw(i - 2), raw(i - 1), raw(i), raw(i + 1), raw(i + 2), limits,
+                                   units)) {
       continue;
     }
     points[i].flags = points[i].flags | point_flags::unlikely;

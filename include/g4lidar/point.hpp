@@ -107,11 +107,21 @@ static_assert(sizeof(point) == 24);
 static_assert(std::is_trivially_copyable_v<point>);
 
 /// The first-level angle of a point, clockwise degrees in [0, 360): the angle of the head, without
-/// the correction by the range. *Pure.* Within 1e-4 degrees for ranges as decode() gives them;
-/// g4lidar::first_level_angles has the exact angles of a packet. (protocol: Point packets)
-[[nodiscard]] constexpr float raw_angle_deg(const point& p) noexcept {
+/// the correction by the range, which is of this kind. *Pure.* Within 1e-4 degrees for ranges as
+/// decode() gives them; g4lidar::first_level_angles has the exact angles of a packet. (protocol:
+/// Point packets)
+[[nodiscard]] constexpr float raw_angle_deg(const point& p,
+                                            correction_kind kind = g4_format.correction) noexcept {
   const auto raw = static_cast<std::int32_t>(p.range_mm * 4.0F);
-  return wrap_once_deg(p.angle_deg - compact_correction{}(raw));
+  switch (kind) {
+    case correction_kind::triangle:
+      return wrap_once_deg(p.angle_deg - compact_correction{}(raw));
+    case correction_kind::scl:
+      return wrap_once_deg(p.angle_deg - scl_correction{}(raw));
+    case correction_kind::none:
+      break;
+  }
+  return p.angle_deg;
 }
 
 /// The frames of reference. (protocol: Frames of reference)

@@ -38,9 +38,11 @@ class near_history {
   /// Adds the next point in the order of measurement, which deskew() has not changed. Returns whether
   /// it has no return although a near return came from its direction, within `limits`, and none that
   /// is farther since then.
-  constexpr bool add(const point& p, const near_limits& limits) noexcept {
+  constexpr bool add(const point& p, const near_limits& limits,
+                     correction_kind correction = g4_format.correction) noexcept {
     // The angle of the head, as a near and a far target on the same beam have different directions.
-    std::uint32_t& last = near_[static_cast<std::size_t>(raw_angle_deg(p)) % directions];
+    const auto direction = static_cast<std::size_t>(raw_angle_deg(p, correction));
+    std::uint32_t& last = near_[direction % directions];
     if (!p.is_no_return()) {
       last = p.range_mm < 2.0F * limits.shortest_mm ? p.revolution + 1 : 0;
       return false;
@@ -58,7 +60,7 @@ class near_history {
 /// Flags as point_flags::may_be_too_near the points without return in directions where, in the last
 /// `limits.revolutions` revolutions, a return came from less than twice the shortest range, and none
 /// that is farther since then. Clears that flag on all other points, and returns the number of flagged
-/// ones. `points`: all points of the lidar in the order of measurement, in pieces of any size, before
+/// ones. `correction` is that of the lidar. `points`: all points of the lidar in the order of measurement, in pieces of any size, before
 /// they are filtered or deskewed; other marks do not change the result. *Never allocates.*
 ///
 /// It finds targets that came near while the lidar saw them. It misses targets that are too near from
@@ -82,10 +84,11 @@ class near_history {
 /// (tests/core/too_near_test.cpp counts them. Of a pole its edges are missed, which grow into
 /// directions where the wall behind it was seen.)
 constexpr std::size_t mark_near(std::span<point> points, near_history& history,
-                                const near_limits& limits = {}) noexcept {
+                                const near_limits& limits = {},
+                                correction_kind correction = g4_format.correction) noexcept {
   std::size_t marked = 0;
   for (point& p : points) {
-    const bool found = history.add(p, limits);
+    const bool found = history.add(p, limits, correction);
     p.flags = found ? p.flags | point_flags::may_be_too_near
                     : without(p.flags, point_flags::may_be_too_near);
     marked += found ? 1U : 0U;
@@ -95,8 +98,9 @@ constexpr std::size_t mark_near(std::span<point> points, near_history& history,
 
 /// The same on a copy of all `points` at the front of `out`, which is at least as long.
 constexpr std::size_t mark_near(std::span<const point> points, std::span<point> out,
-                                near_history& history, const near_limits& limits = {}) noexcept {
-  return mark_near(detail::copy_points(points, out), history, limits);
+                                near_history& history, const near_limits& limits = {},
+                                correction_kind correction = g4_format.correction) noexcept {
+  return mark_near(detail::copy_points(points, out), history, limits, correction);
 }
 
 }  // namespace g4lidar

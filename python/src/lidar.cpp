@@ -268,7 +268,7 @@ void bind_reading(Class& made) {
       .def(
           "fileno",
           [](live_lidar& on) {
-            return on.look([](lidar& device) { return device.native_handle(); });
+            return on.look([](lidar& device) { return device.event_loop().native_handle(); });
           },
           "For an event loop: readable when poll_scan() has something to do; -1 if there is no "
           "descriptor.")

@@ -177,7 +177,7 @@ nb::object live_lidar::poll_scan(bool newest) {
 }
 
 nb::object live_lidar::next_deadline() {
-  const std::int64_t due_ns = look([](lidar& on) { return on.next_deadline_ns(); });
+  const std::int64_t due_ns = look([](lidar& on) { return on.event_loop().next_deadline_ns(); });
   if (due_ns == never_ns) return nb::none();
   return nb::float_(on_.is_virtual ? 0.0 : static_cast<double>(due_ns) * 1e-9);
 }

@@ -92,7 +92,7 @@ class live_lidar {
   [[nodiscard]] nb::object next_deadline();
   /// See lidar::scan_due_in().
   [[nodiscard]] milliseconds scan_due_in() {
-    return look([](const lidar& on) { return on.scan_due_in(); });
+    return look([](lidar& on) { return on.event_loop().scan_due_in(); });
   }
 
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }

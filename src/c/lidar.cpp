@@ -168,12 +168,12 @@ int g4lidar_next_points(g4lidar_lidar* lidar, int timeout_ms, const g4lidar_poin
 }
 
 int g4lidar_descriptor(const g4lidar_lidar* lidar) {
-  return lidar == nullptr ? -1 : lidar->made->native_handle();
+  return lidar == nullptr ? -1 : lidar->made->event_loop().native_handle();
 }
 
 int64_t g4lidar_deadline_ns(const g4lidar_lidar* lidar) {
   return lidar == nullptr ? std::numeric_limits<std::int64_t>::max()
-                          : lidar->made->next_deadline_ns();
+                          : lidar->made->event_loop().next_deadline_ns();
 }
 
 int g4lidar_poll_timeout_ms(const g4lidar_lidar* lidar) {
@@ -185,7 +185,7 @@ int g4lidar_poll_timeout_ms(const g4lidar_lidar* lidar) {
 }
 
 int g4lidar_process(g4lidar_lidar* lidar, g4lidar_error* error) {
-  return guarded(error, [&] { return lidar->made->process(); }, lidar);
+  return guarded(error, [&] { return lidar->made->event_loop().process(); }, lidar);
 }
 
 void g4lidar_wake(g4lidar_lidar* lidar) {

@@ -57,6 +57,10 @@ template <int bits>
 G4LIDAR_AVX2 words shifted_left(words x) {
   return {_mm256_slli_epi32(x.v, bits)};
 }
+template <int bits>
+G4LIDAR_AVX2 words shifted_right(words x) {
+  return {_mm256_srli_epi32(x.v, bits)};
+}
 /// y without the bits of x.
 G4LIDAR_AVX2 words without(words x, words y) { return {_mm256_andnot_si256(x.v, y.v)}; }
 /// The smaller one, as unsigned.
@@ -82,18 +86,47 @@ using lane_order = std::array<int, lanes>;
 
 /// The samples of a packet in groups of eight, in the lanes according to `order`; zeros behind the
 /// last one.
-template <lane_order order>
+template <lane_order order, sample_layout Layout>
 class eights {
  public:
   G4LIDAR_AVX2 explicit eights(packet_view packet) : count_((packet.sample_count() + 7) / lanes) {
     const std::uint8_t* const data = packet.data().data() + packet_header_size;
     const std::size_t whole = packet.sample_count() / lanes;
-    for (std::size_t i = 0; i < whole; ++i) raw_[i] = in_order(load(data + 2 * lanes * i));
-    if (whole < count_) raw_[whole] = in_order(last_of(packet));
+    for (std::size_t i = 0; i < whole; ++i) raw_[i] = in_order(data + size * lanes * i);
+    if (whole == count_) return;
+    if constexpr (size == 2) {
+      raw_[whole] = in_order(last_of(packet));
+    } else {
+      std::array<std::uint8_t, size * lanes> last{};
+      const bytes rest = packet.data().subspan(packet_header_size + size * lanes * whole);
+      std::memcpy(last.data(), rest.data(), rest.size());
+      raw_[whole] = in_order(last.data());
+    }
   }
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  [[nodiscard]] G4LIDAR_AVX2 words operator[](std::size_t i) const { return raw_[i]; }
+  /// The ranges of group `i`, in quarters of a millimetre.
+  [[nodiscard]] G4LIDAR_AVX2 words quarters(std::size_t i) const {
+    using enum sample_layout;
+    if constexpr (Layout == flagged_mm) return raw_[i] & every(0xFFFC);
+    if constexpr (Layout == half_mm) return shifted_left<1>(raw_[i]);
+    if constexpr (Layout == whole_mm) return shifted_left<2>(raw_[i]);
+    if constexpr (size == 3) return shifted_right<8>(raw_[i]) & every(0xFFFC);
+    if constexpr (Layout == intensity_16) return shifted_left<2>(shifted_right<16>(raw_[i]));
+    return raw_[i];
+  }
+  /// What the samples have beside the range, as in a point: their flags in bits 8 to 15, and the
+  /// intensity in bits 16 to 31.
+  [[nodiscard]] G4LIDAR_AVX2 words others(std::size_t i) const {
+    using enum sample_layout;
+    if constexpr (Layout == flagged_mm) return shifted_left<8>(raw_[i] & every(3));
+    if constexpr (Layout == intensity_8) {
+      return (raw_[i] & every(0x300)) | shifted_left<16>(raw_[i] & every(0xFF));
+    }
+    if constexpr (Layout == intensity_10) return shifted_left<16>(raw_[i] & every(0x3FF));
+    if constexpr (Layout == intensity_16) return shifted_left<16>(raw_[i]);
+    return every(0);
+  }
 
   /// The indices of the eight samples of group `i` in the packet, as numbers.
   [[nodiscard]] static G4LIDAR_AVX2 floats places(std::size_t i) {
@@ -109,6 +142,44 @@ class eights {
   }
 
  private:
+  static constexpr std::size_t size = sample_size(Layout);
+
+  /// Eight samples in lanes of 32 bits, the first byte at the bottom.
+  [[nodiscard]] static G4LIDAR_AVX2 words in_order(const std::uint8_t* from) {
+    if constexpr (size == 2) return in_order(load(from));
+    if constexpr (size == 4) {
+      __m256i samples;
+      std::memcpy(&samples, from, sizeof samples);
+      const __m256i places = _mm256_setr_epi32(order[0], order[1], order[2], order[3], order[4],
+                                               order[5], order[6], order[7]);
+      return {_mm256_permutevar8x32_epi32(samples, places)};
+    }
+    // 24 bytes: the first 16 and the last 16 of them.
+    const __m256i first = _mm256_broadcastsi128_si256(load(from));
+    const __m256i last = _mm256_broadcastsi128_si256(load(from + lanes));
+    static constexpr auto of_first = picks_of_triples(0, 0, 2 * lanes);
+    static constexpr auto of_last = picks_of_triples(lanes, 2 * lanes, 3 * lanes);
+    return words{_mm256_shuffle_epi8(first, load_all(of_first))} |
+           words{_mm256_shuffle_epi8(last, load_all(of_last))};
+  }
+  using byte_picks = std::array<char, 4 * lanes>;
+  [[nodiscard]] static G4LIDAR_AVX2 __m256i load_all(const byte_picks& picks) {
+    __m256i all;
+    std::memcpy(&all, picks.data(), sizeof all);
+    return all;
+  }
+  /// Which bytes of 16, which begin at byte `begin` of eight samples of 3 bytes, get into each lane:
+  /// those of `from` to `end`.
+  [[nodiscard]] static constexpr byte_picks picks_of_triples(std::size_t begin, std::size_t from,
+                                                             std::size_t end) {
+    byte_picks picks{};
+    for (std::size_t byte = 0; byte < picks.size(); ++byte) {
+      const std::size_t wanted = 3 * static_cast<std::size_t>(order[byte / 4]) + byte % 4;
+      const bool is_there = byte % 4 < 3 && from <= wanted && wanted < end;
+      picks[byte] = static_cast<char>(is_there ? wanted - begin : 0x80);  // 0x80 gives zero
+    }
+    return picks;
+  }
   [[nodiscard]] static G4LIDAR_AVX2 __m128i load(const void* from) {
     __m128i samples;
     std::memcpy(&samples, from, sizeof samples);

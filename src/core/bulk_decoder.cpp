@@ -45,72 +45,10 @@ struct plain {
   static constexpr kernels all{to_points, to_timed_points, to_xy};
 };
 
-#if G4LIDAR_HAS_AVX2_KERNELS
-/// The same, translated for AVX2.
-template <sample_layout Layout, correction_kind Kind>
-struct avx2_plain {
-  using source = plain<Layout, Kind>;
-
-  __attribute__((target("avx2,fma"), flatten)) static void to_points(
-      packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
-      std::span<point, max_samples> out) noexcept {
-    source::to_points(packet, revolution, shortest_mm, out);
-  }
-  __attribute__((target("avx2,fma"), flatten)) static void to_timed_points(
-      packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
-      const packet_times& times, std::span<point, max_samples> out) noexcept {
-    source::to_timed_points(packet, revolution, shortest_mm, times, out);
-  }
-  __attribute__((target("avx2,fma"), flatten)) static void to_xy(
-      packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
-    source::to_xy(packet, to, out);
-  }
-  static constexpr kernels all{to_points, to_timed_points, to_xy};
-};
-#endif
-
-/// A combination of layout and correction that models have.
-struct kernels_of_format {
-  sample_layout layout;
-  correction_kind correction;
-  const kernels* portable;
-  const kernels* avx2;
-};
-
-template <sample_layout Layout, correction_kind Kind>
-constexpr kernels_of_format made_for{Layout, Kind, &plain<Layout, Kind>::all,
-#if G4LIDAR_HAS_AVX2_KERNELS
-                                     &avx2_plain<Layout, Kind>::all
-#else
-                                     nullptr
-#endif
-};
-
-/// All but that of the G4.
-constexpr std::array all_formats{
-    made_for<sample_layout::flagged_mm, correction_kind::triangle>,
-    made_for<sample_layout::half_mm, correction_kind::triangle>,
-    made_for<sample_layout::half_mm, correction_kind::none>,
-    made_for<sample_layout::whole_mm, correction_kind::none>,
-    made_for<sample_layout::intensity_10, correction_kind::triangle>,
-    made_for<sample_layout::intensity_8, correction_kind::triangle>,
-    made_for<sample_layout::intensity_8, correction_kind::scl>,
-    made_for<sample_layout::intensity_8, correction_kind::none>,
-    made_for<sample_layout::intensity_16, correction_kind::none>,
-};
-
-constexpr bool is_g4s(sample_layout layout, correction_kind correction) noexcept {
-  return layout == g4_format.layout && correction == g4_format.correction;
-}
-constexpr const kernels_of_format* found_for(sample_layout layout,
-                                             correction_kind correction) noexcept {
-  for (const kernels_of_format& each : all_formats) {
-    if (each.layout == layout && each.correction == correction) return &each;
-  }
-  return nullptr;
-}
 constexpr bool has_kernels(sample_layout layout, correction_kind correction) noexcept {
-  return is_g4s(layout, correction) || found_for(layout, correction) != nullptr;
+  const kernels& first = plain<g4_format.layout, g4_format.correction>::all;
+  const bool is_first = layout == g4_format.layout && correction == g4_format.correction;
+  return is_first || &kernels_in<plain>({layout, correction}) != &first;
 }
 static_assert(std::ranges::all_of(models, [](const model& each) {
   const correction_kind correction = each.samples.correction;
@@ -121,16 +59,12 @@ static_assert(std::ranges::all_of(models, [](const model& each) {
 
 }  // namespace
 
-const kernels portable_kernels = plain<g4_format.layout, g4_format.correction>::all;
-
 const kernels& kernels_of(instruction_set set, sample_format format) noexcept {
-  const kernels_of_format* const found = found_for(format.layout, format.correction);
-  assert(found != nullptr || is_g4s(format.layout, format.correction));
 #if G4LIDAR_HAS_AVX2_KERNELS
-  if (set == instruction_set::avx2) return found != nullptr ? *found->avx2 : avx2_kernels;
+  if (set == instruction_set::avx2) return avx2_kernels_of(format);
 #endif
   static_cast<void>(set);
-  return found != nullptr ? *found->portable : portable_kernels;
+  return kernels_in<plain>(format);
 }
 
 }  // namespace bulk

@@ -23,22 +23,35 @@ namespace {
 
 using namespace avx2;
 
-/// For samples without return.
-G4LIDAR_AVX2 words none(words raw) { return less(raw, every(least_range_raw)); }
+/// For samples without return. `quarters` are ranges.
+template <sample_layout Layout>
+G4LIDAR_AVX2 words none(words quarters) {
+  return less(quarters, every(range_word<Layout>::least));
+}
 
-/// The second-level correction of samples from 100 mm on. As in compact_correction it is computed
+/// The second-level correction of samples from 100 mm on, in quarters of a millimetre. As in compact_correction it is computed
 /// from its middle; but the remaining corrections are within 6.3 degrees of the middle, so three
 /// terms of the series are sufficient for 3e-8 degrees.
 constexpr std::uint32_t nearest_raw = 400;
 static_assert(nearest_raw == static_cast<std::uint32_t>(4 * too_near_mm));
 
-G4LIDAR_AVX2 floats correction_of(floats sample) {
+G4LIDAR_AVX2 floats triangle_correction(floats sample) {
   const floats t = (every(797.3080408F) - sample) /
                    times_plus(every(9.183236226F), sample, every(-24.72089691F));
   const floats x = t * t;
   floats series = times_plus(x, every(11.291349704F), every(-19.097602652F));
   series = times_plus(x, series, every(57.295778049F));
   return times_plus(t, series, every(-1.77591265498F));
+}
+
+/// That of an SCL: three terms of the arctangent after the first are sufficient for 2e-6 degrees.
+G4LIDAR_AVX2 floats scl_correction(floats sample) {
+  constexpr auto degrees = static_cast<float>(180.0 / std::numbers::pi);
+  const floats t = every(71.2F) / sample;
+  const floats x = t * t;
+  floats series = times_plus(x, every(-degrees / 7), every(degrees / 5));
+  series = times_plus(x, series, every(-degrees / 3));
+  return t * times_plus(x, series, every(degrees));
 }
 
 /// Whether an angle of the packet can be outside [0, 360) before it is wrapped, if all its ranges
@@ -114,31 +127,39 @@ G4LIDAR_AVX2 void store_eight(floats angle, floats range, words revolution, word
              _mm256_unpackhi_epi32(revolution.v, swapped), times.next(), out + 4);
 }
 
-/// False if there is a sample below 100 mm or `shortest_mm`, which is rare: the portable kernel
-/// processes it.
-template <class Times>
+/// False if there is a sample below 100 mm or `shortest_mm` whose angle has a correction, which is
+/// rare: the portable kernel processes it.
+template <sample_layout Layout, correction_kind Kind, class Times>
 G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
                           Times times, std::span<point, max_samples> out) {
-  const eights<point_order> raw(packet);
+  constexpr bool has_correction = Kind != correction_kind::none;
+  constexpr int least = range_word<Layout>::least;
+  const eights<point_order, Layout> raw(packet);
   per_packet<floats> range;
   const first_level_angles<float> angles(packet);
   const floats first = every(angles.first);
   const floats step = every(angles.step);
   per_packet<floats> angle;
-  const floats far = every(static_cast<float>(far_correction_deg));
+  const floats far = every(static_cast<float>(no_return_correction_deg(Kind)));
   // Less the least range, as unsigned: so that no return is the farthest.
   words nearest = every(-1);
   for (std::size_t i = 0; i < raw.count(); ++i) {
-    const floats sample = to_floats(raw[i]);
-    const words no_return = none(raw[i]);
-    nearest = unsigned_min(nearest, raw[i] - every(least_range_raw));
+    const words quarters = raw.quarters(i);
+    const floats sample = to_floats(quarters);
+    const words no_return = none<Layout>(quarters);
     range[i] = floats_of(without(no_return, bits_of(sample * every(0.25F))));
-    const floats correction = choose(no_return, correction_of(sample), far);
-    angle[i] = first + times_plus(raw.places(i), step, correction);
+    if constexpr (has_correction) {
+      nearest = unsigned_min(nearest, quarters - every(least));
+      const floats found =
+          Kind == correction_kind::scl ? scl_correction(sample) : triangle_correction(sample);
+      angle[i] = first + times_plus(raw.places(i), step, choose(no_return, found, far));
+    } else {
+      angle[i] = times_plus(raw.places(i), step, first);
+    }
   }
-  const int least = std::max<int>(nearest_raw, 4 * shortest_mm) - least_range_raw;
-  if (any(equal(unsigned_min(nearest, every(least - 1)), nearest))) {
-    return false;
+  if constexpr (has_correction) {
+    const int shortest = std::max<int>(nearest_raw, 4 * shortest_mm) - least;
+    if (any(equal(unsigned_min(nearest, every(shortest - 1)), nearest))) return false;
   }
   if (touches_zero(packet)) {
     for (std::size_t i = 0; i < raw.count(); ++i) angle[i] = wrapped(angle[i]);
@@ -146,26 +167,17 @@ G4LIDAR_AVX2 bool convert(packet_view packet, std::uint32_t revolution, std::uin
   const words revolutions = every(static_cast<int>(revolution));
   for (std::size_t i = 0; i < raw.count(); ++i) {
     static_assert(static_cast<int>(point_flags::no_return) == 1);
-    const words flags = every(0) - none(raw[i]);
+    const words quarters = raw.quarters(i);
+    words flags = every(0) - none<Layout>(quarters);
+    if constexpr (!has_correction) {  // else there is none that is too near
+      static_assert(static_cast<int>(point_flags::too_near) == 2);
+      flags = (less(quarters, every(4 * shortest_mm)) & every(2)) - flags;
+    }
+    if constexpr (Layout != g4_layout) flags = flags | raw.others(i);
     store_eight(angle[i], range[i], revolutions, flags, times, out.data() + lanes * i);
   }
   if (packet.is_zero()) out[0].flags = out[0].flags | point_flags::revolution_start;
   return true;
-}
-
-__attribute__((target("avx2,fma"))) void to_points(packet_view packet, std::uint32_t revolution,
-                                                   std::uint16_t shortest_mm,
-                                                   std::span<point, max_samples> out) noexcept {
-  if (!convert(packet, revolution, shortest_mm, no_times(), out)) {
-    portable_kernels.to_points(packet, revolution, shortest_mm, out);
-  }
-}
-__attribute__((target("avx2,fma"))) void to_timed_points(
-    packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
-    const packet_times& times, std::span<point, max_samples> out) noexcept {
-  if (!convert(packet, revolution, shortest_mm, running_times(times), out)) {
-    portable_kernels.to_timed_points(packet, revolution, shortest_mm, times, out);
-  }
 }
 
 /// See sine_cosine_deg().
@@ -218,7 +230,7 @@ G4LIDAR_AVX2 void store_eight(floats x, floats y, xy_point* out) {
 class directions {
  public:
   G4LIDAR_AVX2 directions(floats first, floats step, std::size_t eights_in_all)
-      : in_eight_(direction_of(eights<xy_order>::places(0) * step)) {
+      : in_eight_(direction_of(eights<xy_order, g4_layout>::places(0) * step)) {
     const floats ahead = every(8.0F) * step;
     const words count{_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7)};
     for (std::size_t i = 0; i < eights_in_all; i += lanes) {
@@ -244,39 +256,80 @@ class directions {
 
 /// No arctangent is needed: the correction is an angle in the right-angled triangle with the legs d
 /// and u = 21.8 - (21.8 / 155.3) d, so the range along the first-level angle and across it follow
-/// from the sides, and a rotation by that angle is sufficient. In the robot's frame angles grow in
+/// from the sides, and a rotation by that angle is sufficient. Of an SCL u is 17.8. In the robot's frame angles grow in
 /// the other direction, from 180 degrees on.
-__attribute__((target("avx2,fma"))) void to_xy(packet_view packet, frame to,
-                                               std::span<xy_point, max_samples> out) noexcept {
-  constexpr auto offset_raw = static_cast<float>(4.0 * correction_offset_mm);
-  constexpr auto slope = static_cast<float>(-correction_offset_mm / correction_zero_mm);
+template <sample_layout Layout, correction_kind Kind>
+G4LIDAR_AVX2 void convert_to_xy(packet_view packet, frame to,
+                                std::span<xy_point, max_samples> out) noexcept {
+  constexpr bool is_scl = Kind == correction_kind::scl;
+  constexpr auto offset_raw = static_cast<float>(is_scl ? 71.2 : 4.0 * correction_offset_mm);
+  constexpr auto slope =
+      static_cast<float>(is_scl ? 0.0 : -correction_offset_mm / correction_zero_mm);
   constexpr float metres = 0.00025F;  // a quarter of a millimetre
   const bool mirrored = to == frame::robot;
   const float sign = mirrored ? -1.0F : 1.0F;
   const first_level_angles<float> angles(packet);
-  const eights<xy_order> raw(packet);
+  const eights<xy_order, Layout> raw(packet);
   per_packet<floats> along;
   per_packet<floats> across;
   for (std::size_t i = 0; i < raw.count(); ++i) {
-    const floats d = to_floats(raw[i]);
-    const floats u = times_plus(d, every(slope * sign), every(offset_raw * sign));
-    const floats share = d * every(metres) / square_root(times_plus(d, d, u * u));
-    const floats share_or_nan = floats_of(bits_of(share) | none(raw[i]));
-    along[i] = share_or_nan * d;
-    across[i] = share_or_nan * u;
+    const words quarters = raw.quarters(i);
+    const floats d = to_floats(quarters);
+    if constexpr (Kind == correction_kind::none) {
+      along[i] = floats_of(bits_of(d * every(metres)) | none<Layout>(quarters));
+    } else {
+      const floats u = times_plus(d, every(slope * sign), every(offset_raw * sign));
+      const floats share = d * every(metres) / square_root(times_plus(d, d, u * u));
+      const floats share_or_nan = floats_of(bits_of(share) | none<Layout>(quarters));
+      along[i] = share_or_nan * d;
+      across[i] = share_or_nan * u;
+    }
   }
   const directions turn(every(mirrored ? 180.0F - angles.first : angles.first),
                         every(angles.step * sign), raw.count());
   for (std::size_t i = 0; i < raw.count(); ++i) {
     const auto [sine, cosine] = turn[i];
-    store_eight(times_minus(along[i], cosine, across[i] * sine),
-                times_plus(along[i], sine, across[i] * cosine), out.data() + lanes * i);
+    xy_point* const here = out.data() + lanes * i;
+    if constexpr (Kind == correction_kind::none) {
+      store_eight(along[i] * cosine, along[i] * sine, here);
+    } else {
+      store_eight(times_minus(along[i], cosine, across[i] * sine),
+                  times_plus(along[i], sine, across[i] * cosine), here);
+    }
   }
 }
 
+template <sample_layout Layout, correction_kind Kind>
+struct avx2_kernels {
+  __attribute__((target("avx2,fma"))) static void to_points(
+      packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
+      std::span<point, max_samples> out) noexcept {
+    if (!convert<Layout, Kind>(packet, revolution, shortest_mm, no_times(), out)) {
+      portable().to_points(packet, revolution, shortest_mm, out);
+    }
+  }
+  __attribute__((target("avx2,fma"))) static void to_timed_points(
+      packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
+      const packet_times& times, std::span<point, max_samples> out) noexcept {
+    if (!convert<Layout, Kind>(packet, revolution, shortest_mm, running_times(times), out)) {
+      portable().to_timed_points(packet, revolution, shortest_mm, times, out);
+    }
+  }
+  __attribute__((target("avx2,fma"))) static void to_xy(
+      packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept {
+    convert_to_xy<Layout, Kind>(packet, to, out);
+  }
+  static const kernels& portable() noexcept {
+    return kernels_of(instruction_set::portable, {Layout, Kind});
+  }
+  static constexpr kernels all{to_points, to_timed_points, to_xy};
+};
+
 }  // namespace
 
-const kernels avx2_kernels{to_points, to_timed_points, to_xy};
+const kernels& avx2_kernels_of(sample_format format) noexcept {
+  return kernels_in<avx2_kernels>(format);
+}
 
 }  // namespace g4lidar::bulk
 

@@ -2,6 +2,8 @@
 // The arithmetic of the bulk decoder, one packet at a time, one version for each instruction set.
 #pragma once
 
+#include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 
@@ -25,13 +27,41 @@ struct kernels {
   void (*to_xy)(packet_view packet, frame to, std::span<xy_point, max_samples> out) noexcept;
 };
 
-/// Those of a G4's samples.
-extern const kernels portable_kernels;
+/// The kernels of `Kernels` for a combination of layout and correction that models have; another
+/// one is an assertion.
+template <template <sample_layout, correction_kind> class Kernels>
+[[nodiscard]] constexpr const kernels& kernels_in(sample_format format) noexcept {
+  struct entry {
+    sample_layout layout;
+    correction_kind correction;
+    const kernels* found;
+  };
+  using enum sample_layout;
+  using enum correction_kind;
+  constexpr std::array all{
+      entry{quarter_mm, triangle, &Kernels<quarter_mm, triangle>::all},
+      entry{flagged_mm, triangle, &Kernels<flagged_mm, triangle>::all},
+      entry{half_mm, triangle, &Kernels<half_mm, triangle>::all},
+      entry{half_mm, correction_kind::none, &Kernels<half_mm, correction_kind::none>::all},
+      entry{whole_mm, correction_kind::none, &Kernels<whole_mm, correction_kind::none>::all},
+      entry{intensity_10, triangle, &Kernels<intensity_10, triangle>::all},
+      entry{intensity_8, triangle, &Kernels<intensity_8, triangle>::all},
+      entry{intensity_8, scl, &Kernels<intensity_8, scl>::all},
+      entry{intensity_8, correction_kind::none, &Kernels<intensity_8, correction_kind::none>::all},
+      entry{intensity_16, correction_kind::none,
+            &Kernels<intensity_16, correction_kind::none>::all},
+  };
+  for (const entry& each : all) {
+    if (each.layout == format.layout && each.correction == format.correction) return *each.found;
+  }
+  assert(false);
+  return *all[0].found;
+}
 
 /// Only on architectures that can have them.
 #if defined(__x86_64__) && (defined(__GNUC__) || defined(__clang__))
 #define G4LIDAR_HAS_AVX2_KERNELS 1
-extern const kernels avx2_kernels;
+[[nodiscard]] const kernels& avx2_kernels_of(sample_format format) noexcept;
 #else
 #define G4LIDAR_HAS_AVX2_KERNELS 0
 #endif

@@ -23,7 +23,7 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
                             *options.model),
              {}},
       feeder_(make_feeder(parts_, options)),
-      points_(8192) {}
+      points_(largest_scan(*options.model)) {}
 
 lidar::driver::~driver() { static_cast<void>(close()); }
 

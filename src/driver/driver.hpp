@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -86,7 +87,8 @@ class G4LIDAR_HIDDEN lidar::driver {
 
 /// A ring that is never written to. Not const: then it takes no space in the program file.
 [[nodiscard]] inline const lidar_ring& empty_ring() noexcept {
-  static constinit lidar_ring ring;
+  static constinit std::array<lidar_ring::slot, 2> slots;
+  static constinit lidar_ring ring{slots};
   return ring;
 }
 

@@ -43,7 +43,7 @@ class feeder {
       : connection_(of.link),
         pipeline_(of.pipeline),
         events_(of.events),
-        receiver_(options.tuning.batch) {}
+        receiver_(options.tuning.batch, *options.model) {}
   virtual ~feeder() = default;
   feeder(const feeder&) = delete;
   feeder& operator=(const feeder&) = delete;

@@ -170,8 +170,9 @@ view_result<scan> lidar::wait_scan(milliseconds timeout) {
   if (!driver_) return moved_from();
   return driver_->next_scan(in_ns(timeout), true);
 }
-milliseconds lidar::scan_due_in() const noexcept {
-  const std::int64_t left_ns = driver_ ? driver_->scan_due_in_ns() : 0;
+lidar_event_loop lidar::event_loop() & noexcept { return lidar_event_loop(*this); }
+milliseconds lidar_event_loop::scan_due_in() const noexcept {
+  const std::int64_t left_ns = of_->driver_ ? of_->driver_->scan_due_in_ns() : 0;
   if (left_ns == never_ns) return milliseconds::max();
   return std::chrono::ceil<milliseconds>(std::chrono::nanoseconds(left_ns));
 }
@@ -182,15 +183,19 @@ view_result<std::span<const point>> lidar::next_points(milliseconds timeout) {
 const lidar_ring& lidar::points() const noexcept {
   return driver_ ? driver_->points() : empty_ring();
 }
-int lidar::native_handle() const noexcept { return driver_ ? driver_->native_handle() : -1; }
-std::int64_t lidar::next_deadline_ns() const noexcept {
-  return driver_ ? driver_->next_deadline_ns() : never_ns;
+int lidar_event_loop::native_handle() const noexcept {
+  return of_->driver_ ? of_->driver_->native_handle() : -1;
 }
-std::chrono::steady_clock::time_point lidar::next_deadline() const noexcept {
+std::int64_t lidar_event_loop::next_deadline_ns() const noexcept {
+  return of_->driver_ ? of_->driver_->next_deadline_ns() : never_ns;
+}
+std::chrono::steady_clock::time_point lidar_event_loop::next_deadline() const noexcept {
   using clock = std::chrono::steady_clock;
   return clock::time_point(std::chrono::nanoseconds(next_deadline_ns()));
 }
-result<void> lidar::process() { return driver_ ? driver_->process() : moved_from(); }
+result<void> lidar_event_loop::process() {
+  return of_->driver_ ? of_->driver_->process() : moved_from();
+}
 void lidar::wake() noexcept {
   if (driver_) driver_->wake();
 }

@@ -2,9 +2,13 @@
 // From bytes to points in a ring and revolutions, whether the bytes are live or recorded.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
@@ -45,12 +49,19 @@ class ring_on_demand {
  public:
   /// A ring that begins with point 0, and its reader. *Any thread.*
   struct contents {
+    explicit contents(std::span<lidar_ring::slot> memory) noexcept : ring(memory) {}
+
     lidar_ring ring;
     lidar_ring::reader reader = ring.make_reader();
   };
 
-  ring_on_demand() : memory_(::operator new(sizeof(contents))) {
-    static_assert(std::is_trivially_destructible_v<contents>);
+  /// For the points of at least 1.8 s at the highest sample rate of the model.
+  explicit ring_on_demand(const model& which)
+      : size_(std::bit_ceil(std::max(least, std::size_t{highest_rate_hz(which)} * 9 / 5))),
+        memory_(::operator new(sizeof(contents) + size_ * sizeof(lidar_ring::slot))) {
+    static_assert(std::is_trivially_destructible_v<contents> &&
+                  std::is_trivially_destructible_v<lidar_ring::slot>);
+    static_assert(sizeof(contents) % alignof(lidar_ring::slot) == 0);
   }
   ring_on_demand(const ring_on_demand&) = delete;
   ring_on_demand& operator=(const ring_on_demand&) = delete;
@@ -58,14 +69,20 @@ class ring_on_demand {
 
   /// *Any thread.*
   [[nodiscard]] contents& get() noexcept {
-    std::call_once(once_,
-                   [this] { made_.store(new (memory_) contents, std::memory_order_release); });
+    std::call_once(once_, [this] {
+      auto* const slots = reinterpret_cast<lidar_ring::slot*>(static_cast<contents*>(memory_) + 1);
+      std::uninitialized_value_construct_n(slots, size_);
+      made_.store(new (memory_) contents({slots, size_}), std::memory_order_release);
+    });
     return *find();
   }
   /// Nothing before the first call of get().
   [[nodiscard]] contents* find() const noexcept { return made_.load(std::memory_order_acquire); }
 
  private:
+  static constexpr std::size_t least = 16'384;
+
+  std::size_t size_;  // in points
   void* memory_;
   std::once_flag once_;
   std::atomic<contents*> made_ = nullptr;
@@ -84,7 +101,8 @@ class point_pipeline {
       : partial_scans_(partial_scans),
         input_(which.samples),
         decoder_(transport_delay_ns, which),
-        storage_(largest_scan),
+        ring_(which),
+        storage_(largest_scan(which)),
         assembler_(storage_.all(), which) {}
 
   /// The bytes of one read at a time, and the place in them. Fed only if is_empty().
@@ -166,9 +184,6 @@ class point_pipeline {
   [[nodiscard]] lidar_counts counts() const noexcept;
 
  private:
-  /// 9 kHz at 5 Hz make 1,800 points; a motor that spins up makes more per turn.
-  static constexpr std::size_t largest_scan = 8192;
-
   void add(packet_view packet) noexcept;
   void keep(const scan& found) noexcept;
 

@@ -32,11 +32,15 @@ enum class demand : std::uint8_t {
 /// because a sleep ends later than a wait for bytes that arrive.
 class read_schedule {
  public:
+  /// Of a lidar of this model.
+  explicit read_schedule(const model& which = g4_model) noexcept
+      : which_(&which), serial_byte_ns_(byte_time_ns(which.bauds[0])) {}
+
   /// Another transport, with so many bits per second. 0: bytes take no time, and every read is
   /// worth it. The system keeps `kept` bytes while nobody reads; 0: not known.
   void reset(std::uint32_t baud, std::size_t kept) noexcept {
-    *this = read_schedule();
-    byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
+    *this = read_schedule(*which_);
+    byte_ns_ = baud == 0 ? 0 : byte_time_ns(baud);
     if (baud != 0) serial_byte_ns_ = byte_ns_;
     longest_rest_ns_ =
         static_cast<std::int64_t>(std::min<std::size_t>(kept / 2, 2048)) * serial_byte_ns_;
@@ -101,6 +105,11 @@ class read_schedule {
   }
 
  private:
+  /// The time of ten bits.
+  static constexpr std::int64_t byte_time_ns(std::uint32_t baud) noexcept {
+    return 10'000'000'000 / baud;
+  }
+
   static constexpr std::int64_t us = 1'000;
   static constexpr std::int64_t ms = 1'000 * us;
   /// If bytes arrive so far ahead of the baud rate, the baud rate is not valid; but a transport
@@ -122,16 +131,18 @@ class read_schedule {
 
   /// When the rest of a packet that has begun, or the next one, can be complete.
   [[nodiscard]] std::int64_t packet_ns(std::size_t held, std::size_t missing) const noexcept {
-    if (held < packet_header_size) missing = std::max(missing, packet_size(1) - held);
+    if (held < packet_header_size) {
+      missing = std::max(missing, packet_size(1, which_->samples.layout) - held);
+    }
     const std::int64_t whole_ns = static_cast<std::int64_t>(missing) * byte_ns_;
     if (due_ns_ == 0) return whole_ns < least_ns ? 0 : read_ns_ + whole_ns - wake_ns;
     const std::int64_t worth_ns = read_ns_ + std::min(whole_ns, longest_ns);
     return readings_ > 0 ? worth_ns : std::clamp(due_ns_, worth_ns, read_ns_ + longest_ns);
   }
 
-  std::int64_t byte_ns_ = 0;  // that a byte takes
-  // The same on the serial line behind a bridge.
-  std::int64_t serial_byte_ns_ = 10'000'000'000 / g4_model.bauds[0];
+  const model* which_;
+  std::int64_t byte_ns_ = 0;     // that a byte takes
+  std::int64_t serial_byte_ns_;  // the same on the serial line behind a bridge
   std::int64_t longest_rest_ns_ = 0;
   std::int64_t read_ns_ = 0;   // of the last reading
   std::int64_t ahead_ns_ = 0;  // how much sooner bytes came than the baud rate allows

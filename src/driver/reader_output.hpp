@@ -14,7 +14,7 @@ namespace g4lidar {
 /// Keeps scans and events until they are taken.
 class reader_queue final : public reader_listener {
  public:
-  explicit reader_queue(std::size_t depth) : scans(depth) {}
+  reader_queue(std::size_t depth, const model& which) : scans(depth, which) {}
 
   void on_scan(const scan& found) override { scans.put(found); }
   void on_event(const lidar_event& what) override {

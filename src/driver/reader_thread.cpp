@@ -45,8 +45,9 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
                                   reader_listener* listener)
     : options_(options),
       how_(how),
-      listener_(listener != nullptr ? *listener
-                                    : *(queue = std::make_unique<reader_queue>(depth_of(how)))),
+      listener_(listener != nullptr
+                    ? *listener
+                    : *(queue = std::make_unique<reader_queue>(depth_of(how), *options.model))),
       playback_{.speed = options.playback.speed} {
   options_.is_cancelled = [this, inner = options.is_cancelled] {
     return requests.has_to_stop() || (inner && inner());
@@ -55,7 +56,8 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
 }
 
 background_reader::thread::thread(lidar&& given, const reader_options& how)
-    : queue(std::make_unique<reader_queue>(depth_of(how))),
+    // A model with larger scans than a G4 makes it grow once.
+    : queue(std::make_unique<reader_queue>(depth_of(how), g4_model)),
       how_(how),
       listener_(*queue),
       device_(std::make_unique<lidar>(std::move(given))),
@@ -183,8 +185,8 @@ void background_reader::thread::rest() {
 }
 
 void background_reader::thread::look() {
-  requests.wait(std::min(clock::now() + longest_wait, device_->next_deadline()));
-  const auto done = device_->process();
+  requests.wait(std::min(clock::now() + longest_wait, device_->event_loop().next_deadline()));
+  const auto done = device_->event_loop().process();
   const bool is_over = !done && done.error().is_fatal();
   give_events(is_over);
   if (is_over) fail(done.error());

@@ -24,7 +24,8 @@ enum class reading : std::uint8_t {
 /// *Single thread.* *Allocates on open.*
 class receiver {
  public:
-  explicit receiver(std::chrono::nanoseconds batch) : batch_ns_(batch.count()) {}
+  explicit receiver(std::chrono::nanoseconds batch, const model& which = g4_model)
+      : batch_ns_(batch.count()), pace_(which) {}
 
   /// Another transport follows. `baud` 0: bytes take no time. See read_schedule.
   void reset(std::uint32_t baud, std::size_t kept, std::int64_t now_ns) noexcept {

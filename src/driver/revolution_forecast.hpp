@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 
 namespace g4lidar {
@@ -36,6 +37,7 @@ class revolution_forecast {
     const bool is_known = zero_64ths_ >= 0 && unsure_ == 0 && is_steady_;
     from_ = {.full = is_known ? full : 0,
              .samples = found.sample_count(),
+             .layout = found.layout(),
              .left_64ths = left_64ths_,
              .measured_ns = measured_ns,
              .byte_ns = byte_ns,
@@ -65,6 +67,7 @@ class revolution_forecast {
   struct origin {
     std::size_t full = 0;  // samples of a full packet; 0: there is no forecast
     std::size_t samples = 0;
+    sample_layout layout = g4_layout;
     int left_64ths = 0;
     std::int64_t measured_ns = 0;
     std::int64_t byte_ns = 0;
@@ -75,7 +78,8 @@ class revolution_forecast {
   /// free.
   [[nodiscard]] std::int64_t forecast_ns() const noexcept {
     const auto sent_ns = [&](std::size_t samples) {
-      return samples == 0 ? 0 : static_cast<std::int64_t>(packet_size(samples)) * from_.byte_ns;
+      const auto size = static_cast<std::int64_t>(packet_size(samples, from_.layout));
+      return samples == 0 ? 0 : size * from_.byte_ns;
     };
     const auto after_ns = [&](std::size_t samples) {
       return from_.measured_ns +

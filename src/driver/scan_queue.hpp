@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/scan.hpp"
 
 namespace g4lidar {
@@ -19,8 +20,8 @@ namespace g4lidar {
 /// open.*
 class scan_queue {
  public:
-  explicit scan_queue(std::size_t depth) : slots_(depth + 1) {
-    for (slot& each : slots_) each.points.reserve(largest_scan);
+  scan_queue(std::size_t depth, const model& which) : slots_(depth + 1) {
+    for (slot& each : slots_) each.points.reserve(largest_scan(which));
   }
 
   /// Copies `found`. If there is no room, the oldest scan is dropped and counted. Never waits long.
@@ -73,7 +74,6 @@ class scan_queue {
     std::vector<point> points;
     scan about;
   };
-  static constexpr std::size_t largest_scan = 8192;  // the largest that a lidar gives
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -21,7 +21,7 @@ class timed_decoder {
  public:
   explicit timed_decoder(std::int64_t transport_delay_ns, const model& which = g4_model) noexcept
       : transport_delay_ns_(transport_delay_ns),
-        layout_(which.samples.layout),
+        which_(&which),
         shortest_mm_(which.range.min_mm),
         to_points_(bulk::kernels_of(best_instruction_set(), which.samples).to_timed_points) {}
 
@@ -30,14 +30,15 @@ class timed_decoder {
     if (baud == baud_) return;  // the clock may continue
     baud_ = baud;
     byte_ns_ = baud == 0 ? 0 : 10'000'000'000 / baud;
-    clock_ =
-        sensor_clock({.transport_delay_ns = transport_delay_ns_, .baud = baud, .layout = layout_});
+    clock_ = sensor_clock({.transport_delay_ns = transport_delay_ns_,
+                           .baud = baud,
+                           .layout = which_->samples.layout});
   }
   /// The following bytes may be earlier ones. Before follow().
   void forget() noexcept { baud_.reset(); }
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
   void begin(std::uint32_t sample_rate_hz) noexcept {
-    clock_.reset(sample_rate_hz);
+    clock_.reset(expected_rate_of(*which_, sample_rate_hz));
     angles_ = {};
     last_packet_ns_ = 0;
   }
@@ -97,7 +98,7 @@ class timed_decoder {
   }
 
   std::int64_t transport_delay_ns_;
-  sample_layout layout_;
+  const model* which_;
   std::uint16_t shortest_mm_;
   decltype(bulk::kernels::to_timed_points) to_points_;
   std::optional<std::uint32_t> baud_;  // of its transport

@@ -28,7 +28,7 @@ byte_points::byte_points(point_writer& writer, text_sink& out, std::uint32_t rat
       format_(which.samples),
       shortest_mm_(which.range.min_mm),
       clock_(rate_hz),
-      scan_storage_(by_scan_ ? max_scan_points : 1),
+      scan_storage_(by_scan_ ? 2 * largest_scan(which) : 1),
       assembler_(scan_storage_, which) {
   assembler_.set_sample_rate(rate_hz);
 }

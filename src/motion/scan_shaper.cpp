@@ -49,7 +49,7 @@ void scan_shaper::shape(const scan& source, std::span<const stamped_pose> path) 
   not_deskewed_ += outside_;
   if (!options_.marks.near) return;
   marked_.assign(points_.begin(), points_.end());
-  mark_near(marked_, near_, *options_.marks.near);
+  mark_near(marked_, near_, *options_.marks.near, source.model->samples.correction);
   points_ = marked_;
 }
 

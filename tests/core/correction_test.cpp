@@ -12,6 +12,7 @@
 #include <memory>
 #include <numbers>
 
+#include "g4lidar/point.hpp"
 #include "support/reference_points.hpp"
 
 namespace g4lidar {
@@ -88,6 +89,24 @@ TEST(Correction, TableIsWithinItsBoundForEverySample) {
 
 TEST(Correction, CompactFormIsWithinItsBoundForEverySample) {
   EXPECT_LT(worst_error(compact_correction{}), 2e-5);
+}
+
+TEST(Correction, TheAngleOfTheHeadIsFoundAgainForEachKind) {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  for (const float range_mm : {120.0F, 500.0F, 7999.0F}) {
+    const double d = static_cast<double>(range_mm);
+    const double triangle = std::atan(21.8 * (155.3 - d) / (155.3 * d)) * degrees;
+    const double scl = std::atan(17.8 / d) * degrees;
+    const auto head_of = [&](double correction, correction_kind kind) {
+      point p;
+      p.angle_deg = static_cast<float>(90.0 + correction);
+      p.range_mm = range_mm;
+      return static_cast<double>(raw_angle_deg(p, kind));
+    };
+    EXPECT_NEAR(head_of(triangle, correction_kind::triangle), 90.0, 1e-4);
+    EXPECT_NEAR(head_of(scl, correction_kind::scl), 90.0, 1e-4);
+    EXPECT_EQ(head_of(0.0, correction_kind::none), 90.0);
+  }
 }
 
 TEST(Correction, FarTargets_ApproachTheStatedLimit) {

@@ -221,6 +221,50 @@ TEST(Model, OldFirmwareDiffersWhereItDoes) {
   }
 }
 
+TEST(Model, TheRateOfADeviceThatAnswersIsTrueWithinFourPercent) {
+  const expected_rate rate = expected_rate_of(*model_named("g6"), 16'000);
+  EXPECT_EQ(rate.hz, 16'000.0);
+  EXPECT_EQ(rate.tolerance, 0.04);
+}
+
+// A device that cannot be asked may have a firmware with another oscillator or another number.
+TEST(Model, TheRateOfADeviceThatCannotBeAskedIsTrueWithinTenPercent) {
+  const expected_rate rate = expected_rate_of(*model_named("x4"), 5000);
+  EXPECT_EQ(rate.hz, 5000.0);
+  EXPECT_EQ(rate.tolerance, 0.1);
+}
+
+TEST(Model, ARateThatIsNotKnownIsBetweenThoseOfTheTable) {
+  struct expectation {
+    const char* word;
+    double lowest_hz, highest_hz;
+  };
+  for (const auto& [word, lowest_hz, highest_hz] :
+       {expectation{"tg30", 9000, 22'000}, {"s2", 2700, 5500}, {"x3-pro", 2700, 4400}}) {
+    const expected_rate rate = expected_rate_of(*model_named(word), 1);
+    EXPECT_NEAR((1.0 - rate.tolerance) / rate.hz, 1.0 / highest_hz, 1e-12) << word;
+    EXPECT_NEAR((1.0 + rate.tolerance) / rate.hz, 1.0 / lowest_hz, 1e-12) << word;
+    EXPECT_LT(rate.tolerance, 0.5) << word;
+  }
+}
+
+TEST(Model, AScanHasRoomForAMotorThatSpinsUp) {
+  EXPECT_EQ(largest_scan(g4_model), 8192U);
+  EXPECT_EQ(largest_scan(*model_named("x2")), 8192U);
+  EXPECT_EQ(largest_scan(*model_named("g6")), 14'400U);    // 4 x 18 kHz at 5 Hz
+  EXPECT_EQ(largest_scan(*model_named("tg30")), 26'666U);  // 4 x 20 kHz at 3 Hz
+}
+
+TEST(Model, TheUnitOfARange) {
+  EXPECT_EQ(range_units_per_mm(sample_layout::quarter_mm), 4);
+  EXPECT_EQ(range_units_per_mm(sample_layout::flagged_mm), 4);
+  EXPECT_EQ(range_units_per_mm(sample_layout::half_mm), 2);
+  EXPECT_EQ(range_units_per_mm(sample_layout::whole_mm), 1);
+  EXPECT_EQ(range_units_per_mm(sample_layout::intensity_10), 4);
+  EXPECT_EQ(range_units_per_mm(sample_layout::intensity_8), 4);
+  EXPECT_EQ(range_units_per_mm(sample_layout::intensity_16), 1);
+}
+
 TEST(Model, SizesOfSamples) {
   EXPECT_EQ(sample_size(sample_layout::quarter_mm), 2U);
   EXPECT_EQ(sample_size(sample_layout::flagged_mm), 2U);

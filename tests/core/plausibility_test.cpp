@@ -265,6 +265,28 @@ TEST(BitErrors, ASampleWithOneWrongBit_IsMarked_IfItIsFarOff) {
   EXPECT_FALSE(is_marked(surface(8000, 8450))) << "512 more by noise, but that bit is not set";
 }
 
+// Where the word of a sample is the range in millimetres, an error of bit 12 is 4.096 m, in half
+// millimetres 2.048 m; with flags below the range it is 1.024 m, as with quarter millimetres.
+TEST(BitErrors, TheUnitOfTheSamplesDecides) {
+  const auto is_marked_at = [](float range_mm, float off_mm, sample_layout layout) {
+    std::vector<point> points(9);
+    for (point& p : points) p.range_mm = range_mm;
+    points[4].range_mm += off_mm;
+    return mark_bit_errors(points, {}, layout) == 1;
+  };
+  using enum sample_layout;
+  for (const auto layout : {quarter_mm, flagged_mm, intensity_8, intensity_10}) {
+    EXPECT_TRUE(is_marked_at(2000.0F, 8192.0F, layout)) << "bit 15";
+    EXPECT_FALSE(is_marked_at(2000.0F, 16'384.0F, layout)) << "no sample contains this";
+  }
+  EXPECT_TRUE(is_marked_at(2000.0F, 16'384.0F, half_mm)) << "bit 15";
+  for (const auto layout : {whole_mm, intensity_16}) {
+    EXPECT_TRUE(is_marked_at(2000.0F, 32'768.0F, layout)) << "bit 15";
+    EXPECT_TRUE(is_marked_at(2000.0F, 4096.0F, layout)) << "bit 12";
+    EXPECT_FALSE(is_marked_at(2000.0F, 4500.0F, layout)) << "between two bits";
+  }
+}
+
 TEST(BitErrors, BesideAnEdge_NothingIsMarked) {
   std::vector<point> points = surface(8000, 8000 ^ 4096);
   for (std::size_t i = 6; i < points.size(); ++i) points[i].range_mm = 1000.0F;

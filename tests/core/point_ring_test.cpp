@@ -208,6 +208,23 @@ TYPED_TEST(PointRing, CountersWrapWithoutError) {
   }
 }
 
+// The size of the memory is not known to the compiler: what the other tests show of a ring of 8.
+TEST(RingInMemoryOfTheCaller, HoldsAsMuchAsTheMemory) {
+  using ring = point_ring<std::dynamic_extent>;
+  std::vector<ring::slot> memory(8);
+  ring points(memory, 5);
+  auto reader = points.make_reader();
+  points.push(numbered(0, 3));
+  std::uint64_t missed = 0;
+  EXPECT_EQ(read_all(reader, missed), numbered(0, 3));
+  EXPECT_EQ(missed, 0U);
+  points.push(numbered(3, 20));
+  EXPECT_EQ(reader.ahead(), 20U);
+  EXPECT_EQ(read_all(reader, missed), numbered(15, 8));
+  EXPECT_EQ(missed, 12U);
+  EXPECT_EQ(points.written(), 28U);
+}
+
 TEST(PublishedCount, HoldsEveryValue) {
   for (const std::uint64_t value :
        {std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{0xFFFFFFFF}, std::uint64_t{0x100000000},

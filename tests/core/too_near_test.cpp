@@ -82,6 +82,21 @@ TEST(MarkNear, ComparesBeams_NotCorrectedDirections) {
   }
 }
 
+// A T-mini has no correction: the directions of its points are those of its beams.
+TEST(MarkNear, TheBeamsAreThoseOfTheModel) {
+  const auto count_of = [](correction_kind correction) {
+    std::vector<point> points(2);
+    points[0].angle_deg = points[1].angle_deg = 100.5F;
+    points[0].range_mm = 300.0F;
+    points[1].revolution = 1;
+    points[1].flags = point_flags::no_return;
+    near_history history;
+    return mark_near(points, history, {}, correction);
+  };
+  EXPECT_EQ(count_of(correction_kind::none), 1U);
+  EXPECT_EQ(count_of(correction_kind::triangle), 0U) << "a G4 has measured them on two beams";
+}
+
 // None is at a whole degree, where rounding decides between two places.
 TEST(MarkNear, EveryBeam_HasItsPlace) {
   for (double head = 0.005; head < 360.0; head += 0.37) {

@@ -173,8 +173,8 @@ TEST(RunningHealthy, AnEventLoop_IsNotABusyHost) {
     while (clock.now_ns() < 12 * second) {
       static_cast<void>(device->next_scan(0ms));
       const std::int64_t next_ns = simulated.next_ns(clock.now_ns());  // as a poll would
-      clock.advance_to(
-          std::min(device->next_deadline_ns(), std::max(next_ns, clock.now_ns() + rest_ms * ms)));
+      clock.advance_to(std::min(device->event_loop().next_deadline_ns(),
+                                std::max(next_ns, clock.now_ns() + rest_ms * ms)));
     }
     const seen found{{judge.stages()}};
     EXPECT_EQ(found.diagnoses(), "") << rest_ms << found;

@@ -186,12 +186,12 @@ TEST(MovedFromLidar, BehavesAsClosed) {
   empty.release();
   EXPECT_EQ(empty.next_scan(1s).error(), problem::gone);
   EXPECT_EQ(empty.next_points(1s).error(), problem::gone);
-  EXPECT_EQ(empty.process().error(), problem::gone);
+  EXPECT_EQ(empty.event_loop().process().error(), problem::gone);
   EXPECT_EQ(empty.ask(requests::health()).error(), problem::gone);
   EXPECT_EQ(empty.set(low_power::on).error(), problem::gone);
   empty.wake();
-  EXPECT_EQ(empty.native_handle(), -1);
-  EXPECT_EQ(empty.next_deadline(), std::chrono::steady_clock::time_point::max());
+  EXPECT_EQ(empty.event_loop().native_handle(), -1);
+  EXPECT_EQ(empty.event_loop().next_deadline(), std::chrono::steady_clock::time_point::max());
   EXPECT_EQ(empty.points().written(), 0U);
   EXPECT_EQ(empty.information(), device_information{});
   EXPECT_EQ(empty.name(), "closed");
@@ -209,7 +209,8 @@ TEST(Deadline, IsTheSameAsATimePoint) {
   ASSERT_TRUE(lidar);
   ASSERT_TRUE(lidar->start());
   ASSERT_TRUE(lidar->next_scan(5s));
-  EXPECT_EQ(lidar->next_deadline().time_since_epoch() / 1ns, lidar->next_deadline_ns());
+  EXPECT_EQ(lidar->event_loop().next_deadline().time_since_epoch() / 1ns,
+            lidar->event_loop().next_deadline_ns());
 }
 
 /// The documented time, with each kind of fault long before the stop, and shortly before.

@@ -2,7 +2,12 @@
 // When a read is worth its system calls: the rules alone, and the savings of a driver.
 #include "driver/read_schedule.hpp"
 
+#include <utility>
+#include <vector>
+
+#include "g4lidar/core/model.hpp"
 #include "pace_bench.hpp"
+#include "support/family_reference.hpp"
 #include "support/packet_maker.hpp"
 
 namespace g4lidar {
@@ -114,6 +119,43 @@ TEST_F(PaceFarFromTheEnd, NoBaudRate_NoWait) {
   pace.reset(0, 4095);
   pace.received(10, now_ns);
   EXPECT_EQ(pace.next_ns(10, 80, demand::points), 0);
+}
+
+// A T-mini Plus SH sends 4 bytes a sample: 142 bytes with 33 samples, 102 with 23, 14 with one.
+TEST(Forecast, PacketsHaveTheSizeOfTheirLayout) {
+  const reference::wire_format& format = reference::wire_formats.back();
+  const model& which = *model_named(format.model);
+  revolution_forecast forecast;
+  const auto take = [&](unsigned ct, unsigned first, unsigned last, std::size_t samples,
+                        std::int64_t measured_ns) {
+    const auto made = reference::packet_of(format, ct, first, last,
+                                           std::vector(samples, reference::wire_sample{7, 500}));
+    forecast.packet(*packet_view::from(made, which.samples), measured_ns, measured_ns, 250e3,
+                    byte_ns);
+  };
+  take(1, 0, 0, 1, second);
+  take(0, 0, 8 * 64, 33, second + 8 * ms);
+  take(0, 8 * 64, 16 * 64, 33, second + 16 * ms);
+  // 344 degrees are left: 1376 samples, 41 packets of 33 and one of 23, and then the zero packet.
+  EXPECT_EQ(forecast.end_ns(), second + 16 * ms + 41 * 33 * 250 * us + (142 + 102 + 14) * byte_ns);
+}
+
+// The system may keep 4095 bytes, of which half are 178 ms of an X2 and 89 ms of a G4.
+TEST(Pace, WhereTheRateIsNotKnown_ItIsThatOfTheModel) {
+  for (const auto& [word, at_most_ns] : {std::pair{"x2", 178 * ms}, std::pair{"g4", 89 * ms}}) {
+    read_schedule pace(*model_named(word));
+    pace.reset(0, 4095);
+    std::int64_t now_ns = second;
+    for (const auto& next : {made::packet(1, 0, 0, 1), made::packet(0, 0, 4 * 64, 40),
+                             made::packet(0, 4 * 64, 8 * 64, 40)}) {
+      now_ns += 10 * ms;
+      pace.received(next.data().size(), now_ns);
+      pace.packet(next.view(), 0, now_ns, period_ns);
+    }
+    const std::int64_t rest_ns = pace.next_ns(0, 1, demand::scans) - now_ns;
+    EXPECT_LE(rest_ns, at_most_ns) << word;
+    EXPECT_GT(rest_ns, at_most_ns - 2 * ms) << word;
+  }
 }
 
 TEST(Pace, SavesReadsAndDelaysNoScan) {

@@ -81,7 +81,7 @@ TEST(LidarReading, FirstPointsAfterScans_BeginWithTheUnfinishedRevolution) {
   const std::int64_t half_ns = bench.now_ns + 70 * ms;
   while (bench.now_ns < half_ns) {
     bench.now_ns = std::max(bench.now_ns, bench.device.next_ns(bench.now_ns));
-    ASSERT_TRUE(lidar->process());
+    ASSERT_TRUE(lidar->event_loop().process());
   }
   EXPECT_GT(lidar->counts().stream.points, in_scans + 400);
   std::uint64_t points = 0;
@@ -107,7 +107,7 @@ TEST(LidarReading, PointsOfAScanThatWasNotTaken_AreReturned) {
   ASSERT_TRUE(lidar);
   while (lidar->counts().scans < 3) {
     bench.now_ns = std::max(bench.now_ns, bench.device.next_ns(bench.now_ns));
-    ASSERT_TRUE(lidar->process());
+    ASSERT_TRUE(lidar->event_loop().process());
   }
   const auto some = lidar->next_points(500ms);
   ASSERT_TRUE(some);
@@ -137,9 +137,8 @@ TEST(LidarReading, EventLoop_GetsEveryScan) {
   const std::int64_t end = bench.now_ns + 10 * second;
   while (bench.now_ns < end) {
     // Like poll().
-    bench.now_ns =
-        std::max(bench.now_ns,
-                 std::min({lidar->next_deadline_ns(), bench.device.next_ns(bench.now_ns), end}));
+    bench.now_ns = std::max(bench.now_ns, std::min({lidar->event_loop().next_deadline_ns(),
+                                                    bench.device.next_ns(bench.now_ns), end}));
     while (lidar->next_scan(0ms)) ++scans;
   }
   EXPECT_GT(scans, 60U);
@@ -154,7 +153,7 @@ TEST(LidarReading, Process_CountsScansThatWereNotTaken) {
   const std::int64_t end = bench.now_ns + 5 * second;
   while (bench.now_ns < end) {
     bench.now_ns = std::max(bench.now_ns, std::min(bench.device.next_ns(bench.now_ns), end));
-    ASSERT_TRUE(lidar->process());
+    ASSERT_TRUE(lidar->event_loop().process());
   }
   const auto counts = lidar->counts();
   EXPECT_GT(counts.scans, 25U);

@@ -129,7 +129,7 @@ TEST(ScanLoop, ScanThatIsDue_EndsItAtTheTimeout) {
   EXPECT_EQ(run.why->detail(), error_detail::usual);
   // The stall begins 4 s after the device, and the last scan came at most a revolution before it.
   EXPECT_LT(run.bench.now_ns, 4 * second + 450 * ms);
-  EXPECT_EQ(run.lidar().scan_due_in(), 0ms);
+  EXPECT_EQ(run.lidar().event_loop().scan_due_in(), 0ms);
 }
 
 TEST(ScanLoop, RestartOfADeviceThatRebooted_IsASpinUp) {
@@ -213,8 +213,8 @@ TEST(SingleCall, ReturnsByItsDeadline_AndNamesWhatIsAwaited) {
   EXPECT_EQ(early.error().detail(), error_detail::spinning_up);
   EXPECT_EQ(slow.lidar().next_points(100ms).error().detail(), error_detail::spinning_up);
   EXPECT_LT(slow.passed_ns(), 220 * ms);
-  EXPECT_GT(slow.lidar().scan_due_in(), 9s);
-  EXPECT_LE(slow.lidar().scan_due_in(), 10s);
+  EXPECT_GT(slow.lidar().event_loop().scan_due_in(), 9s);
+  EXPECT_LE(slow.lidar().event_loop().scan_due_in(), 10s);
 
   running lost({}, {long_unplug}, true);
   while (lost.lidar().next_scan(500ms)) {
@@ -227,7 +227,7 @@ TEST(SingleCall, ReturnsByItsDeadline_AndNamesWhatIsAwaited) {
   EXPECT_EQ(away.error().detail(), error_detail::searching);
   EXPECT_NE(away.error().message().find("lost"), std::string::npos);
   EXPECT_EQ(away.error().message().find("unplug"), std::string::npos);
-  EXPECT_EQ(lost.lidar().scan_due_in(), milliseconds::max());
+  EXPECT_EQ(lost.lidar().event_loop().scan_due_in(), milliseconds::max());
 }
 
 TEST(WhileScanning, ImpossibleValue_IsRefused) {

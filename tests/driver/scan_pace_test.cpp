@@ -145,7 +145,7 @@ TEST(ScanPaceOfADriver, AnEventLoopIsWokenForScansToo) {
     const std::int64_t end_ns = bench.now_ns + for_ns;
     while (bench.now_ns < end_ns) {
       while (device.next_scan(0ms)) ++scans;
-      const std::int64_t due_ns = device.next_deadline_ns();
+      const std::int64_t due_ns = device.event_loop().next_deadline_ns();
       const bool rests = due_ns < bench.now_ns + 100 * ms && due_ns > bench.now_ns;
       bench.now_ns =
           rests ? due_ns : std::max(bench.now_ns + 1, bench.device.next_ns(bench.now_ns));

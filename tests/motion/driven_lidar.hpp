@@ -86,6 +86,7 @@ struct drive {
   twist_2d twist;
   pose_2d start = {0.3, 0.4, 0.2};
   double frequency_hz = 7.0;
+  double rate_hz = 9000.0;  ///< Samples per second.
   double noise_m = 0.007;
   double dropouts = 0.03;
   double outliers = 0.03;
@@ -134,7 +135,7 @@ class driven_lidar {
     while (head_deg_ < 360.0) {
       made.push_back(sample());
       ++samples_;
-      head_deg_ += 360.0 * how_.frequency_hz / 9000.0;
+      head_deg_ += 360.0 * how_.frequency_hz / how_.rate_hz;
     }
     head_deg_ -= 360.0;
     return made;
@@ -158,7 +159,7 @@ class driven_lidar {
   }
 
   point sample() {
-    const double seconds = static_cast<double>(samples_) / 9000.0;
+    const double seconds = static_cast<double>(samples_) / how_.rate_hz;
     const pose_2d pose = pose_after(seconds);
     // The direction depends on the range (the triangle of laser and camera), thus it is found by iteration.
     double angle_deg = head_deg_ - 8.0;

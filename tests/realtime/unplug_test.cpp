@@ -45,7 +45,7 @@ struct activity {
 
 std::vector<activity> activities() {
   return {
-      {"waiting", false, [](lidar& device) { return device.process(); }},
+      {"waiting", false, [](lidar& device) { return device.event_loop().process(); }},
       {"asking", false,
        [](lidar& device) { return without_value(device.ask(requests::health())); }},
       {"starting and stopping", false,
@@ -85,7 +85,7 @@ clock::duration time_to_know(const activity& doing, std::chrono::milliseconds be
   if (fate) {
     EXPECT_EQ(fate->code(), problem::gone) << fate->message();
   }
-  EXPECT_EQ(device->process().error().code(), problem::gone);  // the error persists
+  EXPECT_EQ(device->event_loop().process().error().code(), problem::gone);  // the error persists
   EXPECT_EQ(device->start().error().code(), problem::gone);
   test::expect_identity(device->counts());
   return known - pulled;
@@ -160,7 +160,7 @@ TEST(Unplug, DuringOpening_IsReportedWithin100ms) {
     auto device = lidar::open(test::patient_options(simulated.path()));
     std::optional<error> fate;
     if (device) {  // it was quicker: the next call returns the error
-      fate = fate_of([&] { return device->process(); });
+      fate = fate_of([&] { return device->event_loop().process(); });
     } else {
       fate = device.error();
     }

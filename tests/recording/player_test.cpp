@@ -107,7 +107,7 @@ TEST_F(Player, Pause_StandsStillUntilItEnds) {
   EXPECT_EQ(found.error(), problem::timeout);
   EXPECT_GE(clock::now() - begun, 100ms);
   EXPECT_EQ(on.position_ns(), position_ns);
-  EXPECT_EQ(device.scan_due_in(), lidar::milliseconds::max());
+  EXPECT_EQ(device.event_loop().scan_due_in(), lidar::milliseconds::max());
   device.wake();
   EXPECT_EQ(device.wait_scan(100ms).error(), problem::cancelled) << "a loop waits without limit";
   on.pause(false);

@@ -104,7 +104,7 @@ inline run_result replayed(std::unique_ptr<connector> from, bool by_scans = true
       if (scan) run.scans.emplace_back(scan->points.begin(), scan->points.end());
       if (!scan) done = tl::unexpected(scan.error());
     } else {
-      done = opened->process();
+      done = opened->event_loop().process();
     }
     all.points(run);
     while (const auto event = opened->next_event()) run.events.push_back(event->what);

@@ -30,7 +30,7 @@ class program {
     } else if (what < 80) {
       static_cast<void>(device_.next_points(20ms));
     } else if (what < 90) {
-      static_cast<void>(device_.process());
+      static_cast<void>(device_.event_loop().process());
     } else if (what < 92) {
       static_cast<void>(device_.stop());
     } else if (what < 94) {

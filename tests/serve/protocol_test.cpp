@@ -171,6 +171,19 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   EXPECT_EQ(hello["allow_set"], false);
   EXPECT_EQ(hello["recording"]["length_s"], 2.5);
   EXPECT_EQ(hello["frame"], "robot");
+  const json& rows = hello["setting_rows"];
+  ASSERT_EQ(rows.size(), 6U);
+  EXPECT_EQ(rows[0], (json{{"name", "sample_rate"},
+                           {"text", "samples per second"},
+                           {"unit", "Hz"},
+                           {"values", {"4000", "8000", "9000"}}}));
+  EXPECT_EQ(rows[1], (json{{"name", "frequency"},
+                           {"text", "revolutions per second"},
+                           {"unit", "Hz"},
+                           {"least", 5.0},
+                           {"most", 12.0},
+                           {"step", 0.1}}));
+  EXPECT_EQ(rows[4]["values"], (json{"off", "on"}));
   page_status status{.state = g4lidar::reader_state::lost, .why = "gone", .loss = 0.25};
   status.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
   status.stages.back().find(g4lidar::diagnosis::bits_flipped);

@@ -255,12 +255,12 @@ void application::read_points(milliseconds timeout) {
 
 /// What an event loop does.
 void application::process() {
-  const std::int64_t due_ns =
-      std::min({lidar_->next_deadline_ns(), environment_.device.next_ns(now()), now() + 200 * ms});
+  const std::int64_t due_ns = std::min({lidar_->event_loop().next_deadline_ns(),
+                                        environment_.device.next_ns(now()), now() + 200 * ms});
   sleep_until(std::max(now(), due_ns));
   if (dice_.chance(0.3)) return read_scan(milliseconds(0));
   within(read_slack_ns, "process()", [&] {
-    const auto done = lidar_->process();
+    const auto done = lidar_->event_loop().process();
     if (!done) judge(done.error());
   });
 }

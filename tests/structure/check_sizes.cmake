@@ -19,7 +19,7 @@ endif()
 set(larger
     device_options # of the simulator: one member for each property of a G4 that docs/sim_device.md lists
     # To be divided.
-    lidar machine
+    machine
 )
 
 function(sources variable) # <directory>...

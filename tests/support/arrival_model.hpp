@@ -37,6 +37,7 @@ struct options {
   double outage_at_s = 0.0;   ///< When all packets of `outage_s` are lost.
   double outage_s = 0.0;
   double baud = 230400.0;  ///< 0: bytes take no time.
+  sample_layout layout = g4_layout;
   double delay_ns = 0.0;   ///< Of all bytes, after the connection.
   std::int64_t start_ns = 1'000'000'000'000;
 };
@@ -78,7 +79,7 @@ class model {
         return d;
       }
       lost += d.packet.sample_count;
-      lost_bytes += packet_size(d.packet.sample_count);
+      lost_bytes += packet_size(d.packet.sample_count, o_.layout);
     }
   }
   /// The time in the device, after options::start_ns.
@@ -134,7 +135,7 @@ class model {
 
   /// A packet is transmitted when it is complete and the connection is free.
   void send(delivery& d) {
-    const std::size_t size = packet_size(d.packet.sample_count);
+    const std::size_t size = packet_size(d.packet.sample_count, o_.layout);
     const double byte_ns = o_.baud > 0.0 ? 10e9 / o_.baud : 0.0;
     const double begin = std::max(wire_free_ns_, d.measured_ns[d.packet.sample_count - 1U]);
     wire_free_ns_ = begin + static_cast<double>(size) * byte_ns;

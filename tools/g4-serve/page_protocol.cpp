@@ -12,6 +12,7 @@
 #include "cli/settings.hpp"
 #include "client_json.hpp"
 #include "g4lidar/cartesian.hpp"
+#include "g4lidar/setting_table.hpp"
 #include "g4lidar/version.hpp"
 
 namespace g4_tool {
@@ -116,6 +117,28 @@ json measured(const std::vector<stage_report>& stages, diagnostic_stage where,
   return nullptr;
 }
 
+/// A row of the table of settings: how the page asks for a value.
+json json_of(const setting_info& row) {
+  json made{{"name", row.name}, {"text", row.text}, {"unit", row.unit}};
+  if (row.values.empty()) {
+    made["least"] = row.least / 100.0;
+    made["most"] = row.most / 100.0;
+    made["step"] = row.step / 100.0;
+    return made;
+  }
+  for (const setting_value& each : row.values) {
+    const bool is_number = row.type == setting_type::whole;
+    made["values"].push_back(is_number ? std::to_string(each.number) : std::string(each.word));
+  }
+  return made;
+}
+
+json setting_rows() {
+  json rows = json::array();
+  for (const setting_info& each : all_settings()) rows.push_back(json_of(each));
+  return rows;
+}
+
 json verdict_of(const std::vector<stage_report>& stages, diagnostic_stage where) {
   const auto stage = std::ranges::find(stages, where, &stage_report::stage);
   return stage == stages.end() ? json(nullptr) : json(name_of(stage->outcome));
@@ -142,6 +165,7 @@ std::string hello_text(const page_hello& hello) {
        {"device", json_of(hello.device)},
        {"allow_set", hello.allows_set},
        {"settings", hello.settings},
+       {"setting_rows", setting_rows()},
        {"recording", hello.recording_s ? json{{"length_s", *hello.recording_s}} : json(nullptr)}});
 }
 

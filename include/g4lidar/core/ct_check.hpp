@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/skipped.hpp"
@@ -33,6 +34,40 @@ inline constexpr auto crc_steps = [] {
   return detail::crc_steps[crc ^ unsigned{byte}];
 }
 
+/// The CT bytes of the revolution that is being received: whether all of them were, and their CRC.
+/// *Single thread, never allocates.*
+class ct_revolution {
+ public:
+  /// Passes a packet, suspect or not. If a revolution ends with it that was received from zero packet
+  /// to zero packet, with exactly one byte of noise before the last one and no other skipped byte:
+  /// whether this byte is its CRC. What is known to be damaged proves nothing.
+  constexpr std::optional<bool> add(packet_view packet) noexcept {
+    std::optional<bool> fits;
+    if (packet.is_zero()) {
+      if (is_open_ && noise_ == 1) fits = byte_ == crc_;
+      is_open_ = true;
+      crc_ = 0;
+    } else if (noise_ != 0) {
+      is_open_ = false;
+    }
+    crc_ = next_crc(crc_, packet.ct());
+    noise_ = 0;
+    return fits;
+  }
+  /// Passes skipped bytes.
+  constexpr void add(skipped gone) noexcept {
+    if (gone.reason != skip_reason::noise) is_open_ = false;
+    noise_ = std::min<std::size_t>(noise_ + gone.count, 2);
+    byte_ = gone.last;
+  }
+
+ private:
+  std::uint8_t crc_ = 0;
+  std::uint8_t byte_ = 0;  // the last skipped one
+  std::size_t noise_ = 0;  // bytes since the last packet, at most 2
+  bool is_open_ = false;   // received from its zero packet on, without a skipped byte
+};
+
 /// Compares the byte before each zero packet with the CRC of the CT bytes of the revolution that
 /// ends there. *Single thread, never allocates.*
 ///
@@ -42,9 +77,7 @@ inline constexpr auto crc_steps = [] {
 /// did not fit before has to fit as often in a row as it did not fit, up to 16 times. After three
 /// revolutions in a row that do not fit it is unknown again.
 ///
-/// A revolution is compared only if it was received from zero packet to zero packet, with exactly
-/// one byte of noise before the last one and no other skipped byte: what is known to be damaged
-/// proves nothing. (protocol: The stream, CRC byte)
+/// (protocol: The stream, CRC byte)
 class ct_check {
  public:
   /// The result for one packet.
@@ -56,23 +89,11 @@ class ct_check {
 
   /// Passes a packet, suspect or not.
   constexpr void add(packet_view packet) noexcept {
-    if (packet.is_zero()) {
-      last_ = at_zero();
-      is_open_ = true;
-      crc_ = 0;
-    } else {
-      last_ = result::none;
-      if (noise_ != 0) is_open_ = false;
-    }
-    crc_ = next_crc(crc_, packet.ct());
-    noise_ = 0;
+    const std::optional<bool> fits = received_.add(packet);
+    last_ = fits ? judge(*fits) : result::none;
   }
   /// Passes skipped bytes.
-  constexpr void add(skipped gone) noexcept {
-    if (gone.reason != skip_reason::noise) is_open_ = false;
-    noise_ = std::min<std::size_t>(noise_ + gone.count, 2);
-    byte_ = gone.last;
-  }
+  constexpr void add(skipped gone) noexcept { received_.add(gone); }
   /// The result for the last packet.
   [[nodiscard]] constexpr result last() const noexcept { return last_; }
   /// Whether the byte is a check now.
@@ -82,9 +103,7 @@ class ct_check {
   static constexpr std::uint8_t in_a_row = 3;
   static constexpr std::uint8_t most = 16;
 
-  [[nodiscard]] constexpr result at_zero() noexcept {
-    if (!is_open_ || noise_ != 1) return result::none;
-    const bool fits = byte_ == crc_;
+  [[nodiscard]] constexpr result judge(bool fits) noexcept {
     const bool was_trusted = is_trusted_;
     if (is_trusted_) {
       misfits_ = fits ? std::uint8_t{0} : static_cast<std::uint8_t>(misfits_ + 1);
@@ -102,12 +121,9 @@ class ct_check {
     return was_trusted ? result::mismatch : result::none;
   }
 
-  std::uint8_t crc_ = 0;
-  std::uint8_t byte_ = 0;     // the last skipped one
+  ct_revolution received_;
   std::uint8_t fits_ = 0;     // in a row, before it is trusted
   std::uint8_t misfits_ = 0;  // in a row while it is trusted; before, all
-  std::size_t noise_ = 0;     // bytes since the last packet, at most 2
-  bool is_open_ = false;      // received from its zero packet on, without a skipped byte
   bool is_trusted_ = false;
   result last_ = result::none;
 };

@@ -9,13 +9,12 @@
 #include <variant>
 
 #include "g4lidar/core/bytes.hpp"
-#include "g4lidar/core/ct_check.hpp"
+#include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/skipped.hpp"
 #include "g4lidar/core/stream_parser.hpp"
-#include "g4lidar/core/time_packet.hpp"
 
 namespace g4lidar {
 
@@ -37,15 +36,19 @@ class layout_candidate {
     while (const auto found = parser_.finish()) take(*found);
   }
 
-  /// Packets that another packet, a time packet or a response follows, with at most one byte before it.
+  /// Packets that another packet, a time packet or a response follows, with at most one byte before
+  /// it.
   [[nodiscard]] constexpr std::uint32_t votes() const noexcept { return votes_; }
   /// The number in the first device information; 0: there was none.
   [[nodiscard]] constexpr std::uint8_t id() const noexcept { return id_; }
-  /// The lower half of that number in the bytes CT of a revolution whose CRC fits.
-  [[nodiscard]] constexpr std::optional<std::uint8_t> half_id() const noexcept { return half_id_; }
+  /// What the bytes CT state.
+  [[nodiscard]] constexpr const std::optional<ct_information>& information() const noexcept {
+    return reader_.last();
+  }
   /// Samples per second, by the frequency that a zero packet reports; 0: not known.
   [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept { return rate_hz_; }
-  /// Whether the second bit of 2-byte samples is seldom set: the lowest bits of a range have all values.
+  /// Whether the second bit of 2-byte samples is seldom set: the lowest bits of a range have all
+  /// values.
   [[nodiscard]] constexpr bool has_rare_upper_flag() const noexcept {
     return 10 * upper_flags_ <= ranges_;
   }
@@ -56,13 +59,10 @@ class layout_candidate {
   }
 
  private:
-  /// The packet of a revolution, from its zero packet on, whose CT has the number of the model.
-  static constexpr std::uint32_t place_of_id = 7;
-
   constexpr void take(const event& found) noexcept {
     if (const auto* const gone = std::get_if<skipped>(&found)) {
       gap_ += gone->count;
-      last_ = gone->last;
+      reader_.add(*gone);
       return;
     }
     if (is_open_ && gap_ <= 1) ++votes_;
@@ -77,18 +77,15 @@ class layout_candidate {
   }
 
   constexpr void take(packet_view packet) noexcept {
+    static_cast<void>(reader_.add(packet));
     if (packet.is_zero()) {
-      end_revolution();
+      if (is_in_revolution_ && gap_ <= 1 && dhz_ != 0) rate_hz_ = samples_ * dhz_ / 10;
       dhz_ = static_cast<std::uint32_t>(packet.reported_frequency_dhz());
       is_in_revolution_ = true;
-      packets_ = samples_ = 0;
-      crc_ = 0;
+      samples_ = 0;
     } else if (gap_ > 0) {
       is_in_revolution_ = false;
     }
-    if (packets_ == place_of_id) seen_id_ = packet.ct() >> 1U & 0xFU;
-    crc_ = next_crc(crc_, packet.ct());
-    ++packets_;
     samples_ += static_cast<std::uint32_t>(packet.sample_count());
     for (std::size_t i = 0; i < packet.sample_count(); ++i) {
       const std::uint16_t word = packet.sample(i);
@@ -97,25 +94,15 @@ class layout_candidate {
       if (word > 0 && word <= 3) ++flags_alone_;
     }
   }
-  /// A zero packet follows.
-  constexpr void end_revolution() noexcept {
-    if (!is_in_revolution_ || gap_ > 1) return;
-    if (dhz_ != 0) rate_hz_ = samples_ * dhz_ / 10;
-    if (gap_ == 1 && last_ == crc_ && packets_ > place_of_id) half_id_ = seen_id_;
-  }
 
   stream_parser parser_;
+  ct_information_reader reader_;
   std::uint32_t votes_ = 0;
-  std::size_t gap_ = 0;    // bytes skipped since the last packet or response
-  std::uint8_t last_ = 0;  // the last of them
-  bool is_open_ = false;   // the last one was a packet, and has no vote yet
+  std::size_t gap_ = 0;   // bytes skipped since the last packet or response
+  bool is_open_ = false;  // the last one was a packet, and has no vote yet
   std::uint8_t id_ = 0;
-  std::optional<std::uint8_t> half_id_;
   bool is_in_revolution_ = false;  // received from its zero packet on, without a gap
-  std::uint8_t crc_ = 0;           // of its bytes CT
-  std::uint8_t seen_id_ = 0;       // in its bytes CT, not checked yet
   std::uint32_t dhz_ = 0;          // its frequency
-  std::uint32_t packets_ = 0;      // in it
   std::uint32_t samples_ = 0;      // in it
   std::uint32_t rate_hz_ = 0;
   std::uint32_t ranges_ = 0;       // samples that are not flags alone, and not 0
@@ -168,8 +155,10 @@ class layout_recogniser {
       const bool has_flags = has_sample_flags(row.samples.layout) && found->has_rare_upper_flag();
       return fits(row) && row.ct_information != presence::no && (size != 2 || has_flags);
     };
-    if (const auto half = found->half_id()) {
-      if (const model* const near = nearest(*found, *half, 0x0F, informs)) return *near;
+    if (const auto& stated = found->information()) {
+      if (const model* const near = nearest(*found, stated->id_low_bits, 0x0F, informs)) {
+        return *near;
+      }
     }
     if (size == 2) return found->has_flags_alone() ? *model_named("x2") : g4_model;
     return *model_named(size == 3 ? "t-mini-pro" : "t-mini-plus-sh");

@@ -143,13 +143,57 @@ struct model {
   return intensity_bits(which.samples.layout) > 0;
 }
 
-/// The sample rate of `which` to begin with: the nominal one, or the highest if it is not known. *Pure.*
-[[nodiscard]] constexpr std::uint32_t first_rate_hz(const model& which) noexcept {
+/// The highest sample rate of `which` in Hz. *Pure.*
+[[nodiscard]] constexpr std::uint32_t highest_rate_hz(const model& which) noexcept {
   std::uint32_t highest = 0;
   for (const sample_rate_entry& rate : which.rates.entries) {
     if (rate.hz > highest) highest = rate.hz;
   }
-  return which.rates.nominal_hz != 0 ? which.rates.nominal_hz : highest;
+  return highest;
+}
+
+/// The sample rate of `which` to begin with: the nominal one, or the highest if it is not known. *Pure.*
+[[nodiscard]] constexpr std::uint32_t first_rate_hz(const model& which) noexcept {
+  return which.rates.nominal_hz != 0 ? which.rates.nominal_hz : highest_rate_hz(which);
+}
+
+/// What is known of a sample rate before it is measured: the time from one sample to the next is
+/// within `tolerance` of 1 / `hz`, as a fraction of it.
+struct expected_rate {
+  double hz = 0.0;
+  double tolerance = 0.0;
+};
+
+/// What is known of the sample rate of a device of the model `which`, which is `told_hz` by its reply,
+/// by its model or by the user. A reply is true within 4 %. A device that cannot be asked may have
+/// another firmware than the table: 10 %. Where the table has several rates and no reply tells which,
+/// it is between the lowest and the highest of them, and 10 % beyond. *Pure.*
+[[nodiscard]] constexpr expected_rate expected_rate_of(const model& which,
+                                                       std::uint32_t told_hz) noexcept {
+  constexpr double beyond = 0.1;
+  if (which.rates.is_settable) return {static_cast<double>(told_hz), 0.04};
+  if (which.rates.nominal_hz != 0) return {static_cast<double>(told_hz), beyond};
+  const double lowest_hz = which.rates.entries[0].hz;  // they ascend
+  const double shortest_s = 1.0 / ((1.0 + beyond) * highest_rate_hz(which));
+  const double longest_s = 1.0 / ((1.0 - beyond) * lowest_hz);
+  return {2.0 / (longest_s + shortest_s), (longest_s - shortest_s) / (longest_s + shortest_s)};
+}
+
+/// The most points of a revolution of `which`: four times those of its highest sample rate at its lowest
+/// frequency, because a motor that spins up is slower; at least 8192. *Pure.*
+[[nodiscard]] constexpr std::size_t largest_scan(const model& which) noexcept {
+  constexpr std::uint32_t lowest_dhz_without_command = 40;
+  const std::uint32_t set_dhz = which.frequency.min_dhz;
+  const std::uint32_t lowest_dhz = set_dhz != 0 ? set_dhz : lowest_dhz_without_command;
+  const std::size_t most = std::size_t{4} * 10 * highest_rate_hz(which) / lowest_dhz;
+  return most < 8192 ? 8192 : most;
+}
+
+/// The unit in which a sample contains its range, as the number of them in a millimetre: 4, 2 or 1.
+/// Lower bits that are no part of the range count as fractions of it. *Pure.*
+[[nodiscard]] constexpr int range_units_per_mm(sample_layout layout) noexcept {
+  if (layout == sample_layout::half_mm) return 2;
+  return layout == sample_layout::whole_mm || layout == sample_layout::intensity_16 ? 1 : 4;
 }
 
 /// The shortest range of `which` at this sample rate in millimetres, by the manufacturer. *Pure.*

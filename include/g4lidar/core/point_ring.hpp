@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -94,7 +95,36 @@ struct ring_read {
   std::uint64_t missed = 0;  ///< Points that were overwritten before this reader read them.
 };
 
-/// A ring of the last `Capacity` points. *One producer, any number of readers, never allocates.*
+/// The memory of a ring, whose size is known to the compiler.
+template <class Slot, std::size_t Capacity>
+class ring_memory {
+  static_assert(std::has_single_bit(Capacity) && Capacity >= 2,
+                "the capacity of a point_ring is a power of two, at least 2");
+
+ public:
+  [[nodiscard]] static constexpr std::size_t size() noexcept { return Capacity; }
+  [[nodiscard]] Slot* data() noexcept { return slots_.data(); }
+  [[nodiscard]] const Slot* data() const noexcept { return slots_.data(); }
+
+ private:
+  std::array<Slot, Capacity> slots_{};
+};
+/// That of the caller.
+template <class Slot>
+class ring_memory<Slot, std::dynamic_extent> {
+ public:
+  constexpr explicit ring_memory(std::span<Slot> slots) noexcept : slots_(slots) {
+    assert(std::has_single_bit(slots.size()) && slots.size() >= 2);
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return slots_.size(); }
+  [[nodiscard]] Slot* data() noexcept { return slots_.data(); }
+  [[nodiscard]] const Slot* data() const noexcept { return slots_.data(); }
+
+ private:
+  std::span<Slot> slots_;
+};
+
+/// A ring of the last `Capacity` points; std::dynamic_extent: of as many as the caller gives memory for. *One producer, any number of readers, never allocates.*
 ///
 /// The producer never waits and never fails: when the ring is full, it overwrites the oldest
 /// points. Each reader gets the exact number of points that it missed; at all times, points read +
@@ -109,24 +139,29 @@ struct ring_read {
 /// fences are needed.
 template <std::size_t Capacity, class Word = ring_word>
 class point_ring {
-  static_assert(std::has_single_bit(Capacity) && Capacity >= 2,
-                "the capacity of a point_ring is a power of two, at least 2");
   static_assert(loads_and_stores_in_one_go<Word>);
 
  public:
   class reader;
+  /// The memory of a point.
+  using slot = std::array<std::atomic<Word>, sizeof(point) / sizeof(Word)>;
 
   /// `first` is the number of the first point, for tests of the wrap of the counters.
   explicit constexpr point_ring(std::uint64_t first = 0) noexcept
+    requires(Capacity != std::dynamic_extent)
       : next_(first), claimed_(first), written_(first) {}
+  /// In `memory` for a power of two of points, at least 2, which outlives the ring.
+  explicit constexpr point_ring(std::span<slot> memory, std::uint64_t first = 0) noexcept
+    requires(Capacity == std::dynamic_extent)
+      : next_(first), claimed_(first), written_(first), slots_(memory) {}
   point_ring(const point_ring&) = delete;
   point_ring& operator=(const point_ring&) = delete;
 
   /// Appends points. For the producer only. Never waits.
   void push(std::span<const point> points) noexcept {
     while (!points.empty()) {
-      const std::size_t begin = static_cast<std::size_t>(next_) % Capacity;
-      const std::size_t count = std::min({points.size(), batch, Capacity - begin});
+      const std::size_t begin = place_of(next_);
+      const std::size_t count = std::min({points.size(), batch, slots_.size() - begin});
       claimed_.store(next_ + count);
       slot* to = slots_.data() + begin;
 #pragma GCC unroll 8
@@ -153,8 +188,10 @@ class point_ring {
   /// Points claimed at a time: few, so that a reader close to the producer loses few.
   static constexpr std::size_t batch = std::min<std::size_t>(Capacity, 64);
   using point_words = std::array<Word, words>;
-  using slot = std::array<std::atomic<Word>, words>;
 
+  [[nodiscard]] std::size_t place_of(std::uint64_t number) const noexcept {
+    return static_cast<std::size_t>(number) & (slots_.size() - 1);
+  }
   static void store(slot& to, const point& p) noexcept {
     const auto* const raw = reinterpret_cast<const unsigned char*>(&p);
 #pragma GCC unroll 8
@@ -166,7 +203,7 @@ class point_ring {
   }
   [[nodiscard]] point load(std::uint64_t number) const noexcept {
     point_words raw;
-    const slot& from = slots_[static_cast<std::size_t>(number % Capacity)];
+    const slot& from = slots_.data()[place_of(number)];
 #pragma GCC unroll 8
     for (std::size_t i = 0; i < words; ++i) raw[i] = from[i].load(std::memory_order_acquire);
     return std::bit_cast<point>(raw);
@@ -175,7 +212,7 @@ class point_ring {
   std::uint64_t next_;  // used by the producer only
   published_count<Word> claimed_;
   published_count<Word> written_;
-  std::array<slot, Capacity> slots_{};
+  ring_memory<slot, Capacity> slots_;
 };
 
 /// The position of one reader in a ring. *Single thread at a time.*
@@ -214,8 +251,8 @@ class point_ring<Capacity, Word>::reader {
   /// The numbers are compared by their difference, so they may wrap.
   void skip_overwritten(std::uint64_t frontier, ring_read& result) noexcept {
     const std::uint64_t distance = frontier - place_;
-    if (distance <= Capacity) return;
-    const std::uint64_t gone = distance - Capacity;
+    if (distance <= ring_->slots_.size()) return;
+    const std::uint64_t gone = distance - ring_->slots_.size();
     result.missed += gone;
     place_ += gone;
   }

@@ -21,8 +21,10 @@ namespace g4lidar {
 
 /// What a sensor_clock cannot determine by itself.
 struct sensor_clock_options {
-  /// Nominal, above 0; the true rate is within 4 % of it.
-  double sample_rate_hz = g4_model.rates.nominal_hz;
+  double sample_rate_hz = g4_model.rates.nominal_hz;  ///< Nominal, above 0.
+  /// How far the true time between two samples may be from the nominal one, as a fraction of it, below
+  /// 0.5. See expected_rate_of().
+  double rate_tolerance = 0.04;
   std::int64_t transport_delay_ns =
       0;  ///< The least delay of every byte after the serial connection.
   /// Bits per second, 10 bits per byte; 0: bytes take no time.
@@ -72,9 +74,10 @@ class sensor_clock {
   explicit constexpr sensor_clock(const sensor_clock_options& options = {}) noexcept
       : options_(options),
         sample_size_(sample_size(options.layout)),
+        widest_(margin * options.rate_tolerance),
         nominal_ns_(1e9 / options.sample_rate_hz),
         window_(nominal_ns_) {
-    assert(options.sample_rate_hz > 0.0);
+    assert(options.sample_rate_hz > 0.0 && options.rate_tolerance < 0.5);
     line_.period_ns = nominal_ns_;
     restart();
   }
@@ -130,8 +133,13 @@ class sensor_clock {
   }
   /// The same with another nominal sample rate, above 0.
   constexpr void reset(double sample_rate_hz) noexcept {
-    assert(sample_rate_hz > 0.0);
-    nominal_ns_ = 1e9 / sample_rate_hz;
+    reset({sample_rate_hz, widest_ / margin});
+  }
+  /// The same with another tolerance.
+  constexpr void reset(expected_rate rate) noexcept {
+    assert(rate.hz > 0.0 && rate.tolerance < 0.5);
+    widest_ = margin * rate.tolerance;
+    nominal_ns_ = 1e9 / rate.hz;
     line_.period_ns = nominal_ns_;
     window_ = arrival_window(nominal_ns_);
     rate_known_ = false;
@@ -209,8 +217,8 @@ class sensor_clock {
   static constexpr double early_ns = 1e6;
   /// If the count of lost samples is uncertain by more than this, no times can be derived.
   static constexpr double most_doubt_ns = 1e6;
-  /// The limit of the difference of the period from the nominal one, with a margin.
-  static constexpr double widest = 0.05;
+  /// The limit of the difference of the period from the nominal one has this margin.
+  static constexpr double margin = 1.25;
   /// The limit of the error of a rate that was learnt.
   static constexpr double known_rate = 300e-6;
   /// The assumed delay of packets until it is known, and its minimum.
@@ -243,8 +251,8 @@ class sensor_clock {
   /// Clears the window. The rate is kept: a device that starts again has the same oscillator.
   constexpr void restart() noexcept {
     const double slope = line_.period_ns / nominal_ns_ - 1.0;
-    const double doubt = rate_known_ ? known_rate : 2.0 * widest;
-    slopes_ = {std::max(-widest, slope - doubt), std::min(widest, slope + doubt)};
+    const double doubt = rate_known_ ? known_rate : 2.0 * widest_;
+    slopes_ = {std::max(-widest_, slope - doubt), std::min(widest_, slope + doubt)};
     window_.clear();
     started_ = false;
     late_.reset();
@@ -278,7 +286,7 @@ class sensor_clock {
     if (!window_.add(next, line_.period_ns)) return missed;
     if (window_.span_ns() > enough_ns) {
       rate_known_ = true;
-      slopes_ = {-widest, widest};
+      slopes_ = {-widest_, widest_};
     }
     line_ = window_.fit(slopes_, mean_late_ns_);
     return missed;
@@ -322,6 +330,7 @@ class sensor_clock {
 
   sensor_clock_options options_;
   std::size_t sample_size_;
+  double widest_;  // the limit of the difference of the period from the nominal one
   double nominal_ns_;
   sample_counter counter_;
   arrival_window window_;

@@ -45,9 +45,6 @@ class G4LIDAR_API byte_points {
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
 
  private:
-  // A G4 at its lowest frequency makes 1,800 points per revolution; this is nine times as many.
-  static constexpr std::size_t max_scan_points = 16'384;
-
   void take(const event& found);
   void take(packet_view packet);
 

@@ -10,11 +10,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "support/reference_points.hpp"
@@ -123,6 +125,35 @@ TEST_P(Family, PiecesOfEverySizeGiveThePackets) {
     }
     ASSERT_EQ(next, packets.size()) << piece;
   }
+}
+
+// The information was written by another program; ct-info-synth.txt states what it is.
+TEST(FamilyInformation, TheRevolutionSaysWhoItIs) {
+  std::ifstream file(family / "ct-info-synth.bin", std::ios::binary);
+  if (!file) GTEST_SKIP() << "There is no directory shared/family beside the project.";
+  const std::vector<char> text{std::istreambuf_iterator<char>(file), {}};
+  const std::vector<std::uint8_t> data(text.begin(), text.end());
+  stream_parser parser(model_named("x4-pro")->samples);
+  ct_information_reader reader;
+  int believed = 0;
+  bytes input(data);
+  while (const auto found = parser.next(input)) {
+    if (const auto* packet = std::get_if<packet_view>(&*found)) {
+      believed += reader.add(*packet) ? 1 : 0;
+    } else if (const auto* gone = std::get_if<skipped>(&*found)) {
+      reader.add(*gone);
+    }
+  }
+  EXPECT_EQ(believed, 1);
+  ASSERT_TRUE(reader.last());
+  EXPECT_EQ(reader.last()->customer, 0x24);
+  EXPECT_EQ(reader.last()->faults, ct_faults::sensor);
+  EXPECT_EQ(reader.last()->hardware, 2);
+  EXPECT_EQ(reader.last()->firmware_major, 1);
+  EXPECT_EQ(reader.last()->firmware_minor, 7);
+  EXPECT_EQ(reader.last()->id_low_bits, 4);
+  const auto& digits = reader.last()->serial_digits;
+  EXPECT_EQ(std::string(digits.begin(), digits.end()), "2023031500012345");
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -65,7 +65,7 @@ class read_loop {
 
   /// Takes available data; waits only if poll() cannot. False if there was none.
   bool read() {
-    const auto longest = lidar_.native_handle() < 0 ? 50ms : 0ms;
+    const auto longest = lidar_.event_loop().native_handle() < 0 ? 50ms : 0ms;
     const auto take_scan = [this](const g4lidar::scan& scan) { records_ += sink_.scan(scan); };
     const auto took = sink_.scan ? lidar_.next_scan(longest).map(take_scan)
                                  : lidar_.next_points(longest).map(sink_.points);
@@ -77,10 +77,12 @@ class read_loop {
   }
 
   void wait() {
-    if (lidar_.native_handle() < 0) return;  // read() has waited
-    auto until = std::min({clock::now() + pulse_time, lidar_.next_deadline(), limits_.end()});
+    if (lidar_.event_loop().native_handle() < 0) return;  // read() has waited
+    auto until =
+        std::min({clock::now() + pulse_time, lidar_.event_loop().next_deadline(), limits_.end()});
     if (out_.has_unwritten()) until = std::min(until, flushed_ + flush_time);
-    const wake woken = wait_for_input(lidar_.native_handle(), out_.descriptor(), until);
+    const wake woken =
+        wait_for_input(lidar_.event_loop().native_handle(), out_.descriptor(), until);
     if (woken == wake::output_closed) out_.close_early();
   }
 

@@ -58,6 +58,7 @@ function show_hello(message) {
   write(element('source'), hello.source ?? '');
   write(element('device'), parts.filter(Boolean).join(', '));
   write(element('frame'), hello.frame ?? 'robot');
+  settings.use(hello.setting_rows ?? []);
   settings.allow(hello.allow_set === true);
   settings.show(hello.settings ?? {});
   playback.use(hello.recording ?? null);

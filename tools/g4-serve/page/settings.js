@@ -5,15 +5,11 @@ import { make, write } from './status.js';
 
 /** @typedef {{send: (message: object) => void}} Sender */
 
-/** Names and values are those of g4-dump set. */
-const rows = [
-  { name: 'sample_rate', label: 'Sample rate', values: [['4000', '4 kHz'], ['8000', '8 kHz'], ['9000', '9 kHz']] },
-  { name: 'frequency', label: 'Scan frequency', values: null },
-  { name: 'direction', label: 'Direction', values: [['cw', 'clockwise'], ['ccw', 'counter-clockwise']] },
-  { name: 'constant', label: 'Constant frequency', values: [['on', 'on'], ['off', 'off']] },
-  { name: 'idle', label: 'Motor off when idle', values: [['on', 'on'], ['off', 'off']] },
-  { name: 'protection', label: 'Power-down protection', values: [['on', 'on'], ['off', 'off']] },
-];
+/**
+ * A row of the table of settings, from the server: a few values, or limits.
+ * @typedef {{name: string, text: string, unit: string, values?: string[], least?: number, most?: number,
+ *   step?: number}} Row
+ */
 
 /** @param {unknown} value @returns {string} A value of the form; empty if unknown. */
 function text_of(value) {
@@ -22,16 +18,18 @@ function text_of(value) {
   return String(value);
 }
 
-/** @param {(typeof rows)[0]} row @returns {HTMLSelectElement | HTMLInputElement} */
+/** @param {Row} row @returns {HTMLSelectElement | HTMLInputElement} */
 function field_of(row) {
   if (row.values) {
     const select = document.createElement('select');
-    for (const [value, label] of [['', 'unknown'], ...row.values]) select.add(new Option(label, value));
+    select.add(new Option('unknown', ''));
+    for (const value of row.values) select.add(new Option(value, value));
     select.options[0].disabled = true;
     return select;
   }
   const input = document.createElement('input');
-  Object.assign(input, { type: 'number', min: '5', max: '12', step: '0.1', placeholder: 'unknown' });
+  const { least, most, step } = row;
+  Object.assign(input, { type: 'number', min: least, max: most, step, placeholder: 'unknown' });
   return input;
 }
 
@@ -44,17 +42,22 @@ export class Settings {
     this.values = {};
     /** @type {Map<string, HTMLSelectElement | HTMLInputElement>} */
     this.fields = new Map();
-    const form = element('settings');
-    form.addEventListener('submit', (event) => event.preventDefault());
+    element('settings').addEventListener('submit', (event) => event.preventDefault());
+  }
+
+  /** @param {Row[]} rows  The same ones each time. */
+  use(rows) {
+    if (this.fields.size > 0) return;
     for (const row of rows) {
       const field = field_of(row);
       field.name = row.name;
       field.disabled = true;
       field.addEventListener('change', () => this.#change(field));
       this.fields.set(row.name, field);
-      const label = make('label', row.name === 'frequency' ? `${row.label} (Hz) ` : `${row.label} `);
+      const label = make('label', row.unit ? `${row.name} (${row.unit}) ` : `${row.name} `);
+      label.title = row.text;
       label.append(field);
-      form.append(label);
+      element('settings').append(label);
     }
   }
 

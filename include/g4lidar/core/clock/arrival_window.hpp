@@ -43,7 +43,7 @@ class arrival_window {
     double highest;
   };
 
-  /// An empty one. `nominal_ns` is the period of the samples, within 5 %.
+  /// An empty one. `nominal_ns` is the period of the samples, within a half.
   explicit constexpr arrival_window(double nominal_ns) noexcept : nominal_ns_(nominal_ns) {}
 
   /// Forgets all arrivals.

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// What the CT bytes of a revolution say, and when they are not believed.
+#include "g4lidar/core/ct_information.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "support/packet_maker.hpp"
+
+namespace g4lidar {
+namespace {
+
+/// The CT bytes of a revolution, from the scheme of the manual of the X4 Pro: 6.3 Hz, customer 24h, a
+/// fault of the sensor, hardware 2, firmware 1.7, model 4, made on 2023-03-15, number 12345. Their CRC
+/// is 93h. (The values and the CRC were computed by another program.)
+std::vector<std::uint8_t> example() {
+  return {0x7F, 0x48, 0x32, 0x02, 0x42, 0x0E, 0x00, 0x48, 0x00, 0x18, 0x30,
+          0x78, 0xC0, 0x72, 0x56, 0x5C, 0xE8, 0x00, 0x00, 0x00, 0x00, 0x00};
+}
+constexpr std::uint8_t example_crc = 0x93;
+
+/// CRC-8/MAXIM, bit by bit.
+std::uint8_t crc_of(const std::vector<std::uint8_t>& data) {
+  unsigned crc = 0;
+  for (const unsigned byte : data) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      const bool feeds = ((crc ^ byte >> bit) & 1U) != 0;
+      crc = crc >> 1 ^ (feeds ? 0x8CU : 0U);
+    }
+  }
+  return static_cast<std::uint8_t>(crc);
+}
+
+struct stream {
+  ct_information_reader reader;
+
+  /// A packet of one sample; a zero packet if bit 0 of `ct` is set.
+  bool packet(std::uint8_t ct) {
+    const made::packet made(ct, 0, 0, 1);
+    return reader.add(made.view());
+  }
+  void noise(std::uint8_t byte, std::size_t count = 1) {
+    reader.add(skipped{.count = count, .reason = skip_reason::noise, .last = byte});
+  }
+  /// A revolution, the byte behind it, and the next zero packet. Whether it is believed.
+  bool revolution(const std::vector<std::uint8_t>& ct, std::uint8_t crc) {
+    for (const std::uint8_t each : ct) EXPECT_FALSE(packet(each));
+    noise(crc);
+    return packet(1);
+  }
+};
+
+TEST(CtInformation, TheExampleIsRead) {
+  stream of;
+  ASSERT_EQ(crc_of(example()), example_crc);
+  ASSERT_TRUE(of.revolution(example(), example_crc));
+  const ct_information& found = *of.reader.last();
+  EXPECT_EQ(found.customer, 0x24);
+  EXPECT_EQ(found.faults, ct_faults::sensor);
+  EXPECT_EQ(found.hardware, 2);
+  EXPECT_EQ(found.firmware_major, 1);
+  EXPECT_EQ(found.firmware_minor, 7);
+  EXPECT_EQ(found.id_low_bits, 4);
+  EXPECT_EQ(std::string(found.serial_digits.begin(), found.serial_digits.end()),
+            "2023031500012345");
+}
+
+TEST(CtInformation, TheUpperBitsOfTheNumberAreInTheDate) {
+  std::vector<std::uint8_t> ct = example();
+  ct[9] = static_cast<std::uint8_t>((5U << 2U | 2U) << 1U);  // 2025, bit 20
+  ct[10] = static_cast<std::uint8_t>((12U << 3U | 5U) << 1U);
+  ct[11] = static_cast<std::uint8_t>((31U << 2U | 1U) << 1U);
+  ct[12] = 0;
+  ct[13] = 2;
+  stream of;
+  ASSERT_TRUE(of.revolution(ct, crc_of(ct)));
+  // 2^20 + 5 * 2^16 + 2^14 + 1
+  EXPECT_EQ(
+      std::string(of.reader.last()->serial_digits.begin(), of.reader.last()->serial_digits.end()),
+      "2025123101392641");
+}
+
+TEST(CtInformation, WithoutTheRightCrcItIsNotBelieved) {
+  stream of;
+  EXPECT_FALSE(of.revolution(example(), example_crc ^ 1U));
+  EXPECT_FALSE(of.reader.last());
+}
+
+TEST(CtInformation, ARevolutionThatWasNotReceivedFromItsBeginIsNotBelieved) {
+  const std::vector<std::uint8_t> ct = example();
+  stream of;
+  EXPECT_FALSE(of.revolution({ct.begin() + 1, ct.end()}, example_crc));
+}
+
+TEST(CtInformation, DamageInTheRevolutionIsNotBelieved) {
+  std::vector<std::uint8_t> ct = example();
+  stream noisy;
+  for (std::size_t i = 0; i < ct.size(); ++i) {
+    if (i == 5) noisy.noise(0x55);
+    EXPECT_FALSE(noisy.packet(ct[i]));
+  }
+  noisy.noise(example_crc);
+  EXPECT_FALSE(noisy.packet(1));
+
+  stream torn;
+  for (const std::uint8_t each : ct) EXPECT_FALSE(torn.packet(each));
+  torn.reader.add(skipped{.count = 1, .reason = skip_reason::bad_checksum, .last = example_crc});
+  EXPECT_FALSE(torn.packet(1));
+}
+
+// A G4 has zeros in all CT bytes but that of the zero packet: its stray byte fits by chance.
+TEST(CtInformation, ZerosNameNoModel) {
+  std::vector<std::uint8_t> ct(30, 0);
+  ct[0] = 0x8D;
+  stream of;
+  EXPECT_FALSE(of.revolution(ct, crc_of(ct)));
+}
+
+TEST(CtInformation, AnImpossibleDateIsNotBelieved) {
+  for (const unsigned month : {0U, 13U, 15U}) {
+    std::vector<std::uint8_t> ct = example();
+    ct[10] = static_cast<std::uint8_t>(month << 4U);
+    stream of;
+    EXPECT_FALSE(of.revolution(ct, crc_of(ct))) << month;
+  }
+  std::vector<std::uint8_t> ct = example();
+  ct[11] = 0;
+  stream of;
+  EXPECT_FALSE(of.revolution(ct, crc_of(ct)));
+}
+
+TEST(CtInformation, ARevolutionWithTooFewPacketsIsNotBelieved) {
+  const std::vector<std::uint8_t> all = example();
+  const std::vector<std::uint8_t> ct(all.begin(), all.begin() + 13);
+  stream of;
+  EXPECT_FALSE(of.revolution(ct, crc_of(ct)));
+  EXPECT_FALSE(of.revolution({}, 1)) << "zero packets one after the other";
+}
+
+TEST(CtInformation, TheLastOneStays) {
+  stream of;
+  ASSERT_TRUE(of.revolution(example(), example_crc));
+  const ct_information first = *of.reader.last();
+  // The zero packet that ended the first revolution begins the second one.
+  std::vector<std::uint8_t> ct = example();
+  EXPECT_FALSE(of.revolution(ct, 0));
+  EXPECT_EQ(*of.reader.last(), first);
+}
+
+}  // namespace
+}  // namespace g4lidar
