@@ -44,7 +44,7 @@ TEST(ReplayTransport, OpensByItsPathLikeADevice) {
     ASSERT_TRUE(device) << device.error().message();
     EXPECT_EQ(device->information().serial_number(), "2021101000070073");
     EXPECT_EQ(device->name(), path.text());
-    EXPECT_GE(device->native_handle(), 0);
+    EXPECT_GE(device->event_loop().native_handle(), 0);
     const auto asked = device->ask(requests::health());
     ASSERT_FALSE(asked);
     EXPECT_EQ(asked.error().code(), problem::read_only);
