@@ -105,7 +105,8 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   const client_registry::demand wanted = registry_.wanted();
   const bool wants_scan = wanted.wants(channel::scan);
   const bool wants_points = wanted.wants(channel::points);
-  publish_bytes(wanted.wants(channel::from_device));
+  // A file that a client makes of them has no model, so it would be read as that of a G4.
+  publish_bytes(wanted.wants(channel::from_device) && scan.model->word == g4_model.word);
   shaper_.shape(scan);
   if (report_) report_->add(scan.size(), shaper_.outside());
   message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
