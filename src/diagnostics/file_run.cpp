@@ -51,7 +51,7 @@ class file_run {
     recording_reader& reader = *opened;
     if (reader.model().word != model_.word) {
       return fail({task::opening, problem::bad_option,
-                   "model: " + std::string(model_.word) + ", and the recording is of a " +
+                   "model: " + std::string(model_.word) + ", and the recording states " +
                        std::string(reader.model().word)});
     }
     const auto read = reader.for_each([this](const recorded_item& item) {
@@ -150,7 +150,7 @@ class file_run {
     if (find_other_layout(baud, layout_, model_)) {
       log_.report(std::move(baud));
       return log_.skip_from(diagnostic_stage::answers,
-                            "The packets are not those of a " + std::string(model_.name) + ".");
+                            "The packets are not those of " + one_of(model_) + ".");
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
     if (found) baud.find(*found);

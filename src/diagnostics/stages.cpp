@@ -58,8 +58,8 @@ void find_other_speed(stage_report& rate, double samples_per_s, double samples_p
   if (is_known_rate && is_possible) return;
   rate.find(diagnosis::other_device);
   rate.outcome = std::min(rate.outcome, stage_verdict::warn);
-  rate.remark =
-      "A " + std::string(wanted.name) + " measures " + list_of(rates) + " samples per second";
+  rate.remark = one_of(wanted) + " measures " + list_of(rates) + " samples per second";
+  rate.remark.front() = 'A';
   if (most_hz > 0.0) {
     rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
                    std::to_string(std::lround(most_hz)) + " Hz";
@@ -84,6 +84,12 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
      {diagnosis::usb_latency, diagnostic_stage::usb_latency}}};
 
 }  // namespace
+
+std::string one_of(const model& which) {
+  const bool is_spoken_with_vowel =
+      std::string_view("FRSX").find(which.name.front()) != std::string_view::npos;
+  return (is_spoken_with_vowel ? "an " : "a ") + std::string(which.name);
+}
 
 diagnostic_stage stage_of(diagnosis what) noexcept {
   return std::ranges::lower_bound(last_of_stages, what, {},
@@ -239,8 +245,8 @@ bool find_other_layout(stage_report& report, const layout_recogniser& seen, cons
   if (size == 0 || size == wanted_size) return false;
   report.add("bytes_per_sample", size);
   report.find(diagnosis::other_device);
-  report.remark = "The packets have " + std::to_string(size) + " bytes per sample; those of a " +
-                  std::string(wanted.name) + " have " + std::to_string(wanted_size) + ".";
+  report.remark = "The packets have " + std::to_string(size) + " bytes per sample; those of " +
+                  one_of(wanted) + " have " + std::to_string(wanted_size) + ".";
   return true;
 }
 

@@ -71,6 +71,8 @@ void report_loss(stage_log& log, const stream_statistics& measured);
 /// `baud` 0: bytes take no time. `name` is that of the transport: not all have a USB bridge.
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name);
+/// "a G4", "an X4".
+[[nodiscard]] std::string one_of(const model& which);
 /// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
 bool find_other_layout(stage_report& report, const layout_recogniser& seen,
                        const model& wanted = g4_model);

@@ -145,7 +145,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   const model* const stated = from->traits().model;
   if (options.model != nullptr && stated != nullptr && options.model->word != stated->word) {
     return failure(task::opening, problem::bad_option,
-                   "model: " + std::string(options.model->word) + ", and the source is of a " +
+                   "model: " + std::string(options.model->word) + ", and the source states " +
                        std::string(stated->word));
   }
   lidar_options used = options;

@@ -195,7 +195,7 @@ result<void> recording_writer::file_writer::take_model(const model& which) {
   if (options_.model != nullptr || has_begun) {
     return failure(
         task::opening, problem::bad_option,
-        "model: " + std::string(which.word) + ", and the recording is of a " + std::string(now));
+        "model: " + std::string(which.word) + ", and the recording states " + std::string(now));
   }
   channels_.set_model(which);
   return file_->begin(channels_);

@@ -172,7 +172,7 @@ TEST(Bytes, OfAnotherModelAreFoundByTheirSpeed) {
   EXPECT_EQ(in_file(fast, model_named("g6")).diagnoses(), "");
   const examined slow = in_file(fast, model_named("x4"));
   EXPECT_EQ(slow.diagnoses(), "other_device");
-  EXPECT_EQ(slow.at(diagnostic_stage::rate).remark, "A X4 measures 5000 samples per second.");
+  EXPECT_EQ(slow.at(diagnostic_stage::rate).remark, "An X4 measures 5000 samples per second.");
   for (const double hz : {4000.0, 8000.0, 9000.0}) {
     EXPECT_EQ(in_file(stream_of(2, hz, 7.0, 400)).diagnoses(), "") << hz;
   }

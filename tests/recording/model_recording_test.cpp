@@ -153,7 +153,7 @@ TEST_F(ModelRecording, AnotherModelThanTheRecordedOneIsRefused) {
   const auto refused = lidar::open(recorded_as(t_mini_), {.model = model_named("x4")});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error(), problem::bad_option);
-  EXPECT_THAT(refused.error().message(), HasSubstr("model: x4, and the source is of a t-mini-pro"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("model: x4, and the source states t-mini-pro"));
   EXPECT_EQ(lidar::open(path("made.mcap"), {.model = &g4_model}).error(), problem::bad_option);
 }
 
@@ -207,7 +207,7 @@ TEST_F(ModelRecording, AWriterHasOneModel) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error(), problem::bad_option);
   EXPECT_THAT(refused.error().message(),
-              HasSubstr("model: t-mini-pro, and the recording is of a x4"));
+              HasSubstr("model: t-mini-pro, and the recording states x4"));
   recording_writer begun = made_writer(path("begun.mcap"));
   begun.from_device(stream_.data, begin_ns);
   EXPECT_FALSE(recorded(*open_raw_bytes(raw_file(), {}, {}, {}, t_mini_), begun));

@@ -119,7 +119,7 @@ const g4lidar::model& model_of(const common_options& options) {
     return *options.expected.model;
   const g4lidar::model& found = *value_of(model_of_source(options.source));
   if (options.expected.model != nullptr && options.expected.model->word != found.word) {
-    throw bad_value(fmt::format("--model: {}, and {} is of a {}", options.expected.model->word,
+    throw bad_value(fmt::format("--model: {}, and {} states {}", options.expected.model->word,
                                 in_quotes(options.source), found.word));
   }
   if (kind == source_kind::raw_bytes && found.word != g4_model.word) {
