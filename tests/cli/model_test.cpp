@@ -37,7 +37,7 @@ std::string t_mini_stream(unsigned revolutions) {
   return all;
 }
 
-constexpr const char* told =
+constexpr const char* report =
     "read as T-mini Pro: 3-byte samples with intensity; give --model for another one\n";
 
 class ModelOfAFile : public cli::scratch {
@@ -50,10 +50,10 @@ class ModelOfAFile : public cli::scratch {
   const std::string recorded_ = path("walk.mcap");
 };
 
-TEST_F(ModelOfAFile, RawBytesAreRecognisedAndItIsTold) {
+TEST_F(ModelOfAFile, RawBytesAreRecognisedAndReported) {
   const outcome done = run({"dump", raw_, "-f", "csv", "-n", "40"});
   EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr(told));
+  EXPECT_THAT(done.err, HasSubstr(report));
   EXPECT_THAT(done.out, StartsWith("scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n"
                                    "0,0.000000,2000.00,0,100,2\n"
                                    "0,0.500000,2000.00,250000,101,2\n"));
@@ -74,7 +74,7 @@ TEST_F(ModelOfAFile, RawBytesAreRecognisedAndItIsTold) {
                                              {"record", raw_, path("o.mcap"), "--force"}}) {
     const outcome each = run(words);
     EXPECT_EQ(each.code, 0) << words.front() << each.err;
-    EXPECT_THAT(each.err, HasSubstr(told)) << words.front();
+    EXPECT_THAT(each.err, HasSubstr(report)) << words.front();
     EXPECT_EQ(each.err.find("read as"), each.err.rfind("read as")) << words.front();
   }
 }

@@ -57,7 +57,7 @@ class room {
  public:
   explicit room(std::string_view model) : how_(format_of(model)) {}
 
-  information said{};
+  information stated{};
   unsigned samples = 561;
   bool has_flags_alone = false;
   byte_vector reply;  ///< Before everything.
@@ -67,11 +67,11 @@ class room {
     for (unsigned turn = 0; turn < revolutions; ++turn) {
       std::vector<unsigned> cts;
       const auto put = [&](unsigned index, unsigned from, unsigned count) {
-        unsigned ct = index == 0 ? 2 * said.dhz + 1 : 0;
-        if (said.id != 0 && index == 7) ct = 2 * (said.id % 16);
-        if (said.id != 0 && index == 9) ct = 2 * (2023 - 2020) * 4;  // a year, a month, a day
-        if (said.id != 0 && index == 10) ct = 2 * 3 * 8;
-        if (said.id != 0 && index == 11) ct = 2 * 15 * 4;
+        unsigned ct = index == 0 ? 2 * stated.dhz + 1 : 0;
+        if (stated.id != 0 && index == 7) ct = 2 * (stated.id % 16);
+        if (stated.id != 0 && index == 9) ct = 2 * (2023 - 2020) * 4;  // a year, a month, a day
+        if (stated.id != 0 && index == 10) ct = 2 * 3 * 8;
+        if (stated.id != 0 && index == 11) ct = 2 * 15 * 4;
         cts.push_back(ct);
         std::vector<reference::wire_sample> row;
         for (unsigned i = 0; i < count; ++i) row.push_back(sample_at(from + i));
@@ -84,7 +84,7 @@ class room {
       for (unsigned at = 1, index = 1; at < samples; at += 40, ++index) {
         put(index, at, std::min(40U, samples - at));
       }
-      if (said.id != 0 && said.has_crc) made.push_back(static_cast<std::uint8_t>(crc_of(cts)));
+      if (stated.id != 0 && stated.has_crc) made.push_back(static_cast<std::uint8_t>(crc_of(cts)));
     }
     return made;
   }
@@ -215,7 +215,7 @@ TEST(LayoutRecogniser, OfSeveralModelsTheSampleRateDecides) {
     room announced("x4");
     announced.reply = information_of(4);
     announced.samples = samples;
-    announced.said.dhz = dhz;
+    announced.stated.dhz = dhz;
     return std::string(recognised(announced.of(4)).word);
   };
   EXPECT_EQ(at(714, 70), "x4-pro");  // 4998 per second
@@ -225,14 +225,14 @@ TEST(LayoutRecogniser, OfSeveralModelsTheSampleRateDecides) {
 
 TEST(LayoutRecogniser, InformationInCt_OfARevolutionWhoseCrcFits) {
   room informed("x4");
-  informed.said = {4, 70};
+  informed.stated = {4, 70};
   informed.samples = 714;
   EXPECT_EQ(recognised(informed.of(2)).word, "x4-pro");
-  informed.said.has_crc = false;
+  informed.stated.has_crc = false;
   EXPECT_EQ(recognised(informed.of(20)).word, "g4");
   // The lower half of 100 is 4, too: a TG15, whose ranges use the second bit.
   room whole("tg15");
-  whole.said = {100, 70};
+  whole.stated = {100, 70};
   EXPECT_EQ(recognised(whole.of(20)).word, "g4");
 }
 
