@@ -65,15 +65,16 @@ inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::s
 
 /// Distinguishes errors of one problem that need different advice.
 enum class error_detail : std::uint8_t {
-  usual,         ///< The only case of most problems.
-  spinning_up,   ///< timeout: no scan has come since the start, because the motor spins up.
-  searching,     ///< timeout: the lidar was lost, and the driver is looking for it.
-  missing_port,  ///< no_port: the port that was named does not exist.
-  missing_path,  ///< no_port: neither a port nor a file has the name that was given.
-  not_attached,  ///< no_port: no lidar has the number, or no port the USB path, that was given.
-  bad_name,      ///< bad_option: the name of a lidar that is none.
-  simulated,     ///< bad_option, bad_file: no simulated lidar can be made of what `sim:` names.
-  no_simulator,  ///< bad_option: `sim:`, in a library that was built without the simulator.
+  usual,          ///< The only case of most problems.
+  spinning_up,    ///< timeout: no scan has come since the start, because the motor spins up.
+  searching,      ///< timeout: the lidar was lost, and the driver is looking for it.
+  missing_port,   ///< no_port: the port that was named does not exist.
+  missing_path,   ///< no_port: neither a port nor a file has the name that was given.
+  not_attached,   ///< no_port: no lidar has the number, or no port the USB path, that was given.
+  bad_name,       ///< bad_option: the name of a lidar that is none.
+  simulated,      ///< bad_option, bad_file: no simulated lidar can be made of what `sim:` names.
+  no_simulator,   ///< bad_option: `sim:`, in a library that was built without the simulator.
+  unknown_model,  ///< bad_file: a recording of a model, or in a version, that is not known.
 };
 
 /// One error. Trivially copyable, never allocates.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cassert>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -83,10 +84,12 @@ struct grid_place {
   return {bin % bins, off < 0.0F ? -off : off};
 }
 
-/// Like fill_grid() below, of the points for which `takes(point, bin)` is true.
-template <class Takes>
+/// Like fill_grid() below, of the points for which `takes(point, bin)` is true. `intensities` is empty,
+/// or as long as `ranges_m`, and gets those of the points that determine the ranges, 0 where none does.
+template <std::predicate<const point&, std::size_t> Takes>
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
-                         const grid_options& options, Takes takes) noexcept {
+                         const grid_options& options, Takes takes,
+                         std::span<float> intensities = {}) noexcept {
   assert(!ranges_m.empty() && points.size() <= (std::size_t{1} << 24));
   // First each bin holds the index of its best point, which a float holds exactly; then the range.
   constexpr float nothing = -1.0F;
@@ -114,6 +117,10 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
       slot = static_cast<float>(i);
     }
   }
+  for (std::size_t bin = 0; bin < intensities.size(); ++bin) {
+    const float slot = ranges_m[bin];
+    intensities[bin] = slot < 0.0F ? 0.0F : points[static_cast<std::size_t>(slot)].intensity;
+  }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const std::array<float, 3> of_no_return{infinity, nan, options.longest_mm * 0.001F};
@@ -138,17 +145,20 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
 /// grid_options::no_return sets, if the sensor measured there and nothing came back (never instead of a
 /// return); NaN if nothing is known, because the sensor did not measure there, or every return is too
 /// near to be reliable, or mark_near() has flagged the direction. +infinity is not free space: what is
-/// nearer than the shortest range may give no return. *Never allocates.* Accepts a
+/// nearer than the shortest range may give no return. `intensities` is empty, or as long as `ranges_m`,
+/// and gets those of the points that determine the ranges, 0 where none does. *Never allocates.* Accepts a
 /// scan of up to 16,777,216 points. (protocol: Point packets, no return)
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
-                         const grid_options& options = {}) noexcept {
-  fill_grid(points, ranges_m, options, [](const point&, std::size_t) { return true; });
+                         const grid_options& options = {},
+                         std::span<float> intensities = {}) noexcept {
+  fill_grid(points, ranges_m, options, [](const point&, std::size_t) { return true; }, intensities);
 }
 
 /// The same for the points of a scan, turned as its model, which also has the longest range.
 constexpr void fill_grid(const scan& source, std::span<float> ranges_m,
-                         const grid_options& options = {}) noexcept {
-  fill_grid(source.points, ranges_m, options.with(*source.model));
+                         const grid_options& options = {},
+                         std::span<float> intensities = {}) noexcept {
+  fill_grid(source.points, ranges_m, options.with(*source.model), intensities);
 }
 
 }  // namespace g4lidar

@@ -50,9 +50,10 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
-  /// What sends the bytes; not null, and valid as long as the lidar and its scans. Another model than the
-  /// G4 is known for files of raw bytes only.
-  const g4lidar::model* model = &g4_model;
+  /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording states, and
+  /// else a G4. Another model than the G4 is known for files only, and a recording of another model than
+  /// this one is refused with bad_option.
+  const g4lidar::model* model = nullptr;
   /// Bits per second, of a serial port and of the one behind `tcp:`.
   std::uint32_t baud = g4_model.bauds[0];
 
@@ -79,6 +80,9 @@ struct lidar_options {
   /// true ends open() with cancelled. An attempt is not interrupted. Playing a file calls it, too.
   std::function<bool()> is_cancelled{};
 };
+
+/// The words of all models: "g4, g4-pro, ...". Allocates.
+[[nodiscard]] G4LIDAR_API std::string model_words();
 
 /// What is wrong with `options`, as an error that names the option; nothing if all can be used. *Pure.*
 [[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;

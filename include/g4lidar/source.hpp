@@ -54,4 +54,8 @@ enum class source_kind : std::uint8_t {
 [[nodiscard]] G4LIDAR_API const sim::simulated_source* simulation_of(
     const connector& from) noexcept;
 
+/// What sent the bytes of the file that `name` names: what a recording states, and of raw bytes
+/// model_of_bytes(). The G4 for everything else. Fails like recording_reader::open(). Valid forever.
+[[nodiscard]] G4LIDAR_API result<const model*> model_of_source(std::string_view name);
+
 }  // namespace g4lidar

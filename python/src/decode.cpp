@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Raw bytes to arrays of points, in bulk.
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
 
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "errors.hpp"
 #include "g4lidar/bulk_decoder.hpp"
 #include "gil.hpp"
 #include "scan.hpp"
@@ -18,6 +20,12 @@ void bind_decode(nb::module_& module);
 namespace {
 
 using namespace nb::literals;
+
+/// The model of this word; None: a G4.
+const model& decoded_model(const std::optional<std::string>& word) {
+  const model* const found = model_of(word);
+  return found == nullptr ? g4_model : *found;
+}
 
 /// Python's class Decoder.
 class decoder {
@@ -40,6 +48,8 @@ class decoder {
    private:
     decoder& of_;
   };
+
+  explicit decoder(const std::optional<std::string>& model) : made_(decoded_model(model)) {}
 
  private:
   bulk_decoder made_;
@@ -115,7 +125,8 @@ void bind_decode(nb::module_& module) {
       "unfinished packet for "
       "the next call. One thread at a time: else RuntimeError is raised. Times are 0: a recording "
       "has them, see open().")
-      .def(nb::init<>())
+      .def(nb::init<std::optional<std::string>>(), "model"_a = nb::none(),
+           "For the bytes of this model: 'x4'; None: a G4.")
       .def("decode", &decode, "data"_a, "out"_a = nb::none(),
            nb::sig("def decode(self, data: bytes | bytearray | memoryview | "
                    "numpy.typing.NDArray[numpy.uint8], out: numpy.typing.NDArray[numpy.void] | "
@@ -135,9 +146,9 @@ void bind_decode(nb::module_& module) {
            "'parsed_bytes' + all 'skipped_...' + 'held'.");
   module.def(
       "decode",
-      [](nb::handle data) {
+      [](nb::handle data, const std::optional<std::string>& model) {
         const buffer from(data);
-        bulk_decoder decoder;
+        bulk_decoder decoder(decoded_model(model));
         return make_array<point>(room_for(from.read().size(), 0), [&](std::span<point> out) {
           const without_gil free;
           bytes input = from.read();
@@ -145,10 +156,12 @@ void bind_decode(nb::module_& module) {
           return count + decoder.finish(out.subspan(count)).size();
         });
       },
-      "data"_a,
+      "data"_a, "model"_a = nb::none(),
       nb::sig("def decode(data: bytes | bytearray | memoryview | "
-              "numpy.typing.NDArray[numpy.uint8]) -> numpy.typing.NDArray[numpy.void]"),
-      "The points of all packets in these bytes, as Scan.points, with times 0. The memory of the "
+              "numpy.typing.NDArray[numpy.uint8], model: str | None = None) "
+              "-> numpy.typing.NDArray[numpy.void]"),
+      "The points of all packets in these bytes, as Scan.points, with times 0. `model` as for "
+      "Decoder. The memory of the "
       "result is reserved for as "
       "many points as the bytes can contain; copy() gives it back.");
 }

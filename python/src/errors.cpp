@@ -38,6 +38,13 @@ void raise(const error& why) {
   throw nb::python_error();
 }
 
+const model* model_of(const std::optional<std::string>& word) {
+  if (!word) return nullptr;
+  const model* const found = model_named(*word);
+  if (found == nullptr) raise_bad_option("model: '" + *word + "' is not one of " + model_words());
+  return found;
+}
+
 void raise_bad_option(const std::string& sentence) {
   const nb::object kind = nb::module_::import_("g4lidar.errors").attr("BadOption");
   const error like(task::opening, problem::bad_option, sentence);

@@ -5,10 +5,12 @@
 #include <nanobind/nanobind.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 
 namespace g4lidar::python {
@@ -19,6 +21,8 @@ namespace nb = nanobind;
 [[noreturn]] void raise(const error& why);
 /// Raises BadOption with this text, for what the library refuses by a sentence.
 [[noreturn]] void raise_bad_option(const std::string& text);
+/// The model of this word; null for None. Raises BadOption.
+[[nodiscard]] const model* model_of(const std::optional<std::string>& word);
 /// ValueError: "WHAT, not GIVEN": which values are possible, and the one that was given.
 template <class Value>
 [[noreturn]] void raise_impossible(const std::string& what, const Value& given) {

@@ -125,18 +125,18 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
-live_lidar* open_by_keywords(const device_name& device, std::uint32_t baud,
-                             std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
-                             std::optional<motor_direction> direction, std::optional<bool> constant,
-                             std::optional<bool> idle, std::optional<bool> protection,
-                             bool reconnect, bool partial_scans, double answer_time,
-                             double stall_time, double longest_backoff, double batch,
-                             double transport_delay, double speed, bool loop, double begin,
-                             std::optional<double> end, std::uint32_t raw_sample_rate_hz,
-                             const std::optional<path_text>& record, bool overwrite,
-                             double device_wait) {
+live_lidar* open_by_keywords(
+    const device_name& device, std::uint32_t baud, std::optional<double> frequency_hz,
+    std::optional<int> sample_rate_hz, std::optional<motor_direction> direction,
+    std::optional<bool> constant, std::optional<bool> idle, std::optional<bool> protection,
+    bool reconnect, bool partial_scans, double answer_time, double stall_time,
+    double longest_backoff, double batch, double transport_delay, double speed, bool loop,
+    double begin, std::optional<double> end, std::optional<std::uint32_t> raw_sample_rate_hz,
+    const std::optional<std::string>& model, const std::optional<path_text>& record, bool overwrite,
+    double device_wait) {
   const wanted_settings wanted{frequency_hz, sample_rate_hz, direction, constant, idle, protection};
   lidar_options options;
+  options.model = model_of(model);
   options.baud = baud;
   for (const answer& value : wanted.values()) set_option(options, value);
   options.reconnect = reconnect;
@@ -235,9 +235,8 @@ void bind_opening(nb::module_& module) {
       "longest_backoff"_a = seconds(usual.tuning.longest_backoff),
       "batch"_a = seconds(usual.tuning.batch),
       "transport_delay"_a = seconds(usual.tuning.transport_delay), "speed"_a = 0.0,
-      "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(),
-      "raw_sample_rate_hz"_a = default_sample_rate_hz, "record"_a = nb::none(),
-      "overwrite"_a = false, "device_wait"_a = 0.0,
+      "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = nb::none(),
+      "model"_a = nb::none(), "record"_a = nb::none(), "overwrite"_a = false, "device_wait"_a = 0.0,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
       "`device`: '' for the only G4; "
       "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
@@ -259,7 +258,8 @@ void bind_opening(nb::module_& module) {
       "as it is read; "
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
-      "second. `record`: the "
+      "second (None: as the model). `model`: what sent the bytes of a file, 'x4'; None: what a "
+      "recording states, and raw bytes show. `record`: the "
       "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }

@@ -194,6 +194,9 @@ void bind_reader(nb::module_& module) {
           },
           "Of the recorded lidar; None if not known so far.")
       .def_prop_ro(
+          "model", [](const recording& from) { return from.reader().model().word; },
+          "The word of the model of the lidar: 'g4'.")
+      .def_prop_ro(
           "is_damaged", [](const recording& from) { return from.reader().damage().any(); },
           "Whether damage was found so far. All intact parts are read nevertheless.")
       .def_prop_ro(
@@ -221,8 +224,10 @@ void bind_recording(nb::module_& module) {
           "__init__",
           [](writer* made, const path_text& path, bool overwrite, packing packed, scan_order order,
              const std::string& topic, const std::string& frame_id, const std::string& points_topic,
-             no_return_as no_return, bool mark_near, bool near_is_minus_infinity) {
+             no_return_as no_return, bool mark_near, bool near_is_minus_infinity,
+             const std::optional<std::string>& model) {
             recording_options how;
+            how.model = model_of(model);
             how.overwrite = overwrite;
             how.packed = packed;
             how.order = order;
@@ -237,11 +242,13 @@ void bind_recording(nb::module_& module) {
           "path"_a, nb::kw_only(), "overwrite"_a = false, "packing"_a = packing::none,
           "order"_a = scan_order::angle, "topic"_a = "/scan", "frame_id"_a = "laser",
           "points_topic"_a = "", "no_return"_a = no_return_as::infinity, "mark_near"_a = false,
-          "near_is_minus_infinity"_a = false,
+          "near_is_minus_infinity"_a = false, "model"_a = nb::none(),
           "Creates the file. `packing` 'zstd' compresses it. `topic` is that of the LaserScan "
           "messages, `points_topic` "
           "that of PointCloud2 messages ('': none). `no_return`: what ranges without return are; "
-          "`mark_near`: whether directions are flagged as mark_near() does.")
+          "`mark_near`: whether directions are flagged as mark_near() does. `model`: what sends "
+          "the "
+          "bytes, 'x4'; None: what the lidar that is recorded states, else 'g4'.")
       .def(
           "from_device",
           [](writer& into, nb::handle data, std::int64_t time_ns) {

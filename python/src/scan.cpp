@@ -46,12 +46,14 @@ array<float> to_xy_array(const array<point>& points, frame to, unsigned turn_deg
   return made;
 }
 
-array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how) {
+array<float> to_ranges(const array<point>& points, std::size_t bins, const grid_options& how,
+                       std::span<float> intensities) {
   if (bins < 1 || bins > 65536) raise_impossible("a grid has 1 to 65536 ranges", bins);
   const elements<point> from(points);
   if (from.span().size() > (std::size_t{1} << 24))
     throw nb::value_error("more than 16777216 points");
-  return make_array<float>(bins, [&](std::span<float> out) { fill_grid(from.span(), out, how); });
+  return make_array<float>(
+      bins, [&](std::span<float> out) { fill_grid(from.span(), out, how, intensities); });
 }
 
 namespace {
@@ -66,16 +68,20 @@ message_header header_of(const kept_scan& scan, const std::string& frame_id) {
 
 /// Turned, and with the number of ranges, of its model.
 array<float> ranges_of(const kept_scan& scan, std::optional<std::size_t> bins,
-                       const grid_options& how) {
+                       const grid_options& how, std::span<float> intensities = {}) {
   const model& of = *scan.about.model;
-  return to_ranges(scan.points, bins.value_or(default_bins(of)), how.with(of));
+  return to_ranges(scan.points, bins.value_or(default_bins(of)), how.with(of), intensities);
 }
 
 nb::bytes laser_scan(const kept_scan& scan, std::optional<std::size_t> bins,
                      const std::string& frame_id, no_return_as no_return) {
-  const array<float> ranges = ranges_of(scan, bins, {.no_return = no_return});
+  const std::size_t count = bins.value_or(default_bins(*scan.about.model));
+  std::vector<float> intensities(has_intensity(*scan.about.model) ? count : 0);
+  const array<float> ranges = ranges_of(scan, count, {.no_return = no_return}, intensities);
+  message_header header = header_of(scan, frame_id);
+  header.intensities = intensities;
   std::vector<std::uint8_t> out;
-  put_laser_scan(elements<float>(ranges).span(), header_of(scan, frame_id), out);
+  put_laser_scan(elements<float>(ranges).span(), header, out);
   return nb::bytes(out.data(), out.size());
 }
 

@@ -30,9 +30,9 @@ struct kept_scan {
 [[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to, unsigned turn_deg);
 /// Raises ValueError if it is the turn of no model.
 [[nodiscard]] std::uint16_t checked_turn(unsigned turn_deg);
-/// One range for each bin, in metres.
+/// One range for each bin, in metres. `intensities` is empty, or gets that of each bin.
 [[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
-                                     const grid_options& how);
+                                     const grid_options& how, std::span<float> intensities = {});
 
 /// Raises ValueError if numbers are not finite, or times do not ascend.
 void require_path(std::span<const stamped_pose> path);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 
+#include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/version.hpp"
 
@@ -113,6 +114,18 @@ int bad_text(g4lidar_error* out, std::size_t line, std::string_view message,
 
 int bad_option(g4lidar_error* out, std::string_view which) noexcept {
   return fail(out, error(task::configuring, problem::bad_option, which));
+}
+
+bool take_model(const char* word, const model*& into) noexcept {
+  if (word == nullptr) return true;
+  into = model_named(word);
+  return into != nullptr;
+}
+
+int refuse_model(g4lidar_error* out, std::string_view word) {
+  return fail(out, G4LIDAR_BAD_OPTION, G4LIDAR_CONFIGURING,
+              "model: there is none with the word '" + std::string(word.substr(0, 40)) + "'",
+              "Give one of " + model_words() + ".");
 }
 
 }  // namespace g4lidar::c

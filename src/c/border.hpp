@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/point.hpp"
 #include "options.hpp"
@@ -63,6 +64,11 @@ int created(Handle** made, g4lidar_error* out, Body&& body, Pointers... needed) 
   if (made != nullptr) *made = nullptr;
   return guarded(out, std::forward<Body>(body), made, needed...);
 }
+
+/// Sets `into` to the model of this word, or leaves it for NULL; false if there is none.
+[[nodiscard]] bool take_model(const char* word, const model*& into) noexcept;
+/// A word that no model has.
+int refuse_model(g4lidar_error* out, std::string_view word);
 
 /// The same memory: the types of C have the attribute may_alias, so that both languages may use it, and
 /// their layouts are compared in layout.cpp.

@@ -65,6 +65,7 @@ static_assert(offsetof(g4lidar_options, transport_delay_ns) == aligned(3 * word)
 static_assert(offsetof(g4lidar_options, reconnect) == aligned(3 * word) + 56);
 static_assert(first_size<g4lidar_options> == aligned(3 * word) + 64);
 static_assert(offsetof(g4lidar_options, device_wait_ms) == aligned(3 * word) + 64);
+static_assert(offsetof(g4lidar_options, model) == aligned(3 * word) + 64 + word);
 static_assert(offsetof(g4lidar_scan, time_ns) == 2 * word);
 static_assert(offsetof(g4lidar_scan, is_piece) == 2 * word + 61);
 static_assert(offsetof(g4lidar_scan, turn_deg) == 2 * word + 62);
@@ -95,6 +96,7 @@ static_assert(sizeof(g4lidar_polygon) == 2 * word);
 static_assert(offsetof(g4lidar_recorder_options, rotate_bytes) == aligned(5 * word));
 static_assert(first_size<g4lidar_recorder_options> == aligned(5 * word) + 24);
 static_assert(offsetof(g4lidar_recorder_options, near_options) == aligned(5 * word) + 32);
+static_assert(offsetof(g4lidar_recorder_options, model) == aligned(5 * word) + 32 + word);
 static_assert(offsetof(g4lidar_playback_options, from_ns) == aligned(word) + 8);
 static_assert(first_size<g4lidar_playback_options> == aligned(word) + 32);
 static_assert(offsetof(g4lidar_playback_options, is_cancelled) == aligned(word) + 32);

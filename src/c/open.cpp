@@ -17,8 +17,8 @@ namespace g4lidar::c {
 namespace {
 
 constexpr g4lidar_options lidar_defaults{
-    sizeof(g4lidar_options), nullptr, nullptr, 0, 230400, 0,     0,     0,  0, 0, 0,
-    G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}, 0};
+    sizeof(g4lidar_options), nullptr, nullptr, 0, 230400, 0,     0,     0,  0, 0,      0,
+    G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}, 0, nullptr};
 
 void take_time(std::int32_t given_ms, std::chrono::milliseconds& into) noexcept {
   if (given_ms != 0) into = std::chrono::milliseconds(given_ms);
@@ -101,6 +101,7 @@ int take_lidar_options(const g4lidar_options* given, opening& into, const char**
   g4lidar_options taken = lidar_defaults;
   if (!take_options(given, taken)) return refuse(error, bad_options);
   if (const char* const wrong = take_settings(taken, into.how)) return bad_option(error, wrong);
+  if (!take_model(taken.model, into.how.model)) return refuse_model(error, taken.model);
   into.how.baud = taken.baud;
   into.how.reconnect = taken.reconnect;
   into.how.partial_scans = taken.partial_scans;

@@ -42,6 +42,7 @@ constexpr g4lidar_recorder_options recorder_defaults{sizeof(g4lidar_recorder_opt
                                                      {},
                                                      G4LIDAR_NO_RETURN_AS_INFINITY,
                                                      0,
+                                                     nullptr,
                                                      nullptr};
 
 constexpr g4lidar_reader_options reader_defaults{
@@ -101,6 +102,7 @@ g4lidar_recording_info g4lidar::c::info_of(const recording_reader& from) noexcep
   const auto& device = from.device();
   made.has_identity = device.has_value();
   if (device) made.identity = identity_of(device->information);
+  made.model = literal(from.model().word);
   return made;
 }
 
@@ -119,6 +121,7 @@ int g4lidar_recorder_create(const char* path, const g4lidar_recorder_options* op
           return refuse(error, "mount: its reserved bytes are not 0");
         }
         recording_options how = options_of(taken);
+        if (!take_model(taken.model, how.model)) return refuse_model(error, taken.model);
         if (!take_grid(taken, how)) return refuse(error, "no_return or near_options");
         auto made = recording_writer::create(path, how);
         if (!made) return fail(error, made.error());

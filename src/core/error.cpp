@@ -102,7 +102,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 8> all_details{{
+constexpr std::array<detail_words, 9> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -129,8 +129,10 @@ constexpr std::array<detail_words, 8> all_details{{
      "Its libg4lidar was built with G4LIDAR_SIM=OFF: use one that was built with the simulator, or "
      "open "
      "the port that `g4-dump sim` prints."},
+    {"a recording of a model of lidar, or in a version, that this library does not know",
+     "Read it with the libg4lidar that made it, or a newer one."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::no_simulator));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::unknown_model));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

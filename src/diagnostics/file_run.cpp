@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "g4lidar/recording/reader.hpp"
+#include "g4lidar/source.hpp"
 #include "g4lidar/transport/byte_file.hpp"
 #include "link_monitor.hpp"
 
@@ -24,10 +25,12 @@ bool is_stop(bytes sent) noexcept {
 
 class file_run {
  public:
-  explicit file_run(stage_log& log) : log_(log) {}
+  file_run(stage_log& log, const model& which)
+      : log_(log), model_(which), splitter_(which.samples) {}
 
   void run(const std::string& path) {
     port_.add("path", path);
+    if (model_.word != g4_model.word) port_.add("model", std::string(model_.word));
     const bool is_read = is_recording(path) ? read_recording(path) : read_bytes(path);
     splitter_.finish(to_);
     layout_.finish();
@@ -46,6 +49,11 @@ class file_run {
     auto opened = recording_reader::open(path, {.is_cancelled = log_.options().is_cancelled});
     if (!opened) return fail(opened.error());
     recording_reader& reader = *opened;
+    if (reader.model().word != model_.word) {
+      return fail({task::opening, problem::bad_option,
+                   "model: " + std::string(model_.word) + ", and the recording states " +
+                       std::string(reader.model().word)});
+    }
     const auto read = reader.for_each([this](const recorded_item& item) {
       take(item);
       return !is_cancelled();
@@ -139,9 +147,10 @@ class file_run {
     baud.add("bytes", measured_.tally().arrivals.bytes());
     baud.add("packets", counts.packets);
     baud.add("responses", counts.responses);
-    if (find_other_layout(baud, layout_)) {
+    if (find_other_layout(baud, layout_, model_)) {
       log_.report(std::move(baud));
-      return log_.skip_from(diagnostic_stage::answers, "The packets are not those of a G4.");
+      return log_.skip_from(diagnostic_stage::answers,
+                            "The packets are not those of " + one_of(model_) + ".");
     }
     const auto found = diagnosis_of(counts, measured_.tally().arrivals.bytes());
     if (found) baud.find(*found);
@@ -150,7 +159,7 @@ class file_run {
     }
     log_.report(std::move(baud));
     log_.skip(diagnostic_stage::answers, needs_device);
-    report_identity(log_, device_.information);
+    report_identity(log_, device_.information, model_);
     report_health(log_, device_.condition);
     stage_report motor{.stage = diagnostic_stage::motor};
     // Two comparisons of the speed need three times its samples; a head that stands still shows it sooner.
@@ -171,16 +180,17 @@ class file_run {
     if (splitter_.boots() > 0) stream.add("boots", splitter_.boots());
     judge_stream(stream, measured_, seconds_);
     log_.report(std::move(stream));
-    report_rate(log_, measured_, device_);
+    report_rate(log_, measured_, device_, model_);
     report_loss(log_, measured_);
     log_.skip(diagnostic_stage::usb_latency,
               "The reader of a file or a recording groups bytes itself.");
   }
 
   stage_log& log_;
+  const model& model_;
   stage_report port_{};
   event_splitter splitter_;
-  layout_votes layout_;
+  layout_recogniser layout_;
   observer to_{.event = [this](const observed_event& observed) { take(observed); }};
   stream_statistics measured_;
   device_snapshot device_;
@@ -193,6 +203,10 @@ class file_run {
 
 }  // namespace
 
-void examine_file(const std::string& path, stage_log& log) { file_run(log).run(path); }
+void examine_file(const std::string& path, stage_log& log) {
+  const model* which = log.options().model;
+  if (which == nullptr) which = model_of_source("file:" + path).value_or(&g4_model);
+  file_run(log, *which).run(path);
+}
 
 }  // namespace g4lidar

@@ -12,10 +12,10 @@
 
 #include "driver/device_link.hpp"
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
-#include "layout_votes.hpp"
 
 namespace g4lidar {
 
@@ -46,6 +46,9 @@ struct observer {
 /// Splits bytes into events with their bytes, and detects boot texts. *Single thread.*
 class event_splitter {
  public:
+  event_splitter() = default;
+  explicit event_splitter(sample_format format) noexcept : parser_(format) {}
+
   [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
   void take(bytes input, std::int64_t arrival_ns, const observer& to);
   /// The held bytes have ended.
@@ -134,7 +137,7 @@ class link_monitor {
   /// Pauses of the host of any length.
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
   /// Of everything observed since replace().
-  [[nodiscard]] const layout_votes& layout() const noexcept { return layout_; }
+  [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
   /// The name of the transport. Empty without one.
   [[nodiscard]] std::string_view name() const noexcept {
     return transport_ ? transport_->name() : std::string_view{};
@@ -159,7 +162,7 @@ class link_monitor {
   std::int64_t silence_ns_ = 0;
   std::uint64_t host_pauses_ = 0;
   std::int64_t host_paused_ns_ = 0;
-  layout_votes layout_;
+  layout_recogniser layout_;
 };
 
 }  // namespace g4lidar

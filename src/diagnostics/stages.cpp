@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "stages.hpp"
@@ -14,9 +15,8 @@ constexpr double frequency_tolerance = 0.06;
 constexpr double sample_rate_tolerance = 0.12;
 /// Between the rates of a G4 and those of other models, 5000 and 10000.
 constexpr double other_model_tolerance = 0.06;
-/// A tenth beyond 4000 samples a second at 12 Hz, and 9000 at 5 Hz.
-constexpr double fewest_per_revolution = 300.0;
-constexpr double most_per_revolution = 1980.0;
+/// How far a number of samples per revolution may be beyond those at the limits of rate and frequency.
+constexpr double revolution_tolerance = 0.1;
 /// More than a USB packet of 64 bytes at 230400 baud.
 constexpr double held_back_limit_ms = 3.3;
 /// The amount of damage up to which there is only a warning.
@@ -28,20 +28,43 @@ bool is_host_busy(const stream_statistics& measured) noexcept {
   return measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
 }
 
-/// Bytes without device information: a speed that no G4 has is that of another model.
-void find_other_speed(stage_report& rate, double samples_per_s, double samples_per_revolution) {
-  constexpr std::array rates{sample_rate::khz_4, sample_rate::khz_8, sample_rate::khz_9};
-  const auto is_near = [samples_per_s](sample_rate each) {
-    const double nominal = to_hz(each);
+/// "4000, 8000 or 9000".
+std::string list_of(std::span<const double> numbers) {
+  std::string text;
+  for (const double& each : numbers) {
+    if (!text.empty()) text += &each == &numbers.back() ? " or " : ", ";
+    text += std::to_string(std::lround(each));
+  }
+  return text;
+}
+
+/// Bytes without device information: a speed that no lidar like `wanted` has is that of another model.
+void find_other_speed(stage_report& rate, double samples_per_s, double samples_per_revolution,
+                      const model& wanted) {
+  std::vector<double> rates;
+  for (const sample_rate_entry& each : wanted.rates.entries) {
+    if (each.hz != 0) rates.push_back(each.hz);
+  }
+  const auto is_near = [samples_per_s](double nominal) {
     return std::abs(samples_per_s - nominal) <= other_model_tolerance * nominal;
   };
   const bool is_known_rate = samples_per_s <= 0.0 || std::ranges::any_of(rates, is_near);
-  const bool is_possible = samples_per_revolution >= fewest_per_revolution &&
-                           samples_per_revolution <= most_per_revolution;
+  const double least_hz = wanted.frequency.min_dhz / 10.0;
+  const double most_hz = wanted.frequency.max_dhz / 10.0;  // 0: not known
+  const bool is_possible =
+      most_hz <= 0.0 ||
+      (samples_per_revolution >= (1.0 - revolution_tolerance) * rates.front() / most_hz &&
+       samples_per_revolution <= (1.0 + revolution_tolerance) * rates.back() / least_hz);
   if (is_known_rate && is_possible) return;
   rate.find(diagnosis::other_device);
   rate.outcome = std::min(rate.outcome, stage_verdict::warn);
-  rate.remark = "A G4 measures 4000, 8000 or 9000 samples per second at 5 to 12 Hz.";
+  rate.remark = one_of(wanted) + " measures " + list_of(rates) + " samples per second";
+  rate.remark.front() = 'A';
+  if (most_hz > 0.0) {
+    rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
+                   std::to_string(std::lround(most_hz)) + " Hz";
+  }
+  rate.remark += ".";
 }
 
 /// The last diagnosis of each stage, in the order of the enumeration. An unplug belongs to the port.
@@ -62,13 +85,20 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
 
 }  // namespace
 
+std::string one_of(const model& which) {
+  const bool is_spoken_with_vowel =
+      std::string_view("FRSX").find(which.name.front()) != std::string_view::npos;
+  return (is_spoken_with_vowel ? "an " : "a ") + std::string(which.name);
+}
+
 diagnostic_stage stage_of(diagnosis what) noexcept {
   return std::ranges::lower_bound(last_of_stages, what, {},
                                   &decltype(last_of_stages)::value_type::first)
       ->second;
 }
 
-bool report_identity(stage_log& log, const std::optional<device_information>& known) {
+bool report_identity(stage_log& log, const std::optional<device_information>& known,
+                     const model& wanted) {
   if (!known) {
     log.skip(diagnostic_stage::identity, "There is no device information.");
     return true;
@@ -81,9 +111,10 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
   identity.add("hardware", static_cast<int>(known->hardware));
   identity.add("serial_number",
                std::string(known->serial_digits.begin(), known->serial_digits.end()));
-  if (known->model != model_g4) identity.find(diagnosis::other_device);
+  const bool is_wanted = known->model == wanted.ids[0] || known->model == wanted.ids[1];
+  if (!is_wanted) identity.find(diagnosis::other_device);
   log.report(std::move(identity));
-  return known->model == model_g4;
+  return is_wanted;
 }
 
 bool report_health(stage_log& log, const std::optional<health>& known) {
@@ -132,7 +163,8 @@ void judge_motor(stage_report& motor, const stream_statistics& measured) {
   motor.find(measured.stands() ? diagnosis::motor_stuck : diagnosis::motor_unsteady);
 }
 
-void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known) {
+void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
+                 const model& wanted) {
   const double frequency_hz = measured.tally().frequency_hz();
   const double rate_hz = measured.tally().sample_rate_hz();
   // A computer that is busy again and again makes arrivals late that look like another rate.
@@ -149,7 +181,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     rate.remark = "There is too little with times to measure it.";
     const double turns = measured.tally().turns_per_sample();
     if (is_unknown_model)
-      find_other_speed(rate, measured.tally().reported_hz() / turns, 1.0 / turns);
+      find_other_speed(rate, measured.tally().reported_hz() / turns, 1.0 / turns, wanted);
     return log.report(std::move(rate));
   }
   rate.add("measured_hz", frequency_hz);
@@ -160,7 +192,9 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
   }
   rate.add("samples_per_s", rate_hz);
-  if (is_unknown_model) find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample());
+  if (is_unknown_model) {
+    find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample(), wanted);
+  }
   if (known.sample_rate) {
     const double nominal_hz = to_hz(*known.sample_rate);
     rate.add("nominal_samples_per_s", nominal_hz);
@@ -205,13 +239,14 @@ void report_loss(stage_log& log, const stream_statistics& measured) {
   log.report(std::move(loss));
 }
 
-bool find_other_layout(stage_report& report, const layout_votes& votes) {
-  const std::size_t size = votes.sample_bytes();
-  if (size != 3 && size != 4) return false;
+bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted) {
+  const std::size_t size = seen.sample_bytes();
+  const std::size_t wanted_size = sample_size(wanted.samples.layout);
+  if (size == 0 || size == wanted_size) return false;
   report.add("bytes_per_sample", size);
   report.find(diagnosis::other_device);
-  report.remark =
-      "The packets have " + std::to_string(size) + " bytes per sample; those of a G4 have 2.";
+  report.remark = "The packets have " + std::to_string(size) + " bytes per sample; those of " +
+                  one_of(wanted) + " have " + std::to_string(wanted_size) + ".";
   return true;
 }
 

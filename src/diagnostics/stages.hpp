@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "g4lidar/core/layout_recogniser.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/diagnostics/diagnostic_run.hpp"
 #include "reply_statistics.hpp"
@@ -53,21 +55,27 @@ void examine_file(const std::string& path, stage_log& log);
 
 // The stages that devices and files share.
 
-/// identity; false for another model.
-bool report_identity(stage_log& log, const std::optional<device_information>& known);
+/// identity; false for another model than `wanted`.
+bool report_identity(stage_log& log, const std::optional<device_information>& known,
+                     const model& wanted = g4_model);
 /// health; false if the device reports an error.
 bool report_health(stage_log& log, const std::optional<health>& known);
 /// Up to this number of packets the motor cannot be evaluated.
 inline constexpr std::uint64_t few_packets = 30;
 /// The diagnoses of the stage motor, if it has reached its speed or had the time to.
 void judge_motor(stage_report& motor, const stream_statistics& measured);
-void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known);
+/// rate, by the rates of `wanted`.
+void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
+                 const model& wanted = g4_model);
 void report_loss(stage_log& log, const stream_statistics& measured);
 /// `baud` 0: bytes take no time. `name` is that of the transport: not all have a USB bridge.
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name);
-/// Whether the packets have samples of a size that no G4 sends; then adds this to `report`.
-bool find_other_layout(stage_report& report, const layout_votes& votes);
+/// "a G4", "an X4".
+[[nodiscard]] std::string one_of(const model& which);
+/// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
+bool find_other_layout(stage_report& report, const layout_recogniser& seen,
+                       const model& wanted = g4_model);
 /// Whether this path leads to a pseudo-terminal.
 [[nodiscard]] bool is_pty(const std::string& path);
 /// Numbers and diagnoses of the stage stream.

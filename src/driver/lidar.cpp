@@ -71,8 +71,16 @@ std::optional<error> problem_with(const lidar_options& options) noexcept {
   if (options.raw_sample_rate_hz && !within(*options.raw_sample_rate_hz, 1U, 1'000'000U)) {
     return bad("raw_sample_rate_hz: 1 to 1000000", *options.raw_sample_rate_hz, "");
   }
-  if (options.model == nullptr) return bad("model: null");
   return std::nullopt;
+}
+
+std::string model_words() {
+  std::string all;
+  for (const model& each : models) {
+    if (!all.empty()) all += ", ";
+    all += each.word;
+  }
+  return all;
 }
 
 std::string_view name_of(lidar_event::kind what) noexcept {
@@ -134,7 +142,16 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
 
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
   if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
-  auto made = std::make_unique<driver>(std::move(from), options);
+  const model* const stated = from->traits().model;
+  if (options.model != nullptr && stated != nullptr && options.model->word != stated->word) {
+    return failure(task::opening, problem::bad_option,
+                   "model: " + std::string(options.model->word) + ", and the source states " +
+                       std::string(stated->word));
+  }
+  lidar_options used = options;
+  if (stated != nullptr) used.model = stated;
+  if (used.model == nullptr) used.model = &g4_model;
+  auto made = std::make_unique<driver>(std::move(from), used);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
   return lidar(std::move(made));
 }

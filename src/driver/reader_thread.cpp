@@ -47,7 +47,8 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
       how_(how),
       listener_(listener != nullptr
                     ? *listener
-                    : *(queue = std::make_unique<reader_queue>(depth_of(how), *options.model))),
+                    : *(queue = std::make_unique<reader_queue>(
+                            depth_of(how), options.model != nullptr ? *options.model : g4_model))),
       playback_{.speed = options.playback.speed} {
   options_.is_cancelled = [this, inner = options.is_cancelled] {
     return requests.has_to_stop() || (inner && inner());

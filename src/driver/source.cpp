@@ -64,20 +64,28 @@ std::string path_of_source(std::string_view name) {
   return std::string(name.starts_with(file_prefix) ? name.substr(file_prefix.size()) : name);
 }
 
+result<const model*> model_of_source(std::string_view name) {
+  const std::string path = path_of_source(name);
+  const source_kind kind = kind_of_source(name);
+  if (kind == source_kind::raw_bytes) return &model_of_bytes(path);
+  if (kind != source_kind::recording) return &g4_model;
+  return recording_reader::open(path).map([](const recording_reader& of) { return &of.model(); });
+}
+
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
   const std::string path = path_of_source(options.device);
-  const bool is_raw = kind_of_source(options.device) == source_kind::raw_bytes;
-  if (!is_raw && options.model->word != g4_model.word) {
-    return failure(task::opening, problem::bad_option, "model: for files of raw bytes only");
+  const source_kind kind = kind_of_source(options.device);
+  const bool is_file = kind == source_kind::raw_bytes || kind == source_kind::recording;
+  if (!is_file && options.model != nullptr && options.model->word != g4_model.word) {
+    return failure(task::opening, problem::bad_option, "model: for files only");
   }
-  switch (kind_of_source(options.device)) {
+  switch (kind) {
     case source_kind::recording:
       return replay::open(path, options.playback, options.is_cancelled);
     case source_kind::raw_bytes:
-      return open_raw_bytes(path,
-                            options.raw_sample_rate_hz.value_or(first_rate_hz(*options.model)),
-                            options.playback, options.is_cancelled, options.model->samples);
+      return open_raw_bytes(path, options.raw_sample_rate_hz, options.playback,
+                            options.is_cancelled, options.model);
     case source_kind::simulated:
       return connect_simulated(options);
     case source_kind::device:

@@ -169,12 +169,13 @@ class npz_writer final : public npy_writer {
 
 class ply_writer final : public point_file_writer {
  public:
-  ply_writer(frame to, std::uint16_t turn_deg) : to_(to), turn_deg_(turn_deg) {}
+  ply_writer(frame to, const model& which)
+      : to_(to), turn_deg_(which.turn_deg), has_intensity_(has_intensity(which)) {}
 
   void begin(text_sink& out) override { out.write(first_bytes()); }
 
   void write_points(std::span<const point> points, text_sink& out) override {
-    constexpr std::size_t vertex_size = 5 * sizeof(float) + sizeof(double) + sizeof(std::uint32_t);
+    constexpr std::size_t vertex_size = 6 * sizeof(float) + sizeof(double) + sizeof(std::uint32_t);
     for (const point& p : points) {
       if (p.is_no_return()) continue;
       const cloud_point v = in_cloud(p, to_, turn_deg_);
@@ -187,7 +188,12 @@ class ply_writer final : public point_file_writer {
       digits::put_word(at, std::bit_cast<std::uint64_t>(static_cast<double>(p.time_ns) * 1e-9));
       at += sizeof(double);
       digits::put_word(at, p.revolution);
-      out.wrote(at + sizeof p.revolution);
+      at += sizeof p.revolution;
+      if (has_intensity_) {
+        digits::put_word(at, std::bit_cast<std::uint32_t>(static_cast<float>(p.intensity)));
+        at += sizeof(float);
+      }
+      out.wrote(at);
       ++count_;
     }
   }
@@ -198,13 +204,14 @@ class ply_writer final : public point_file_writer {
     return "ply\nformat binary_little_endian 1.0\nelement vertex " +
            padded(std::to_string(count_), 20) +
            "\nproperty float x\nproperty float y\nproperty float z\nproperty float range_m\n"
-           "property float angle_deg\nproperty double time_s\nproperty uint "
-           "revolution\nend_header\n";
+           "property float angle_deg\nproperty double time_s\nproperty uint revolution\n" +
+           (has_intensity_ ? "property float intensity\n" : "") + "end_header\n";
   }
 
  private:
   frame to_;
   std::uint16_t turn_deg_;
+  bool has_intensity_;
   std::uint64_t count_ = 0;
 };
 
@@ -231,18 +238,18 @@ class xyz_writer final : public point_file_writer {
 }  // namespace
 
 std::unique_ptr<point_file_writer> make_point_file_writer(point_file_format format, frame to,
-                                                          std::uint16_t turn_deg) {
+                                                          const model& which) {
   switch (format) {
     case point_file_format::npy:
       return std::make_unique<npy_writer>();
     case point_file_format::npz:
       return std::make_unique<npz_writer>();
     case point_file_format::ply:
-      return std::make_unique<ply_writer>(to, turn_deg);
+      return std::make_unique<ply_writer>(to, which);
     case point_file_format::xyz:
       break;
   }
-  return std::make_unique<xyz_writer>(to, turn_deg);
+  return std::make_unique<xyz_writer>(to, which.turn_deg);
 }
 
 }  // namespace g4lidar

@@ -109,7 +109,7 @@ std::string_view word_for_command(std::uint8_t code) noexcept {
 }
 
 protocol_log::protocol_log(const protocol_log_style& style, const time_shift& times, text_sink& out)
-    : style_(style), times_(times), out_(out) {}
+    : style_(style), times_(times), out_(out), parser_(style.format) {}
 
 void protocol_log::from_device(bytes data, std::int64_t time_ns) {
   now_ns_ = time_ns;

@@ -123,16 +123,18 @@ void put_place(cdr_writer& message, const pose_2d& place, bool upside_down) {
 }
 
 /// The codes are those of sensor_msgs/PointField.
-void put_fields(cdr_writer& message) {
+void put_fields(cdr_writer& message, bool has_intensity) {
   constexpr std::uint8_t uint32_code = 6;
   constexpr std::uint8_t float32_code = 7;
-  constexpr std::array<std::pair<std::string_view, std::uint8_t>, 6> fields{
+  constexpr std::array<std::pair<std::string_view, std::uint8_t>, 7> all{
       {{"x", float32_code},
        {"y", float32_code},
        {"z", float32_code},
        {"t", uint32_code},
        {"range", float32_code},
-       {"angle", float32_code}}};
+       {"angle", float32_code},
+       {"intensity", float32_code}}};
+  const auto fields = std::span(all).first(has_intensity ? all.size() : all.size() - 1);
   message.put(static_cast<std::uint32_t>(fields.size()));
   std::uint32_t offset = 0;
   for (const auto& [name, code] : fields) {
@@ -165,7 +167,8 @@ message_schema tf_message_schema() noexcept {
 }
 
 std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_ns,
-                           std::span<float> ranges_m, grid_options how) noexcept {
+                           std::span<float> ranges_m, grid_options how,
+                           std::span<float> intensities) noexcept {
   // The direction at the beginning, seen from each return: the corrections differ by some degrees.
   const std::int64_t begin_ns = points.empty() ? 0 : points.front().time_ns;
   const auto part_of = [&](std::int64_t time_ns) {
@@ -191,7 +194,7 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
     return duration_ns <= 0 || std::abs(part - part_of(p.time_ns - begin_ns)) < 0.5F;
   };
   how.to = frame::vendor;
-  fill_grid(points, ranges_m, how, is_in_time);
+  fill_grid(points, ranges_m, how, is_in_time, intensities);
   return first_bin;
 }
 
@@ -216,15 +219,18 @@ void put_laser_scan(std::span<const float> ranges_m, const message_header& heade
   message.put(duration_s);
   message.put(static_cast<float>(header.model->range.min_mm) * 0.001F);
   message.put(longest_range_mm(header.model->samples.layout) * 0.001F);
-  message.put(static_cast<std::uint32_t>(bins));
-  for (const float range_m : ranges_m.subspan(first)) message.put(range_m);
-  for (const float range_m : ranges_m.first(first)) message.put(range_m);
-  message.put(std::uint32_t{0});
+  for (const std::span<const float> values : {ranges_m, header.intensities}) {
+    message.put(static_cast<std::uint32_t>(values.size()));
+    const std::size_t from = std::min(first, values.size());
+    for (const float value : values.subspan(from)) message.put(value);
+    for (const float value : values.first(from)) message.put(value);
+  }
 }
 
 void put_point_cloud2(std::span<const point> points, const message_header& header,
                       std::vector<std::uint8_t>& out) {
-  constexpr std::uint32_t point_size = 24;
+  const bool with_intensity = has_intensity(*header.model);
+  const std::uint32_t point_size = with_intensity ? 28 : 24;
   const float left = header.order == scan_order::time ? -1.0F : 1.0F;  // the y axis
   const auto count = static_cast<std::uint32_t>(std::count_if(
       points.begin(), points.end(), [](const point& p) { return !p.is_no_return(); }));
@@ -232,7 +238,7 @@ void put_point_cloud2(std::span<const point> points, const message_header& heade
   put_header(message, header.stamp_ns, header.frame_id);
   message.put(std::uint32_t{1});
   message.put(count);
-  put_fields(message);
+  put_fields(message, with_intensity);
   message.put(std::uint8_t{0});  // little-endian
   message.put(point_size);
   message.put(count * point_size);
@@ -249,6 +255,7 @@ void put_point_cloud2(std::span<const point> points, const message_header& heade
     const polar measured = to_polar(p, frame::robot, header.model->turn_deg);
     message.put(measured.range_m);
     message.put(left * measured.bearing_rad);
+    if (with_intensity) message.put(static_cast<float>(p.intensity));
   }
   message.put(std::uint8_t{1});
 }

@@ -2,7 +2,6 @@
 #include "channels.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
@@ -76,6 +75,7 @@ channel_set::channel_set(const recording_options& options)
     : scan_topic_(options.topic), points_topic_(options.points_topic) {
   if (!points_topic_.empty()) add(topic::points);
   if (options.mount) add(topic::tf_static);
+  if (options.model != nullptr) model_ = options.model;
 }
 
 std::uint32_t channel_set::count() const noexcept {
@@ -101,16 +101,75 @@ void channel_set::put_schemas(record_text& out, const channel_set* without) cons
 void channel_set::put_channels(record_text& out) const {
   for (const topic_words& channel : topics) {
     if (!has(channel.id)) continue;
+    std::string name(channel.name);
+    if (channel.id == topic::scan) name = scan_topic_;
+    if (channel.id == topic::points) name = points_topic_;
+    word_map words{{"offered_qos_profiles", ""}};
+    if (channel.is_of_connection() && model_->word != g4_model.word) {
+      name.insert(connection_prefix.size(), model_version);
+      words.emplace_back(model_key, model_->word);
+    }
     const std::size_t record = out.begin(opcode::channel);
     out.put(static_cast<std::uint16_t>(channel.id));
     out.put(channel.schema);
-    out.put(channel.id == topic::scan     ? std::string_view(scan_topic_)
-            : channel.id == topic::points ? std::string_view(points_topic_)
-                                          : channel.name);
+    out.put(std::string_view(name));
     out.put("cdr");
-    put_map(out, {{"offered_qos_profiles", ""}});
+    put_map(out, words);
     out.end(record);
   }
+}
+
+// ---- reading --------------------------------------------------------------------------------------
+
+void found_channels::take(field_reader record) {
+  const auto id = record.take<std::uint16_t>();
+  static_cast<void>(record.take<std::uint16_t>());
+  std::string name(record.take_text());
+  const std::string_view encoding = record.take_text();
+  if (!record.is_good() || encoding != "cdr") return;
+  constexpr std::string_view version_prefix = "/g4lidar/v";
+  static_assert(version_prefix.starts_with(connection_prefix));
+  if (name.starts_with(version_prefix) && !take_model(record, name)) return;
+  for (const topic_words& known : topics) {
+    if (known.is_read() && known.name == name) ids_[index_of(known.id)] = id;
+  }
+}
+
+/// Whether the version in the name of a channel, which is removed, and the model in its metadata are
+/// known.
+bool found_channels::take_model(field_reader metadata, std::string& name) {
+  const std::string_view rest = std::string_view(name).substr(connection_prefix.size());
+  const std::string word = word_in(metadata, model_key);
+  const g4lidar::model* const stated =
+      rest.starts_with(model_version) ? model_named(word) : nullptr;
+  if (model_ == nullptr) model_ = stated;
+  if (stated == nullptr || stated != model_) {
+    refused_ = name + (word.empty() ? "" : " of the model " + word);
+    return false;
+  }
+  name.erase(connection_prefix.size(), model_version.size());
+  return true;
+}
+
+bool found_channels::has_connection() const noexcept {
+  return std::ranges::any_of(
+      topics, [this](const topic_words& each) { return each.is_of_connection() && has(each.id); });
+}
+
+payload_digest payload_of(bytes records) noexcept {
+  payload_digest sum;
+  field_reader rest(records);
+  while (!rest.is_at_end()) {
+    const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
+    field_reader record(rest.take(rest.take<std::uint64_t>()));
+    if (kind != opcode::message) continue;
+    const auto id = static_cast<topic>(record.take<std::uint16_t>());
+    static_cast<void>(record.take(message_header_size - sizeof(std::uint16_t)));
+    if (id != topic::from_device && id != topic::to_device) continue;
+    const auto way = id == topic::from_device ? direction::from_device : direction::to_device;
+    if (const auto found = recorded_bytes_from(record.rest())) sum.add(way, found->data);
+  }
+  return sum;
 }
 
 }  // namespace g4lidar::mcap

@@ -5,10 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "record_text.hpp"
 
@@ -37,11 +39,22 @@ struct topic_words {
   [[nodiscard]] constexpr bool is_named_by_options() const noexcept {
     return id == topic::scan || id == topic::points;
   }
+  /// Whether its messages are of the connection to the lidar: its name states the version.
+  [[nodiscard]] constexpr bool is_of_connection() const noexcept {
+    return index_of(id) < index_of(topic::scan);
+  }
   /// Whether readers of recordings return its messages.
   [[nodiscard]] constexpr bool is_read() const noexcept {
-    return index_of(id) < index_of(topic::scan) || id == topic::odometry;
+    return is_of_connection() || id == topic::odometry;
   }
 };
+/// The begin of the names of these channels. What follows in a recording of another model than a G4 is
+/// the version: readers that know G4s only do not find their channels, and refuse the file. These
+/// channels then have the word of the model in their metadata.
+inline constexpr std::string_view connection_prefix = "/g4lidar/";
+inline constexpr std::string_view model_version = "v2/";
+inline constexpr std::string_view model_key = "model";
+
 [[nodiscard]] std::span<const topic_words> all_topics() noexcept;
 
 /// The channels in a file, with their names.
@@ -53,6 +66,9 @@ class channel_set {
 
   [[nodiscard]] bool has(topic id) const noexcept { return is_in_[index_of(id)]; }
   void add(topic id) noexcept { is_in_[index_of(id)] = true; }
+  /// The model of the lidar.
+  [[nodiscard]] const g4lidar::model& model() const noexcept { return *model_; }
+  void set_model(const g4lidar::model& which) noexcept { model_ = &which; }
   [[nodiscard]] std::uint32_t count() const noexcept;
   [[nodiscard]] std::uint16_t schema_count() const noexcept;
 
@@ -62,8 +78,38 @@ class channel_set {
 
  private:
   std::array<bool, topic_count> is_in_{true, true, true, true};
+  const g4lidar::model* model_ = &g4_model;
   std::string scan_topic_;
   std::string points_topic_;
 };
+
+/// The channels that a reader has found in a file, and the model that they state.
+class found_channels {
+ public:
+  /// Takes the content of the record of a channel.
+  void take(field_reader record);
+
+  [[nodiscard]] bool has(topic which) const noexcept { return ids_[index_of(which)].has_value(); }
+  [[nodiscard]] bool is(topic which, std::uint16_t id) const noexcept {
+    return ids_[index_of(which)] == id;
+  }
+  /// Whether there are any of the connection to a lidar.
+  [[nodiscard]] bool has_connection() const noexcept;
+  [[nodiscard]] const g4lidar::model& model() const noexcept {
+    return model_ != nullptr ? *model_ : g4_model;
+  }
+  /// The last one of a version or a model that is not known; empty: there was none.
+  [[nodiscard]] const std::string& refused() const noexcept { return refused_; }
+
+ private:
+  [[nodiscard]] bool take_model(field_reader metadata, std::string& name);
+
+  std::array<std::optional<std::uint16_t>, topic_count> ids_;
+  const g4lidar::model* model_ = nullptr;  // null: none was stated yet
+  std::string refused_;
+};
+
+/// Of the messages of a chunk.
+[[nodiscard]] payload_digest payload_of(bytes records) noexcept;
 
 }  // namespace g4lidar::mcap

@@ -15,7 +15,6 @@ namespace g4lidar {
 
 using mcap::chunk_source;
 using mcap::field_reader;
-using mcap::index_of;
 using mcap::opcode;
 using mcap::topic;
 
@@ -58,8 +57,11 @@ result<void> recording_reader::file_reader::begin(const reading_options& options
   read_front();
   const std::optional<recorded_item> first = read();
   if (auto good = check(); !good) return good;
-  const bool is_ours = std::any_of(channels_.begin(), channels_.begin() + index_of(topic::scan),
-                                   [](const auto& id) { return id.has_value(); });
+  const bool is_ours = channels_.has_connection();
+  if (!is_ours && !channels_.refused().empty()) {
+    return failure(task::opening, problem::bad_file, path_ + ", " + channels_.refused(), 0,
+                   error_detail::unknown_model);
+  }
   if (!is_ours || (!first && damage().any())) {
     return failure(task::opening, problem::bad_file, path_);
   }
@@ -94,7 +96,7 @@ result<void> recording_reader::file_reader::check() {
 /// By the summary.
 void recording_reader::file_reader::read_summary() {
   mcap::read_summary(*chunks_, [this](opcode kind, field_reader record) {
-    if (kind == opcode::channel) take_channel(record);
+    if (kind == opcode::channel) channels_.take(record);
     if (kind == opcode::metadata) take_metadata(record);
   });
 }
@@ -110,18 +112,7 @@ void recording_reader::file_reader::read_front() {
     const auto kind = static_cast<opcode>(records.take<std::uint8_t>());
     field_reader record(records.take(records.take<std::uint64_t>()));
     if (kind == opcode::metadata) take_metadata(record);
-    if (kind == opcode::channel) take_channel(record);
-  }
-}
-
-void recording_reader::file_reader::take_channel(field_reader record) noexcept {
-  const auto id = record.take<std::uint16_t>();
-  static_cast<void>(record.take<std::uint16_t>());
-  const std::string_view name = record.take_text();
-  const std::string_view encoding = record.take_text();
-  if (!record.is_good() || encoding != "cdr") return;
-  for (const mcap::topic_words& known : mcap::all_topics()) {
-    if (known.is_read() && known.name == name) channels_[index_of(known.id)] = id;
+    if (kind == opcode::channel) channels_.take(record);
   }
 }
 
@@ -192,13 +183,13 @@ void recording_reader::file_reader::find_end() {
 }
 
 /// Of items that are not odometry. Removes the records up to it.
-std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& records) noexcept {
+std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& records) {
   field_reader rest(records);
   while (!rest.is_at_end()) {
     const auto kind = static_cast<opcode>(rest.take<std::uint8_t>());
     const field_reader record(rest.take(rest.take<std::uint64_t>()));
     records = rest.rest();
-    if (kind == opcode::channel) take_channel(record);
+    if (kind == opcode::channel) channels_.take(record);
     if (kind != opcode::message) continue;
     const auto item = item_in(record);
     if (item && item->what != recorded_item::kind::odometry) return item->time_ns;
@@ -207,7 +198,7 @@ std::optional<std::int64_t> recording_reader::file_reader::first_time_in(bytes& 
 }
 
 /// The same of the records that follow; they are not read.
-std::optional<std::int64_t> recording_reader::file_reader::first_time_ahead() noexcept {
+std::optional<std::int64_t> recording_reader::file_reader::first_time_ahead() {
   const auto sequence = sequence_;
   bytes records = records_;
   const auto time_ns = first_time_in(records);
@@ -225,7 +216,7 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
     if (!item) return item;
     if (item->time_ns >= to_ns_) {
       const bool is_odometry = item->what == recorded_item::kind::odometry;
-      const bool has_odometry = channels_[index_of(topic::odometry)].has_value();
+      const bool has_odometry = channels_.has(topic::odometry);
       is_over_ = !is_odometry && (!has_odometry || item->time_ns - to_ns_ >= late_ns);
       if (is_over_) return std::nullopt;
       continue;
@@ -273,7 +264,7 @@ std::optional<recorded_item> recording_reader::file_reader::read() {
         break;
       }
       records_ = rest.rest();
-      if (kind == opcode::channel) take_channel(record);
+      if (kind == opcode::channel) channels_.take(record);
       if (kind == opcode::metadata) take_metadata(record);
       if (kind != opcode::message) continue;
       auto item = item_in(record);
@@ -299,7 +290,7 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   const auto wall_ns = static_cast<std::int64_t>(record.take<std::uint64_t>());
   static_cast<void>(record.take<std::uint64_t>());
   if (!record.is_good() || !is_a_time(wall_ns)) return std::nullopt;
-  const auto is = [&](topic which) { return channels_[index_of(which)] == id; };
+  const auto is = [&](topic which) { return channels_.is(which, id); };
   const bool is_from_device = is(topic::from_device);
   if (is_from_device || is(topic::to_device)) {
     const auto found = mcap::recorded_bytes_from(record.rest());

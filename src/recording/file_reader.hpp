@@ -2,7 +2,6 @@
 // The implementation of recording_reader: reads recorded items from the records of the chunks.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -26,6 +25,7 @@ class recording_reader::file_reader {
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept;
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept { return device_; }
   [[nodiscard]] const std::optional<recorded_digest>& digest() const noexcept { return digest_; }
+  [[nodiscard]] const g4lidar::model& model() const noexcept { return channels_.model(); }
   [[nodiscard]] std::int64_t first_ns() const noexcept { return first_ns_; }
   [[nodiscard]] std::int64_t last_ns() const noexcept { return last_ns_; }
   [[nodiscard]] const recording_damage& damage() const noexcept;
@@ -43,13 +43,12 @@ class recording_reader::file_reader {
   void seek(std::int64_t from_ns);
   [[nodiscard]] std::optional<std::uint64_t> chunk_before(std::int64_t from_ns);
   void find_end();
-  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes& records) noexcept;
-  [[nodiscard]] std::optional<std::int64_t> first_time_ahead() noexcept;
+  [[nodiscard]] std::optional<std::int64_t> first_time_in(bytes& records);
+  [[nodiscard]] std::optional<std::int64_t> first_time_ahead();
 
   [[nodiscard]] std::optional<recorded_item> advance();
   [[nodiscard]] std::optional<recorded_item> read();
   [[nodiscard]] std::optional<recorded_item> item_in(mcap::field_reader record) noexcept;
-  void take_channel(mcap::field_reader record) noexcept;
   void take_metadata(mcap::field_reader record);
   [[nodiscard]] bool skips(std::uint32_t sequence) noexcept;
 
@@ -57,7 +56,7 @@ class recording_reader::file_reader {
   std::shared_ptr<mcap::byte_source> file_;
   std::unique_ptr<mcap::chunk_source> chunks_;
   bytes records_;  // of the block, not read yet
-  std::array<std::optional<std::uint16_t>, mcap::topic_count> channels_;
+  mcap::found_channels channels_;
   std::optional<recorded_device> device_;
   std::optional<recorded_digest> digest_;
   mutable recording_damage damage_;

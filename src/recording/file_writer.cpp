@@ -18,27 +18,10 @@ namespace {
 constexpr std::size_t largest_piece = std::size_t{64} << 10U;
 /// Size of a message of any kind without its data.
 constexpr std::size_t message_room = 2048;
-/// Size of a point in a PointCloud2.
-constexpr std::size_t point_room = 24;
+/// Size of a point in a PointCloud2, with its intensity.
+constexpr std::size_t point_room = 28;
 
 std::int64_t ns_of(std::chrono::nanoseconds time) noexcept { return time.count(); }
-
-/// Of the messages of a chunk.
-payload_digest payload_of(bytes records) noexcept {
-  payload_digest sum;
-  mcap::field_reader rest(records);
-  while (!rest.is_at_end()) {
-    const auto kind = static_cast<mcap::opcode>(rest.take<std::uint8_t>());
-    mcap::field_reader record(rest.take(rest.take<std::uint64_t>()));
-    if (kind != mcap::opcode::message) continue;
-    const auto id = static_cast<mcap::topic>(record.take<std::uint16_t>());
-    static_cast<void>(record.take(mcap::message_header_size - sizeof(std::uint16_t)));
-    if (id != mcap::topic::from_device && id != mcap::topic::to_device) continue;
-    const auto way = id == mcap::topic::from_device ? direction::from_device : direction::to_device;
-    if (const auto found = mcap::recorded_bytes_from(record.rest())) sum.add(way, found->data);
-  }
-  return sum;
-}
 
 std::string hexadecimal(std::uint64_t value) {
   std::array<char, 17> text{};
@@ -151,7 +134,8 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   if (options_.scans) {
     ++counts_.scans;
     header.first_bin = ranges_.fill(revolution, options_);
-    put_stamped(topic::scan, ranges_.ranges_m().size_bytes(),
+    header.intensities = ranges_.intensities();
+    put_stamped(topic::scan, 2 * ranges_.ranges_m().size_bytes(),
                 [&](auto& out) { put_laser_scan(ranges_.ranges_m(), header, out); });
   }
   if (channels_.has(topic::points)) {
@@ -202,6 +186,19 @@ void recording_writer::file_writer::device(const recorded_device& known) noexcep
     }
     return file_->add_metadata(mcap::device_metadata, mcap::words_of(known));
   }));
+}
+
+result<void> recording_writer::file_writer::take_model(const model& which) {
+  const std::string_view now = channels_.model().word;
+  if (is_closed_ || now == which.word) return {};
+  const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
+  if (options_.model != nullptr || has_begun) {
+    return failure(
+        task::opening, problem::bad_option,
+        "model: " + std::string(which.word) + ", and the recording states " + std::string(now));
+  }
+  channels_.set_model(which);
+  return file_->begin(channels_);
 }
 
 // ---- chunks and files ---------------------------------------------------------------------------
@@ -286,7 +283,7 @@ result<void> recording_writer::file_writer::rotate() {
   ++counts_.files;
   closed_bytes_ += file_->size();
   file_ = std::make_unique<mcap::mcap_file>(std::move(*next));
-  covered_.begin_file(payload_of(chunk_.records()));
+  covered_.begin_file(mcap::payload_of(chunk_.records()));
   if (ended && device_)
     ended = file_->add_metadata(mcap::device_metadata, mcap::words_of(*device_));
   return ended;

@@ -71,6 +71,8 @@ class recording_writer::file_writer {
   void odometry(const stamped_odometry& what) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
+  /// What sends the bytes: the file begins again if it is empty and for another model.
+  [[nodiscard]] result<void> take_model(const model& which);
   void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
   result<void> flush() noexcept;
   result<void> close() noexcept;

@@ -58,26 +58,36 @@ void open_chunk::clear() noexcept {
 
 // ---- mcap_file ---------------------------------------------------------------------------------
 
-result<mcap_file> mcap_file::create(const std::string& path, channel_set channels, bool overwrite) {
+result<mcap_file> mcap_file::create(const std::string& path, const channel_set& channels,
+                                    bool overwrite) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | (overwrite ? O_TRUNC : O_EXCL);
   owned_fd fd(uninterrupted([&] { return ::open(path.c_str(), flags, 0666); }));
   if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
-  mcap_file made(std::move(fd), path, std::move(channels));
-  record_text& text = made.text_;
-  text.reserve(text_room);
-  text.put(bytes(magic));
-  const std::size_t header = text.begin(opcode::header);
-  text.put("ros2");
-  text.put(std::string_view(library_name()));
-  text.end(header);
-  made.channels_.put_schemas(text);
-  made.channels_.put_channels(text);
-  if (auto written = made.write(text.all()); !written) {
+  mcap_file made(std::move(fd), path);
+  made.text_.reserve(text_room);
+  if (auto written = made.begin(channels); !written) {
     struct stat file{};  // a device such as /dev/full stays
     if (::fstat(made.fd_.get(), &file) == 0 && S_ISREG(file.st_mode)) ::unlink(path.c_str());
     return tl::unexpected(written.error());
   }
   return made;
+}
+
+result<void> mcap_file::begin(const channel_set& channels) {
+  channels_ = channels;
+  text_.clear();
+  text_.put(bytes(magic));
+  const std::size_t header = text_.begin(opcode::header);
+  text_.put("ros2");
+  text_.put(std::string_view(library_name()));
+  text_.end(header);
+  channels_.put_schemas(text_);
+  channels_.put_channels(text_);
+  crc_ = crc32();
+  if (std::exchange(offset_, 0) != 0) {
+    static_cast<void>(uninterrupted([&] { return ::ftruncate(fd_.get(), 0); }));
+  }
+  return write(text_.all());
 }
 
 result<void> mcap_file::write_all(bytes data) noexcept {

@@ -66,8 +66,8 @@ class open_chunk {
 class mcap_file {
  public:
   /// Creates it, and writes the records before the chunks.
-  [[nodiscard]] static result<mcap_file> create(const std::string& path, channel_set channels,
-                                                bool overwrite);
+  [[nodiscard]] static result<mcap_file> create(const std::string& path,
+                                                const channel_set& channels, bool overwrite);
   mcap_file(mcap_file&&) noexcept = default;
 
   /// `packed`: the records compressed with zstd, or empty.
@@ -77,6 +77,11 @@ class mcap_file {
   [[nodiscard]] result<void> add_metadata(std::string_view name, const word_map& words);
   /// Writes the summary; nothing can be added afterwards.
   [[nodiscard]] result<void> close();
+
+  /// Writes the records before the chunks; whatever was written before is dropped.
+  [[nodiscard]] result<void> begin(const channel_set& channels);
+  /// Whether there is nothing but these records.
+  [[nodiscard]] bool is_empty() const noexcept { return !has_chunks() && metadata_.empty(); }
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::uint64_t size() const noexcept { return offset_; }
@@ -95,8 +100,7 @@ class mcap_file {
     std::string name;
   };
 
-  mcap_file(owned_fd fd, std::string path, channel_set channels) noexcept
-      : fd_(std::move(fd)), path_(std::move(path)), channels_(std::move(channels)) {}
+  mcap_file(owned_fd fd, std::string path) noexcept : fd_(std::move(fd)), path_(std::move(path)) {}
   [[nodiscard]] result<void> write(bytes data);
   [[nodiscard]] result<void> write_all(bytes data) noexcept;
   [[nodiscard]] result<void> end_data();

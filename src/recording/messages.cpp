@@ -182,6 +182,14 @@ void put_map(record_text& out, const word_map& words) {
   out.end<std::uint32_t>(map);
 }
 
+std::string word_in(field_reader map, std::string_view name) {
+  std::string found;
+  for_each_word(map, [&](std::string_view each, std::string_view value) {
+    if (each == name) found = value;
+  });
+  return found;
+}
+
 word_map words_of(const recorded_device& device) {
   const device_information& who = device.information;
   word_map words{

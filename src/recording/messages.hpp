@@ -41,6 +41,8 @@ struct recorded_bytes {
 /// A map of strings to strings, as in metadata.
 using word_map = std::vector<std::pair<std::string, std::string>>;
 void put_map(record_text& out, const word_map& words);
+/// The value of this name; empty if there is none.
+[[nodiscard]] std::string word_in(field_reader map, std::string_view name);
 
 inline constexpr std::string_view device_metadata = "g4lidar.device";
 inline constexpr std::string_view digest_metadata = "g4lidar.digest";

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/saturating.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
@@ -35,6 +36,8 @@ class item_source {
   [[nodiscard]] virtual result<void> seek(std::int64_t from_ns) noexcept = 0;
   [[nodiscard]] virtual std::int64_t first_ns() const noexcept = 0;
   [[nodiscard]] virtual std::int64_t last_ns() noexcept = 0;
+  /// What sent the bytes. Valid as long as this.
+  [[nodiscard]] virtual const g4lidar::model& model() const noexcept = 0;
   /// Null: raw bytes, which have neither events nor times of a device.
   [[nodiscard]] virtual const recording_reader* recording() const noexcept { return nullptr; }
 

@@ -19,6 +19,7 @@
 
 #include "core/saturating.hpp"
 #include "format.hpp"
+#include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
@@ -91,7 +92,8 @@ class pipe_transport final : public transport {
 /// Returns its transport once.
 class pipe_connector final : public connector {
  public:
-  explicit pipe_connector(std::unique_ptr<pipe_transport> port) : port_(std::move(port)) {}
+  pipe_connector(std::unique_ptr<pipe_transport> port, const model* which)
+      : port_(std::move(port)), model_(which) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
@@ -100,10 +102,13 @@ class pipe_connector final : public connector {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
-  [[nodiscard]] connector_traits traits() const noexcept override { return {.answers = false}; }
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    return {.answers = false, .model = model_};
+  }
 
  private:
   std::unique_ptr<pipe_transport> port_;
+  const model* model_;
 };
 
 /// The bytes of a file: their times are counted from samples.
@@ -112,7 +117,7 @@ class counted_items final : public item_source {
   /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
   counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled, sample_format format)
+                std::function<bool()> is_cancelled, const g4lidar::model& which)
       : fd_(std::move(fd)),
         file_begin_(at),
         name_(std::move(name)),
@@ -120,7 +125,7 @@ class counted_items final : public item_source {
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
-        format_(format) {}
+        model_(&which) {}
 
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     while (true) {
@@ -138,19 +143,20 @@ class counted_items final : public item_source {
     read_ = 0;
     begin_ = parsed_ = end_ = 0;
     samples_ = 0;
-    parser_ = stream_parser(format_);
+    parser_ = stream_parser(model_->samples);
     return {};
   }
   [[nodiscard]] std::int64_t first_ns() const noexcept override { return file_begin_ns; }
   [[nodiscard]] std::int64_t last_ns() noexcept override {
     if (!last_ns_) {
       counted_items all(fd_, file_begin_, name_, static_cast<std::uint32_t>(rate_hz_), 0, never_ns,
-                        is_cancelled_, format_);
+                        is_cancelled_, *model_);
       for (auto piece = all.find_piece(); piece && !piece->empty();) piece = all.find_piece();
       last_ns_ = all.now_ns_;
     }
     return *last_ns_;
   }
+  [[nodiscard]] const g4lidar::model& model() const noexcept override { return *model_; }
 
  private:
   /// Up to the end of the next packet, whose samples have been measured by then: no part of it arrives
@@ -204,8 +210,8 @@ class counted_items final : public item_source {
   std::int64_t now_ns_ = file_begin_ns;
   std::optional<std::int64_t> last_ns_;
   std::int64_t samples_ = 0;
-  sample_format format_;
-  stream_parser parser_{format_};
+  const g4lidar::model* model_;
+  stream_parser parser_{model_->samples};
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
   off_t read_ = 0;          // of the file
   std::size_t begin_ = 0;   // of the bytes that were not returned yet
@@ -213,34 +219,66 @@ class counted_items final : public item_source {
   std::size_t end_ = 0;
 };
 
+owned_fd open_bytes(const std::string& name) noexcept {
+  return owned_fd(name == "-" ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
+                              : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+}
+
+/// Of the regular file from `at` on.
+const model& model_in(const owned_fd& fd, off_t at) {
+  constexpr std::size_t enough = std::size_t{64} << 10U;
+  constexpr off_t most = off_t{1} << 20U;
+  layout_recogniser seen;
+  std::vector<std::uint8_t> piece(enough);
+  for (off_t read = 0; read < most && (read == 0 || seen.sample_bytes() == 0);) {
+    const ssize_t count =
+        uninterrupted([&] { return ::pread(fd.get(), piece.data(), piece.size(), at + read); });
+    if (count <= 0) {
+      seen.finish();
+      break;
+    }
+    seen.take(bytes(piece).first(static_cast<std::size_t>(count)));
+    read += count;
+  }
+  return seen.most_likely();
+}
+
 }  // namespace
 
+const model& model_of_bytes(const std::string& path) {
+  struct stat file{};
+  const bool is_known = (path == "-" ? ::fstat(0, &file) : ::stat(path.c_str(), &file)) == 0;
+  if (!is_known || !S_ISREG(file.st_mode)) return g4_model;
+  const owned_fd fd = open_bytes(path);
+  return model_in(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0));
+}
+
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
-                                                  std::uint32_t sample_rate_hz,
+                                                  std::optional<std::uint32_t> sample_rate_hz,
                                                   const playback_options& options,
                                                   std::function<bool()> is_cancelled,
-                                                  sample_format format) {
+                                                  const model* which) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
-  const bool is_standard = name == "-";
-  owned_fd fd(is_standard ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
-                          : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+  owned_fd fd = open_bytes(name);
   if (fd.get() < 0) return failure(task::opening, problem::system, name, errno);
   struct stat file{};
   const bool is_known = ::fstat(fd.get(), &file) == 0;
   if (is_known && S_ISDIR(file.st_mode)) {
     return failure(task::opening, problem::bad_file, name, EISDIR);
   }
-  std::string title = is_standard ? "standard input" : name;
+  std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
     return std::make_unique<pipe_connector>(
-        std::make_unique<pipe_transport>(std::move(fd), std::move(title)));
+        std::make_unique<pipe_transport>(std::move(fd), std::move(title)), which);
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
+  const model& sent_by = which != nullptr ? *which : model_in(fd, at);
   auto waits = std::make_shared<waker>(real_system_calls());
-  auto items = std::make_unique<counted_items>(
-      std::make_shared<const owned_fd>(std::move(fd)), at, title, sample_rate_hz,
-      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec, options.to_ns,
-      std::move(is_cancelled), format);
+  auto items =
+      std::make_unique<counted_items>(std::make_shared<const owned_fd>(std::move(fd)), at, title,
+                                      sample_rate_hz.value_or(first_rate_hz(sent_by)),
+                                      file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
+                                      options.to_ns, std::move(is_cancelled), sent_by);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
                                                   recorded_device{}, std::move(waits)));

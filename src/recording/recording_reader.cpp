@@ -53,6 +53,7 @@ const std::optional<recorded_digest>& recording_reader::digest() const noexcept 
   static constexpr std::optional<recorded_digest> none;
   return made_ ? made_->digest() : none;
 }
+const model& recording_reader::model() const noexcept { return made_ ? made_->model() : g4_model; }
 std::int64_t recording_reader::first_ns() const noexcept { return made_ ? made_->first_ns() : 0; }
 std::int64_t recording_reader::last_ns() const noexcept { return made_ ? made_->last_ns() : 0; }
 const recording_damage& recording_reader::damage() const noexcept {

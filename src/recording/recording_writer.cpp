@@ -35,6 +35,11 @@ bool is_topic(std::string_view name) noexcept {
 
 /// Names with another meaning for a reader.
 bool is_our_own(std::string_view name) noexcept {
+  const std::string_view in_group =
+      name.substr(std::min(name.size(), mcap::connection_prefix.size()));
+  if (name.starts_with(mcap::connection_prefix) && in_group.starts_with(mcap::model_version)) {
+    return true;
+  }
   return std::ranges::any_of(mcap::all_topics(), [&](const mcap::topic_words& known) {
     return !known.is_named_by_options() && known.name == name;
   });

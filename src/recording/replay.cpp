@@ -21,7 +21,7 @@ std::optional<recorded_device> device_in(std::string_view path,
   constexpr std::uint64_t far_enough = std::uint64_t{64} << 10U;
   auto reader = recording_reader::open(path, {.is_cancelled = is_cancelled});
   if (!reader) return std::nullopt;
-  stream_parser parser;
+  stream_parser parser(reader->model().samples);
   std::optional<recorded_device> found;
   std::uint64_t read = 0;
   static_cast<void>(reader->for_each([&](const recorded_item& item) {
@@ -58,6 +58,7 @@ class recorded_items final : public item_source {
   }
   [[nodiscard]] std::int64_t first_ns() const noexcept override { return reader_.first_ns(); }
   [[nodiscard]] std::int64_t last_ns() noexcept override { return reader_.last_ns(); }
+  [[nodiscard]] const g4lidar::model& model() const noexcept override { return reader_.model(); }
   [[nodiscard]] const recording_reader* recording() const noexcept override { return &reader_; }
 
  private:

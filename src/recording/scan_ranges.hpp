@@ -21,31 +21,37 @@ class scan_ranges {
  public:
   explicit scan_ranges(const recording_options& options)
       : shaper_({.marks = {.near = options.near}}) {
-    ranges_.reserve(options.scan_bins.value_or(
-        default_bins(*std::ranges::max_element(models, {}, default_bins))));
+    const std::size_t most = options.scan_bins.value_or(
+        default_bins(*std::ranges::max_element(models, {}, default_bins)));
+    ranges_.reserve(most);
+    intensities_.reserve(most);
   }
 
   /// Fills them, and returns message_header::first_bin.
   std::size_t fill(scan revolution, const recording_options& options) noexcept {
     const std::size_t bins = options.scan_bins.value_or(default_bins(*revolution.model));
     ranges_.resize(std::clamp<std::size_t>(bins, 1, ranges_.capacity()));
+    intensities_.resize(has_intensity(*revolution.model) ? ranges_.size() : 0);
     try {
       shaper_.shape(revolution);
       revolution = shaper_.for_grid();
     } catch (const std::bad_alloc&) {  // without the flags
     }
     if (options.order == scan_order::time) {
-      return fill_time_grid(revolution, ranges_, options.grid);
+      return fill_time_grid(revolution, ranges_, options.grid, intensities_);
     }
     grid_options how = options.grid;
     how.to = frame::robot;
-    fill_grid(revolution, ranges_, how);
+    fill_grid(revolution, ranges_, how, intensities_);
     return 0;
   }
   [[nodiscard]] std::span<const float> ranges_m() const noexcept { return ranges_; }
+  /// Of the same revolution; empty if its model has none.
+  [[nodiscard]] std::span<const float> intensities() const noexcept { return intensities_; }
 
  private:
   std::vector<float> ranges_;
+  std::vector<float> intensities_;
   scan_shaper shaper_;
 };
 

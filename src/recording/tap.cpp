@@ -149,6 +149,9 @@ result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
                                             recording_writer& into) {
   using writer = recording_writer::file_writer;
   if (!into.made_) return from;  // a moved-from writer records nothing
+  if (const model* const stated = from->traits().model) {
+    if (auto taken = into.made_->take_model(*stated); !taken) return tl::unexpected(taken.error());
+  }
   return std::make_unique<recorded_connector<writer>>(std::move(from), *into.made_);
 }
 

@@ -39,10 +39,10 @@ std::string bytes_of(std::initializer_list<std::string_view> faults, std::int64_
   return all;
 }
 
-examined in_file(const std::string& content) {
+examined in_file(const std::string& content, const model* which = nullptr) {
   const temporary_file file(content);
   examined done;
-  done.stages = diagnose("file:" + file.path());
+  done.stages = diagnose("file:" + file.path(), {.model = which});
   return done;
 }
 
@@ -87,7 +87,10 @@ TEST(Bytes, OfAnotherRateOrModelAreFound) {
   EXPECT_EQ(in_file(bytes_of({"baud", "scanning"}, 3)).diagnoses(), "wrong_baud_rate");
   sim::device_options options;
   options.info.model = 4;
-  EXPECT_EQ(in_file(bytes_of({}, 3, options)).diagnoses(), "other_device");
+  EXPECT_EQ(in_file(bytes_of({}, 3, options), &g4_model).diagnoses(), "other_device");
+  const examined found = in_file(bytes_of({}, 3, options));  // 4 is the number of one-way models
+  EXPECT_EQ(found.diagnoses(), "") << found;
+  EXPECT_EQ(found.at(diagnostic_stage::port).measurements.at(1).name, "model");
 }
 
 // A stream without device information, with so many bytes per sample: every word is counted
@@ -140,11 +143,19 @@ std::string stream_of(std::size_t sample_size, double samples_per_s, double turn
 TEST(Bytes, OfAnotherModelAreFoundByTheirLayout) {
   for (const std::size_t size : {3U, 4U}) {
     for (const std::size_t packets : {3U, 200U}) {
-      const examined done = in_file(stream_of(size, 4000.0, 7.0, packets));
+      const std::string all = stream_of(size, 4000.0, 7.0, packets);
+      const examined done = in_file(all, &g4_model);
       EXPECT_EQ(done.diagnoses(), "other_device") << size << done;
       EXPECT_EQ(
           done.at(diagnostic_stage::baud_rate).remark,
           "The packets have " + std::to_string(size) + " bytes per sample; those of a G4 have 2.");
+      const examined recognised = in_file(all);
+      EXPECT_EQ(recognised.diagnoses(), "") << size << recognised;
+      EXPECT_EQ(
+          std::get<std::string>(recognised.at(diagnostic_stage::port).measurements.at(1).value),
+          size == 3 ? "t-mini-pro" : "t-mini-plus-sh");
+      const examined other = in_file(all, model_named(size == 3 ? "t-mini-plus-sh" : "scl"));
+      EXPECT_EQ(other.diagnoses(), "other_device") << size << other;
     }
   }
   EXPECT_EQ(in_file(stream_of(2, 4000.0, 7.0, 200)).diagnoses(), "");
@@ -157,6 +168,11 @@ TEST(Bytes, OfAnotherModelAreFoundByTheirSpeed) {
     EXPECT_EQ(done.at(diagnostic_stage::rate).outcome, stage_verdict::warn);
   }
   EXPECT_EQ(in_file(stream_of(2, 18'000.0, 3.0, 800)).diagnoses(), "other_device");
+  const std::string fast = stream_of(2, 16'000.0, 7.0, 400);
+  EXPECT_EQ(in_file(fast, model_named("g6")).diagnoses(), "");
+  const examined slow = in_file(fast, model_named("x4"));
+  EXPECT_EQ(slow.diagnoses(), "other_device");
+  EXPECT_EQ(slow.at(diagnostic_stage::rate).remark, "An X4 measures 5000 samples per second.");
   for (const double hz : {4000.0, 8000.0, 9000.0}) {
     EXPECT_EQ(in_file(stream_of(2, hz, 7.0, 400)).diagnoses(), "") << hz;
   }
@@ -176,8 +192,9 @@ TEST(Bytes, OfRealDevicesOfOtherModels) {
         data += static_cast<char>(std::stoi(line.substr(i, 2), nullptr, 16));
       }
     }
-    const examined done = in_file(data);
+    const examined done = in_file(data, &g4_model);
     EXPECT_EQ(done.diagnoses(), "other_device") << name << done;
+    EXPECT_EQ(in_file(data).diagnoses(), "") << name;
   }
 }
 

@@ -162,7 +162,8 @@ TEST(TurnedFiles, Pictures) {
 
 TEST(TurnedFiles, Clouds) {
   const std::string xyz = written([](text_sink& out) {
-    make_point_file_writer(point_file_format::xyz, frame::robot, 0)->write_points(points, out);
+    make_point_file_writer(point_file_format::xyz, frame::robot, *model_named("x4"))
+        ->write_points(points, out);
   });
   double x = 0.0;
   double y = 0.0;

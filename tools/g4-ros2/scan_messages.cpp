@@ -37,10 +37,12 @@ void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
                                  const scan_times& when) {
   message_header header = header_of(*for_grid.model, when);
   ranges_.resize(options_.bins.value_or(default_bins(*for_grid.model)));
+  intensities_.resize(has_intensity(*for_grid.model) ? ranges_.size() : 0);
+  header.intensities = intensities_;
   if (options_.order == scan_order::time) {
-    header.first_bin = fill_time_grid(for_grid, ranges_, grid);
+    header.first_bin = fill_time_grid(for_grid, ranges_, grid, intensities_);
   } else {
-    fill_grid(for_grid, ranges_, grid);
+    fill_grid(for_grid, ranges_, grid, intensities_);
   }
   message_.clear();
   put_laser_scan(ranges_, header, message_);

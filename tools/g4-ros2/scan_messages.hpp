@@ -54,6 +54,7 @@ class scan_messages {
   std::unique_ptr<dds::publisher> scan_;  // null: off
   std::unique_ptr<dds::publisher> points_;
   std::vector<float> ranges_;
+  std::vector<float> intensities_;  // empty: the points have none
   std::vector<std::uint8_t> message_;
 };
 

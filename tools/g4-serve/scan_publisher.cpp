@@ -105,13 +105,14 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   const client_registry::demand wanted = registry_.wanted();
   const bool wants_scan = wanted.wants(channel::scan);
   const bool wants_points = wanted.wants(channel::points);
-  publish_bytes(wanted.wants(channel::from_device));
+  // A file that a client makes of them has no model, so it would be read as that of a G4.
+  publish_bytes(wanted.wants(channel::from_device) && scan.model->word == g4_model.word);
   shaper_.shape(scan);
   if (report_) report_->add(scan.size(), shaper_.outside());
-  const message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
-                              .frame_id = options_.frame_id,
-                              .duration_ns = scan.duration_ns,
-                              .model = scan.model};
+  message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
+                        .frame_id = options_.frame_id,
+                        .duration_ns = scan.duration_ns,
+                        .model = scan.model};
   if (wanted.page) {
     const g4lidar::scan kept = shaper_.kept();
     std::vector<std::uint8_t> message;
@@ -122,7 +123,9 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   if (wants_scan) {
     std::vector<std::uint8_t> message;
     ranges_m_.resize(options_.bins.value_or(default_bins(*scan.model)));
-    fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid);
+    intensities_.resize(has_intensity(*scan.model) ? ranges_m_.size() : 0);
+    header.intensities = intensities_;
+    fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid, intensities_);
     put_laser_scan(ranges_m_, header, message);
     registry_.publish(channel::scan, header.stamp_ns, std::move(message));
   }

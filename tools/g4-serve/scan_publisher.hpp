@@ -93,6 +93,7 @@ class scan_publisher final : public reader_listener {
   byte_tap bytes_;                       // of the thread of the reader
   scan_rates rates_;
   std::vector<float> ranges_m_;
+  std::vector<float> intensities_;
   nlohmann::ordered_json settings_;  // of the thread of the reader
   loss_window loss_;                 // of tick(), like the next member
   unsigned ticks_ = 0;

@@ -76,6 +76,9 @@ typedef struct g4lidar_options {
   uint8_t reserved[6];        /**< 0. */
   /** How long to wait for a device that is not there yet; -1: without limit; 0. */
   int32_t device_wait_ms;
+  /** The model that sent the bytes of a file: "x4"; NULL: what a recording states, and raw bytes show.
+   *  Copied. Another one than "g4" is known for files only. */
+  const char* model;
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */

@@ -35,6 +35,8 @@ typedef struct g4lidar_recorder_options {
   int32_t near_is_minus_infinity; /**< As in g4lidar_grid_options; 0. */
   /** Whether g4lidar_mark_near() flags the points of a LaserScan first; NULL: it does not. */
   const g4lidar_near_options* near_options;
+  /** The model that sends the bytes: "x4"; NULL: that of the first lidar that is recorded, else "g4". */
+  const char* model;
 } g4lidar_recorder_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_recorder_options). */
@@ -113,6 +115,7 @@ typedef struct g4lidar_recording_info {
   bool is_cut_off;   /**< It has no proper end: the program was killed, or the disk was full. */
   bool has_identity; /**< Whether the recorded lidar is known: `identity`. */
   g4lidar_identity identity; /**< Of the recorded lidar. */
+  const char* model;         /**< The word of its model: "g4". Valid forever. */
 } g4lidar_recording_info;
 
 /** Of a lidar that plays a recording; NULL for another one. */

@@ -139,6 +139,11 @@ struct model {
   firmware_difference old_firmware{};
 };
 
+/// Whether `which` measures the intensity of returns. *Pure.*
+[[nodiscard]] constexpr bool has_intensity(const model& which) noexcept {
+  return intensity_bits(which.samples.layout) > 0;
+}
+
 /// The highest sample rate of `which` in Hz. *Pure.*
 [[nodiscard]] constexpr std::uint32_t highest_rate_hz(const model& which) noexcept {
   std::uint32_t highest = 0;

@@ -29,6 +29,9 @@ enum class diagnostic_activity : std::uint8_t {
 /// Options and callbacks of a diagnostic run. The callbacks may be empty.
 struct diagnostic_options {
   std::uint32_t baud = g4_model.bauds[0];
+  /// What sent the bytes of a file. Null: what a recording states, or the raw bytes show; see
+  /// model_of_source(). Not of a device: that is to be a G4.
+  const g4lidar::model* model = nullptr;
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);
   /// Called about 20 times a second; returning true ends the run. The lidar is stopped then, too.

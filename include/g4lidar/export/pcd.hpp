@@ -14,7 +14,7 @@ namespace g4lidar {
 
 /// The encoding of the fields of a cloud.
 enum class pcd_data : std::uint8_t {
-  binary,  ///< Little-endian, 28 bytes per point.
+  binary,  ///< Little-endian, 28 bytes per point, 32 with intensity.
   ascii,   ///< One line per point, numbers with all their digits.
 };
 
@@ -26,13 +26,14 @@ enum class pcd_data : std::uint8_t {
 /// | `range_m` | float | metres |
 /// | `angle_deg` | float | degrees in frame `to`: vendor in [0, 360), robot in [-180, 180) |
 /// | `time_ns` | 64-bit signed integer | point::time_ns |
+/// | `intensity` | float | point::intensity, of models that have it |
 ///
-/// `turn_deg` is that of the model, 0 or 180.
+/// The points are those of a lidar like `which`, which also has the turn of its frame.
 G4LIDAR_API void write_pcd(std::span<const point> points, frame to, pcd_data data, text_sink& out,
-                           std::uint16_t turn_deg = g4_model.turn_deg);
-/// The same for the points of a scan, turned as its model.
+                           const model& which = g4_model);
+/// The same for the points of a scan.
 inline void write_pcd(const scan& source, frame to, pcd_data data, text_sink& out) {
-  write_pcd(source.points, to, data, out, source.model->turn_deg);
+  write_pcd(source.points, to, data, out, *source.model);
 }
 
 }  // namespace g4lidar

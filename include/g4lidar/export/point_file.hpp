@@ -19,7 +19,7 @@ enum class point_file_format : std::uint8_t {
   npy,
   npz,  ///< NumPy: a ZIP file with the same array, named `points`, not compressed.
   /// PLY 1.0, binary: the returns as vertices with x, y, z (z is 0), range_m and angle_deg (float, in the frame of the
-  /// file), time_s (double, point::time_ns in seconds) and revolution (uint).
+  /// file), time_s (double, point::time_ns in seconds), revolution (uint) and, if asked for, intensity (float).
   ply,
   xyz,  ///< Text: the returns, `x y z` in metres, one line each; z is 0.
 };
@@ -35,8 +35,9 @@ class G4LIDAR_API point_file_writer : public point_writer {
   [[nodiscard]] virtual std::string first_bytes() const = 0;
 };
 
-/// The writer for `format`. `to` is the frame of ply and xyz, and `turn_deg` that of the model, 0 or 180.
+/// The writer for `format`, of points of a lidar like `which`. `to` is the frame of ply and xyz; ply has
+/// the intensity of models that have it.
 [[nodiscard]] G4LIDAR_API std::unique_ptr<point_file_writer> make_point_file_writer(
-    point_file_format format, frame to, std::uint16_t turn_deg = g4_model.turn_deg);
+    point_file_format format, frame to, const model& which = g4_model);
 
 }  // namespace g4lidar

@@ -30,6 +30,7 @@ struct protocol_log_style {
   bool errors = false;      ///< Only skipped bytes and suspect packets.
   bool has_times = true;    ///< Each line begins with a time; else with the offset of its bytes.
   std::uint64_t lines = 0;  ///< The maximum number of lines; 0: no limit.
+  sample_format format = g4_format;  ///< Of the packets.
 };
 
 /// Parses bytes that were sent and received, and writes a line for each item:

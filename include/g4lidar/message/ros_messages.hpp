@@ -36,8 +36,11 @@ struct message_header {
   std::int64_t duration_ns = 0;  ///< From the first point to the first one of the next revolution.
   scan_order order = scan_order::angle;  ///< See scan_order; also of a PointCloud2, for its frame.
   std::size_t first_bin = 0;             ///< In the order of time: where the revolution begins.
-  /// The model of the lidar, for the limits of its ranges and its turn. Not null.
+  /// The model of the lidar, for the limits of its ranges, its turn, and whether the points of a
+  /// PointCloud2 have an intensity. Not null.
   const g4lidar::model* model = &g4_model;
+  /// Of a LaserScan: as many as there are ranges, in the same order; empty: it has none.
+  std::span<const float> intensities{};
 };
 
 /// The name and the definition of a message, as recordings contain them. Valid forever.
@@ -53,22 +56,25 @@ struct message_schema {
 /// Fills `ranges_m`, not empty, with `points` for a LaserScan in the order of time, as fill_grid() does
 /// in the vendor's frame, and returns its first_bin: that of the mean direction from which the
 /// returns began. Points at the begin or the end of the revolution whose bin is at the other end, so that
-/// its time would be wrong by a revolution, are left out. `how`, but for its frame, is as for
-/// fill_grid(). *Never allocates.*
+/// its time would be wrong by a revolution, are left out. `how`, but for its frame, and
+/// `intensities` are as for fill_grid(). *Never allocates.*
 [[nodiscard]] G4LIDAR_API std::size_t fill_time_grid(std::span<const point> points,
                                                      std::int64_t duration_ns,
                                                      std::span<float> ranges_m,
-                                                     grid_options how = {}) noexcept;
+                                                     grid_options how = {},
+                                                     std::span<float> intensities = {}) noexcept;
 /// The same for the points of a scan, with its duration and the longest range of its model.
 [[nodiscard]] inline std::size_t fill_time_grid(const scan& source, std::span<float> ranges_m,
-                                                const grid_options& how = {}) noexcept {
-  return fill_time_grid(source.points, source.duration_ns, ranges_m, how.with(*source.model));
+                                                const grid_options& how = {},
+                                                std::span<float> intensities = {}) noexcept {
+  return fill_time_grid(source.points, source.duration_ns, ranges_m, how.with(*source.model),
+                        intensities);
 }
 
 /// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is the shortest range of the model (0.1 m
 /// for a G4; ranges below are not reliable), range_max the longest one that its samples can contain
-/// (16.38375 m for a G4), angle_increment 2 pi / bins. Without
-/// intensities. +infinity is not free space: a target nearer than the shortest range of the lidar
+/// (16.38375 m for a G4), angle_increment 2 pi / bins.
+/// +infinity is not free space: a target nearer than the shortest range of the lidar
 /// (0.28 m at 9 kHz, more than range_min) may give no return; see too_near.hpp and grid_options. Allocates beyond the capacity of `out`.
 ///
 /// By angle, `ranges_m` are the bins that fill_grid() fills in the robot's frame, at least one:
@@ -79,8 +85,8 @@ G4LIDAR_API void put_laser_scan(std::span<const float> ranges_m, const message_h
 
 /// Appends a sensor_msgs/msg/PointCloud2 of the returns among `points`, in their order, as measured:
 /// float32 x, y, z in metres (z is 0), uint32 t, nanoseconds since the first of `points`, float32
-/// range in metres and float32 angle in radians, counter-clockwise from x. One row, is_dense.
-/// Allocates beyond the capacity of `out`.
+/// range in metres and float32 angle in radians, counter-clockwise from x; of
+/// models that have it also float32 intensity, point::intensity. One row, is_dense. Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_point_cloud2(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);
 

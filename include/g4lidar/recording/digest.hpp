@@ -51,7 +51,10 @@ class point_digest {
       mix(static_cast<std::uint32_t>(static_cast<std::uint64_t>(p.time_ns)));
       mix(static_cast<std::uint32_t>(static_cast<std::uint64_t>(p.time_ns) >> 32U));
       mix(p.revolution);
-      mix(static_cast<std::uint32_t>(p.flags));
+      // A model without sample flags and intensity has 0 there: the digests of a G4's points are those
+      // from before points had them, so the version of the computation is the same.
+      mix(static_cast<std::uint32_t>(p.flags) | std::uint32_t{p.sample_flags} << 8U |
+          std::uint32_t{p.intensity} << 16U);
     }
     count_ += points.size();
   }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,7 @@ namespace g4lidar {
 /// it ends with end_of_input, and no device answers.
 ///
 /// A regular file contains no times, so they are counted: its packets arrive at the rate of their
-/// samples, `sample_rate_hz` (1 to 1,000,000), each packet as a whole with its last sample; the
+/// samples, `sample_rate_hz` (1 to 1,000,000; nothing: first_rate_hz() of the model), each packet as a whole with its last sample; the
 /// first sample has the modification time of the file as its wall-clock time. It is played like a
 /// recording; the times begin at 1 s. At speed 0 calls do not wait, and now_ns() is the time of the bytes
 /// read last. Bytes of a pipe, a terminal or a
@@ -33,12 +34,20 @@ namespace g4lidar {
 /// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
 /// it is set: while it returns true, reading fails with cancelled.
 ///
-/// `format`: how the samples of its packets are read.
+/// `which`: what sent the bytes; valid as long as the connector. Null: model_of_bytes() of a regular
+/// file, else a G4.
 ///
 /// Fails with bad_option and system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
-    const std::string& path, std::uint32_t sample_rate_hz, const playback_options& options = {},
-    std::function<bool()> is_cancelled = {}, sample_format format = g4_format);
+    const std::string& path, std::optional<std::uint32_t> sample_rate_hz,
+    const playback_options& options = {}, std::function<bool()> is_cancelled = {},
+    const model* which = nullptr);
+
+/// What sent the bytes in the regular file at `path`, or in that from which standard input comes for
+/// "-": what layout_recogniser finds in the first 64 KiB, and in up to 1 MiB until the size of a
+/// sample is decided. The G4 if that shows nothing, and of everything that is not a regular file.
+/// Nothing is taken from standard input. Valid forever. Allocates.
+[[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
 /// whoever wrote it, is a recording.

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/motion.hpp"
@@ -70,7 +71,7 @@ struct reading_options {
 class G4LIDAR_API recording_reader {
  public:
   /// Opens the file and finds the first recorded item. Fails with bad_file if it is not a recording
-  /// of a lidar or has no intact part; with cancelled; with system.
+  /// of a lidar, has no intact part, or is of a model that is not known; with cancelled; with system.
   [[nodiscard]] static result<recording_reader> open(std::string_view path,
                                                      const reading_options& options = {});
 
@@ -93,6 +94,8 @@ class G4LIDAR_API recording_reader {
     }
   }
 
+  /// The model of the lidar. Valid forever. That of a moved-from reader is a G4.
+  [[nodiscard]] const g4lidar::model& model() const noexcept;
   /// What is known about the lidar: from the metadata, or from its first replies; for a cut-off
   /// file, from what has been read so far.
   [[nodiscard]] const std::optional<recorded_device>& device() const noexcept;

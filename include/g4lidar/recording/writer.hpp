@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/model_record.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/grid.hpp"
@@ -35,6 +36,9 @@ enum class packing : std::uint8_t { none, zstd };
 
 /// How a recording is written. All members have defaults.
 struct recording_options {
+  /// What sends the bytes; valid as long as the writer. Null: what the first connector that recorded()
+  /// wraps states, and else a G4.
+  const g4lidar::model* model = nullptr;
   packing packed = packing::none;
   bool overwrite = false;  ///< Whether an existing file may be replaced.
 
@@ -155,7 +159,8 @@ class G4LIDAR_API recording_writer {
 
 /// `from`, with recording: the bytes that are read and sent, and when its transports open and
 /// break. The writer must outlive the result; it may be moved, and must be used by the
-/// same thread. Recording a replayed recording gives an equal recording.
+/// same thread. Recording a replayed recording gives an equal recording. Fails with bad_option if
+/// `from` states another model than the options of the writer, or than what it has recorded; with system.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> recorded(
     std::unique_ptr<connector> from, recording_writer& into);
 

@@ -12,6 +12,8 @@
 
 namespace g4lidar {
 
+struct model;
+
 /// What is behind a connector.
 struct connector_traits {
   /// Whether a device answers on the transports. Nothing is written to files and recordings.
@@ -21,6 +23,8 @@ struct connector_traits {
   /// Wall clock minus now_ns() of the connector, if it is better known than by the system: the bytes
   /// of a file arrived when they were recorded.
   std::optional<std::int64_t> wall_ahead_ns{};
+  /// What sent the bytes of a file. Valid forever; null: not known, as of a device.
+  const g4lidar::model* model = nullptr;
 };
 
 /// Opens the transport to a device, the first time and after each loss. *Single thread* except

@@ -33,7 +33,7 @@ writing_options how_to_write(const point_job& job, const common_options& common,
   const bool is_file = kind == source_kind::raw_bytes;
   writing_options made{.shape = shape};
   made.shape.filter.returns_only = job.returns_only;
-  made.model = job.source.model;
+  made.model = common.expected.model;
   made.for_grid = job.bins > 0;
   made.partial_scans = job.partial;
   if (common.count > 0) made.count = common.count;
@@ -98,6 +98,7 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
+    common_.expected.model = job_.text ? &g4lidar::g4_model : &model_of(common_);
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
     writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));
@@ -119,12 +120,10 @@ class point_run {
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
   /// The columns and the turn of the model.
   void use_model() {
-    const g4lidar::model& which = *job_.source.model;
+    const g4lidar::model& which = *common_.expected.model;
     job_.style.intensity = intensity_bits(which.samples.layout) > 0;
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     job_.style.turn_deg = which.turn_deg;
-    if (which.word == g4lidar::g4_model.word) return;
-    if (kind_ != source_kind::raw_bytes) throw bad_value("--model: for files of raw bytes only");
   }
   void choose_files() {
     if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
@@ -161,7 +160,8 @@ class point_run {
 
   std::unique_ptr<point_writer> make_writer() {
     if (job_.point_file) {
-      auto writer = make_point_file_writer(*job_.point_file, common_.frame, job_.style.turn_deg);
+      auto writer =
+          make_point_file_writer(*job_.point_file, common_.frame, *common_.expected.model);
       point_file_ = writer.get();
       return writer;
     }
@@ -217,7 +217,7 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    const g4lidar::model& which = *job_.source.model;
+    const g4lidar::model& which = *common_.expected.model;
     byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(which)),
                     which);
     bool has_text = false;
@@ -241,7 +241,7 @@ class point_run {
 
   std::uint64_t read_text(input& in, output& out) {
     if (!job_.text) return 0;
-    text_points way(*job_.text, job_.text_frame, *writer_, out, *job_.source.model);
+    text_points way(*job_.text, job_.text_frame, *writer_, out, *common_.expected.model);
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       way.take({reinterpret_cast<const char*>(got.data()), got.size()});
     });

@@ -182,9 +182,8 @@ void copy_recording(const convert_options& options, output& out) {
 /// Writes a part of raw bytes; their times are counted.
 void copy_bytes(const convert_options& options, output& out) {
   const auto from = value_of(open_raw_bytes(path_of_source(options.in()),
-                                            options.points.source.raw_sample_rate_hz.value_or(
-                                                first_rate_hz(*options.points.source.model)),
-                                            {}, {}, options.points.source.model->samples));
+                                            options.points.source.raw_sample_rate_hz, {}, {},
+                                            &model_of(*options.points.common)));
   const std::int64_t begin_ns = from->now_ns();
   const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;
@@ -280,6 +279,7 @@ option_rows form_rows(convert_options& options) {
       moment_row("--to", "End at this time of IN: 40s", range.to_ns),
       value_row("--ascii", "", "Write pcd as text", job.data,
                 [](const std::string&) { return pcd_data::ascii; }),
+      model_row(*job.common),
       sample_rate_row(job.source.raw_sample_rate_hz),
       frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
       compress_row(options.made.packed)};

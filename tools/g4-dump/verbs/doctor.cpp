@@ -147,7 +147,12 @@ int examine(const doctor_options& options) {
     throw bad_value("doctor examines a device or a file, not standard input");
   }
   diagnostic_options how;
-  how.baud = options.baud;
+  how.baud = options.expected.baud;
+  const source_kind kind = kind_of_source(options.source);
+  how.model = kind == source_kind::raw_bytes ? &model_of(options) : options.expected.model;
+  if (how.model != nullptr && kind != source_kind::raw_bytes && kind != source_kind::recording) {
+    throw bad_value("--model: for recordings and files of raw bytes");
+  }
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
@@ -199,7 +204,7 @@ verb make_doctor_verb() {
       .summary = "What is wrong with a lidar, its port or a file, and what to try",
       .arguments = {source_argument(*options)},
       .options = joined(
-          output_row(*options), json, time, baud_row(*options),
+          output_row(*options), json, time, baud_row(*options), model_row(*options),
           in_group("Report of a problem",
                    {text_row("--report", "FILE",
                              "Write a text, and a recording beside it, to attach to a report",

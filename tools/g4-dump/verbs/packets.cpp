@@ -153,6 +153,7 @@ void list_lidar(const packets_options& options) {
 int run(packets_options options) {
   const source_kind kind = kind_of_source(options.common->source);
   options.style.lines = options.common->count;
+  options.style.format = model_of(*options.common).samples;
   options.style.has_times = kind != source_kind::raw_bytes;
   const auto list = kind == source_kind::raw_bytes   ? list_bytes
                     : kind == source_kind::recording ? list_recording

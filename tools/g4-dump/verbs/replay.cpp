@@ -38,10 +38,11 @@ struct replay_verb_options {
 }
 
 /// Plays the file and computes the digests again: they must equal those in the file.
-void verify(const std::string& path) {
+void verify(const std::string& path, const g4lidar::model* which) {
   const std::string title = in_quotes(path);
   recording_job job;
   job.common.source = path;
+  job.common.expected.model = which;
   job.path = "/dev/null";
   job.made.overwrite = true;
   job.made.scans = job.shows_counts = false;
@@ -96,7 +97,7 @@ int run(const replay_verb_options& options) {
         " is not a recording. Give a file made by g4-dump record; g4-dump dump reads raw bytes.");
   }
   if (!options.verify) return run(options.job);
-  verify(path_of_source(name));
+  verify(path_of_source(name), options.job.common->expected.model);
   return exit_code_now();
 }
 
@@ -127,7 +128,7 @@ verb make_replay_verb() {
                  loop_row(played.loop),
                  moment_row("--from", "Begin at this time of the recording: 10s", played.from_ns),
                  moment_row("--to", "End at this time of the recording: 40s", played.to_ns),
-                 verification, ending_rows(common), filter_rows(common),
+                 model_row(common), verification, ending_rows(common), filter_rows(common),
                  near_row(common.marks.near), shape_rows(common)),
       .details = replay_details,
       .examples = {{"g4-dump replay walk.mcap", "Print the points at the speed of the recording"},

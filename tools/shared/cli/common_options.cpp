@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "common_options.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +9,8 @@
 #include <cstdlib>
 #include <numbers>
 #include <string_view>
+
+#include "g4lidar/lidar_options.hpp"
 
 namespace g4_tool {
 
@@ -221,8 +224,18 @@ option_row format_row(text_format& into, const char* help) {
 }
 
 option_rows baud_row(common_options& options) {
-  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)", options.baud, 1U,
-                                        10'000'000U)});
+  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)",
+                                        options.expected.baud, 1U, 10'000'000U)});
+}
+
+option_row model_row(common_options& options) {
+  return value_row(
+      "--model", "MODEL", "What sent the bytes of a file: g4, x4, t-mini-pro (as they show)",
+      options.expected.model, [](const std::string& word) {
+        const g4lidar::model* const found = g4lidar::model_named(word);
+        if (found != nullptr) return found;
+        throw bad_value(fmt::format("'{}' is not one of {}", word, g4lidar::model_words()));
+      });
 }
 
 option_rows device_rows(common_options& options) {
@@ -232,7 +245,7 @@ option_rows device_rows(common_options& options) {
       std::ranges::find(rules, options.on_loss, &choices<loss_rule>::value_type::second);
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
   return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
-                baud_row(options));
+                baud_row(options), in_group("Device", {model_row(options)}));
 }
 
 option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }

@@ -53,10 +53,16 @@ enum class loss_rule : unsigned char {
   wait,       ///< Also waits for a device that is not connected at the start.
 };
 
+/// What is at the source.
+struct expected_device {
+  std::uint32_t baud = 230400;
+  const g4lidar::model* model = nullptr;  ///< What sent the bytes of a file; null: as it shows.
+};
+
 struct common_options {
   std::string source;        ///< Empty: the only G4.
   std::string output = "-";  ///< `-`: standard output.
-  std::uint32_t baud = 230400;
+  expected_device expected;
   std::uint64_t count = 0;               ///< The largest number of records; 0: no limit.
   std::chrono::nanoseconds duration{0};  ///< 0: no limit.
   std::chrono::nanoseconds idle{0};      ///< The longest time without data; 0: no limit.
@@ -111,7 +117,9 @@ using shared_options = std::shared_ptr<common_options>;
 /// --compress.
 [[nodiscard]] option_row compress_row(packing& into);
 [[nodiscard]] option_rows baud_row(common_options& options);
-/// --on-loss with the present value of `options` as default, and --baud.
+/// --model.
+[[nodiscard]] option_row model_row(common_options& options);
+/// --on-loss with the present value of `options` as default, --baud and --model.
 [[nodiscard]] option_rows device_rows(common_options& options);
 
 }  // namespace g4_tool

@@ -100,17 +100,4 @@ number_range range_of(const std::string& text, double least, double most) {
           to.empty() ? most : number_of(to, least, most)};
 }
 
-option_row model_row(const g4lidar::model*& into) {
-  return value_row(
-      "--model", "MODEL", "What sent raw bytes (g4): x4, t-mini-pro, ...", into,
-      [](const std::string& word) {
-        const g4lidar::model* const found = g4lidar::model_named(word);
-        if (found != nullptr) return found;
-        std::vector<std::string_view> words;
-        words.reserve(g4lidar::models.size());
-        for (const g4lidar::model& each : g4lidar::models) words.push_back(each.word);
-        throw bad_value(fmt::format("'{}' is not one of {}", word, fmt::join(words, ", ")));
-      });
-}
-
 }  // namespace g4_tool

@@ -18,7 +18,6 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/core/model.hpp"
 #include "suggestion.hpp"
 #include "verbs.hpp"
 
@@ -136,12 +135,9 @@ template <class Target, class Value>
 
 /// --sample-rate: samples a second of raw bytes.
 [[nodiscard]] inline option_row sample_rate_row(std::optional<std::uint32_t>& into) {
-  return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (9000)", into, 1U,
-                    1'000'000U);
+  return number_row("--sample-rate", "HZ", "Samples per second of raw bytes (as the model)", into,
+                    1U, 1'000'000U);
 }
-
-/// --model: what sent raw bytes.
-[[nodiscard]] option_row model_row(const g4lidar::model*& into);
 
 /// The kinds of fault of a simulated lidar.
 [[nodiscard]] std::vector<std::string> fault_names();

@@ -90,9 +90,50 @@ bool is_file_name(std::string_view name) {
 
 }  // namespace
 
+namespace {
+
+std::string_view words_for(sample_layout layout) {
+  switch (layout) {
+    case sample_layout::flagged_mm:
+      return "2-byte samples with flags";
+    case sample_layout::half_mm:
+      return "2-byte samples in half millimeters";
+    case sample_layout::whole_mm:
+      return "2-byte samples in millimeters";
+    case sample_layout::intensity_8:
+    case sample_layout::intensity_10:
+      return "3-byte samples with intensity";
+    case sample_layout::intensity_16:
+      return "4-byte samples with intensity";
+    case sample_layout::quarter_mm:
+      break;
+  }
+  return "2-byte samples";
+}
+
+}  // namespace
+
+const g4lidar::model& model_of(const common_options& options) {
+  const source_kind kind = kind_of_source(options.source);
+  if (options.expected.model != nullptr && kind != source_kind::recording)
+    return *options.expected.model;
+  const g4lidar::model& found = *value_of(model_of_source(options.source));
+  if (options.expected.model != nullptr && options.expected.model->word != found.word) {
+    throw bad_value(fmt::format("--model: {}, and {} states {}", options.expected.model->word,
+                                in_quotes(options.source), found.word));
+  }
+  if (kind == source_kind::raw_bytes && found.word != g4_model.word) {
+    logger::info(fmt::format("read as {}: {}; give --model for another one\n", found.name,
+                             words_for(found.samples.layout)));
+  }
+  return found;
+}
+
 lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
-  how.baud = options.baud;
+  how.model = options.expected.model;
+  if (kind_of_source(options.source) == source_kind::raw_bytes) how.model = &model_of(options);
+  how.baud = options.expected.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))

@@ -28,15 +28,19 @@ using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<t
 [[nodiscard]] std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>
 for_each_connection(transport_tap tap);
 
-/// `how` with device, baud, reconnect and waiting of the options. Signals cancel.
+/// `how` with device, model, baud, reconnect and waiting of the options. Signals cancel.
 [[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
+/// What sends the bytes of the source: that of --model, or what a file shows. Logs it if raw bytes show
+/// another model than the G4. Throws a failure,
+/// and a bad_value if a recording is of another model than that of --model.
+[[nodiscard]] const g4lidar::model& model_of(const common_options& options);
 /// The error of a lidar that was opened so, in the words of the tool.
 [[nodiscard]] failure failure_of(const common_options& options, const g4lidar::error& why);
 
 /// The lidar behind the word SOURCE, and what else is there.
 class opened_source {
  public:
-  /// `how`: all but device, baud, reconnect and waiting, which are those of the options. With
+  /// `how`: all but device, model, baud, reconnect and waiting, which are those of the options. With
   /// loss_rule::wait it waits until there is a lidar or a signal comes (`interrupted`). Throws a failure.
   explicit opened_source(const common_options& options, lidar_options how = {});
   opened_source(const opened_source&) = delete;

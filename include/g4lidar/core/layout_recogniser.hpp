@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// Which model sends these bytes, as far as they show it: packets do not state the size of samples.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/ct_information.hpp"
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/core/skipped.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+
+namespace g4lidar {
+
+namespace detail {
+
+/// The packets in a stream if its samples have one size, and what they state about their lidar.
+/// *Single thread, never allocates.*
+class layout_candidate {
+ public:
+  explicit constexpr layout_candidate(sample_format format) noexcept : parser_(format) {}
+
+  constexpr void take(bytes input) noexcept {
+    parser_.feed(input, [this](const event& found) { take(found); });
+  }
+  /// The input has ended: a packet at its end counts, too.
+  constexpr void finish() noexcept {
+    if (is_open_ && gap_ == 0 && parser_.held() == 0) ++votes_;
+    is_open_ = false;
+    while (const auto found = parser_.finish()) take(*found);
+  }
+
+  /// Packets that another packet, a time packet or a response follows, with at most one byte before
+  /// it.
+  [[nodiscard]] constexpr std::uint32_t votes() const noexcept { return votes_; }
+  /// The number in the first device information; 0: there was none.
+  [[nodiscard]] constexpr std::uint8_t id() const noexcept { return id_; }
+  /// What the bytes CT state.
+  [[nodiscard]] constexpr const std::optional<ct_information>& information() const noexcept {
+    return reader_.last();
+  }
+  /// Samples per second, by the frequency that a zero packet reports; 0: not known.
+  [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept { return rate_hz_; }
+  /// Whether the second bit of 2-byte samples is seldom set: the lowest bits of a range have all
+  /// values.
+  [[nodiscard]] constexpr bool has_rare_upper_flag() const noexcept {
+    return 10 * upper_flags_ <= ranges_;
+  }
+  /// Whether samples of 2 bytes consist of flags alone: as a range they would be below a millimetre.
+  [[nodiscard]] constexpr bool has_flags_alone() const noexcept {
+    constexpr std::uint32_t enough = 16;
+    return flags_alone_ >= enough && has_rare_upper_flag();
+  }
+
+ private:
+  constexpr void take(const event& found) noexcept {
+    if (const auto* const gone = std::get_if<skipped>(&found)) {
+      gap_ += gone->count;
+      reader_.add(*gone);
+      return;
+    }
+    if (is_open_ && gap_ <= 1) ++votes_;
+    const auto* const packet = std::get_if<packet_view>(&found);
+    is_open_ = packet != nullptr;
+    if (packet != nullptr) take(*packet);
+    if (const auto* const reply = std::get_if<response_view>(&found);
+        reply != nullptr && id_ == 0) {
+      if (const auto who = reply->as_device_info()) id_ = who->model;
+    }
+    gap_ = 0;
+  }
+
+  constexpr void take(packet_view packet) noexcept {
+    static_cast<void>(reader_.add(packet));
+    if (packet.is_zero()) {
+      if (is_in_revolution_ && gap_ <= 1 && dhz_ != 0) rate_hz_ = samples_ * dhz_ / 10;
+      dhz_ = static_cast<std::uint32_t>(packet.reported_frequency_dhz());
+      is_in_revolution_ = true;
+      samples_ = 0;
+    } else if (gap_ > 0) {
+      is_in_revolution_ = false;
+    }
+    samples_ += static_cast<std::uint32_t>(packet.sample_count());
+    for (std::size_t i = 0; i < packet.sample_count(); ++i) {
+      const std::uint16_t word = packet.sample(i);
+      if (word > 3) ++ranges_;
+      if (word > 3 && (word & 2U) != 0) ++upper_flags_;
+      if (word > 0 && word <= 3) ++flags_alone_;
+    }
+  }
+
+  stream_parser parser_;
+  ct_information_reader reader_;
+  std::uint32_t votes_ = 0;
+  std::size_t gap_ = 0;   // bytes skipped since the last packet or response
+  bool is_open_ = false;  // the last one was a packet, and has no vote yet
+  std::uint8_t id_ = 0;
+  bool is_in_revolution_ = false;  // received from its zero packet on, without a gap
+  std::uint32_t dhz_ = 0;          // its frequency
+  std::uint32_t samples_ = 0;      // in it
+  std::uint32_t rate_hz_ = 0;
+  std::uint32_t ranges_ = 0;       // samples that are not flags alone, and not 0
+  std::uint32_t upper_flags_ = 0;  // of them
+  std::uint32_t flags_alone_ = 0;
+};
+
+}  // namespace detail
+
+/// Recognises the model that sends a stream. *Single thread, never allocates.*
+///
+/// The size of a sample is the one with which at least three packets more than with any other size
+/// have a valid checksum and are followed by another one: the right size fits each packet, a wrong
+/// one few. The model is the one that the bytes name: in a device information, or in the information
+/// in the bytes CT of a revolution whose CRC fits. Of several models with this number it is the one
+/// whose sample rate is nearest to that of the stream. Where nothing names it, it is the usual one:
+/// 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte samples are a
+/// T-mini Pro's. So a 2-byte sample in half or whole millimetres is not recognised without a device
+/// information, and neither are 10 bits of intensity nor the correction of an SCL.
+class layout_recogniser {
+ public:
+  /// Adds bytes of the stream, in order.
+  constexpr void take(bytes input) noexcept {
+    for (detail::layout_candidate& each : candidates_) each.take(input);
+  }
+  /// The input has ended: a packet at its end counts, too.
+  constexpr void finish() noexcept {
+    for (detail::layout_candidate& each : candidates_) each.finish();
+  }
+
+  /// The size of a sample in bytes: 2, 3 or 4; 0 as long as it is not decided.
+  [[nodiscard]] constexpr std::size_t sample_bytes() const noexcept {
+    const detail::layout_candidate* const found = decided();
+    return found == nullptr ? 0 : static_cast<std::size_t>(found - candidates_.data()) + 2;
+  }
+
+  /// The model as far as the bytes show it; the G4 as long as the size of a sample is not decided.
+  /// Valid forever.
+  [[nodiscard]] constexpr const model& most_likely() const noexcept {
+    const detail::layout_candidate* const found = decided();
+    if (found == nullptr) return g4_model;
+    const std::size_t size = sample_bytes();
+    const auto fits = [size](const model& row) { return sample_size(row.samples.layout) == size; };
+    if (found->id() != 0) {
+      const model* const named = model_with_id(found->id(), link_kind::two_way);
+      if (named != nullptr && fits(*named)) return *named;
+      if (const model* const near = nearest(*found, found->id(), 0xFF, fits)) return *near;
+    }
+    const auto informs = [&](const model& row) {
+      const bool has_flags = has_sample_flags(row.samples.layout) && found->has_rare_upper_flag();
+      return fits(row) && row.ct_information != presence::no && (size != 2 || has_flags);
+    };
+    if (const auto& stated = found->information()) {
+      if (const model* const near = nearest(*found, stated->id_low_bits, 0x0F, informs)) {
+        return *near;
+      }
+    }
+    if (size == 2) return found->has_flags_alone() ? *model_named("x2") : g4_model;
+    return *model_named(size == 3 ? "t-mini-pro" : "t-mini-plus-sh");
+  }
+
+ private:
+  [[nodiscard]] constexpr const detail::layout_candidate* decided() const noexcept {
+    constexpr std::uint32_t clear_lead = 3;
+    const detail::layout_candidate* best = candidates_.data();
+    for (const auto& each : candidates_) {
+      if (each.votes() > best->votes()) best = &each;
+    }
+    for (const auto& each : candidates_) {
+      if (&each != best && best->votes() < each.votes() + clear_lead) return nullptr;
+    }
+    return best;
+  }
+
+  /// The first of the models with this number, in these bits, whose sample rate is nearest; null if
+  /// `may_be` is true for none.
+  template <class MayBe>
+  [[nodiscard]] static constexpr const model* nearest(const detail::layout_candidate& to,
+                                                      std::uint8_t id, std::uint8_t bits,
+                                                      MayBe may_be) noexcept {
+    constexpr std::uint32_t usual_hz = 3000;
+    const std::uint32_t hz = to.rate_hz() != 0 ? to.rate_hz() : usual_hz;
+    const auto distance = [hz](const model& row) {
+      const std::uint32_t first_hz = first_rate_hz(row);
+      return first_hz > hz ? first_hz - hz : hz - first_hz;
+    };
+    const auto has_id = [&](std::uint8_t of) { return of != 0 && (of & bits) == id; };
+    const model* best = nullptr;
+    for (const model& row : models) {
+      if (!may_be(row) || (!has_id(row.ids[0]) && !has_id(row.ids[1]))) continue;
+      if (best == nullptr || distance(row) < distance(*best)) best = &row;
+    }
+    return best;
+  }
+
+  // With samples of 2, 3 and 4 bytes; the rest of the format does not matter for finding packets.
+  std::array<detail::layout_candidate, 3> candidates_{
+      detail::layout_candidate(g4_format),
+      detail::layout_candidate({sample_layout::intensity_8, correction_kind::none}),
+      detail::layout_candidate({sample_layout::intensity_16, correction_kind::none})};
+};
+
+}  // namespace g4lidar

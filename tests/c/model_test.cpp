@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The model of raw bytes and of recordings.
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "c_handles.hpp"
+#include "support/family_reference.hpp"
+
+namespace {
+
+using namespace g4lidar_c_test;
+
+/// Revolutions of a T-mini, a packet of 30 samples each 30 degrees: 2000 mm, flags 2, intensity 100 + packet.
+std::vector<std::uint8_t> t_mini_stream(unsigned revolutions) {
+  const reference::wire_format& how =
+      *std::ranges::find(reference::wire_formats, "t-mini", &reference::wire_format::model);
+  std::vector<std::uint8_t> all;
+  for (unsigned turn = 0; turn < revolutions; ++turn) {
+    for (unsigned packet = 0; packet < 13; ++packet) {
+      const unsigned count = packet == 0 ? 1 : 30;
+      const unsigned first = packet == 0 ? 0 : 64 * 30 * (packet - 1) + 32;
+      const auto made =
+          reference::packet_of(how, packet == 0 ? 1 : 0, first, first + 64 * (count - 1),
+                               std::vector<reference::wire_sample>(count, {100 + packet, 8002}));
+      all.insert(all.end(), made.begin(), made.end());
+    }
+  }
+  return all;
+}
+
+class CModel : public testing::Test {
+ protected:
+  CModel() {
+    std::ofstream(raw_, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data_.data()),
+               static_cast<std::streamsize>(data_.size()));
+  }
+  /// The intensity of the second point, or -1 - the code of the error.
+  int intensity_of(const std::string& source, const char* model) {
+    g4lidar_options options = defaults();
+    options.device = source.c_str();
+    options.model = model;
+    g4lidar_lidar* made = nullptr;
+    const int code = g4lidar_open_with(&options, &made, &why_);
+    const lidar it(made);
+    if (code != G4LIDAR_OK) return -1 - code;
+    EXPECT_EQ(g4lidar_start(made, &why_), G4LIDAR_OK) << why_.message;
+    const g4lidar_scan* scan = nullptr;
+    EXPECT_EQ(g4lidar_next_scan(made, 1000, &scan, &why_), G4LIDAR_OK) << why_.message;
+    return scan == nullptr ? -1 : scan->points[1].intensity;
+  }
+
+  scratch scratch_;
+  const std::vector<std::uint8_t> data_ = t_mini_stream(6);
+  std::string raw_ = scratch_.path("raw.bin");
+  std::string recorded_ = scratch_.path("walk.mcap");
+  g4lidar_error why_{};
+};
+
+TEST_F(CModel, RawBytesShowTheirModel) {
+  EXPECT_EQ(intensity_of(raw_, nullptr), 101);
+  EXPECT_EQ(intensity_of(raw_, "t-mini-pro"), 101);
+  EXPECT_EQ(intensity_of(raw_, "x44"), -1 - G4LIDAR_BAD_OPTION);
+  EXPECT_NE(std::string(why_.message).find("'x44'"), std::string::npos) << why_.message;
+  EXPECT_NE(std::string(why_.advice).find("g4, g4-pro, "), std::string::npos) << why_.advice;
+  EXPECT_NE(std::string(why_.advice).find("tx20."), std::string::npos) << why_.advice;
+}
+
+TEST_F(CModel, RecordingsStateIt) {
+  g4lidar_recorder_options wish;
+  g4lidar_recorder_options_init(&wish, sizeof wish);
+  wish.model = "x44";
+  g4lidar_recorder* made = nullptr;
+  EXPECT_EQ(g4lidar_recorder_create(recorded_.c_str(), &wish, &made, nullptr), G4LIDAR_BAD_OPTION);
+  wish.model = "t-mini-pro";
+  ASSERT_EQ(g4lidar_recorder_create(recorded_.c_str(), &wish, &made, nullptr), G4LIDAR_OK);
+  const recorder into(made);
+  EXPECT_EQ(g4lidar_recorder_bytes(made, false, data_.data(), data_.size(), 1'000'000'000),
+            G4LIDAR_OK);
+  EXPECT_EQ(g4lidar_recorder_close(made, nullptr), G4LIDAR_OK);
+  g4lidar_reader* found = nullptr;
+  ASSERT_EQ(g4lidar_reader_open(recorded_.c_str(), &found, nullptr), G4LIDAR_OK);
+  EXPECT_STREQ(g4lidar_reader_info(found)->model, "t-mini-pro");
+  g4lidar_reader_free(found);
+  EXPECT_EQ(intensity_of(recorded_, nullptr), 101);
+  EXPECT_EQ(intensity_of(recorded_, "x4"), -1 - G4LIDAR_BAD_OPTION);
+  EXPECT_NE(std::string(why_.message).find("t-mini-pro"), std::string::npos) << why_.message;
+}
+
+}  // namespace

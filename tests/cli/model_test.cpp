@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+// --model, and what raw bytes show: by every command that reads files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+#include "support/family_reference.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::run;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// Revolutions of a T-mini, a packet of 30 samples each 30 degrees; the intensity is 100 + packet.
+std::string t_mini_stream(unsigned revolutions) {
+  const reference::wire_format& how =
+      *std::ranges::find(reference::wire_formats, "t-mini", &reference::wire_format::model);
+  std::string all;
+  for (unsigned turn = 0; turn < revolutions; ++turn) {
+    for (unsigned packet = 0; packet < 13; ++packet) {
+      const unsigned count = packet == 0 ? 1 : 30;
+      const unsigned first = packet == 0 ? 0 : 64 * 30 * (packet - 1) + 32;
+      const auto made =
+          reference::packet_of(how, packet == 0 ? 2 * 70 + 1 : 0, first, first + 64 * (count - 1),
+                               std::vector<reference::wire_sample>(count, {100 + packet, 8002}));
+      all.append(made.begin(), made.end());
+    }
+  }
+  return all;
+}
+
+constexpr const char* report =
+    "read as T-mini Pro: 3-byte samples with intensity; give --model for another one\n";
+
+class ModelOfAFile : public cli::scratch {
+ protected:
+  ModelOfAFile() {
+    cli::write_file(raw_, t_mini_stream(20));
+    EXPECT_EQ(run({"record", raw_, recorded_}).code, 0);
+  }
+  const std::string raw_ = path("raw.bin");
+  const std::string recorded_ = path("walk.mcap");
+};
+
+TEST_F(ModelOfAFile, RawBytesAreRecognisedAndReported) {
+  const outcome done = run({"dump", raw_, "-f", "csv", "-n", "40"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr(report));
+  EXPECT_THAT(done.out, StartsWith("scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n"
+                                   "0,0.000000,2000.00,0,100,2\n"
+                                   "0,0.500000,2000.00,250000,101,2\n"));
+  EXPECT_THAT(run({"dump", raw_, "-q", "-n", "40"}).err, Not(HasSubstr("read as")));
+  EXPECT_THAT(run({"dump", raw_, "--model", "t-mini-pro", "-n", "40"}).err,
+              Not(HasSubstr("read as")));
+  const std::string as_g4 = run({"dump", raw_, "--model", "g4", "-f", "csv", "-q"}).out;
+  EXPECT_LT(cli::lines_of(as_g4).size(), 100U);  // of 7220 points
+  EXPECT_THAT(as_g4, Not(HasSubstr("intensity")));
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"decode", raw_},
+                                             {"scan", raw_},
+                                             {"stats", raw_},
+                                             {"packets", raw_},
+                                             {"view", raw_, "--once", "--frame", "vendor"},
+                                             {"convert", raw_, path("out.csv"), "--force"},
+                                             {"doctor", raw_},
+                                             {"record", raw_, path("o.mcap"), "--force"}}) {
+    const outcome each = run(words);
+    EXPECT_EQ(each.code, 0) << words.front() << each.err;
+    EXPECT_THAT(each.err, HasSubstr(report)) << words.front();
+    EXPECT_EQ(each.err.find("read as"), each.err.rfind("read as")) << words.front();
+  }
+}
+
+TEST_F(ModelOfAFile, ARecordingStatesIt) {
+  const outcome played = run({"replay", recorded_, "--playback-speed", "max", "-f", "csv"});
+  EXPECT_EQ(played.code, 0) << played.err;
+  EXPECT_THAT(played.out, StartsWith("scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n"));
+  EXPECT_THAT(played.out, HasSubstr(",112,2\n"));
+  EXPECT_THAT(played.err, Not(HasSubstr("read as")));
+  EXPECT_EQ(run({"replay", "--verify", recorded_}).code, 0);
+  EXPECT_EQ(run({"replay", "--verify", recorded_, "--model", "t-mini-pro"}).code, 0);
+  EXPECT_EQ(run({"doctor", recorded_}).code, 0);
+  const std::string packets = run({"packets", recorded_}).out;
+  EXPECT_THAT(packets, HasSubstr("30 samples"));
+  EXPECT_THAT(packets, Not(HasSubstr("bad checksum")));
+}
+
+TEST_F(ModelOfAFile, AnotherModelThanTheRecordedOneIsRefused) {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"dump", recorded_},
+                                             {"replay", recorded_},
+                                             {"replay", "--verify", recorded_},
+                                             {"packets", recorded_},
+                                             {"stats", recorded_},
+                                             {"convert", recorded_, path("out.csv")},
+                                             {"record", recorded_, path("out.mcap")}}) {
+    std::vector<std::string> with = words;
+    with.insert(with.end(), {"--model", "x4"});
+    const outcome done = run(with);
+    EXPECT_EQ(done.code, 2) << words.front();
+    EXPECT_THAT(done.err, HasSubstr("x4")) << words.front();
+    EXPECT_THAT(done.err, HasSubstr("t-mini-pro")) << words.front();
+  }
+  EXPECT_EQ(run({"doctor", recorded_, "--model", "x4"}).code, 10);
+}
+
+TEST_F(ModelOfAFile, AModelThatIsNoneIsRefusedByEveryCommand) {
+  for (const char* const verb :
+       {"dump", "scan", "decode", "record", "replay", "doctor", "view", "stats", "packets"}) {
+    const outcome done = run({verb, raw_, "--model", "x44"});
+    EXPECT_EQ(done.code, 2) << verb;
+    EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, g4-pro, ")) << verb;
+  }
+  EXPECT_EQ(run({"doctor", "sim:", "--model", "x4"}).code, 2);
+}
+
+TEST_F(ModelOfAFile, FilesOfPointsHaveTheIntensity) {
+  ASSERT_EQ(run({"convert", raw_, path("a.ply")}).code, 0);
+  EXPECT_THAT(cli::read_file(path("a.ply")), HasSubstr("property float intensity\n"));
+  ASSERT_EQ(run({"convert", recorded_, path("b.npy")}).code, 0);
+  ASSERT_EQ(run({"convert", recorded_, path("c.bin")}).code, 0);
+  EXPECT_EQ(cli::read_file(path("c.bin")), cli::read_file(raw_));
+  ASSERT_EQ(run({"convert", recorded_, path("d.mcap"), "--points"}).code, 0);
+  EXPECT_THAT(cli::read_file(path("d.mcap")), HasSubstr("/g4lidar/v2/from_device"));
+  EXPECT_THAT(cli::read_file(path("d.mcap")), HasSubstr("intensity"));
+  // A part of the bytes, cut at packets of the model.
+  ASSERT_EQ(run({"convert", raw_, path("e.bin"), "--from", "0.1s"}).code, 0);
+  EXPECT_LT(cli::read_file(path("e.bin")).size(), cli::read_file(raw_).size());
+  EXPECT_THAT(cli::read_file(raw_), EndsWith(cli::read_file(path("e.bin"))));
+}
+
+}  // namespace

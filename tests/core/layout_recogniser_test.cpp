@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/core/layout_recogniser.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "support/family_reference.hpp"
+
+namespace g4lidar {
+namespace {
+
+using byte_vector = std::vector<std::uint8_t>;
+
+const model& recognised(const byte_vector& data, std::size_t piece = 4096) {
+  layout_recogniser seen;
+  for (std::size_t from = 0; from < data.size(); from += piece) {
+    seen.take(bytes(data).subspan(from).first(std::min(piece, data.size() - from)));
+  }
+  seen.finish();
+  return seen.most_likely();
+}
+
+const reference::wire_format& format_of(std::string_view model) {
+  return *std::ranges::find(reference::wire_formats, model, &reference::wire_format::model);
+}
+
+/// Bytes CT of a revolution as devices with information send them (family: CT information).
+struct information {
+  unsigned id = 0;
+  unsigned dhz = 0;
+  bool has_crc = true;
+};
+
+/// CRC-8/MAXIM, bit by bit.
+unsigned crc_of(const std::vector<unsigned>& all) {
+  unsigned crc = 0;
+  for (const unsigned byte : all) {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      const bool low = ((crc ^ byte >> bit) & 1U) != 0;
+      crc = crc >> 1U ^ (low ? 0x8CU : 0U);
+    }
+  }
+  return crc;
+}
+
+/// Revolutions of a room: a zero packet with one sample, and packets of 40.
+class room {
+ public:
+  explicit room(std::string_view model) : how_(format_of(model)) {}
+
+  information stated{};
+  unsigned samples = 561;
+  bool has_flags_alone = false;
+  byte_vector reply;  ///< Before everything.
+
+  [[nodiscard]] byte_vector of(unsigned revolutions) {
+    byte_vector made = reply;
+    for (unsigned turn = 0; turn < revolutions; ++turn) {
+      std::vector<unsigned> cts;
+      const auto put = [&](unsigned index, unsigned from, unsigned count) {
+        unsigned ct = index == 0 ? 2 * stated.dhz + 1 : 0;
+        if (stated.id != 0 && index == 7) ct = 2 * (stated.id % 16);
+        if (stated.id != 0 && index == 9) ct = 2 * (2023 - 2020) * 4;  // a year, a month, a day
+        if (stated.id != 0 && index == 10) ct = 2 * 3 * 8;
+        if (stated.id != 0 && index == 11) ct = 2 * 15 * 4;
+        cts.push_back(ct);
+        std::vector<reference::wire_sample> row;
+        for (unsigned i = 0; i < count; ++i) row.push_back(sample_at(from + i));
+        const unsigned step = 64 * 360 / samples;
+        const byte_vector packet =
+            reference::packet_of(how_, ct, from * step, (from + count - 1) * step, row);
+        made.insert(made.end(), packet.begin(), packet.end());
+      };
+      put(0, 0, 1);
+      for (unsigned at = 1, index = 1; at < samples; at += 40, ++index) {
+        put(index, at, std::min(40U, samples - at));
+      }
+      if (stated.id != 0 && stated.has_crc) made.push_back(static_cast<std::uint8_t>(crc_of(cts)));
+    }
+    return made;
+  }
+
+ private:
+  /// Ranges between 1 and 4 m, some of them missing.
+  reference::wire_sample sample_at(unsigned i) {
+    state_ = state_ * 1'664'525U + 1'013'904'223U;
+    const unsigned noise = state_ >> 24U;
+    if (i % 13 == 0) return {0, has_flags_alone ? 1 + 2 * (i % 2) : 0};
+    const unsigned mm = 1000 + 3000 * (i % 200) / 200 + noise % 8;
+    if (how_.low_bits == 2) return {noise, mm * 4 + (noise % 17 == 0 ? 1U : 0U)};
+    return {noise * 7, static_cast<unsigned>(mm / how_.mm_per_unit) + noise % 4};
+  }
+
+  const reference::wire_format& how_;
+  unsigned state_ = 1;
+};
+
+/// `A5 5A`, length 20, type 4: a device information.
+byte_vector information_of(unsigned id) {
+  byte_vector made{0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, static_cast<std::uint8_t>(id), 1, 3, 1};
+  for (unsigned i = 0; i < 16; ++i) made.push_back(static_cast<std::uint8_t>(i % 10));
+  return made;
+}
+
+struct sample_case {
+  std::string sent;
+  std::size_t bytes;
+  std::string usual;
+};
+
+class UsualModel : public ::testing::TestWithParam<sample_case> {};
+
+TEST_P(UsualModel, FollowsFromTheSizeOfASample) {
+  const auto& [sent, size, usual] = GetParam();
+  for (const std::size_t piece : {1U, 7U, 64U, 4096U}) {
+    const byte_vector all = room(sent).of(3);
+    EXPECT_EQ(recognised(all, piece).word, usual) << piece;
+  }
+  layout_recogniser seen;
+  const byte_vector all = room(sent).of(1);
+  std::size_t taken = 0;
+  while (seen.sample_bytes() == 0 && taken < all.size()) seen.take(bytes(all).subspan(taken++, 1));
+  EXPECT_EQ(seen.sample_bytes(), size);
+  // Three packets that another one follows: the fourth is complete by then, or the fifth.
+  EXPECT_LT(taken, 10 + size + 4 * (10 + 40 * size) + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, UsualModel,
+                         ::testing::Values(sample_case{"g4", 2, "g4"}, sample_case{"x4", 2, "g4"},
+                                           sample_case{"g6", 2, "g4"}, sample_case{"tg15", 2, "g4"},
+                                           sample_case{"g2", 3, "t-mini-pro"},
+                                           sample_case{"s4b", 3, "t-mini-pro"},
+                                           sample_case{"scl", 3, "t-mini-pro"},
+                                           sample_case{"t-mini", 3, "t-mini-pro"},
+                                           sample_case{"t-mini-plus-sh", 4, "t-mini-plus-sh"}),
+                         [](const auto& each) {
+                           std::string name = each.param.sent;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(LayoutRecogniser, IsUndecidedWithoutALeadOfThree) {
+  const byte_vector all = room("t-mini").of(1);
+  const std::size_t first = 13;          // the zero packet
+  const std::size_t next = 10 + 40 * 3;  // each of the others
+  layout_recogniser seen;
+  EXPECT_EQ(seen.sample_bytes(), 0U);
+  EXPECT_EQ(seen.most_likely().word, "g4");
+  seen.take(bytes(all).first(first + 2 * next));  // two are followed
+  EXPECT_EQ(seen.sample_bytes(), 0U);
+  layout_recogniser same = seen;
+  seen.take(bytes(all).subspan(first + 2 * next, next));
+  EXPECT_EQ(seen.sample_bytes(), 3U);
+  same.finish();  // the third one is at the end
+  EXPECT_EQ(same.sample_bytes(), 3U);
+}
+
+TEST(LayoutRecogniser, DamagedPacketsDoNotDecide) {
+  byte_vector all = room("t-mini").of(20);
+  for (std::size_t i = 50; i < all.size(); i += 300) all[i] ^= 0x10U;  // in half of the packets
+  EXPECT_EQ(recognised(all).word, "t-mini-pro");
+  byte_vector noise(100'000);
+  std::uint32_t state = 1;
+  for (auto& byte : noise) {
+    state = state * 1'664'525U + 1'013'904'223U;
+    byte = static_cast<std::uint8_t>(state >> 24U);
+  }
+  layout_recogniser seen;
+  seen.take(noise);
+  seen.finish();
+  EXPECT_EQ(seen.sample_bytes(), 0U);
+}
+
+// The XOR of a whole packet with its checksum is 0, so a size that also takes the next one fits again.
+TEST(LayoutRecogniser, NothingButZeros) {
+  const auto& how = format_of("t-mini");
+  byte_vector all;
+  for (unsigned i = 0; i < 200; ++i) {
+    const byte_vector packet =
+        reference::packet_of(how, 0, 400, 800, std::vector<reference::wire_sample>(40));
+    all.insert(all.end(), packet.begin(), packet.end());
+  }
+  layout_recogniser seen;
+  seen.take(all);
+  EXPECT_EQ(seen.sample_bytes(), 3U);
+}
+
+TEST(LayoutRecogniser, ADeviceInformationNamesTheModel) {
+  const auto with = [](std::string_view sent, unsigned id) {
+    room with_reply(sent);
+    with_reply.reply = information_of(id);
+    return std::string(recognised(with_reply.of(3)).word);
+  };
+  EXPECT_EQ(with("g4", 5), "g4");
+  EXPECT_EQ(with("x4", 6), "x4");
+  EXPECT_EQ(with("g6", 13), "g6");
+  EXPECT_EQ(with("tg15", 101), "tg30");
+  EXPECT_EQ(with("g2", 15), "g2");
+  EXPECT_EQ(with("scl", 22), "scl");
+  EXPECT_EQ(with("t-mini", 151), "t-mini-plus");
+  EXPECT_EQ(with("x4", 150), "g4");  // its samples have another size
+}
+
+TEST(LayoutRecogniser, OfSeveralModelsTheSampleRateDecides) {
+  const auto at = [](unsigned samples, unsigned dhz) {
+    room announced("x4");
+    announced.reply = information_of(4);
+    announced.samples = samples;
+    announced.stated.dhz = dhz;
+    return std::string(recognised(announced.of(4)).word);
+  };
+  EXPECT_EQ(at(714, 70), "x4-pro");  // 4998 per second
+  EXPECT_EQ(at(428, 70), "x2");      // 2996
+  EXPECT_EQ(at(714, 0), "x2");       // the frequency is not reported
+}
+
+TEST(LayoutRecogniser, InformationInCt_OfARevolutionWhoseCrcFits) {
+  room informed("x4");
+  informed.stated = {4, 70};
+  informed.samples = 714;
+  EXPECT_EQ(recognised(informed.of(2)).word, "x4-pro");
+  informed.stated.has_crc = false;
+  EXPECT_EQ(recognised(informed.of(20)).word, "g4");
+  // The lower half of 100 is 4, too: a TG15, whose ranges use the second bit.
+  room whole("tg15");
+  whole.stated = {100, 70};
+  EXPECT_EQ(recognised(whole.of(20)).word, "g4");
+}
+
+TEST(LayoutRecogniser, SamplesOfFlagsAlone) {
+  room flagged("x4");
+  flagged.has_flags_alone = true;
+  EXPECT_EQ(recognised(flagged.of(4)).word, "x2");
+  room whole("tg15");  // no range is so short, but the second bit is set in half of them
+  whole.has_flags_alone = true;
+  EXPECT_EQ(recognised(whole.of(4)).word, "g4");
+}
+
+// ---- the golden vectors and the captures, which are not part of the project ----
+
+const std::filesystem::path shared = G4LIDAR_SOURCE_DIR "/../shared";
+
+byte_vector bytes_of_hex(const std::string& name) {
+  std::ifstream file(shared / "family" / (name + ".hex"));
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string digits;
+  std::ranges::copy_if(text, std::back_inserter(digits),
+                       [](unsigned char c) { return std::isxdigit(c) != 0; });
+  byte_vector all;
+  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
+    all.push_back(static_cast<std::uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
+  }
+  return all;
+}
+
+byte_vector bytes_of_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST(LayoutRecogniser, TheGoldenVectors) {
+  if (!std::filesystem::exists(shared / "family")) {
+    GTEST_SKIP() << "The golden vectors of the family are not at hand: there is no directory "
+                    "shared/family beside the project.";
+  }
+  struct row {
+    std::string name;
+    std::size_t size;
+    std::string usual;
+  };
+  const std::vector<row> rows{
+      {"tri2-real-usv", 2, "g4"},          {"tof2-real-tg15", 2, "g4"},
+      {"coin-d4-real", 3, "t-mini-pro"},   {"tri2-half-synth", 2, "g4"},
+      {"tri3-i10-synth", 3, "t-mini-pro"}, {"tri3-i8f2-synth", 3, "t-mini-pro"},
+      {"scl3-synth", 3, "t-mini-pro"},     {"tof3-tmini-synth", 3, "t-mini-pro"},
+      {"tof2-mm-synth", 2, "g4"},          {"tof4-sh-synth", 4, "t-mini-plus-sh"}};
+  for (const row& each : rows) {
+    const byte_vector once = bytes_of_hex(each.name);
+    ASSERT_FALSE(once.empty()) << each.name;
+    byte_vector all;
+    for (int i = 0; i < 5; ++i) all.insert(all.end(), once.begin(), once.end());
+    layout_recogniser seen;
+    seen.take(all);
+    seen.finish();
+    EXPECT_EQ(seen.sample_bytes(), each.size) << each.name;
+    EXPECT_EQ(seen.most_likely().word, each.usual) << each.name;
+  }
+  byte_vector flagged;
+  for (int i = 0; i < 10; ++i) {
+    const byte_vector once = bytes_of_hex("tri2-flags-synth");
+    flagged.insert(flagged.end(), once.begin(), once.end());
+  }
+  layout_recogniser seen;
+  seen.take(flagged);
+  EXPECT_EQ(seen.sample_bytes(), 2U);
+  EXPECT_EQ(recognised(bytes_of_file(shared / "family" / "ct-info-synth.bin")).word, "x2");
+}
+
+// No recording of a G4 is known; these devices have its packets, and were always read as one.
+TEST(LayoutRecogniser, TheCapturesStayThoseOfAG4) {
+  if (!std::filesystem::exists(shared / "captures")) {
+    GTEST_SKIP() << "The captures are not at hand: there is no directory shared/captures beside "
+                    "the project.";
+  }
+  for (const auto* const name : {"x4_scan1", "x4_stream", "x2_packet", "zero_packet"}) {
+    const byte_vector all = bytes_of_file(shared / "captures" / (std::string(name) + ".bin"));
+    ASSERT_FALSE(all.empty()) << name;
+    EXPECT_EQ(recognised(all).word, "g4") << name;
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// Recordings state the model of their lidar, and are replayed as such.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
+#include "g4lidar/recording/reader.hpp"
+#include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "made_recording.hpp"
+#include "support/family_reference.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Packets of ten samples of a T-mini, after a zero packet with one, and their points.
+struct t_mini_stream {
+  std::vector<std::uint8_t> data;
+  std::vector<reference::family_point> points;
+
+  explicit t_mini_stream(unsigned revolutions) {
+    const reference::wire_format& how =
+        *std::ranges::find(reference::wire_formats, "t-mini", &reference::wire_format::model);
+    for (unsigned turn = 0; turn < revolutions; ++turn) {
+      for (unsigned packet = 0; packet < 37; ++packet) {
+        const unsigned count = packet == 0 ? 1 : 10;
+        const unsigned first = packet == 0 ? 0 : 64 * (10 * packet - 9) - 32;
+        std::vector<reference::wire_sample> samples;
+        for (unsigned i = 0; i < count; ++i) {
+          samples.push_back({(turn + 7 * packet + i) % 256, 4 * (500 + 10 * packet + i) + i % 4});
+        }
+        const auto made = reference::packet_of(how, packet == 0 ? 1 : 0, first,
+                                               first + 64 * (count - 1), samples);
+        data.insert(data.end(), made.begin(), made.end());
+        for (unsigned i = 0; i < count; ++i) {
+          points.push_back(reference::point_of(how, first / 64.0 + i, samples[i]));
+        }
+      }
+    }
+  }
+};
+
+void expect_points(const std::vector<point>& found,
+                   const std::vector<reference::family_point>& wanted) {
+  ASSERT_EQ(found.size(), wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ASSERT_EQ(static_cast<double>(found[i].range_mm), wanted[i].range_mm) << i;
+    ASSERT_EQ(found[i].intensity, wanted[i].intensity) << i;
+    ASSERT_EQ(found[i].sample_flags, wanted[i].flags) << i;
+    ASSERT_LT(reference::apart_deg(static_cast<double>(found[i].angle_deg), wanted[i].angle_deg),
+              0.001)
+        << i;
+  }
+}
+
+class ModelRecording : public ::testing::Test {
+ protected:
+  ModelRecording() { std::filesystem::create_directory(directory_); }
+  ~ModelRecording() override { std::filesystem::remove_all(directory_); }
+  [[nodiscard]] std::string path(const std::string& name) const { return directory_ / name; }
+
+  /// A file with the bytes of the stream, in reads of 300 bytes.
+  std::string recorded_as(const model* which, const std::string& name = "made.mcap") {
+    recording_writer writer = made_writer(path(name), {.model = which});
+    std::int64_t time_ns = begin_ns;
+    for (bytes rest = stream_.data; !rest.empty(); time_ns += ms) {
+      const bytes piece = rest.first(std::min<std::size_t>(rest.size(), 300));
+      writer.from_device(piece, time_ns);
+      rest = rest.subspan(piece.size());
+    }
+    EXPECT_TRUE(writer.close());
+    return path(name);
+  }
+  std::string raw_file() {
+    std::ofstream(path("raw.bin"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(stream_.data.data()),
+               static_cast<std::streamsize>(stream_.data.size()));
+    return path("raw.bin");
+  }
+  static std::vector<point> played(result<lidar> device) {
+    std::vector<point> all;
+    if (!device) {
+      ADD_FAILURE() << device.error().message();
+      return all;
+    }
+    EXPECT_TRUE(device->start());
+    while (const auto some = device->next_points(std::chrono::seconds(1))) {
+      all.insert(all.end(), some->begin(), some->end());
+    }
+    return all;
+  }
+  static std::string text_of(const std::string& path) {
+    const auto all = bytes_of(path);
+    return {all.begin(), all.end()};
+  }
+
+  const t_mini_stream stream_{4};
+  const model* const t_mini_ = model_named("t-mini-pro");
+  std::filesystem::path directory_ =
+      std::filesystem::temp_directory_path() / ("g4lidar-model-" + std::to_string(::getpid()));
+};
+
+TEST_F(ModelRecording, IsReplayedAsThisModel) {
+  const std::string file = recorded_as(t_mini_);
+  const auto reader = recording_reader::open(file);
+  ASSERT_TRUE(reader) << reader.error().message();
+  EXPECT_EQ(reader->model().word, "t-mini-pro");
+  expect_points(played(lidar::open(file)), stream_.points);
+  expect_points(played(lidar::open(file, {.model = t_mini_})), stream_.points);
+}
+
+// They look for these names of channels, and find no other ones.
+TEST_F(ModelRecording, OlderReadersFindNoChannelOfALidar) {
+  const std::string other = text_of(recorded_as(t_mini_));
+  EXPECT_THAT(other, HasSubstr("/g4lidar/v2/from_device"));
+  for (const char* const name : {"/g4lidar/from_device", "/g4lidar/to_device", "/g4lidar/events"}) {
+    EXPECT_THAT(other, Not(HasSubstr(name)));
+  }
+  const std::string named = text_of(recorded_as(&g4_model, "g4.mcap"));
+  EXPECT_THAT(named, HasSubstr("/g4lidar/from_device"));
+  EXPECT_EQ(named, text_of(recorded_as(nullptr, "usual.mcap")));
+  EXPECT_THAT(named, Not(HasSubstr("/g4lidar/v2/")));
+  EXPECT_EQ(recording_reader::open(path("g4.mcap"))->model().word, "g4");
+}
+
+TEST_F(ModelRecording, AnUnknownModelIsRefusedByName) {
+  model later = *t_mini_;
+  later.word = "z9";
+  const auto reader = recording_reader::open(recorded_as(&later));
+  ASSERT_FALSE(reader);
+  EXPECT_EQ(reader.error(), problem::bad_file);
+  EXPECT_EQ(reader.error().detail(), error_detail::unknown_model);
+  EXPECT_THAT(reader.error().message(), HasSubstr("of the model z9"));
+  EXPECT_THAT(reader.error().message(), HasSubstr(path("made.mcap")));
+  EXPECT_EQ(lidar::open(path("made.mcap")).error(), problem::bad_file);
+}
+
+TEST_F(ModelRecording, AnotherModelThanTheRecordedOneIsRefused) {
+  const auto refused = lidar::open(recorded_as(t_mini_), {.model = model_named("x4")});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), problem::bad_option);
+  EXPECT_THAT(refused.error().message(), HasSubstr("model: x4, and the source states t-mini-pro"));
+  EXPECT_EQ(lidar::open(path("made.mcap"), {.model = &g4_model}).error(), problem::bad_option);
+}
+
+TEST_F(ModelRecording, RawBytesOfAnotherModel) {
+  const std::string file = path("from_raw.mcap");
+  recording_writer writer = made_writer(file);
+  {
+    auto from = recorded(*open_raw_bytes(raw_file(), {}, {}, {}, t_mini_), writer);
+    ASSERT_TRUE(from) << from.error().message();
+    expect_points(played(lidar::open(std::move(*from))), stream_.points);
+  }
+  ASSERT_TRUE(writer.close());
+  EXPECT_EQ(recording_reader::open(file)->model().word, "t-mini-pro");
+  const std::vector<point> again = played(lidar::open(file));
+  expect_points(again, stream_.points);
+  // 4000 samples per second, from the rate of the model; the clock may need more than this to settle.
+  const auto wanted_ns = static_cast<double>(stream_.points.size() - 1) * 250'000.0;
+  EXPECT_NEAR(static_cast<double>(again.back().time_ns - again.front().time_ns), wanted_ns,
+              0.1 * wanted_ns);
+}
+
+TEST_F(ModelRecording, RawBytesShowTheirModel) {
+  EXPECT_EQ(model_of_bytes(raw_file()).word, "t-mini-pro");
+  EXPECT_EQ(model_of_bytes(path("missing")).word, "g4");
+  expect_points(played(lidar::open(raw_file())), stream_.points);
+  const auto as_g4 = played(lidar::open(raw_file(), {.model = &g4_model}));
+  EXPECT_LT(as_g4.size(), stream_.points.size() / 10);
+  const auto refused = lidar::open("sim:", {.model = t_mini_});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message(), HasSubstr("model: for files only"));
+}
+
+TEST_F(ModelRecording, AReplayedRecordingGivesAnEqualOne) {
+  const std::string first = recorded_as(t_mini_);
+  recording_writer writer = made_writer(path("again.mcap"));
+  {
+    auto from = recorded(*replay::open(first), writer);
+    ASSERT_TRUE(from) << from.error().message();
+    static_cast<void>(played(lidar::open(std::move(*from))));
+  }
+  ASSERT_TRUE(writer.close());
+  const auto reader = recording_reader::open(path("again.mcap"));
+  EXPECT_EQ(reader->model().word, "t-mini-pro");
+  EXPECT_EQ(reader->digest()->payload, recording_reader::open(first)->digest()->payload);
+  EXPECT_THAT(text_of(path("again.mcap")), Not(HasSubstr("/g4lidar/from_device")));
+}
+
+TEST_F(ModelRecording, AWriterHasOneModel) {
+  recording_writer named = made_writer(path("named.mcap"), {.model = model_named("x4")});
+  const auto refused = recorded(*open_raw_bytes(raw_file(), {}, {}, {}, t_mini_), named);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error(), problem::bad_option);
+  EXPECT_THAT(refused.error().message(),
+              HasSubstr("model: t-mini-pro, and the recording states x4"));
+  recording_writer begun = made_writer(path("begun.mcap"));
+  begun.from_device(stream_.data, begin_ns);
+  EXPECT_FALSE(recorded(*open_raw_bytes(raw_file(), {}, {}, {}, t_mini_), begun));
+  EXPECT_TRUE(recorded(*open_raw_bytes(raw_file(), {}, {}, {}, &g4_model), begun));
+}
+
+TEST_F(ModelRecording, EachFileStatesTheModel) {
+  recording_writer writer =
+      made_writer(path("long.mcap"), {.model = t_mini_, .rotate_time = std::chrono::seconds(1)});
+  for (int i = 0; i < 30; ++i) writer.from_device(stream_.data, begin_ns + i * 100 * ms);
+  ASSERT_TRUE(writer.close());
+  EXPECT_GT(writer.counts().files, 1U);
+  EXPECT_EQ(recording_reader::open(path("long-0001.mcap"))->model().word, "t-mini-pro");
+}
+
+TEST_F(ModelRecording, ACutOffFileStatesTheModel) {
+  const std::string file = path("long.mcap");
+  recording_writer writer = made_writer(file, {.model = t_mini_});
+  for (int i = 0; i < 30; ++i) writer.from_device(stream_.data, begin_ns + i * 100 * ms);
+  ASSERT_TRUE(writer.close());
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) * 2 / 3);
+  auto reader = recording_reader::open(file);
+  ASSERT_TRUE(reader) << reader.error().message();
+  EXPECT_TRUE(reader->for_each([](const recorded_item&) { return true; }));
+  EXPECT_TRUE(reader->damage().is_cut_off);
+  EXPECT_EQ(reader->model().word, "t-mini-pro");
+}
+
+// Points without sample flags and intensity have the digest that they had before points had these
+// members. Computed with another program: FNV-1a over the words of the members.
+TEST(PointDigest, HasAllMembers) {
+  const point plain{90.5F, 1234.25F, 0x0000000123456789, 7, point_flags::too_near, 0, 0};
+  point_digest old;
+  old.add({&plain, 1});
+  EXPECT_EQ(old.value(), 0xBF333CA5D3B11496U);
+  const point whole{90.5F, 1234.25F, 0x0000000123456789, 7, point_flags::too_near, 3, 0xABCD};
+  point_digest with_all;
+  with_all.add({&whole, 1});
+  EXPECT_EQ(with_all.value(), 0x84323DAB1D6E6196U);
+}
+
+}  // namespace
+}  // namespace g4lidar::test
