@@ -188,7 +188,7 @@ TEST(SensorClock, AcceptsAnotherNominalRate) {
   sensor_clock clock({.sample_rate_hz = 9000.0});
   model fast(arrivals::options{});
   while (fast.now_s() < 6.0) stamp(clock, fast.next(), {});
-  clock.reset(4000.0);
+  clock.reset({4000.0, 0.04});
   const arrivals::options o{.nominal_hz = 4000.0, .start_ns = 1'010'000'000'000};
   model slow(o);
   errors found;

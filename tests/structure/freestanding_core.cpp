@@ -191,7 +191,7 @@ packet_times stamp(sensor_clock& clock, const decoded& packet, std::span<point> 
 double restart(sensor_clock& clock, std::int64_t& bound_ns) {
   clock.lost(90);
   clock.reset();
-  clock.reset(4000.0);
+  clock.reset({4000.0, 0.04});
   bound_ns = clock.bound_ns();
   return clock.sample_rate_hz();
 }

@@ -26,6 +26,17 @@ common_options options_of(const ros2_options& options, const named_source& which
 
 }  // namespace
 
+namespace {
+
+/// The model that the options name, or that a file is of; else a G4.
+const model& expected_model(const ros2_options& options, const named_source& which) {
+  if (options.common.expected.model != nullptr) return *options.common.expected.model;
+  const auto found = model_of_source(which.source);
+  return found ? **found : g4_model;
+}
+
+}  // namespace
+
 lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_source& which,
                        merger* into, std::size_t index)
     : options_(options),
@@ -38,7 +49,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       parameters_(options_of(options, which), options.filter_words, into != nullptr, shaper_) {
   const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
-  parameters_.fix("grid", std::int64_t{options.bins.value_or(default_bins(*options.source.model))});
+  parameters_.fix(
+      "grid", std::int64_t{options.bins.value_or(default_bins(expected_model(options, which)))});
   parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");
   if (merger_ == nullptr) {
     messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);

@@ -167,7 +167,7 @@ struct expected_rate {
 
 /// What is known of the sample rate of a device of the model `which`, which is `given_hz` by its reply,
 /// by its model or by the user. A reply is true within 4 %. A device that cannot be asked may have
-/// another firmware than the table: 10 %. Where the table has several rates and no reply tells which,
+/// another firmware than the table: 10 %. Where the table has several rates and the device is not asked,
 /// it is between the lowest and the highest of them, and 10 % beyond. *Pure.*
 [[nodiscard]] constexpr expected_rate expected_rate_of(const model& which,
                                                        std::uint32_t given_hz) noexcept {

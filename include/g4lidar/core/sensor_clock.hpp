@@ -130,11 +130,7 @@ class sensor_clock {
     part_.forget();
     restart();
   }
-  /// The same with another nominal sample rate, above 0.
-  constexpr void reset(double sample_rate_hz) noexcept {
-    reset({sample_rate_hz, options_.rate_tolerance});
-  }
-  /// The same with another tolerance.
+  /// The same with another nominal sample rate, above 0, and its tolerance.
   constexpr void reset(expected_rate rate) noexcept {
     assert(rate.hz > 0.0 && rate.tolerance < 0.5);
     options_.rate_tolerance = rate.tolerance;

@@ -154,7 +154,8 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (to == file_form::tum) job.log = slam_log::tum;
   if (to == file_form::carmen) {
     job.log = slam_log::carmen;
-    job.bins = 2 * default_bins(*job.source.model);  // a G4 measures 1286 points at 7 Hz
+    job.common->expected.model = &model_of(*job.common);
+    job.bins = 2 * default_bins(*job.common->expected.model);  // a G4 measures 1286 points at 7 Hz
   }
   job.common->marks.near = options.made.near;
   job.partial = to != file_form::pcd && job.log == slam_log::none;
