@@ -4,9 +4,6 @@
 
 #include "machine.hpp"
 
-#include <algorithm>
-#include <utility>
-
 namespace g4lidar::sim {
 
 void device::machine::host_byte_arrives() noexcept {

@@ -27,7 +27,6 @@ class event_list {
       text_ << "packet";
       for (const unsigned byte : packet->data()) text_ << ' ' << byte;
       text_ << '\n';
-      skipped_bytes_ = 0;
     } else if (const auto* const gone = std::get_if<skipped>(&found)) {
       // Noise may be reported in pieces.
       for (std::size_t i = 0; i < gone->count; ++i) {
@@ -41,7 +40,6 @@ class event_list {
 
  private:
   std::ostringstream text_;
-  std::size_t skipped_bytes_ = 0;
 };
 
 std::string events_of(const byte_vector& data, const sample_format& format, std::size_t piece) {
@@ -66,15 +64,14 @@ class SimLayout : public testing::TestWithParam<family_model> {
 
 // With a scan header, a zero packet, a byte before it, packets of 40 and the rest of a revolution.
 TEST_P(SimLayout, EveryDivision_GivesTheSameEvents) {
-  byte_vector all = sent_in(2 * test::second);
-  std::size_t zero_at = 0;  // the last zero packet but one
+  const byte_vector all = sent_in(2 * test::second);
   std::vector<std::size_t> zeros;
   for (std::size_t i = 0; i + 3 < all.size(); ++i) {
     const bool is_zero = all[i] == 0xAA && all[i + 1] == 0x55 && (all[i + 2] & 1) != 0;
     if (is_zero && all[i + 3] == 1) zeros.push_back(i);
   }
   ASSERT_GE(zeros.size(), 2U);
-  zero_at = zeros[zeros.size() - 2];
+  const std::size_t zero_at = zeros[zeros.size() - 2];
   ASSERT_GE(zero_at, 300U);
   const byte_vector data(all.begin() + static_cast<std::ptrdiff_t>(zero_at - 300),
                          all.begin() + static_cast<std::ptrdiff_t>(zero_at + 300));

@@ -126,12 +126,12 @@ int run(const sim_options& options) {
 }
 
 constexpr const char* sim_details =
-    R"(The same options give the same bytes on every computer: the response to the start command, and
-all packets that were complete before N seconds. Columns of --truth: index, time_ns, scan,
+    R"(The same options give the same bytes on every computer: the response to the start command, and all
+packets that were complete before N seconds. Columns of --truth: index, time_ns, scan,
 first_level_deg, bearing_deg (direction of the target), range_mm (its distance, exact; 0: no
 target), raw (as sent, of a G4 in quarters of a millimeter), intensity and sample_flags if the
-model has them, lidar_x_m, lidar_y_m, lidar_heading_deg (where the lidar was). Lines of --odometry: time_ns, x and y in m, yaw_rad, counted from where the
-robot was at time 0.
+model has them, lidar_x_m, lidar_y_m, lidar_heading_deg (where the lidar was). Lines of
+--odometry: time_ns, x and y in m, yaw_rad, counted from where the robot was at time 0.
 
 With --link PATH the command serves a device that answers commands, on a pseudo-terminal to
 which the symbolic link PATH leads, until ^C. With --tcp PORT it serves a device for
