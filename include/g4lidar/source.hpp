@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -55,7 +56,9 @@ enum class source_kind : std::uint8_t {
     const connector& from) noexcept;
 
 /// What sent the bytes of the file that `name` names: what a recording states, and of raw bytes
-/// model_of_bytes(). The G4 for everything else. Fails like recording_reader::open(). Valid forever.
-[[nodiscard]] G4LIDAR_API result<const model*> model_of_source(std::string_view name);
+/// model_of_bytes(). The G4 for everything else. `is_cancelled` is that of reading_options. Fails like
+/// recording_reader::open(). Valid forever.
+[[nodiscard]] G4LIDAR_API result<const model*> model_of_source(
+    std::string_view name, const std::function<bool()>& is_cancelled = {});
 
 }  // namespace g4lidar

@@ -205,7 +205,9 @@ class file_run {
 
 void examine_file(const std::string& path, stage_log& log) {
   const model* which = log.options().model;
-  if (which == nullptr) which = model_of_source("file:" + path).value_or(&g4_model);
+  if (which == nullptr) {
+    which = model_of_source("file:" + path, log.options().is_cancelled).value_or(&g4_model);
+  }
   file_run(log, *which).run(path);
 }
 

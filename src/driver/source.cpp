@@ -64,12 +64,14 @@ std::string path_of_source(std::string_view name) {
   return std::string(name.starts_with(file_prefix) ? name.substr(file_prefix.size()) : name);
 }
 
-result<const model*> model_of_source(std::string_view name) {
+result<const model*> model_of_source(std::string_view name,
+                                     const std::function<bool()>& is_cancelled) {
   const std::string path = path_of_source(name);
   const source_kind kind = kind_of_source(name);
   if (kind == source_kind::raw_bytes) return &model_of_bytes(path);
   if (kind != source_kind::recording) return &g4_model;
-  return recording_reader::open(path).map([](const recording_reader& of) { return &of.model(); });
+  return recording_reader::open(path, {.is_cancelled = is_cancelled})
+      .map([](const recording_reader& of) { return &of.model(); });
 }
 
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {

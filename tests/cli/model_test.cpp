@@ -61,7 +61,6 @@ TEST_F(ModelOfAFile, RawBytesAreRecognisedAndReported) {
   EXPECT_THAT(run({"dump", raw_, "--model", "t-mini-pro", "-n", "40"}).err,
               Not(HasSubstr("read as")));
   const std::string as_g4 = run({"dump", raw_, "--model", "g4", "-f", "csv", "-q"}).out;
-  EXPECT_LT(cli::lines_of(as_g4).size(), 100U);  // of 7220 points
   EXPECT_THAT(as_g4, Not(HasSubstr("intensity")));
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"decode", raw_},

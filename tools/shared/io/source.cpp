@@ -117,7 +117,9 @@ const g4lidar::model& model_of(const common_options& options) {
   const source_kind kind = kind_of_source(options.source);
   if (options.expected.model != nullptr && kind != source_kind::recording)
     return *options.expected.model;
-  const g4lidar::model& found = *value_of(model_of_source(options.source));
+  const auto shown = model_of_source(options.source, [] { return interrupt() != 0; });
+  if (interrupt() != 0) throw interrupted();
+  const g4lidar::model& found = *value_of(shown);
   if (options.expected.model != nullptr && options.expected.model->word != found.word) {
     throw bad_value(fmt::format("--model: {}, and {} states {}", options.expected.model->word,
                                 in_quotes(options.source), found.word));
