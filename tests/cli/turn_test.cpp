@@ -98,7 +98,7 @@ TEST(Turn, Pictures) {
       output_of({"scan", "--frame", "robot", "-f", "pcd", "--pcd-data", "ascii"});
   std::istringstream rows(cloud.substr(cloud.find("DATA ascii\n") + 11));
   for (const auto& [x, y] : {std::array{2.0, 0.0}, std::array{0.0, -1.0}, std::array{0.0, 3.0}}) {
-    std::array<double, 6> row{};
+    std::array<double, 7> row{};
     for (double& each : row) rows >> each;
     EXPECT_NEAR(row[0], x, 1e-6);
     EXPECT_NEAR(row[1], y, 1e-6);

@@ -7,6 +7,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "io/interrupt.hpp"
 #include "merger.hpp"
 
 namespace g4_tool {
@@ -31,7 +32,7 @@ namespace {
 /// The model that the options name, or that a file is of; else a G4.
 const model& expected_model(const ros2_options& options, const named_source& which) {
   if (options.common.expected.model != nullptr) return *options.common.expected.model;
-  const auto found = model_of_source(which.source);
+  const auto found = model_of_source(which.source, [] { return interrupt() != 0; });
   return found ? **found : g4_model;
 }
 
