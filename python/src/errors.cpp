@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "errors.hpp"
 
+#include "g4lidar/lidar_options.hpp"
+
 namespace g4lidar::python {
 namespace {
 
