@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <system_error>
 #include <type_traits>
@@ -269,9 +270,11 @@ std::variant<setup, setup_error> parse_setup(std::string_view source) {
     source.remove_prefix(std::min(piece.size() + 1, source.size()));
     words.push_back(decoded(piece));
   }
-  std::ranges::stable_sort(words, {}, turn_of);
+  // std::stable_sort uses a deprecated function, which clang reports.
+  std::multimap<int, std::string_view> in_order;
+  for (const std::string& word : words) in_order.emplace(turn_of(word), word);
   setup read;
-  for (const std::string& word : words) {
+  for (const auto& [turn, word] : in_order) {
     if (std::string wrong = set(read, word); !wrong.empty()) return setup_error{wrong};
   }
   const std::string_view problem = problem_with(read.device);
