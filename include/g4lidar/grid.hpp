@@ -119,7 +119,9 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   }
   for (std::size_t bin = 0; bin < intensities.size(); ++bin) {
     const float slot = ranges_m[bin];
-    intensities[bin] = slot < 0.0F ? 0.0F : points[static_cast<std::size_t>(slot)].intensity;
+    intensities[bin] = 0.0F;
+    if (slot < 0.0F) continue;
+    intensities[bin] = static_cast<float>(points[static_cast<std::size_t>(slot)].intensity);
   }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();

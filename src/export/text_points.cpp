@@ -96,7 +96,7 @@ std::optional<point> point_lines::point_of(const fields& found) const {
   made.angle_deg = angle_deg < 360.0F ? angle_deg : angle_deg - 360.0F;
   made.range_mm = range * mm_;
   if (made.range_mm == 0.0F) made.flags = point_flags::no_return;
-  if (made.range_mm > 0.0F && made.range_mm < model_->range.min_mm) {
+  if (made.range_mm > 0.0F && made.range_mm < static_cast<float>(model_->range.min_mm)) {
     made.flags = point_flags::too_near;
   }
   return made;

@@ -71,7 +71,7 @@ class recorded_items final : public item_source {
 
 result<std::unique_ptr<connector>> replay::open(std::string_view path,
                                                 const playback_options& options,
-                                                std::function<bool()> is_cancelled) {
+                                                const std::function<bool()>& is_cancelled) {
   if (const auto wrong = problem_with(options)) return tl::unexpected(*wrong);
   auto waits = std::make_shared<waker>(real_system_calls());
   const reading_options range{

@@ -32,10 +32,12 @@ class scan_ranges {
     const std::size_t bins = options.scan_bins.value_or(default_bins(*revolution.model));
     ranges_.resize(std::clamp<std::size_t>(bins, 1, ranges_.capacity()));
     intensities_.resize(has_intensity(*revolution.model) ? ranges_.size() : 0);
+    const std::span<const point> whole = revolution.points;
     try {
       shaper_.shape(revolution);
       revolution = shaper_.for_grid();
-    } catch (const std::bad_alloc&) {  // without the flags
+    } catch (const std::bad_alloc&) {
+      revolution.points = whole;  // without the flags
     }
     if (options.order == scan_order::time) {
       return fill_time_grid(revolution, ranges_, options.grid, intensities_);

@@ -160,8 +160,11 @@ class layout_recogniser {
         return *near;
       }
     }
-    if (size == 2) return found->has_flags_alone() ? *model_named("x2") : g4_model;
-    return *model_named(size == 3 ? "t-mini-pro" : "t-mini-plus-sh");
+    if (size == 2 && !found->has_flags_alone()) return g4_model;
+    const model* const usual = model_named(size == 2   ? "x2"
+                                           : size == 3 ? "t-mini-pro"
+                                                       : "t-mini-plus-sh");
+    return usual != nullptr ? *usual : g4_model;
   }
 
  private:

@@ -28,7 +28,7 @@ class G4LIDAR_API replay {
   /// recording_reader::open().
   [[nodiscard]] static result<std::unique_ptr<connector>> open(
       std::string_view path, const playback_options& options = {},
-      std::function<bool()> is_cancelled = {});
+      const std::function<bool()>& is_cancelled = {});
 
   /// The reader of the recording that `from` plays, for its position and its damage; null if `from`
   /// is something else. Valid as long as `from`, or the lidar that owns it.

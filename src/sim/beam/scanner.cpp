@@ -201,7 +201,7 @@ sample_truth scanner::measure() noexcept {
     truth.range_mm = target->range_mm;
   }
   truth.raw = raw_sample(truth.range_mm);
-  if (truth.raw != 0) truth.intensity = intensity_of(*target, format.code);
+  if (target && truth.raw != 0) truth.intensity = intensity_of(*target, format.code);
   if (format.code.lower == lower_bits::flags) truth.flags = flags_of(truth, format.usual_flags);
   return truth;
 }

@@ -152,7 +152,7 @@ std::string add_fault(std::vector<fault>& faults, std::string_view value) {
 }
 
 // The text of read_into(), with the name of what was to be read.
-std::string named(std::string_view name, std::string wrong) {
+std::string named(std::string_view name, const std::string& wrong) {
   return wrong.empty() ? wrong : std::string(name) + ": " + wrong;
 }
 
