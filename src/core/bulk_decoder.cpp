@@ -47,9 +47,7 @@ struct plain {
 };
 
 constexpr bool has_kernels(sample_layout layout, correction_kind correction) noexcept {
-  const kernels& first = plain<g4_format.layout, g4_format.correction>::all;
-  const bool is_first = layout == g4_format.layout && correction == g4_format.correction;
-  return is_first || &kernels_in<plain>({layout, correction}) != &first;
+  return find_kernels<plain>({layout, correction}) != nullptr;
 }
 static_assert(std::ranges::all_of(models, [](const model& each) {
   const correction_kind correction = each.samples.correction;
@@ -65,7 +63,9 @@ const kernels& kernels_of(instruction_set set, sample_format format) noexcept {
   if (set == instruction_set::avx2) return avx2_kernels_of(format);
 #endif
   static_cast<void>(set);
-  return kernels_in<plain>(format);
+  const kernels* const found = find_kernels<plain>(format);
+  assert(found != nullptr);
+  return *found;
 }
 
 }  // namespace bulk

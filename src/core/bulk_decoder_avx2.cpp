@@ -5,6 +5,7 @@
 #if G4LIDAR_HAS_AVX2_KERNELS
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <numbers>
@@ -330,7 +331,9 @@ struct avx2_kernels {
 }  // namespace
 
 const kernels& avx2_kernels_of(sample_format format) noexcept {
-  return kernels_in<avx2_kernels>(format);
+  const kernels* const found = find_kernels<avx2_kernels>(format);
+  assert(found != nullptr);
+  return *found;
 }
 
 }  // namespace g4lidar::bulk

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cassert>
 #include <cstdint>
 #include <span>
 
@@ -29,10 +28,10 @@ struct kernels {
                 std::span<xy_point, max_samples> out) noexcept;
 };
 
-/// The kernels of `Kernels` for a combination of layout and correction that models have; another
-/// one is an assertion.
+/// The kernels of `Kernels` for a combination of layout and correction that models have; null for
+/// another one.
 template <template <sample_layout, correction_kind> class Kernels>
-[[nodiscard]] constexpr const kernels& kernels_in(sample_format format) noexcept {
+[[nodiscard]] constexpr const kernels* find_kernels(sample_format format) noexcept {
   struct entry {
     sample_layout layout;
     correction_kind correction;
@@ -54,10 +53,9 @@ template <template <sample_layout, correction_kind> class Kernels>
             &Kernels<intensity_16, correction_kind::none>::all},
   };
   for (const entry& each : all) {
-    if (each.layout == format.layout && each.correction == format.correction) return *each.found;
+    if (each.layout == format.layout && each.correction == format.correction) return each.found;
   }
-  assert(false);
-  return *all[0].found;
+  return nullptr;
 }
 
 /// Only on architectures that can have them.
