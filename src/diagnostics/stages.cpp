@@ -170,7 +170,8 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   // A computer that is busy again and again makes arrivals late that look like another rate.
   const bool is_certain = !is_host_busy(measured);
   stage_report rate{.stage = diagnostic_stage::rate};
-  if (measured.tally().reported_hz() > 0.0) rate.add("reported_hz", measured.tally().reported_hz());
+  const double reported_hz = true_frequency_dhz(wanted, measured.tally().reported_dhz()) / 10.0;
+  if (reported_hz > 0.0) rate.add("reported_hz", reported_hz);
   if (measured.tally().turns_per_sample() > 0.0) {
     rate.add("samples_per_revolution", 1.0 / measured.tally().turns_per_sample());
   }
@@ -180,8 +181,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     rate.outcome = stage_verdict::skipped;
     rate.remark = "There is too little with times to measure it.";
     const double turns = measured.tally().turns_per_sample();
-    if (is_unknown_model)
-      find_other_speed(rate, measured.tally().reported_hz() / turns, 1.0 / turns, wanted);
+    if (is_unknown_model) find_other_speed(rate, reported_hz / turns, 1.0 / turns, wanted);
     return log.report(std::move(rate));
   }
   rate.add("measured_hz", frequency_hz);

@@ -121,7 +121,7 @@ struct stream_tally {
   /// Revolutions per second, by the angles and the sample rate.
   [[nodiscard]] double frequency_hz() const { return turns_per_sample() * sample_rate_hz(); }
   /// The mean frequency in zero packets; 0 if none has one.
-  [[nodiscard]] double reported_hz() const noexcept { return reported.get() / 10.0; }
+  [[nodiscard]] double reported_dhz() const noexcept { return reported.get(); }
 };
 
 }  // namespace g4lidar

@@ -166,6 +166,26 @@ TEST(Scan, SuspectZeroPacket_StartsARevolution) {
   EXPECT_EQ(cutter.scans()[1].points.size(), 700U);
 }
 
+// The zero packets of a TG contain 3 Hz less than the motor turns; 0 means that they report nothing.
+TEST(Scan, ReportedFrequency_IsThatOfTheModel) {
+  const auto reported = [](const char* model, unsigned ct_dhz) {
+    std::vector<point> storage(100);
+    scan_assembler assembler(storage, *model_named(model));
+    for (int i = 0; i < 2; ++i) {
+      decoded packet{.sample_count = 1,
+                     .reported_frequency_dhz = static_cast<std::uint8_t>(ct_dhz),
+                     .starts_revolution = true};
+      const point one;
+      packet.points = {&one, 1};
+      while (const auto found = assembler.next(packet)) return int{found->reported_frequency_dhz};
+    }
+    return -1;
+  };
+  EXPECT_EQ(reported("tg30", 40), 70);
+  EXPECT_EQ(reported("tg30", 0), 0);
+  EXPECT_EQ(reported("g4", 70), 70);
+}
+
 TEST(Scan, OnlySuspectPackets_GiveAScanWithoutPoints) {
   scan_cutter cutter(1000);
   suspect(cutter, 100);

@@ -180,6 +180,13 @@ struct expected_rate {
   return {2.0 / (longest_s + shortest_s), (longest_s - shortest_s) / (longest_s + shortest_s)};
 }
 
+/// The rotation frequency that a zero packet of a lidar like `which` means with `reported_dhz`, both in
+/// 0.1 Hz; 0, not reported, stays 0. *Pure.*
+[[nodiscard]] constexpr double true_frequency_dhz(const model& which,
+                                                  double reported_dhz) noexcept {
+  return reported_dhz == 0.0 ? 0.0 : reported_dhz + which.frequency.ct_offset_dhz;
+}
+
 /// The most points of a revolution of `which`: four times those of its highest sample rate at its lowest
 /// frequency, because a motor that spins up is slower; at least 8192. *Pure.*
 [[nodiscard]] constexpr std::size_t largest_scan(const model& which) noexcept {
