@@ -172,11 +172,12 @@ TEST(Scan, ReportedFrequency_IsThatOfTheModel) {
     std::vector<point> storage(100);
     scan_assembler assembler(storage, *model_named(model));
     for (int i = 0; i < 2; ++i) {
-      decoded packet{.sample_count = 1,
-                     .reported_frequency_dhz = static_cast<std::uint8_t>(ct_dhz),
-                     .starts_revolution = true};
       const point one;
+      decoded packet;
       packet.points = {&one, 1};
+      packet.sample_count = 1;
+      packet.reported_frequency_dhz = static_cast<std::uint8_t>(ct_dhz);
+      packet.starts_revolution = true;
       while (const auto found = assembler.next(packet)) return int{found->reported_frequency_dhz};
     }
     return -1;

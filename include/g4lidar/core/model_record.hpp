@@ -182,9 +182,10 @@ struct expected_rate {
 
 /// The rotation frequency that a zero packet of a lidar like `which` means with `reported_dhz`, both in
 /// 0.1 Hz; 0, not reported, stays 0. *Pure.*
-[[nodiscard]] constexpr double true_frequency_dhz(const model& which,
-                                                  double reported_dhz) noexcept {
-  return reported_dhz == 0.0 ? 0.0 : reported_dhz + which.frequency.ct_offset_dhz;
+template <class Number>
+[[nodiscard]] constexpr Number true_frequency_dhz(const model& which,
+                                                  Number reported_dhz) noexcept {
+  return reported_dhz > 0 ? reported_dhz + which.frequency.ct_offset_dhz : Number{};
 }
 
 /// The most points of a revolution of `which`: four times those of its highest sample rate at its lowest
