@@ -12,6 +12,7 @@
 
 #include "g4lidar/cartesian.hpp"
 #include "g4lidar/core/angle.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
@@ -30,10 +31,19 @@ inline constexpr std::size_t max_window = 16;
 /// so is a wall at 10 degrees to the beam. An object that gives one return is marked: below 10 mm
 /// of width per metre of distance an object may give one return only.
 struct speckle_limits {
-  std::size_t window = 2;    ///< How many samples on each side are neighbours: 1 to max_window.
-  std::size_t count = 1;     ///< With fewer near neighbours than this a return is isolated.
-  float near_m = 0.05F;      ///< Neighbours up to this distance are near; or up to
-  float near_ratio = 0.05F;  ///< this share of the range, if that is more. Both >= 0.
+  std::size_t window = 2;  ///< How many samples on each side are neighbours: 1 to max_window.
+  std::size_t count = 1;   ///< With fewer near neighbours than this a return is isolated.
+  float near_m = 0.05F;    ///< Neighbours up to this distance are near; or up to
+  /// this share of the range, if that is more. Negative: by the model, 0.05 for a G4, and more where the
+  /// samples of a revolution are farther apart, in proportion: 0.15 for an X2.
+  float near_ratio = -1.0F;
+
+  /// `near_ratio`, or that of the model. *Pure.*
+  [[nodiscard]] constexpr float near_ratio_of(const model& which) const noexcept {
+    if (near_ratio >= 0.0F) return near_ratio;
+    const auto rate_hz = static_cast<float>(first_rate_hz(which));
+    return 0.05F * std::max(1.0F, static_cast<float>(first_rate_hz(g4_model)) / rate_hz);
+  }
 };
 
 /// Which returns are veiling points: the beam hit two surfaces, and the range is between them, where
@@ -111,12 +121,14 @@ constexpr std::span<point> copy_points(std::span<const point> points,
 /// points, and returns the number of flagged ones. Linear in the number of points times the window.
 /// It looks at places only, so other marks do not change the result. With at most twice the window
 /// of points the ends are open. *Pure, never allocates.* To leave the flagged points out:
-/// point_filter::excluded.
+/// point_filter::excluded. The lidar is like `which`.
 constexpr std::size_t mark_isolated(std::span<point> points, const speckle_limits& limits = {},
-                                    scan_ends ends = scan_ends::joined) noexcept {
-  const auto judge = [&limits](std::span<const xy_point> before, const xy_point& here,
-                               std::span<const xy_point> after, float range_mm) {
-    const float near_m = std::max(limits.near_m, limits.near_ratio * 0.001F * range_mm);
+                                    scan_ends ends = scan_ends::joined,
+                                    const model& which = g4_model) noexcept {
+  const float near_ratio = limits.near_ratio_of(which);
+  const auto judge = [&limits, near_ratio](std::span<const xy_point> before, const xy_point& here,
+                                           std::span<const xy_point> after, float range_mm) {
+    const float near_m = std::max(limits.near_m, near_ratio * 0.001F * range_mm);
     std::size_t count = 0;
     for (const auto& side : {before, after}) {
       for (const xy_point& other : side) {
@@ -133,8 +145,9 @@ constexpr std::size_t mark_isolated(std::span<point> points, const speckle_limit
 /// The same on a copy of all `points` at the front of `out`, which is at least as long.
 constexpr std::size_t mark_isolated(std::span<const point> points, std::span<point> out,
                                     const speckle_limits& limits,
-                                    scan_ends ends = scan_ends::joined) noexcept {
-  return mark_isolated(detail::copy_points(points, out), limits, ends);
+                                    scan_ends ends = scan_ends::joined,
+                                    const model& which = g4_model) noexcept {
+  return mark_isolated(detail::copy_points(points, out), limits, ends, which);
 }
 
 /// The same for veiling points and point_flags::veiling.

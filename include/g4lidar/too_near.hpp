@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 
@@ -14,15 +15,22 @@ namespace g4lidar {
 
 /// Which directions without return are flagged by mark_near().
 struct near_limits {
-  /// A nearer target gives no return, in millimetres. The data sheet of the G4: 280 at 9 kHz, 260 at
-  /// 8 kHz, 100 at 4 kHz. Returns from less than twice this are near.
-  float shortest_mm = 280.0F;
+  /// A nearer target gives no return, in millimetres. Returns from less than twice this are near. 0: the
+  /// shortest range of the model at its usual sample rate. The data sheet of the G4: 280 at 9 kHz, 260
+  /// at 8 kHz, 100 at 4 kHz.
+  float shortest_mm = 0.0F;
   /// For how many revolutions after the last near return a direction is flagged; until_return, 0:
   /// until a return comes from there.
   std::uint32_t revolutions = 3;
 
   /// A value of `revolutions`, for alarms: a target that stays too near stays flagged.
   static constexpr std::uint32_t until_return = 0;
+
+  /// `shortest_mm`, or that of the model. *Pure.*
+  [[nodiscard]] constexpr float shortest_mm_of(const model& which) const noexcept {
+    if (shortest_mm > 0.0F) return shortest_mm;
+    return static_cast<float>(shortest_range_mm(which, first_rate_hz(which)));
+  }
 };
 
 /// From which directions near returns came last, for mark_near(). One for each lidar; 1440 bytes.
@@ -39,12 +47,12 @@ class near_history {
   /// it has no return although a near return came from its direction, within `limits`, and none that
   /// is farther since then.
   constexpr bool add(const point& p, const near_limits& limits,
-                     correction_kind correction = g4_format.correction) noexcept {
+                     const model& which = g4_model) noexcept {
     // The angle of the head, as a near and a far target on the same beam have different directions.
-    const auto direction = static_cast<std::size_t>(raw_angle_deg(p, correction));
+    const auto direction = static_cast<std::size_t>(raw_angle_deg(p, which.samples.correction));
     std::uint32_t& last = near_[direction % directions];
     if (!p.is_no_return()) {
-      last = p.range_mm < 2.0F * limits.shortest_mm ? p.revolution + 1 : 0;
+      last = p.range_mm < 2.0F * limits.shortest_mm_of(which) ? p.revolution + 1 : 0;
       return false;
     }
     if (last > p.revolution + 1) last = 0;  // of an earlier stream
@@ -60,7 +68,7 @@ class near_history {
 /// Flags as point_flags::may_be_too_near the points without return in directions where, in the last
 /// `limits.revolutions` revolutions, a return came from less than twice the shortest range, and none
 /// that is farther since then. Clears that flag on all other points, and returns the number of flagged
-/// ones. `correction` is that of the lidar. `points`: all points of the lidar in the order of measurement, in pieces of any size, before
+/// ones. The lidar is like `which`. `points`: all points of the lidar in the order of measurement, in pieces of any size, before
 /// they are filtered or deskewed; other marks do not change the result. *Never allocates.*
 ///
 /// It finds targets that came near while the lidar saw them. It misses targets that are too near from
@@ -85,10 +93,10 @@ class near_history {
 /// directions where the wall behind it was seen.)
 constexpr std::size_t mark_near(std::span<point> points, near_history& history,
                                 const near_limits& limits = {},
-                                correction_kind correction = g4_format.correction) noexcept {
+                                const model& which = g4_model) noexcept {
   std::size_t marked = 0;
   for (point& p : points) {
-    const bool found = history.add(p, limits, correction);
+    const bool found = history.add(p, limits, which);
     p.flags = found ? p.flags | point_flags::may_be_too_near
                     : without(p.flags, point_flags::may_be_too_near);
     marked += found ? 1U : 0U;
@@ -99,8 +107,8 @@ constexpr std::size_t mark_near(std::span<point> points, near_history& history,
 /// The same on a copy of all `points` at the front of `out`, which is at least as long.
 constexpr std::size_t mark_near(std::span<const point> points, std::span<point> out,
                                 near_history& history, const near_limits& limits = {},
-                                correction_kind correction = g4_format.correction) noexcept {
-  return mark_near(detail::copy_points(points, out), history, limits, correction);
+                                const model& which = g4_model) noexcept {
+  return mark_near(detail::copy_points(points, out), history, limits, which);
 }
 
 }  // namespace g4lidar

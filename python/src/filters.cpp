@@ -65,7 +65,7 @@ void make_shaper(shaper* made, const std::optional<angles>& field_of_view,
                  const mounting& mount, bool restamps, bool for_merging) {
   require_numbers({least_range_mm, greatest_range_mm});
   if (excluded > 0xFFU) raise_impossible("excluded: flags of PointFlag", excluded);
-  if (!(shortest_mm > 0.0F)) throw nb::value_error("shortest_mm: above 0");
+  if (!(shortest_mm >= 0.0F)) throw nb::value_error("shortest_mm: not below 0");
   shaping_options how{.filter = {.in = in,
                                  .least_range_mm = least_range_mm,
                                  .greatest_range_mm = greatest_range_mm,
@@ -127,7 +127,8 @@ void bind_shaper(nb::module_& module) {
            "`excluded` those with one of these flags (PointFlag). `speckle` and `edges` leave out "
            "what mark_isolated() and mark_veiling() flag. `near` flags points without return as "
            "PointFlag.MAY_BE_TOO_NEAR if, in the last `near_revolutions` (0: until a return "
-           "comes), a return came from their direction from less than twice `shortest_mm` (280 at "
+           "comes), a return came from their direction from less than twice `shortest_mm` (0: by "
+           "the model; 280 of a G4 at "
            "9 kHz, 260 at 8, 100 at 4), and none that is farther since; too_near.hpp has the "
            "numbers of what it misses and of false alarms. `deskew`: 'by_path' moves points to "
            "where they would have been seen at the time of the first one, by the poses of the "
@@ -210,7 +211,7 @@ void bind_filters(nb::module_& module) {
       "A copy in which returns with fewer than `count` near returns among `window` (1 to 16) "
       "samples on each side are "
       "flagged PointFlag.ISOLATED. Near is up to `near_m` metres, or `near_ratio` of the range if "
-      "that is more.");
+      "that is more (negative: that of a G4, 0.05).");
   const edge_limits edges;
   module.def(
       "mark_veiling",

@@ -60,7 +60,7 @@ def test_no_return_is_not_free_space() -> None:
     far = g4lidar.ScanShaper(near=True, shortest_mm=100)
     assert (far.shape(points).kept["flags"] & PointFlag.MAY_BE_TOO_NEAR == 0).all()
     with pytest.raises(ValueError):
-        g4lidar.ScanShaper(near=True, shortest_mm=0)
+        g4lidar.ScanShaper(near=True, shortest_mm=-1)
     with pytest.raises(TypeError):
         g4lidar.fill_grid(points, 4, no_return="far")  # type: ignore[arg-type]
 

@@ -26,8 +26,8 @@ inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options)
                                                     g4_model.turn_deg,
                                                     longest_range_mm(g4_layout)};
 inline constexpr g4lidar_outlier_options outlier_defaults{
-    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, 0.05F, 1, 5.0F, false, {}};
-inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 280.0F, 3, {}};
+    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, -1.0F, 1, 5.0F, false, {}};
+inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 0.0F, 3, {}};
 
 [[nodiscard]] constexpr bool is_frame(int value) noexcept {
   return value == G4LIDAR_VENDOR || value == G4LIDAR_ROBOT;
@@ -64,7 +64,7 @@ inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options)
 [[nodiscard]] inline std::optional<near_limits> near_of(
     const g4lidar_near_options* given) noexcept {
   g4lidar_near_options taken = near_defaults;
-  if (!take_options(given, taken) || !(taken.shortest_mm > 0.0F)) return std::nullopt;
+  if (!take_options(given, taken) || !(taken.shortest_mm >= 0.0F)) return std::nullopt;
   return near_limits{taken.shortest_mm, taken.revolutions};
 }
 
@@ -80,7 +80,7 @@ struct outlier_limits {
   const auto is_window = [](std::uint32_t value) { return value >= 1 && value <= max_window; };
   if (!take_options(given, taken) || !is_window(taken.window) || !is_window(taken.edge_window) ||
       !(taken.least_angle_deg > 0.0F && taken.least_angle_deg <= 45.0F) ||
-      !(taken.near_m >= 0.0F) || !(taken.near_ratio >= 0.0F)) {
+      !(taken.near_m >= 0.0F) || !(taken.near_ratio >= 0.0F || taken.near_ratio == -1.0F)) {
     return std::nullopt;
   }
   return outlier_limits{{taken.window, taken.near_count, taken.near_m, taken.near_ratio},

@@ -62,10 +62,9 @@ std::span<const point> shaping_writer::marked_stream(std::span<const point> poin
   stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(old));
   stream_.insert(stream_.end(), points.begin(), points.end());
   if (marks.near) {
-    mark_near(std::span(stream_).last(points.size()), near_, *marks.near,
-              options_.model->samples.correction);
+    mark_near(std::span(stream_).last(points.size()), near_, *marks.near, *options_.model);
   }
-  marks.mark_by_neighbours(stream_, scan_ends::open);
+  marks.mark_by_neighbours(stream_, scan_ends::open, *options_.model);
   const std::size_t from = passed_on_ - old;
   const std::size_t waiting = is_end ? 0 : window;
   passed_on_ = std::max(from, stream_.size() - std::min(stream_.size(), waiting));

@@ -101,7 +101,7 @@ TEST_F(CRecordedRanges, ImpossibleOptionsOfRangesAreRefused) {
   EXPECT_EQ(created([](auto& wish) { wish.near_is_minus_infinity = 2; }), G4LIDAR_BAD_ARGUMENT);
   g4lidar_near_options limits;
   g4lidar_near_options_init(&limits, sizeof limits);
-  limits.shortest_mm = 0.0F;
+  limits.shortest_mm = -1.0F;
   EXPECT_EQ(created([&](auto& wish) { wish.near_options = &limits; }), G4LIDAR_BAD_ARGUMENT);
   EXPECT_FALSE(std::filesystem::exists(path_));
 }

@@ -146,7 +146,7 @@ TEST(CShaper, FlagsWhatMayBeTooNear) {
   limits.shortest_mm = 100.0F;
   EXPECT_EQ(flags(), (std::vector<int>{G4LIDAR_NO_RETURN, G4LIDAR_NO_RETURN}))
       << "400 mm is not near";
-  limits.shortest_mm = 0.0F;
+  limits.shortest_mm = -1.0F;
   g4lidar_shaper* made = nullptr;
   EXPECT_EQ(g4lidar_shaper_create(&options, &made, nullptr), G4LIDAR_BAD_ARGUMENT);
 }

@@ -79,6 +79,25 @@ std::vector<point> row_of(const std::vector<double>& ranges_mm, double apart_deg
 
 // ---- isolated returns ------------------------------------------------------------------------
 
+// A wall at 10 degrees to the beam. An X2 measures every 0.84 degrees at 7 Hz, a G4 every 0.28: the points
+// of an X2 on it are three times as far apart.
+TEST(Isolated, AWallAtAnAngle_IsKeptWithTheLimitsOfTheModel) {
+  const auto count_of = [](const char* model, int samples) {
+    std::vector<point> points;
+    for (int i = 0; i < samples / 12; ++i) {  // 30 degrees of it
+      const double turned = i * 360.0 / samples;
+      const double range_mm = 2000.0 * std::sin(10.0 * degree) / std::sin((10.0 + turned) * degree);
+      points.push_back(at(turned, range_mm));
+    }
+    return mark_isolated(points, {}, scan_ends::open, *model_named(model));
+  };
+  EXPECT_EQ(count_of("g4", 1286), 0U);
+  EXPECT_EQ(count_of("x2", 428), 0U);
+  EXPECT_GT(count_of("g4", 428), 0U) << "samples of an X2 with the limits of a G4";
+  EXPECT_FLOAT_EQ(speckle_limits{}.near_ratio_of(*model_named("x2")), 0.15F);
+  EXPECT_FLOAT_EQ(speckle_limits{}.near_ratio_of(*model_named("tg30")), 0.05F);
+}
+
 TEST(Isolated, OneReturnAlone_IsMarked_TwoInARowAreNot) {
   const std::vector<point> one = row_of({4000, 4000, 4000, 2000, 4000, 4000, 4000});
   EXPECT_EQ(isolated(one), indices{3});

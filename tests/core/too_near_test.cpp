@@ -84,17 +84,37 @@ TEST(MarkNear, ComparesBeams_NotCorrectedDirections) {
 
 // A T-mini has no correction: the directions of its points are those of its beams.
 TEST(MarkNear, TheBeamsAreThoseOfTheModel) {
-  const auto count_of = [](correction_kind correction) {
+  const auto count_of = [](const char* model) {
     std::vector<point> points(2);
     points[0].angle_deg = points[1].angle_deg = 100.5F;
     points[0].range_mm = 300.0F;
     points[1].revolution = 1;
     points[1].flags = point_flags::no_return;
     near_history history;
-    return mark_near(points, history, {}, correction);
+    return mark_near(points, history, {.shortest_mm = 280.0F}, *model_named(model));
   };
-  EXPECT_EQ(count_of(correction_kind::none), 1U);
-  EXPECT_EQ(count_of(correction_kind::triangle), 0U) << "a G4 has measured them on two beams";
+  EXPECT_EQ(count_of("t-mini"), 1U);
+  EXPECT_EQ(count_of("g4"), 0U) << "a G4 has measured them on two beams";
+}
+
+// The shortest range of a G4 at 9 kHz is 280 mm, of an X4 120 mm, of a T-mini Pro 20 mm.
+TEST(MarkNear, TheShortestRangeIsThatOfTheModel) {
+  const auto is_near = [](const char* model, float range_mm) {
+    std::vector<point> points(2);
+    points[0].range_mm = range_mm;
+    points[1].revolution = 1;
+    points[1].flags = point_flags::no_return;
+    points[0].angle_deg = points[1].angle_deg = 100.5F;
+    near_history history;
+    return mark_near(points, history, {}, *model_named(model)) == 1;
+  };
+  EXPECT_TRUE(is_near("t-mini-pro", 39.0F));
+  EXPECT_FALSE(is_near("t-mini-pro", 41.0F));
+  EXPECT_TRUE(is_near("t-mini", 99.0F));
+  EXPECT_FALSE(is_near("t-mini", 101.0F));
+  EXPECT_EQ(near_limits{}.shortest_mm_of(g4_model), 280.0F);
+  EXPECT_EQ(near_limits{}.shortest_mm_of(*model_named("x4")), 120.0F);
+  EXPECT_EQ(near_limits{.shortest_mm = 300.0F}.shortest_mm_of(*model_named("x4")), 300.0F);
 }
 
 // None is at a whole degree, where rounding decides between two places.

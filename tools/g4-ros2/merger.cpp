@@ -70,6 +70,9 @@ g4lidar::model merger::merged_model() const {
   };
   g4lidar::model made = *std::ranges::max_element(parts_, {}, longest_of)->model;
   made.turn_deg = g4_model.turn_deg;
+  made.rates = std::ranges::max_element(parts_, {}, [](const part& each) {
+                 return default_bins(*each.model);
+               })->model->rates;
   for (const part& each : parts_) {
     made.range.min_mm = std::min(made.range.min_mm, each.model->range.min_mm);
   }

@@ -58,7 +58,8 @@ typedef struct g4lidar_outlier_options {
   uint32_t window;      /**< How many samples on each side are neighbours, 1 to 16; 2. */
   uint32_t near_count;  /**< Isolated: fewer near neighbours than this; 1. */
   float near_m;         /**< Near: up to this distance in metres, or up to; 0.05. */
-  float near_ratio;     /**< this share of the range, if that is more; 0.05. */
+  float near_ratio;     /**< this share of the range, if that is more; -1: in a
+                             shaper by the model, else 0.05. */
   uint32_t edge_window; /**< Veiling: how many samples on each side are neighbours; 1. */
   float
       least_angle_deg; /**< Veiling: below this angle to the beam a neighbour is across a jump of the
@@ -84,7 +85,7 @@ G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
  *  targets, and has false alarms: <g4lidar/too_near.hpp> has their numbers. */
 typedef struct g4lidar_near_options {
   size_t struct_size; /**< Set by g4lidar_near_options_init(). */
-  float shortest_mm;  /**< A nearer target gives no return; 280, as at 9 kHz. Above 0. */
+  float shortest_mm;  /**< A nearer target gives no return; 0: by the model, 280 for a G4. */
   uint32_t
       revolutions; /**< For how many revolutions after a near return; 0: until a return comes; 3. */
   uint8_t reserved[8]; /**< 0. */

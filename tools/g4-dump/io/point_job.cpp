@@ -98,7 +98,8 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
-    common_.expected.model = job_.text ? &g4lidar::g4_model : &model_of(common_);
+    if (!job_.text) common_.expected.model = &model_of(common_);
+    if (common_.expected.model == nullptr) common_.expected.model = &g4lidar::g4_model;
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
     writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));

@@ -150,6 +150,7 @@ int examine(const doctor_options& options) {
   how.baud = options.expected.baud;
   const source_kind kind = kind_of_source(options.source);
   how.model = kind == source_kind::raw_bytes ? &model_of(options) : options.expected.model;
+  if (how.model != nullptr && kind == source_kind::recording) how.model = &model_of(options);
   if (how.model != nullptr && kind != source_kind::raw_bytes && kind != source_kind::recording) {
     throw bad_value("--model: for recordings and files of raw bytes");
   }

@@ -25,6 +25,7 @@ struct device_facts {
   std::string source;
   std::optional<device_information> information{};
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
+  const g4lidar::model* model = nullptr;                      ///< That a recording states.
   std::string_view why_unknown = "no answer";  ///< For settings that a G4 can be asked for.
 };
 
@@ -50,9 +51,10 @@ device_facts facts_of_device(const common_options& options) {
 }
 
 device_facts facts_of(const common_options& options) {
-  return kind_of_source(options.source) == source_kind::recording
-             ? facts_of_recording(options.source)
-             : facts_of_device(options);
+  if (kind_of_source(options.source) != source_kind::recording) return facts_of_device(options);
+  device_facts facts = facts_of_recording(options.source);
+  facts.model = &model_of(options);
+  return facts;
 }
 
 /// The value as text, or why it is unknown.
@@ -67,6 +69,7 @@ void write(const device_facts& facts, bool as_json, output& out) {
   ordered_json all{{"source", facts.source}};
   all.update(json_of(facts.information));
   if (!as_json && facts.information && facts.information->model == model_g4) all["model"] = "G4";
+  if (!as_json && !facts.information && facts.model != nullptr) all["model"] = facts.model->name;
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
     value = as_json ? json_of(facts.settings[i]) : ordered_json(words_for(facts, i));

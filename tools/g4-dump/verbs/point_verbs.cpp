@@ -21,13 +21,15 @@ constexpr const char* shape_text =
                    whatever --frame is; # begins a comment.
   --speckle[=LIMITS]  A return is left out if fewer than count of the samples up to window before
                    and after it are returns near it: within near meters, or within ratio times its
-                   range. The default is window=2,count=1,near=0.05,ratio=0.05.
+                   range. The default is window=2,count=1,near=0.05, and a ratio by the model,
+                   0.05 for a G4.
   --edges[=LIMITS]  A return is left out if, up to window samples away, a nearer one is on one side
                    and a farther one on the other, and the lines to both make an angle below angle
                    degrees with the beam. The default is window=1,angle=5.
   --near[=LIMITS]  A direction without return is flagged may_be_too_near if in the last revolutions
                    a return came from there from less than twice the shortest range of the lidar,
-                   and none that is farther since. The default is shortest=0.28,revolutions=3;
+                   and none that is farther since. The default is revolutions=3, and the
+                   shortest range of the model, 0.28 for a G4;
                    revolutions=0: until a return comes from there.
   --frame vendor   Angles grow clockwise seen from above, 0 at the cable, in [0, 360).
   --frame robot    Angles grow counter-clockwise, 0 ahead (opposite the cable), in [-180, 180).
@@ -81,7 +83,7 @@ constexpr const char* formats_text =
     R"(--grid N writes N ranges at equal steps of 360/N degrees, from 0 degrees on, in the robot frame
 from -180. Columns of csv: scan, time_ns, partial, and range_mm_0 or range_m_0 to range_mm_N-1.
 inf: no return, or what --no-return sets; it does not mean that the way is free: what is nearer
-than 0.28 m may give no return. nan: unknown, because the direction is left out, or the return is
+than the shortest range (0.28 m for a G4) may give no return. nan: unknown, because the direction is left out, or the return is
 outside the range or below 100 mm (unless --range includes it), or --near flags the direction, which
 is -inf with --near-as minus-inf. jsonl: angle_min_deg, angle_step_deg, and ranges_mm or ranges_m,
 with "inf", null and "-inf" for these.

@@ -198,6 +198,13 @@ std::string why_no_packet(const stream_counts& counts, std::uint64_t bytes, bool
   if (found == diagnosis::wrong_baud_rate) {
     return fmt::format("{}. {} Give raw bytes from the lidar's port.", text, baud_question());
   }
+  if (2 * counts.skipped(skip_reason::bad_checksum) > bytes) {
+    return fmt::format(
+        "{}: the checksums do not fit the samples of this model. Give --model, or raw bytes that "
+        "are "
+        "not damaged.",
+        text);
+  }
   return fmt::format("{}, only {}: the lidar was not scanning. Start it, and record again.", text,
                      counts.responses == 1 ? "a response" : "responses");
 }
