@@ -158,6 +158,7 @@ TEST(CShaper, ShapesTheScansOfItsModel) {
   const g4lidar_sector ahead{-10.0, 10.0};
   g4lidar_near_options limits;
   g4lidar_near_options_init(&limits, sizeof limits);
+  limits.shortest_mm = 280.0F;
   g4lidar_filter_options filter;
   g4lidar_filter_options_init(&filter, sizeof filter);
   filter.frame = G4LIDAR_ROBOT;
