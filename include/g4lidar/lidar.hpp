@@ -33,7 +33,7 @@ class lidar_event_loop;
 /// The points of at least the last 1.8 seconds.
 using lidar_ring = point_ring<std::dynamic_extent>;
 
-/// One G4. *Single thread* except wake() and the readers of points(). *Allocates on open* and when
+/// One lidar, or a file of one. *Single thread* except wake() and the readers of points(). *Allocates on open* and when
 /// it reconnects. It starts no thread: it makes progress only within its calls. A moved-from lidar
 /// behaves like a closed one.
 ///

@@ -50,9 +50,9 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
-  /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording states, and
-  /// else a G4. Another model than the G4 is known for files only, and a recording of another model than
-  /// this one is refused with bad_option.
+  /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording states or raw
+  /// bytes show, else a G4. Models other than the G4 are possible for files only. A recording of another
+  /// model than this one is refused with bad_option.
   const g4lidar::model* model = nullptr;
   /// Bits per second, of a serial port and of the one behind `tcp:`.
   std::uint32_t baud = g4_model.bauds[0];

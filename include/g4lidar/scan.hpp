@@ -56,7 +56,8 @@ struct scan {
   std::uint32_t suspect_samples = 0;  ///< The samples of these packets.
   std::uint32_t sample_rate_hz =
       default_sample_rate_hz;  ///< The configured sample rate of the device.
-  /// The model of the lidar, with the turn to the robot's frame. Valid forever, never null.
+  /// The model of the lidar, with the turn to the robot's frame. Never null; valid at
+  /// least as long as the scan.
   const g4lidar::model* model = &g4_model;
   /// The change of the first-level angle, clockwise degrees, from the first point to the first one
   /// of the next scan (or to the last point, where the stream ended): about 360 for a revolution.

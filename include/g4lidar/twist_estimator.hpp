@@ -47,9 +47,9 @@ struct twist_estimate {
 /// from the pose of its own time, onto the same surfaces. What moves by itself is left out, as long as it is less than a
 /// third of what the lidar sees. *Single thread. Allocates on open.*
 ///
-/// In rooms with an error of the range of 7 mm, 95 of 100 errors from a cold start are below 0.025 m/s and 0.4 degrees/s,
-/// with 750 to 4,000 points in a revolution (a G4 to a TG30). With 430 points (an X2 at 7 Hz) they are below 0.05 m/s and 0.8
-/// degrees/s, and where objects are small and far away, up to a quarter of the twists are not known.
+/// In rooms with an error of the range of 7 mm, 95 of 100 errors from a cold start are below 0.025 m/s and 0.4
+/// degrees/s, with 750 to 4,000 points in a revolution (a G4 to a TG30). With 430 points (an X2 at 7 Hz) they are below
+/// 0.05 m/s and 0.8 degrees/s. Where objects are small and far away, up to a quarter of the twists are then not known.
 ///
 ///     twist_estimator estimator;
 ///     while (auto scan = lidar->next_scan(500ms)) {

@@ -123,7 +123,7 @@ void bind_scan(nb::module_& module) {
           "The model of the lidar: 'g4', 'x4', ...")
       .def_prop_ro(
           "turn_deg", [](const kept_scan& s) { return s.about.model->turn_deg; },
-          "The turn from the frame 'vendor' to 'robot': 180 for a G4, 0 for others.")
+          "The turn from the frame 'vendor' to 'robot': 180 for a G4, 0 for an X4.")
       .def_ro("time_ns", &kept_scan::time_ns,
               "When its first point was measured, in nanoseconds of the monotonic clock "
               "(time.monotonic_ns); 0 if "

@@ -190,8 +190,10 @@ TEST(Dump, AModelThatIsNone) {
   EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, "));
 }
 
-TEST(Dump, AModelIsForRawBytesOnly) {
-  EXPECT_EQ(run({"dump", "sim:", "--model", "x4", "-n", "1"}).code, 2);
+TEST(Dump, AModelIsForFilesOnly) {
+  const outcome done = run({"dump", "sim:", "--model", "x4", "-n", "1"});
+  EXPECT_EQ(done.code, 2);
+  EXPECT_THAT(done.err, HasSubstr("for files only"));
 }
 
 }  // namespace

@@ -85,7 +85,8 @@ G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
  *  targets, and has false alarms: <g4lidar/too_near.hpp> has their numbers. */
 typedef struct g4lidar_near_options {
   size_t struct_size; /**< Set by g4lidar_near_options_init(). */
-  float shortest_mm;  /**< A nearer target gives no return; 0: by the model, 280 for a G4. */
+  float
+      shortest_mm; /**< A nearer target gives no return; 0: that of the model of the scans, 280 for a G4. */
   uint32_t
       revolutions; /**< For how many revolutions after a near return; 0: until a return comes; 3. */
   uint8_t reserved[8]; /**< 0. */

@@ -77,7 +77,7 @@ class layout_candidate {
   }
 
   constexpr void take(packet_view packet) noexcept {
-    static_cast<void>(reader_.add(packet));
+    reader_.add(packet);
     if (packet.is_zero()) {
       if (is_in_revolution_ && gap_ <= 1 && dhz_ != 0) rate_hz_ = samples_ * dhz_ / 10;
       dhz_ = static_cast<std::uint32_t>(packet.reported_frequency_dhz());
@@ -117,10 +117,11 @@ class layout_candidate {
 /// The size of a sample is the one with which at least three packets more than with any other size
 /// have a valid checksum and are followed by another one: the right size fits each packet, a wrong
 /// one few. The model is the one that the bytes name: in a device information, or in the information
-/// in the bytes CT of a revolution whose CRC fits. Of several models with this number it is the one
+/// in the bytes CT of a revolution whose CRC fits. After a device information, the only two-way model
+/// with this number is taken first. Of several models with this number it is the one
 /// whose sample rate is nearest to that of the stream. Where nothing names it, it is the usual one:
 /// 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte samples are a
-/// T-mini Pro's. So a 2-byte sample in half or whole millimetres is not recognised without a device
+/// T-mini Pro's, and 4-byte samples a T-mini Plus SH's. So a 2-byte sample in half or whole millimetres is not recognised without a device
 /// information, and neither are 10 bits of intensity nor the correction of an SCL.
 class layout_recogniser {
  public:

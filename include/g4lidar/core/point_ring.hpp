@@ -124,7 +124,8 @@ class ring_memory<Slot, std::dynamic_extent> {
   std::span<Slot> slots_;
 };
 
-/// A ring of the last `Capacity` points; std::dynamic_extent: of as many as the caller gives memory for. *One producer, any number of readers, never allocates.*
+/// A ring of the last `Capacity` points. With std::dynamic_extent the caller gives the memory. *One
+/// producer, any number of readers, never allocates.*
 ///
 /// The producer never waits and never fails: when the ring is full, it overwrites the oldest
 /// points. Each reader gets the exact number of points that it missed; at all times, points read +

@@ -95,7 +95,6 @@ class G4LIDAR_API text_points {
 
  private:
   static constexpr std::size_t longest_line = 65'536;
-  static constexpr std::size_t largest_scan = 16'384;
 
   void take_line(std::string_view line);
   void take_point(const read_point& read);

@@ -28,20 +28,22 @@ enum class turning : std::uint8_t {
 
 /// Settings and quality of the device. By default a G4 without errors.
 struct scanner_options {
-  std::uint64_t seed = 1;                  ///< The seed of all random values below.
-  wire_format format{};                    ///< That of the model.
-  std::uint16_t scan_frequency_chz = 700;  ///< Revolutions per 100 s, constant; 500 to 1200.
+  std::uint64_t seed = 1;  ///< The seed of all random values below.
+  wire_format format{};    ///< That of the model.
+  std::uint16_t scan_frequency_chz =
+      700;  ///< Revolutions per 100 s, constant; within those of the format.
   /// Selects one of the rates of the format: 4, 8 or 9 kHz of a G4.
   g4lidar::sample_rate sample_rate = g4lidar::sample_rate::khz_9;
-  std::size_t samples_per_packet = 40;  ///< 1 to that of the format, 80.
+  std::size_t samples_per_packet = 40;  ///< 1 to the most of the format, at most 80.
   double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
   /// The angle at the first sample, [0, 360); drawn at random where not given.
   std::optional<double> start_deg = std::nullopt;
-  bool reports_frequency = true;   ///< Whether CT of a zero packet contains the scan frequency.
-  double min_range_mm = 280.0;     ///< A nearer target gives no return.
-  double max_range_mm = 16'000.0;  ///< A farther target gives no return; at most 16383.75.
-  double noise_mm = 0.0;           ///< Standard deviation of a range, >= 0, and its
-  double noise_ratio = 0.0;        ///< increase per millimetre of range, >= 0.
+  bool reports_frequency = true;  ///< Whether CT of a zero packet contains the scan frequency.
+  double min_range_mm = 280.0;    ///< A nearer target gives no return.
+  double max_range_mm =
+      16'000.0;           ///< A farther target gives no return; at most what a sample can contain.
+  double noise_mm = 0.0;  ///< Standard deviation of a range, >= 0, and its
+  double noise_ratio = 0.0;  ///< increase per millimetre of range, >= 0.
   double dropout_ratio =
       0.0;  ///< The fraction of all samples without a return for no reason, 0 to 1.
   /// The true sample rate divided by the nominal one, 0.9 to 1.1, and its deviation to either side

@@ -82,7 +82,7 @@ std::string_view problem_with(const scanner_options& options) noexcept {
   }
   if (options.scan_frequency_chz < format.min_frequency_chz ||
       options.scan_frequency_chz > format.max_frequency_chz) {
-    return "the scan frequency must be one of the model: 5 to 12 Hz of a G4";
+    return "the scan frequency must be possible for the model: 5 to 12 Hz for a G4";
   }
   if (options.samples_per_packet < 1 || options.samples_per_packet > format.max_samples) {
     return "a packet must hold 1 to 80 samples, or 40, by the model";

@@ -122,7 +122,7 @@ class point_run {
   /// The columns and the turn of the model.
   void use_model() {
     const g4lidar::model& which = *common_.expected.model;
-    job_.style.intensity = intensity_bits(which.samples.layout) > 0;
+    job_.style.intensity = has_intensity(which);
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     job_.style.turn_deg = which.turn_deg;
   }

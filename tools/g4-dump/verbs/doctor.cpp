@@ -149,11 +149,12 @@ int examine(const doctor_options& options) {
   diagnostic_options how;
   how.baud = options.expected.baud;
   const source_kind kind = kind_of_source(options.source);
-  how.model = kind == source_kind::raw_bytes ? &model_of(options) : options.expected.model;
-  if (how.model != nullptr && kind == source_kind::recording) how.model = &model_of(options);
-  if (how.model != nullptr && kind != source_kind::raw_bytes && kind != source_kind::recording) {
+  const bool is_raw = kind == source_kind::raw_bytes;
+  const bool is_named = options.expected.model != nullptr;
+  if (is_named && !is_raw && kind != source_kind::recording) {
     throw bad_value("--model: for recordings and files of raw bytes");
   }
+  if (is_named || is_raw) how.model = &model_of(options);
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
