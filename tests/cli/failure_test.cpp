@@ -141,7 +141,7 @@ TEST_F(Failure, WrongCommandLine) {
   }
   expect_usage({"sim", "--sample-rate", "5000"}, "'5000' is not one of 4000, 8000, 9000");
   expect_usage({"sim", "--frequency", "2"}, "--frequency");
-  expect_usage({"sim", "--frequency", "4"}, "the scan frequency must be one of the model");
+  expect_usage({"sim", "--frequency", "4"}, "the scan frequency must be possible for the model");
   expect_usage({"sim", "--frequency", "nan"}, "--frequency");
   expect_usage({"sim", "--samples", "81"}, "1 to 80");
 }

@@ -89,10 +89,11 @@ flags the direction, which is -inf with --near-as minus-inf. jsonl: angle_min_de
 and ranges_mm or ranges_m, with "inf", null and "-inf" for these.
 
 -f pcd writes a PCD 0.7 file with the returns of one revolution: x, y, z in meters, range_m,
-angle_deg, time_ns, and intensity if the model has it. In the vendor frame x points to 0 and y to 90
-degrees clockwise; in the robot frame x points ahead and y to the left. -f svg writes a picture,
-seen from above, with ahead at the top and a circle at each meter. If OUT contains %d or %04d, or is a directory, each
-revolution gets a numbered file; else the first one is written and the command ends.)";
+angle_deg, time_ns, and intensity if the model has it. In the vendor frame x points to 0 and y to
+90 degrees clockwise; in the robot frame x points ahead and y to the left. -f svg writes a
+picture, seen from above, with ahead at the top and a circle at each meter. If OUT contains %d or
+%04d, or is a directory, each revolution gets a numbered file; else the first one is written and
+the command ends.)";
 
 constexpr const char* decoding =
     R"(The same as g4-dump dump with a file as SOURCE, but: the default input is standard input, the
