@@ -14,6 +14,7 @@
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "support/cdr_reader.hpp"
+#include "support/written.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -120,15 +121,6 @@ TEST(Intensity, OfAPointCloud2IsTheLastField) {
   }
   EXPECT_EQ(read.number<std::uint8_t>(), 1);
   EXPECT_TRUE(read.is_at_end());
-}
-
-template <class Write>
-std::string written(Write write) {
-  std::string all;
-  callback_sink sink([&](std::string_view text) { all += text; });
-  write(sink);
-  sink.flush();
-  return all;
 }
 
 TEST(Intensity, OfAPcdFileIsTheLastField) {

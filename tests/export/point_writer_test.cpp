@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "g4lidar/export/pcd.hpp"
+#include "support/written.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -33,15 +34,6 @@ point made(float angle_deg, float range_mm, std::int64_t time_ns, std::uint32_t 
 // A return, no return, one that is too near, and odd times.
 const std::vector<point> few{made(90.0F, 1234.5F, 1'000'000'007), made(180.0F, 0.0F, 0, 7),
                              made(270.5F, 75.25F, -1'500'000'000, 4'294'967'295)};
-
-template <class Write>
-std::string written(const Write& write) {
-  std::string all;
-  callback_sink sink([&all](std::string_view text) { all += text; });
-  write(sink);
-  sink.flush();
-  return all;
-}
 
 std::string points_as(const text_style& style, std::span<const point> points = few) {
   return written([&](text_sink& out) {

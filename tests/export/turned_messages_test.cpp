@@ -25,6 +25,7 @@
 #include "g4lidar/export/text_points.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "support/cdr_reader.hpp"
+#include "support/written.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -140,15 +141,6 @@ TEST(TurnedMessages, PointCloud2) {
     EXPECT_NEAR(rows[1][1], 1.0 * side, 1e-6);
     EXPECT_NEAR(rows[1][5], side * pi / 2, 1e-6);
   }
-}
-
-template <class Write>
-std::string written(const Write& write) {
-  std::string all;
-  callback_sink sink([&all](std::string_view text) { all += text; });
-  write(sink);
-  sink.flush();
-  return all;
 }
 
 TEST(TurnedFiles, Pictures) {

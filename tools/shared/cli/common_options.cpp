@@ -230,8 +230,7 @@ option_rows baud_row(common_options& options) {
 
 option_row model_row(common_options& options) {
   return value_row(
-      "--model", "MODEL",
-      "The model of a file: g4, x4, t-mini-pro (as the file shows)",
+      "--model", "MODEL", "The model of a file: g4, x4, t-mini-pro (as the file shows)",
       options.expected.model, [](const std::string& word) {
         const g4lidar::model* const found = g4lidar::model_named(word);
         if (found != nullptr) return found;
