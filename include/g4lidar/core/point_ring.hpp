@@ -95,6 +95,8 @@ struct ring_read {
   std::uint64_t missed = 0;  ///< Points that were overwritten before this reader read them.
 };
 
+namespace detail {
+
 /// The memory of a ring, whose size is known to the compiler.
 template <class Slot, std::size_t Capacity>
 class ring_memory {
@@ -123,6 +125,8 @@ class ring_memory<Slot, std::dynamic_extent> {
  private:
   std::span<Slot> slots_;
 };
+
+}  // namespace detail
 
 /// A ring of the last `Capacity` points. With std::dynamic_extent the caller gives the memory. *One
 /// producer, any number of readers, never allocates.*
@@ -213,7 +217,7 @@ class point_ring {
   std::uint64_t next_;  // used by the producer only
   published_count<Word> claimed_;
   published_count<Word> written_;
-  ring_memory<slot, Capacity> slots_;
+  detail::ring_memory<slot, Capacity> slots_;
 };
 
 /// The position of one reader in a ring. *Single thread at a time.*
