@@ -50,6 +50,13 @@ class G4LIDAR_API device {
 
   /// The host sends bytes. They are lost while the device is unplugged.
   void write(bytes from_host, std::int64_t now_ns) noexcept;
+  /// The host sets the rate of its port, and discards the bytes that it has not read. At another rate than
+  /// that of the device, bytes arrive garbled in both directions.
+  void set_host_baud(std::uint32_t baud, std::int64_t now_ns) noexcept;
+  /// The rate of the host's port; at first that of the device.
+  [[nodiscard]] std::uint32_t host_baud() const noexcept;
+  /// The host sets the line DTR, which is high at first.
+  void set_dtr(bool high, std::int64_t now_ns) noexcept;
   /// Takes the bytes that have reached the host by now; returns their number. A host that does not
   /// read loses what arrives beyond 64 KiB.
   std::size_t read(std::span<std::uint8_t> out, std::int64_t now_ns) noexcept;

@@ -58,7 +58,9 @@ class G4LIDAR_API virtual_port final : public transport {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return clock_->now_ns(); }
   void wake() noexcept override { woken_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return 230'400; }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return device_->host_baud(); }
+  [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override;
+  [[nodiscard]] result<bool> set_dtr(bool high) noexcept override;
   /// As a tty.
   [[nodiscard]] std::size_t kept_bytes() const noexcept override { return 4095; }
 

@@ -36,6 +36,10 @@ class forwarding_transport : public transport {
   [[nodiscard]] int native_handle() const noexcept override { return inner_->native_handle(); }
   [[nodiscard]] std::string_view name() const noexcept override { return inner_->name(); }
   [[nodiscard]] std::uint32_t baud() const noexcept override { return inner_->baud(); }
+  [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override {
+    return inner_->set_baud(baud);
+  }
+  [[nodiscard]] result<bool> set_dtr(bool high) noexcept override { return inner_->set_dtr(high); }
   [[nodiscard]] std::size_t kept_bytes() const noexcept override { return inner_->kept_bytes(); }
 
  protected:

@@ -58,8 +58,18 @@ class G4LIDAR_API transport {
   /// The name, for messages: a path, "tcp:host:port". Valid as long as this.
   [[nodiscard]] virtual std::string_view name() const noexcept = 0;
 
-  /// Bits per second, 10 bits per byte; 0 if bytes take no time.
+  /// Bits per second, 10 bits per byte; 0 if bytes take no time. Of a serial port the rate that the
+  /// system really set.
   [[nodiscard]] virtual std::uint32_t baud() const noexcept { return 0; }
+
+  /// Changes the bits per second, and discards the bytes that were received before. Returns whether the
+  /// connection has a rate that can be changed: a network bridge, a file and a pipe have none, and nothing
+  /// happens. Fails with bad_baud_rate, or like read().
+  [[nodiscard]] virtual result<bool> set_baud(std::uint32_t /*baud*/) noexcept { return false; }
+
+  /// Sets the line DTR, which drives the motor of some lidars. Returns whether the connection has this
+  /// line: a pseudo-terminal and a network bridge have none, and nothing happens. Fails like read().
+  [[nodiscard]] virtual result<bool> set_dtr(bool /*high*/) noexcept { return false; }
 
   /// How many bytes the system keeps at least while nobody reads; 0 where nobody knows. A driver that
   /// delivers whole scans sleeps while at most half of them can come.

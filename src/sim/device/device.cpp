@@ -21,6 +21,19 @@ void device::write(bytes from_host, std::int64_t now_ns) noexcept {
   machine_->write(from_host);
 }
 
+void device::set_host_baud(std::uint32_t baud, std::int64_t now_ns) noexcept {
+  machine_->advance(now_ns);
+  machine_->host.baud = baud;
+  machine_->to_host.reset();
+}
+
+std::uint32_t device::host_baud() const noexcept { return machine_->host.baud; }
+
+void device::set_dtr(bool high, std::int64_t now_ns) noexcept {
+  machine_->advance(now_ns);
+  machine_->host.dtr = high;
+}
+
 std::size_t device::read(std::span<std::uint8_t> out, std::int64_t now_ns) noexcept {
   machine_->advance(now_ns);
   return machine_->to_host.read(out);

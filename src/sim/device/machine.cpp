@@ -32,6 +32,7 @@ device::machine::machine(const world& scene, const device_options& wanted,
       log(wanted.log_capacity),
       settings(first_settings(wanted)),
       head(wanted),
+      host{wanted.baud},
       answers_(options, faults),
       garbage_(stream_for(wanted.scanner.seed, purpose::garbage)) {
   assert(problem_with(options).empty());

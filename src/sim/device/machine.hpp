@@ -41,6 +41,12 @@ class usb_plug {
   std::uint64_t replugs_ = 0;
 };
 
+/// What the host has set at its port.
+struct host_port {
+  std::uint32_t baud;
+  bool dtr = true;
+};
+
 /// The commands that were received.
 class command_log {
  public:
@@ -108,6 +114,7 @@ class G4LIDAR_HIDDEN device::machine {
   device_settings settings;
   motor head;
   usb_plug plug;
+  host_port host;
 
  private:
   enum class state : std::uint8_t { off, booting, idle, scanning };

@@ -53,6 +53,20 @@ result<void> virtual_port::pause(std::int64_t deadline_ns) noexcept {
   }
 }
 
+result<bool> virtual_port::set_baud(std::uint32_t baud) noexcept {
+  clock_->tick();
+  if (const result<void> seen = look(task::configuring); !seen) return tl::unexpected(seen.error());
+  device_->set_host_baud(baud, clock_->now_ns());
+  return true;
+}
+
+result<bool> virtual_port::set_dtr(bool high) noexcept {
+  clock_->tick();
+  if (const result<void> seen = look(task::configuring); !seen) return tl::unexpected(seen.error());
+  device_->set_dtr(high, clock_->now_ns());
+  return true;
+}
+
 result<std::unique_ptr<transport>> virtual_connector::connect() noexcept {
   clock_->tick();
   for (std::size_t i = 0; i < devices_.size(); ++i) {
