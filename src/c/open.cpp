@@ -64,33 +64,34 @@ void describe(lidar& made, recording_writer& into) {
 }
 
 /// Of a recording, or of a simulation in virtual time: what no name opens.
-result<lidar> open_unnamed(const opening& wish, const lidar_options& how) {
-  auto from = wish.recording.empty() ? wish.simulated->connect()
-                                     : replay::open(wish.recording, how.playback, how.is_cancelled);
+result<lidar> open_unnamed(const opening& wanted, const lidar_options& how) {
+  auto from = wanted.recording.empty()
+                  ? wanted.simulated->connect()
+                  : replay::open(wanted.recording, how.playback, how.is_cancelled);
   if (from) from = how.wrap(*std::move(from));
   return from ? lidar::open(*std::move(from), how) : tl::unexpected(from.error());
 }
 
 /// Opens the lidar of a handle, the first time or again.
 result<void> connect(g4lidar_lidar& handle) {
-  const opening& wish = handle.from;
-  const bool has_own_time = wish.simulated && wish.simulated->is_virtual();
-  lidar_options how = wish.how;
+  const opening& wanted = handle.from;
+  const bool has_own_time = wanted.simulated && wanted.simulated->is_virtual();
+  lidar_options how = wanted.how;
   how.wrap = [&](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
     handle.connector = from.get();
     if (has_own_time) {
       handle.wall_ahead_ns = wall_clock().ahead().count() + g4lidar_now_ns() - from->now_ns();
     }
-    if (!wish.recorder) return from;
-    if (has_own_time) wish.recorder->set_wall_clock(handle.wall_ahead_ns);
-    return recorded(std::move(from), *wish.recorder);
+    if (!wanted.recorder) return from;
+    if (has_own_time) wanted.recorder->set_wall_clock(handle.wall_ahead_ns);
+    return recorded(std::move(from), *wanted.recorder);
   };
   auto opened =
-      has_own_time || !wish.recording.empty() ? open_unnamed(wish, how) : lidar::open(how);
+      has_own_time || !wanted.recording.empty() ? open_unnamed(wanted, how) : lidar::open(how);
   if (!opened) return tl::unexpected(opened.error());
   handle.made = std::make_unique<lidar>(std::move(*opened));
   handle.identity = identity_of(handle.made->information());
-  if (wish.recorder && wish.recording.empty()) describe(*handle.made, *wish.recorder);
+  if (wanted.recorder && wanted.recording.empty()) describe(*handle.made, *wanted.recorder);
   return {};
 }
 
@@ -115,9 +116,9 @@ int take_lidar_options(const g4lidar_options* given, opening& into, const char**
   return G4LIDAR_OK;
 }
 
-int open_lidar(opening wish, g4lidar_lidar** made, g4lidar_error* error) {
+int open_lidar(opening wanted, g4lidar_lidar** made, g4lidar_error* error) {
   auto handle = std::make_unique<g4lidar_lidar>();
-  handle->from = std::move(wish);
+  handle->from = std::move(wanted);
   if (const auto opened = connect(*handle); !opened) return fail(error, opened.error());
   *made = handle.release();
   return succeed(error);
@@ -147,12 +148,12 @@ int g4lidar_open(const char* device, g4lidar_lidar** lidar, g4lidar_error* error
 
 int g4lidar_open_with(const g4lidar_options* options, g4lidar_lidar** lidar, g4lidar_error* error) {
   return created(lidar, error, [&] {
-    opening wish;
+    opening wanted;
     const char* device = nullptr;
-    const int code = take_lidar_options(options, wish, &device, error);
+    const int code = take_lidar_options(options, wanted, &device, error);
     if (code != G4LIDAR_OK) return code;
-    wish.how.device = text_of(device);
-    return open_lidar(std::move(wish), lidar, error);
+    wanted.how.device = text_of(device);
+    return open_lidar(std::move(wanted), lidar, error);
   });
 }
 
@@ -161,13 +162,13 @@ int g4lidar_open_simulated(g4lidar_simulator* simulator, const g4lidar_options* 
   return created(
       lidar, error,
       [&] {
-        opening wish;
+        opening wanted;
         const char* device = nullptr;
-        const int code = take_lidar_options(options, wish, &device, error);
+        const int code = take_lidar_options(options, wanted, &device, error);
         if (code != G4LIDAR_OK) return code;
-        wish.simulated = simulator->made;
-        wish.how.device = simulator->path;
-        return open_lidar(std::move(wish), lidar, error);
+        wanted.simulated = simulator->made;
+        wanted.how.device = simulator->path;
+        return open_lidar(std::move(wanted), lidar, error);
       },
       simulator);
 }
@@ -191,17 +192,17 @@ int g4lidar_open_recording(const char* path, const g4lidar_playback_options* pla
   return created(
       lidar, error,
       [&] {
-        opening wish;
+        opening wanted;
         const char* device = nullptr;
-        const int code = take_lidar_options(options, wish, &device, error);
+        const int code = take_lidar_options(options, wanted, &device, error);
         if (code != G4LIDAR_OK) return code;
         g4lidar_playback_options taken = playback_defaults;
         if (!take_options(playback, taken)) return refuse(error, bad_options);
-        wish.recording = path;
-        wish.how.playback = {.speed = taken.speed, .loop = taken.loop, .from_ns = taken.from_ns};
-        if (taken.to_ns != 0) wish.how.playback.to_ns = taken.to_ns;
-        wish.how.is_cancelled = question_of(taken);
-        return open_lidar(std::move(wish), lidar, error);
+        wanted.recording = path;
+        wanted.how.playback = {.speed = taken.speed, .loop = taken.loop, .from_ns = taken.from_ns};
+        if (taken.to_ns != 0) wanted.how.playback.to_ns = taken.to_ns;
+        wanted.how.is_cancelled = question_of(taken);
+        return open_lidar(std::move(wanted), lidar, error);
       },
       path);
 }

@@ -39,13 +39,13 @@ std::optional<sim::odometry_sample> simulation::next_odometry() {
 namespace {
 
 /// The world of the options. Returns a g4lidar_result.
-int load_scene(const g4lidar_simulator_options& options, const sim::setup& wish, sim::world& scene,
-               g4lidar_error* error) {
-  auto read =
-      options.world != nullptr ? sim::parse_world(options.world) : sim::load_world(wish.world_file);
+int load_scene(const g4lidar_simulator_options& options, const sim::setup& wanted,
+               sim::world& scene, g4lidar_error* error) {
+  auto read = options.world != nullptr ? sim::parse_world(options.world)
+                                       : sim::load_world(wanted.world_file);
   if (const auto* wrong = std::get_if<sim::world_error>(&read)) {
     return bad_text(error, wrong->line, wrong->message,
-                    options.world != nullptr ? "" : wish.world_file);
+                    options.world != nullptr ? "" : wanted.world_file);
   }
   scene = std::get<sim::world>(std::move(read));
   if (options.path != nullptr) {
@@ -55,9 +55,9 @@ int load_scene(const g4lidar_simulator_options& options, const sim::setup& wish,
     }
     scene.path = std::get<std::vector<sim::path_point>>(std::move(path));
     scene.lidar = scene.path.front().robot.at;
-  } else if (!wish.path_file.empty()) {
-    if (const auto wrong = sim::load_path(scene, wish.path_file)) {
-      return bad_text(error, wrong->line, wrong->message, wish.path_file);
+  } else if (!wanted.path_file.empty()) {
+    if (const auto wrong = sim::load_path(scene, wanted.path_file)) {
+      return bad_text(error, wrong->line, wrong->message, wanted.path_file);
     }
   }
   return G4LIDAR_OK;
@@ -76,14 +76,14 @@ int simulate(const g4lidar_simulator_options& options, std::shared_ptr<simulatio
   if (const auto* wrong = std::get_if<sim::setup_error>(&read)) {
     return bad_setup(error, wrong->message);
   }
-  const auto& wish = std::get<sim::setup>(read);
-  for (const sim::fault& each : wish.faults) {
+  const auto& wanted = std::get<sim::setup>(read);
+  for (const sim::fault& each : wanted.faults) {
     if (const auto wrong = sim::problem_with(each); !wrong.empty()) return bad_setup(error, wrong);
   }
   sim::world scene;
-  if (const int code = load_scene(options, wish, scene, error); code != G4LIDAR_OK) return code;
-  const std::uint64_t seed = wish.device.scanner.seed;
-  sim::device simulated(scene, wish.device, wish.faults);
+  if (const int code = load_scene(options, wanted, scene, error); code != G4LIDAR_OK) return code;
+  const std::uint64_t seed = wanted.device.scanner.seed;
+  sim::device simulated(scene, wanted.device, wanted.faults);
   if (options.virtual_time) {
     made = std::make_shared<simulation>(scene, seed, std::move(simulated));
     return succeed(error);

@@ -10,7 +10,7 @@
 namespace g4lidar {
 namespace {
 
-std::unique_ptr<feeder> make_feeder(feeder::parts& parts, const lidar_options& options) {
+std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_options& options) {
   if (parts.link.from().traits().answers) return std::make_unique<live_driver>(parts, options);
   return std::make_unique<replay_player>(parts, options);
 }
@@ -22,14 +22,14 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
              point_pipeline(options.tuning.transport_delay.count(), options.partial_scans,
                             *options.model),
              {}},
-      feeder_(make_feeder(parts_, options)),
+      source_(make_source(parts_, options)),
       points_(largest_scan(*options.model)) {}
 
 lidar::driver::~driver() { static_cast<void>(close()); }
 
 result<void> lidar::driver::close() {
   result<void> stopped;
-  while (feeder_->has_motor_on()) {
+  while (source_->has_motor_on()) {
     stopped = stop();
     if (stopped || stopped.error() != problem::cancelled) break;
   }
@@ -38,7 +38,7 @@ result<void> lidar::driver::close() {
 }
 
 void lidar::driver::release() noexcept {
-  feeder_->release();
+  source_->release();
   const std::uint64_t dropped = parts_.pipeline.drop_points();
   if (hands_points_over_) points_missed_ += dropped;
 }
@@ -46,16 +46,16 @@ void lidar::driver::release() noexcept {
 result<scan> lidar::driver::next_scan(std::int64_t timeout_ns, bool in_loop) {
   point_pipeline& pipeline = parts_.pipeline;
   if (!pipeline.has_scan()) {
-    if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
+    if (auto able = source_->can_read(); !able) return tl::unexpected(able.error());
   }
-  const std::int64_t given_ns = feeder_->deadline_after_ns(timeout_ns);
+  const std::int64_t given_ns = source_->deadline_after_ns(timeout_ns);
   const auto deadline_ns = [&] {
-    return in_loop ? std::max(given_ns, feeder_->expects().not_due_before_ns) : given_ns;
+    return in_loop ? std::max(given_ns, source_->expects().not_due_before_ns) : given_ns;
   };
   bool last = false;
   while (!pipeline.has_scan()) {
     if (last) return timed_out();
-    const auto done = feeder_->step(deadline_ns());
+    const auto done = source_->step(deadline_ns());
     if (!done && !(in_loop && done.error() == problem::reconnecting)) {
       return tl::unexpected(done.error());
     }
@@ -67,30 +67,30 @@ result<scan> lidar::driver::next_scan(std::int64_t timeout_ns, bool in_loop) {
 /// Available points are returned before any error.
 result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_ns) {
   hands_points_over_ = true;
-  feeder_->take_points();
-  const std::int64_t deadline_ns = feeder_->deadline_after_ns(timeout_ns);
+  source_->take_points();
+  const std::int64_t deadline_ns = source_->deadline_after_ns(timeout_ns);
   bool last = false;
   while (true) {
     const ring_read read = parts_.pipeline.read(points_.all());
     points_missed_ += read.missed;
     if (read.points > 0) return points_.all().first(read.points);
-    if (auto able = feeder_->can_read(); !able) return tl::unexpected(able.error());
+    if (auto able = source_->can_read(); !able) return tl::unexpected(able.error());
     if (last) return timed_out();
     parts_.pipeline.drop_scan();
-    if (auto done = feeder_->step(deadline_ns); !done) return tl::unexpected(done.error());
+    if (auto done = source_->step(deadline_ns); !done) return tl::unexpected(done.error());
     last = is_over(deadline_ns);
   }
 }
 
 result<void> lidar::driver::process() {
   parts_.pipeline.drop_scan();
-  return feeder_->step(parts_.link.now_ns());
+  return source_->step(parts_.link.now_ns());
 }
 
 lidar_counts lidar::driver::counts() const noexcept {
   lidar_counts all = parts_.pipeline.counts();
   if (hands_points_over_) all.points_missed = points_missed_ + parts_.pipeline.unwritten();
-  feeder_->add_to(all);
+  source_->add_to(all);
   return all;
 }
 

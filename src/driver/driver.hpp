@@ -8,12 +8,12 @@
 #include <memory>
 #include <optional>
 
-#include "feeder.hpp"
 #include "g4lidar/lidar.hpp"
+#include "scan_source.hpp"
 
 namespace g4lidar {
 
-/// *Single thread* except wake(). The calls are loops over the steps of the feeder.
+/// *Single thread* except wake(). The calls are loops over the steps of the source of the scans.
 class G4LIDAR_HIDDEN lidar::driver {
  public:
   driver(std::unique_ptr<connector> from, const lidar_options& options);
@@ -21,19 +21,19 @@ class G4LIDAR_HIDDEN lidar::driver {
   driver& operator=(const driver&) = delete;
   ~driver();
 
-  result<void> open() { return feeder_->open(); }
-  result<void> start() { return feeder_->start(); }
-  result<void> stop() { return feeder_->stop(); }
+  result<void> open() { return source_->open(); }
+  result<void> start() { return source_->start(); }
+  result<void> stop() { return source_->stop(); }
   result<void> close();
   void release() noexcept;
   result<answer> ask(const request& wanted, while_scanning how) {
-    return feeder_->ask(wanted, how);
+    return source_->ask(wanted, how);
   }
   /// `in_loop`: by the rule of lidar::scans().
   result<scan> next_scan(std::int64_t timeout_ns, bool in_loop);
   /// For how long from now no scan is due; never_ns without limit.
   [[nodiscard]] std::int64_t scan_due_in_ns() const noexcept {
-    const std::int64_t due_ns = feeder_->expects().not_due_before_ns;
+    const std::int64_t due_ns = source_->expects().not_due_before_ns;
     if (due_ns == never_ns) return never_ns;
     return std::max<std::int64_t>(due_ns - parts_.link.now_ns(), 0);
   }
@@ -42,39 +42,39 @@ class G4LIDAR_HIDDEN lidar::driver {
   void wake() noexcept { parts_.link.wake(); }
 
   [[nodiscard]] int native_handle() const noexcept { return parts_.link.native_handle(); }
-  /// Whoever asks this waits for no bytes while none are needed.
+  /// After this call, native_handle() reports no bytes that are not needed yet.
   [[nodiscard]] std::int64_t next_deadline_ns() noexcept {
-    const std::int64_t due_ns = feeder_->next_deadline_ns();
-    const std::int64_t rest_ns = feeder_->rest_until_ns();
+    const std::int64_t due_ns = source_->next_deadline_ns();
+    const std::int64_t rest_ns = source_->rest_until_ns();
     const bool rests = rest_ns > parts_.link.now_ns();
     parts_.link.rest(rests);
     return rests ? std::min(due_ns, rest_ns) : due_ns;
   }
-  [[nodiscard]] g4lidar::player* player() noexcept { return feeder_->controls(); }
+  [[nodiscard]] g4lidar::player* player() noexcept { return source_->controls(); }
   [[nodiscard]] const device_information& information() const noexcept {
-    return feeder_->information();
+    return source_->information();
   }
   [[nodiscard]] std::string_view name() const noexcept { return parts_.link.name(); }
-  [[nodiscard]] bool is_scanning() const noexcept { return feeder_->is_scanning(); }
+  [[nodiscard]] bool is_scanning() const noexcept { return source_->is_scanning(); }
   [[nodiscard]] lidar_counts counts() const noexcept;
   [[nodiscard]] std::optional<lidar_event> next_event() noexcept { return parts_.events.take(); }
   [[nodiscard]] lidar_ring& points() noexcept {
-    feeder_->take_points();
+    source_->take_points();
     return parts_.pipeline.ring();
   }
 
  private:
   [[nodiscard]] tl::unexpected<error> timed_out() const noexcept {
-    const scan_expectation now = feeder_->expects();
+    const scan_expectation now = source_->expects();
     return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
                    now.why);
   }
   [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
-    return (parts_.link.now_ns() >= deadline_ns || feeder_->stands()) && parts_.pipeline.is_empty();
+    return (parts_.link.now_ns() >= deadline_ns || source_->stands()) && parts_.pipeline.is_empty();
   }
 
-  feeder::parts parts_;
-  std::unique_ptr<feeder> feeder_;
+  scan_source::parts parts_;
+  std::unique_ptr<scan_source> source_;
   point_storage points_;
   bool hands_points_over_ = false;  // by next_points()
   std::uint64_t points_missed_ = 0;

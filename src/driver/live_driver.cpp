@@ -30,7 +30,7 @@ lidar_event::kind event_of(notice what) noexcept {
 }  // namespace
 
 live_driver::live_driver(parts& of, const lidar_options& options)
-    : feeder(of, options),
+    : scan_source(of, options),
       options_(options),
       stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_},
               options.tuning) {}

@@ -5,17 +5,17 @@
 #include <cstdint>
 #include <optional>
 
-#include "feeder.hpp"
 #include "live_stage.hpp"
 #include "live_stream.hpp"
 #include "open_question.hpp"
 #include "reconnection.hpp"
+#include "scan_source.hpp"
 #include "setup_sequence.hpp"
 
 namespace g4lidar {
 
 /// *Single thread.* live_stage.hpp has the table of the stages.
-class live_driver final : public feeder {
+class live_driver final : public scan_source {
  public:
   live_driver(parts& of, const lidar_options& options);
 

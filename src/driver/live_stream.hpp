@@ -25,7 +25,7 @@ class live_stream {
     receiver& from;
     spin_up& motor;
     const live_stage& stage;
-    const std::atomic<bool>& takes_points;  ///< See feeder::take_points().
+    const std::atomic<bool>& takes_points;  ///< See scan_source::take_points().
   };
 
   live_stream(const parts& of, const lidar_tuning& tuning);

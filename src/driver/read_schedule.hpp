@@ -73,8 +73,8 @@ class read_schedule {
               double period_ns) noexcept {
     const bool as_expected = readings_ == 1 && due_ns_ != 0;
     readings_ = 0;
-    std::int64_t came_ns = read_ns_ - static_cast<std::int64_t>(behind) * byte_ns_;
-    forecast_.packet(found, measured_ns, came_ns, period_ns, serial_byte_ns_);
+    std::int64_t arrived_ns = read_ns_ - static_cast<std::int64_t>(behind) * byte_ns_;
+    forecast_.packet(found, measured_ns, arrived_ns, period_ns, serial_byte_ns_);
     const std::size_t samples = forecast_.next_samples();
     if (samples == 0) {
       due_ns_ = 0;
@@ -83,8 +83,8 @@ class read_schedule {
     const auto apart_ns = static_cast<std::int64_t>(static_cast<double>(samples) * period_ns);
     // It may have been available earlier: read a little earlier each time, until a packet is not
     // complete.
-    if (as_expected) came_ns = std::min(came_ns, due_ns_) - apart_ns / 128;
-    due_ns_ = came_ns + apart_ns;
+    if (as_expected) arrived_ns = std::min(arrived_ns, due_ns_) - apart_ns / 128;
+    due_ns_ = arrived_ns + apart_ns;
   }
 
   /// When to read next, if there is nothing else to do; may have passed. `held` bytes of a packet are
@@ -145,7 +145,7 @@ class read_schedule {
   std::int64_t serial_byte_ns_;  // the same on the serial line behind a bridge
   std::int64_t longest_rest_ns_ = 0;
   std::int64_t read_ns_ = 0;   // of the last reading
-  std::int64_t ahead_ns_ = 0;  // how much sooner bytes came than the baud rate allows
+  std::int64_t ahead_ns_ = 0;  // how much sooner bytes arrived than the baud rate allows
   std::int64_t due_ns_ = 0;    // when the next packet is expected to be complete; 0: at any time
   std::size_t readings_ = 0;   // since the last packet
   revolution_forecast forecast_;

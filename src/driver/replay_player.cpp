@@ -10,7 +10,7 @@
 namespace g4lidar {
 
 replay_player::replay_player(parts& of, const lidar_options& options)
-    : feeder(of, options), sample_rate_hz_(first_rate_hz(*options.model)) {}
+    : scan_source(of, options), sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;

@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <optional>
 
-#include "feeder.hpp"
 #include "recording/played_file.hpp"
+#include "scan_source.hpp"
 
 namespace g4lidar {
 
 /// *Single thread.* The actions of the recorded driver are repeated at the same places, so the same
 /// points result. In a file of bytes every packet produces points.
-class replay_player final : public feeder {
+class replay_player final : public scan_source {
  public:
   replay_player(parts& of, const lidar_options& options);
 

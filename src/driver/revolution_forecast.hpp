@@ -18,7 +18,7 @@ namespace g4lidar {
 /// bytes back.
 class revolution_forecast {
  public:
-  /// A packet whose last sample was measured at `measured_ns`, and whose last byte came at `complete_ns`.
+  /// A packet whose last sample was measured at `measured_ns`, and whose last byte arrived at `complete_ns`.
   /// `period_ns` is that of the samples, `byte_ns` that of the bytes on the serial line.
   void packet(packet_view found, std::int64_t measured_ns, std::int64_t complete_ns,
               double period_ns, std::int64_t byte_ns) noexcept {

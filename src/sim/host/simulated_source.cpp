@@ -31,25 +31,28 @@ result<simulated_source> open_simulated(std::string_view source) {
   if (const auto* wrong = std::get_if<setup_error>(&read)) {
     return refused(problem::bad_option, "sim:", wrong->message);
   }
-  const setup& wish = std::get<setup>(read);
-  if (wish.device.one_way) {
+  const setup& wanted = std::get<setup>(read);
+  if (wanted.device.one_way) {
     return failure(task::opening, problem::bad_option,
                    "sim: of a model that answers nothing (only a G4 can be opened)");
   }
-  auto scene = load_world(wish.world_file);
-  if (const auto* wrong = std::get_if<world_error>(&scene)) return refused(wish.world_file, *wrong);
+  auto scene = load_world(wanted.world_file);
+  if (const auto* wrong = std::get_if<world_error>(&scene))
+    return refused(wanted.world_file, *wrong);
   world& in = std::get<world>(scene);
-  if (!wish.path_file.empty()) {
-    if (const auto wrong = load_path(in, wish.path_file)) return refused(wish.path_file, *wrong);
+  if (!wanted.path_file.empty()) {
+    if (const auto wrong = load_path(in, wanted.path_file))
+      return refused(wanted.path_file, *wrong);
   }
-  auto served = serve_alone(device(in, wish.device, wish.faults));
+  auto served = serve_alone(device(in, wanted.device, wanted.faults));
   if (!served) return tl::unexpected(served.error());
   simulated_source made{*std::move(served), std::nullopt, 0};
   made.port->with([&](const device&, std::int64_t now_ns) {
     const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
     made.begin_ns = now.count() - now_ns;
   });
-  if (!in.path.empty()) made.robot.emplace(in, odometry_options{.seed = wish.device.scanner.seed});
+  if (!in.path.empty())
+    made.robot.emplace(in, odometry_options{.seed = wanted.device.scanner.seed});
   return made;
 }
 

@@ -30,7 +30,7 @@ struct scan_expectation {
 };
 
 /// *Single thread.* The pipeline, the connection and the events must outlive it.
-class feeder {
+class scan_source {
  public:
   /// The parts that it works on.
   struct parts {
@@ -39,14 +39,14 @@ class feeder {
     event_queue events;
   };
 
-  feeder(parts& of, const lidar_options& options)
+  scan_source(parts& of, const lidar_options& options)
       : connection_(of.link),
         pipeline_(of.pipeline),
         events_(of.events),
         receiver_(options.tuning.batch, *options.model) {}
-  virtual ~feeder() = default;
-  feeder(const feeder&) = delete;
-  feeder& operator=(const feeder&) = delete;
+  virtual ~scan_source() = default;
+  scan_source(const scan_source&) = delete;
+  scan_source& operator=(const scan_source&) = delete;
 
   [[nodiscard]] virtual result<void> open() = 0;
   [[nodiscard]] virtual result<void> start() = 0;
