@@ -25,13 +25,13 @@
 #include <memory>
 #include <thread>
 
-#include "feeder.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "memory_connector.hpp"
+#include "pty_writer.hpp"
 #include "recode.hpp"
 #include "support/allocation_count.hpp"
 
@@ -95,7 +95,7 @@ int delay(int seconds, std::string_view pace) {
   const bench::pty pty;
   std::vector<std::int64_t> written;
   const std::int64_t end = steady_ns() + seconds * second;
-  std::thread feeder([&] {
+  std::thread writer([&] {
     bench::use_processor(0);
     bench::feed_in_real_time(pty.master(), end + 2 * second, written);
   });
@@ -117,7 +117,7 @@ int delay(int seconds, std::string_view pace) {
       taken.emplace_back(scan->revolution, now);
     }
   }
-  feeder.join();
+  writer.join();
   // Revolution r ends with zero packet r: packet 0 is the end of the partial one.
   std::vector<double> delays;
   for (const auto& [revolution, when] : taken) {
@@ -147,8 +147,8 @@ long resident_kib() {
 int stream(int seconds, std::string_view pace) {
   const bench::pty pty;
   const std::int64_t end = steady_ns() + (seconds + 3) * second;
-  const pid_t feeder = fork();
-  if (feeder == 0) {
+  const pid_t writer = fork();
+  if (writer == 0) {
     std::vector<std::int64_t> ignored;
     bench::feed_in_real_time(pty.master(), end + second, ignored);
     _exit(0);
@@ -184,7 +184,7 @@ int stream(int seconds, std::string_view pace) {
         resident_kib(), static_cast<unsigned long long>(device.counts().scans - counts.scans),
         static_cast<unsigned long long>(device.counts().samples_lost), allocated);
   }
-  waitpid(feeder, nullptr, 0);
+  waitpid(writer, nullptr, 0);
   return 0;
 }
 
@@ -193,7 +193,7 @@ double counting_rate(std::size_t bytes_wanted) {
   const bench::pty pty;
   const bench::recording revolutions = bench::record(20);
   std::atomic<bool> done = false;
-  std::thread feeder([&] {
+  std::thread writer([&] {
     bench::flood(pty.master(), revolutions.data, bytes_wanted);
     done = true;
   });
@@ -212,7 +212,7 @@ double counting_rate(std::size_t bytes_wanted) {
   }
   const double rate = static_cast<double>(seen) * 1e9 / static_cast<double>(steady_ns() - begin);
   while (!done) static_cast<void>(::read(port, buffer.data(), buffer.size()));
-  feeder.join();
+  writer.join();
   ::close(port);
   return rate;
 }
@@ -223,7 +223,7 @@ double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
   const bench::recording revolutions = bench::record(20);
   const std::size_t rounds = (bytes_wanted + revolutions.data.size() - 1) / revolutions.data.size();
   std::atomic<bool> done = false;
-  std::thread feeder([&] {
+  std::thread writer([&] {
     bench::flood(pty.master(), revolutions.data, bytes_wanted);
     done = true;
   });
@@ -241,7 +241,7 @@ double driver_rate(std::size_t bytes_wanted, std::int64_t& lost) {
       static_cast<double>(device.counts().bytes) * 1e9 / static_cast<double>(steady_ns() - begin);
   lost = expected - scans;
   while (!done) static_cast<void>(device.next_points(1ms));
-  feeder.join();
+  writer.join();
   return rate;
 }
 

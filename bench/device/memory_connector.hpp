@@ -9,11 +9,11 @@
 #include <string_view>
 #include <utility>
 
-#include "feeder.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
+#include "pty_writer.hpp"
 
 namespace g4lidar::bench {
 

@@ -22,7 +22,7 @@
 
 namespace g4lidar::python {
 
-/// A device and its time. Whoever uses it holds the mutex.
+/// A device and its time. Its users hold the mutex.
 struct virtual_simulation {
   explicit virtual_simulation(sim::device made) : device(std::move(made)) {}
   sim::device device;

@@ -70,13 +70,14 @@ TEST_F(CModel, RawBytesShowTheirModel) {
 }
 
 TEST_F(CModel, RecordingsStateIt) {
-  g4lidar_recorder_options wish;
-  g4lidar_recorder_options_init(&wish, sizeof wish);
-  wish.model = "x44";
+  g4lidar_recorder_options wanted;
+  g4lidar_recorder_options_init(&wanted, sizeof wanted);
+  wanted.model = "x44";
   g4lidar_recorder* made = nullptr;
-  EXPECT_EQ(g4lidar_recorder_create(recorded_.c_str(), &wish, &made, nullptr), G4LIDAR_BAD_OPTION);
-  wish.model = "t-mini-pro";
-  ASSERT_EQ(g4lidar_recorder_create(recorded_.c_str(), &wish, &made, nullptr), G4LIDAR_OK);
+  EXPECT_EQ(g4lidar_recorder_create(recorded_.c_str(), &wanted, &made, nullptr),
+            G4LIDAR_BAD_OPTION);
+  wanted.model = "t-mini-pro";
+  ASSERT_EQ(g4lidar_recorder_create(recorded_.c_str(), &wanted, &made, nullptr), G4LIDAR_OK);
   const recorder into(made);
   EXPECT_EQ(g4lidar_recorder_bytes(made, false, data_.data(), data_.size(), 1'000'000'000),
             G4LIDAR_OK);

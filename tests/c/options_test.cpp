@@ -108,11 +108,11 @@ TEST(COptions, ReservedBytesOfPointsAreChecked) {
 // A recording of one revolution.
 void record_briefly(const std::string& path) {
   const simulator device = simulate();
-  g4lidar_recorder_options wish;
-  g4lidar_recorder_options_init(&wish, sizeof wish);
-  wish.overwrite = true;
+  g4lidar_recorder_options wanted;
+  g4lidar_recorder_options_init(&wanted, sizeof wanted);
+  wanted.overwrite = true;
   g4lidar_recorder* made = nullptr;
-  ASSERT_EQ(g4lidar_recorder_create(path.c_str(), &wish, &made, nullptr), G4LIDAR_OK);
+  ASSERT_EQ(g4lidar_recorder_create(path.c_str(), &wanted, &made, nullptr), G4LIDAR_OK);
   const recorder into(made);
   g4lidar_options options = defaults();
   options.recorder = made;

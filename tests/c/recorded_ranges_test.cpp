@@ -32,21 +32,21 @@ class CRecordedRanges : public testing::Test {
   std::string path_ = scratch_.path("near.mcap");
 };
 
-TEST_F(CRecordedRanges, NoReturnsAreWhatItsOptionsWish) {
+TEST_F(CRecordedRanges, NoReturnsFollowItsOptions) {
   struct seen {
     float ahead;
     float behind;
   };
   // A wall ahead comes nearer than 0.28 m; behind there is nothing. The last LaserScan.
   const auto last_scan = [&](auto change) {
-    g4lidar_recorder_options wish;
-    g4lidar_recorder_options_init(&wish, sizeof wish);
-    wish.overwrite = true;
-    change(wish);
+    g4lidar_recorder_options wanted;
+    g4lidar_recorder_options_init(&wanted, sizeof wanted);
+    wanted.overwrite = true;
+    change(wanted);
     {
       const simulator device = simulate(nullptr, "wall 1 -1 1 1\nlidar 0 0 0\nmount 0,0,0\n",
                                         "drive wait 1\ndrive forward 0.85 0.5\ndrive wait 9\n");
-      const recorder into = record_to(path_, wish);
+      const recorder into = record_to(path_, wanted);
       g4lidar_options options = defaults();
       options.recorder = into.get();
       const lidar it = start_on(device, &options);
@@ -68,20 +68,20 @@ TEST_F(CRecordedRanges, NoReturnsAreWhatItsOptionsWish) {
   const seen usual = last_scan([](auto&) {});
   EXPECT_EQ(usual.ahead, infinity);
   EXPECT_EQ(usual.behind, infinity);
-  EXPECT_EQ(last_scan([](auto& wish) { wish.no_return = G4LIDAR_NO_RETURN_AS_MAX; }).behind,
+  EXPECT_EQ(last_scan([](auto& wanted) { wanted.no_return = G4LIDAR_NO_RETURN_AS_MAX; }).behind,
             16.38375F);
-  EXPECT_TRUE(
-      std::isnan(last_scan([](auto& wish) { wish.no_return = G4LIDAR_NO_RETURN_AS_NAN; }).behind));
+  EXPECT_TRUE(std::isnan(
+      last_scan([](auto& wanted) { wanted.no_return = G4LIDAR_NO_RETURN_AS_NAN; }).behind));
   g4lidar_near_options limits;
   g4lidar_near_options_init(&limits, sizeof limits);
   limits.revolutions = 0;  // until a return comes
-  const seen unknown = last_scan([&](auto& wish) { wish.near_options = &limits; });
+  const seen unknown = last_scan([&](auto& wanted) { wanted.near_options = &limits; });
   EXPECT_TRUE(std::isnan(unknown.ahead));
   EXPECT_EQ(unknown.behind, infinity);
-  const seen near = last_scan([&](auto& wish) {
-    wish.near_options = &limits;
-    wish.near_is_minus_infinity = 1;
-    wish.no_return = G4LIDAR_NO_RETURN_AS_NAN;
+  const seen near = last_scan([&](auto& wanted) {
+    wanted.near_options = &limits;
+    wanted.near_is_minus_infinity = 1;
+    wanted.no_return = G4LIDAR_NO_RETURN_AS_NAN;
   });
   EXPECT_EQ(near.ahead, -infinity);
   EXPECT_TRUE(std::isnan(near.behind));
@@ -89,20 +89,20 @@ TEST_F(CRecordedRanges, NoReturnsAreWhatItsOptionsWish) {
 
 TEST_F(CRecordedRanges, ImpossibleOptionsOfRangesAreRefused) {
   const auto created = [&](auto change) {
-    g4lidar_recorder_options wish;
-    g4lidar_recorder_options_init(&wish, sizeof wish);
-    change(wish);
+    g4lidar_recorder_options wanted;
+    g4lidar_recorder_options_init(&wanted, sizeof wanted);
+    change(wanted);
     g4lidar_recorder* into = nullptr;
-    const int code = g4lidar_recorder_create(path_.c_str(), &wish, &into, nullptr);
+    const int code = g4lidar_recorder_create(path_.c_str(), &wanted, &into, nullptr);
     EXPECT_EQ(into, nullptr);
     return code;
   };
-  EXPECT_EQ(created([](auto& wish) { wish.no_return = 3; }), G4LIDAR_BAD_ARGUMENT);
-  EXPECT_EQ(created([](auto& wish) { wish.near_is_minus_infinity = 2; }), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(created([](auto& wanted) { wanted.no_return = 3; }), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(created([](auto& wanted) { wanted.near_is_minus_infinity = 2; }), G4LIDAR_BAD_ARGUMENT);
   g4lidar_near_options limits;
   g4lidar_near_options_init(&limits, sizeof limits);
   limits.shortest_mm = -1.0F;
-  EXPECT_EQ(created([&](auto& wish) { wish.near_options = &limits; }), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(created([&](auto& wanted) { wanted.near_options = &limits; }), G4LIDAR_BAD_ARGUMENT);
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 

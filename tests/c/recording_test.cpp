@@ -145,13 +145,13 @@ TEST_F(CRecording, ContinuesAtAnotherPlace) {
 TEST_F(CRecording, ContainsOdometryAndScans) {
   {
     const simulator device = simulate("sim:?seed=5", nullptr, "drive forward 1 0.5\n");
-    g4lidar_recorder_options wish;
-    g4lidar_recorder_options_init(&wish, sizeof wish);
+    g4lidar_recorder_options wanted;
+    g4lidar_recorder_options_init(&wanted, sizeof wanted);
     const g4lidar_mounting mount{{0.1, 0.0, 0.0}, false, {}};
-    wish.mount = &mount;
-    wish.points_topic = "/points";
-    wish.compressed = g4lidar_has_feature("zstd");
-    const recorder into = record_to(path_, &wish);
+    wanted.mount = &mount;
+    wanted.points_topic = "/points";
+    wanted.compressed = g4lidar_has_feature("zstd");
+    const recorder into = record_to(path_, &wanted);
     g4lidar_options options = defaults();
     options.recorder = into.get();
     const lidar it = start_on(device, &options);
@@ -179,13 +179,13 @@ TEST_F(CRecording, ContainsOdometryAndScans) {
   EXPECT_LE(farthest_m, 1.001);
 }
 
-TEST_F(CRecording, IsWrittenAsItsOptionsWish) {
+TEST_F(CRecording, IsWrittenByItsOptions) {
   const auto run = [&](const char* name, std::int64_t seconds, auto change) {
-    g4lidar_recorder_options wish;
-    g4lidar_recorder_options_init(&wish, sizeof wish);
-    change(wish);
+    g4lidar_recorder_options wanted;
+    g4lidar_recorder_options_init(&wanted, sizeof wanted);
+    change(wanted);
     const simulator device = simulate();
-    const recorder into = record_to(scratch_.path(name), &wish);
+    const recorder into = record_to(scratch_.path(name), &wanted);
     g4lidar_options options = defaults();
     options.recorder = into.get();
     const lidar it = start_on(device, &options);
@@ -198,31 +198,31 @@ TEST_F(CRecording, IsWrittenAsItsOptionsWish) {
     return std::string(std::istreambuf_iterator<char>(file), {}).find(text) != std::string::npos;
   };
   EXPECT_GT(run("named.mcap", 5,
-                [](auto& wish) {
-                  wish.topic = "/front/scan";
-                  wish.frame_id = "front_laser";
+                [](auto& wanted) {
+                  wanted.topic = "/front/scan";
+                  wanted.frame_id = "front_laser";
                 })
                 .scans,
             10U);
   EXPECT_TRUE(has("named.mcap", "/front/scan"));
   EXPECT_TRUE(
       has("named.mcap", std::string("front_laser", 12)));  // in a message, with its zero byte
-  EXPECT_EQ(run("bytes.mcap", 5, [](auto& wish) { wish.without_scans = true; }).scans, 0U);
+  EXPECT_EQ(run("bytes.mcap", 5, [](auto& wanted) { wanted.without_scans = true; }).scans, 0U);
   const g4lidar_recorder_counts one = run("one.mcap", 60, [](auto&) {});
   EXPECT_EQ(one.files, 1U);
   EXPECT_EQ(one.bytes_lost, 0U);
   EXPECT_EQ(one.file_bytes, std::filesystem::file_size(scratch_.path("one.mcap")));
-  const auto by_size = run("sizes.mcap", 60, [](auto& wish) { wish.rotate_bytes = 1 << 20U; });
+  const auto by_size = run("sizes.mcap", 60, [](auto& wanted) { wanted.rotate_bytes = 1 << 20U; });
   EXPECT_GE(by_size.files, one.file_bytes >> 20U);
-  EXPECT_GE(run("times.mcap", 60, [](auto& wish) { wish.rotate_s = 10; }).files, 5U);
-  g4lidar_recorder_options wish;
-  g4lidar_recorder_options_init(&wish, sizeof wish);
-  wish.chunk_ms = 5;
+  EXPECT_GE(run("times.mcap", 60, [](auto& wanted) { wanted.rotate_s = 10; }).files, 5U);
+  g4lidar_recorder_options wanted;
+  g4lidar_recorder_options_init(&wanted, sizeof wanted);
+  wanted.chunk_ms = 5;
   g4lidar_recorder* into = nullptr;
-  EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), &wish, &into, nullptr), G4LIDAR_BAD_OPTION);
+  EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), &wanted, &into, nullptr), G4LIDAR_BAD_OPTION);
 }
 
-TEST_F(CRecording, IsPlayedAsItsOptionsWish) {
+TEST_F(CRecording, IsPlayedByItsOptions) {
   const auto live = record();
   g4lidar_playback_options options;
   g4lidar_playback_options_init(&options, sizeof options);
@@ -296,11 +296,11 @@ TEST_F(CRecording, FailsWithTheReason) {
   record_to(path_).reset();
   EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), nullptr, &into, &why), G4LIDAR_SYSTEM);
   EXPECT_EQ(why.system_errno, EEXIST);
-  g4lidar_recorder_options wish;
-  g4lidar_recorder_options_init(&wish, sizeof wish);
-  wish.scan_bins = 65537;
-  wish.overwrite = true;
-  EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), &wish, &into, &why), G4LIDAR_BAD_OPTION);
+  g4lidar_recorder_options wanted;
+  g4lidar_recorder_options_init(&wanted, sizeof wanted);
+  wanted.scan_bins = 65537;
+  wanted.overwrite = true;
+  EXPECT_EQ(g4lidar_recorder_create(path_.c_str(), &wanted, &into, &why), G4LIDAR_BAD_OPTION);
   EXPECT_EQ(into, nullptr);
   EXPECT_FALSE(g4lidar_is_recording("/dev/null"));
 }

@@ -27,7 +27,7 @@ TEST(Dump, FieldOfViewInTheVendorsFrame) {
                                                                        {-10.5, 0},
                                                                        {0, 0.5},
                                                                        {359, 360}}) {
-    wish wanted;
+    wanted_form wanted;
     wanted.fov_from = from;
     wanted.fov_to = to;
     std::ostringstream option;
@@ -44,7 +44,7 @@ TEST(Dump, FieldOfViewWithASeparateWord) {
 }
 
 TEST(Dump, IgnoredDirectionsAndRanges) {
-  wish wanted;
+  wanted_form wanted;
   wanted.ignores = true;
   wanted.ignore_from = 170;
   wanted.ignore_to = -170;

@@ -114,17 +114,17 @@ TEST_F(Pipe, Interrupted_KeepsTheFileWithTheDataSoFar) {
   const std::string live = path("live");
   ASSERT_EQ(::mkfifo(live.c_str(), 0600), 0);
   program started({"decode", live, "--format", "jsonl", "-o", out});
-  const int feeder = ::open(live.c_str(), O_WRONLY);
+  const int writer = ::open(live.c_str(), O_WRONLY);
   const std::string data = cli::zero(0) + cli::turn();
-  ASSERT_EQ(::write(feeder, data.data(), data.size()), static_cast<ssize_t>(data.size()));
+  ASSERT_EQ(::write(writer, data.data(), data.size()), static_cast<ssize_t>(data.size()));
   ASSERT_TRUE(comes_true([&] {
     int left = -1;
-    return ::ioctl(feeder, FIONREAD, &left) == 0 && left == 0;
+    return ::ioctl(writer, FIONREAD, &left) == 0 && left == 0;
   })) << "it has not read everything";
   EXPECT_FALSE(std::filesystem::exists(out)) << "it appears when it is finished";
   started.send(SIGINT);
   EXPECT_EQ(started.wait().code, 130);
-  ::close(feeder);
+  ::close(writer);
   EXPECT_EQ(cli::lines_of(cli::read_file(out)).size(), 361U);
   EXPECT_EQ(listing(), "live\nout.jsonl\n");
 }

@@ -40,7 +40,7 @@ TEST(Scan, PointsAreShapedInEachFormat) {
     arguments.insert(arguments.end(), shape.begin(), shape.end());
     return run(arguments, simulated()).out;
   };
-  wish wanted;
+  wanted_form wanted;
   wanted.fov_from = -45;
   wanted.fov_to = 45;
   const std::string csv = with({"scan", "-", "-f", "csv", "--partial"});
@@ -188,7 +188,7 @@ TEST_F(Pcd, BinaryAndAsciiHoldTheReturns) {
   const std::size_t count = std::stoul(field(binary, "POINTS"));
   const std::string data = binary.substr(binary.find("DATA binary\n") + 12);
   ASSERT_EQ(data.size(), count * 28);
-  wish wanted;  // of revolution 1, the first one that is whole
+  wanted_form wanted;  // of revolution 1, the first one that is whole
   wanted.range_from_mm = 100;
   wanted.range_to_mm = 16'000;
   std::vector<wanted_point> points = wanted_points(simulated(), true, wanted);

@@ -50,7 +50,7 @@ inline const std::string& all_around() {
   return bytes;
 }
 
-struct wish {
+struct wanted_form {
   double fov_from = -360.0;
   double fov_to = 360.0;
   double ignore_from = 0.0;
@@ -70,7 +70,7 @@ struct wanted_point {
 };
 
 inline std::vector<wanted_point> wanted_points(const std::string& bytes, bool robot,
-                                               const wish& wanted) {
+                                               const wanted_form& wanted) {
   std::vector<wanted_point> points;
   std::size_t index = 0;
   for (const expected_point& p : points_in(bytes)) {
@@ -108,7 +108,7 @@ inline void expect_shown(const std::vector<row>& shown, const std::vector<wanted
 }
 
 inline void expect_filtered(const std::vector<std::string>& options, bool robot,
-                            const wish& wanted) {
+                            const wanted_form& wanted) {
   for (const std::string* const bytes : {&simulated(), &all_around()}) {
     std::vector<std::string> arguments{"dump", "-", "-f", "csv", "-q"};
     arguments.insert(arguments.end(), options.begin(), options.end());

@@ -113,7 +113,7 @@ fi
 
 # Figures of speech, in documents, names, comments and messages alike (CONTRIBUTING.md, Style): as
 # words, as parts of names between underscores, and as parts of names that begin with a capital letter.
-figures='tells?|telling|told|says?|said|lives|twins?|ear|exam|rivals?|errands?|manners|portrait|noted|meanwhile|rote|pours?|poured|amid|strangers?'
+figures='tells?|telling|told|says?|said|lives|twins?|ear|exam|rivals?|errands?|manners|portrait|noted|meanwhile|rote|pours?|poured|amid|strangers?|spoilt|forgives?|hurry|greets?|in.vain|wish|wishes|feeders?|whoever'
 capitals=$(sed -E 's/(^|\|)(.)/\1\u\2/g' <<<"$figures")
 searched=("${documents[@]}" include src tools examples tests scripts bench fuzz cmake packaging python .ci CMakeLists.txt)
 if { grep -rniE "(^|[^[:alpha:]])($figures)([^[:alpha:]]|$)|[a-z]_well\>|\<all (is|was) well" "${searched[@]}" || true

@@ -72,9 +72,9 @@ class Announcement : public cli::scratch {
     const dds::entity topic(dds_create_topic(domain_.participant(), &described,
                                              "ros_discovery_info", nullptr, nullptr));
     const dds::message_type type{&described, ""};
-    const dds::qos wish = dds::qos_of({.type = &type, .depth = 1, .is_for_late = true});
+    const dds::qos quality = dds::qos_of({.type = &type, .depth = 1, .is_for_late = true});
     const dds::entity reader(
-        dds_create_reader(domain_.participant(), topic.get(), wish.get(), nullptr));
+        dds_create_reader(domain_.participant(), topic.get(), quality.get(), nullptr));
     announced made;
     void* sample = nullptr;
     dds_sample_info_t about{};

@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(All, Quality,
                                   (one.offered[0] == 'r' ? "_From_Reliable" : "_From_BestEffort");
                          });
 
-TEST_F(Publish, ThePlaceOfTheLidarForWhoeverComesLate) {
+TEST_F(Publish, ThePlaceOfTheLidarForLateReaders) {
   const served_lidar lidar;
   subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
   cli::program tool({lidar.path(), "--mount", "0.2,-0.1,90", "--frame-id", "front_laser"});

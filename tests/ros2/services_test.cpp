@@ -62,17 +62,17 @@ class client {
   client(const test_domain& in, const std::string& service, const dds_topic_descriptor_t& request,
          const dds_topic_descriptor_t& reply) {
     const dds::message_type type{&request, ""};
-    const dds::qos wish = dds::qos_of({.type = &type, .depth = 10});
+    const dds::qos quality = dds::qos_of({.type = &type, .depth = 10});
     const std::string id = "clientid=01.02." + std::to_string(++made_) + ";";
-    dds_qset_userdata(wish.get(), id.data(), id.size());
+    dds_qset_userdata(quality.get(), id.data(), id.size());
     request_topic_ = dds::entity(dds_create_topic(
         in.participant(), &request, ("rq/" + service + "Request").c_str(), nullptr, nullptr));
     reply_topic_ = dds::entity(dds_create_topic(
         in.participant(), &reply, ("rr/" + service + "Reply").c_str(), nullptr, nullptr));
-    writer_ =
-        dds::entity(dds_create_writer(in.participant(), request_topic_.get(), wish.get(), nullptr));
-    reader_ =
-        dds::entity(dds_create_reader(in.participant(), reply_topic_.get(), wish.get(), nullptr));
+    writer_ = dds::entity(
+        dds_create_writer(in.participant(), request_topic_.get(), quality.get(), nullptr));
+    reader_ = dds::entity(
+        dds_create_reader(in.participant(), reply_topic_.get(), quality.get(), nullptr));
     EXPECT_TRUE(writer_ && reader_) << service;
   }
 

@@ -71,14 +71,15 @@ class subscriber {
  public:
   subscriber(const test_domain& in, const std::string& name, const dds::message_type& type,
              const reading& how = {}) {
-    const dds::qos wish = dds::qos_of({.name = name,
-                                       .type = &type,
-                                       .is_reliable = how.is_reliable,
-                                       .depth = how.depth,
-                                       .is_for_late = how.is_for_late});
+    const dds::qos quality = dds::qos_of({.name = name,
+                                          .type = &type,
+                                          .is_reliable = how.is_reliable,
+                                          .depth = how.depth,
+                                          .is_for_late = how.is_for_late});
     topic_ = dds::entity(dds_create_topic(in.participant(), type.descriptor, ("rt" + name).c_str(),
                                           nullptr, nullptr));
-    reader_ = dds::entity(dds_create_reader(in.participant(), topic_.get(), wish.get(), nullptr));
+    reader_ =
+        dds::entity(dds_create_reader(in.participant(), topic_.get(), quality.get(), nullptr));
     EXPECT_TRUE(reader_) << name;
   }
 
@@ -124,8 +125,9 @@ class publisher {
   publisher(const test_domain& in, const std::string& name, const dds::message_type& type)
       : topic_(dds_create_topic(in.participant(), type.descriptor, ("rt" + name).c_str(), nullptr,
                                 nullptr)) {
-    const dds::qos wish = dds::qos_of({.name = name, .type = &type});
-    writer_ = dds::entity(dds_create_writer(in.participant(), topic_.get(), wish.get(), nullptr));
+    const dds::qos quality = dds::qos_of({.name = name, .type = &type});
+    writer_ =
+        dds::entity(dds_create_writer(in.participant(), topic_.get(), quality.get(), nullptr));
     EXPECT_TRUE(writer_) << name;
   }
   void write(const Message& what) const {

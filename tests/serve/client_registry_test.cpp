@@ -42,7 +42,7 @@ class Hub : public ::testing::Test {
 
   bool allows_set = true;
   int woken = 0;
-  std::vector<std::string> wishes;
+  std::vector<std::string> commands;
   std::vector<std::function<void(const std::string&)>> done;
   int plays = 0;
   std::string last;
@@ -50,7 +50,7 @@ class Hub : public ::testing::Test {
                          true,
                          {.set =
                               [this](const set_request& wanted, auto when_done) {
-                                wishes.push_back(wanted.name + '=' + wanted.value);
+                                commands.push_back(wanted.name + '=' + wanted.value);
                                 done.push_back(std::move(when_done));
                               },
                           .play = [this](const play_request&) { ++plays; }},
@@ -118,7 +118,7 @@ TEST_F(Hub, Set_IsPassedOnAndAnswered) {
   take_all(one);
   take_all(two);
   EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"frequency","value":9})"));
-  EXPECT_THAT(wishes, ElementsAre("frequency=9"));
+  EXPECT_THAT(commands, ElementsAre("frequency=9"));
   EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"frequency","value":8})"));
   EXPECT_THAT(take_all(one), ElementsAre("error")) << "one after the other";
   EXPECT_TRUE(center.receive(two, R"({"op":"set","name":"frequency","value":7})"));
@@ -130,7 +130,7 @@ TEST_F(Hub, Set_IsPassedOnAndAnswered) {
   EXPECT_TRUE(center.receive(one, R"({"op":"set","name":"frequency","value":8})"));
   center.disconnect(&one);
   done.at(2)("too late");  // nobody hears it
-  EXPECT_EQ(wishes.size(), 3U);
+  EXPECT_EQ(commands.size(), 3U);
 }
 
 TEST_F(Hub, Set_IsRefusedUnlessAllowed) {

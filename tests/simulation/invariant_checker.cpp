@@ -159,11 +159,11 @@ void invariant_checker::check_counts() {
   last_ = now;
 }
 
-/// Nobody looks again and again in vain.
+/// Calls without an effect are rare.
 void invariant_checker::check_calls() {
   const std::int64_t now_ns = environment_->clock.now_ns();
   const transport_calls& now = environment_->calls;
-  const std::uint64_t vain =
+  const std::uint64_t idle =
       now.empty + now.pauses + now.connects + now.writes -
       (calls_then_.empty + calls_then_.pauses + calls_then_.connects + calls_then_.writes);
   const std::uint64_t of_use = now.reads - calls_then_.reads + app_calls_ - app_calls_then_;
@@ -171,8 +171,8 @@ void invariant_checker::check_calls() {
   const auto for_batches = static_cast<std::uint64_t>(batch_ns == 0 ? 0 : second / batch_ns);
   const auto attempts =
       static_cast<std::uint64_t>(1000 / parameters_->options.tuning.longest_backoff.count());
-  if (vain > 300 + 3 * of_use + 2 * for_batches + 2 * attempts) {
-    fail("spins: " + std::to_string(vain) + " calls in vain in a second, and " +
+  if (idle > 300 + 3 * of_use + 2 * for_batches + 2 * attempts) {
+    fail("spins: " + std::to_string(idle) + " calls without effect in a second, and " +
          std::to_string(of_use) + " of use");
   }
   if (now_ns - second_began_ns_ < second) return;

@@ -91,12 +91,13 @@ odometry_subscription::odometry_subscription(dds::bus& on, std::string name)
 
 void odometry_subscription::open(dds_entity_t participant, int* /*handle*/) {
   const std::lock_guard lock(mutex_);
-  // Whoever publishes: with best effort every quality of service is accepted.
-  const dds::qos wish = dds::qos_of({.type = &dds::odometry, .is_reliable = false, .depth = 100});
-  dds_qset_ignorelocal(wish.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  // For every publisher: with best effort every quality of service is accepted.
+  const dds::qos quality =
+      dds::qos_of({.type = &dds::odometry, .is_reliable = false, .depth = 100});
+  dds_qset_ignorelocal(quality.get(), DDS_IGNORELOCAL_PARTICIPANT);
   topic_ = dds::entity(dds_create_topic(participant, dds::odometry.descriptor,
                                         dds::dds_name(name_).c_str(), nullptr, nullptr));
-  reader_ = dds::entity(dds_create_reader(participant, topic_.get(), wish.get(), nullptr));
+  reader_ = dds::entity(dds_create_reader(participant, topic_.get(), quality.get(), nullptr));
 }
 
 void odometry_subscription::close() noexcept {

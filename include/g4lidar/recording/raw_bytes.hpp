@@ -50,7 +50,7 @@ namespace g4lidar {
 [[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,
-/// whoever wrote it, is a recording.
+/// by any program, is a recording.
 inline constexpr std::string_view recorded_bytes_topic = "/g4lidar/from_device";
 /// The definition of these messages.
 [[nodiscard]] G4LIDAR_API message_schema recorded_bytes_schema() noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "feeder.hpp"
+#include "pty_writer.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
