@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "support/family_reference.hpp"
 #include "support/reference_parser.hpp"
 #include "support/stream_log.hpp"
 #include "support/transcript.hpp"
@@ -75,7 +76,7 @@ void write_anew(const std::string& name) {
   const std::string text = text_of_file(name);
   std::ofstream out(path_of(name), std::ios::binary);
   std::istringstream in(text);
-  stream_parser parser;
+  stream_parser parser(transcript::format_of(text).value_or(g4_format));
   std::array<std::uint8_t, transcript::max_input> storage{};
   std::size_t size = 0;
   bool logged = false;
@@ -146,12 +147,20 @@ TEST_P(Transcript, InThreePiecesOfEverySize) {
 }
 
 TEST_P(Transcript, AgreesWithTheReference) {
+  const transcript::reader script(text_);
+  reference::packet_form form;
+  if (script.line().kind == '=') {
+    const auto& all = reference::wire_formats;
+    const auto named = std::ranges::find(all, script.line().text, &reference::wire_format::model);
+    ASSERT_NE(named, all.end()) << script.line().text;
+    form = {static_cast<std::size_t>(named->sample_bytes), named->most_samples};
+  }
   for (const buffer& input : inputs_) {
-    stream_parser parser;
+    stream_parser parser(transcript::format_of(text_).value_or(g4_format));
     test::stream_log log(input);
     log.feed(parser, input.size());
     log.finish(parser);
-    EXPECT_EQ(test::difference(log, reference::read(input)), "");
+    EXPECT_EQ(test::difference(log, reference::read(input, form)), "");
   }
 }
 
@@ -185,6 +194,11 @@ TEST(TranscriptReplay, DetectsDifferences) {
   EXPECT_FALSE(replays_in_whole("< A\n> finish\n")) << "half a byte";
   EXPECT_FALSE(replays_in_whole("< G0\n> finish\n")) << "no digit";
   EXPECT_TRUE(replays_in_whole(text + "< 00\n> skipped 1 noise\n> finish\n")) << "a second section";
+  EXPECT_TRUE(replays_in_whole("= g4\n" + text));
+  EXPECT_FALSE(replays_in_whole("= x4\n" + text)) << "the sample is missing";
+  EXPECT_FALSE(replays_in_whole("= t-mini\n" + text)) << "the packet is longer";
+  EXPECT_FALSE(replays_in_whole("= x44\n" + text)) << "no model";
+  EXPECT_FALSE(replays_in_whole(text + "= g4\n")) << "a model behind bytes";
 }
 
 }  // namespace

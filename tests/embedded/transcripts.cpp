@@ -23,6 +23,7 @@ std::size_t longest_input(std::string_view text) {
       size = 0;
       continue;
     }
+    if (script.line().kind == '=') continue;
     const auto count = g4lidar::transcript::read_hex(script.line().text, storage);
     if (!count) return 0;
     size += *count;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <variant>
 
+#include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/stream_parser.hpp"
@@ -61,6 +62,38 @@ constexpr void write_angle(line& out, int sixty_fourths) {
   write_angle(out, packet.last_angle_64ths());
   if (packet.is_suspect()) out << " suspect";
   return out;
+}
+
+template <sample_layout Layout>
+[[nodiscard]] constexpr line text_of_sample_in(packet_view packet, std::size_t i) {
+  const std::uint16_t word = packet.sample(i);
+  const auto hundredths = static_cast<std::size_t>(100.0F * range_mm_of<Layout>(word));
+  line out;
+  out << "sample range_mm=" << hundredths / 100 << "." << hundredths / 10 % 10 << hundredths % 10
+      << " intensity=" << std::size_t{intensity_of<Layout>(packet.intensity_word(i), word)}
+      << " flags=" << std::size_t{sample_flags_of<Layout>(word)};
+  return out;
+}
+/// What sample `i` contains.
+[[nodiscard]] constexpr line text_of_sample(packet_view packet, std::size_t i) {
+  using enum sample_layout;
+  switch (packet.layout()) {
+    case flagged_mm:
+      return text_of_sample_in<flagged_mm>(packet, i);
+    case half_mm:
+      return text_of_sample_in<half_mm>(packet, i);
+    case whole_mm:
+      return text_of_sample_in<whole_mm>(packet, i);
+    case intensity_10:
+      return text_of_sample_in<intensity_10>(packet, i);
+    case intensity_8:
+      return text_of_sample_in<intensity_8>(packet, i);
+    case intensity_16:
+      return text_of_sample_in<intensity_16>(packet, i);
+    case quarter_mm:
+      break;
+  }
+  return text_of_sample_in<quarter_mm>(packet, i);
 }
 
 [[nodiscard]] constexpr line text_of(response_view reply) {

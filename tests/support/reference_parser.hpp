@@ -68,26 +68,36 @@ class window {
   std::size_t from_;
 };
 
+/// What the packets of a model contain.
+struct packet_form {
+  std::size_t sample_bytes = 2;
+  int most_samples = 80;
+};
+
 /// Whether some valid packet header begins with the first `k` bytes, 1 <= k <= 8. Missing bytes are
 /// assumed to be favourable: a missing upper byte of an angle counts as 0.
-[[nodiscard]] inline bool could_be_packet(const window& in, std::size_t k) {
+[[nodiscard]] inline bool could_be_packet(const window& in, std::size_t k, int most_samples = 80) {
   const auto angle_ok = [&](std::size_t low) {
     if (k <= low) return true;
     const int high = k > low + 1 ? in[low + 1] : 0;
     const int raw = in[low] + 256 * high;
     return raw % 2 == 1 && raw / 2 < 360 * 64;
   };
-  return in[0] == 0xAA && (k < 2 || in[1] == 0x55) && (k < 4 || (in[3] >= 1 && in[3] <= 80)) &&
-         angle_ok(4) && angle_ok(6);
+  return in[0] == 0xAA && (k < 2 || in[1] == 0x55) &&
+         (k < 4 || (in[3] >= 1 && in[3] <= most_samples)) && angle_ok(4) && angle_ok(6);
 }
 
-/// The checksum in the order of the protocol page: PH, FSA, the samples, CT with LSN, LSA.
-[[nodiscard]] inline int checksum_of(const window& in) {
+/// The checksum in the order of the protocol page: PH, FSA, the samples, CT with LSN, LSA. Of a sample
+/// of 3 bytes the first one is a word alone.
+[[nodiscard]] inline int checksum_of(const window& in, std::size_t sample_bytes = 2) {
   const auto word = [&](std::size_t i) { return in[i] + 256 * in[i + 1]; };
   int sum = 0x55AA;
   sum ^= word(4);
   for (int sample = 0; sample < in[3]; ++sample) {
-    sum ^= word(10 + 2 * static_cast<std::size_t>(sample));
+    const std::size_t at = 10 + sample_bytes * static_cast<std::size_t>(sample);
+    if (sample_bytes == 3) sum ^= in[at];
+    if (sample_bytes == 4) sum ^= word(at);
+    sum ^= word(at + sample_bytes - 2);
   }
   sum ^= in[2] + 256 * in[3];
   sum ^= word(6);
@@ -131,17 +141,18 @@ struct start {
       size;  ///< Of a valid one; refused: the bytes from the start to the first impossible one.
 };
 
-[[nodiscard]] inline start packet_start_at(const window& in) {
+[[nodiscard]] inline start packet_start_at(const window& in, packet_form form) {
   for (std::size_t k = 1; k <= 8; ++k) {
     if (k > in.left()) return {start::unfinished, kind::truncated, 0};
-    if (!could_be_packet(in, k)) {
+    if (!could_be_packet(in, k, form.most_samples)) {
       if (k <= 2) return {start::no_start, kind::noise, 1};
       return {start::refused, kind::bad_header, k};
     }
   }
-  const std::size_t size = 10 + 2 * static_cast<std::size_t>(in[3]);
+  const std::size_t size = 10 + form.sample_bytes * static_cast<std::size_t>(in[3]);
   if (size > in.left()) return {start::unfinished, kind::truncated, 0};
-  if (checksum_of(in) != in[8] + 256 * in[9]) return {start::refused, kind::bad_checksum, size};
+  if (checksum_of(in, form.sample_bytes) != in[8] + 256 * in[9])
+    return {start::refused, kind::bad_checksum, size};
   return {start::valid, kind::packet, size};
 }
 
@@ -169,10 +180,11 @@ struct start {
   return {start::valid, kind::time_packet, 8};
 }
 
-[[nodiscard]] inline start start_at(const std::vector<std::uint8_t>& input, std::size_t offset) {
+[[nodiscard]] inline start start_at(const std::vector<std::uint8_t>& input, std::size_t offset,
+                                    packet_form form = {}) {
   const window in(input, offset);
   if (in[0] == 0xAA && in[1] == 0x66) return time_packet_start_at(in);
-  if (in[0] == 0xAA) return packet_start_at(in);
+  if (in[0] == 0xAA) return packet_start_at(in, form);
   if (in[0] == 0xA5) return response_start_at(in);
   return {start::no_start, kind::noise, 1};
 }
@@ -186,7 +198,7 @@ struct reading {
 /// Parses `input` from its first byte to its last, with finish() at the end. Each byte is part of a
 /// packet or response, or has a reason. A refused start gives its reason to all bytes that it
 /// claimed, unless an earlier one claimed them before, and until a valid one begins.
-[[nodiscard]] inline reading read(const std::vector<std::uint8_t>& input) {
+[[nodiscard]] inline reading read(const std::vector<std::uint8_t>& input, packet_form form = {}) {
   reading result{{}, input.size()};
   bool ended = false;  // the input is not sufficient to decide: from here on finish() decides
   std::size_t claimed_up_to = 0;
@@ -199,7 +211,7 @@ struct reading {
     }
   };
   for (std::size_t at = 0; at < input.size();) {
-    const start s = start_at(input, at);
+    const start s = start_at(input, at, form);
     if (s.state == start::unfinished && !ended) {
       ended = true;
       result.held_from = at;

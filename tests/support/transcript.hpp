@@ -10,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "support/event_text.hpp"
 
@@ -20,7 +21,7 @@ inline constexpr std::size_t max_input = 1024;
 
 /// One line of a transcript without its comment.
 struct script_line {
-  char kind = 0;  ///< '<' bytes in, '>' event out, 0 neither.
+  char kind = 0;  ///< '<' bytes in, '>' event out, '=' the model that sends them, 0 none.
   std::string_view text;
   std::size_t number = 0;  ///< From 1.
 };
@@ -41,7 +42,8 @@ class reader {
       ++line_.number;
       text = text.substr(0, text.find('#'));
       while (!text.empty() && (text.back() == ' ' || text.back() == '\r')) text.remove_suffix(1);
-      if (text.size() < 2 || (text[0] != '<' && text[0] != '>')) continue;
+      if (text.size() < 2 || std::string_view("<>=").find(text[0]) == std::string_view::npos)
+        continue;
       line_.kind = text[0];
       line_.text = text.substr(2);
     }
@@ -51,6 +53,16 @@ class reader {
   std::string_view rest_;
   script_line line_;
 };
+
+/// How the samples of a transcript are read: as those of the model that its first line names, "= x4", else
+/// of a G4. Nothing if there is no such model.
+[[nodiscard]] constexpr std::optional<sample_format> format_of(std::string_view transcript) {
+  const reader script(transcript);
+  if (script.line().kind != '=') return g4_format;
+  const model* const named = model_named(script.line().text);
+  if (named == nullptr) return std::nullopt;
+  return named->samples;
+}
 
 [[nodiscard]] constexpr int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -101,7 +113,11 @@ template <class Cut, class Emit>
     }
     flush();
     const bytes data = data_of(found);
-    if (const auto* packet = std::get_if<packet_view>(&found)) show(text_of(*packet));
+    if (const auto* packet = std::get_if<packet_view>(&found)) {
+      show(text_of(*packet));
+      const std::size_t shown = packet->layout() == g4_layout ? 0 : packet->sample_count();
+      for (std::size_t i = 0; i < shown; ++i) show(text_of_sample(*packet, i));
+    }
     if (const auto* reply = std::get_if<response_view>(&found)) show(text_of(*reply));
     if (const auto* time = std::get_if<time_packet_view>(&found)) show(text_of(*time));
     sound = sound && reported + data.size() <= input.size() &&
@@ -141,7 +157,8 @@ template <class Cut>
 [[nodiscard]] constexpr outcome replay(std::string_view transcript, std::span<std::uint8_t> storage,
                                        Cut&& cut) {
   outcome result;
-  stream_parser parser;
+  const std::optional<sample_format> format = format_of(transcript);
+  stream_parser parser(format.value_or(g4_format));
   reader script(transcript);
   const auto fail = [&](std::string_view got) {
     if (!result.ok) return;
@@ -155,6 +172,8 @@ template <class Cut>
     if (script.done() || script.line().kind != '>' || script.line().text != got) fail(got);
     if (!script.done() && script.line().kind == '>') script.advance();
   };
+  if (!format) fail("(no model)");
+  if (script.line().kind == '=') script.advance();
   while (!script.done() && result.ok) {
     std::size_t size = 0;
     for (; !script.done() && script.line().kind == '<'; script.advance()) {
@@ -166,7 +185,7 @@ template <class Cut>
       size += *count;
     }
     if (!log_section(parser, storage.first(size), cut, compare)) fail("(unsound)");
-    if (!script.done() && script.line().kind == '>') fail("(nothing more)");
+    if (!script.done() && script.line().kind != '<') fail("(nothing more)");
   }
   return result;
 }
