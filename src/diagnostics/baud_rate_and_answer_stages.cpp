@@ -5,7 +5,10 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <utility>
+
+#include "transport/custom_baud.hpp"
 
 namespace g4lidar {
 namespace {
@@ -19,6 +22,15 @@ constexpr std::array<std::int64_t, 3> first_patience_ns{800 * ms, 800 * ms, 3'00
 constexpr std::size_t more_times = 5;
 constexpr std::int64_t more_patience_ns = 300 * ms;
 constexpr std::array<std::uint32_t, 5> other_rates{115200, 512000, 128000, 153600, 256000};
+
+/// A remark if the bridge cannot make the wanted rate.
+void add_rate_difference(stage_report& report, std::uint32_t real, std::uint32_t wanted) {
+  constexpr std::uint64_t remarkable = 15;  // in thousandths
+  if (wanted == 0 || !is_tolerable(real, wanted) || !report.remark.empty()) return;
+  if (baud_difference(real, wanted) <= remarkable) return;
+  report.remark = "The port runs at " + std::to_string(real) + " baud instead of " +
+                  std::to_string(wanted) + ".";
+}
 
 }  // namespace
 
@@ -67,6 +79,7 @@ bool live_run::find_device() {
     }
   }
   add_failure(baud);
+  add_rate_difference(baud, baud_, log_.options().baud);
   const bool is_silent = !goes_on && baud.diagnoses.empty() && !link_.is_cancelled();
   if (is_silent) {
     baud.outcome = stage_verdict::skipped;

@@ -75,6 +75,13 @@ class fd_port : public transport {
   [[nodiscard]] waker& waits() noexcept { return *waker_; }
   [[nodiscard]] int fd() const noexcept { return fd_.get(); }
   [[nodiscard]] bool is_gone() const noexcept { return is_gone_; }
+  /// The rate that was set; the bytes received before were discarded.
+  void restart_at(std::uint32_t baud) noexcept {
+    baud_ = baud;
+    may_have_more_ = false;
+  }
+  /// The error for errno, or for a connection that does not exist any more.
+  [[nodiscard]] tl::unexpected<error> failed(task doing, int system_errno) noexcept;
 
  private:
   /// Like write() and send().
@@ -84,8 +91,6 @@ class fd_port : public transport {
   [[nodiscard]] result<received> read_now(std::span<std::uint8_t> out, short polled) noexcept;
   /// The result of poll; 0 if the deadline has passed.
   [[nodiscard]] result<short> wait(task doing, short events, std::int64_t deadline_ns) noexcept;
-  /// The error for errno, or for a connection that does not exist any more.
-  [[nodiscard]] tl::unexpected<error> failed(task doing, int system_errno) noexcept;
   [[nodiscard]] tl::unexpected<error> ended(task doing, problem what, int system_errno) noexcept;
 
   const system_calls* calls_;

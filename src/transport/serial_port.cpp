@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <new>
 #include <optional>
 #include <string>
 #include <utility>
@@ -132,6 +133,9 @@ class serial_transport final : public fd_port {
   void hasten() noexcept;
   [[nodiscard]] result<void> discard_input() noexcept;
 
+  [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override;
+  [[nodiscard]] result<bool> set_dtr(bool high) noexcept override;
+
  private:
   [[nodiscard]] ssize_t write_some(bytes data) noexcept override {
     return calls().write(fd(), data.data(), data.size());
@@ -140,14 +144,18 @@ class serial_transport final : public fd_port {
     return uninterrupted([&] { return calls().ioctl(fd(), request, argument); });
   }
   [[nodiscard]] tl::unexpected<error> refused(int system_errno) const noexcept;
-  [[nodiscard]] tl::unexpected<error> refused_baud(int system_errno) const;
+  [[nodiscard]] tl::unexpected<error> refused_baud(std::uint32_t baud,
+                                                   int system_errno) const noexcept;
+  [[nodiscard]] result<void> apply(std::uint32_t baud, int when) noexcept;
   [[nodiscard]] bool set(int when, const termios& wanted) const noexcept {
     return uninterrupted([&] { return calls().tcsetattr(fd(), when, &wanted); }) == 0;
   }
   [[nodiscard]] bool drained() const noexcept;
+  [[nodiscard]] int send_or_discard() noexcept;
   void restore() noexcept;
 
   termios found_{};
+  termios wanted_{};
   std::uint32_t found_custom_baud_ = 0;  // if it had a non-standard rate
   int found_flags_ = 0;
   bool is_changed_ = false;
@@ -191,35 +199,63 @@ result<void> serial_transport::hold() {
   return {};
 }
 
-tl::unexpected<error> serial_transport::refused_baud(int system_errno) const {
-  return failure(task::configuring, problem::bad_baud_rate,
-                 std::string(name()) + " at " + std::to_string(baud()) + " baud", system_errno);
+tl::unexpected<error> serial_transport::refused_baud(std::uint32_t baud,
+                                                     int system_errno) const noexcept {
+  try {
+    return failure(task::configuring, problem::bad_baud_rate,
+                   std::string(name()) + " at " + std::to_string(baud) + " baud", system_errno);
+  } catch (const std::bad_alloc&) {
+    return failure(task::configuring, problem::bad_baud_rate, name(), system_errno);
+  }
 }
 
 result<void> serial_transport::configure() {
-  const auto speed = speed_of(baud());
-  termios wanted = found_;
-  cfmakeraw(&wanted);
-  wanted.c_cflag |= CLOCAL | CREAD;
-  wanted.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
-  wanted.c_iflag &= ~static_cast<tcflag_t>(IXOFF | INPCK);
-  wanted.c_cc[VMIN] =
+  wanted_ = found_;
+  cfmakeraw(&wanted_);
+  wanted_.c_cflag |= CLOCAL | CREAD;
+  wanted_.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
+  wanted_.c_iflag &= ~static_cast<tcflag_t>(IXOFF | INPCK);
+  wanted_.c_cc[VMIN] =
       1;  // with 0, a read without bytes would return 0, like a read from an unplugged port
-  wanted.c_cc[VTIME] = 0;
-  cfsetspeed(&wanted, speed.value_or(B38400));
+  wanted_.c_cc[VTIME] = 0;
+  return apply(baud(), TCSANOW);
+}
+
+/// Sets wanted_ with this rate, and makes baud() the rate that the driver has really set: it writes it
+/// into the settings.
+result<void> serial_transport::apply(std::uint32_t baud, int when) noexcept {
+  const auto speed = speed_of(baud);
+  cfsetspeed(&wanted_, speed.value_or(B38400));
   is_changed_ = true;
-  if (!set(TCSANOW, wanted)) return refused(errno);
-  if (!speed) {
-    if (!set_custom_baud(calls().ioctl, fd(), baud())) {
-      return errno == EIO ? refused(EIO) : refused_baud(errno);
-    }
-    return is_near(custom_baud(calls().ioctl, fd()), baud()) ? result<void>{} : refused_baud(0);
+  if (!set(when, wanted_)) return refused(errno);
+  if (!speed && !set_custom_baud(calls().ioctl, fd(), baud)) {
+    return errno == EIO ? refused(EIO) : refused_baud(baud, errno);
   }
   // tcsetattr() succeeds if any part of it does, so the settings are read back.
   termios got{};
   if (uninterrupted([&] { return calls().tcgetattr(fd(), &got); }) != 0) return refused(errno);
-  if (cfgetospeed(&got) != *speed) return refused_baud(0);
+  const bool has_name = speed && cfgetospeed(&got) == *speed;
+  const std::uint32_t real = custom_baud(calls().ioctl, fd());
+  const bool is_usable = is_tolerable(real, baud);
+  if (!has_name && !is_usable) return refused_baud(baud, 0);
+  restart_at(is_usable ? real : baud);
   return {};
+}
+
+result<bool> serial_transport::set_baud(std::uint32_t baud) noexcept {
+  if (baud == 0) return refused_baud(baud, 0);
+  auto done = apply(baud, send_or_discard());
+  if (done) done = discard_input();
+  if (done) return true;
+  if (done.error() == problem::bad_baud_rate) return tl::unexpected(done.error());
+  return failed(task::configuring, done.error().system_errno());
+}
+
+result<bool> serial_transport::set_dtr(bool high) noexcept {
+  int line = TIOCM_DTR;
+  if (control(high ? TIOCMBIS : TIOCMBIC, &line) == 0) return true;
+  if (errno == ENOTTY || errno == EINVAL) return false;
+  return failed(task::configuring, errno);
 }
 
 void serial_transport::hasten() noexcept {
@@ -248,15 +284,17 @@ bool serial_transport::drained() const noexcept {
   return false;
 }
 
+/// A last command must not be sent at another rate; and pending output would delay close() for half a
+/// minute. Returns when tcsetattr() has to change the settings.
+int serial_transport::send_or_discard() noexcept {
+  if (drained()) return TCSADRAIN;
+  static_cast<void>(uninterrupted([&] { return calls().tcflush(fd(), TCOFLUSH); }));
+  return TCSANOW;
+}
+
 void serial_transport::restore() noexcept {
   if (is_changed_) {
-    // A last command must not be sent at another rate; and pending output would delay close() for
-    // half a minute.
-    const bool is_empty = drained();
-    if (!is_empty) {
-      static_cast<void>(uninterrupted([&] { return calls().tcflush(fd(), TCOFLUSH); }));
-    }
-    static_cast<void>(set(is_empty ? TCSADRAIN : TCSANOW, found_));
+    static_cast<void>(set(send_or_discard(), found_));
     if (found_custom_baud_ != 0) {
       static_cast<void>(set_custom_baud(calls().ioctl, fd(), found_custom_baud_));
     }

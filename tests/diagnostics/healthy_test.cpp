@@ -12,6 +12,7 @@
 
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/sim/random.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 #include "support/test_scale.hpp"
 
 namespace {
@@ -195,6 +196,34 @@ TEST(Settings, OtherBaudRate_IsFound) {
   EXPECT_TRUE(std::any_of(facts.begin(), facts.end(), [](const evidence& each) {
     return each.name == "rate_that_works" && each.value == decltype(each.value)(128'000);
   })) << done;
+}
+
+/// A port whose bridge makes another rate than the one that was set.
+class port_at final : public forwarding_transport {
+ public:
+  port_at(std::unique_ptr<transport> inner, std::uint32_t baud)
+      : forwarding_transport(std::move(inner)), baud_(baud) {}
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return baud_; }
+
+ private:
+  std::uint32_t baud_;
+};
+
+TEST(Settings, RateThatTheBridgeCannotMake_IsARemark) {
+  const auto remark_at = [](std::uint32_t baud) {
+    sim::virtual_clock clock;
+    sim::device healthy(sim::built_in_world(), {});
+    auto port =
+        std::make_unique<port_at>(std::make_unique<sim::virtual_port>(healthy, clock), baud);
+    for (const stage_report& each : diagnose(std::move(port))) {
+      EXPECT_TRUE(each.diagnoses.empty());
+      if (each.stage == diagnostic_stage::baud_rate) return each.remark;
+    }
+    return std::string("no such stage");
+  };
+  EXPECT_EQ(remark_at(230'400), "");
+  EXPECT_EQ(remark_at(230'769), "");
+  EXPECT_EQ(remark_at(225'000), "The port runs at 225000 baud instead of 230400.");
 }
 
 TEST(Settings, Cancellation_StopsTheMotor) {

@@ -78,15 +78,6 @@ TEST(SerialPort, AllBytes_PassUnchangedBothWays) {
   EXPECT_EQ(device.receive(all.size()), all);
 }
 
-TEST(SerialPort, OtherRates_AreSet) {
-  for (const std::uint32_t baud : {9600U, 115200U, 128000U, 153600U, 512000U, 921600U}) {
-    const pty device;
-    const auto port = opened(device, {.baud = baud});
-    EXPECT_EQ(rate_of(device), baud);
-    EXPECT_EQ(port->baud(), baud);
-  }
-}
-
 TEST(SerialPort, Close_RestoresTheSettings) {
   const pty device;
   termios odd = settings_of(device);
@@ -99,15 +90,6 @@ TEST(SerialPort, Close_RestoresTheSettings) {
     const auto port = opened(device);
   }
   EXPECT_TRUE(are_equal(settings_of(device), found));
-}
-
-TEST(SerialPort, Close_RestoresANonStandardRate) {
-  const pty device;
-  ASSERT_TRUE(set_custom_baud(real_system_calls().ioctl, device.keep(), 250'000));
-  {
-    const auto port = opened(device);
-  }
-  EXPECT_EQ(rate_of(device), 250'000U);
 }
 
 TEST(SerialPort, OpeningABusyPort_ChangesNothing) {

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A command, an answer and a pause, with the device at the other end.
+/// A command, an answer, another rate, DTR and a pause, with the device at the other end.
 template <class Device>
 result<void> talk(transport& port, const Device& device) {
   if (auto sent = write_text(port, "question"); !sent) return sent;
@@ -25,6 +25,8 @@ result<void> talk(transport& port, const Device& device) {
   const auto got = read_text(port, 6);
   if (!got) return tl::unexpected(got.error());
   EXPECT_EQ(*got, "answer");
+  if (const auto set = port.set_baud(115'200); !set) return tl::unexpected(set.error());
+  if (const auto set = port.set_dtr(true); !set) return tl::unexpected(set.error());
   return port.pause(in(port, 1ms));
 }
 
@@ -207,6 +209,20 @@ TEST(SerialCalls, NonStandardRate_NeedsIoctl) {
   EXPECT_EQ(used.error().code(), problem::bad_baud_rate);
   EXPECT_EQ(used.error().subject(), port.device.path() + " at 250000 baud");
   set_fault({});
+}
+
+TEST(SerialCalls, NonStandardRate_InterruptedThreeTimes_IsSet) {
+  const pty device;
+  auto port = open_serial_transport(device.path(), {}, faulty_calls());
+  ASSERT_TRUE(port);
+  for (const call which : {call::ioctl, call::tcsetattr, call::tcgetattr, call::tcflush}) {
+    SCOPED_TRACE(name_of(which));
+    ASSERT_TRUE((*port)->set_baud(230'400));
+    set_fault({.which = which, .system_errno = EINTR, .times = 3});
+    EXPECT_EQ((*port)->set_baud(128'000), true);
+    EXPECT_EQ((*port)->baud(), 128'000U);
+    set_fault({});
+  }
 }
 
 TEST(SerialCalls, OpenFailsLate_RestoresTheSettings) {

@@ -55,6 +55,8 @@ TEST(SerialPort, Unplugged_EveryCallIsGone) {
     EXPECT_EQ(port->read(buffer, port->now_ns()).error().code(), problem::gone);
     EXPECT_EQ(write_text(*port, "x").error().code(), problem::gone);
     EXPECT_EQ(port->pause(in(*port, patience)).error().code(), problem::gone);
+    EXPECT_EQ(port->set_baud(115'200).error().code(), problem::gone);
+    EXPECT_EQ(port->set_baud(128'000).error().code(), problem::gone);
   }
 }
 
