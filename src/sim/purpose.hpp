@@ -19,6 +19,8 @@ enum class purpose : std::uint64_t {
   garbage = 8,  // bytes at a wrong baud rate, to the device
   odometry_way = 9,
   odometry_turn = 10,
+  line_to_host = 11,  // where the rates of host and device differ
+  line_to_device = 12,
   faults = 100  // plus the index of the fault
 };
 

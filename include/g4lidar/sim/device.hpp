@@ -35,6 +35,32 @@ struct sent_sample {
   bool whole;             ///< No byte of the packet was damaged, lost, or separated from the next.
 };
 
+class device;
+
+/// What the host sets at its end of the connection to a device. *Single thread.*
+class G4LIDAR_API host_end {
+ public:
+  /// Sets the rate, and discards the bytes that the host has not read. At a rate that differs by more than
+  /// 2.5 to 5 % from that of the device, bytes arrive garbled in both directions, unless the options state
+  /// otherwise. 0: that of the device, as at first and after a replug.
+  void set_baud(std::uint32_t baud, std::int64_t now_ns) noexcept;
+  /// The rate.
+  [[nodiscard]] std::uint32_t baud() const noexcept;
+  /// A program opens the port: the system raises DTR, if it is the first one.
+  void open(std::int64_t now_ns) noexcept;
+  /// A program closes the port: after the last one the system lowers DTR.
+  void close(std::int64_t now_ns) noexcept;
+  /// Sets the line DTR. It has no effect on most models; for the others see device_options.
+  void set_dtr(bool high, std::int64_t now_ns) noexcept;
+  /// The connection has no line DTR: from now on the motor is enabled.
+  void ignore_dtr(std::int64_t now_ns) noexcept;
+
+ private:
+  friend class device;
+  explicit host_end(device& of) noexcept : device_(&of) {}
+  device* device_;
+};
+
 /// A device. All times are nanoseconds of one virtual clock that only moves forward. The behaviour
 /// does not depend on how often functions are called, except for the losses of a slow reader. The
 /// same options, world, faults and writes give the same bytes on every processor. *Single thread.
@@ -50,13 +76,8 @@ class G4LIDAR_API device {
 
   /// The host sends bytes. They are lost while the device is unplugged.
   void write(bytes from_host, std::int64_t now_ns) noexcept;
-  /// The host sets the rate of its port, and discards the bytes that it has not read. At another rate than
-  /// that of the device, bytes arrive garbled in both directions.
-  void set_host_baud(std::uint32_t baud, std::int64_t now_ns) noexcept;
-  /// The rate of the host's port; at first that of the device.
-  [[nodiscard]] std::uint32_t host_baud() const noexcept;
-  /// The host sets the line DTR, which is high at first.
-  void set_dtr(bool high, std::int64_t now_ns) noexcept;
+  /// The host's end of the connection; valid as long as this, and until it is moved.
+  [[nodiscard]] host_end host() noexcept;
   /// Takes the bytes that have reached the host by now; returns their number. A host that does not
   /// read loses what arrives beyond 64 KiB.
   std::size_t read(std::span<std::uint8_t> out, std::int64_t now_ns) noexcept;
@@ -115,6 +136,7 @@ class G4LIDAR_API device {
   [[nodiscard]] std::uint64_t bytes_overflowed() const noexcept;
 
  private:
+  friend class host_end;
   class machine;
   std::unique_ptr<machine> machine_;
 };

@@ -40,6 +40,23 @@ enum class disturbance : std::uint8_t {
   ignored,     ///< No answer, and it is not executed.
 };
 
+/// What makes the motor turn.
+enum class drive : std::uint8_t {
+  commands,  ///< Start and stop.
+  dtr_line,  ///< The line DTR of the host's port.
+  power,     ///< It turns as long as the device has power.
+};
+
+/// What the line DTR of the host's port has to do so that a motor turns that it drives. Low stops it.
+enum class dtr_start : std::uint8_t {
+  level,  ///< It is high, as when a program opens the port.
+  edge,   ///< It rises, also when a program opens the port.
+  pulse,  ///< It rises while a program has the port open.
+};
+
+/// What a low DTR takes from a device that it drives.
+enum class dtr_cut : std::uint8_t { motor, supply };
+
 /// All properties of a device that are not faults. By default a healthy G4, as far as it is known;
 /// use_model() makes it another model.
 struct device_options {
@@ -57,9 +74,18 @@ struct device_options {
 
   /// It sends from power-on, answers nothing, and ignores what is sent to it.
   bool one_way = false;
+  /// A motor that is not driven by commands turns whether it scans or not. While it does not turn, the
+  /// device answers, but sends no packets.
+  drive driven_by = drive::commands;
+  dtr_start dtr_starts_by =
+      dtr_start::pulse;               ///< Only if DTR drives it, and the connection has this line.
+  dtr_cut dtr_cuts = dtr_cut::motor;  ///< The same.
+  std::int64_t dtr_low_ns = 50'000'000;  ///< DTR must be low for so long before it rises.
+  bool motor_has_power = true;           ///< False: the second plug of an X4 is not connected.
 
   // The connection.
   std::uint32_t baud = 230'400;
+  bool any_baud = false;  ///< Bytes arrive whatever rate the host has set.
   /// How long bytes wait in the USB bridge, random for each batch. A fault `batch` overrides it.
   std::int64_t batch_min_ns = 0;
   std::int64_t batch_max_ns = 1'000'000;

@@ -44,12 +44,16 @@ class virtual_clock {
 };
 
 /// A transport to a device in virtual time. The caller owns device and clock, which must outlive
-/// it. After an unplug a port is invalid, like a descriptor. *Never allocates.*
+/// it. It opens the port of the device, which raises DTR, and closes it in its destructor. After an
+/// unplug a port is invalid, like a descriptor. *Never allocates.*
 class G4LIDAR_API virtual_port final : public transport {
  public:
   /// `name` must outlive the port.
   virtual_port(device& simulated, virtual_clock& clock,
                std::string_view name = "virtual:g4") noexcept;
+  virtual_port(const virtual_port&) = delete;
+  virtual_port& operator=(const virtual_port&) = delete;
+  ~virtual_port() override;
 
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override;
@@ -58,7 +62,7 @@ class G4LIDAR_API virtual_port final : public transport {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return clock_->now_ns(); }
   void wake() noexcept override { woken_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] std::string_view name() const noexcept override { return name_; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return device_->host_baud(); }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return device_->host().baud(); }
   [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override;
   [[nodiscard]] result<bool> set_dtr(bool high) noexcept override;
   /// As a tty.
@@ -84,6 +88,9 @@ class G4LIDAR_API virtual_connector final : public connector {
   virtual_connector(device& simulated, virtual_clock& clock)
       : virtual_connector(std::vector<device*>{&simulated}, clock) {}
 
+  /// Ports are opened at this rate from now on; 0, as at first: each at the rate that its host set last.
+  void set_baud(std::uint32_t baud) noexcept { baud_ = baud; }
+
   /// Fails with no_port if none is plugged in.
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return clock_->now_ns(); }
@@ -93,6 +100,7 @@ class G4LIDAR_API virtual_connector final : public connector {
  private:
   std::vector<device*> devices_;
   std::size_t next_ = 0;
+  std::uint32_t baud_ = 0;
   virtual_clock* clock_;
   std::atomic<bool> woken_{false};
 };

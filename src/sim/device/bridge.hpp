@@ -25,6 +25,8 @@ class bridge {
   void flush(const fault_injector& faults) noexcept;
   /// Unplugged.
   void reset() noexcept;
+  /// The host discards what it has not read.
+  void discard() noexcept { host_.clear(); }
 
   /// The host takes the bytes that have reached it.
   std::size_t read(std::span<std::uint8_t> out) noexcept;

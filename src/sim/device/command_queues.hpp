@@ -10,8 +10,10 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/sim/fault.hpp"
+#include "line_receiver.hpp"
 #include "ring.hpp"
 #include "settings.hpp"
+#include "sim/purpose.hpp"
 
 namespace g4lidar::sim {
 
@@ -25,6 +27,9 @@ struct pending_command {
 /// What does not fit into the buffers is lost.
 class command_receiver {
  public:
+  explicit command_receiver(std::uint64_t seed) noexcept
+      : line_(stream_for(seed, purpose::line_to_device)) {}
+
   /// The host sends bytes at `baud`.
   void write(bytes from_host, std::uint32_t baud, std::int64_t now_ns) noexcept {
     free_ns_ = std::max(free_ns_, now_ns);
@@ -35,13 +40,21 @@ class command_receiver {
   }
   /// When the next byte has arrived.
   [[nodiscard]] std::int64_t next_byte_ns() const noexcept {
-    return bytes_.empty() ? forever_ns : bytes_.front().at_ns;
+    return bytes_.empty() ? line_.due_ns() : bytes_.front().at_ns;
   }
-  /// Takes this byte.
-  [[nodiscard]] std::uint8_t take_byte() noexcept {
-    const std::uint8_t byte = bytes_.front().byte;
+  /// Passes what a device at `own_baud` receives of it.
+  template <class Take>
+  void receive(std::int64_t now_ns, std::uint32_t sent_baud, std::uint32_t own_baud,
+               Take take) noexcept {
+    const auto received = [&take](std::uint8_t byte, bool) { take(byte); };
+    if (bytes_.empty()) return line_.rest(now_ns, received);
+    const host_byte sent = bytes_.front();
     bytes_.pop();
-    return byte;
+    if (!is_same_rate(sent_baud, own_baud)) {
+      return line_.hear(sent.byte, sent.at_ns, sent_baud, own_baud, received);
+    }
+    line_.reset();
+    take(sent.byte);
   }
   /// The device hears a byte: the second byte of a command is due after `reaction_ns`.
   void hear(std::uint8_t byte, std::int64_t now_ns, std::int64_t reaction_ns) noexcept {
@@ -62,7 +75,9 @@ class command_receiver {
     commands_.pop();
     return due;
   }
-  [[nodiscard]] bool is_empty() const noexcept { return bytes_.empty() && commands_.empty(); }
+  [[nodiscard]] bool is_empty() const noexcept {
+    return bytes_.empty() && line_.due_ns() == forever_ns && commands_.empty();
+  }
 
   /// No power: bytes on the way still arrive.
   void power_off() noexcept {
@@ -71,6 +86,7 @@ class command_receiver {
   }
   void unplug() noexcept {
     bytes_.clear();
+    line_.reset();
     free_ns_ = 0;
   }
 
@@ -80,6 +96,7 @@ class command_receiver {
     std::uint8_t byte;
   };
 
+  line_receiver line_;
   std::int64_t free_ns_ = 0;  // the end of the last byte
   ring<host_byte, 1'024> bytes_;
   bool start_byte_seen_ = false;

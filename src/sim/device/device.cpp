@@ -21,17 +21,40 @@ void device::write(bytes from_host, std::int64_t now_ns) noexcept {
   machine_->write(from_host);
 }
 
-void device::set_host_baud(std::uint32_t baud, std::int64_t now_ns) noexcept {
-  machine_->advance(now_ns);
-  machine_->host.baud = baud;
-  machine_->to_host.reset();
+host_end device::host() noexcept { return host_end(*this); }
+
+void host_end::set_baud(std::uint32_t baud, std::int64_t now_ns) noexcept {
+  device::machine& inside = *device_->machine_;
+  inside.advance(now_ns);
+  inside.host.set_baud(baud);
+  inside.output.of_host.reset();
+  inside.to_host.discard();
 }
 
-std::uint32_t device::host_baud() const noexcept { return machine_->host.baud; }
+std::uint32_t host_end::baud() const noexcept { return device_->machine_->host.baud(); }
 
-void device::set_dtr(bool high, std::int64_t now_ns) noexcept {
-  machine_->advance(now_ns);
-  machine_->host.dtr = high;
+void host_end::open(std::int64_t now_ns) noexcept {
+  device_->machine_->advance(now_ns);
+  device_->machine_->host.open(now_ns);
+  device_->machine_->update_supply();
+}
+
+void host_end::close(std::int64_t now_ns) noexcept {
+  device_->machine_->advance(now_ns);
+  device_->machine_->host.close(now_ns);
+  device_->machine_->update_supply();
+}
+
+void host_end::set_dtr(bool high, std::int64_t now_ns) noexcept {
+  device_->machine_->advance(now_ns);
+  device_->machine_->host.set_dtr(high, now_ns);
+  device_->machine_->update_supply();
+}
+
+void host_end::ignore_dtr(std::int64_t now_ns) noexcept {
+  device_->machine_->advance(now_ns);
+  device_->machine_->host.ignore_dtr();
+  device_->machine_->update_supply();
 }
 
 std::size_t device::read(std::span<std::uint8_t> out, std::int64_t now_ns) noexcept {
@@ -76,7 +99,8 @@ std::uint32_t device::motor_mhz(std::int64_t now_ns) const noexcept {
 
 bool device::is_idle_and_silent(std::int64_t now_ns) const noexcept {
   const bool idle = is_up() && !is_scanning() && machine_->is_silent();
-  const bool rests = !motor_turns() || settings().idle_power == low_power::off;
+  const bool rests =
+      !motor_turns() || settings().idle_power == low_power::off || machine_->host.is_ignored();
   return idle && rests && machine_->next_event().at_ns > now_ns;
 }
 

@@ -31,9 +31,10 @@ std::string_view problem_with(const device_options& options) noexcept {
   if (!is_duration(options.reaction_ns) || !is_duration(options.standstill_ns) ||
       !is_duration(options.boot_ns) || !is_duration(options.first_answer_ns) ||
       !is_duration(options.header_ns) || !is_duration(options.silence_ns) ||
-      !is_duration(options.stop_ns)) {
-    return "reaction, standstill, boot, first answer, scan header, silence and stop must take 0 to "
-           "60 s";
+      !is_duration(options.stop_ns) || !is_duration(options.dtr_low_ns)) {
+    return "reaction, standstill, boot, first answer, scan header, silence, stop and a low DTR "
+           "must take "
+           "0 to 60 s";
   }
   if (options.acceleration_mhz_per_s < 100 || options.acceleration_mhz_per_s > 100'000'000) {
     return "the motor must gain 0.1 to 100000 Hz a second";

@@ -32,7 +32,8 @@ device::machine::machine(const world& scene, const device_options& wanted,
       log(wanted.log_capacity),
       settings(first_settings(wanted)),
       head(wanted),
-      host{wanted.baud},
+      host(wanted),
+      from_host_(wanted.scanner.seed),
       answers_(options, faults),
       garbage_(stream_for(wanted.scanner.seed, purpose::garbage)) {
   assert(problem_with(options).empty());
@@ -65,6 +66,7 @@ device::machine::event device::machine::next_event() const noexcept {
   consider(booted_ns_, happening::booted);
   consider(death_ns_, happening::death);
   consider(output.line.next_ns(), happening::byte_sent);
+  consider(output.rest_ns(), happening::line_rests);
   consider(to_host.next_ns(), happening::batch_done);
   return first;
 }
@@ -81,7 +83,7 @@ void device::machine::advance(std::int64_t to_ns) noexcept {
 void device::machine::handle(happening what) noexcept {
   switch (what) {
     case happening::fault_edge:
-      return fault_edge();
+      return update_supply();
     case happening::host_byte:
       return host_byte_arrives();
     case happening::command_due:
@@ -90,7 +92,9 @@ void device::machine::handle(happening what) noexcept {
       return answers_.queue.take_due(
           now_ns_, [this](const answer_bytes& due) { output.send(due, is_scanning(), now_ns_); });
     case happening::packet_measured:
-      output.send_packet(now_ns_);
+      if (options.driven_by == drive::commands || head.speed_mhz(now_ns_) != 0) {
+        output.send_packet(now_ns_);
+      }
       return output.measure(head, settings.direction);
     case happening::scan_end:
       return end_scan();
@@ -102,7 +106,9 @@ void device::machine::handle(happening what) noexcept {
     case happening::death:
       return death();
     case happening::byte_sent:
-      return output.byte_sent(to_host, now_ns_);
+      return output.byte_sent(to_host, host.baud(), now_ns_);
+    case happening::line_rests:
+      return output.rest(to_host, now_ns_);
     case happening::batch_done:
       return to_host.flush(faults);
   }
@@ -128,24 +134,29 @@ bool device::machine::is_silent() const noexcept {
 }
 
 void device::machine::write(bytes from_host) noexcept {
-  if (plug.is_in()) from_host_.write(from_host, options.baud, now_ns_);
+  if (plug.is_in()) from_host_.write(from_host, host.baud(), now_ns_);
 }
 
-void device::machine::fault_edge() noexcept {
+void device::machine::update_supply() noexcept {
   faults.set_time(now_ns_);
   if (plug.update(faults.find(fault_kind::unplug) != nullptr)) {
-    if (plug.is_in()) {
-      browned_out_ = false;
-      power_on(options.settings_outlive_power);
-    } else {
-      power_off();
+    browned_out_ = false;
+    if (!plug.is_in()) {
       to_host.reset();
       from_host_.unplug();
+      host.unplug(now_ns_);
     }
   }
-  if (browned_out_ && faults.find(fault_kind::brown_out) == nullptr) {
-    browned_out_ = false;
+  if (faults.find(fault_kind::brown_out) == nullptr) browned_out_ = false;
+  const bool by_dtr = options.driven_by == drive::dtr_line;
+  const bool is_cut = by_dtr && options.dtr_cuts == dtr_cut::supply && !host.enables();
+  const bool has_supply = plug.is_in() && !browned_out_ && !is_cut;
+  if (has_supply && state_ == state::off) {
     power_on(options.settings_outlive_power);
+  } else if (!has_supply && state_ != state::off) {
+    power_off();
+  } else if (by_dtr) {
+    keep_motor();
   }
   if (faults.begins(fault_kind::scanning) && state_ == state::idle) {
     begin_scan(now_ns_ == 0);
@@ -159,6 +170,7 @@ void device::machine::power_off() noexcept {
   answers_.queue.clear();
   from_host_.power_off();
   output.line.reset();
+  output.of_host.reset();
   stopped_by_protection_ = false;
   keep_motor();
 }

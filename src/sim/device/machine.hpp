@@ -13,6 +13,7 @@
 #include "command_queues.hpp"
 #include "fault_injector.hpp"
 #include "g4lidar/sim/device.hpp"
+#include "host_port.hpp"
 #include "motor.hpp"
 #include "settings.hpp"
 #include "transmitter.hpp"
@@ -39,12 +40,6 @@ class usb_plug {
   bool is_in_ = true;
   bool is_held_ = false;
   std::uint64_t replugs_ = 0;
-};
-
-/// What the host has set at its port.
-struct host_port {
-  std::uint32_t baud;
-  bool dtr = true;
 };
 
 /// The commands that were received.
@@ -83,6 +78,7 @@ class G4LIDAR_HIDDEN device::machine {
     booted,
     death,
     byte_sent,
+    line_rests,
     batch_done,
   };
   struct event {
@@ -99,8 +95,10 @@ class G4LIDAR_HIDDEN device::machine {
   [[nodiscard]] bool is_silent() const noexcept;
   void hold_unplugged(bool held) noexcept {
     plug.hold_unplugged(held);
-    fault_edge();
+    update_supply();
   }
+  /// A fault begins or ends, the plug is pulled or put in, or the host has changed DTR.
+  void update_supply() noexcept;
 
   [[nodiscard]] bool is_up() const noexcept { return state_ >= state::idle; }
   [[nodiscard]] bool is_scanning() const noexcept { return state_ == state::scanning; }
@@ -121,7 +119,6 @@ class G4LIDAR_HIDDEN device::machine {
   void handle(happening what) noexcept;
 
   // Power and plug.
-  void fault_edge() noexcept;
   void power_on(bool keep_settings) noexcept;
   void power_off() noexcept;
   void booted() noexcept;

@@ -6,14 +6,18 @@
 
 namespace g4lidar::sim {
 
+// At another rate than that of the device it arrives as other bytes.
 void device::machine::host_byte_arrives() noexcept {
-  std::uint8_t byte = from_host_.take_byte();
-  if (faults.find(fault_kind::baud) != nullptr) {
-    byte = static_cast<std::uint8_t>(garbage_.next() >> 56);
-  }
-  const bool is_deaf = options.one_way || faults.find(fault_kind::deaf) != nullptr;
-  if (!is_up() || is_deaf) return from_host_.ignore();
-  from_host_.hear(byte, now_ns_, options.reaction_ns);
+  from_host_.receive(now_ns_, host.baud(), options.any_baud ? host.baud() : options.baud,
+                     [this](std::uint8_t byte) {
+                       if (faults.find(fault_kind::baud) != nullptr) {
+                         byte = static_cast<std::uint8_t>(garbage_.next() >> 56);
+                       }
+                       const bool is_deaf =
+                           options.one_way || faults.find(fault_kind::deaf) != nullptr;
+                       if (!is_up() || is_deaf) return from_host_.ignore();
+                       from_host_.hear(byte, now_ns_, options.reaction_ns);
+                     });
 }
 
 void device::machine::execute(const pending_command& asked_for) noexcept {

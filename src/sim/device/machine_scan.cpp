@@ -7,10 +7,29 @@
 #include <algorithm>
 
 namespace g4lidar::sim {
+namespace {
+
+// Whether the motor of a device with power is to turn.
+bool wants_motor(const device_options& options, const device_settings& settings,
+                 const host_port& host, bool is_scanning) noexcept {
+  if (!options.motor_has_power) return false;
+  switch (options.driven_by) {
+    case drive::commands:
+      return is_scanning || settings.idle_power == low_power::off;
+    case drive::dtr_line:
+      return host.enables();
+    case drive::power:
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 void device::machine::begin_scan(bool at_full_speed) noexcept {
-  if (at_full_speed) head.jump(settings.scan_frequency_chz * std::uint32_t{10}, now_ns_);
   state_ = state::scanning;
+  if (at_full_speed && wants_motor(options, settings, host, true))
+    head.jump(settings.scan_frequency_chz * std::uint32_t{10}, now_ns_);
   fed_ns_ = now_ns_;
   stopped_by_protection_ = false;
   keep_motor();
@@ -35,8 +54,7 @@ void device::machine::end_scan() noexcept {
 }
 
 void device::machine::keep_motor() noexcept {
-  const bool idles = is_up() && settings.idle_power == low_power::off;
-  const bool wanted = is_scanning() || idles;
+  const bool wanted = is_up() && wants_motor(options, settings, host, is_scanning());
   const bool starts = wanted && !head.is_driven();
   head.drive(wanted ? settings.scan_frequency_chz * std::uint32_t{10} : 0, now_ns_);
   if (!wanted) death_ns_ = forever_ns;

@@ -101,7 +101,11 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
 
   options.info.model = of.ids[0];
   options.baud = of.bauds[0];
-  options.one_way = !of.answers;
+  options.one_way = of.answers == talk::never;
+  options.while_scanning =
+      of.answers == talk::always ? disturbance::mid_packet : disturbance::ignored;
+  options.driven_by = of.driven_by;
+  options.dtr_starts_by = !options.one_way ? dtr_start::pulse : dtr_start::level;
   options.highest_frequency_chz = format.max_frequency_chz;
   options.stray_after_start = of.leading == leading_byte::random;
   options.stray_before_zero = of.leading != leading_byte::nothing;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/sim/wire_format.hpp"
 
 namespace g4lidar::sim {
@@ -16,8 +17,8 @@ namespace g4lidar::sim {
 /// Whether a model has something, as far as it is known.
 enum class knowledge : std::uint8_t { absent, present, unknown };
 
-/// What makes the motor turn.
-enum class drive : std::uint8_t { commands, dtr_line, power };
+/// When a device answers queries.
+enum class talk : std::uint8_t { never, while_idle, always };
 
 /// What a device sends before a zero packet.
 enum class leading_byte : std::uint8_t { nothing, random, crc };
@@ -76,7 +77,7 @@ struct simulated_model {
   std::uint8_t usual_flags = 0;
   std::optional<sample_code> other_code{};  ///< Of some devices.
 
-  bool answers = true;
+  talk answers = talk::while_idle;
   drive driven_by = drive::commands;
 
   rate_table rates{};
@@ -131,6 +132,7 @@ inline constexpr auto g_models = [] {
   g4.rates = {{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true};
   g4.protection = knowledge::present;
   g4.leading = leading_byte::random;
+  g4.answers = talk::always;
   simulated_model g5 = named(g4, "g5", 20);
   g5.protection = knowledge::unknown;
 
@@ -191,7 +193,7 @@ inline constexpr auto x_models = [] {
   x4.frequency.is_reported = false;
 
   simulated_model one_way = s4;
-  one_way.answers = false;
+  one_way.answers = talk::never;
   one_way.frequency.slowest_dhz = 40;
   one_way.frequency.fastest_dhz = 80;
   const simulated_model x2 = with_rate(one_way, 3000);
@@ -255,7 +257,7 @@ inline constexpr auto time_of_flight_models = [] {
 
   simulated_model tx = with_baud(with_rate(straight, 4000), 115'200);
   tx.code = mm_code;
-  tx.answers = false;
+  tx.answers = talk::never;
   tx.driven_by = drive::dtr_line;
   tx.frequency.slowest_dhz = 40;
   tx.frequency.fastest_dhz = 80;

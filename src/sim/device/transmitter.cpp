@@ -35,11 +35,21 @@ void transmitter::send(const answer_bytes& what, bool is_scanning, std::int64_t 
   line.interject(what, now_ns);
 }
 
-void transmitter::byte_sent(bridge& to_host, std::int64_t now_ns) noexcept {
+void transmitter::byte_sent(bridge& to_host, std::uint32_t host_baud,
+                            std::int64_t now_ns) noexcept {
   const passed_byte passing = faults_.pass(line.byte());
-  bool lost = false;
+  const bool is_heard = options_.any_baud || is_same_rate(options_.baud, host_baud);
+  bool lost = !is_heard;
+  const auto take = [&](std::uint8_t byte, bool) {
+    lost = !to_host.take(byte, faults_, now_ns) || lost;
+  };
+  if (is_heard) of_host.reset();
   for (std::uint8_t i = 0; i < passing.count; ++i) {
-    lost = !to_host.take(passing.bytes[i], faults_, now_ns) || lost;
+    if (is_heard) {
+      take(passing.bytes[i], true);
+    } else {
+      of_host.hear(passing.bytes[i], now_ns, options_.baud, host_baud, take);
+    }
   }
   const bool parted = passing.inserted && line.inside_packet();
   if (line.in_packet() && (passing.damaged || lost || parted)) line.damage();
@@ -47,6 +57,12 @@ void transmitter::byte_sent(bridge& to_host, std::int64_t now_ns) noexcept {
     truths.add(*done, !done->damaged, now_ns);
   }
   line.advance();
+}
+
+void transmitter::rest(bridge& to_host, std::int64_t now_ns) noexcept {
+  of_host.rest(now_ns, [&](std::uint8_t byte, bool) {
+    static_cast<void>(to_host.take(byte, faults_, now_ns));
+  });
 }
 
 }  // namespace g4lidar::sim

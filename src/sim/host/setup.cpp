@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The names in the text of a setup in one table, and what a setup needs of the file system.
+// The names in the text of a setup in one table, and the files that it names.
 #include "g4lidar/sim/setup.hpp"
 
 #include <fcntl.h>
@@ -9,7 +9,6 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -18,7 +17,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "claim.hpp"
 #include "sim/read_time.hpp"
 #include "transport/owned_fd.hpp"
 
@@ -35,12 +33,14 @@ using stored = device_settings;
 using member =
     std::variant<std::int64_t options::*, std::uint32_t options::*, std::uint16_t options::*,
                  bool options::*, turning options::*, at_limit options::*, disturbance options::*,
-                 low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
+                 drive options::*, dtr_start options::*, dtr_cut options::*, low_power stored::*,
+                 motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 44> members{{
+constexpr std::array<std::pair<std::string_view, member>, 50> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
+    {"any_baud", &options::any_baud},
     {"reaction_ns", &options::reaction_ns},
     {"first_answer_ns", &options::first_answer_ns},
     {"header_ns", &options::header_ns},
@@ -57,6 +57,11 @@ constexpr std::array<std::pair<std::string_view, member>, 44> members{{
     {"ct_crc", &options::ct_crc},
     {"ct_information", &options::ct_information},
     {"one_way", &options::one_way},
+    {"driven_by", &options::driven_by},
+    {"dtr_starts_by", &options::dtr_starts_by},
+    {"dtr_cuts", &options::dtr_cuts},
+    {"dtr_low_ns", &options::dtr_low_ns},
+    {"motor_has_power", &options::motor_has_power},
     {"time_packet_ns", &options::time_packet_ns},
     {"stop_truncates", &options::stop_truncates},
     {"boot_text", &options::boot_text},
@@ -100,6 +105,9 @@ constexpr auto words_of(at_limit) { return std::array{"clamp"sv, "refuse"sv}; }
 constexpr auto words_of(disturbance) {
   return std::array{"mid_packet"sv, "between"sv, "drops"sv, "ignored"sv};
 }
+constexpr auto words_of(drive) { return std::array{"commands"sv, "dtr_line"sv, "power"sv}; }
+constexpr auto words_of(dtr_start) { return std::array{"level"sv, "edge"sv, "pulse"sv}; }
+constexpr auto words_of(dtr_cut) { return std::array{"motor"sv, "supply"sv}; }
 constexpr auto words_of(low_power) { return std::array{"off"sv, "on"sv}; }
 constexpr auto words_of(motor_direction) {
   return std::array{"clockwise"sv, "counter_clockwise"sv};
@@ -317,33 +325,6 @@ std::vector<device_options> several(const device_options& each, std::size_t coun
     std::copy_n(serials[i].begin(), std::min(serials[i].size(), digits.size()), digits.begin());
   }
   return made;
-}
-
-std::string registered_link(std::string_view serial) {
-  const std::string directory = registry();
-  if (directory.empty()) return {};
-  std::error_code unimportant;  // opening the link fails then
-  fs::create_directories(directory, unimportant);
-  return directory + "/g4-" + std::string(serial);
-}
-
-result<std::shared_ptr<background_pty>> serve_alone(device simulated) {
-  std::error_code none;
-  std::string directory = (fs::temp_directory_path(none) / "g4-sim-XXXXXX").native();
-  if (none || ::mkdtemp(directory.data()) == nullptr) {
-    return failure(task::opening, problem::system, directory, none ? none.value() : errno);
-  }
-  result<background_pty> port = background_pty::open(std::move(simulated), directory + "/g4");
-  if (!port) {
-    fs::remove(directory, none);
-    return tl::unexpected<error>(port.error());
-  }
-  return std::shared_ptr<background_pty>(new background_pty(std::move(*port)),
-                                         [directory](const background_pty* served) {
-                                           delete served;
-                                           std::error_code unimportant;
-                                           fs::remove_all(directory, unimportant);
-                                         });
 }
 
 }  // namespace g4lidar::sim

@@ -10,7 +10,14 @@
 namespace g4lidar::sim {
 
 virtual_port::virtual_port(device& simulated, virtual_clock& clock, std::string_view name) noexcept
-    : device_(&simulated), clock_(&clock), name_(name), replugs_(simulated.replugs()) {}
+    : device_(&simulated), clock_(&clock), name_(name), replugs_(simulated.replugs()) {
+  device_->host().open(clock_->now_ns());
+}
+
+virtual_port::~virtual_port() {
+  const std::int64_t now = clock_->now_ns();
+  if (device_->is_plugged(now) && device_->replugs() == replugs_) device_->host().close(now);
+}
 
 // Whether the port still exists, and no wake() ended the call.
 result<void> virtual_port::look(task doing) noexcept {
@@ -56,14 +63,14 @@ result<void> virtual_port::pause(std::int64_t deadline_ns) noexcept {
 result<bool> virtual_port::set_baud(std::uint32_t baud) noexcept {
   clock_->tick();
   if (const result<void> seen = look(task::configuring); !seen) return tl::unexpected(seen.error());
-  device_->set_host_baud(baud, clock_->now_ns());
+  device_->host().set_baud(baud, clock_->now_ns());
   return true;
 }
 
 result<bool> virtual_port::set_dtr(bool high) noexcept {
   clock_->tick();
   if (const result<void> seen = look(task::configuring); !seen) return tl::unexpected(seen.error());
-  device_->set_dtr(high, clock_->now_ns());
+  device_->host().set_dtr(high, clock_->now_ns());
   return true;
 }
 
@@ -75,6 +82,7 @@ result<std::unique_ptr<transport>> virtual_connector::connect() noexcept {
     if (!simulated.is_plugged(clock_->now_ns())) continue;
     std::unique_ptr<transport> port(new (std::nothrow) virtual_port(simulated, *clock_));
     if (port == nullptr) return failure(task::opening, problem::system, "virtual:g4", ENOMEM);
+    if (baud_ != 0) simulated.host().set_baud(baud_, clock_->now_ns());
     return port;
   }
   return failure(task::opening, problem::no_port, "virtual:g4");
