@@ -20,6 +20,7 @@
 #include "g4lidar/c/filter.h"
 #include "g4lidar/c/lidar.h"
 #include "g4lidar/c/motion.h"
+#include "g4lidar/c/player.h"
 #include "g4lidar/c/point.h"
 #include "g4lidar/c/recording.h"
 #include "g4lidar/c/shaper.h"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <g4lidar/c/lidar.h>
+#include <g4lidar/c/player.h>
 #include <g4lidar/c/recording.h>
 
 #include <cstdint>
@@ -33,19 +34,23 @@ int open_lidar(opening wanted, g4lidar_lidar** made, g4lidar_error* error);
 
 [[nodiscard]] g4lidar_identity identity_of(const device_information& from) noexcept;
 [[nodiscard]] g4lidar_recording_info info_of(const recording_reader& from) noexcept;
+void fill(g4lidar_scan& out, const scan& from) noexcept;
+void fill(g4lidar_event& out, const lidar_event& from) noexcept;
+void fill(g4lidar_counts& out, const lidar_counts& from) noexcept;
 
 }  // namespace g4lidar::c
 
 struct g4lidar_lidar {
   g4lidar::c::opening from;  // outlives the lidar
   std::unique_ptr<g4lidar::lidar> made;
-  g4lidar::connector* connector = nullptr;  // the innermost one, which the lidar owns
+  g4lidar::connector* connector = nullptr;  // the innermost one; null: not of this lidar any more
   std::int64_t wall_ahead_ns = 0;           // of virtual time
   std::string name;
   g4lidar_identity identity{};
   g4lidar_scan scan{};
   g4lidar_counts counts{};
   g4lidar_recording_info info{};
+  g4lidar_playback playback{};
 };
 
 struct g4lidar_recorder {

@@ -55,6 +55,7 @@ static_assert(sizeof(g4lidar_error) == 624 && offsetof(g4lidar_error, subject) =
 static_assert(offsetof(g4lidar_error, message) == 112 && offsetof(g4lidar_error, advice) == 368);
 static_assert(sizeof(g4lidar_event) == 16 && sizeof(g4lidar_health) == 8);
 static_assert(sizeof(g4lidar_identity) == 24);
+static_assert(sizeof(g4lidar_playback) == 40 && offsetof(g4lidar_playback, is_paused) == 32);
 static_assert(sizeof(g4lidar_odometry) == 56 && sizeof(g4lidar_mounting) == 32);
 static_assert(sizeof(g4lidar_twist_estimate) == 104 &&
               offsetof(g4lidar_twist_estimate, status) == 100);

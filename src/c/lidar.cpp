@@ -21,29 +21,6 @@ static_assert(static_cast<int>(lidar_event::kind::overflow) + 1 == G4LIDAR_EVENT
 static_assert(static_cast<int>(lidar_event::kind::health_warning) + 1 ==
               G4LIDAR_EVENT_HEALTH_WARNING);
 
-void fill(g4lidar_scan& out, const scan& from) noexcept {
-  out.points = reinterpret_cast<const g4lidar_point*>(from.data());
-  out.point_count = from.size();
-  out.time_ns = from.time_ns();
-  out.end_ns = from.end_ns();
-  out.duration_ns = from.duration_ns;
-  out.revolution = from.revolution;
-  out.flags = static_cast<std::uint32_t>(from.flags);
-  out.suspect_packets = from.suspect_packets;
-  out.suspect_samples = from.suspect_samples;
-  out.sample_rate_hz = from.sample_rate_hz;
-  out.measured_sample_rate_hz = from.measured_sample_rate_hz();
-  out.frequency_hz = from.measured_frequency_hz();
-  out.reported_frequency_hz = static_cast<float>(from.reported_frequency_dhz) * 0.1F;
-  out.turned_deg = from.turned_deg;
-  out.is_whole = from.is_whole();
-  out.is_piece = from.is_piece();
-  out.turn_deg = from.model->turn_deg;
-  out.longest_range_mm = longest_range_mm(from.model->samples.layout);
-  out.default_bins = default_bins(*from.model);
-  out.model = literal(from.model->word);
-}
-
 static_assert(G4LIDAR_SAMPLE_RATE == 1 && G4LIDAR_SCAN_FREQUENCY == 2 &&
               G4LIDAR_MOTOR_DIRECTION == 3 && G4LIDAR_CONSTANT_FREQUENCY == 4 &&
               G4LIDAR_LOW_POWER == 5 && G4LIDAR_POWER_DOWN_PROTECTION == 6);
@@ -130,6 +107,65 @@ int take_scan(g4lidar_lidar* lidar, scan_call call, int timeout_ms, const g4lida
 }
 
 }  // namespace
+
+namespace g4lidar::c {
+
+void fill(g4lidar_scan& out, const scan& from) noexcept {
+  out.points = reinterpret_cast<const g4lidar_point*>(from.data());
+  out.point_count = from.size();
+  out.time_ns = from.time_ns();
+  out.end_ns = from.end_ns();
+  out.duration_ns = from.duration_ns;
+  out.revolution = from.revolution;
+  out.flags = static_cast<std::uint32_t>(from.flags);
+  out.suspect_packets = from.suspect_packets;
+  out.suspect_samples = from.suspect_samples;
+  out.sample_rate_hz = from.sample_rate_hz;
+  out.measured_sample_rate_hz = from.measured_sample_rate_hz();
+  out.frequency_hz = from.measured_frequency_hz();
+  out.reported_frequency_hz = static_cast<float>(from.reported_frequency_dhz) * 0.1F;
+  out.turned_deg = from.turned_deg;
+  out.is_whole = from.is_whole();
+  out.is_piece = from.is_piece();
+  out.turn_deg = from.model->turn_deg;
+  out.longest_range_mm = longest_range_mm(from.model->samples.layout);
+  out.default_bins = default_bins(*from.model);
+  out.model = literal(from.model->word);
+}
+
+void fill(g4lidar_event& out, const lidar_event& from) noexcept {
+  const bool is_lost = from.what == lidar_event::kind::lost;
+  out = {static_cast<std::int32_t>(from.what) + 1, is_lost ? result_of(from.reason) : 0,
+         from.time_ns};
+}
+
+void fill(g4lidar_counts& out, const lidar_counts& from) noexcept {
+  const auto skipped = [&](skip_reason why) { return from.stream.skipped(why); };
+  out = {.bytes = from.bytes,
+         .held = from.held,
+         .parsed_bytes = from.stream.parsed_bytes,
+         .skipped_noise = skipped(skip_reason::noise),
+         .skipped_bad_header = skipped(skip_reason::bad_header),
+         .skipped_bad_checksum = skipped(skip_reason::bad_checksum),
+         .skipped_truncated = skipped(skip_reason::truncated),
+         .packets = from.stream.packets,
+         .responses = from.stream.responses,
+         .points = from.stream.points,
+         .suspect_packets = from.stream.suspect,
+         .samples_lost = from.samples_lost,
+         .scans = from.scans,
+         .partial_scans = from.partial_scans,
+         .scans_missed = from.scans_missed,
+         .points_missed = from.points_missed,
+         .command_retries = from.command_retries,
+         .reconnects = from.reconnects,
+         .largest_gap_ns = from.largest_gap_ns,
+         .extras = {.time_packets = from.stream.time_packets,
+                    .crc_matches = from.stream.crc_matches,
+                    .crc_mismatches = from.stream.crc_mismatches}};
+}
+
+}  // namespace g4lidar::c
 
 int g4lidar_start(g4lidar_lidar* lidar, g4lidar_error* error) {
   return guarded(error, [&] { return lidar->made->start(); }, lidar);
@@ -247,11 +283,8 @@ bool g4lidar_is_scanning(const g4lidar_lidar* lidar) {
 int g4lidar_next_event(g4lidar_lidar* lidar, g4lidar_event* event) {
   if (lidar == nullptr || event == nullptr) return G4LIDAR_BAD_ARGUMENT;
   const auto next = lidar->made->next_event();
-  if (!next) return G4LIDAR_NOTHING;
-  const bool is_lost = next->what == lidar_event::kind::lost;
-  *event = {static_cast<std::int32_t>(next->what) + 1, is_lost ? result_of(next->reason) : 0,
-            next->time_ns};
-  return G4LIDAR_OK;
+  if (next) fill(*event, *next);
+  return next ? G4LIDAR_OK : G4LIDAR_NOTHING;
 }
 
 const char* g4lidar_event_name(int kind) {
@@ -261,36 +294,15 @@ const char* g4lidar_event_name(int kind) {
 
 const g4lidar_counts* g4lidar_get_counts(g4lidar_lidar* lidar) {
   if (lidar == nullptr) return nullptr;
-  const lidar_counts all = lidar->made->counts();
-  const auto skipped = [&](skip_reason why) { return all.stream.skipped(why); };
-  lidar->counts = {.bytes = all.bytes,
-                   .held = all.held,
-                   .parsed_bytes = all.stream.parsed_bytes,
-                   .skipped_noise = skipped(skip_reason::noise),
-                   .skipped_bad_header = skipped(skip_reason::bad_header),
-                   .skipped_bad_checksum = skipped(skip_reason::bad_checksum),
-                   .skipped_truncated = skipped(skip_reason::truncated),
-                   .packets = all.stream.packets,
-                   .responses = all.stream.responses,
-                   .points = all.stream.points,
-                   .suspect_packets = all.stream.suspect,
-                   .samples_lost = all.samples_lost,
-                   .scans = all.scans,
-                   .partial_scans = all.partial_scans,
-                   .scans_missed = all.scans_missed,
-                   .points_missed = all.points_missed,
-                   .command_retries = all.command_retries,
-                   .reconnects = all.reconnects,
-                   .largest_gap_ns = all.largest_gap_ns,
-                   .extras = {.time_packets = all.stream.time_packets,
-                              .crc_matches = all.stream.crc_matches,
-                              .crc_mismatches = all.stream.crc_mismatches}};
+  fill(lidar->counts, lidar->made->counts());
   return &lidar->counts;
 }
 
 int64_t g4lidar_wall_ns(const g4lidar_lidar* lidar, int64_t time_ns) {
   if (lidar == nullptr) return 0;
+  if (player* const of = lidar->made->player()) return of->wall_ns(time_ns);
   if (lidar->wall_ahead_ns != 0) return time_ns + lidar->wall_ahead_ns;
-  const auto ahead_ns = lidar->connector->traits().wall_ahead_ns;
+  const auto* const from = lidar->connector;
+  const auto ahead_ns = from == nullptr ? std::nullopt : from->traits().wall_ahead_ns;
   return time_ns + ahead_ns.value_or(wall_clock().ahead().count());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lidars: options, opening, and continuing a recording at another place.
+// Lidars: options and opening.
 #include <array>
 #include <chrono>
 #include <memory>
@@ -205,16 +205,4 @@ int g4lidar_open_recording(const char* path, const g4lidar_playback_options* pla
         return open_lidar(std::move(wanted), lidar, error);
       },
       path);
-}
-
-int g4lidar_seek(g4lidar_lidar* lidar, int64_t from_ns, g4lidar_error* error) {
-  return guarded(
-      error,
-      [&]() -> int {
-        player* const played = lidar->from.recording.empty() ? nullptr : lidar->made->player();
-        if (played == nullptr) return refuse(error, "this lidar plays no recording");
-        const auto moved = played->seek(from_ns);
-        return moved ? succeed(error) : fail(error, moved.error());
-      },
-      lidar);
 }

@@ -191,7 +191,7 @@ const g4lidar_recorder_counts* g4lidar_recorder_get_counts(g4lidar_recorder* rec
 }
 
 const g4lidar_recording_info* g4lidar_playback_info(g4lidar_lidar* lidar) {
-  if (lidar == nullptr) return nullptr;
+  if (lidar == nullptr || lidar->connector == nullptr) return nullptr;
   const recording_reader* const reader = replay::reader_of(*lidar->connector);
   if (reader == nullptr) return nullptr;
   lidar->info = info_of(*reader);

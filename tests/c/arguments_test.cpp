@@ -40,6 +40,12 @@ TEST(CArguments, NullIsAnError) {
   EXPECT_TRUE(is_refused(g4lidar_get_health(nullptr, 0, &health, &why)));
   EXPECT_TRUE(is_refused(g4lidar_open_recording(nullptr, nullptr, nullptr, nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_seek(nullptr, 0, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_pause(nullptr, true, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_set_speed(nullptr, 1.0, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_set_loop(nullptr, true, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_background_start(nullptr, false, nullptr, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_background_next_scan(nullptr, 0, &scan, &why)));
+  EXPECT_TRUE(is_refused(g4lidar_background_set_speed(nullptr, 1.0, &why)));
   EXPECT_TRUE(is_refused(g4lidar_recorder_create(nullptr, nullptr, nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_recorder_flush(nullptr, &why)));
   EXPECT_TRUE(is_refused(g4lidar_recorder_close(nullptr, &why)));
@@ -67,6 +73,10 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   std::size_t count = 0;
   bool plugged = false;
   EXPECT_EQ(g4lidar_next_event(nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_background_next_event(nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_background_rest(nullptr, true), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_background_pause(nullptr, true), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_background_seek(nullptr, 0), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_recorder_odometry(nullptr, nullptr), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_recorder_bytes(nullptr, false, nullptr, 0, 0), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_simulator_unplug(nullptr), G4LIDAR_BAD_ARGUMENT);
@@ -108,6 +118,11 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_report_count(nullptr), 0U);
   EXPECT_EQ(g4lidar_mask_polygons(nullptr, &count), nullptr);
   EXPECT_EQ(g4lidar_wall_ns(nullptr, 5), 0);
+  EXPECT_EQ(g4lidar_get_playback(nullptr), nullptr);
+  EXPECT_EQ(g4lidar_background_get_playback(nullptr), nullptr);
+  EXPECT_EQ(g4lidar_background_get_counts(nullptr), nullptr);
+  EXPECT_EQ(g4lidar_background_get_state(nullptr), 0);
+  g4lidar_background_free(nullptr);
   EXPECT_FALSE(g4lidar_is_scanning(nullptr));
   EXPECT_FALSE(g4lidar_is_recording(nullptr));
   EXPECT_FALSE(g4lidar_has_feature(nullptr));

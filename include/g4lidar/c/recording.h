@@ -94,15 +94,11 @@ typedef struct g4lidar_playback_options {
 /** Sets the defaults; `size` is sizeof(g4lidar_playback_options). */
 G4LIDAR_C_API void g4lidar_playback_options_init(g4lidar_playback_options* options, size_t size);
 
-/** Opens a recording as a lidar: the same points as from the recorded one. It ends with
- *  G4LIDAR_END_OF_INPUT. `playback` and `options` may be NULL; `device` of the options is not used. */
+/** Opens a recording as a lidar: the same points as from the recorded one; player.h controls it. It ends
+ *  with G4LIDAR_END_OF_INPUT. `playback` and `options` may be NULL; `device` of the options is not used. */
 G4LIDAR_C_API int g4lidar_open_recording(const char* path, const g4lidar_playback_options* playback,
                                          const g4lidar_options* options, g4lidar_lidar** lidar,
                                          g4lidar_error* error);
-/** Continues a lidar of g4lidar_open_recording() at another place, nanoseconds since the beginning of
- *  the recording; a scan that was started runs on, and counts go on. Not for other lidars, nor for one
- *  with a recorder. */
-G4LIDAR_C_API int g4lidar_seek(g4lidar_lidar* lidar, int64_t from_ns, g4lidar_error* error);
 
 /** What is known about a file and its damage, as far as it was read. */
 typedef struct g4lidar_recording_info {
