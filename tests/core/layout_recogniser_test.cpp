@@ -4,12 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -27,6 +23,13 @@ const model& recognised(const byte_vector& data, std::size_t piece = 4096) {
   }
   seen.finish();
   return seen.most_likely();
+}
+
+recognised_by basis_of(const byte_vector& data) {
+  layout_recogniser seen;
+  seen.take(data);
+  seen.finish();
+  return seen.basis();
 }
 
 const reference::wire_format& format_of(std::string_view model) {
@@ -236,6 +239,43 @@ TEST(LayoutRecogniser, InformationInCt_OfARevolutionWhoseCrcFits) {
   EXPECT_EQ(recognised(whole.of(20)).word, "g4");
 }
 
+TEST(LayoutRecogniser, StatesWhatTheModelFollowsFrom) {
+  const auto after = [](unsigned id) {
+    room with_reply("x4");
+    with_reply.reply = information_of(id);
+    return basis_of(with_reply.of(3));
+  };
+  EXPECT_EQ(basis_of({}), recognised_by::nothing);
+  EXPECT_EQ(basis_of(room("x4").of(3)), recognised_by::size);
+  EXPECT_EQ(basis_of(room("t-mini").of(3)), recognised_by::size);
+  EXPECT_EQ(after(6), recognised_by::number);
+  EXPECT_EQ(after(200), recognised_by::size);  // of no model
+  EXPECT_EQ(after(150), recognised_by::size);  // of a model with another size
+  room flagged("x4");
+  flagged.has_flags_alone = true;
+  EXPECT_EQ(basis_of(flagged.of(4)), recognised_by::flags);
+  room informed("x4");
+  informed.stated = {4, 70};
+  EXPECT_EQ(basis_of(informed.of(2)), recognised_by::number);
+  informed.stated.has_crc = false;
+  EXPECT_EQ(basis_of(informed.of(2)), recognised_by::size);
+}
+
+TEST(LayoutRecogniser, ThreeBytesOfAnS2) {
+  room informed("s4b");
+  informed.stated = {4, 53};  // 561 samples a revolution: 2973 per second
+  EXPECT_EQ(recognised(informed.of(2)).word, "s2-intensity");
+}
+
+TEST(LayoutRecogniser, HasAPacketWhenTheFirstIsComplete) {
+  const byte_vector all = room("g4").of(1);
+  layout_recogniser seen;
+  seen.take(bytes(all).first(11));
+  EXPECT_FALSE(seen.has_packet());
+  seen.take(bytes(all).subspan(11, 1));
+  EXPECT_TRUE(seen.has_packet());
+}
+
 TEST(LayoutRecogniser, SamplesOfFlagsAlone) {
   room flagged("x4");
   flagged.has_flags_alone = true;
@@ -243,79 +283,6 @@ TEST(LayoutRecogniser, SamplesOfFlagsAlone) {
   room whole("tg15");  // no range is so short, but the second bit is set in half of them
   whole.has_flags_alone = true;
   EXPECT_EQ(recognised(whole.of(4)).word, "g4");
-}
-
-// ---- the golden vectors and the captures, which are not part of the project ----
-
-const std::filesystem::path shared = G4LIDAR_SOURCE_DIR "/../shared";
-
-byte_vector bytes_of_hex(const std::string& name) {
-  std::ifstream file(shared / "family" / (name + ".hex"));
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  std::string digits;
-  std::ranges::copy_if(text, std::back_inserter(digits),
-                       [](unsigned char c) { return std::isxdigit(c) != 0; });
-  byte_vector all;
-  for (std::size_t i = 0; i + 1 < digits.size(); i += 2) {
-    all.push_back(static_cast<std::uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
-  }
-  return all;
-}
-
-byte_vector bytes_of_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-TEST(LayoutRecogniser, TheGoldenVectors) {
-  if (!std::filesystem::exists(shared / "family")) {
-    GTEST_SKIP() << "The golden vectors of the family are not at hand: there is no directory "
-                    "shared/family beside the project.";
-  }
-  struct row {
-    std::string name;
-    std::size_t size;
-    std::string usual;
-  };
-  const std::vector<row> rows{
-      {"tri2-real-usv", 2, "g4"},          {"tof2-real-tg15", 2, "g4"},
-      {"coin-d4-real", 3, "t-mini-pro"},   {"tri2-half-synth", 2, "g4"},
-      {"tri3-i10-synth", 3, "t-mini-pro"}, {"tri3-i8f2-synth", 3, "t-mini-pro"},
-      {"scl3-synth", 3, "t-mini-pro"},     {"tof3-tmini-synth", 3, "t-mini-pro"},
-      {"tof2-mm-synth", 2, "g4"},          {"tof4-sh-synth", 4, "t-mini-plus-sh"}};
-  for (const row& each : rows) {
-    const byte_vector once = bytes_of_hex(each.name);
-    ASSERT_FALSE(once.empty()) << each.name;
-    byte_vector all;
-    for (int i = 0; i < 5; ++i) all.insert(all.end(), once.begin(), once.end());
-    layout_recogniser seen;
-    seen.take(all);
-    seen.finish();
-    EXPECT_EQ(seen.sample_bytes(), each.size) << each.name;
-    EXPECT_EQ(seen.most_likely().word, each.usual) << each.name;
-  }
-  byte_vector flagged;
-  for (int i = 0; i < 10; ++i) {
-    const byte_vector once = bytes_of_hex("tri2-flags-synth");
-    flagged.insert(flagged.end(), once.begin(), once.end());
-  }
-  layout_recogniser seen;
-  seen.take(flagged);
-  EXPECT_EQ(seen.sample_bytes(), 2U);
-  EXPECT_EQ(recognised(bytes_of_file(shared / "family" / "ct-info-synth.bin")).word, "x2");
-}
-
-// No recording of a G4 is known; these devices have its packets, and were always read as one.
-TEST(LayoutRecogniser, TheCapturesStayThoseOfAG4) {
-  if (!std::filesystem::exists(shared / "captures")) {
-    GTEST_SKIP() << "The captures are not at hand: there is no directory shared/captures beside "
-                    "the project.";
-  }
-  for (const auto* const name : {"x4_scan1", "x4_stream", "x2_packet", "zero_packet"}) {
-    const byte_vector all = bytes_of_file(shared / "captures" / (std::string(name) + ".bin"));
-    ASSERT_FALSE(all.empty()) << name;
-    EXPECT_EQ(recognised(all).word, "g4") << name;
-  }
 }
 
 }  // namespace

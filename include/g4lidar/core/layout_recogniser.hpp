@@ -39,6 +39,8 @@ class layout_candidate {
   /// Packets that another packet, a time packet or a response follows, with at most one byte before
   /// it.
   [[nodiscard]] constexpr std::uint32_t votes() const noexcept { return votes_; }
+  /// Whether there was a packet.
+  [[nodiscard]] constexpr bool has_packet() const noexcept { return has_packet_; }
   /// The number in the first device information; 0: there was none.
   [[nodiscard]] constexpr std::uint8_t id() const noexcept { return id_; }
   /// What the bytes CT state.
@@ -68,6 +70,7 @@ class layout_candidate {
     if (is_open_ && gap_ <= 1) ++votes_;
     const auto* const packet = std::get_if<packet_view>(&found);
     is_open_ = packet != nullptr;
+    has_packet_ = has_packet_ || is_open_;
     if (packet != nullptr) take(*packet);
     if (const auto* const reply = std::get_if<response_view>(&found);
         reply != nullptr && id_ == 0) {
@@ -98,7 +101,8 @@ class layout_candidate {
   stream_parser parser_;
   ct_information_reader reader_;
   std::uint32_t votes_ = 0;
-  std::size_t gap_ = 0;   // bytes skipped since the last packet or response
+  std::size_t gap_ = 0;  // bytes skipped since the last packet or response
+  bool has_packet_ = false;
   bool is_open_ = false;  // the last one was a packet, and has no vote yet
   std::uint8_t id_ = 0;
   bool is_in_revolution_ = false;  // received from its zero packet on, without a gap
@@ -112,17 +116,26 @@ class layout_candidate {
 
 }  // namespace detail
 
+/// What the model of a stream follows from.
+enum class recognised_by : std::uint8_t {
+  nothing,  ///< Not decided; the G4.
+  size,     ///< The size of its samples: the usual model with it.
+  flags,    ///< Also of samples that consist of flags alone: the usual model with such samples.
+  number,   ///< The number in a device information, or in the bytes CT.
+};
+
 /// Recognises the model that sends a stream. *Single thread, never allocates.*
 ///
 /// The size of a sample is the one with which at least three packets more than with any other size
 /// have a valid checksum and are followed by another one: the right size fits each packet, a wrong
 /// one few. The model is the one that the bytes name: in a device information, or in the information
 /// in the bytes CT of a revolution whose CRC fits. After a device information, the only two-way model
-/// with this number is taken first. Of several models with this number it is the one
-/// whose sample rate is nearest to that of the stream. Where nothing names it, it is the usual one:
-/// 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte samples are a
-/// T-mini Pro's, and 4-byte samples a T-mini Plus SH's. So a 2-byte sample in half or whole millimetres is not recognised without a device
-/// information, and neither are 10 bits of intensity nor the correction of an SCL.
+/// with this number is taken first. Of several models with this number it is the one whose sample
+/// rate is nearest to that of the stream. Where nothing names it, it is the usual one, and basis()
+/// states so: 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte
+/// samples are a T-mini Pro's, and 4-byte samples a T-mini Plus SH's. So a 2-byte sample in half or
+/// whole millimetres is not recognised without a device information, and neither are 10 bits of
+/// intensity nor the correction of an SCL.
 class layout_recogniser {
  public:
   /// Adds bytes of the stream, in order.
@@ -140,35 +153,58 @@ class layout_recogniser {
     return found == nullptr ? 0 : static_cast<std::size_t>(found - candidates_.data()) + 2;
   }
 
-  /// The model as far as the bytes show it; the G4 as long as the size of a sample is not decided.
-  /// Valid forever.
-  [[nodiscard]] constexpr const model& most_likely() const noexcept {
-    const detail::layout_candidate* const found = decided();
-    if (found == nullptr) return g4_model;
-    const std::size_t size = sample_bytes();
-    const auto fits = [size](const model& row) { return sample_size(row.samples.layout) == size; };
-    if (found->id() != 0) {
-      const model* const named = model_with_id(found->id(), link_kind::two_way);
-      if (named != nullptr && fits(*named)) return *named;
-      if (const model* const near = nearest(*found, found->id(), 0xFF, fits)) return *near;
-    }
-    const auto informs = [&](const model& row) {
-      const bool has_flags = has_sample_flags(row.samples.layout) && found->has_rare_upper_flag();
-      return fits(row) && row.ct_information != presence::no && (size != 2 || has_flags);
-    };
-    if (const auto& stated = found->information()) {
-      if (const model* const near = nearest(*found, stated->id_low_bits, 0x0F, informs)) {
-        return *near;
-      }
-    }
-    if (size == 2 && !found->has_flags_alone()) return g4_model;
-    const model* const usual = model_named(size == 2   ? "x2"
-                                           : size == 3 ? "t-mini-pro"
-                                                       : "t-mini-plus-sh");
-    return usual != nullptr ? *usual : g4_model;
+  /// Whether there was a packet, with samples of any size.
+  [[nodiscard]] constexpr bool has_packet() const noexcept {
+    return candidates_[0].has_packet() || candidates_[1].has_packet() ||
+           candidates_[2].has_packet();
   }
 
+  /// The model as far as the bytes show it; the G4 as long as the size of a sample is not decided.
+  /// Valid forever.
+  [[nodiscard]] constexpr const model& most_likely() const noexcept { return *found().which; }
+  /// What most_likely() follows from. If it is not `number`, other models send such bytes, too.
+  [[nodiscard]] constexpr recognised_by basis() const noexcept { return found().by; }
+
  private:
+  struct finding {
+    const model* which;
+    recognised_by by;
+  };
+
+  [[nodiscard]] constexpr finding found() const noexcept {
+    const detail::layout_candidate* const sent = decided();
+    if (sent == nullptr) return {&g4_model, recognised_by::nothing};
+    const std::size_t size = sample_bytes();
+    const auto fits = [size](const model& row) { return sample_size(row.samples.layout) == size; };
+    if (sent->id() != 0) {
+      const model* const named = model_with_id(sent->id(), link_kind::two_way);
+      if (named != nullptr && fits(*named)) return {named, recognised_by::number};
+      if (const model* const near = nearest(*sent, sent->id(), 0xFF, fits)) {
+        return {near, recognised_by::number};
+      }
+    }
+    const auto informs = [&](const model& row) {
+      const bool has_flags = has_sample_flags(row.samples.layout) && sent->has_rare_upper_flag();
+      return fits(row) && row.ct_information != presence::no && (size != 2 || has_flags);
+    };
+    if (const auto& stated = sent->information()) {
+      if (const model* const near = nearest(*sent, stated->id_low_bits, 0x0F, informs)) {
+        return {near, recognised_by::number};
+      }
+    }
+    const bool has_flags = size == 2 && sent->has_flags_alone();
+    return {&usual(size, has_flags), has_flags ? recognised_by::flags : recognised_by::size};
+  }
+
+  /// The model that is taken where the bytes name none.
+  [[nodiscard]] static constexpr const model& usual(std::size_t size, bool has_flags) noexcept {
+    if (size == 2 && !has_flags) return g4_model;
+    const model* const row = model_named(size == 2   ? "x2"
+                                         : size == 3 ? "t-mini-pro"
+                                                     : "t-mini-plus-sh");
+    return row != nullptr ? *row : g4_model;
+  }
+
   [[nodiscard]] constexpr const detail::layout_candidate* decided() const noexcept {
     constexpr std::uint32_t clear_lead = 3;
     const detail::layout_candidate* best = candidates_.data();

@@ -117,6 +117,11 @@ inline constexpr auto models = [] {
        s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, intensity_8},
       {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
        s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, intensity_8},
+      // Their bauds carry 3 kHz of such samples, not 4.
+      {"s2-intensity",   "S2 with intensity", {4, 12}, {115200, 128000}, triangle_8,   one_way, dtr,
+       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, flagged_mm},
+      {"s2-pro-intensity", "S2 Pro with intensity", {4, 12}, {115200, 128000}, triangle_8, one_way, dtr,
+       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, flagged_mm},
       {"s4",             "S4",             {4},     {115200},         flagged_samples, two_way, dtr,
        fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
       {"s4b",            "S4B",            {4, 11}, {153600},         triangle_8,      two_way, dtr,

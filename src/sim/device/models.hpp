@@ -214,6 +214,9 @@ inline constexpr auto x_models = [] {
   s2.bauds = {115'200, 128'000};
   s2.rates = {{{{3000}, {4000}, {5000}}}};
   s2.other_code = bright_8_code;
+  simulated_model bright_s2 = with_rate(s2, 3000);  // 4 kHz need more than 128000 baud
+  bright_s2.code = bright_8_code;
+  bright_s2.other_code = flagged_code;
 
   simulated_model s4b = with_baud(s4, 153'600);
   s4b.code = bright_8_code;
@@ -222,10 +225,19 @@ inline constexpr auto x_models = [] {
   scl.beam = scl_beam;
 
   return std::array{
-      named(x4, "x4", 6),       named(x4_pro, "x4-pro", 4, 6), named(x2, "x2", 4, 6),
-      named(x2, "x2l", 4, 6),   named(x2, "x3", 4, 6),         named(x3_pro, "x3-pro", 4, 6),
-      named(s2, "s2", 4, 12),   named(s2, "s2-pro", 4, 12),    named(s4, "s4", 4),
-      named(s4b, "s4b", 4, 11), named(scl, "scl", 22),
+      named(x4, "x4", 6),
+      named(x4_pro, "x4-pro", 4, 6),
+      named(x2, "x2", 4, 6),
+      named(x2, "x2l", 4, 6),
+      named(x2, "x3", 4, 6),
+      named(x3_pro, "x3-pro", 4, 6),
+      named(s2, "s2", 4, 12),
+      named(s2, "s2-pro", 4, 12),
+      named(bright_s2, "s2-intensity", 4, 12),
+      named(bright_s2, "s2-pro-intensity", 4, 12),
+      named(s4, "s4", 4),
+      named(s4b, "s4b", 4, 11),
+      named(scl, "scl", 22),
   };
 }();
 

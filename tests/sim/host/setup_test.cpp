@@ -102,6 +102,7 @@ TEST_F(SimSetup, AModelByItsName) {
   EXPECT_EQ(changed.device.scanner.seed, 3U);
   const auto code = [](const char* source) { return read(source).device.scanner.format.code; };
   EXPECT_EQ(code("sim:?model=s2-pro").size(), 2U);
+  EXPECT_EQ(code("sim:?model=s2-pro-intensity").size(), 3U);
   EXPECT_EQ(code("sim:?model=s2-pro&other_layout=true").size(), 3U);
   EXPECT_EQ(code("sim:?model=tg30").units_per_mm, 1);
   EXPECT_EQ(code("sim:?model=tg30&firmware=1.2").units_per_mm, 2);

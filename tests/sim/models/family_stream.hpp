@@ -63,6 +63,8 @@ inline const std::vector<family_model> family_models{
     {"x3-pro", "x4", 4000, 100, 8000, 0, false},
     {"s2", "x4", 5000, 80, 12'000, 0, false},
     {"s2-pro", "x4", 5000, 80, 12'000, 0, false},
+    {"s2-intensity", "s4b", 3000, 80, 12'000, 0, false},
+    {"s2-pro-intensity", "s4b", 3000, 80, 12'000, 0, false},
     {"s4", "x4", 4000, 100, 8000, 0, true},
     {"s4b", "s4b", 4000, 100, 8000, 0, true},
     {"scl", "scl", 3000, 120, 8000, 0, false},

@@ -135,8 +135,9 @@ TEST(SimModels, ACrcByteIsSentWhereItIsKnown) {
     return std::string(none == all.size() ? "nothing" : "a byte");
   };
   const std::map<std::string, std::string> others{
-      {"g4", "a byte"},  {"g4-pro", "a byte"}, {"g5", "a byte"}, {"x4-pro", "crc"}, {"s2", "crc"},
-      {"s2-pro", "crc"}, {"tg15", "crc"},      {"tg30", "crc"},  {"tg50", "crc"}};
+      {"g4", "a byte"}, {"g4-pro", "a byte"}, {"g5", "a byte"},        {"x4-pro", "crc"},
+      {"s2", "crc"},    {"s2-pro", "crc"},    {"s2-intensity", "crc"}, {"s2-pro-intensity", "crc"},
+      {"tg15", "crc"},  {"tg30", "crc"},      {"tg50", "crc"}};
   for (const test::family_model& each : test::family_models) {
     const auto other = others.find(each.word);
     EXPECT_EQ(sends(each.word), other == others.end() ? "nothing" : other->second) << each.word;
