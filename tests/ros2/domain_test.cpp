@@ -43,27 +43,54 @@ TEST_F(Domain, AConfigurationThatIsRefusedIsAUsageError) {
   }
 }
 
-TEST_F(Domain, TopicsAndReachAreReported) {
-  const auto report = [](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"sim:", "--duration", "1s", "--namespace", "robot7"};
-    words.insert(words.end(), more.begin(), more.end());
-    cli::program tool(words);
-    const std::string err = tool.wait().err;
-    const std::size_t at = std::min(err.find("joined"), err.size());
-    return err.substr(at, err.find('\n', at) - at);
-  };
+/// The line about the domain, of a simulated lidar.
+std::string joined_line(const std::string& source, const std::vector<std::string>& more) {
+  std::vector<std::string> words{source, "--duration", "1s", "--namespace", "robot7"};
+  words.insert(words.end(), more.begin(), more.end());
+  cli::program tool(words);
+  const std::string err = tool.wait().err;
+  const std::size_t at = std::min(err.find("joined"), err.size());
+  return err.substr(at, err.find('\n', at) - at);
+}
+
+TEST_F(Domain, TopicsReachAndServicesAreReported) {
+  cli::write_file(path("path.txt"), "0 0 0 0\n10 1 0 0\n");
+  const std::string moving = "sim:?path=" + path("path.txt");
   const std::string domain = "joined the ROS 2 domain " + std::to_string(test_domain::number());
-  EXPECT_EQ(report({"--points-topic", "off"}),
-            domain + " (LOCALHOST): publishing /diagnostics, /robot7/odom, /robot7/scan, /tf");
-  EXPECT_EQ(report({"--tf-topic", "off", "--odometry-topic", "off", "--mount", "0,0,0",
-                    "--tf-static-topic", "off"}),
-            domain + " (LOCALHOST): publishing /diagnostics, /robot7/points, /robot7/scan");
+  const std::string with = "; with services (RMW_IMPLEMENTATION is rmw_cyclonedds_cpp)";
+  EXPECT_EQ(
+      joined_line(moving, {"--points-topic", "off"}),
+      domain + " (LOCALHOST): publishing /diagnostics, /robot7/odom, /robot7/scan, /tf" + with);
+  EXPECT_EQ(joined_line(moving, {"--tf-topic", "off", "--odometry-topic", "off", "--mount", "0,0,0",
+                                 "--tf-static-topic", "off", "--services", "off"}),
+            domain +
+                " (LOCALHOST): publishing /diagnostics, /robot7/points, /robot7/scan; "
+                "without services");
   ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET", 1);
-  EXPECT_EQ(report({"--interface", "lo", "--odometry-topic", "off", "--mount", "0,0,0",
-                    "--tf-topic", "tf", "--tf-static-topic", "tf_static"}),
+  ::unsetenv("RMW_IMPLEMENTATION");
+  EXPECT_EQ(joined_line(moving, {"--interface", "lo", "--odometry-topic", "off", "--mount", "0,0,0",
+                                 "--tf-topic", "tf", "--tf-static-topic", "tf_static"}),
             domain +
                 " (SUBNET, lo): publishing /diagnostics, /robot7/points, /robot7/scan, "
-                "/robot7/tf, /robot7/tf_static");
+                "/robot7/tf, /robot7/tf_static; without services (RMW_IMPLEMENTATION is not "
+                "rmw_cyclonedds_cpp)");
+}
+
+TEST_F(Domain, ALidarThatStandsStillHasNoOdometry) {
+  EXPECT_THAT(joined_line("sim:", {}),
+              HasSubstr("publishing /diagnostics, /robot7/points, /robot7/scan; "));
+}
+
+/// Both together made a domain that Cyclone DDS refuses.
+TEST_F(Domain, TheInterfacesOfTheUserWinOverLocalhost) {
+  const std::string tag = ::getenv("CYCLONEDDS_URI");
+  ::setenv("CYCLONEDDS_URI",
+           (tag + ",<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/>"
+                  "</Interfaces></General></Domain></CycloneDDS>")
+               .c_str(),
+           1);
+  EXPECT_THAT(joined_line("sim:", {"--services", "on"}),
+              HasSubstr("(LOCALHOST, the interfaces of CYCLONEDDS_URI): publishing"));
 }
 
 TEST_F(Domain, AFileOfConfigThatIsNotToml_IsExplained) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Names, networks and the arguments of ROS 2, without a domain.
+// Names and the arguments of ROS 2, without a domain.
 #include "options.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cli/program.hpp"
-#include "dds/network.hpp"
 
 namespace ros2 {
 namespace {
@@ -23,8 +22,6 @@ using g4_tool::ros2_options;
 using g4_tool::without_ros_arguments;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
-namespace dds = g4_tool::dds;
 
 TEST(Names, AreInTheNamespaceUnlessTheyBeginWithASlash) {
   EXPECT_EQ(full_name("", "scan"), "/scan");
@@ -140,6 +137,10 @@ TEST(Topics, HaveOneTypeEach) {
   options.name_space = "robot1";
   EXPECT_EQ(refusal_of([&] { static_cast<void>(g4_tool::sources_of(options)); }),
             "--tf-static-topic: /robot1/tf is the topic of --tf-topic");
+  options.topics.tf_static = "tf_static";
+  options.topics.run = "tf";
+  EXPECT_EQ(refusal_of([&] { static_cast<void>(g4_tool::sources_of(options)); }),
+            "--run-topic: /robot1/tf is the topic of --tf-topic");
 }
 
 TEST(Topics, HaveNames) {
@@ -149,7 +150,7 @@ TEST(Topics, HaveNames) {
     EXPECT_THROW(row.take(""), bad_value) << row.names;
     ++seen;
   }
-  EXPECT_EQ(seen, 6);
+  EXPECT_EQ(seen, 7);
 }
 
 TEST(Sources, FilesAreNotMerged) {
@@ -210,6 +211,8 @@ TEST(RosArguments, RenameTopicsByTheirFullNames) {
               ElementsAre("--points-topic", "cloud"));
   EXPECT_THAT(translated({"--ros-args", "-r", "/tf:=tf", "-r", "/tf_static:=tf_static"}),
               ElementsAre("--tf-topic", "tf", "--tf-static-topic", "tf_static"));
+  EXPECT_THAT(translated({"--ros-args", "-r", "~/run:=/lidars"}),
+              ElementsAre("--run-topic", "/lidars"));
   EXPECT_THAT(translated({"--ros-args", "-r", "tf:=/x"}), ElementsAre("--tf-topic", "/x"));
   EXPECT_THAT(translated({"--ros-args", "-r", "scan:=~/scan", "-r", "__ns:=/robot1"}),
               ElementsAre("--scan-topic", "/robot1/g4lidar/scan", "--namespace", "/robot1"));
@@ -278,65 +281,6 @@ TEST_F(ParameterFile, ThatContainsItselfIsRefused) {
     text.append(name + ": &" + name + " {p: " + below + ", q: " + below + "}\n");
   }
   EXPECT_THAT(refusal_of([&] { read(text); }), HasSubstr("too many sections"));
-}
-
-std::string configured(const std::map<std::string, std::string>& variables,
-                       const std::string& interface = "") {
-  const auto from = [&variables](const char* name) {
-    const auto found = variables.find(name);
-    return found == variables.end() ? std::string() : found->second;
-  };
-  return dds::configuration(dds::read_network({}, interface, from));
-}
-
-TEST(Network, FollowsTheVariablesOfRos) {
-  const auto domain = [](const std::string& value) {
-    return dds::read_network({}, "",
-                             [&value](const char* name) {
-                               return std::string(name) == "ROS_DOMAIN_ID" ? value : std::string();
-                             })
-        .domain;
-  };
-  EXPECT_EQ(domain(""), 0U);
-  EXPECT_EQ(domain("42"), 42U);
-  EXPECT_THROW(domain("233"), bad_value);
-  EXPECT_EQ(refusal_of([&] { static_cast<void>(domain("abc")); }),
-            "ROS_DOMAIN_ID: 'abc' is not in the range 0 to 232");
-  EXPECT_EQ(dds::read_network(7, "", [](const char*) { return "42"; }).domain, 7U);
-
-  EXPECT_THAT(configured({}), Not(HasSubstr("AllowMulticast")));
-  const std::string local = configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}});
-  EXPECT_THAT(local, HasSubstr("<AllowMulticast>false</AllowMulticast>"));
-  EXPECT_THAT(local, HasSubstr("<NetworkInterface address=\"127.0.0.1\"/>"));
-  EXPECT_THAT(local, HasSubstr("<Peer address=\"localhost\"/>"));
-  EXPECT_EQ(configured({{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_STATIC_PEERS", "robot2"}}), local);
-  const std::string peers = configured(
-      {{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}, {"ROS_STATIC_PEERS", "192.0.2.7;robot2"}});
-  EXPECT_THAT(peers, HasSubstr("<Peer address=\"192.0.2.7\"/><Peer address=\"robot2\"/>"));
-  EXPECT_THAT(peers, Not(HasSubstr("127.0.0.1")));  // else the other machine could not be reached
-  EXPECT_THAT(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}), HasSubstr("<Tag>"));
-  EXPECT_EQ(
-      configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SYSTEM_DEFAULT"}}),
-      "<CycloneDDS><Domain><Internal><HeartbeatInterval>10ms</HeartbeatInterval>"
-      "<MultipleReceiveThreads>false</MultipleReceiveThreads></Internal></Domain></CycloneDDS>");
-  EXPECT_EQ(configured({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "nonsense"}}), local);
-  EXPECT_THAT(configured({{"CYCLONEDDS_URI", "file:///x.xml"}}),
-              ::testing::EndsWith(",file:///x.xml"));
-  EXPECT_THAT(configured({}, "eth0"), HasSubstr("<NetworkInterface name=\"eth0\"/>"));
-  EXPECT_THROW(configured({}, "\"/><x"), bad_value);
-}
-
-TEST(Network, MovesOnlyIfAnAddressIsGoneOrAnotherIsFirst) {
-  using list = std::vector<std::string>;
-  EXPECT_FALSE(dds::has_moved({}, {}));
-  EXPECT_TRUE(dds::has_moved({}, {"eth0 192.0.2.2"}));
-  EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, {"eth0 192.0.2.2"}));
-  EXPECT_FALSE(dds::has_moved({"eth0 192.0.2.2"}, list{"eth0 192.0.2.2", "docker0 172.17.0.1"}));
-  EXPECT_TRUE(
-      dds::has_moved({"docker0 172.17.0.1"}, list{"wlan0 192.0.2.2", "docker0 172.17.0.1"}));
-  EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2", "wlan0 192.0.2.7"}, {"eth0 192.0.2.2"}));
-  EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2"}, {"eth0 192.0.2.3"}));
-  EXPECT_TRUE(dds::has_moved({"eth0 192.0.2.2"}, {}));
 }
 
 }  // namespace

@@ -40,8 +40,12 @@ class test_domain {
              1);
     ::setenv("ROS_DOMAIN_ID", std::to_string(number()).c_str(), 1);
     ::setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
+    // As on a machine of ROS with Cyclone DDS, whose clients call services.
+    ::setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp", 1);
+    ::unsetenv("ROS_DISTRO");
     const auto wanted = dds::read_network({}, "");
-    domain_ = dds::entity(dds_create_domain(number(), dds::configuration(wanted).c_str()));
+    domain_ = dds::entity(
+        dds_create_domain(number(), dds::configuration(wanted, !dds::addresses().empty()).c_str()));
     participant_ = dds::entity(dds_create_participant(number(), nullptr, nullptr));
     EXPECT_TRUE(participant_);
   }
@@ -132,6 +136,11 @@ class publisher {
   }
   void write(const Message& what) const {
     EXPECT_EQ(dds_write(writer_.get(), &what), DDS_RETCODE_OK);
+  }
+  [[nodiscard]] std::uint32_t subscribers() const {
+    dds_publication_matched_status_t matched{};
+    static_cast<void>(dds_get_publication_matched_status(writer_.get(), &matched));
+    return matched.current_count;
   }
 
  private:

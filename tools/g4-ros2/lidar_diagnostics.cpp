@@ -32,12 +32,13 @@ diagnostic_status topic_report::status(const named_counts& topics) {
     add("subscribers", counts.subscribers);
     add("sent", counts.sent);
     add("lost", counts.lost);
+    add("unacknowledged", counts.unacknowledged);
     add("refused", counts.refused);
     now.lost += counts.lost;
     now.refused += counts.refused;
   }
   const totals before = std::exchange(before_, now);
-  if (now.lost > before.lost) made.message = "messages were lost because a subscriber is too slow";
+  if (now.lost > before.lost) made.message = "messages could not be sent";
   if (now.refused > before.refused) {
     made.message = "a subscriber wants a quality of service that is not offered: see --qos";
   }

@@ -19,6 +19,7 @@
 #include "merger.hpp"
 #include "node_announcement.hpp"
 #include "node_services.hpp"
+#include "run_command.hpp"
 
 namespace g4_tool {
 namespace {
@@ -48,6 +49,11 @@ class node {
     if (merger_) {
       for (auto& each : merger_->reports()) lidars_.front()->also_report(std::move(each));
     }
+    if (const std::string name = run_topic(options_); name != "off") {
+      run_.emplace(bus_, full_name(options_.name_space, name), [this](bool runs) {
+        for (const auto& each : lidars_) each->allow(runs);
+      });
+    }
     announcement_.emplace(bus_, options_.transport.announced,
                           full_name(options_.name_space, options_.node));
   }
@@ -59,9 +65,11 @@ class node {
       bus_.clear();
       if (const auto now = clock::now(); now >= network_due_) {
         bus_.update();
+        announcement_->update();
         network_due_ = now + network_interval;
       }
       services_->update();
+      if (run_) run_->update();
       for (const auto& each : lidars_) each->update();
       report();
       static_cast<void>(wait_for_input(bus_.handle(), -1, clock::now() + update_interval));
@@ -106,6 +114,7 @@ class node {
   std::optional<merger> merger_;
   std::unique_ptr<node_services> services_;  // the threads of the lidars end before it
   std::vector<std::unique_ptr<lidar_node>> lidars_;
+  std::optional<run_command> run_;
   std::optional<node_announcement> announcement_;
   time_limits limits_{options_.common.duration, 0ns};
   service_watch service_;

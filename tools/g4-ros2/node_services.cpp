@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "node_services.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
+#include <utility>
 
+#include "cli/logger.hpp"
 #include "service_messages.hpp"
 
 namespace g4_tool {
@@ -15,6 +20,9 @@ namespace {
 constexpr std::size_t most_names = 1000;
 /// The largest number of requests to set parameters that wait for lidars.
 constexpr std::size_t most_unfinished = 32;
+
+constexpr std::string_view unreadable_advice =
+    "a request to a service could not be read: use rmw_cyclonedds_cpp where it is called";
 
 /// Replies with a part for each of `names`, made by `part_of(name, reply)`. `parts_of` selects the member of the message
 /// for the parts. False if there are too many names.
@@ -27,6 +35,20 @@ bool reply_to_each(dds::service& via, const dds::caller& from, const auto& names
   refer(parts_of(held->message), held->parts);
   via.send(from, as_reply(held));
   return true;
+}
+
+/// Whether there are services, which is also logged when the domain is joined.
+bool has_services(const ros2_options& options, dds::bus& on) {
+  constexpr std::string_view wanted = "rmw_cyclonedds_cpp";
+  const std::optional<bool>& chosen = options.transport.has_services;
+  const bool is_known = dds::variable("RMW_IMPLEMENTATION") == wanted;
+  const bool is_on = chosen.value_or(is_known);
+  std::string words = is_on ? "with services" : "without services";
+  if (!chosen) {
+    words += fmt::format(" (RMW_IMPLEMENTATION is {}{})", is_known ? "" : "not ", wanted);
+  }
+  on.also_log(words);
+  return is_on;
 }
 
 }  // namespace
@@ -54,6 +76,7 @@ node_services::node_services(dds::bus& on, const ros2_options& options,
       targets_.push_back({prefix + std::string(one.name), each, &one});
     }
   }
+  if (!has_services(options, on)) return;
   offer("get_parameters", get_type, &node_services::get);
   offer("get_parameter_types", get_types_type, &node_services::get_types);
   offer("list_parameters", list_type, &node_services::list);
@@ -79,22 +102,38 @@ void node_services::offer(const std::string& name, const dds::service_type& type
 
 void node_services::update() {
   for (const auto& each : services_) each->update();
+  if (!was_advised_ && unreadable() > 0) {
+    was_advised_ = true;
+    logger::info(std::string(unreadable_advice) + "\n");
+  }
 }
 
-diagnostic_status node_services::status() const {
-  dds::service_counts all;
+std::uint64_t node_services::unreadable() const {
+  std::uint64_t all = dds::undecoded_requests();
+  for (const auto& each : services_) all += each->counts().unreadable;
+  return all;
+}
+
+diagnostic_status node_services::status() {
+  dds::service_counts all{.unreadable = unreadable()};
   for (const auto& each : services_) {
     all.requests += each->counts().requests;
     all.replies += each->counts().replies;
     all.ignored += each->counts().ignored;
     all.lost += each->counts().lost;
   }
-  return {.name = "g4lidar: services",
-          .message = "ok",
-          .values = {{"requests", std::to_string(all.requests)},
-                     {"replies", std::to_string(all.replies)},
-                     {"ignored", std::to_string(all.ignored)},
-                     {"lost", std::to_string(all.lost)}}};
+  diagnostic_status made{.name = "g4lidar: services",
+                         .message = services_.empty() ? "off" : "ok",
+                         .values = {{"requests", std::to_string(all.requests)},
+                                    {"replies", std::to_string(all.replies)},
+                                    {"ignored", std::to_string(all.ignored)},
+                                    {"unreadable", std::to_string(all.unreadable)},
+                                    {"lost", std::to_string(all.lost)}}};
+  if (all.unreadable > std::exchange(unreadable_before_, all.unreadable)) {
+    made.level = diagnostic_level::warn;
+    made.message = unreadable_advice;
+  }
+  return made;
 }
 
 const node_services::target* node_services::find(std::string_view name) const {

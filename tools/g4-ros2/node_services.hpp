@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -26,7 +27,8 @@ class node_services {
 
   /// Call it when the bus is readable, and several times a second.
   void update();
-  [[nodiscard]] diagnostic_status status() const;
+  /// A warning if more requests could not be read than at the last call.
+  [[nodiscard]] diagnostic_status status();
 
  private:
   /// A parameter and its lidar.
@@ -36,6 +38,8 @@ class node_services {
     const parameter* what;
   };
   struct set_job;
+  /// So many requests had another form than that of rmw_cyclonedds.
+  [[nodiscard]] std::uint64_t unreadable() const;
   [[nodiscard]] const target* find(std::string_view name) const;
   void offer(const std::string& name, const dds::service_type& type,
              bool (node_services::*handle)(dds::service&, const void*, const dds::caller&));
@@ -54,8 +58,10 @@ class node_services {
   const ros2_options& options_;
   std::vector<lidar_node*> lidars_;
   std::vector<target> targets_;
-  std::atomic<std::size_t> unfinished_ = 0;  // requests to set parameters
-  std::vector<std::unique_ptr<dds::service>> services_;
+  std::atomic<std::size_t> unfinished_ = 0;              // requests to set parameters
+  std::vector<std::unique_ptr<dds::service>> services_;  // empty: off
+  std::uint64_t unreadable_before_ = 0;
+  bool was_advised_ = false;
 };
 
 }  // namespace g4_tool

@@ -78,6 +78,7 @@ option_rows topic_rows(ros2_options& options) {
                  topics.odometry),
        topic_row("--tf-topic", "Frames that move; off: none (/tf)", topics.tf),
        topic_row("--tf-static-topic", "Places of lidars; off: none (/tf_static)", topics.tf_static),
+       topic_row("--run-topic", "Bool: rest or turn the motor; off: none (NODE/run)", topics.run),
        frame_name_row("--frame-id", "Frame of the lidar (laser)", options.frames.lidar),
        frame_name_row("--base-frame", "Frame of the robot (base_link)", options.frames.robot),
        frame_name_row("--odometry-frame", "Frame of the odometry (odom)",
@@ -106,11 +107,15 @@ option_rows network_rows(ros2_options& options) {
                   choices<bool>{{"reliable", true}, {"best-effort", false}}),
        number_row("--depth", "N", "Messages that wait for a slow subscriber (5)", transport.depth,
                   1, 10'000),
-       choice_row("--announce", "Announce the node to ROS 2 up to humble, or from iron on (none)",
+       choice_row("--announce", "Announce the node to ROS 2 up to humble, or from iron on (auto)",
                   transport.announced,
-                  choices<announced_form>{{"none", announced_form::none},
+                  choices<announced_form>{{"auto", announced_form::automatic},
+                                          {"none", announced_form::none},
                                           {"humble", announced_form::humble},
-                                          {"iron", announced_form::iron}})});
+                                          {"iron", announced_form::iron}}),
+       choice_row("--services", "Offer services, for rmw_cyclonedds_cpp (by RMW_IMPLEMENTATION)",
+                  transport.has_services,
+                  choices<std::optional<bool>>{{"on", true}, {"off", false}})});
 }
 
 option_rows place_rows(ros2_options& options) {
@@ -191,6 +196,7 @@ void check_topics(const ros2_options& options, const std::vector<named_source>& 
   };
   own("--tf-topic", options.name_space, topics.tf);
   own("--tf-static-topic", options.name_space, topics.tf_static);
+  own("--run-topic", options.name_space, run_topic(options));
   for (const named_source& lidar : lidars) {
     const std::string space = full_name(options.name_space, lidar.name);
     for (const auto& [option, name] : wanted) own(option, space, name);
@@ -222,6 +228,10 @@ std::string frame_of(const ros2_options& options, std::string_view lidar) {
   std::string made = options.frames.lidar;
   if (!lidar.empty()) made.insert(made.rfind('/') + 1, std::string(lidar) + "_");
   return made;
+}
+
+std::string run_topic(const ros2_options& options) {
+  return options.topics.run.empty() ? options.node + "/run" : options.topics.run;
 }
 
 std::vector<named_source> sources_of(const ros2_options& options) {

@@ -27,6 +27,7 @@ struct topic_names {
   std::string odometry = "odom";
   std::string tf = "/tf";
   std::string tf_static = "/tf_static";
+  std::string run{};  ///< Subscribed; empty: ~/run, in the namespace of the node.
 };
 
 /// The names of coordinate frames.
@@ -36,8 +37,9 @@ struct frame_names {
   std::string odometry = "odom";
 };
 
-/// The message that announces the node: that of releases up to Humble, or from Iron on.
-enum class announced_form : unsigned char { none, humble, iron };
+/// The message that announces the node: that of releases up to Humble, or from Iron on; automatic: by what is in the
+/// domain.
+enum class announced_form : unsigned char { automatic, none, humble, iron };
 
 /// The network and the quality of service.
 struct delivery {
@@ -45,7 +47,8 @@ struct delivery {
   std::string interface;
   bool is_reliable = true;
   int depth = 5;
-  announced_form announced = announced_form::none;
+  announced_form announced = announced_form::automatic;
+  std::optional<bool> has_services{};  ///< Nothing: by RMW_IMPLEMENTATION.
 };
 
 /// The name of a lidar (empty for the only one) and its mounting.
@@ -87,6 +90,9 @@ struct named_source {
 
 /// The frame of a lidar; the name of one of several is inserted: "robot1/front_laser".
 [[nodiscard]] std::string frame_of(const ros2_options& options, std::string_view lidar);
+
+/// The topic that rests and turns the motor; "off": none. In the namespace of the node.
+[[nodiscard]] std::string run_topic(const ros2_options& options);
 
 /// The table of options, which writes into `options`.
 [[nodiscard]] option_rows ros2_rows(const std::shared_ptr<ros2_options>& options);

@@ -59,7 +59,7 @@ void ignored(const std::string& word, std::string_view why) {
 }
 
 void remap(const std::string& word, const node_names& names, words& out) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> known{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> known{
       {{"__ns", "--namespace"},
        {"__node", "--node-name"},
        {"__name", "--node-name"},
@@ -68,7 +68,8 @@ void remap(const std::string& word, const node_names& names, words& out) {
        {"odom", "--odometry-topic"},
        {"/diagnostics", "--diagnostics-topic"},
        {"/tf", "--tf-topic"},
-       {"/tf_static", "--tf-static-topic"}}};
+       {"/tf_static", "--tf-static-topic"},
+       {"run", "--run-topic"}}};
   constexpr std::string_view is_private = "~/";
   auto [from, to] = assignment(word);
   if (from.starts_with(is_private)) from.erase(0, is_private.size());

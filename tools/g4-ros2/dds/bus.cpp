@@ -25,6 +25,7 @@ struct domain_log {
   std::mutex mutex;
   std::set<std::string> lines;  // that were logged
   std::string refusal;          // of the configuration, the first one
+  std::uint64_t undecoded = 0;  // requests to services
 };
 
 domain_log& the_log() {
@@ -53,6 +54,7 @@ void log_line(void*, const dds_log_data_t* line) {
     if (log.refusal.empty()) log.refusal = why;
     return;
   }
+  if (text.find("deserialization rq/") != std::string_view::npos) ++log.undecoded;
   if (log.lines.size() > most_lines) log.lines.clear();
   if (!log.lines.emplace(text).second) return;
   const std::string words = fmt::format("Cyclone DDS: {}\n", text);
@@ -80,13 +82,19 @@ bool has_descriptors() {
 
 }  // namespace
 
+std::uint64_t undecoded_requests() {
+  domain_log& log = the_log();
+  const std::lock_guard lock(log.mutex);
+  return log.undecoded;
+}
+
 void wake(void* handle) noexcept {
   static_cast<void>(::eventfd_write(*static_cast<const int*>(handle), 1));
 }
 
 bus::bus(network wanted)
     : wanted_(std::move(wanted)), wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  static_cast<void>(configuration(wanted_));
+  static_cast<void>(configuration(wanted_, true));
   dds_set_log_sink(log_line, nullptr);
 }
 
@@ -133,11 +141,13 @@ void bus::open() {
     here.peers.emplace_back("localhost");
   }
   const bool is_possible = has_descriptors();
-  if (is_possible) domain_ = entity(dds_create_domain(here.domain, configuration(here).c_str()));
+  if (is_possible)
+    domain_ = entity(dds_create_domain(here.domain, configuration(here, !on_.empty()).c_str()));
   // Without an enclave ROS 2 does not list the nodes of a participant.
   constexpr std::string_view user_data = "enclave=/;";
   const qos with_enclave(dds_create_qos(), dds_delete_qos);
   dds_qset_userdata(with_enclave.get(), user_data.data(), user_data.size());
+  dds_qset_entity_name(with_enclave.get(), participant_name);
   const dds_entity_t made =
       domain_ ? dds_create_participant(wanted_.domain, with_enclave.get(), nullptr)
               : DDS_RETCODE_ERROR;
@@ -167,9 +177,14 @@ void bus::open() {
   std::set<std::string_view> topics;
   for (const endpoint* each : endpoints_) topics.insert(each->published());
   topics.erase("");
-  logger::info(fmt::format("joined the ROS 2 domain {} ({}{}{}): publishing {}\n", wanted_.domain,
-                           name_of(wanted_.range), wanted_.interface.empty() ? "" : ", ",
-                           wanted_.interface, fmt::join(topics, ", ")));
+  std::string reach(name_of(wanted_.range));
+  if (names_interfaces(wanted_.more)) {
+    reach += ", the interfaces of CYCLONEDDS_URI";
+  } else if (!wanted_.interface.empty()) {
+    reach += ", " + wanted_.interface;
+  }
+  logger::info(fmt::format("joined the ROS 2 domain {} ({}): publishing {}{}\n", wanted_.domain,
+                           reach, fmt::join(topics, ", "), more_words_));
   problem_.clear();
   is_new_ = false;
   for (endpoint* each : endpoints_) each->open(made, &wake_);

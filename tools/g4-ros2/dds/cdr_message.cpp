@@ -15,10 +15,10 @@ namespace g4_tool::dds {
 
 // A writer does not give its type; a message that came to a reader of this process does. So one message, all of
 // zeros, goes from a writer to a reader of a topic that nobody else has.
-const ddsi_sertype* type_in(dds_entity_t participant, const dds_topic_descriptor_t& described) {
-  const qos plain(dds_create_qos(), dds_delete_qos);
-  const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
-  dds_qset_data_representation(plain.get(), 1, &representation);
+const ddsi_sertype* type_in(dds_entity_t participant, const message_type& type) {
+  const dds_topic_descriptor_t& described = *type.descriptor;
+  const qos plain =
+      qos_of({.type = &type, .depth = 1});  // with the hash, without which ROS 2 warns
   std::string name = std::string("g4lidar_type_") + described.m_typename;
   std::ranges::replace(name, ':', '_');
   const entity topic(dds_create_topic(participant, &described, name.c_str(), nullptr, nullptr));

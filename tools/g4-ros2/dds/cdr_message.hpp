@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "g4lidar/core/bytes.hpp"
+#include "message_type.hpp"
 
 namespace g4_tool::dds {
 
@@ -19,8 +20,7 @@ using cdr_message = std::unique_ptr<ddsi_serdata, release_message>;
 
 /// A type as the domain of `participant` has it, in XCDR1; null if that fails. Valid while there is a topic of
 /// this type.
-[[nodiscard]] const ddsi_sertype* type_in(dds_entity_t participant,
-                                          const dds_topic_descriptor_t& described);
+[[nodiscard]] const ddsi_sertype* type_in(dds_entity_t participant, const message_type& type);
 
 /// A copy of `message`, in CDR with its header of four bytes; null if it is not valid for the type.
 [[nodiscard]] cdr_message encoded(const ddsi_sertype& type, g4lidar::bytes message);

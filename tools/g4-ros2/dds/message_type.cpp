@@ -19,5 +19,7 @@ const message_type diagnostic_array{
 const message_type clock_message{
     &rosgraph_msgs_msg_dds__Clock__desc,
     "692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564"};
+const message_type bool_message{&std_msgs_msg_dds__Bool__desc,
+                                "feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9"};
 
 }  // namespace g4_tool::dds

@@ -21,5 +21,6 @@ extern const message_type odometry;
 extern const message_type tf_message;
 extern const message_type diagnostic_array;
 extern const message_type clock_message;
+extern const message_type bool_message;
 
 }  // namespace g4_tool::dds

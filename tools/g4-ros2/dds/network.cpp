@@ -2,13 +2,16 @@
 #include "network.hpp"
 
 #include <arpa/inet.h>
+#include <dds/ddsrt/xmlparser.h>
 #include <fmt/format.h>
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <strings.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <sstream>
@@ -58,6 +61,46 @@ std::string checked_name(const std::string& text) {
   throw bad_value(in_quotes(text) + " is not the name or the address of a machine or an interface");
 }
 
+/// Sets `found` (a bool) at an element that selects interfaces. The names of elements have no case.
+int see_element(void* found, std::uintptr_t, std::uintptr_t*, const char* name, int) {
+  for (const char* const each : {"Interfaces", "NetworkInterfaceAddress"}) {
+    if (::strcasecmp(name, each) == 0) *static_cast<bool*>(found) = true;
+  }
+  return 0;
+}
+
+constexpr ddsrt_xmlp_callbacks element_callbacks{
+    .elem_open = see_element,
+    .attr = [](void*, std::uintptr_t, const char*, const char*, int) { return 0; },
+    .elem_data = [](void*, std::uintptr_t, const char*, int) { return 0; },
+    .elem_close = [](void*, std::uintptr_t, int) { return 0; },
+    .error = [](void*, const char*, int) {}};  // Cyclone DDS reports it
+
+/// Parses and releases `of`; the characters that were read. Stops at the end of the first element.
+std::size_t parse(ddsrt_xmlp_state* of) {
+  ddsrt_xmlp_set_options(of, 0);
+  static_cast<void>(ddsrt_xmlp_parse(of));
+  const std::size_t read = ddsrt_xmlp_get_bufpos(of);
+  ddsrt_xmlp_free(of);
+  return read;
+}
+
+/// The line of interfaces: that of the user, or those on which the programs of this machine meet. With LOCALHOST some
+/// middlewares of ROS 2 use loopback, and some the first network.
+std::string interfaces_of(const network& wanted, bool is_connected) {
+  std::string made;
+  if (!wanted.interface.empty()) {
+    const bool is_address = wanted.interface.find_first_of(".:") != std::string::npos;
+    made = fmt::format(R"(<NetworkInterface {}="{}"/>)", is_address ? "address" : "name",
+                       checked_name(wanted.interface));
+  } else if (wanted.range == discovery_range::localhost) {
+    made = R"(<NetworkInterface address="127.0.0.1"/>)";
+    if (is_connected) made += R"(<NetworkInterface autodetermine="true"/>)";
+  }
+  if (made.empty() || names_interfaces(wanted.more)) return "";
+  return "<Interfaces>" + made + "</Interfaces>";
+}
+
 }  // namespace
 
 std::string_view name_of(discovery_range range) noexcept {
@@ -84,18 +127,33 @@ network read_network(std::optional<std::uint32_t> domain, const std::string& int
   return made;
 }
 
-std::string configuration(const network& wanted) {
-  std::string general;
+bool names_interfaces(const std::string& uri) {
+  bool found = false;
+  for (std::size_t at = 0; at < uri.size();) {
+    if (uri[at] == '<') {
+      at += std::max<std::size_t>(
+          parse(ddsrt_xmlp_new_string(uri.c_str() + at, &found, &element_callbacks)), 1);
+    } else if (uri[at] == ',' || uri[at] == ' ') {
+      ++at;
+    } else {
+      const std::size_t end = std::min(uri.find(',', at), uri.size());
+      constexpr std::string_view scheme = "file://";
+      if (uri.compare(at, scheme.size(), scheme) == 0) at += scheme.size();
+      const std::string path = uri.substr(at, end - at);
+      if (std::FILE* const file = std::fopen(path.c_str(), "r"); file != nullptr) {
+        static_cast<void>(parse(ddsrt_xmlp_new_file(file, &found, &element_callbacks)));
+        static_cast<void>(std::fclose(file));
+      }
+      at = end;
+    }
+  }
+  return found;
+}
+
+std::string configuration(const network& wanted, bool is_connected) {
+  std::string general = interfaces_of(wanted, is_connected);
   std::string discovery;
   const bool is_local = wanted.range == discovery_range::localhost;
-  std::string interface = wanted.interface;
-  // Peers on other machines are not reachable by loopback alone.
-  if (interface.empty() && is_local && wanted.peers.empty()) interface = "127.0.0.1";
-  if (!interface.empty()) {
-    const bool is_address = interface.find_first_of(".:") != std::string::npos;
-    general += fmt::format(R"(<Interfaces><NetworkInterface {}="{}"/></Interfaces>)",
-                           is_address ? "address" : "name", checked_name(interface));
-  }
   if (is_local || wanted.range == discovery_range::off) {
     general += "<AllowMulticast>false</AllowMulticast>";
   }
@@ -117,6 +175,8 @@ std::string configuration(const network& wanted) {
       discovery += "</Peers>";
     }
   }
+  // ROS 2 Humble with Fast DDS finds this program by its announcements only, and waits for the next one.
+  if (is_local) discovery += "<SPDPInterval>1s</SPDPInterval>";
   std::string made = "<CycloneDDS><Domain>";
   if (!general.empty()) made += "<General>" + general + "</General>";
   if (!discovery.empty()) made += "<Discovery>" + discovery + "</Discovery>";

@@ -36,8 +36,12 @@ using environment = std::function<std::string(const char*)>;
                                    const std::string& interface,
                                    const environment& from = variable);
 
-/// The configuration for Cyclone DDS. Throws bad_value for an invalid interface or peer.
-[[nodiscard]] std::string configuration(const network& wanted);
+/// Whether CYCLONEDDS_URI names network interfaces itself, which then are the only ones.
+[[nodiscard]] bool names_interfaces(const std::string& uri);
+
+/// The configuration for Cyclone DDS. `is_connected`: there is an interface that is not loopback. Throws bad_value for an
+/// invalid interface or peer.
+[[nodiscard]] std::string configuration(const network& wanted, bool is_connected);
 
 /// The addresses of the interfaces that are up, without loopback, as "eth0 192.0.2.2". The one that Cyclone DDS uses is
 /// the first. Only those of `interface`, if it is not empty.

@@ -43,7 +43,7 @@ void publisher::open(dds_entity_t participant, int* handle) {
   topic_ = entity(dds_create_topic(participant, what_.type->descriptor,
                                    dds_name(what_.name).c_str(), nullptr, nullptr));
   writer_ = entity(dds_create_writer(participant, topic_.get(), quality.get(), listener.get()));
-  type_ = type_in(participant, *what_.type->descriptor);
+  type_ = type_in(participant, *what_.type);
   if (!writer_ || type_ == nullptr)
     return logger::info(fmt::format("cannot publish {}\n", what_.name));
   if (!last_.empty()) write(last_);
@@ -71,7 +71,7 @@ void publisher::write(g4lidar::bytes message) {
   if (!is_sent || what_.is_for_late || !is_kept(made)) return;
   unread_.push_back(std::move(made));
   if (unread_.size() <= static_cast<std::size_t>(what_.depth)) return;
-  ++counts_.lost;  // replaced by this message
+  ++counts_.unacknowledged;
   unread_.pop_front();
 }
 

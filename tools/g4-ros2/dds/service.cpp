@@ -47,7 +47,17 @@ std::string identity_of(const dds_builtintopic_endpoint_t& of) {
 using endpoint_data =
     std::unique_ptr<dds_builtintopic_endpoint_t, void (*)(dds_builtintopic_endpoint_t*)>;
 
-std::string identity_of(endpoint_data found) { return found ? identity_of(*found) : std::string(); }
+std::string identity_of(const endpoint_data& found) {
+  return found ? identity_of(*found) : std::string();
+}
+
+/// Whether requests of the middleware of a client have another form: the first two bytes are those of its vendor.
+bool has_other_form(const endpoint_data& client) {
+  constexpr std::array<std::pair<int, int>, 2> others{{{1, 1}, {1, 15}}};  // Connext, Fast DDS
+  if (!client) return false;
+  const std::pair<int, int> vendor{client->participant_key.v[0], client->participant_key.v[1]};
+  return std::ranges::find(others, vendor) != others.end();
+}
 
 /// Whether `writer` has discovered the client's reader, without which the reply would be lost.
 bool has_reader(dds_entity_t writer, const std::string& identity) {
@@ -57,8 +67,8 @@ bool has_reader(dds_entity_t writer, const std::string& identity) {
   const auto known = static_cast<std::size_t>(std::max(count, 0));
   if (known > readers.size()) return true;  // too many to compare
   return std::ranges::any_of(std::span(readers).first(known), [&](dds_instance_handle_t each) {
-    return identity_of({dds_get_matched_subscription_data(writer, each),
-                        dds_builtintopic_free_endpoint}) == identity;
+    return identity_of(endpoint_data(dds_get_matched_subscription_data(writer, each),
+                                     dds_builtintopic_free_endpoint)) == identity;
   });
 }
 
@@ -117,11 +127,15 @@ void service::take_requests() {
   if (count <= 0) return;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     if (!about[i].valid_data) continue;
+    const endpoint_data client(
+        dds_get_matched_publication_data(reader_.get(), about[i].publication_handle),
+        dds_builtintopic_free_endpoint);
+    if (has_other_form(client)) {
+      ++counts_.unreadable;
+      continue;
+    }
     ++counts_.requests;
-    const caller from{
-        *static_cast<const request_header*>(samples[i]),
-        identity_of({dds_get_matched_publication_data(reader_.get(), about[i].publication_handle),
-                     dds_builtintopic_free_endpoint})};
+    const caller from{*static_cast<const request_header*>(samples[i]), identity_of(client)};
     if (!handles_(samples[i], from)) ++counts_.ignored;
   }
   static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));

@@ -37,7 +37,8 @@ struct caller {
 
 struct service_counts {
   std::uint64_t requests = 0;
-  std::uint64_t ignored = 0;  ///< Invalid requests.
+  std::uint64_t ignored = 0;     ///< Invalid requests.
+  std::uint64_t unreadable = 0;  ///< Of a middleware whose requests have another form.
   std::uint64_t replies = 0;
   std::uint64_t lost = 0;  ///< Replies that could not be sent.
 };

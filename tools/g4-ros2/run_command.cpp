@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "run_command.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include <messages.h>
+#include "cli/logger.hpp"
+
+namespace g4_tool {
+
+run_command::run_command(dds::bus& on, std::string name, std::function<void(bool)> use)
+    : endpoint(on), name_(std::move(name)), use_(std::move(use)) {
+  on.add(*this);
+}
+
+void run_command::open(dds_entity_t participant, int* handle) {
+  const dds::qos quality = dds::qos_of({.type = &dds::bool_message, .depth = 10});
+  const std::unique_ptr<dds_listener_t, void (*)(dds_listener_t*)> listener(
+      dds_create_listener(handle), dds_delete_listener);
+  dds_lset_data_available(listener.get(), [](dds_entity_t, void* with) { dds::wake(with); });
+  topic_ = dds::entity(dds_create_topic(participant, dds::bool_message.descriptor,
+                                        dds::dds_name(name_).c_str(), nullptr, nullptr));
+  reader_ =
+      dds::entity(dds_create_reader(participant, topic_.get(), quality.get(), listener.get()));
+  if (!reader_) logger::info(fmt::format("cannot subscribe to {}\n", name_));
+}
+
+void run_command::close() noexcept {
+  reader_ = {};
+  topic_ = {};
+}
+
+void run_command::update() {
+  std::array<void*, 10> samples{};
+  std::array<dds_sample_info_t, 10> about{};
+  if (!reader_) return;
+  const dds_return_t count =
+      dds_take(reader_.get(), samples.data(), about.data(), samples.size(), samples.size());
+  if (count <= 0) return;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    if (!about[i].valid_data) continue;
+    const bool runs = static_cast<const std_msgs_msg_dds__Bool_*>(samples[i])->data;
+    logger::info(fmt::format("{}: {}\n", name_, runs ? "true" : "false"));
+    use_(runs);
+  }
+  static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));
+}
+
+}  // namespace g4_tool
