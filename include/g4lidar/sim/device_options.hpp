@@ -10,6 +10,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/device_information.hpp"
 #include "g4lidar/settings.hpp"
+#include "g4lidar/sim/command_set.hpp"
 #include "g4lidar/sim/scanner.hpp"
 
 namespace g4lidar::sim {
@@ -63,6 +64,8 @@ struct device_options {
   /// Measurement options, and the seed of everything random here. Its scan frequency and sample rate
   /// are the defaults of the device; `start_deg` is not used: each start has a random angle.
   scanner_options scanner;
+  std::string_view model = "g4";       ///< The last one of use_model(); of unlimited lifetime.
+  command_set commands = g4_commands;  ///< It does not answer others.
   /// The answer to 90.
   device_information info{
       model_g4,
@@ -129,7 +132,8 @@ struct device_options {
   disturbance while_scanning = disturbance::mid_packet;
   bool settings_outlive_power = false;
   bool settings_outlive_restart = false;
-  bool answers_direction = true;  ///< To command 08.
+  bool answers_direction = true;    ///< To command 08.
+  bool answers_sample_rate = true;  ///< To command D1.
   bool answers_health_91 = true;
   bool answers_health_92 = true;
   bool obeys_forced_stop = true;  ///< Command 00.
@@ -140,6 +144,14 @@ struct device_options {
   bool header_after_protection =
       true;  ///< 60 is answered with a header after a stop by the protection.
   std::int64_t protection_ns = 3'000'000'000;
+
+  // What answers contain.
+  std::int16_t frequency_error_chz = 0;  ///< What frequencies are too high: 40 of a TG.
+  /// The direction of zero, in 0.01 degrees, as 93 answers it in parts of a degree: 4 or 100 in one, 0: no
+  /// such answer. The angles that the device sends are smaller by it.
+  std::int32_t zero_angle_cdeg = 0;
+  std::uint8_t zero_angle_divisor = 0;
+  std::int32_t pitch_cdeg = 0;  ///< The answer to 98, where it is.
 
   // The state at time 0: powered, idle, and booted long before.
   device_settings initial;      ///< Except the two frequencies, which are in `scanner`.
@@ -154,10 +166,10 @@ struct device_options {
 [[nodiscard]] G4LIDAR_API std::string_view problem_with(const device_options& options) noexcept;
 
 /// Sets all in which a model of the family differs from a G4: what it sends, its rates, its ranges, its
-/// number in the answer to 90. `word` is its name, such as "x4-pro"; `other_layout` selects the other
-/// samples of the S2 and S2 Pro. If `options.info` has a firmware before a change of the samples, as a
-/// TG15 up to 1.2, they are the old ones. Returns false, and changes nothing, if there is no such
-/// model, or no other layout. A device answers commands as a G4, whatever it is.
+/// commands, its motor, its numbers in the answer to 90. `word` is its name, such as "x4-pro"; `other_layout`
+/// selects the other samples of the S2 and S2 Pro. A firmware in `options.info` that is not the usual one of
+/// `options.model` is kept. If it is one before a change of the samples, as of a TG15 up to 1.2, they are the
+/// old ones. Returns false, and changes nothing, if there is no such model, or no other layout.
 [[nodiscard]] G4LIDAR_API bool use_model(device_options& options, std::string_view word,
                                          bool other_layout = false) noexcept;
 

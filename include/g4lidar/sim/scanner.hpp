@@ -35,6 +35,7 @@ struct scanner_options {
   /// Selects one of the rates of the format: 4, 8 or 9 kHz of a G4.
   g4lidar::sample_rate sample_rate = g4lidar::sample_rate::khz_9;
   std::size_t samples_per_packet = 40;  ///< 1 to the most of the format, at most 80.
+  double zero_deg = 0.0;   ///< By which the angles that it sends are too small, -360 to 360.
   double index_deg = 0.0;  ///< The angle of the index mark, [0, 360); 348 on some devices.
   /// The angle at the first sample, [0, 360); drawn at random where not given.
   std::optional<double> start_deg = std::nullopt;

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 
+#include "g4lidar/core/angle.hpp"
+
 namespace g4lidar::sim {
 namespace {
 
@@ -52,15 +54,20 @@ void put_sample(word_writer& to, const sample_truth& sample, const sample_code& 
   to.put(sample.raw * 4U + lower);
 }
 
+unsigned sent_angle(double degrees, double zero_deg) noexcept {
+  return wire_angle(zero_deg == 0.0 ? degrees : wrap_once_deg(degrees - zero_deg));
+}
+
 }  // namespace
 
 bytes encode_packet(std::span<std::uint8_t, longest_packet> out, std::uint8_t ct,
-                    std::span<const sample_truth> samples, const sample_code& code) noexcept {
+                    std::span<const sample_truth> samples, const sample_code& code,
+                    double zero_deg) noexcept {
   word_writer to(out);
   to.put(0x55AA);
   to.put(ct + 256U * static_cast<unsigned>(samples.size()));
-  to.put(wire_angle(samples.front().first_level_deg));
-  to.put(wire_angle(samples.back().first_level_deg));
+  to.put(sent_angle(samples.front().first_level_deg, zero_deg));
+  to.put(sent_angle(samples.back().first_level_deg, zero_deg));
   to.put(0);  // the place of the checksum
   for (const sample_truth& each : samples) put_sample(to, each, code);
   return to.finish(packet_head_bytes - 2);

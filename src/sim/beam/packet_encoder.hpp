@@ -10,10 +10,11 @@
 
 namespace g4lidar::sim {
 
-/// Writes a packet with these samples, at least one, and returns its bytes in `out`.
+/// Writes a packet with these samples, at least one, whose angles are counted from `zero_deg`. Returns its
+/// bytes in `out`.
 [[nodiscard]] bytes encode_packet(std::span<std::uint8_t, longest_packet> out, std::uint8_t ct,
-                                  std::span<const sample_truth> samples,
-                                  const sample_code& code) noexcept;
+                                  std::span<const sample_truth> samples, const sample_code& code,
+                                  double zero_deg) noexcept;
 
 /// CRC-8 with the polynomial x^8 + x^5 + x^4 + 1, the lowest bit first, of one more byte.
 [[nodiscard]] std::uint8_t crc_with(std::uint8_t crc, std::uint8_t byte) noexcept;

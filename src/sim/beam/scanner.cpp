@@ -87,6 +87,9 @@ std::string_view problem_with(const scanner_options& options) noexcept {
   if (options.samples_per_packet < 1 || options.samples_per_packet > format.max_samples) {
     return "a packet must hold 1 to 80 samples, or 40, by the model";
   }
+  if (!(options.zero_deg >= -360.0 && options.zero_deg <= 360.0)) {
+    return "the direction of zero must be -360 to 360 degrees";
+  }
   if (!is_angle(options.index_deg)) return "the index angle must be 0 to below 360 degrees";
   if (options.start_deg && !is_angle(*options.start_deg)) {
     return "the start angle must be 0 to below 360 degrees";
@@ -179,7 +182,7 @@ sent_packet scanner::next() noexcept {
   const std::uint8_t ct = next_ct(zero);
   crc_ = crc_with(zero ? std::uint8_t{0} : crc_, ct);
   const std::span<const sample_truth> samples(truths_.data(), count);
-  return {encode_packet(packet_, ct, samples, options_.format.code), samples,
+  return {encode_packet(packet_, ct, samples, options_.format.code, options_.zero_deg), samples,
           samples.back().time_ns, before};
 }
 

@@ -56,6 +56,9 @@ std::string_view problem_with(const device_options& options) noexcept {
       (options.time_packet_ns < 1'000'000 || !is_duration(options.time_packet_ns))) {
     return "time packets must come every 1 ms to 60 s, or never (0)";
   }
+  if (options.zero_angle_cdeg < -36'000 || options.zero_angle_cdeg > 36'000) {
+    return "the direction of zero must be -360 to 360 degrees";
+  }
   if (options.protection_ns < 1'000'000 || !is_duration(options.protection_ns)) {
     return "the protection must act after 1 ms to 60 s";
   }

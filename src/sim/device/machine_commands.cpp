@@ -5,6 +5,11 @@
 #include "machine.hpp"
 
 namespace g4lidar::sim {
+namespace {
+
+constexpr command_set allowed_while_scanning{0x00, 0x60, 0x65};
+
+}  // namespace
 
 // At another rate than that of the device it arrives as other bytes.
 void device::machine::host_byte_arrives() noexcept {
@@ -27,9 +32,9 @@ void device::machine::execute(const pending_command& asked_for) noexcept {
 }
 
 bool device::machine::obey(command code) noexcept {
-  const std::optional<command_traits> traits = traits_of(code);
-  if (!traits) return false;
-  if (is_scanning() && !traits->allowed_while_scanning &&
+  const auto number = static_cast<std::uint8_t>(code);
+  if (!options.commands.has(number)) return false;
+  if (is_scanning() && !allowed_while_scanning.has(number) &&
       options.while_scanning == disturbance::ignored) {
     return false;
   }

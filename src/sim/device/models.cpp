@@ -36,6 +36,26 @@ std::uint16_t first_frequency_chz(const simulated_model& of) noexcept {
   return of.frequency.is_stepped && of.frequency.slowest_dhz >= 60 ? 1000 : 700;
 }
 
+command_set commands_of(const simulated_model& of) noexcept {
+  const command_row& its = of.commands;
+  command_set all = basic_commands;
+  if (of.frequency.is_stepped) all.add(frequency_commands);
+  if (its.idle) all.add({0x01, 0x02});
+  if (its.idle_query) all.add(0x05);
+  if (its.motor) all.add({0x06, 0x07, 0x08, 0x0E, 0x0F});
+  if (of.rates.are_stepped) all.add({0xD0, 0xD1});
+  if (its.rate_query_only) all.add(0xD1);
+  if (its.protection == knowledge::present) all.add(0xD9);
+  if (its.zero_divisor != 0) all.add(0x93);
+  if (its.pitch) all.add(0x98);
+  return all;
+}
+
+bool has_version(const device_information& info, const simulated_model* of) noexcept {
+  return of != nullptr && info.firmware_major == of->version.major &&
+         info.firmware_minor == of->version.minor && info.hardware == of->version.hardware;
+}
+
 unsigned digits(const device_information& info, std::size_t from, std::size_t count) noexcept {
   unsigned number = 0;
   for (const char digit : std::span(info.serial_digits).subspan(from, count)) {
@@ -73,6 +93,11 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
   const simulated_model* const found = find_model(word);
   if (found == nullptr || (other_layout && !found->other_code)) return false;
   const simulated_model& of = *found;
+  if (has_version(options.info, find_model(options.model))) {
+    options.info.firmware_major = of.version.major;
+    options.info.firmware_minor = of.version.minor;
+    options.info.hardware = of.version.hardware;
+  }
   const unsigned version = options.info.firmware_major * 256U + options.info.firmware_minor;
   const bool is_old = of.old.last != 0 && version <= of.old.last;
 
@@ -99,11 +124,17 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
   scanner.min_range_mm = nearest_mm != 0 ? nearest_mm : of.range.nearest_mm;
   scanner.max_range_mm = of.range.farthest_mm;
 
+  options.model = of.word;
+  options.commands = commands_of(of);
+  options.answers_sample_rate = of.rates.are_stepped;
+  options.frequency_error_chz = static_cast<std::int16_t>(-of.frequency.answer_offset_chz);
+  options.zero_angle_divisor = is_old ? of.old.zero_divisor : of.commands.zero_divisor;
   options.info.model = of.ids[0];
   options.baud = of.bauds[0];
   options.one_way = of.answers == talk::never;
   options.while_scanning =
       of.answers == talk::always ? disturbance::mid_packet : disturbance::ignored;
+  options.boot_text = !options.one_way || of.information == knowledge::present;
   options.driven_by = of.driven_by;
   options.dtr_starts_by = !options.one_way ? dtr_start::pulse : dtr_start::level;
   options.highest_frequency_chz = format.max_frequency_chz;
@@ -125,6 +156,7 @@ std::span<const std::string_view> model_words() noexcept {
 
 scanner_options scanner_of(const device_options& options) noexcept {
   scanner_options scanner = options.scanner;
+  scanner.zero_deg = options.zero_angle_cdeg / 100.0;
   if (options.ct_information) {
     scanner.information = ct_information(options.info, options.condition);
   }

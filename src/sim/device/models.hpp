@@ -57,6 +57,24 @@ struct range_row {
   std::uint16_t farthest_mm = 16'000;
 };
 
+/// The commands beyond those of all models that answer, D0 and D1, and the scan frequency.
+struct command_row {
+  bool idle = false;                          ///< 01, 02.
+  bool idle_query = false;                    ///< 05.
+  bool motor = false;                         ///< 06, 07, 08, 0E, 0F.
+  bool rate_query_only = false;               ///< D1, as far as it is known.
+  bool pitch = false;                         ///< 98.
+  std::uint8_t zero_divisor = 0;              ///< Of the answer to 93; 0: no such command.
+  knowledge protection = knowledge::unknown;  ///< D9.
+};
+
+/// What the answer to 90 contains.
+struct version_row {
+  std::uint8_t major = 3;
+  std::uint8_t minor = 2;
+  std::uint8_t hardware = 3;
+};
+
 /// What devices with old firmware have instead.
 struct old_version {
   std::uint16_t last = 0;  ///< 256 * major + minor; 0: no difference.
@@ -68,7 +86,8 @@ struct old_version {
 /// By default what most models of the G series have.
 struct simulated_model {
   std::string_view word;
-  std::array<std::uint8_t, 2> ids{};            ///< In the device information; 0: no other.
+  std::array<std::uint8_t, 2> ids{};  ///< In the device information; 0: no other.
+  version_row version{};
   std::array<std::uint32_t, 2> bauds{230'400};  ///< The usual one first; 0: no other.
 
   sample_code code = quarter_code;
@@ -86,8 +105,7 @@ struct simulated_model {
   range_row range{};
   bool is_turned = true;
 
-  std::uint8_t zero_divisor = 0;               ///< Of the answer to 93; 0: no such command.
-  knowledge protection = knowledge::unknown;   ///< D9.
+  command_row commands{};
   knowledge information = knowledge::unknown;  ///< In CT.
   leading_byte leading = leading_byte::nothing;
   old_version old{};
@@ -121,7 +139,7 @@ namespace rows {
 
 [[nodiscard]] constexpr simulated_model with_zero_angle(simulated_model of,
                                                         std::uint8_t divisor) noexcept {
-  of.zero_divisor = divisor;
+  of.commands.zero_divisor = divisor;
   return of;
 }
 
@@ -130,17 +148,19 @@ inline constexpr auto g_models = [] {
   simulated_model g4{.word = "g4", .ids = {5}};
   g4.max_samples = 80;
   g4.rates = {{{{4000, 100}, {8000, 260}, {9000, 280}}}, 9000, true};
-  g4.protection = knowledge::present;
+  g4.commands.protection = knowledge::present;
+  g4.commands.idle = g4.commands.idle_query = g4.commands.motor = true;
   g4.leading = leading_byte::random;
   g4.answers = talk::always;
   simulated_model g5 = named(g4, "g5", 20);
-  g5.protection = knowledge::unknown;
+  g5.commands = {};
 
   simulated_model f4 = with_baud(with_rate(with_range({}, 120, 12'000), 4000), 115'200);
-  f4.protection = knowledge::absent;
+  f4.commands.protection = knowledge::absent;
   simulated_model f4_pro = with_range({}, 120, 12'000);
   f4_pro.rates = {{{{4000}, {6000}}}, 4000, true};
-  f4_pro.protection = knowledge::present;
+  f4_pro.commands.protection = knowledge::present;
+  f4_pro.commands.idle = f4_pro.commands.motor = true;
 
   simulated_model g1 = with_zero_angle(with_rate({}, 9000), 4);
   g1.rates.rows[0].nearest_mm = 280;
@@ -153,10 +173,11 @@ inline constexpr auto g_models = [] {
   simulated_model g6 = with_baud(with_range({}, 100, 25'000), 512'000);
   g6.code = half_code;
   g6.rates = {{{{8000, 100}, {16'000, 260}, {18'000, 280}}}, 18'000, true};
-  g6.protection = knowledge::present;
+  g6.commands.protection = knowledge::present;
 
   simulated_model g2 = with_zero_angle(with_rate({}, 5000), 4);
   g2.code = bright_10_code;
+  g2.version = {3, 5, 3};
   g2.rates.rows[0].nearest_mm = 280;
   simulated_model g4b = with_baud(with_rate(with_range({}, 120, 16'000), 10'000), 512'000);
   g4b.code = bright_10_code;
@@ -186,7 +207,8 @@ inline constexpr auto x_models = [] {
   x4.driven_by = drive::dtr_line;
   x4.frequency.is_stepped = false;
   x4.is_turned = false;
-  x4.protection = knowledge::absent;
+  x4.commands.protection = knowledge::absent;
+  x4.version = {1, 10, 1};
   const simulated_model s4 = with_baud(with_rate(with_range(x4, 100, 8000), 4000), 115'200);
   x4.information = knowledge::absent;
   x4.index_deg = 348;
@@ -194,6 +216,7 @@ inline constexpr auto x_models = [] {
 
   simulated_model one_way = s4;
   one_way.answers = talk::never;
+  one_way.version = {1, 5, 1};
   one_way.frequency.slowest_dhz = 40;
   one_way.frequency.fastest_dhz = 80;
   const simulated_model x2 = with_rate(one_way, 3000);
@@ -206,6 +229,7 @@ inline constexpr auto x_models = [] {
   simulated_model informing = one_way;
   informing.information = knowledge::present;
   informing.leading = leading_byte::crc;
+  informing.version = {3, 1, 3};
   simulated_model x4_pro = with_baud(with_rate(with_range(informing, 120, 10'000), 5000), 128'000);
   x4_pro.driven_by = drive::power;
   x4_pro.frequency.slowest_dhz = 50;
@@ -249,11 +273,13 @@ inline constexpr auto time_of_flight_models = [] {
   simulated_model t_mini = with_rate(straight, 4000);
   t_mini.code = bright_8_code;
   t_mini.usual_flags = 2;
+  t_mini.version = {1, 3, 1};
   t_mini.frequency.slowest_dhz = 60;
   t_mini.is_turned = false;
   simulated_model sh = with_range(t_mini, 50, 25'000);
   sh.code = bright_16_code;
   sh.usual_flags = 0;
+  sh.commands.pitch = true;
 
   simulated_model tg = with_baud(with_zero_angle(straight, 4), 512'000);
   tg.code = mm_code;
@@ -261,7 +287,8 @@ inline constexpr auto time_of_flight_models = [] {
   tg.frequency.slowest_dhz = 30;
   tg.frequency.fastest_dhz = 160;
   tg.index_deg = 108;
-  tg.protection = knowledge::present;
+  tg.commands.rate_query_only = true;
+  tg.commands.protection = knowledge::present;
   tg.leading = leading_byte::crc;
   tg.frequency.answer_offset_chz = -40;
   tg.frequency.ct_offset_dhz = 30;
@@ -275,7 +302,7 @@ inline constexpr auto time_of_flight_models = [] {
   tx.frequency.fastest_dhz = 80;
   tx.frequency.is_stepped = false;
   tx.is_turned = false;
-  tx.protection = knowledge::absent;
+  tx.commands.protection = knowledge::absent;
 
   return std::array{
       named(with_range(t_mini, 50, 12'000), "t-mini", 140),

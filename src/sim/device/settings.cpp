@@ -15,10 +15,35 @@ answer_bytes answer_with_byte(std::uint8_t byte) noexcept {
   return answer_with(response_kind::byte, std::array{byte});
 }
 
-answer_bytes answer_with_frequency(std::uint16_t chz) noexcept {
-  return answer_with(response_kind::frequency,
-                     std::array<std::uint8_t, 4>{static_cast<std::uint8_t>(chz & 0xFFU),
-                                                 static_cast<std::uint8_t>(chz >> 8), 0, 0});
+constexpr std::uint8_t zero_angle_code = 0x93;
+constexpr std::uint8_t pitch_code = 0x98;
+constexpr std::uint8_t pitch_type = 0x10;
+
+// The lowest byte first.
+answer_bytes answer_with_number(std::int32_t number) noexcept {
+  std::array<std::uint8_t, 4> content{};
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    content[i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(number) >> 8 * i & 0xFFU);
+  }
+  return answer_with(response_kind::frequency, content);
+}
+
+answer_bytes answer_with_frequency(std::uint16_t chz, const device_options& options) noexcept {
+  return answer_with_number(std::max(chz + options.frequency_error_chz, 0));
+}
+
+// The nearest number of parts of a degree.
+answer_bytes answer_with_zero_angle(const device_options& options) noexcept {
+  const std::int64_t hundredths =
+      std::int64_t{options.zero_angle_cdeg} * options.zero_angle_divisor;
+  const std::int64_t half = hundredths < 0 ? -50 : 50;
+  return answer_with_number(static_cast<std::int32_t>((hundredths + half) / 100));
+}
+
+answer_bytes answer_with_pitch(const device_options& options) noexcept {
+  answer_bytes answer = answer_with_number(options.pitch_cdeg);
+  answer.data[response_header_size - 1] = pitch_type;
+  return answer;
 }
 
 // Sets the value, and answers with it.
@@ -37,7 +62,7 @@ answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
   if (possible || options.frequency_at_limit == at_limit::clamp) {
     frequency_chz = static_cast<std::uint16_t>(std::clamp(wanted, least, most));
   }
-  return answer_with_frequency(frequency_chz);
+  return answer_with_frequency(frequency_chz, options);
 }
 
 // The first one behind the last one.
@@ -88,6 +113,9 @@ device_settings first_settings(const device_options& options) noexcept {
 
 std::optional<answer_bytes> apply(command code, device_settings& now,
                                   const device_options& options) noexcept {
+  const auto number = static_cast<std::uint8_t>(code);
+  if (number == zero_angle_code) return answer_with_zero_angle(options);
+  if (number == pitch_code) return answer_with_pitch(options);
   switch (code) {
     case command::low_power_on:
       return set(now.idle_power, low_power::on);
@@ -111,7 +139,7 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
     case command::frequency_down_1_hz:
       return step(now.scan_frequency_chz, -100, options);
     case command::frequency_query:
-      return answer_with_frequency(now.scan_frequency_chz);
+      return answer_with_frequency(now.scan_frequency_chz, options);
     case command::constant_frequency_on:
       return set(now.constancy, constant_frequency::on);
     case command::constant_frequency_off:
@@ -119,6 +147,7 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
     case command::sample_rate_next:
       return set(now.sample_rate, next_of(now.sample_rate, options.scanner.format));
     case command::sample_rate_query:
+      if (!options.answers_sample_rate) return std::nullopt;
       return set(now.sample_rate, now.sample_rate);
     case command::protection_toggle:
       return set(now.protection, other_than(now.protection));

@@ -32,11 +32,11 @@ using options = device_options;
 using stored = device_settings;
 using member =
     std::variant<std::int64_t options::*, std::uint32_t options::*, std::uint16_t options::*,
-                 bool options::*, turning options::*, at_limit options::*, disturbance options::*,
-                 drive options::*, dtr_start options::*, dtr_cut options::*, low_power stored::*,
-                 motor_direction stored::*, constant_frequency stored::*,
+                 std::int32_t options::*, bool options::*, turning options::*, at_limit options::*,
+                 disturbance options::*, drive options::*, dtr_start options::*, dtr_cut options::*,
+                 low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 50> members{{
+constexpr std::array<std::pair<std::string_view, member>, 53> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -73,6 +73,9 @@ constexpr std::array<std::pair<std::string_view, member>, 50> members{{
     {"settings_outlive_power", &options::settings_outlive_power},
     {"settings_outlive_restart", &options::settings_outlive_restart},
     {"answers_direction", &options::answers_direction},
+    {"answers_sample_rate", &options::answers_sample_rate},
+    {"zero_angle_cdeg", &options::zero_angle_cdeg},
+    {"pitch_cdeg", &options::pitch_cdeg},
     {"answers_health_91", &options::answers_health_91},
     {"answers_health_92", &options::answers_health_92},
     {"obeys_forced_stop", &options::obeys_forced_stop},
@@ -147,8 +150,9 @@ std::string read_into(Number& number, std::string_view value) {
   const char* const end = value.data() + value.size();
   const auto [at, error] = std::from_chars(value.data(), end, number);
   if (error == std::errc() && at == end) return {};
-  return refused(value,
-                 "is not in the range 0 to " + std::to_string(std::numeric_limits<Number>::max()));
+  return refused(value, "is not in the range " +
+                            std::to_string(std::numeric_limits<Number>::min()) + " to " +
+                            std::to_string(std::numeric_limits<Number>::max()));
 }
 
 std::string add_fault(std::vector<fault>& faults, std::string_view value) {

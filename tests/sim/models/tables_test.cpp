@@ -111,8 +111,8 @@ TEST(SimModelTables, AgreeInEachField) {
     same("min_mm", ours.range.min_mm, its.range.nearest_mm);
     same("max_mm", ours.range.max_mm, its.range.farthest_mm);
     same("turn_deg", int{ours.turn_deg}, its.is_turned ? 180 : 0);
-    same("zero_angle_divisor", ours.zero_angle_divisor, its.zero_divisor);
-    same("protection", text_of(ours.protection), text_of(its.protection));
+    same("zero_angle_divisor", ours.zero_angle_divisor, its.commands.zero_divisor);
+    same("protection", text_of(ours.protection), text_of(its.commands.protection));
     same("ct_information", text_of(ours.ct_information), text_of(its.information));
     same("last old firmware", ours.old_firmware.last_version, its.old.last);
     if (its.old.last == 0) continue;
