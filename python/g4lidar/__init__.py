@@ -17,6 +17,7 @@ import enum as _enum
 from ._g4lidar import (
     POINT_DTYPE,
     POSE_DTYPE,
+    BackgroundReader,
     Decoder,
     DeviceInformation,
     Diagnosis,
@@ -55,11 +56,11 @@ from . import errors
 from .errors import Error
 
 __all__ = [
-    "POINT_DTYPE", "POSE_DTYPE", "Decoder", "DeviceInformation", "Diagnosis", "Error", "Event", "Lidar", "Mounting",
-    "Player", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan", "ScanFlag", "ScanShaper", "Scans",
-    "Simulator", "StageReport", "Twist", "TwistEstimate", "TwistEstimator", "decode", "deskew", "doctor", "errors",
-    "fill_grid", "find_lidars", "list_ports", "mark_bit_errors", "mark_isolated", "mark_veiling",
-    "merge_scans", "open", "to_xy",
+    "POINT_DTYPE", "POSE_DTYPE", "BackgroundReader", "Decoder", "DeviceInformation", "Diagnosis", "Error", "Event",
+    "Lidar", "Mounting", "Player", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan",
+    "ScanFlag", "ScanShaper", "Scans", "Simulator", "StageReport", "Twist", "TwistEstimate", "TwistEstimator",
+    "decode", "deskew", "doctor", "errors", "fill_grid", "find_lidars", "list_ports", "mark_bit_errors",
+    "mark_isolated", "mark_veiling", "merge_scans", "open", "to_xy",
 ]
 
 __version__ = _version

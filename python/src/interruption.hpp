@@ -28,6 +28,22 @@ class interruption {
   lidar* before_ = nullptr;
 };
 
+/// A thread that is made while this exists gets no signals: they are those of the other threads.
+class without_signals {
+ public:
+  without_signals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  without_signals(const without_signals&) = delete;
+  without_signals& operator=(const without_signals&) = delete;
+  ~without_signals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
 /// For reading_options::is_cancelled, where the GIL is held: calls the handlers of signals that came; true if one
 /// raised. Then value_of() raises the same.
 [[nodiscard]] bool handler_raises();

@@ -11,7 +11,7 @@
 #include <string>
 #include <tuple>
 
-#include "live_lidar.hpp"
+#include "reading_thread.hpp"
 #include "settings.hpp"
 
 namespace g4lidar::python {
@@ -53,31 +53,8 @@ nb::dict settings(live_lidar& on, bool interrupt) {
 }
 
 nb::dict counts(live_lidar& on) {
-  const lidar_counts now = on.look([](lidar& device) { return device.counts(); });
-  nb::dict all;
-  all["bytes"] = now.bytes;
-  all["held"] = now.held;
-  all["parsed_bytes"] = now.stream.parsed_bytes;
-  all["packets"] = now.stream.packets;
-  all["responses"] = now.stream.responses;
-  all["points"] = now.stream.points;
-  all["suspect_packets"] = now.stream.suspect;
-  all["time_packets"] = now.stream.time_packets;
-  all["crc_matches"] = now.stream.crc_matches;
-  all["crc_mismatches"] = now.stream.crc_mismatches;
-  for (std::size_t i = 0; i < skip_reasons; ++i) {
-    const std::string name = std::string("skipped_") + name_of(static_cast<skip_reason>(i));
-    all[nb::str(name.c_str())] = now.stream.skipped_by_reason[i];
-  }
-  all["samples_lost"] = now.samples_lost;
-  all["scans"] = now.scans;
-  all["partial_scans"] = now.partial_scans;
-  all["scans_missed"] = now.scans_missed;
+  nb::dict all = dict_of(on.look([](lidar& device) { return device.counts(); }));
   all["scans_dropped"] = on.dropped();
-  all["points_missed"] = now.points_missed;
-  all["command_retries"] = now.command_retries;
-  all["reconnects"] = now.reconnects;
-  all["largest_gap_ns"] = now.largest_gap_ns;
   return all;
 }
 
@@ -313,6 +290,33 @@ void bind_reading(Class& made) {
 
 }  // namespace
 
+nb::dict dict_of(const lidar_counts& from) {
+  nb::dict all;
+  all["bytes"] = from.bytes;
+  all["held"] = from.held;
+  all["parsed_bytes"] = from.stream.parsed_bytes;
+  all["packets"] = from.stream.packets;
+  all["responses"] = from.stream.responses;
+  all["points"] = from.stream.points;
+  all["suspect_packets"] = from.stream.suspect;
+  all["time_packets"] = from.stream.time_packets;
+  all["crc_matches"] = from.stream.crc_matches;
+  all["crc_mismatches"] = from.stream.crc_mismatches;
+  for (std::size_t i = 0; i < skip_reasons; ++i) {
+    const std::string name = std::string("skipped_") + name_of(static_cast<skip_reason>(i));
+    all[nb::str(name.c_str())] = from.stream.skipped_by_reason[i];
+  }
+  all["samples_lost"] = from.samples_lost;
+  all["scans"] = from.scans;
+  all["partial_scans"] = from.partial_scans;
+  all["scans_missed"] = from.scans_missed;
+  all["points_missed"] = from.points_missed;
+  all["command_retries"] = from.command_retries;
+  all["reconnects"] = from.reconnects;
+  all["largest_gap_ns"] = from.largest_gap_ns;
+  return all;
+}
+
 void bind_lidar(nb::module_& module) {
   bind_parts(module);
   nb::class_<live_lidar> made(
@@ -325,7 +329,11 @@ void bind_lidar(nb::module_& module) {
   bind_control(made);
   bind_reading(made);
   bind_player(module, made);
-  module.def("_close_all", &live_lidar::close_all);
+  bind_background(module, made);
+  module.def("_close_all", [] {
+    reading_thread::stop_all();
+    live_lidar::close_all();
+  });
 }
 
 }  // namespace g4lidar::python

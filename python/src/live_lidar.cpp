@@ -5,6 +5,7 @@
 
 #include "g4lidar/transport/transport.hpp"
 #include "g4lidar/wall_clock.hpp"
+#include "reading_thread.hpp"
 
 namespace g4lidar::python {
 namespace {
@@ -116,6 +117,22 @@ void live_lidar::release() {
   notice_.give();
 }
 
+reading_thread* live_lidar::hand_over(bool newest) {
+  if (on_.is_virtual) raise_bad_option("background: this Simulator has virtual time");
+  if (on_.recording) raise_bad_option("background: this lidar is recorded");
+  if (!look([](lidar& on) { return on.is_scanning(); })) start();
+  // With the GIL, so that no other thread wakes what is moved.
+  const lock held = locked(true);
+  const without_signals masked;
+  std::optional<std::int64_t> ahead_ns;
+  if (player* const of = lidar_->player()) ahead_ns = of->wall_ns(0);
+  auto started = background_reader::start(std::move(*lidar_), {.newest_only = newest});
+  may_stop_ = false;
+  closed_ = true;
+  notice_.give();
+  return new reading_thread(value_of(std::move(started)), on_, ahead_ns);
+}
+
 bool live_lidar::counts_time(lidar& on) const {
   const player* const of = on.player();
   return on_.is_virtual || (of != nullptr && of->speed() == 0);
@@ -141,12 +158,10 @@ nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
     const std::int64_t ahead_ns = of != nullptr ? of->wall_ns(found->time_ns()) - found->time_ns()
                                   : on_.is_virtual ? 0
                                                    : wall_clock().ahead().count();
-    return copied_scan{*found, {found->points.begin(), found->points.end()}, ahead_ns};
+    return copied_scan(*found, ahead_ns);
   };
   return run(wait, [](std::optional<copied_scan>& found) {
-    if (!found) return nb::object(nb::none());
-    found->about.points = found->points;
-    return nb::cast(kept_scan(found->about, found->wall_ahead_ns));
+    return found ? found->kept() : nb::object(nb::none());
   });
 }
 

@@ -26,12 +26,29 @@
 
 namespace g4lidar::python {
 
+class reading_thread;
+
 /// What a lidar stands on; everything may be absent.
 struct foundation {
   std::shared_ptr<void> simulation;             ///< Outlives the lidar.
   std::shared_ptr<recording_writer> recording;  ///< To which the lidar is recorded; outlives it.
   std::shared_ptr<std::timed_mutex> mutex;      ///< Shared by all users of a virtual clock.
   bool is_virtual = false;                      ///< A simulation in virtual time.
+};
+
+/// A scan, whose points are not those of the lidar.
+struct copied_scan {
+  copied_scan(const scan& from, std::int64_t ahead_ns)
+      : about(from), points(from.points.begin(), from.points.end()), wall_ahead_ns(ahead_ns) {}
+  /// The object of Python. Needs the GIL.
+  [[nodiscard]] nb::object kept() {
+    about.points = points;
+    return nb::cast(kept_scan(about, wall_ahead_ns));
+  }
+
+  scan about;
+  std::vector<point> points;
+  std::int64_t wall_ahead_ns;
 };
 
 /// The lidar of Python's class Lidar. Calls of several threads wait for each other, without the GIL. No code in Python
@@ -95,19 +112,14 @@ class live_lidar {
     return look([](lidar& on) { return on.event_loop().scan_due_in(); });
   }
 
+  /// Gives the lidar to a thread of the library, and is closed then: see BackgroundReader.
+  [[nodiscard]] reading_thread* hand_over(bool newest);
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_; }
   [[nodiscard]] bool is_closed() const noexcept { return closed_; }
   /// Closes every lidar of this process: at the end of the program.
   static void close_all();
 
  private:
-  /// A scan, whose points are not those of the lidar.
-  struct copied_scan {
-    scan about;
-    std::vector<point> points;
-    std::int64_t wall_ahead_ns;
-  };
-
   using lock = std::unique_lock<std::timed_mutex>;
 
   /// Waits without the GIL. `wakes`: calls that wait are woken.
@@ -176,6 +188,9 @@ auto live_lidar::with_player(const Call& call) {
 
 /// A timeout in seconds.
 [[nodiscard]] live_lidar::milliseconds in_milliseconds(double seconds);
+
+/// As Lidar.counts(), but 'scans_dropped'.
+[[nodiscard]] nb::dict dict_of(const lidar_counts& from);
 
 void bind_lidar(nb::module_& module);
 void bind_opening(nb::module_& module);

@@ -16,7 +16,7 @@
 #include <tuple>
 #include <variant>
 
-#include "background.hpp"
+#include "abandonable.hpp"
 #include "g4lidar/discovery.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/transport/connector.hpp"

@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <future>
 #include <memory>
@@ -17,6 +16,7 @@
 
 #include "g4lidar/transport/forwarding.hpp"
 #include "gil.hpp"
+#include "interruption.hpp"
 
 namespace g4lidar::python {
 
@@ -30,17 +30,10 @@ template <class Work>
 auto in_background(Work work, const shared_progress& of_work) {
   std::packaged_task<decltype(work())()> task(std::move(work));
   auto found = task.get_future();
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are those of the other threads
-  try {
+  {
+    const without_signals masked;
     std::thread(std::move(task)).detach();
-  } catch (...) {
-    pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    throw;
   }
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   while (true) {
     {
       const without_gil free;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "background.hpp"
+#include "abandonable.hpp"
 
 #include <algorithm>
 #include <cerrno>
