@@ -39,6 +39,21 @@ packages_slam=(mrpt-apps python3-venv)
 # shellcheck disable=SC2034
 packages_colcon=(colcon python3-colcon-cmake python3-colcon-package-information python3-colcon-ros)
 
+# To compile and run packages of ROS 2 with the installations for Debian 12: scripts/ros.sh.
+# shellcheck disable=SC2034
+packages_ros=(
+  libyaml-0-2 libconsole-bridge1.0 libddsc0debian libfastcdr1 libfastrtps2.9 libfoonathan-memory0.7.2
+  libtinyxml2-9 libssl3 libpython3.11 python3 python3-yaml python3-numpy python3-lark python3-packaging
+  python3-importlib-metadata python3-argcomplete python3-netifaces python3-psutil python3-pkg-resources
+  g++ make cmake ninja-build libyaml-dev libconsole-bridge-dev libeigen3-dev python3-empy python3-setuptools
+  python3-distutils python3-catkin-pkg libpython3-dev libfastrtps-dev libfoonathan-memory-dev libtinyxml2-dev
+  libssl-dev python3-dev python3-pytest libgtest-dev
+  colcon python3-colcon-ros python3-colcon-cmake python3-colcon-bash python3-colcon-recursive-crawl
+  python3-colcon-package-selection python3-colcon-package-information python3-colcon-output
+  python3-colcon-parallel-executor python3-colcon-library-path python3-colcon-metadata
+  python3-colcon-test-result python3-colcon-defaults
+)
+
 # To test the page of g4-serve in a browser, and to make pictures of it.
 packages_browser=(chromium chromium-driver fonts-dejavu-core python3-selenium)
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include "cdr.hpp"
 #include "g4lidar/cartesian.hpp"
@@ -123,26 +123,21 @@ void put_place(cdr_writer& message, const pose_2d& place, bool upside_down) {
 }
 
 /// The codes are those of sensor_msgs/PointField.
-void put_fields(cdr_writer& message, bool has_intensity) {
-  constexpr std::uint8_t uint32_code = 6;
-  constexpr std::uint8_t float32_code = 7;
-  constexpr std::array<std::pair<std::string_view, std::uint8_t>, 7> all{
-      {{"x", float32_code},
-       {"y", float32_code},
-       {"z", float32_code},
-       {"t", uint32_code},
-       {"range", float32_code},
-       {"angle", float32_code},
-       {"intensity", float32_code}}};
-  const auto fields = std::span(all).first(has_intensity ? all.size() : all.size() - 1);
-  message.put(static_cast<std::uint32_t>(fields.size()));
-  std::uint32_t offset = 0;
-  for (const auto& [name, code] : fields) {
-    message.put(name);
-    message.put(std::exchange(offset, offset + 4));
-    message.put(code);
-    message.put(std::uint32_t{1});
-  }
+constexpr std::uint8_t uint32_code = 6;
+constexpr std::uint8_t float32_code = 7;
+constexpr std::array<cloud_field, 7> all_cloud_fields{{{"x", 0, float32_code},
+                                                       {"y", 4, float32_code},
+                                                       {"z", 8, float32_code},
+                                                       {"t", 12, uint32_code},
+                                                       {"range", 16, float32_code},
+                                                       {"angle", 20, float32_code},
+                                                       {"intensity", 24, float32_code}}};
+
+void append(std::vector<std::uint8_t>& out, std::uint32_t value) {
+  for (unsigned i = 0; i < 32; i += 8) out.push_back(static_cast<std::uint8_t>(value >> i));
+}
+void append(std::vector<std::uint8_t>& out, float value) {
+  append(out, std::bit_cast<std::uint32_t>(value));
 }
 
 }  // namespace
@@ -198,10 +193,8 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
   return first_bin;
 }
 
-void put_laser_scan(std::span<const float> ranges_m, const message_header& header,
-                    std::vector<std::uint8_t>& out) {
+laser_scan_numbers numbers_of(const message_header& header, std::size_t bins) noexcept {
   constexpr float pi = std::numbers::pi_v<float>;
-  const std::size_t bins = ranges_m.size();
   const bool is_by_time = header.order == scan_order::time;
   const std::size_t first = is_by_time ? header.first_bin % bins : 0;
   const float increment = 2 * pi / static_cast<float>(bins);
@@ -210,53 +203,87 @@ void put_laser_scan(std::span<const float> ranges_m, const message_header& heade
   const float from_begin = begin + increment * static_cast<float>(first);
   const float least = from_begin < pi ? from_begin : from_begin - 2 * pi;
   const float duration_s = static_cast<float>(header.duration_ns) * 1e-9F;
+  return {.angle_min_rad = least,
+          .angle_max_rad = least + increment * static_cast<float>(bins - 1),
+          .angle_increment_rad = increment,
+          .time_increment_s = is_by_time ? duration_s / static_cast<float>(bins) : 0.0F,
+          .scan_time_s = duration_s,
+          .range_min_m = static_cast<float>(header.model->range.min_mm) * 0.001F,
+          .range_max_m = longest_range_mm(header.model->samples.layout) * 0.001F,
+          .first = first};
+}
+
+void put_laser_scan(std::span<const float> ranges_m, const message_header& header,
+                    std::vector<std::uint8_t>& out) {
+  const laser_scan_numbers numbers = numbers_of(header, ranges_m.size());
   cdr_writer message(out);
   put_header(message, header.stamp_ns, header.frame_id);
-  message.put(least);
-  message.put(least + increment * static_cast<float>(bins - 1));
-  message.put(increment);
-  message.put(is_by_time ? duration_s / static_cast<float>(bins) : 0.0F);
-  message.put(duration_s);
-  message.put(static_cast<float>(header.model->range.min_mm) * 0.001F);
-  message.put(longest_range_mm(header.model->samples.layout) * 0.001F);
+  message.put(numbers.angle_min_rad);
+  message.put(numbers.angle_max_rad);
+  message.put(numbers.angle_increment_rad);
+  message.put(numbers.time_increment_s);
+  message.put(numbers.scan_time_s);
+  message.put(numbers.range_min_m);
+  message.put(numbers.range_max_m);
   for (const std::span<const float> values : {ranges_m, header.intensities}) {
     message.put(static_cast<std::uint32_t>(values.size()));
-    const std::size_t from = std::min(first, values.size());
+    const std::size_t from = std::min(numbers.first, values.size());
     for (const float value : values.subspan(from)) message.put(value);
     for (const float value : values.first(from)) message.put(value);
   }
 }
 
-void put_point_cloud2(std::span<const point> points, const message_header& header,
+std::span<const cloud_field> cloud_fields(const model& of) noexcept {
+  const std::size_t count = all_cloud_fields.size() - (has_intensity(of) ? 0 : 1);
+  return std::span(all_cloud_fields).first(count);
+}
+
+std::uint32_t cloud_point_size(const model& of) noexcept {
+  return cloud_fields(of).back().offset + 4;
+}
+
+void put_cloud_points(std::span<const point> points, const message_header& header,
                       std::vector<std::uint8_t>& out) {
   const bool with_intensity = has_intensity(*header.model);
-  const std::uint32_t point_size = with_intensity ? 28 : 24;
   const float left = header.order == scan_order::time ? -1.0F : 1.0F;  // the y axis
+  for (const point& p : points) {
+    if (p.is_no_return()) continue;
+    const xy_point place = to_xy(p, frame::robot, header.model->turn_deg);
+    const std::int64_t since_ns = p.time_ns - points.front().time_ns;
+    append(out, place.x_m);
+    append(out, left * place.y_m);
+    append(out, 0.0F);
+    append(out, static_cast<std::uint32_t>(std::clamp<std::int64_t>(
+                    since_ns, 0, std::numeric_limits<std::uint32_t>::max())));
+    const polar measured = to_polar(p, frame::robot, header.model->turn_deg);
+    append(out, measured.range_m);
+    append(out, left * measured.bearing_rad);
+    if (with_intensity) append(out, static_cast<float>(p.intensity));
+  }
+}
+
+void put_point_cloud2(std::span<const point> points, const message_header& header,
+                      std::vector<std::uint8_t>& out) {
+  const std::uint32_t point_size = cloud_point_size(*header.model);
   const auto count = static_cast<std::uint32_t>(std::count_if(
       points.begin(), points.end(), [](const point& p) { return !p.is_no_return(); }));
   cdr_writer message(out);
   put_header(message, header.stamp_ns, header.frame_id);
   message.put(std::uint32_t{1});
   message.put(count);
-  put_fields(message, with_intensity);
+  const auto fields = cloud_fields(*header.model);
+  message.put(static_cast<std::uint32_t>(fields.size()));
+  for (const cloud_field& each : fields) {
+    message.put(each.name);
+    message.put(each.offset);
+    message.put(each.datatype);
+    message.put(std::uint32_t{1});
+  }
   message.put(std::uint8_t{0});  // little-endian
   message.put(point_size);
   message.put(count * point_size);
   message.put(count * point_size);  // the length of `data`, whose numbers are at multiples of 4
-  for (const point& p : points) {
-    if (p.is_no_return()) continue;
-    const xy_point place = to_xy(p, frame::robot, header.model->turn_deg);
-    const std::int64_t since_ns = p.time_ns - points.front().time_ns;
-    message.put(place.x_m);
-    message.put(left * place.y_m);
-    message.put(0.0F);
-    message.put(static_cast<std::uint32_t>(
-        std::clamp<std::int64_t>(since_ns, 0, std::numeric_limits<std::uint32_t>::max())));
-    const polar measured = to_polar(p, frame::robot, header.model->turn_deg);
-    message.put(measured.range_m);
-    message.put(left * measured.bearing_rad);
-    if (with_intensity) message.put(static_cast<float>(p.intensity));
-  }
+  put_cloud_points(points, header, out);
   message.put(std::uint8_t{1});
 }
 

@@ -71,6 +71,22 @@ struct message_schema {
                         intensities);
 }
 
+/// The numbers of a LaserScan beside its ranges and intensities, for programs that fill a message of ROS themselves.
+struct laser_scan_numbers {
+  float angle_min_rad = 0.0F;
+  float angle_max_rad = 0.0F;
+  float angle_increment_rad = 0.0F;
+  float time_increment_s = 0.0F;
+  float scan_time_s = 0.0F;
+  float range_min_m = 0.0F;
+  float range_max_m = 0.0F;
+  std::size_t first =
+      0;  ///< The index of the range with which the message begins; those before it follow the last one.
+};
+/// Those that put_laser_scan() writes for `bins` ranges, at least one. *Pure.*
+[[nodiscard]] G4LIDAR_API laser_scan_numbers numbers_of(const message_header& header,
+                                                        std::size_t bins) noexcept;
+
 /// Appends a sensor_msgs/msg/LaserScan to `out`. range_min is the shortest range of the model (0.1 m
 /// for a G4; ranges below are not reliable), range_max the longest one that its samples can contain
 /// (16.38375 m for a G4), angle_increment 2 pi / bins.
@@ -88,6 +104,20 @@ G4LIDAR_API void put_laser_scan(std::span<const float> ranges_m, const message_h
 /// range in metres and float32 angle in radians, counter-clockwise from x; of
 /// models that have it also float32 intensity, point::intensity. One row, is_dense. Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_point_cloud2(std::span<const point> points, const message_header& header,
+                                  std::vector<std::uint8_t>& out);
+
+/// A sensor_msgs/PointField with one number.
+struct cloud_field {
+  std::string_view name;
+  std::uint32_t offset;  ///< In a point, bytes.
+  std::uint8_t datatype;
+};
+/// The fields of put_point_cloud2() for points of this model. *Pure.* Valid forever.
+[[nodiscard]] G4LIDAR_API std::span<const cloud_field> cloud_fields(const model& of) noexcept;
+/// The bytes of a point with these fields. *Pure.*
+[[nodiscard]] G4LIDAR_API std::uint32_t cloud_point_size(const model& of) noexcept;
+/// Appends the `data` of put_point_cloud2() to `out`. Allocates beyond the capacity of `out`.
+G4LIDAR_API void put_cloud_points(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);
 
 /// A message of odometry. Covariances are those of x, y, z, and of the rotations about x, y, z, row

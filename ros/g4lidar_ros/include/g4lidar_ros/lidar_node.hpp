@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// A lidar as a lifecycle node and component of ROS 2.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <rclcpp/rclcpp.hpp>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+#include <std_srvs/srv/trigger.hpp>
+
+namespace g4lidar_ros {
+
+class lidar_session;
+class node_diagnostics;
+class node_parameters;
+
+/// configure opens the lidar, activate turns its motor and publishes, deactivate rests it, cleanup closes it. An unplug
+/// is a warning, after which it reconnects. An error that it cannot recover from deactivates it, and on_deactivate()
+/// returns ERROR. A thread of its own reads the lidar; everything else is in the default callback group.
+class LidarNode : public rclcpp_lifecycle::LifecycleNode {
+ public:
+  using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
+
+  explicit LidarNode(const rclcpp::NodeOptions& options);
+  /// Rests the motor and closes the lidar.
+  ~LidarNode() override;
+
+  CallbackReturn on_configure(const rclcpp_lifecycle::State& previous) override;
+  CallbackReturn on_activate(const rclcpp_lifecycle::State& previous) override;
+  CallbackReturn on_deactivate(const rclcpp_lifecycle::State& previous) override;
+  CallbackReturn on_cleanup(const rclcpp_lifecycle::State& previous) override;
+  CallbackReturn on_shutdown(const rclcpp_lifecycle::State& previous) override;
+  CallbackReturn on_error(const rclcpp_lifecycle::State& previous) override;
+
+ private:
+  using trigger = std_srvs::srv::Trigger;
+
+  /// Rests or turns the motor, and notices the end of the lidar. Called several times a second.
+  void update();
+  void allow(bool runs, trigger::Response& answer);
+
+  std::unique_ptr<node_parameters> parameters_;
+  std::shared_ptr<lidar_session> session_;  // null unless it is configured
+  std::unique_ptr<node_diagnostics> diagnostics_;
+  std::vector<rclcpp::ServiceBase::SharedPtr> services_;
+  rclcpp::TimerBase::SharedPtr timer_;
+  std::chrono::steady_clock::time_point wanted_{};  // when it last had subscribers
+  bool is_allowed_ = true;                          // by ~/start and ~/stop
+  bool starts_itself_ = false;
+};
+
+}  // namespace g4lidar_ros

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""One lidar as a lifecycle node, which this file configures and activates.
+
+    ros2 launch g4lidar_ros lidar.launch.py
+    ros2 launch g4lidar_ros lidar.launch.py sim:=true rviz:=true
+    ros2 launch g4lidar_ros lidar.launch.py source:=/dev/ttyUSB0 frame_id:=front_laser
+    ros2 launch g4lidar_ros lidar.launch.py container:=/my_container
+"""
+
+import os
+
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, EmitEvent, OpaqueFunction, RegisterEventHandler
+from launch.conditions import IfCondition
+from launch.events import matches_action
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import LifecycleNode, LoadComposableNodes, Node
+from launch_ros.descriptions import ComposableNode
+from launch_ros.event_handlers import OnStateTransition
+from launch_ros.events.lifecycle import ChangeState
+from launch_ros.parameter_descriptions import ParameterValue
+from lifecycle_msgs.msg import Transition
+
+SHARE = get_package_share_directory("g4lidar_ros")
+
+# The parameters that are also arguments, with their types. An argument that is not given stays as in the file.
+PARAMETERS = {
+    "source": (str, "the lidar or the recording; empty: the only lidar"),
+    "model": (str, "the model of the lidar; empty: a G4, or that of the recording"),
+    "baud": (int, "bits per second; 0: those of the model"),
+    "frame_id": (str, "frame of the scans"),
+    "grid": (int, "ranges of each LaserScan; 0: those of the model"),
+    "order": (str, "order of the ranges of a LaserScan: angle or time"),
+    "standby": (bool, "whether the motor rests while nobody subscribes"),
+    "loop": (bool, "whether a recording starts again at its end"),
+    "playback_speed": (float, "speed of a recording"),
+    "connect_timeout": (float, "how long configure waits for the lidar, seconds"),
+    "use_sim_time": (bool, "whether the time is that of /clock"),
+}
+
+
+def is_true(word):
+    return word.lower() in ("true", "1", "yes", "on")
+
+
+def given_parameters(context):
+    """The arguments that were given, as parameters."""
+    made = {}
+    for name, (kind, _) in PARAMETERS.items():
+        word = LaunchConfiguration(name).perform(context)
+        if word == "":
+            continue
+        if kind is str:  # a text as it is, although it may look like YAML
+            made[name] = ParameterValue(word, value_type=str)
+        else:
+            made[name] = is_true(word) if kind is bool else kind(word)
+    if is_true(LaunchConfiguration("sim").perform(context)) and "source" not in made:
+        made["source"] = ParameterValue("sim:", value_type=str)
+    return made
+
+
+def driven(node):
+    """The actions that configure a lifecycle node when it runs, and then activate it."""
+
+    def change(transition):
+        return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=transition))
+
+    return [
+        RegisterEventHandler(
+            OnStateTransition(
+                target_lifecycle_node=node,
+                start_state="configuring",
+                goal_state="inactive",
+                entities=[change(Transition.TRANSITION_ACTIVATE)],
+            )
+        ),
+        change(Transition.TRANSITION_CONFIGURE),
+    ]
+
+
+def lidar_actions(context):
+    name = LaunchConfiguration("name").perform(context)
+    namespace = LaunchConfiguration("namespace").perform(context)
+    container = LaunchConfiguration("container").perform(context)
+    parameters = [LaunchConfiguration("params_file").perform(context), given_parameters(context)]
+    if container:
+        component = ComposableNode(
+            package="g4lidar_ros",
+            plugin="g4lidar_ros::LidarNode",
+            name=name,
+            namespace=namespace,
+            parameters=[*parameters, {"autostart": True}],
+            extra_arguments=[{"use_intra_process_comms": True}],
+        )
+        return [LoadComposableNodes(target_container=container, composable_node_descriptions=[component])]
+    node = LifecycleNode(
+        package="g4lidar_ros",
+        executable="lidar_node",
+        name=name,
+        namespace=namespace,
+        parameters=parameters,
+        output="screen",
+    )
+    return [node, *driven(node)]
+
+
+def generate_launch_description():
+    parameters = [DeclareLaunchArgument(name, default_value="", description=words)
+                  for name, (_, words) in PARAMETERS.items()]
+    return LaunchDescription([
+        DeclareLaunchArgument("name", default_value="g4lidar", description="name of the node"),
+        DeclareLaunchArgument("namespace", default_value="", description="namespace of the node and its topics"),
+        DeclareLaunchArgument("sim", default_value="false", description="whether the lidar is simulated"),
+        DeclareLaunchArgument("container", default_value="",
+                              description="a component container to load it into; empty: a process of its own"),
+        DeclareLaunchArgument("rviz", default_value="false", description="whether rviz2 is started"),
+        DeclareLaunchArgument("params_file", default_value=os.path.join(SHARE, "config", "lidar.yaml"),
+                              description="file of parameters; arguments have precedence"),
+        *parameters,
+        OpaqueFunction(function=lidar_actions),
+        Node(package="rviz2", executable="rviz2", arguments=["-d", os.path.join(SHARE, "rviz", "lidar.rviz")],
+             condition=IfCondition(LaunchConfiguration("rviz"))),
+    ])

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar_ros/lidar_node.hpp"
+
+#include <chrono>
+#include <exception>
+#include <functional>
+#include <utility>
+
+#include <lifecycle_msgs/msg/state.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+
+#include "lidar_session.hpp"
+#include "node_diagnostics.hpp"
+#include "node_parameters.hpp"
+
+namespace g4lidar_ros {
+namespace {
+
+using namespace std::chrono_literals;
+using lifecycle_msgs::msg::State;
+
+/// So long deactivate waits until the motor rests.
+constexpr auto rest_time = 2s;
+/// How long the motor runs after the last subscriber has left, so that one that returns need not wait.
+constexpr auto rest_delay = 3s;
+
+}  // namespace
+
+LidarNode::LidarNode(const rclcpp::NodeOptions& options)
+    : LifecycleNode("g4lidar", options),
+      parameters_(std::make_unique<node_parameters>(*this)),
+      diagnostics_(std::make_unique<node_diagnostics>(*this)),
+      starts_itself_(parameters_->starts_itself()) {
+  const auto offer = [this](const char* name, bool runs) {
+    services_.push_back(create_service<trigger>(
+        name, [this, runs](const trigger::Request::SharedPtr&,
+                           const trigger::Response::SharedPtr& answer) { allow(runs, *answer); }));
+  };
+  offer("~/start", true);
+  offer("~/stop", false);
+  timer_ = create_wall_timer(100ms, [this] { update(); });
+}
+
+LidarNode::~LidarNode() {
+  timer_.reset();
+  diagnostics_.reset();
+  session_.reset();
+}
+
+LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State& /*previous*/) {
+  try {
+    session_ = std::make_shared<lidar_session>(*this, parameters_->for_session());
+    if (const auto started = session_->start(); !started)
+      throw std::runtime_error(started.error().message());
+  } catch (const std::exception& wrong) {
+    RCLCPP_ERROR(get_logger(), "%s", wrong.what());
+    session_.reset();
+    return CallbackReturn::FAILURE;
+  }
+  const auto longest = parameters_->connect_timeout();
+  if (longest > 0ns && !session_->wait_until_open(longest)) {
+    const auto why = session_->status().why;
+    RCLCPP_ERROR(get_logger(), "not configured: %s",
+                 why ? why->message().c_str() : "the lidar did not open in time");
+    session_.reset();
+    return CallbackReturn::FAILURE;
+  }
+  diagnostics_->follow(session_);
+  return CallbackReturn::SUCCESS;
+}
+
+LidarNode::CallbackReturn LidarNode::on_activate(const rclcpp_lifecycle::State& previous) {
+  session_->restart_file();
+  if (session_->failure()) return CallbackReturn::ERROR;
+  is_allowed_ = true;
+  wanted_ = {};
+  const CallbackReturn done = LifecycleNode::on_activate(previous);  // activates the publishers
+  if (!parameters_->is_standby()) session_->rest(false);
+  return done;
+}
+
+LidarNode::CallbackReturn LidarNode::on_deactivate(const rclcpp_lifecycle::State& previous) {
+  session_->rest(true, rest_time);
+  const CallbackReturn done = LifecycleNode::on_deactivate(previous);
+  return session_->failure() ? CallbackReturn::ERROR : done;
+}
+
+LidarNode::CallbackReturn LidarNode::on_cleanup(const rclcpp_lifecycle::State& /*previous*/) {
+  diagnostics_->follow(nullptr);
+  session_.reset();
+  return CallbackReturn::SUCCESS;
+}
+
+LidarNode::CallbackReturn LidarNode::on_shutdown(const rclcpp_lifecycle::State& previous) {
+  return on_cleanup(previous);
+}
+
+LidarNode::CallbackReturn LidarNode::on_error(const rclcpp_lifecycle::State& previous) {
+  return on_cleanup(previous);
+}
+
+void LidarNode::update() {
+  if (std::exchange(starts_itself_, false)) {
+    if (configure().id() == State::PRIMARY_STATE_INACTIVE) activate();
+    return;
+  }
+  if (!session_ || get_current_state().id() != State::PRIMARY_STATE_ACTIVE) return;
+  if (const auto why = session_->failure()) {
+    RCLCPP_ERROR(get_logger(), "deactivated: %s", why->message().c_str());
+    deactivate();
+    return;
+  }
+  if (session_->status().state == g4lidar::reader_state::ended) {
+    RCLCPP_INFO(get_logger(), "the recording is at its end; activate it again to repeat it");
+    deactivate();
+    return;
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (!parameters_->is_standby() || session_->is_wanted()) wanted_ = now;
+  session_->rest(!is_allowed_ || now - wanted_ > rest_delay);
+}
+
+void LidarNode::allow(bool runs, trigger::Response& answer) {
+  answer.success = get_current_state().id() == State::PRIMARY_STATE_ACTIVE;
+  if (!answer.success) {
+    answer.message = "the node is not active";
+    return;
+  }
+  is_allowed_ = runs;
+  update();
+  if (!runs)
+    answer.message = "the motor rests until start is called";
+  else if (parameters_->is_standby())
+    answer.message = "the motor turns while somebody subscribes";
+  else
+    answer.message = "the motor turns";
+}
+
+}  // namespace g4lidar_ros
+
+RCLCPP_COMPONENTS_REGISTER_NODE(g4lidar_ros::LidarNode)

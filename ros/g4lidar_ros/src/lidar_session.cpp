@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "lidar_session.hpp"
+
+#include <exception>
+#include <utility>
+
+#include "g4lidar/source.hpp"
+
+namespace g4lidar_ros {
+namespace {
+
+using namespace std::chrono_literals;
+using g4lidar::reader_state;
+
+/// A reliable publisher serves reliable and best-effort subscribers.
+rclcpp::QoS scan_quality() { return rclcpp::QoS(5).reliable().durability_volatile(); }
+
+bool is_file_name(const std::string& source) {
+  const g4lidar::source_kind kind = g4lidar::kind_of_source(source);
+  return kind == g4lidar::source_kind::recording || kind == g4lidar::source_kind::raw_bytes;
+}
+
+std::int64_t wall_now_ns() {
+  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const session_options& options)
+    : node_(node),
+      options_(options),
+      is_file_(is_file_name(options.lidar.device)),
+      scans_(node, "scan", scan_quality()),
+      clouds_(node, "points", scan_quality()),
+      reader_(
+          [this] {
+            g4lidar::lidar_options made = options_.lidar;
+            made.wrap = [this](std::unique_ptr<g4lidar::connector> from) {
+              return g4lidar::result<std::unique_ptr<g4lidar::connector>>(
+                  diagnosis_.observe(std::move(from)));
+            };
+            return made;
+          }(),
+          {.wants_points = false, .starts_rested = true}, this) {
+  // The motor rests at once, also in a container whose other components take their time.
+  before_shutdown_ = node.get_node_base_interface()->get_context()->add_pre_shutdown_callback(
+      [this] { reader_.rest(true); });
+}
+
+lidar_session::~lidar_session() {
+  node_.get_node_base_interface()->get_context()->remove_pre_shutdown_callback(before_shutdown_);
+  reader_.stop();
+}
+
+template <class Call>
+void lidar_session::guard(Call call) noexcept {
+  try {
+    call();
+  } catch (const std::exception& failure) {
+    RCLCPP_ERROR_THROTTLE(node_.get_logger(), *node_.get_clock(), 5000, "%s", failure.what());
+  }
+}
+
+bool lidar_session::wait_until_open(std::chrono::nanoseconds longest) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, longest,
+                    [this] { return reader_.status().state != reader_state::opening; });
+  const reader_state now = reader_.status().state;
+  return now != reader_state::opening && now != reader_state::ended;
+}
+
+void lidar_session::rest(bool rests, std::chrono::nanoseconds longest) {
+  reader_.rest(rests);
+  if (!rests || longest == 0ns) return;
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, longest,
+                    [this] { return reader_.status().state != reader_state::running; });
+}
+
+void lidar_session::restart_file() {
+  if (is_file_ && reader_.status().state == reader_state::ended) reader_.seek(0);
+}
+
+std::optional<g4lidar::error> lidar_session::failure() const {
+  const g4lidar::reader_status now = reader_.status();
+  if (now.state != reader_state::ended || !now.why) return std::nullopt;
+  if (is_file_ && *now.why == g4lidar::problem::end_of_input) return std::nullopt;
+  return now.why;
+}
+
+std::int64_t lidar_session::stamp_ns(std::int64_t time_ns) const {
+  const std::int64_t wall_ns = reader_.wall_ns(time_ns);
+  const rclcpp::Clock::SharedPtr clock = node_.get_clock();
+  if (is_file_ || !clock->ros_time_is_active()) return wall_ns;
+  return clock->now().nanoseconds() - (wall_now_ns() - wall_ns);
+}
+
+void lidar_session::on_open(g4lidar::lidar& device) {
+  guard([&] { RCLCPP_INFO(node_.get_logger(), "opened %s", std::string(device.name()).c_str()); });
+}
+
+void lidar_session::on_points(std::span<const g4lidar::point> /*points*/) {}
+
+void lidar_session::on_scan(const g4lidar::scan& whole) {
+  if (whole.is_piece()) return;
+  guard([&] { publish(whole); });
+}
+
+void lidar_session::publish(const g4lidar::scan& whole) {
+  shaper_.shape(whole);
+  g4lidar::message_header header{.stamp_ns = stamp_ns(whole.time_ns()),
+                                 .frame_id = options_.frame_id,
+                                 .duration_ns = whole.duration_ns,
+                                 .order = options_.order,
+                                 .model = whole.model};
+  if (scans_.is_wanted()) {
+    const std::size_t bins = options_.bins.value_or(g4lidar::default_bins(*whole.model));
+    scans_.publish(laser_scan_of(shaper_.for_grid(), header, {}, bins));
+  }
+  if (!clouds_.is_wanted()) return;
+  const g4lidar::scan kept = shaper_.kept();
+  if (!kept.empty()) header.stamp_ns = stamp_ns(kept.time_ns());
+  clouds_.publish(cloud_of(kept, header));
+}
+
+void lidar_session::on_event(const g4lidar::lidar_event& what) {
+  diagnosis_.add(what);
+  guard([&] {
+    const std::string name(g4lidar::name_of(what.what));
+    RCLCPP_INFO(node_.get_logger(), "event: %s", name.c_str());
+  });
+}
+
+void lidar_session::on_state(reader_state state, const std::optional<g4lidar::error>& why) {
+  guard([&] {
+    if (why && state != reader_state::lost && why->doing() == g4lidar::task::reading)
+      diagnosis_.add(*why);
+    const bool is_end = why && is_file_ && *why == g4lidar::problem::end_of_input;
+    const std::string text =
+        std::string(name_of(state)) + (why && !is_end ? ": " + why->message() : "");
+    const rclcpp::Logger logger = node_.get_logger();
+    if (state == reader_state::ended && !is_end)
+      RCLCPP_ERROR(logger, "%s", text.c_str());
+    else if (why && !is_end)
+      RCLCPP_WARN(logger, "%s", text.c_str());
+    else
+      RCLCPP_INFO(logger, "%s", text.c_str());
+  });
+  const std::lock_guard lock(mutex_);
+  changed_.notify_all();
+}
+
+}  // namespace g4lidar_ros

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// A lidar that is open: its thread, and its topics.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+
+#include "g4lidar/background_reader.hpp"
+#include "g4lidar/diagnostics/running_diagnosis.hpp"
+#include "g4lidar/scan_shaper.hpp"
+#include "topics.hpp"
+
+namespace g4lidar_ros {
+
+/// What does not change while a lidar is open.
+struct session_options {
+  g4lidar::lidar_options lidar;
+  std::string frame_id;
+  std::optional<std::uint32_t> bins;  ///< Nothing: default_bins() of the model.
+  g4lidar::scan_order order = g4lidar::scan_order::angle;
+};
+
+/// Publishes in the thread of the reader while the publishers are active. *Any thread* may call its functions.
+class lidar_session final : private g4lidar::reader_listener {
+ public:
+  /// Makes the publishers. `node` outlives it. Throws what rclcpp throws.
+  lidar_session(rclcpp_lifecycle::LifecycleNode& node, const session_options& options);
+  /// Stops the motor and closes the lidar.
+  ~lidar_session() override;
+
+  /// Opens the lidar in the thread; its motor rests. Fails with system.
+  [[nodiscard]] g4lidar::result<void> start() { return reader_.start(); }
+  /// Waits until it is open, or cannot be opened: whether it is open.
+  [[nodiscard]] bool wait_until_open(std::chrono::nanoseconds longest);
+  /// Whether the motor is to stand; waits at most `longest` until it does.
+  void rest(bool rests, std::chrono::nanoseconds longest = {});
+  /// A file that is at its end begins again.
+  void restart_file();
+
+  [[nodiscard]] g4lidar::reader_status status() const { return reader_.status(); }
+  /// Why it has ended, if that is an error; not at the end of a file.
+  [[nodiscard]] std::optional<g4lidar::error> failure() const;
+  /// Whether somebody subscribes to scans or clouds.
+  [[nodiscard]] bool is_wanted() const { return scans_.is_wanted() || clouds_.is_wanted(); }
+  [[nodiscard]] const g4lidar::running_diagnosis& diagnosis() const noexcept { return diagnosis_; }
+  [[nodiscard]] g4lidar::lidar_counts counts() const { return reader_.counts(); }
+  [[nodiscard]] const counted_publisher<sensor_msgs::msg::LaserScan>& scans() const noexcept {
+    return scans_;
+  }
+  [[nodiscard]] const counted_publisher<sensor_msgs::msg::PointCloud2>& clouds() const noexcept {
+    return clouds_;
+  }
+
+ private:
+  void on_open(g4lidar::lidar& device) override;
+  void on_scan(const g4lidar::scan& whole) override;
+  void on_points(std::span<const g4lidar::point> points) override;
+  void on_event(const g4lidar::lidar_event& what) override;
+  void on_state(g4lidar::reader_state state, const std::optional<g4lidar::error>& why) override;
+  template <class Call>
+  void guard(Call call) noexcept;
+  void publish(const g4lidar::scan& whole);
+  /// The stamp of a point::time_ns. Only in the thread of the reader.
+  [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const;
+
+  rclcpp_lifecycle::LifecycleNode& node_;
+  session_options options_;
+  bool is_file_;
+  counted_publisher<sensor_msgs::msg::LaserScan> scans_;
+  counted_publisher<sensor_msgs::msg::PointCloud2> clouds_;
+  g4lidar::scan_shaper shaper_;
+  g4lidar::running_diagnosis diagnosis_;
+  std::mutex mutex_;
+  std::condition_variable changed_;  // the state of the reader
+  rclcpp::PreShutdownCallbackHandle before_shutdown_;
+  g4lidar::background_reader reader_;  // its thread ends first
+};
+
+}  // namespace g4lidar_ros

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "node_diagnostics.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "g4lidar/diagnostics/diagnostic_message.hpp"
+
+namespace g4lidar_ros {
+namespace {
+
+void fill(diagnostic_updater::DiagnosticStatusWrapper& status,
+          const g4lidar::diagnostic_status& from) {
+  status.summary(static_cast<unsigned char>(from.level), from.message);
+  for (const auto& [name, value] : from.values) status.add(name, value);
+}
+
+}  // namespace
+
+node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node) : updater_(&node) {
+  updater_.setHardwareID("none");
+  updater_.add("state", this, &node_diagnostics::report_state);
+  for (std::size_t i = 0; i < g4lidar::diagnostic_stage_count; ++i) {
+    const auto which = static_cast<g4lidar::diagnostic_stage>(i);
+    updater_.add(std::string(name_of(which)),
+                 [this, which](wrapper& status) { report_stage(which, status); });
+  }
+  updater_.add("counts", this, &node_diagnostics::report_counts);
+  updater_.add("topics", this, &node_diagnostics::report_topics);
+}
+
+void node_diagnostics::report_state(wrapper& status) {
+  if (!session_) return status.summary(wrapper::OK, "unconfigured");
+  const g4lidar::reader_status now = session_->status();
+  if (now.information) updater_.setHardwareID(std::string(now.information->serial_number()));
+  const bool is_bad = now.state == g4lidar::reader_state::opening ||
+                      now.state == g4lidar::reader_state::lost || session_->failure();
+  std::string text(name_of(now.state));
+  if (is_bad && now.why) text += ": " + now.why->message();
+  status.summary(is_bad ? wrapper::ERROR : wrapper::OK, text);
+  status.add("device", now.name);
+}
+
+void node_diagnostics::report_stage(g4lidar::diagnostic_stage which, wrapper& status) {
+  if (!session_) return status.summary(wrapper::OK, "unconfigured");
+  const auto stages = session_->diagnosis().stages();
+  const auto at = std::ranges::find(stages, which, &g4lidar::stage_report::stage);
+  if (at == stages.end()) return status.summary(wrapper::OK, "ok");
+  fill(status, g4lidar::status_of(*at, ""));
+}
+
+void node_diagnostics::report_counts(wrapper& status) {
+  if (!session_) return status.summary(wrapper::OK, "unconfigured");
+  fill(status, g4lidar::status_of(session_->counts(), ""));
+}
+
+void node_diagnostics::report_topics(wrapper& status) {
+  if (!session_) return status.summary(wrapper::OK, "unconfigured");
+  std::uint64_t refused = 0;
+  const auto add = [&](const auto& topic) {
+    const std::string name = topic.name();
+    status.add(name + " subscribers", topic.subscribers());
+    status.add(name + " sent", topic.counts().sent.load());
+    status.add(name + " refused", topic.counts().refused.load());
+    refused += topic.counts().refused;
+  };
+  add(session_->scans());
+  add(session_->clouds());
+  const bool is_new = refused > std::exchange(refused_, refused);
+  if (is_new)
+    status.summary(wrapper::WARN, "a subscriber wants a quality of service that is not offered");
+  else
+    status.summary(wrapper::OK, "ok");
+}
+
+}  // namespace g4lidar_ros
