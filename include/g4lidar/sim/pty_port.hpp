@@ -15,7 +15,9 @@
 
 namespace g4lidar::sim {
 
-/// A device with its port. Its time 0 is when it was opened. While it is unplugged there is neither
+/// A device with its port. A pseudo-terminal has the rate that a program sets: at another one than that of the
+/// device, bytes arrive garbled, unless the options state otherwise. While no program has set a rate (it is
+/// 38400 then), all bytes arrive. It has no line DTR, so that a motor that DTR drives is enabled. Its time 0 is when it was opened. While it is unplugged there is neither
 /// port nor link; plugging it in creates a new port and moves the link to it. A program that does
 /// not read loses bytes, as with a real port, and never delays the device. *Single thread.
 /// Allocates on open and on each replug.*

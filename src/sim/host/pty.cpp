@@ -15,9 +15,13 @@
 
 #include "claim.hpp"
 #include "served_port.hpp"
+#include "transport/custom_baud.hpp"
 
 namespace g4lidar::sim {
 namespace {
+
+// The rate of a new terminal: B38400. A program that sets it cannot be told from one that sets none.
+constexpr std::uint32_t unset_baud = 38'400;
 
 class pty final : public served_port {
  public:
@@ -44,6 +48,13 @@ class pty final : public served_port {
   }
 
   [[nodiscard]] const std::string& name() const noexcept override { return name_; }
+  [[nodiscard]] std::uint32_t baud() const noexcept override {
+    const auto call = [](int fd, unsigned long request, void* argument) {
+      return ::ioctl(fd, request, argument);
+    };
+    const std::uint32_t rate = custom_baud(call, handle());  // the kernel returns that of the slave
+    return rate == unset_baud ? 0 : rate;
+  }
   [[nodiscard]] int handle() const noexcept override { return master_.get(); }
   [[nodiscard]] int watch() const noexcept override { return watch_.get(); }
 
@@ -84,7 +95,7 @@ class pty final : public served_port {
     termios settings{};
     if (::tcgetattr(slave_.get(), &settings) != 0) return false;
     ::cfmakeraw(&settings);
-    ::cfsetspeed(&settings, B230400);
+    ::cfsetspeed(&settings, B38400);
     return ::tcsetattr(slave_.get(), TCSANOW, &settings) == 0;
   }
 

@@ -82,9 +82,13 @@ void unpoint(const fs::path& link, const std::string& target) {
 class G4LIDAR_HIDDEN pty_port::state {
  public:
   /// At a link, without a link, or at a TCP address.
-  state(device of, const std::string& link) : simulated(std::move(of)), link_(link) {}
+  state(device of, const std::string& link) : simulated(std::move(of)), link_(link) {
+    simulated.host().ignore_dtr(0);
+  }
   state(device of, std::string address, std::uint16_t port)
-      : simulated(std::move(of)), address_(std::move(address)), port_(port) {}
+      : simulated(std::move(of)), address_(std::move(address)), port_(port) {
+    simulated.host().ignore_dtr(0);
+  }
   ~state() { unplug(); }
   state(const state&) = delete;
   state& operator=(const state&) = delete;
@@ -142,6 +146,10 @@ class G4LIDAR_HIDDEN pty_port::state {
  private:
   void carry(served_port& to, std::int64_t now) noexcept {
     to.look_for_clients();
+    if (const std::uint32_t rate = to.baud(); rate != baud_) {
+      baud_ = rate;
+      simulated.host().set_baud(rate, now);
+    }
     std::array<std::uint8_t, 4096> data;
     // A program that sends without end does not block the device.
     for (int turn = 0; turn < 4; ++turn) {
@@ -160,6 +168,7 @@ class G4LIDAR_HIDDEN pty_port::state {
   std::string address_;  // empty: a pseudo-terminal
   std::uint16_t port_ = 0;
   std::unique_ptr<served_port> served_;
+  std::uint32_t baud_ = 0;  // that a program has set
   std::uint64_t replugs_ = 0;
   std::uint64_t bytes_lost_ = 0;
   std::int64_t begin_ns_ = steady_ns();

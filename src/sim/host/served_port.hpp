@@ -23,6 +23,8 @@ class served_port {
 
   /// The path or address for programs.
   [[nodiscard]] virtual const std::string& name() const noexcept = 0;
+  /// The rate that a program has set; 0: none has, or there is no rate.
+  [[nodiscard]] virtual std::uint32_t baud() const noexcept { return 0; }
   /// For poll(): readable when programs have written. -1: none.
   [[nodiscard]] virtual int handle() const noexcept = 0;
   /// For poll(): readable when look_for_clients() is due. -1: none.

@@ -112,7 +112,72 @@ TEST_F(SimPty, Pty_IsRaw) {
   ASSERT_EQ(::tcgetattr(program.fd(), &settings), 0);
   EXPECT_EQ(settings.c_lflag & static_cast<tcflag_t>(ICANON | ECHO | ISIG), 0U);
   EXPECT_EQ(settings.c_oflag & static_cast<tcflag_t>(OPOST), 0U);
-  EXPECT_EQ(::cfgetospeed(&settings), static_cast<speed_t>(B230400));
+  EXPECT_EQ(::cfgetospeed(&settings), static_cast<speed_t>(B38400)) << "that of a new terminal";
+}
+
+// Returns the bytes that arrive within a time after a program has set the rate and asked for the device
+// information.
+byte_vector asked_at(const visitor& program, speed_t rate) {
+  termios settings{};
+  EXPECT_EQ(::tcgetattr(program.fd(), &settings), 0);
+  ::cfsetspeed(&settings, rate);
+  EXPECT_EQ(::tcsetattr(program.fd(), TCSANOW, &settings), 0);
+  ::tcflush(program.fd(), TCIFLUSH);
+  EXPECT_TRUE(program.send(0x90));
+  byte_vector all;
+  const auto end = std::chrono::steady_clock::now() + (rate == B230400 ? test::patience : 500ms);
+  while (all.size() < 27 && std::chrono::steady_clock::now() < end) {
+    pollfd waiting{program.fd(), POLLIN, 0};
+    if (::poll(&waiting, 1, 50) <= 0) continue;
+    std::array<std::uint8_t, 64> part{};
+    const ssize_t got = ::read(program.fd(), part.data(), part.size());
+    if (got > 0) all.insert(all.end(), part.begin(), part.begin() + got);
+  }
+  return all;
+}
+
+TEST_F(SimPty, HasTheRateThatAProgramSets) {
+  const auto port = sim::background_pty::open(simulated());
+  ASSERT_TRUE(port);
+  {
+    const visitor program(port->path());
+    EXPECT_EQ(asked_at(program, B115200).size(), 0U);
+    EXPECT_EQ(asked_at(program, B230400).size(), 27U);
+    EXPECT_EQ(asked_at(program, B460800).size(), 0U);
+  }
+  EXPECT_TRUE(test::comes_true([&] {
+    termios settings{};
+    const visitor next(port->path());
+    EXPECT_EQ(::tcgetattr(next.fd(), &settings), 0);
+    return ::cfgetospeed(&settings) == static_cast<speed_t>(B38400);
+  })) << "it is reset when the last program closes it";
+  const visitor other(port->path());
+  ASSERT_TRUE(other.send(0x90));
+  EXPECT_EQ(other.read(27).size(), 27U) << "this program sets no rate";
+}
+
+TEST_F(SimPty, AnyRateWorks_IfTheOptionsSaySo) {
+  sim::device_options options;
+  options.any_baud = true;
+  const auto port = sim::background_pty::open(simulated(options));
+  ASSERT_TRUE(port);
+  const visitor program(port->path());
+  termios settings{};
+  ASSERT_EQ(::tcgetattr(program.fd(), &settings), 0);
+  ::cfsetspeed(&settings, B9600);
+  ASSERT_EQ(::tcsetattr(program.fd(), TCSANOW, &settings), 0);
+  ASSERT_TRUE(program.send(0x90));
+  EXPECT_EQ(program.read(27).size(), 27U);
+}
+
+TEST_F(SimPty, AMotorThatDtrDrives_IsEnabled) {
+  sim::device_options options;
+  ASSERT_TRUE(sim::use_model(options, "x4"));
+  const auto port = sim::background_pty::open(simulated(options));
+  ASSERT_TRUE(port);
+  const visitor program(port->path());
+  ASSERT_TRUE(program.send(0x60));
+  EXPECT_EQ(program.read(5000).size(), 5000U);
 }
 
 TEST_F(SimPty, Link_IsRemovedWithThePort) {

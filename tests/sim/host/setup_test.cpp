@@ -116,7 +116,7 @@ TEST_F(SimSetup, AModelByItsName) {
 // Only G4s can be opened. A model that answers is refused after its answer, another one before it is read.
 TEST_F(SimSetup, AnotherModel_IsRefusedByName) {
   lidar_options options;
-  options.device = "sim:?model=x4";
+  options.device = "sim:?model=x4&any_baud=true";
   const auto two_way = lidar::open(options);
   ASSERT_FALSE(two_way);
   EXPECT_EQ(two_way.error(), problem::other_device);
