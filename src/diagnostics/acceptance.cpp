@@ -18,10 +18,10 @@ constexpr std::array questions{
     open_question{"Which USB bridge is used, and which baud rate does it really set?", bridge},
     open_question{"Which models send before they are asked, and what?", listening},
     open_question{"With which number does the device identify itself?", identity},
-    open_question{"Does a one-way lidar answer any query?", commands},
-    open_question{"Are the rate (D1), the direction (08) and low power (05) answered?", commands},
-    open_question{"What does the offset of zero (93) contain?", commands},
-    open_question{"Which error codes does the health contain?", commands},
+    open_question{"Does a one-way lidar answer any query?", queries},
+    open_question{"Are the rate (D1), the direction (08) and low power (05) answered?", queries},
+    open_question{"What does the offset of zero (93) contain?", queries},
+    open_question{"Which error codes does the health contain?", queries},
     open_question{"Is there power-down protection (D9)?", protection},
     open_question{"What is answered at the limits of the scan frequency?", frequency},
     open_question{"Which sample rate is behind each code?", sample_rate},
@@ -42,7 +42,7 @@ constexpr std::array questions{
 };
 
 constexpr std::array<std::string_view, acceptance_step_count> step_names{
-    "bridge",       "listening",      "identity",   "commands", "protection",  "frequency",
+    "bridge",       "listening",      "identity",   "queries", "protection",  "frequency",
     "sample_rate",  "start_and_stop", "dtr",        "stream",   "sample_bits", "ct_information",
     "time_packets", "near_target",    "far_target", "unplug"};
 constexpr std::array<std::string_view, 4> verdict_names{"agrees", "observed", "not_done",
@@ -148,8 +148,8 @@ void acceptance_run::take(acceptance_result& into) {
       return listening(into);
     case acceptance_step::identity:
       return identity(into);
-    case acceptance_step::commands:
-      return commands(into);
+    case acceptance_step::queries:
+      return queries(into);
     case acceptance_step::protection:
       return protection(into);
     case acceptance_step::frequency:

@@ -91,9 +91,9 @@ void acceptance_run::identity(acceptance_result& into) {
            is_known ? "The number is that of the model." : "The number is not that of the model.");
 }
 
-void acceptance_run::commands(acceptance_result& into) {
+void acceptance_run::queries(acceptance_result& into) {
   const bool is_g = which_.motor == motor_kind::command && is_two_way();
-  const std::array queries{
+  const std::array all_queries{
       query{0x91, "health_91", presence::unknown},
       query{0x92, "health_92", presence::unknown},
       query{0x0D, "frequency_0d", when(which_.frequency.max_dhz != 0)},
@@ -108,7 +108,7 @@ void acceptance_run::commands(acceptance_result& into) {
   };
   constexpr int rounds = 3;
   bool has_health = false;
-  for (const query& each : queries) {
+  for (const query& each : all_queries) {
     int answered = 0;
     std::int64_t slowest_ns = 0;
     raw_reply last;

@@ -47,7 +47,7 @@ class acceptance_run {
   void bridge(acceptance_result& into);
   void listening(acceptance_result& into);
   void identity(acceptance_result& into);
-  void commands(acceptance_result& into);
+  void queries(acceptance_result& into);
   void protection(acceptance_result& into);
   void frequency(acceptance_result& into);
   void sample_rate(acceptance_result& into);

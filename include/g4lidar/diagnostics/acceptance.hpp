@@ -24,7 +24,7 @@ enum class acceptance_step : std::uint8_t {
   bridge,          ///< The USB bridge, and the baud rate that the system set.
   listening,       ///< What arrives before anything is sent.
   identity,        ///< The answer to 90.
-  commands,        ///< Each query: its answer and its time.
+  queries,         ///< Each query: its answer and its time.
   protection,      ///< Power-down protection, D9: switched and switched back.
   frequency,       ///< The limits of the scan frequency; then it is as before.
   sample_rate,     ///< The sample rate behind each code; then it is as before.
