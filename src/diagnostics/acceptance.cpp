@@ -43,7 +43,7 @@ constexpr std::array questions{
 
 constexpr std::array<std::string_view, acceptance_step_count> step_names{
     "bridge",       "listening",      "identity",   "queries", "protection",  "frequency",
-    "sample_rate",  "start_and_stop", "dtr",        "stream",   "sample_bits", "ct_information",
+    "sample_rate",  "start_and_stop", "dtr",        "stream",  "sample_bits", "ct_information",
     "time_packets", "near_target",    "far_target", "unplug"};
 constexpr std::array<std::string_view, 4> verdict_names{"agrees", "observed", "not_done",
                                                         "differs"};
@@ -104,7 +104,7 @@ bool acceptance_run::open() {
     open_error_ = opened.error();
     return false;
   }
-  const auto rate = (*opened)->set_baud(which_.bauds[0]);
+  const auto rate = (*opened)->set_baud(baud());
   if (!rate) {
     open_error_ = rate.error();
     return false;

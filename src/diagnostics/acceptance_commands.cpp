@@ -42,7 +42,7 @@ void acceptance_run::bridge(acceptance_result& into) {
     into.say(observed, "The connection is no USB port of this computer.");
   }
   constexpr double remarkable = 0.015;
-  const std::uint32_t wanted = which_.bauds[0];
+  const std::uint32_t wanted = baud();
   const std::uint32_t got = link_->baud();
   into.add("wanted_baud", wanted);
   into.add("set_baud", got);

@@ -70,6 +70,9 @@ class acceptance_run {
   /// Starts the motor, in the way of the model. How long the first packet took, or -1.
   std::int64_t start();
   void stop();
+  [[nodiscard]] std::uint32_t baud() const noexcept {
+    return options_.baud != 0 ? options_.baud : which_.bauds[0];
+  }
   [[nodiscard]] bool is_two_way() const noexcept { return which_.link == link_kind::two_way; }
   /// Sets the line; false if there is none.
   bool set_dtr(bool high);
