@@ -95,6 +95,10 @@ void acceptance_run::ct_information(acceptance_result& into) const {
     into.add("hardware", who->hardware);
     into.add("faults", static_cast<std::uint8_t>(who->faults));
   }
+  constexpr std::uint64_t packets_with_information = 14;
+  if (!who && has_crc && heard.packets() < packets_with_information * heard.zero_packets()) {
+    return into.say(observed, "A revolution has too few packets for the information.");
+  }
   const presence seen = who ? presence::yes : presence::no;
   const bool is_open = which_.ct_information == presence::unknown;
   into.say(is_open                         ? observed
