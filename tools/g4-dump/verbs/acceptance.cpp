@@ -138,6 +138,9 @@ int accept(const acceptance_settings& options) {
   if (!options.overwrites) refuse_existing(options.file);
   acceptance_options how;
   how.model = &model_of(options);
+  if (options.duration.count() > 0) {
+    how.stream_time = std::chrono::ceil<std::chrono::milliseconds>(options.duration);
+  }
   auto from = connector_for(options_for(options, {}));
   if (!from) throw failure_of(options, from.error());
   auto file = recording_writer::create(
@@ -194,13 +197,15 @@ verb make_acceptance_verb() {
   const auto options = std::make_shared<acceptance_settings>();
   option_row json = json_row(*options);
   json.help = "A JSON object for each step, a line each";
+  option_row time = duration_row(*options);
+  time.help = "Observe the scan for so long (1m)";
   option_row file =
       text_row("--file", "FILE", "The file for a report (acceptance.mcap)", options->file);
   return {.name = "acceptance",
           .summary = "Compare a real lidar with the table of models, for a report",
           .arguments = {source_argument(*options)},
           .options = joined(
-              output_row(*options), json, baud_row(*options), model_row(*options),
+              output_row(*options), json, time, baud_row(*options), model_row(*options),
               option_rows{
                   file, flag_row("--alone", "Leave out the steps that need a user", options->alone),
                   flag_row("--force", "Replace an existing file", options->overwrites)}),
