@@ -18,6 +18,8 @@ struct device_information {
   std::uint8_t hardware;
   std::array<char, 16> serial_digits;  ///< '0' to '9'; not terminated.
 
+  /// Whether it was ever reported: one-way lidars that do not send it have zeros in all members. *Pure.*
+  [[nodiscard]] constexpr bool is_known() const noexcept { return model != 0; }
   /// The serial number; valid as long as this structure.
   [[nodiscard]] constexpr std::string_view serial_number() const& noexcept {
     return {serial_digits.data(), serial_digits.size()};

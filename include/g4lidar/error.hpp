@@ -39,13 +39,13 @@ enum class problem : std::uint8_t {
   cannot_connect,  ///< The remote end of a network connection does not answer.
   silence,         ///< Not a single byte arrived.
   garbage,         ///< Bytes arrived, none of them valid: the wrong baud rate or another device.
-  other_device,    ///< A device answers that is not a G4.
+  other_device,    ///< A device answers that is not the model that was expected.
   does_not_stop,   ///< The device scans and does not react to a stop command.
   unhealthy,       ///< The device reports an error of its own.
   timeout,         ///< Nothing arrived in time; a retry may help.
   wrong_answer,    ///< Replies arrived, none of them valid for the command.
   not_reached,     ///< The device did not reach the wanted setting.
-  bad_setting,     ///< Refused: no G4 can be set to this value. Nothing was sent.
+  bad_setting,     ///< Refused: the model cannot be set to this value. Nothing was sent.
   scanning,        ///< Refused: the command would disturb the running scan.
   not_scanning,    ///< Points were requested, but no scan has been started.
   reconnecting,    ///< The lidar was lost, and the driver is looking for it.
@@ -58,10 +58,11 @@ enum class problem : std::uint8_t {
   end_of_input,    ///< A file or connection has ended.
   cancelled,       ///< Woken from another thread or a signal handler.
   system,          ///< The system refused for another reason; see `system_errno`.
+  not_supported,   ///< Refused: this model of lidar has no such command. Nothing was sent.
 };
 
 /// The number of problems.
-inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::system) + 1;
+inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::not_supported) + 1;
 
 /// Distinguishes errors of one problem that need different advice.
 enum class error_detail : std::uint8_t {
@@ -74,6 +75,7 @@ enum class error_detail : std::uint8_t {
   bad_name,       ///< bad_option: the name of a lidar that is none.
   simulated,      ///< bad_option, bad_file: no simulated lidar can be made of what `sim:` names.
   no_simulator,   ///< bad_option: `sim:`, in a library that was built without the simulator.
+  motor_line,     ///< brown_out: a motor that the line DTR drives has never turned.
   unknown_model,  ///< bad_file: a recording of a model, or in a version, that is not known.
 };
 
@@ -97,7 +99,7 @@ class G4LIDAR_API error {
   std::string_view subject() const&& = delete;
 
   /// Whether further calls on the same object cannot succeed, so that a loop should end. Not fatal:
-  /// timeout, wrong_answer, not_reached, scanning, reconnecting, read_only and cancelled; the
+  /// timeout, wrong_answer, not_reached, scanning, reconnecting, read_only, cancelled and not_supported; the
   /// object works as before.
   [[nodiscard]] bool is_fatal() const noexcept;
 

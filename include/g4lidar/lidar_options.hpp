@@ -50,12 +50,12 @@ struct lidar_options {
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
-  /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording states or raw
-  /// bytes show, else a G4. Models other than the G4 are possible for files only. A recording of another
-  /// model than this one is refused with bad_option.
+  /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording or `sim:`
+  /// states or raw bytes show, else a G4. A source that states another model is refused with bad_option,
+  /// and a device that says that it is another one with other_device.
   const g4lidar::model* model = nullptr;
-  /// Bits per second, of a serial port and of the one behind `tcp:`.
-  std::uint32_t baud = g4_model.bauds[0];
+  /// Bits per second, of a serial port and of the one behind `tcp:`; 0: the usual rate of the model.
+  std::uint32_t baud = 0;
 
   std::optional<g4lidar::sample_rate> sample_rate{};  ///< Measurements per second.
   std::optional<scan_frequency> frequency{};          ///< Revolutions per second, 5 to 12 Hz.

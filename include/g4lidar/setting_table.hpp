@@ -44,11 +44,12 @@ struct setting_info {
   std::int32_t step = 10;  ///< Of the values as they are written; others are possible.
 };
 
-/// All settings of a G4. *Pure.*
+/// All settings, with the values and limits of a G4. *Pure.*
 [[nodiscard]] G4LIDAR_API std::span<const setting_info> all_settings() noexcept;
 /// The setting that an answer is of; null if it is of none. *Pure.*
 [[nodiscard]] G4LIDAR_API const setting_info* setting_of(const answer& value) noexcept;
-/// The value with a number; nothing if the setting has none. *Pure.*
+/// The value with a number, which one of the models at least has; nothing if none has it. *Pure.* A lidar
+/// refuses what its own model does not have.
 [[nodiscard]] G4LIDAR_API std::optional<answer> value_of(const setting_info& of,
                                                          std::int32_t number) noexcept;
 /// The row of setting_info::values with this value; null if there is none. *Pure.*

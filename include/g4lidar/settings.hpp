@@ -32,8 +32,9 @@ inline constexpr std::uint16_t max_scan_frequency_chz = 1200;
 
 /// The direction in which the head turns, seen from above. (commands 06, 07, 08)
 enum class motor_direction : std::uint8_t { clockwise = 0, counter_clockwise = 1 };
-/// The measurements per second: 4000, 8000 or 9000. (commands D0, D1)
-enum class sample_rate : std::uint8_t { khz_4 = 0, khz_8 = 1, khz_9 = 2 };
+/// The measurements per second, of which a G4 has these three. Other models have other values:
+/// `sample_rate{18000}`. (commands D0, D1)
+enum class sample_rate : std::uint16_t { khz_4 = 4000, khz_8 = 8000, khz_9 = 9000 };
 /// Whether the lidar stops scanning by itself 3 s after the last command. (command D9)
 enum class power_down_protection : std::uint8_t { on = 0, off = 1 };
 /// Whether the motor stops while no scan is running. (commands 01, 02, 05)
@@ -41,13 +42,37 @@ enum class low_power : std::uint8_t { off = 0, on = 1 };
 /// Whether the lidar regulates its scan frequency. (commands 0E, 0F)
 enum class constant_frequency : std::uint8_t { off = 0, on = 1 };
 
+/// What is to be added to each angle of a device so that zero is where its housing says, in 0.01 degrees.
+/// (command 93)
+struct zero_angle {
+  std::int32_t cdeg;
+  /// In degrees. *Pure.*
+  [[nodiscard]] constexpr double deg() const noexcept { return cdeg / 100.0; }
+  /// Whether it was measured: devices that were not calibrated say 180 degrees. *Pure.*
+  [[nodiscard]] constexpr bool is_calibrated() const noexcept {
+    return cdeg != 18'000 && cdeg != -18'000;
+  }
+
+  friend constexpr bool operator==(zero_angle, zero_angle) noexcept = default;
+};
+
+/// The tilt of the beam in 0.01 degrees. (command 98)
+struct pitch_angle {
+  std::int32_t cdeg;
+  /// In degrees. *Pure.*
+  [[nodiscard]] constexpr double deg() const noexcept { return cdeg / 100.0; }
+
+  friend constexpr bool operator==(pitch_angle, pitch_angle) noexcept = default;
+};
+
 /// Whether `value` is an enumerator: it may be a number that was cast. *Pure.*
 [[nodiscard]] constexpr bool is_valid(scan_frequency wanted) noexcept {
   return wanted.chz >= min_scan_frequency_chz && wanted.chz <= max_scan_frequency_chz;
 }
-/// The same for the setting with three values,
+/// The same for the setting with three values, those of a G4,
 [[nodiscard]] constexpr bool is_valid(sample_rate wanted) noexcept {
-  return wanted <= sample_rate::khz_9;
+  return wanted == sample_rate::khz_4 || wanted == sample_rate::khz_8 ||
+         wanted == sample_rate::khz_9;
 }
 /// and for the settings with two.
 template <class Setting>
@@ -57,15 +82,7 @@ template <class Setting>
 
 /// The measurements per second. *Pure.*
 [[nodiscard]] constexpr std::uint32_t to_hz(sample_rate frequency) noexcept {
-  switch (frequency) {
-    case sample_rate::khz_4:
-      return 4000;
-    case sample_rate::khz_8:
-      return 8000;
-    case sample_rate::khz_9:
-      break;
-  }
-  return 9000;
+  return static_cast<std::uint32_t>(frequency);
 }
 
 }  // namespace g4lidar

@@ -139,3 +139,7 @@ class Cancelled(Error):
 
 class System(Error):
     """The operating system reported an error."""
+
+
+class NotSupported(Error):
+    """This model of lidar has no such command."""

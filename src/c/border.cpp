@@ -14,7 +14,7 @@ namespace g4lidar::c {
 namespace {
 
 // The numbers of the C interface never change: a problem that is added becomes the last one there.
-static_assert(problem_count == 29 && result_of(problem::bad_option) == G4LIDAR_BAD_OPTION);
+static_assert(problem_count == 30 && result_of(problem::bad_option) == G4LIDAR_BAD_OPTION);
 static_assert(result_of(problem::permission) == G4LIDAR_PERMISSION);
 static_assert(result_of(problem::cannot_connect) == G4LIDAR_CANNOT_CONNECT);
 static_assert(result_of(problem::does_not_stop) == G4LIDAR_DOES_NOT_STOP);

@@ -17,7 +17,8 @@ using namespace g4lidar::c;
 
 namespace {
 
-static_assert(static_cast<int>(lidar_event::kind::overflow) + 1 == G4LIDAR_EVENT_OVERFLOW);
+static_assert(static_cast<int>(lidar_event::kind::still_turning) + 1 ==
+              G4LIDAR_EVENT_STILL_TURNING);
 static_assert(static_cast<int>(lidar_event::kind::health_warning) + 1 ==
               G4LIDAR_EVENT_HEALTH_WARNING);
 

@@ -50,8 +50,9 @@ constexpr std::array<words, problem_count> all_words{{
     {problem::garbage, "garbage", "bytes were received, but no valid data",
      "The baud rate is probably wrong: a G4 uses 230400 baud. Otherwise check for a loose cable or "
      "another kind of device."},
-    {problem::other_device, "other_device", "the device that answers is not a G4",
-     "Check the label of the device, and name the port of the G4."},
+    {problem::other_device, "other_device",
+     "the device that answers is not the model that was expected",
+     "Check the label of the device: name its model, or the port of the other one."},
     {problem::does_not_stop, "does_not_stop", "it continues to scan and cannot be stopped",
      "Commands do not reach it: check the wire of the host's transmit pin, or unplug the lidar and "
      "plug it in again."},
@@ -65,8 +66,9 @@ constexpr std::array<words, problem_count> all_words{{
      "plug it in again."},
     {problem::not_reached, "not_reached", "the lidar does not accept this value",
      "Choose a value that the lidar supports; it keeps the nearest value that it accepted."},
-    {problem::bad_setting, "bad_setting", "no G4 can be set to this value",
-     "Choose a scan frequency of 5 to 12 Hz, and for other settings one of the named values."},
+    {problem::bad_setting, "bad_setting", "this model of lidar cannot be set to this value",
+     "Choose a scan frequency of 5 to 12 Hz for a G4, and for other settings one of the named "
+     "values."},
     {problem::scanning, "scanning", "refused, because it would disturb the running scan",
      "Stop the scan first, or allow it to be interrupted."},
     {problem::not_scanning, "not_scanning", "no scan is running", "Start the scan first."},
@@ -95,6 +97,9 @@ constexpr std::array<words, problem_count> all_words{{
      "Nothing is wrong: the program called wake()."},
     {problem::system, "system", "the operating system reported an error",
      "Check what the system error means; `dmesg` may show more."},
+    {problem::not_supported, "not_supported", "this model of lidar has no such command",
+     "Omit the setting or the request. If the lidar is another model, name it with the option "
+     "model."},
 }};
 
 // Of the details other than the usual one, in the order of their enumeration.
@@ -102,7 +107,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 9> all_details{{
+constexpr std::array<detail_words, 10> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -129,6 +134,10 @@ constexpr std::array<detail_words, 9> all_details{{
      "Its libg4lidar was built with G4LIDAR_SIM=OFF: use one that was built with the simulator, or "
      "open "
      "the port that `g4-dump sim` prints."},
+    {"the scan was confirmed, but the motor never turned",
+     "Plug in the second (power) plug of its board: the data plug alone does not feed the motor. "
+     "The line "
+     "DTR of the port must reach the board: it starts and stops the motor."},
     {"a recording of a model of lidar, or in a version, that this library does not know",
      "Read it with the libg4lidar that made it, or a newer one."},
 }};
@@ -200,7 +209,7 @@ error::error(g4lidar::task doing, problem code, std::string_view subject, int sy
 bool error::is_fatal() const noexcept {
   using enum problem;
   return !is_one_of(code_, timeout, wrong_answer, not_reached, bad_setting, scanning, reconnecting,
-                    read_only, cancelled);
+                    read_only, cancelled, not_supported);
 }
 
 std::string_view error::advice() const noexcept { return words_of(code_, detail_).advice; }

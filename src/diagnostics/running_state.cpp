@@ -71,6 +71,7 @@ void running_state::add(const lidar_event& what) {
     case other_lidar:
     case long_pause:
     case overflow:
+    case still_turning:
       break;
   }
 }

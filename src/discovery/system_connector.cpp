@@ -70,12 +70,12 @@ error explained(const error& why, const std::string& device) {
 
 }  // namespace
 
-system_connector::system_connector(std::string_view device, std::uint32_t baud)
-    : device_(device), baud_(baud) {}
+system_connector::system_connector(std::string_view device, std::uint32_t baud, const model* named)
+    : device_(device), baud_(baud), named_(named) {}
 
 result<std::unique_ptr<connector>> system_connector::make(std::string_view device,
-                                                          std::uint32_t baud) {
-  return std::unique_ptr<connector>(new system_connector(device, baud));
+                                                          std::uint32_t baud, const model* named) {
+  return std::unique_ptr<connector>(new system_connector(device, baud, named));
 }
 
 /// A reconnect must not end the program if there is no memory.
@@ -108,8 +108,17 @@ result<std::unique_ptr<transport>> system_connector::first_connect() {
   if (opened) {
     first_ = *port;
     last_path_ = port->path;
+    if (named_ != nullptr && named_->link == link_kind::one_way) find_place();
   }
   return opened;
+}
+
+/// A port that was named by its path has no more than this so far.
+void system_connector::find_place() {
+  const auto ports = list_ports();
+  if (!ports) return;
+  const auto at = std::ranges::find(*ports, first_.path, &port_info::path);
+  if (at != ports->end()) first_ = *at;
 }
 
 /// Each call tries the next candidate; at the end of a round it fails with no_port once.
@@ -129,7 +138,9 @@ result<std::unique_ptr<transport>> system_connector::connect_again() {
 
 /// The path that the user named, then the old path, then the other ports; an empty one ends the round.
 void system_connector::list_candidates() {
-  if (names_path(device_) && !is_refused(first_.path)) paths_.push_back(first_.path);
+  if (names_path(device_) && !goes_by_place() && !is_refused(first_.path)) {
+    paths_.push_back(first_.path);
+  }
   if (const auto ports = list_ports()) {
     for (const port_info& port : *ports) {
       if (!may_be_ours(port) || is_refused(port.path)) continue;
@@ -142,9 +153,11 @@ void system_connector::list_candidates() {
 
 /// The USB bridge of a G4, or an adapter of the same model at the USB port that the user named.
 bool system_connector::may_be_ours(const port_info& port) const noexcept {
+  const bool is_same = port.bus_path == first_.bus_path && port.vendor_id == first_.vendor_id &&
+                       port.product_id == first_.product_id;
+  if (goes_by_place()) return is_same;
   if (is_g4_bridge(port)) return true;
-  return device_.starts_with(usb_prefix) && port.bus_path == first_.bus_path &&
-         port.vendor_id == first_.vendor_id && port.product_id == first_.product_id;
+  return is_same && device_.starts_with(usb_prefix);
 }
 
 bool system_connector::is_refused(const std::string& path) const {

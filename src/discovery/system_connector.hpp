@@ -24,9 +24,11 @@ inline constexpr std::string_view usb_prefix = "usb:";
 /// port only if the user named its path, or if a G4 may be attached to it: see may_be_ours().
 class system_connector final : public connector {
  public:
-  /// Fails with bad_option if `device` has no known form.
+  /// `named` is the model that the user named, or null. Fails with bad_option if `device` has no known
+  /// form.
   [[nodiscard]] static result<std::unique_ptr<connector>> make(std::string_view device,
-                                                               std::uint32_t baud);
+                                                               std::uint32_t baud,
+                                                               const model* named = nullptr);
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
@@ -35,6 +37,7 @@ class system_connector final : public connector {
   void refuse() noexcept override;
   [[nodiscard]] int watch() noexcept override;
   [[nodiscard]] bool may_be_back() noexcept override;
+  [[nodiscard]] connector_traits traits() const noexcept override { return {.model = named_}; }
 
  private:
   /// A device node at the time when another lidar answered there. A replug creates the node again.
@@ -45,18 +48,24 @@ class system_connector final : public connector {
     friend bool operator==(const refused_port&, const refused_port&) = default;
   };
 
-  system_connector(std::string_view device, std::uint32_t baud);
+  system_connector(std::string_view device, std::uint32_t baud, const model* named);
 
   [[nodiscard]] result<std::unique_ptr<transport>> open_transport();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
   [[nodiscard]] bool may_be_ours(const port_info& port) const noexcept;
+  /// A lidar that does not say who it is can only be known by its USB port.
+  [[nodiscard]] bool goes_by_place() const noexcept {
+    return named_ != nullptr && named_->link == link_kind::one_way && !first_.bus_path.empty();
+  }
+  void find_place();
   [[nodiscard]] bool is_refused(const std::string& path) const;
   void list_candidates();
   [[nodiscard]] int watch_handle() const noexcept { return watch_ ? watch_->native_handle() : -1; }
 
   std::string device_;
   std::uint32_t baud_;
+  const model* named_;
   port_info first_;                    // the port of the first connection
   std::vector<std::string> paths_;     // to be tried in this round
   std::string last_path_;              // of the last connection

@@ -21,8 +21,9 @@ class device_link {
 
   /// `parser` gets the bytes, and must outlive this.
   explicit device_link(const stream_parser& parser, const session_times& times = {},
-                       std::int64_t cut_off_after_ns = usual_cut_off_ns) noexcept
-      : parser_(parser), session_(times), cut_off_after_ns_(cut_off_after_ns) {}
+                       std::int64_t cut_off_after_ns = usual_cut_off_ns,
+                       const model& which = g4_model) noexcept
+      : parser_(parser), session_(times, which), cut_off_after_ns_(cut_off_after_ns) {}
 
   /// Another transport follows: nothing is known about the device.
   void reset(std::int64_t now_ns) noexcept {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "listening_driver.hpp"
 #include "live_driver.hpp"
 #include "replay_player.hpp"
 
@@ -11,7 +12,12 @@ namespace g4lidar {
 namespace {
 
 std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_options& options) {
-  if (parts.link.from().traits().answers) return std::make_unique<live_driver>(parts, options);
+  if (parts.link.from().traits().answers) {
+    if (options.model->link == link_kind::one_way) {
+      return std::make_unique<listening_driver>(parts, options);
+    }
+    return std::make_unique<live_driver>(parts, options);
+  }
   return std::make_unique<replay_player>(parts, options);
 }
 

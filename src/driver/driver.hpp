@@ -54,6 +54,9 @@ class G4LIDAR_HIDDEN lidar::driver {
   [[nodiscard]] const device_information& information() const noexcept {
     return source_->information();
   }
+  [[nodiscard]] std::optional<device_information> module_information() const noexcept {
+    return source_->module_information();
+  }
   [[nodiscard]] std::string_view name() const noexcept { return parts_.link.name(); }
   [[nodiscard]] bool is_scanning() const noexcept { return source_->is_scanning(); }
   [[nodiscard]] lidar_counts counts() const noexcept;

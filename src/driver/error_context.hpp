@@ -43,8 +43,11 @@ class error_context {
     add(", ").add(what);
     if (wanted.what == request_kind::set_scan_frequency)
       return add(" ").add(scan_frequency{wanted.value});
-    if (wanted.what == request_kind::set_sample_rate && wanted.value < rate_words.size()) {
-      return add(rate_words[wanted.value]);
+    if (wanted.what == request_kind::set_sample_rate && wanted.value % 1000 == 0) {
+      return add(" ").add(std::uint32_t{wanted.value} / 1000U).add(" kHz");
+    }
+    if (wanted.what == request_kind::set_sample_rate) {
+      return add(" ").add(std::uint32_t{wanted.value}).add(" Hz");
     }
     return *this;
   }
@@ -54,7 +57,7 @@ class error_context {
 
  private:
   /// In the order of the enumeration; start and stop are in the task already.
-  static constexpr std::array<std::string_view, 16> request_words{"device information",
+  static constexpr std::array<std::string_view, 18> request_words{"device information",
                                                                   "health",
                                                                   "low power",
                                                                   "low power",
@@ -67,12 +70,12 @@ class error_context {
                                                                   "sample rate",
                                                                   "sample rate",
                                                                   "power-down protection",
+                                                                  "zero angle",
+                                                                  "pitch",
                                                                   "restart",
                                                                   "",
                                                                   ""};
   static_assert(request_words.size() == static_cast<std::size_t>(request_kind::stop) + 1);
-
-  static constexpr std::array<std::string_view, 3> rate_words{" 4 kHz", " 8 kHz", " 9 kHz"};
 
   std::array<char, 95> text_{};
   std::size_t size_ = 0;

@@ -11,6 +11,7 @@
 
 #include "driver.hpp"
 #include "error_context.hpp"
+#include "g4lidar/core/session/request_retry.hpp"
 #include "g4lidar/source.hpp"
 
 namespace g4lidar {
@@ -36,22 +37,60 @@ error bad(std::string_view what, std::int64_t given, std::string_view unit) noex
   return bad(words.add(static_cast<std::uint32_t>(size < 0 ? -size : size)).add(unit));
 }
 
+/// "sample_rate: 8000, 16000 or 18000 of a G6".
+error bad_rate(const model& which) noexcept {
+  error_context words("sample_rate: ");
+  const std::uint8_t count = rate_count(which);
+  for (std::uint8_t code = 0; code < count; ++code) {
+    const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
+    words.add(before).add(rate_hz_of_code(which, code));
+  }
+  return bad(words.add(" of a ").add(which.name));
+}
+
+/// "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300".
+error bad_frequency(const model& which, scan_frequency given) noexcept {
+  const auto [least_dhz, most_dhz, reply, ct] = which.frequency;
+  error_context words("frequency: ");
+  words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
+  words.add(" to ").add(most_dhz / 10U).add(" Hz of a ").add(which.name).add(")");
+  return bad(words, given.chz, "");
+}
+
+/// Of the settings that `options` give.
+std::optional<error> problem_with_settings(const lidar_options& options) noexcept {
+  const model& which = options.model != nullptr ? *options.model : g4_model;
+  const auto problem_of = [&](const auto& setting, std::string_view name,
+                              const error& bad_value) -> std::optional<error> {
+    if (!setting) return std::nullopt;
+    const request change = requests::set(*setting);
+    if (!has_request(which, change.what)) {
+      return error(task::configuring, problem::not_supported,
+                   error_context(name).add(", ").add(which.name));
+    }
+    return is_possible(change, which) ? std::nullopt : std::optional(bad_value);
+  };
+  std::optional<error> found = problem_of(options.sample_rate, "sample_rate", bad_rate(which));
+  if (!found && options.frequency) {
+    found = problem_of(options.frequency, "frequency", bad_frequency(which, *options.frequency));
+  }
+  if (!found) {
+    found = problem_of(options.direction, "direction",
+                       bad("direction: clockwise or counter_clockwise"));
+  }
+  if (!found) found = problem_of(options.constant, "constant", bad("constant: on or off"));
+  if (!found) found = problem_of(options.idle, "idle", bad("idle: on or off"));
+  if (!found) found = problem_of(options.protection, "protection", bad("protection: on or off"));
+  return found;
+}
+
 }  // namespace
 
 std::optional<error> problem_with(const lidar_options& options) noexcept {
   const auto within = [](auto value, auto least, auto most) {
     return value >= least && value <= most;
   };
-  if (options.baud == 0) return bad("baud: above 0");
-  const auto may_be = [](const auto& setting) { return !setting || is_valid(*setting); };
-  if (!may_be(options.sample_rate)) return bad("sample_rate: khz_4, khz_8 or khz_9");
-  if (options.frequency && !is_valid(*options.frequency)) {
-    return bad("frequency: 500 to 1200 (5 to 12 Hz)", options.frequency->chz, "");
-  }
-  if (!may_be(options.direction)) return bad("direction: clockwise or counter_clockwise");
-  if (!may_be(options.constant)) return bad("constant: on or off");
-  if (!may_be(options.idle)) return bad("idle: on or off");
-  if (!may_be(options.protection)) return bad("protection: on or off");
+  if (auto wrong = problem_with_settings(options)) return wrong;
   if (options.tuning.pace > read_pace::revolutions)
     return bad("pace: automatic, packets or revolutions");
   const auto bad_time = [](std::string_view what, milliseconds given) {
@@ -84,10 +123,10 @@ std::string model_words() {
 }
 
 std::string_view name_of(lidar_event::kind what) noexcept {
-  constexpr std::array<std::string_view, 11> names{
-      "lost",        "reconnected", "found_scanning", "protection_starved", "protection_found_on",
-      "spinning_up", "restarted",   "health_warning", "other_lidar",        "long_pause",
-      "overflow"};
+  constexpr std::array<std::string_view, 12> names{
+      "lost",        "reconnected",  "found_scanning", "protection_starved", "protection_found_on",
+      "spinning_up", "restarted",    "health_warning", "other_lidar",        "long_pause",
+      "overflow",    "still_turning"};
   return names[static_cast<std::size_t>(what)];
 }
 
@@ -141,7 +180,6 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
 }
 
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
-  if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
   const model* const stated = from->traits().model;
   if (options.model != nullptr && stated != nullptr && options.model->word != stated->word) {
     return failure(task::opening, problem::bad_option,
@@ -151,6 +189,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;
   if (used.model == nullptr) used.model = &g4_model;
+  if (const auto problem = problem_with(used)) return tl::unexpected(*problem);
   auto made = std::make_unique<driver>(std::move(from), used);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
   return lidar(std::move(made));
@@ -212,6 +251,9 @@ result<answer> lidar::ask(const request& wanted, while_scanning how) {
 const device_information& lidar::information() const noexcept {
   static constexpr device_information none{};
   return driver_ ? driver_->information() : none;
+}
+std::optional<device_information> lidar::module_information() const noexcept {
+  return driver_ ? driver_->module_information() : std::nullopt;
 }
 player* lidar::player() noexcept { return driver_ ? driver_->player() : nullptr; }
 std::string_view lidar::name() const noexcept { return driver_ ? driver_->name() : "closed"; }

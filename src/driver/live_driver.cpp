@@ -32,8 +32,7 @@ lidar_event::kind event_of(notice what) noexcept {
 live_driver::live_driver(parts& of, const lidar_options& options)
     : scan_source(of, options),
       options_(options),
-      stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_},
-              options.tuning) {}
+      stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
 
 // ---- one round ----------------------------------------------------------------------------------
 
@@ -98,7 +97,9 @@ result<bool> live_driver::serve() {
 std::int64_t live_driver::next_deadline_ns() const noexcept {
   if (stage_ == live_stage::closed) return never_ns;
   if (stage_ == live_stage::lost) return reconnection_.next_attempt_ns();
-  return stage_ >= live_stage::breaking ? now_ns() : stream_.next_deadline_ns();
+  if (stage_ >= live_stage::breaking) return now_ns();
+  return is_motor_due() ? std::min(stream_.next_deadline_ns(), stream_.motor_ready_ns())
+                        : stream_.next_deadline_ns();
 }
 
 // ---- the connection -------------------------------------------------------------------------------
@@ -106,6 +107,8 @@ std::int64_t live_driver::next_deadline_ns() const noexcept {
 result<void> live_driver::connect() {
   if (auto opened = connection_.open(); !opened) return opened;
   stream_.begin();
+  // The motor starts at an edge, and the system raises the line when it opens a port.
+  if (auto lowered = stream_.set_motor(false); !lowered) return lowered;
   setup_.clear();
   setup_.reset_short_scans();  // the session has forgotten the scans before, too
   stage_ = live_stage::identifying;
@@ -138,7 +141,7 @@ result<void> live_driver::hang_up() {
     report(lidar_event::kind::lost, reconnection_.why().code());
     reconnection_.begin();
   }
-  if (!options_.reconnect || information_.model != model_g4) {
+  if (!options_.reconnect || !information_.is_known()) {
     stage_ = live_stage::closed;
     return tl::unexpected(reconnection_.why());
   }
@@ -224,9 +227,8 @@ result<answer> live_driver::ask(const request& wanted, while_scanning how) {
     question_.forget_woken();
     if (auto ready = run_setup(); !ready) return tl::unexpected(ready.error());
     if (const auto refused = stream_.talk().begin(wanted, now_ns(), how)) {
-      const bool is_bad = *refused == refusal::bad_setting;
-      return failure(task::asking, is_bad ? problem::bad_setting : problem::scanning,
-                     error_context(connection_.name()).add(wanted));
+      return tl::unexpected(
+          refusal_error(task::asking, *refused, wanted, *options_.model, connection_.name()));
     }
   }
   question_.begin(wanted);

@@ -72,16 +72,17 @@ result<bool> live_driver::go_on_with_setup() {
     }
     if (question_.is_open() || setup_.is_done() || talk.is_busy()) return has_outcome;
     if (setup_.next() == setup_step::start) {
+      if (stream_.motor_ready_ns() > now_ns()) return has_outcome;
+      if (auto raised = stream_.set_motor(true); !raised) return tl::unexpected(raised.error());
       stream_.begin_points();
       if (!setup_.is_again()) pipeline_.begin_scans();
     }
     const request next = request_of(setup_.next(), options_);
     const auto refused = talk.begin(next, now_ns());
-    if (refused == refusal::bad_setting) {
-      const error_context about = error_context(connection_.name()).add(next);
-      if (auto given = give_up({task::configuring, problem::bad_setting, about}); !given) {
-        return tl::unexpected(given.error());
-      }
+    if (refused == refusal::bad_setting || refused == refusal::not_supported) {
+      const error why =
+          refusal_error(task::configuring, *refused, next, *options_.model, connection_.name());
+      if (auto given = give_up(why); !given) return tl::unexpected(given.error());
       return has_outcome;
     }
     // If it is refused, the session is busy with its own recovery.
@@ -90,7 +91,7 @@ result<bool> live_driver::go_on_with_setup() {
 }
 
 result<void> live_driver::take_outcome(const outcome& done) {
-  stream_.learn_rate(done.value);
+  stream_.learn(done.value);
   if (!setup_.is_done() && !question_.is_open()) {
     if (auto good = finish_step(done); !good) return good;
   } else {
@@ -111,6 +112,9 @@ result<void> live_driver::take_outcome(const outcome& done) {
 result<void> live_driver::finish_step(const outcome& done) {
   const setup_step finished = setup_.next();
   setup_.finish_next();
+  if (finished == setup_step::stop) {
+    if (auto lowered = stream_.set_motor(false); !lowered) return lowered;
+  }
   if (done.how != verdict::answered) {
     // A device that does not answer a command that every G4 knows is lost.
     if (!is_needed(finished, options_) && !done.heard_nothing()) return {};
@@ -151,12 +155,10 @@ result<void> live_driver::give_up(const error& why) {
 }
 
 result<void> live_driver::identified(const device_information& who) {
-  if (who.model != model_g4) {
-    const error_context model =
-        error_context(connection_.name()).add(", model ").add(std::uint32_t{who.model});
-    return failure(task::opening, problem::other_device, model);
+  if (!may_be(*options_.model, who)) {
+    return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
   }
-  const bool is_known = information_.model == model_g4;
+  const bool is_known = information_.is_known();
   if (is_known && who.serial_digits != information_.serial_digits) {
     connection_.from().refuse();  // the wanted lidar may be behind another port
     if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);

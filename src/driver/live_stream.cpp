@@ -20,12 +20,20 @@ session_times times_for(const lidar_tuning& tuning) noexcept {
 
 }  // namespace
 
-live_stream::live_stream(const parts& of, const lidar_tuning& tuning)
-    : of_(of), pace_(tuning.pace), link_(of.pipeline.input().parser(), times_for(tuning)) {}
+live_stream::live_stream(const parts& of, const lidar_options& options)
+    : of_(of),
+      pace_(options.tuning.pace),
+      link_(of.pipeline.input().parser(), times_for(options.tuning), device_link::usual_cut_off_ns,
+            *options.model),
+      motor_(options.model->motor),
+      listens_(options.model->link == link_kind::one_way),
+      said_(*options.model),
+      sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 void live_stream::begin() {
   const transport& on = of_.on.on();
   link_.reset(now_ns());
+  said_.reset();
   of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
   of_.pipeline.follow(on.baud());
   of_.motor.forget();
@@ -84,7 +92,8 @@ bool live_stream::parse() {
   while (!pipeline.find_scan()) {
     const event* const found = pipeline.next();
     if (found == nullptr) return false;
-    link_.take(*found);
+    said_.take(*found);
+    if (!listens_) link_.take(*found);
     follow_delivery();
     const auto* const packet = std::get_if<packet_view>(found);
     if (packet != nullptr && pipeline.delivers()) {
@@ -112,8 +121,9 @@ void live_stream::flush() {
 void live_stream::follow_delivery() {
   const bool delivers = of_.pipeline.delivers();
   const bool may_begin = of_.stage >= live_stage::preparing && of_.stage != live_stage::stopping;
+  const bool goes_on = of_.stage == live_stage::stopping && delivers;
   const bool wanted =
-      talk().is_scanning() && (may_begin || (of_.stage == live_stage::stopping && delivers));
+      listens_ ? of_.stage == live_stage::scanning : talk().is_scanning() && (may_begin || goes_on);
   if (wanted == delivers) return;
   of_.pipeline.deliver(wanted);
   wanted ? begin_points() : record(recorded_event::kind::held);
@@ -125,7 +135,19 @@ void live_stream::begin_points() {
   record(recorded_event::kind::begun);
 }
 
-void live_stream::learn_rate(const answer& heard) {
+result<void> live_stream::set_motor(bool on) {
+  constexpr std::int64_t low_ns = 100'000'000;
+  if (motor_ != motor_kind::dtr) return {};
+  const auto set = of_.on.on().set_dtr(on);
+  if (!set) return tl::unexpected(set.error());
+  if (!*set) return {};  // no such line: the motor turns by other means
+  if (!on) motor_ready_ns_ = now_ns() + low_ns;
+  record(on ? recorded_event::kind::dtr_high : recorded_event::kind::dtr_low);
+  return {};
+}
+
+void live_stream::learn(const answer& heard) {
+  if (const auto* zero = std::get_if<zero_angle>(&heard)) return of_.pipeline.set_zero(*zero);
   const auto* rate = std::get_if<sample_rate>(&heard);
   if (rate == nullptr || to_hz(*rate) == sample_rate_hz_) return;
   sample_rate_hz_ = to_hz(*rate);
@@ -161,9 +183,9 @@ std::int64_t live_stream::rest_until_ns() const noexcept {
 }
 
 error live_stream::silence_error() const {
-  const bool has_begun = of_.pipeline.has_begun();
-  return {has_begun ? task::reading : task::starting,
-          has_begun ? problem::stalled : problem::brown_out, of_.on.name()};
+  if (of_.pipeline.has_begun()) return {task::reading, problem::stalled, of_.on.name()};
+  const auto why = motor_ == motor_kind::dtr ? error_detail::motor_line : error_detail::usual;
+  return {task::starting, problem::brown_out, of_.on.name(), 0, why};
 }
 
 error live_stream::error_after(const error& why) const {

@@ -8,7 +8,9 @@
 #include "connection.hpp"
 #include "device_link.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
+#include "identity_reader.hpp"
 #include "live_stage.hpp"
 #include "point_pipeline.hpp"
 #include "receiver.hpp"
@@ -16,7 +18,8 @@
 
 namespace g4lidar {
 
-/// The parts of a round on an open connection. *Single thread.* What it is made of must outlive it.
+/// The parts of a round on an open connection. *Single thread.* What it is made of must outlive it. The
+/// session of a one-way lidar has nothing to do: what scans is said by the stage alone.
 class live_stream {
  public:
   struct parts {
@@ -28,10 +31,14 @@ class live_stream {
     const std::atomic<bool>& takes_points;  ///< See scan_source::take_points().
   };
 
-  live_stream(const parts& of, const lidar_tuning& tuning);
+  live_stream(const parts& of, const lidar_options& options);
 
   [[nodiscard]] session& talk() noexcept { return link_.talk(); }
   [[nodiscard]] const session& talk() const noexcept { return link_.talk(); }
+
+  /// What the device has said unasked.
+  [[nodiscard]] identity_reader& said() noexcept { return said_; }
+  [[nodiscard]] const identity_reader& said() const noexcept { return said_; }
 
   /// The connection was opened.
   void begin();
@@ -54,8 +61,13 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
-  /// Uses the sample rate, if it is the answer.
-  void learn_rate(const answer& heard);
+  /// Uses the sample rate or the zero angle, if one of them is the answer.
+  void learn(const answer& heard);
+
+  /// Sets the line DTR where it drives the motor, which starts at an edge to high.
+  [[nodiscard]] result<void> set_motor(bool on);
+  /// When the line has been low for long enough, so that the motor may be started.
+  [[nodiscard]] std::int64_t motor_ready_ns() const noexcept { return motor_ready_ns_; }
 
   /// When something is due, if nothing arrives.
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
@@ -71,7 +83,7 @@ class live_stream {
   [[nodiscard]] std::int64_t now_ns() const noexcept { return of_.on.now_ns(); }
   [[nodiscard]] reading how_to_read() const noexcept;
   [[nodiscard]] bool is_waiting_for_answer() const noexcept {
-    return talk().is_busy() || !talk().is_scanning();
+    return !listens_ && (talk().is_busy() || !talk().is_scanning());
   }
   [[nodiscard]] bool is_cut_off() const noexcept {
     return is_waiting_for_answer() && link_.is_cut_off(now_ns());
@@ -82,7 +94,11 @@ class live_stream {
   parts of_;
   read_pace pace_;
   device_link link_;
-  std::uint32_t sample_rate_hz_ = g4_model.rates.nominal_hz;
+  motor_kind motor_;
+  bool listens_;  // nothing is sent
+  identity_reader said_;
+  std::uint32_t sample_rate_hz_;
+  std::int64_t motor_ready_ns_ = 0;
 };
 
 }  // namespace g4lidar

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "error_context.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
 #include "live_stage.hpp"
 
@@ -37,6 +38,31 @@ namespace g4lidar {
   if (done.heard_nothing() && is_setting_up) return {doing, problem::silence, about};
   if (done.heard_noise_only()) return {doing, problem::garbage, about};
   return {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about};
+}
+
+/// Of a request that a session refuses.
+[[nodiscard]] inline error refusal_error(task doing, refusal why, const request& wanted,
+                                         const model& which, std::string_view device) noexcept {
+  error_context about = error_context(device).add(wanted);
+  if (why == refusal::not_supported) {
+    return {doing, problem::not_supported, about.add(", ").add(which.name)};
+  }
+  return {doing, why == refusal::bad_setting ? problem::bad_setting : problem::scanning, about};
+}
+
+/// Of a device that says that it is a model other than `which`.
+[[nodiscard]] inline error other_device_error(const device_information& who, const model& which,
+                                              std::string_view device) noexcept {
+  error_context about = error_context(device).add(", model ").add(std::uint32_t{who.model});
+  if (const model* const found = model_with_id(who.model, which.link)) {
+    about.add(" (").add(found->name).add(")");
+  }
+  return {task::opening, problem::other_device, about.add(", not ").add(which.name)};
+}
+
+/// Whether a device of the model may say this number.
+[[nodiscard]] constexpr bool may_be(const model& which, const device_information& who) noexcept {
+  return who.model == which.ids[0] || who.model == which.ids[1];
 }
 
 }  // namespace g4lidar

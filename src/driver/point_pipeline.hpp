@@ -132,6 +132,9 @@ class point_pipeline {
     decoder_.follow(baud);
   }
 
+  /// What the device has answered to command 93, which is added to all angles from here on.
+  void set_zero(zero_angle offset) noexcept { decoder_.set_zero(offset); }
+
   // ---- scans ----
 
   /// Whether there is a scan. It must be taken or dropped before other calls.

@@ -21,6 +21,7 @@ bool may_pass(const error& why) noexcept {
   switch (why.code()) {
     case problem::bad_option:
     case problem::bad_setting:
+    case problem::not_supported:
     case problem::other_device:
     case problem::read_only:
     case problem::bad_file:

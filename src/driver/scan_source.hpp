@@ -83,6 +83,10 @@ class scan_source {
     return saturating_add(now_ns(), timeout_ns);
   }
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
+  /// Of the turning part, if it has said another one.
+  [[nodiscard]] virtual std::optional<device_information> module_information() const noexcept {
+    return std::nullopt;
+  }
   /// Of a file that is played; else null.
   [[nodiscard]] virtual player* controls() noexcept { return nullptr; }
   /// Whether no step makes progress: a wait of it ends a call.

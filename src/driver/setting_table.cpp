@@ -12,6 +12,25 @@ namespace {
 constexpr std::array<setting_value, 3> sample_rates{{{"4k", 4000, sample_rate::khz_4},
                                                      {"8k", 8000, sample_rate::khz_8},
                                                      {"9k", 9000, sample_rate::khz_9}}};
+constexpr setting_value rate_of(std::string_view word, std::uint16_t hz) {
+  return {word, hz, sample_rate{hz}};
+}
+/// Of models other than the G4.
+constexpr std::array other_rates{rate_of("6k", 6000), rate_of("10k", 10'000),
+                                 rate_of("16k", 16'000), rate_of("18k", 18'000),
+                                 rate_of("20k", 20'000)};
+constexpr const setting_value* other_rate(std::int32_t hz) noexcept {
+  const auto* const at = std::ranges::find(other_rates, hz, &setting_value::number);
+  return at == other_rates.end() ? nullptr : &*at;
+}
+/// The limits of the scan frequency of all models, in 0.01 Hz.
+constexpr std::int32_t least_of_all_chz = 300;
+constexpr std::int32_t most_of_all_chz = 1600;
+static_assert(std::ranges::all_of(models, [](const model& each) {
+  const bool is_set = each.frequency.max_dhz != 0;
+  return !is_set || (10 * each.frequency.min_dhz >= least_of_all_chz &&
+                     10 * each.frequency.max_dhz <= most_of_all_chz);
+}));
 constexpr std::array<setting_value, 2> directions{
     {{"cw", 1, motor_direction::clockwise}, {"ccw", 2, motor_direction::counter_clockwise}}};
 /// The settings whose values are off and on.
@@ -81,13 +100,22 @@ const setting_info* setting_of(const answer& value) noexcept {
 std::optional<answer> value_of(const setting_info& of, std::int32_t number) noexcept {
   const auto at = std::ranges::find(of.values, number, &setting_value::number);
   if (at != of.values.end()) return at->value;
-  if (!of.values.empty() || number < of.least || number > of.most) return std::nullopt;
+  if (of.change == request_kind::set_sample_rate) {
+    const setting_value* const found = other_rate(number);
+    return found == nullptr ? std::nullopt : std::optional(found->value);
+  }
+  if (!of.values.empty() || number < least_of_all_chz || number > most_of_all_chz) {
+    return std::nullopt;
+  }
   return scan_frequency{static_cast<std::uint16_t>(number)};
 }
 
 const setting_value* find_value(const answer& value) noexcept {
   const setting_info* const of = setting_of(value);
   if (of == nullptr) return nullptr;
+  const auto* const rate = std::get_if<sample_rate>(&value);
+  const auto hz = rate == nullptr ? 0 : static_cast<std::int32_t>(to_hz(*rate));
+  if (const setting_value* const found = other_rate(hz)) return found;
   const auto at = std::ranges::find(of->values, value, &setting_value::value);
   return at == of->values.end() ? nullptr : &*at;
 }

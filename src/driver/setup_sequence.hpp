@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "g4lidar/core/session/request_retry.hpp"
 #include "g4lidar/lidar.hpp"
 
 namespace g4lidar {
@@ -15,6 +16,7 @@ enum class setup_step : std::uint8_t {
   identify,
   stop,
   health,
+  zero_angle,
   sample_rate,
   frequency,
   direction,
@@ -83,7 +85,11 @@ class setup_sequence {
   }
   void add_steps(const lidar_options& options) noexcept {
     add(setup_step::health);
-    add(setup_step::sample_rate);  // queried if it is not set
+    const model& which = options.model != nullptr ? *options.model : g4_model;
+    if (has_request(which, request_kind::zero_angle)) add(setup_step::zero_angle);
+    // Queried if it is not set.
+    const bool has_rate = has_request(which, request_kind::get_sample_rate);
+    if (has_rate || options.sample_rate) add(setup_step::sample_rate);
     if (options.frequency) add(setup_step::frequency);
     if (options.direction) add(setup_step::direction);
     if (options.constant) add(setup_step::constant);
@@ -110,6 +116,8 @@ class setup_sequence {
       return requests::stop();
     case setup_step::health:
       return requests::health();
+    case setup_step::zero_angle:
+      return requests::zero_angle();
     case setup_step::sample_rate:
       return set(options.sample_rate, requests::get_sample_rate());
     case setup_step::frequency:
@@ -132,14 +140,16 @@ class setup_sequence {
 /// before it: an answer was lost, or the first start had no effect. A device that boots hears nothing.
 [[nodiscard]] inline bool is_doubtful(setup_step step, const outcome& done) noexcept {
   if (step == setup_step::start) return done.starts > 1;
-  if (step <= setup_step::health) return false;
+  if (step <= setup_step::zero_angle) return false;
   // A healthy device may refuse to step beyond its range.
   return done.retries > (step == setup_step::frequency ? done.wrong_answers : 0);
 }
 
 /// Whether the sequence fails if the step is not answered. Old firmware does not know every query.
 [[nodiscard]] inline bool is_needed(setup_step step, const lidar_options& options) noexcept {
-  return step != setup_step::health && (step != setup_step::sample_rate || options.sample_rate);
+  const bool is_query = step == setup_step::health || step == setup_step::zero_angle ||
+                        (step == setup_step::sample_rate && !options.sample_rate);
+  return !is_query;
 }
 
 }  // namespace g4lidar

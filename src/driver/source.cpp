@@ -11,6 +11,9 @@
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #if defined(G4LIDAR_HAS_SIM)
+#include <variant>
+
+#include "g4lidar/sim/setup.hpp"
 #include "g4lidar/sim/simulated_source.hpp"
 #endif
 
@@ -20,6 +23,10 @@ namespace {
 constexpr std::string_view file_prefix = "file:";
 constexpr std::string_view sim_prefix = "sim:";
 
+std::uint32_t baud_of(const lidar_options& options, const model& which) noexcept {
+  return options.baud != 0 ? options.baud : which.bauds[0];
+}
+
 #if defined(G4LIDAR_HAS_SIM)
 /// To the port of a simulated lidar, which it owns.
 class simulated_connector final : public forwarding_connector {
@@ -27,7 +34,17 @@ class simulated_connector final : public forwarding_connector {
   simulated_connector(std::unique_ptr<connector> inner, sim::simulated_source of)
       : forwarding_connector(std::move(inner)), of_(std::move(of)) {}
 
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    connector_traits known = forwarding_connector::traits();
+    known.model = &model_of(of_);
+    return known;
+  }
   [[nodiscard]] const sim::simulated_source& source() const noexcept { return of_; }
+
+  [[nodiscard]] static const model& model_of(const sim::simulated_source& of) noexcept {
+    const model* const named = model_named(of.model);
+    return named != nullptr ? *named : g4_model;
+  }
 
  private:
   sim::simulated_source of_;
@@ -36,7 +53,8 @@ class simulated_connector final : public forwarding_connector {
 result<std::unique_ptr<connector>> connect_simulated(const lidar_options& options) {
   auto made = sim::open_simulated(options.device);
   if (!made) return tl::unexpected(made.error());
-  auto inner = system_connector::make(made->port->path(), options.baud);
+  auto inner = system_connector::make(made->port->path(),
+                                      baud_of(options, simulated_connector::model_of(*made)));
   if (!inner) return inner;
   return std::make_unique<simulated_connector>(*std::move(inner), *std::move(made));
 }
@@ -69,19 +87,27 @@ result<const model*> model_of_source(std::string_view name,
   const std::string path = path_of_source(name);
   const source_kind kind = kind_of_source(name);
   if (kind == source_kind::raw_bytes) return &model_of_bytes(path);
+#if defined(G4LIDAR_HAS_SIM)
+  if (kind == source_kind::simulated) {
+    const auto read = sim::parse_setup(name);
+    const auto* const wanted = std::get_if<sim::setup>(&read);
+    const model* const named = wanted != nullptr ? model_named(wanted->model) : nullptr;
+    return named != nullptr ? named : &g4_model;
+  }
+#endif
   if (kind != source_kind::recording) return &g4_model;
   return recording_reader::open(path, {.is_cancelled = is_cancelled})
       .map([](const recording_reader& of) { return &of.model(); });
 }
 
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
-  if (const auto problem = problem_with(options)) return tl::unexpected(*problem);
+  lidar_options known = options;
+  if (options.model == nullptr && kind_of_source(options.device) == source_kind::simulated) {
+    known.model = model_of_source(options.device).value_or(nullptr);
+  }
+  if (const auto problem = problem_with(known)) return tl::unexpected(*problem);
   const std::string path = path_of_source(options.device);
   const source_kind kind = kind_of_source(options.device);
-  const bool is_file = kind == source_kind::raw_bytes || kind == source_kind::recording;
-  if (!is_file && options.model != nullptr && options.model->word != g4_model.word) {
-    return failure(task::opening, problem::bad_option, "model: for files only");
-  }
   switch (kind) {
     case source_kind::recording:
       return replay::open(path, options.playback, options.is_cancelled);
@@ -93,7 +119,9 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
     case source_kind::device:
       break;
   }
-  return system_connector::make(options.device, options.baud);
+  return system_connector::make(
+      options.device, baud_of(options, options.model != nullptr ? *options.model : g4_model),
+      options.model);
 }
 
 const sim::simulated_source* simulation_of([[maybe_unused]] const connector& from) noexcept {

@@ -227,6 +227,11 @@ std::string protocol_log::meaning_of(response_view response) const {
         return "scan frequency " + with_decimals(*chz / 100.0, 2) + " Hz";
       }
       break;
+    case response_kind::pitch:
+      if (const auto cdeg = response.as_angle()) {
+        return "pitch " + with_decimals(*cdeg / 100.0, 2) + " degrees";
+      }
+      break;
   }
   return "reply";
 }

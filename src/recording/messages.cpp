@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "g4lidar/bulk_decoder.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
@@ -15,8 +16,9 @@
 namespace g4lidar {
 namespace {
 
-constexpr std::array<std::string_view, 9> event_names{
-    "opened", "closed", "sent", "begun", "held", "cut", "gap", "state", "odometry"};
+constexpr std::array<std::string_view, 11> event_names{"opened",   "closed",  "sent",    "begun",
+                                                       "held",     "cut",     "gap",     "state",
+                                                       "odometry", "dtr_low", "dtr_high"};
 
 }  // namespace
 
@@ -79,6 +81,18 @@ template <class Setting>
 void take_setting(std::optional<Setting>& setting, std::string_view text) noexcept {
   const auto value = number_in<std::uint8_t>(text);
   setting = value ? reply_byte<Setting>(*value) : std::nullopt;
+}
+
+/// As older versions wrote it: 0, 1 and 2 are the rates of a G4.
+std::string rate_text(sample_rate rate) {
+  const std::uint8_t code = code_of_rate(g4_model, to_hz(rate));
+  return std::to_string(code < g4_model.rates.entries.size() ? code : to_hz(rate));
+}
+std::optional<sample_rate> rate_from(std::string_view text) noexcept {
+  const auto value = number_in<std::uint16_t>(text);
+  if (!value) return std::nullopt;
+  const bool is_code = *value < g4_model.rates.entries.size();
+  return static_cast<sample_rate>(is_code ? g4_model.rates.entries[*value].hz : *value);
 }
 
 void take_serial(device_information& who, std::string_view text) noexcept {
@@ -199,7 +213,7 @@ word_map words_of(const recorded_device& device) {
       {"serial_number", std::string(who.serial_number())},
   };
   if (device.frequency) words.emplace_back("frequency_chz", std::to_string(device.frequency->chz));
-  put_setting(words, "sample_rate", device.sample_rate);
+  if (device.sample_rate) words.emplace_back("sample_rate", rate_text(*device.sample_rate));
   put_setting(words, "motor_direction", device.motor);
   put_setting(words, "constant_frequency", device.constant);
   put_setting(words, "low_power", device.idle);
@@ -220,7 +234,7 @@ recorded_device device_of(field_reader& map) {
       if (const auto chz = number_in<std::uint16_t>(value)) device.frequency = scan_frequency{*chz};
     }
     const bool is_rate = name == "sample_rate" || name == "ranging";  // its name until 2026-11
-    if (is_rate) take_setting(device.sample_rate, value);
+    if (is_rate) device.sample_rate = rate_from(value);
     if (name == "motor_direction") take_setting(device.motor, value);
     if (name == "constant_frequency") take_setting(device.constant, value);
     if (name == "low_power") take_setting(device.idle, value);
@@ -275,6 +289,8 @@ void transport_state::take(const recorded_event& what) noexcept {
     case cut:
     case gap:
     case odometry:
+    case dtr_low:
+    case dtr_high:
       break;
   }
 }

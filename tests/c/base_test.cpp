@@ -21,15 +21,16 @@ TEST(CBase, EveryResultHasItsName) {
       "other_device", "does_not_stop", "unhealthy",      "timeout",      "wrong_answer",
       "not_reached",  "bad_setting",   "scanning",       "not_scanning", "reconnecting",
       "gone",         "stalled",       "brown_out",      "interference", "read_only",
-      "bad_file",     "end_of_input",  "cancelled",      "system"};
+      "bad_file",     "end_of_input",  "cancelled",      "system",       "not_supported"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_STREQ(g4lidar_result_name(static_cast<int>(i) + 1), names[i]);
   }
-  EXPECT_STREQ(g4lidar_result_name(30), "unknown");
+  EXPECT_STREQ(g4lidar_result_name(31), "unknown");
   EXPECT_STREQ(g4lidar_result_name(-5), "unknown");
   EXPECT_STREQ(g4lidar_event_name(0), "unknown");
   EXPECT_STREQ(g4lidar_event_name(G4LIDAR_EVENT_OVERFLOW), "overflow");
-  EXPECT_STREQ(g4lidar_event_name(12), "unknown");
+  EXPECT_STREQ(g4lidar_event_name(G4LIDAR_EVENT_STILL_TURNING), "still_turning");
+  EXPECT_STREQ(g4lidar_event_name(13), "unknown");
 }
 
 TEST(CBase, TheVersionIsThatOfTheHeader) {

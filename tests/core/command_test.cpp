@@ -23,7 +23,7 @@ struct row {
 };
 
 /// The table of the protocol page, in its order.
-constexpr std::array<row, 24> table{{
+constexpr std::array<row, 26> table{{
     {0x60, command::start, reply::scan_started, -1, false, true},
     {0x65, command::stop, reply::none, -1, false, true},
     {0x00, command::forced_stop, reply::none, -1, false, true},
@@ -43,6 +43,8 @@ constexpr std::array<row, 24> table{{
     {0x0D, command::frequency_query, reply::frequency, -1, false, false},
     {0x0E, command::constant_frequency_on, reply::byte, 1, false, false},
     {0x0F, command::constant_frequency_off, reply::byte, 0, false, false},
+    {0x93, command::zero_angle, reply::frequency, -1, false, false},
+    {0x98, command::pitch, reply::pitch, -1, false, false},
     {0xD0, command::sample_rate_next, reply::byte, -1, true, false},
     {0xD1, command::sample_rate_query, reply::byte, -1, false, false},
     {0xD9, command::protection_toggle, reply::byte, -1, true, false},
@@ -76,7 +78,7 @@ TEST(Command, AgreesWithTheProtocolsTable) {
 TEST(Command, OtherBytes_AreNoCommand) {
   std::set<unsigned> known;
   for (const row& r : table) known.insert(r.code);
-  EXPECT_EQ(known.size(), 24U);
+  EXPECT_EQ(known.size(), 26U);
   for (unsigned code = 0; code < 256; ++code) {
     EXPECT_EQ(traits_of(static_cast<command>(code)).has_value(), known.count(code) == 1) << code;
   }

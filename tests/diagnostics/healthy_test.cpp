@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "diagnostics/doctor_bench.hpp"
+#include "g4lidar/core/response.hpp"
 #include "g4lidar/sim/random.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "support/test_scale.hpp"
@@ -49,7 +50,7 @@ sim::device_options odd_device(std::uint64_t seed) {
   choice by(seed);
   sim::device_options options;
   options.scanner.seed = seed;
-  options.scanner.sample_rate = static_cast<sample_rate>(by.below(3));
+  options.scanner.sample_rate = *reply_byte<sample_rate>(static_cast<std::uint8_t>(by.below(3)));
   options.scanner.scan_frequency_chz = static_cast<std::uint16_t>(500 + 50 * by.below(15));
   options.scanner.samples_per_packet = 24 + by.below(57);
   options.scanner.reports_frequency = by.flip();

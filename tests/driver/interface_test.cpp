@@ -157,7 +157,7 @@ TEST(Options, AnImpossibleValue_IsRepeated) {
   EXPECT_EQ(subject_of([](lidar_options& o) { o.tuning.transport_delay = 1'000'000'001ns; }),
             "transport_delay: 0 to 1 s, not 1000000001 ns");
   EXPECT_EQ(subject_of([](lidar_options& o) { o.frequency = scan_frequency{1300}; }),
-            "frequency: 500 to 1200 (5 to 12 Hz), not 1300");
+            "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300");
 }
 
 TEST(ExtremeTimeouts, AreLimited) {

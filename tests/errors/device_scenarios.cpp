@@ -107,6 +107,16 @@ trouble another_model() {
   return opening({}, options);
 }
 
+trouble frequency_of_an_x4() {
+  sim::device_options options;
+  static_cast<void>(sim::use_model(options, "x4"));
+  bench on({}, options);
+  const auto ask = [](lidar& device) {
+    return error_in(device.ask(requests::get_scan_frequency()));
+  };
+  return once_open(on, ask, {.model = model_named("x4")});
+}
+
 trouble deaf_when_stopped() {
   bench on({make_fault(fault_kind::deaf, later)});
   return once_scanning(on, [&](lidar& device) {
@@ -269,6 +279,8 @@ std::vector<scenario> device_scenarios() {
        [] { return refused(requests::set(scan_frequency{1500})); }},
       {"NoSuchValue", bad_setting, task::asking, false, "virtual:g4, power-down protection",
        [] { return refused(requests::set(static_cast<power_down_protection>(77))); }},
+      {"FrequencyOfAnX4", not_supported, task::asking, false, "virtual:g4, scan frequency, X4",
+       frequency_of_an_x4},
       {"NoSuchPermission", bad_option, task::asking, true, "how: ", [] { return asked_how(9); }},
       {"AskedWhileScanning", scanning, task::asking, false, "virtual:g4, health",
        asked_while_scanning},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A recording is a device: what comes out of it is what came out of the device.
 #include "g4lidar/recording/replay.hpp"
+#include "g4lidar/core/response.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +37,9 @@ class program {
     } else if (what < 94) {
       static_cast<void>(device_.ask(requests::health(), while_scanning::stop_and_resume));
     } else if (what < 96) {
-      static_cast<void>(
-          device_.ask(requests::set(sample_rate(dice_() % 3)), while_scanning::stop_and_resume));
+      static_cast<void>(device_.ask(
+          requests::set(*reply_byte<sample_rate>(static_cast<std::uint8_t>(dice_() % 3))),
+          while_scanning::stop_and_resume));
     } else if (what < 97) {
       device_.wake();
     } else {

@@ -36,7 +36,7 @@ request some_request(dice& d, bool may_restart) {
     case 5:
       return requests::get_sample_rate();
     case 6:
-      return requests::set(static_cast<sample_rate>(d.between(0, 2)));
+      return requests::set(*reply_byte<sample_rate>(static_cast<std::uint8_t>(d.between(0, 2))));
     case 7:
       return requests::set(static_cast<constant_frequency>(d.between(0, 1)));
     case 8:

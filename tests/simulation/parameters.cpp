@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "g4lidar/core/response.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "text.hpp"
 
@@ -21,7 +22,9 @@ Enum either(dice& d, Enum a, Enum b, double p = 0.5) {
   return d.chance(p) ? a : b;
 }
 
-sample_rate some_rate(dice& d) { return static_cast<sample_rate>(d.between(0, 2)); }
+sample_rate some_rate(dice& d) {
+  return *reply_byte<sample_rate>(static_cast<std::uint8_t>(d.between(0, 2)));
+}
 
 void draw_scanner(dice& d, std::uint64_t seed, sim::scanner_options& scanner) {
   scanner.seed = seed;

@@ -66,6 +66,7 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
   parameters_.fix(
       "grid", std::int64_t{options.bins.value_or(default_bins(expected_model(options, which)))});
+  parameters_.fix("model", std::string(expected_model(options, which).word));
   parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");
   if (merger_ == nullptr) {
     messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);
@@ -134,7 +135,9 @@ void lidar_node::on_open(g4lidar::lidar& device) {
   }
   if (const auto kind = kind_of_source(which_.source);
       kind == source_kind::device || kind == source_kind::simulated) {
-    parameters_.fix("serial_number", std::string(device.information().serial_number()));
+    if (device.information().is_known()) {
+      parameters_.fix("serial_number", std::string(device.information().serial_number()));
+    }
     parameters_.read_device(device);
   }
 }

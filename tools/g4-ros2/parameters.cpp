@@ -120,6 +120,7 @@ std::span<const parameter> all_parameters() {
         {"grid", is_integer, read_only, "Ranges of each LaserScan", ""},
         {"ignore", is_string, filter, "Directions that are left out, as fov",
          "several with spaces between them: 30:40 90:100; off: none"},
+        {"model", is_string, read_only, "Model of the lidar", "a word as that of --model"},
         {"near", is_string, filter,
          "Flag directions where something may be too near for a return: in a LaserScan as near_as",
          "off, on, or limits as --near"},

@@ -68,13 +68,13 @@ enum g4lidar_result {
   G4LIDAR_CANNOT_CONNECT = 8, /**< The remote end of a network connection does not answer. */
   G4LIDAR_SILENCE = 9,        /**< Not a single byte arrived. */
   G4LIDAR_GARBAGE = 10,       /**< Bytes arrived, none of them valid. */
-  G4LIDAR_OTHER_DEVICE = 11,  /**< A device answers that is not a G4. */
+  G4LIDAR_OTHER_DEVICE = 11,  /**< A device answers that is another model. */
   G4LIDAR_DOES_NOT_STOP = 12, /**< The device scans and does not react to a stop command. */
   G4LIDAR_UNHEALTHY = 13,     /**< The device reports an error of its own. */
   G4LIDAR_TIMEOUT = 14,       /**< Nothing arrived in time; a retry may help. */
   G4LIDAR_WRONG_ANSWER = 15,  /**< Replies arrived, none of them valid for the command. */
   G4LIDAR_NOT_REACHED = 16,   /**< The device did not reach the wanted setting. */
-  G4LIDAR_BAD_SETTING = 17,   /**< Refused: no G4 can be set to this value. Nothing was sent. */
+  G4LIDAR_BAD_SETTING = 17,   /**< Refused: the model cannot be set to this value. */
   G4LIDAR_SCANNING = 18,      /**< Refused: the command would disturb the running scan. */
   G4LIDAR_NOT_SCANNING = 19,  /**< Points were requested, but no scan has been started. */
   G4LIDAR_RECONNECTING = 20,  /**< The lidar was lost, and the driver is looking for it. */
@@ -86,7 +86,8 @@ enum g4lidar_result {
   G4LIDAR_BAD_FILE = 26,      /**< A file without usable content. */
   G4LIDAR_END_OF_INPUT = 27,  /**< A file or connection has ended. */
   G4LIDAR_CANCELLED = 28,     /**< Woken by g4lidar_wake(). */
-  G4LIDAR_SYSTEM = 29         /**< The system refused for another reason: `system_errno`. */
+  G4LIDAR_SYSTEM = 29,        /**< The system refused for another reason: `system_errno`. */
+  G4LIDAR_NOT_SUPPORTED = 30  /**< Refused: this model of lidar has no such command. */
 };
 
 /** What was being done when something went wrong. */

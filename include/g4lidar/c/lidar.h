@@ -59,7 +59,7 @@ typedef struct g4lidar_options {
   const char* device;
   g4lidar_recorder* recorder; /**< Records everything; see recording.h. NULL: nothing. */
   int64_t transport_delay_ns; /**< The least delay between measurement and arrival, up to 1 s. */
-  uint32_t baud;              /**< Bits per second; 230400. */
+  uint32_t baud;              /**< Bits per second; 0: the usual rate of the model. */
   int32_t frequency_chz;      /**< As G4LIDAR_SCAN_FREQUENCY; 0. */
   int32_t sample_rate_hz;     /**< As G4LIDAR_SAMPLE_RATE; 0. */
   int32_t direction;          /**< A g4lidar_direction; 0. */
@@ -76,8 +76,8 @@ typedef struct g4lidar_options {
   uint8_t reserved[6];        /**< 0. */
   /** How long to wait for a device that is not there yet; -1: without limit; 0. */
   int32_t device_wait_ms;
-  /** The model that sent the bytes of a file: "x4"; NULL: what a recording states, and raw bytes show.
-   *  Copied. Another one than "g4" is known for files only. */
+  /** The model of the lidar: "x4"; NULL: what a recording or `sim:` states and raw bytes show, else "g4".
+   *  Copied. */
   const char* model;
 } g4lidar_options;
 
@@ -201,7 +201,8 @@ enum g4lidar_event_kind {
   G4LIDAR_EVENT_HEALTH_WARNING = 8,      /**< The device reports a warning when it is started. */
   G4LIDAR_EVENT_OTHER_LIDAR = 9,         /**< While the lidar was lost, another one answered. */
   G4LIDAR_EVENT_LONG_PAUSE = 10,         /**< The next data of a recording is far away. */
-  G4LIDAR_EVENT_OVERFLOW = 11            /**< Earlier events were dropped. */
+  G4LIDAR_EVENT_OVERFLOW = 11,           /**< Earlier events were dropped. */
+  G4LIDAR_EVENT_STILL_TURNING = 12 /**< The scans have ended, but nothing can stop the motor. */
 };
 
 /** An event. */

@@ -36,6 +36,8 @@ enum class command : std::uint8_t {
   device_info = 0x90,
   health = 0x91,            ///< According to the manual.
   health_vendor = 0x92,     ///< As all software of the vendor sends it; the same reply.
+  zero_angle = 0x93,        ///< Not of a G4; see model::zero_angle_divisor.
+  pitch = 0x98,             ///< Not of a G4; see model::has_pitch.
   sample_rate_next = 0xD0,  ///< Steps to the next of 4, 8, 9 kHz; after the last comes the first.
   sample_rate_query = 0xD1,
   protection_toggle = 0xD9,
@@ -47,7 +49,7 @@ enum class command : std::uint8_t {
 }
 
 /// The reply to a command: a subset of response_kind, and none.
-enum class reply : std::uint8_t { none, scan_started, device_info, health, byte, frequency };
+enum class reply : std::uint8_t { none, scan_started, device_info, health, byte, frequency, pitch };
 
 /// The properties of a command that matter before it is sent.
 struct command_traits {
@@ -62,7 +64,7 @@ struct command_traits {
 };
 
 /// All commands.
-inline constexpr std::array<command_traits, 24> commands{{
+inline constexpr std::array<command_traits, 26> commands{{
     {command::forced_stop, reply::none, {}, false, true},
     {command::low_power_on, reply::byte, 1, false, false},
     {command::low_power_off, reply::byte, 0, false, false},
@@ -88,6 +90,8 @@ inline constexpr std::array<command_traits, 24> commands{{
     {command::device_info, reply::device_info, {}, false, false},
     {command::health, reply::health, {}, false, false},
     {command::health_vendor, reply::health, {}, false, false},
+    {command::zero_angle, reply::frequency, {}, false, false},
+    {command::pitch, reply::pitch, {}, false, false},
     {command::sample_rate_next, reply::byte, {}, true, false},
     {command::sample_rate_query, reply::byte, {}, false, false},
     {command::protection_toggle, reply::byte, {}, true, false},

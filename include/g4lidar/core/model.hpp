@@ -28,6 +28,7 @@ inline constexpr model g4_model{
     .zero_angle_divisor = 0,
     .protection = presence::yes,
     .ct_information = presence::unknown,
+    .has_motor_settings = true,
 };
 /// How its samples are read.
 inline constexpr sample_format g4_format = g4_model.samples;
@@ -45,12 +46,15 @@ inline constexpr auto models = [] {
   constexpr sample_format quarter_samples{quarter_mm, triangle};
   constexpr sample_format flagged_samples{flagged_mm, triangle};
   constexpr sample_format half_mm_samples{half_mm, triangle};
+  constexpr sample_format zeroed_samples{quarter_mm, triangle, 40, true};
+  constexpr sample_format zeroed_10{intensity_10, triangle, 40, true};
   constexpr sample_format triangle_10{intensity_10, triangle};
   constexpr sample_format triangle_8{intensity_8, triangle};
   constexpr sample_format scl_samples{intensity_8, scl};
   constexpr sample_format tof_8{intensity_8, correction_kind::none};
-  constexpr sample_format tof_16{intensity_16, correction_kind::none};
+  constexpr sample_format tof_16{intensity_16, correction_kind::none, 40, true};
   constexpr sample_format tof_mm{whole_mm, correction_kind::none};
+  constexpr sample_format tg_samples{whole_mm, correction_kind::none, 40, true};
 
   constexpr auto fixed = [](std::uint32_t hz, std::uint16_t shortest_mm = 0) {
     return sample_rate_list{{{{hz, shortest_mm}}}, hz, false};
@@ -72,31 +76,32 @@ inline constexpr auto models = [] {
   // One column a field; the formatter would write one field a line.
   // clang-format off
   // word, name, ids, bauds, samples, link, motor,
-  // rates, frequency, range, turn, divisor of the zero angle, protection, information in CT
+  // rates, frequency, range, turn, divisor of the zero angle, protection, information in CT,
+  // motor settings, other layout, old firmware, pitch
   return std::to_array<model>({
       g4_model,
       {"g4-pro",         "G4 Pro",         {7},     {230400},         g4_format,       two_way, command,
-       g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown},
+       g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   yes,     unknown, true},
       {"g5",             "G5",             {20},    {230400},         g4_format,       two_way, command,
        g4_model.rates,   set_5_to_12,  {100, 16000}, 180, 0,   unknown, unknown},
       {"f4",             "F4",             {1},     {115200},         quarter_samples, two_way, command,
        fixed(4000),      set_5_to_12,  {120, 12000}, 180, 0,   no,      unknown},
       {"f4-pro",         "F4 Pro",         {8},     {230400},         quarter_samples, two_way, command,
-       f4_rates,         set_5_to_12,  {120, 12000}, 180, 0,   yes,     unknown},
-      {"g1",             "G1",             {19},    {230400},         quarter_samples, two_way, command,
+       f4_rates,         set_5_to_12,  {120, 12000}, 180, 0,   yes,     unknown, true},
+      {"g1",             "G1",             {19},    {230400},         zeroed_samples , two_way, command,
        fixed(9000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},
-      {"g2",             "G2",             {15},    {230400},         triangle_10,     two_way, command,
+      {"g2",             "G2",             {15},    {230400},         zeroed_10,       two_way, command,
        fixed(5000, 280), set_5_to_12,  {100, 16000}, 180, 4,   unknown, unknown},
-      {"g2a",            "G2A",            {14},    {230400},         quarter_samples, two_way, command,
+      {"g2a",            "G2A",            {14},    {230400},         zeroed_samples , two_way, command,
        fixed(5000),      set_5_to_12,  {100, 12000}, 180, 4,   unknown, unknown},
-      {"g2c",            "G2C",            {16},    {115200},         quarter_samples, two_way, command,
+      {"g2c",            "G2C",            {16},    {115200},         zeroed_samples , two_way, command,
        fixed(4000),      set_5_to_12,  {100, 12000}, 180, 4,   unknown, unknown},
       {"g4c",            "G4C",            {18},    {115200},         quarter_samples, two_way, command,
        fixed(4000),      set_5_to_12,  {100, 12000}, 180, 0,   unknown, unknown},
       {"g4b",            "G4B",            {17},    {512000},         triangle_10,     two_way, command,
        fixed(10000),     set_5_to_12,  {120, 16000}, 180, 0,   unknown, unknown},
-      {"r2",             "R2",             {9},     {230400},         quarter_samples, two_way, command,
-       fixed(5000),      set_5_to_12,  {120, 16000}, 180, 100, unknown, unknown, quarter_mm, r2_old},
+      {"r2",             "R2",             {9},     {230400},         zeroed_samples , two_way, command,
+       fixed(5000),      set_5_to_12,  {120, 16000}, 180, 100, unknown, unknown, false, quarter_mm, r2_old},
       {"g6",             "G6",             {13},    {512000},         half_mm_samples, two_way, command,
        g6_rates,         set_5_to_12,  {100, 25000}, 180, 0,   yes,     unknown},
       {"g7",             "G7",             {21},    {512000},         half_mm_samples, two_way, command,
@@ -114,14 +119,14 @@ inline constexpr auto models = [] {
       {"x3-pro",         "X3 Pro",         {4, 6},  {115200},         flagged_samples, one_way, dtr,
        x3_pro_rates,     not_set,      {100, 8000},  0,   0,   no,      unknown},
       {"s2",             "S2",             {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, intensity_8},
+       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8},
       {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, intensity_8},
+       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8},
       // Their bauds carry 3 kHz of such samples, not 4.
       {"s2-intensity",   "S2 with intensity", {4, 12}, {115200, 128000}, triangle_8,   one_way, dtr,
-       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, flagged_mm},
+       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
       {"s2-pro-intensity", "S2 Pro with intensity", {4, 12}, {115200, 128000}, triangle_8, one_way, dtr,
-       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, flagged_mm},
+       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
       {"s4",             "S4",             {4},     {115200},         flagged_samples, two_way, dtr,
        fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
       {"s4b",            "S4B",            {4, 11}, {153600},         triangle_8,      two_way, dtr,
@@ -135,13 +140,13 @@ inline constexpr auto models = [] {
       {"t-mini-plus",    "T-mini Plus",    {151},   {230400},         tof_8,           two_way, command,
        fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
       {"t-mini-plus-sh", "T-mini Plus SH", {152},   {230400},         tof_16,          two_way, command,
-       fixed(4000),      set_6_to_12,  {50, 25000},  0,   0,   unknown, unknown},
-      {"tg15",           "TG15",           {100},   {512000},         tof_mm,          two_way, command,
-       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, whole_mm, tg_old},
-      {"tg30",           "TG30",           {101},   {512000},         tof_mm,          two_way, command,
-       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, whole_mm, tg_old},
-      {"tg50",           "TG50",           {102},   {512000},         tof_mm,          two_way, command,
-       tg_rates,         tg_frequency, {50, 50000},  180, 4,   yes,     unknown, whole_mm, tg_old},
+       fixed(4000),      set_6_to_12,  {50, 25000},  0,   0,   unknown, unknown, false, intensity_16, {}, true},
+      {"tg15",           "TG15",           {100},   {512000},         tg_samples,      two_way, command,
+       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
+      {"tg30",           "TG30",           {101},   {512000},         tg_samples,      two_way, command,
+       tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
+      {"tg50",           "TG50",           {102},   {512000},         tg_samples,      two_way, command,
+       tg_rates,         tg_frequency, {50, 50000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
       {"tx8",            "TX8",            {100},   {115200},         tof_mm,          one_way, dtr,
        fixed(4000),      not_set,      {50, 8000},   0,   0,   no,      unknown},
       {"tx20",           "TX20",           {100},   {115200},         tof_mm,          one_way, dtr,
@@ -209,9 +214,11 @@ namespace detail {
   const bool has_memory = row.samples.max_samples > 0 && has_room_for(row, row.samples.layout) &&
                           has_room_for(row, row.other_layout);
   const bool takes_commands = row.motor == motor_kind::command || row.rates.is_settable ||
-                              max_dhz != 0 || row.zero_angle_divisor != 0 ||
-                              row.protection != presence::no;
+                              max_dhz != 0 || row.zero_angle_divisor != 0 || row.has_pitch ||
+                              row.has_motor_settings || row.protection != presence::no;
+  const bool has_angles = row.zero_angle_divisor != 0 || row.has_pitch;
   return has_names && has_limits && has_memory && has_consistent_rates(row) &&
+         has_angles == row.samples.has_angle_replies &&
          (row.link == link_kind::two_way || !takes_commands) &&
          (row.turn_deg == 0 || row.turn_deg == 180);
 }

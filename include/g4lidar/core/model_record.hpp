@@ -67,11 +67,13 @@ enum class motor_kind : std::uint8_t {
 /// Whether a model has a feature, as far as it is known.
 enum class presence : std::uint8_t { no, yes, unknown };
 
-/// How the samples of a packet are read.
+/// How the samples of a packet are read, and which replies there are.
 struct sample_format {
   sample_layout layout = sample_layout::quarter_mm;
   correction_kind correction = correction_kind::triangle;
   std::uint8_t max_samples = 40;  ///< The largest LSN of a packet.
+  /// Whether replies contain angles, too: to the commands 93 and 98.
+  bool has_angle_replies = false;
 };
 
 /// A sample rate that a model can have.
@@ -134,9 +136,12 @@ struct model {
   std::uint8_t zero_angle_divisor = 0;
   presence protection = presence::unknown;      ///< Command D9, power-down protection.
   presence ct_information = presence::unknown;  ///< CT has information, and a CRC byte follows.
+  /// Has the commands 01, 02 and 05 to 08, 0E and 0F: idle, direction, constant frequency.
+  bool has_motor_settings = false;
   /// The layout of some of its devices; that of `samples` if there is no other.
   sample_layout other_layout = samples.layout;
   firmware_difference old_firmware{};
+  bool has_pitch = false;  ///< Command 98.
 };
 
 /// Whether `which` measures the intensity of returns. *Pure.*
@@ -151,6 +156,32 @@ struct model {
     if (rate.hz > highest) highest = rate.hz;
   }
   return highest;
+}
+
+/// The sample rate in Hz that `code` means in the replies to D0 and D1; 0 if it means none. *Pure.*
+[[nodiscard]] constexpr std::uint32_t rate_hz_of_code(const model& which,
+                                                      std::uint8_t code) noexcept {
+  return code < which.rates.entries.size() ? which.rates.entries[code].hz : 0;
+}
+
+/// How many sample rates of `which` are known: 1 to 3. *Pure.*
+[[nodiscard]] constexpr std::uint8_t rate_count(const model& which) noexcept {
+  std::uint8_t count = 0;
+  for (const sample_rate_entry& rate : which.rates.entries) {
+    if (rate.hz != 0) ++count;
+  }
+  return count;
+}
+
+/// The code of a sample rate in the replies to D0 and D1; rate_count() if `which` does not have it. *Pure.*
+[[nodiscard]] constexpr std::uint8_t code_of_rate(const model& which,
+                                                  std::uint32_t rate_hz) noexcept {
+  std::uint8_t code = 0;
+  for (const sample_rate_entry& rate : which.rates.entries) {
+    if (rate.hz == 0 || rate.hz == rate_hz) break;
+    ++code;
+  }
+  return code;
 }
 
 /// The sample rate of `which` to begin with: the nominal one, or the highest if it is not known. *Pure.*

@@ -34,6 +34,8 @@ enum class request_kind : std::uint8_t {
   get_sample_rate,
   set_sample_rate,
   set_protection,
+  zero_angle,
+  pitch,
   restart,
   start,
   stop,
@@ -100,12 +102,20 @@ namespace requests {
 }
 /// Steps through the sample rates until the wanted one is set.
 [[nodiscard]] constexpr request_for<sample_rate> set(sample_rate wanted) noexcept {
-  return {{request_kind::set_sample_rate, static_cast<std::uint16_t>(wanted)}};
+  return {{request_kind::set_sample_rate, static_cast<std::uint16_t>(to_hz(wanted))}};
 }
 /// Toggles the protection until the device reports the wanted state.
 [[nodiscard]] constexpr request_for<power_down_protection> set(
     power_down_protection wanted) noexcept {
   return {{request_kind::set_protection, static_cast<std::uint16_t>(wanted)}};
+}
+/// Queries the direction of zero that a factory has measured. Answer: a zero_angle.
+[[nodiscard]] constexpr request_for<g4lidar::zero_angle> zero_angle() noexcept {
+  return {{request_kind::zero_angle}};
+}
+/// Queries the tilt of the beam. Answer: a pitch_angle.
+[[nodiscard]] constexpr request_for<pitch_angle> pitch() noexcept {
+  return {{request_kind::pitch}};
 }
 /// Restarts the device. Answered when the device replies again.
 [[nodiscard]] constexpr request_for<void> restart() noexcept { return {{request_kind::restart}}; }
@@ -135,7 +145,8 @@ struct heard_from_device {
 
 /// An answer, in the type of the request; start, stop and restart have none.
 using answer = std::variant<std::monostate, device_information, health, low_power, motor_direction,
-                            scan_frequency, constant_frequency, sample_rate, power_down_protection>;
+                            scan_frequency, constant_frequency, sample_rate, power_down_protection,
+                            zero_angle, pitch_angle>;
 
 /// The outcome of a request.
 struct outcome {
@@ -162,9 +173,10 @@ struct outcome {
 
 /// Why a request is refused.
 enum class refusal : std::uint8_t {
-  busy,         ///< Another request is in progress, or its outcome has not been taken.
-  scanning,     ///< Any command but start and stop would disturb the running scan.
-  bad_setting,  ///< A G4 cannot have this value; see is_possible().
+  busy,           ///< Another request is in progress, or its outcome has not been taken.
+  scanning,       ///< Any command but start and stop would disturb the running scan.
+  bad_setting,    ///< The model cannot have this value; see is_possible().
+  not_supported,  ///< The model does not have the command; see has_request().
 };
 
 /// Whether a request may stop a running scan.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/wire_check.hpp"
@@ -31,7 +32,8 @@ enum class response_kind : std::uint8_t {
   device_info,   ///< 20 bytes.
   health,        ///< 3 bytes.
   byte,          ///< One byte, 0 to 2.
-  frequency,     ///< Four bytes: Hz x 100.
+  frequency,     ///< Four bytes: Hz x 100; to command 93 an angle.
+  pitch,         ///< Four bytes: an angle.
 };
 
 /// The seven fixed bytes of a kind of response, and the number of content bytes behind them.
@@ -41,13 +43,14 @@ struct response_layout {
   std::uint8_t content;
 };
 
-/// Every kind of response. The length field of the scan header is 5 and must be ignored.
-inline constexpr std::array<response_layout, 5> response_layouts{{
+/// Every kind of response, in the order of their enumeration. The length field of the scan header is 5 and must be ignored.
+inline constexpr std::array<response_layout, 6> response_layouts{{
     {response_kind::scan_started, {0xA5, 0x5A, 0x05, 0x00, 0x00, 0x40, 0x81}, 0},
     {response_kind::device_info, {0xA5, 0x5A, 0x14, 0x00, 0x00, 0x00, 0x04}, 20},
     {response_kind::health, {0xA5, 0x5A, 0x03, 0x00, 0x00, 0x00, 0x06}, 3},
     {response_kind::byte, {0xA5, 0x5A, 0x01, 0x00, 0x00, 0x00, 0x04}, 1},
     {response_kind::frequency, {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00, 0x04}, 4},
+    {response_kind::pitch, {0xA5, 0x5A, 0x04, 0x00, 0x00, 0x00, 0x10}, 4},
 }};
 
 /// The highest frequency that a response can contain, in 0.01 Hz.
@@ -71,11 +74,13 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
       if (at == 0) return true;
       if (at == 1) return load_u16(content, 0) <= max_frequency_chz;
       return value == 0;
+    case response_kind::pitch:
+      return true;
   }
   return false;
 }
 
-/// The index of the layout with this length byte, which differs in all five;
+/// The index of the first layout with this length byte, which differs in all but the last two;
 /// response_layouts.size() if there is none. *Pure.*
 [[nodiscard]] constexpr std::size_t layout_of_length(std::uint8_t length) noexcept {
   std::size_t at = 0;
@@ -84,8 +89,9 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
 }
 
 /// Whether `data` begins with a response: one of the headers above and a possible content. Each
-/// byte is checked as soon as it is available. *Pure.*
-[[nodiscard]] constexpr wire_check check_response(bytes data) noexcept {
+/// byte is checked as soon as it is available. Only a model that `has_angles` answers with angles: of
+/// four bytes, which are then not checked. *Pure.*
+[[nodiscard]] constexpr wire_check check_response(bytes data, bool has_angles = false) noexcept {
   const std::size_t have = data.size();
   const auto refused_at = [](std::size_t at) { return wire_check{wire_state::bad_header, at + 1}; };
   if (have > 0 && data[0] != response_start[0]) return refused_at(0);
@@ -94,11 +100,13 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
   const std::size_t which = layout_of_length(data[2]);
   if (which == response_layouts.size()) return refused_at(2);
   const response_layout& layout = response_layouts[which];
+  const bool is_angle = has_angles && layout.kind == response_kind::frequency;
   for (std::size_t at = 3; at < response_header_size && at < have; ++at) {
-    if (data[at] != layout.header[at]) return refused_at(at);
+    const bool is_pitch = is_angle && data[at] == response_layouts.back().header[at];
+    if (data[at] != layout.header[at] && !is_pitch) return refused_at(at);
   }
   const std::size_t size = response_header_size + layout.content;
-  for (std::size_t at = response_header_size; at < size && at < have; ++at) {
+  for (std::size_t at = response_header_size; at < size && at < have && !is_angle; ++at) {
     const std::size_t in_content = at - response_header_size;
     if (!is_possible(layout.kind, data.subspan(response_header_size), in_content)) {
       return refused_at(at);
@@ -108,10 +116,14 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
   return {wire_state::valid, size};
 }
 
-/// A one-byte answer as `Setting`, an enumeration of settings.hpp; nothing if the byte is not one
-/// of its values. *Pure.*
+/// A one-byte answer of a G4 as `Setting`, an enumeration of settings.hpp; nothing if the byte is not
+/// one of its values. *Pure.*
 template <class Setting>
 [[nodiscard]] constexpr std::optional<Setting> reply_byte(std::uint8_t value) noexcept {
+  if constexpr (std::is_same_v<Setting, sample_rate>) {
+    constexpr std::array rates{sample_rate::khz_4, sample_rate::khz_8, sample_rate::khz_9};
+    return value < rates.size() ? std::optional(rates[value]) : std::nullopt;
+  }
   const auto setting = static_cast<Setting>(value);
   return is_valid(setting) ? std::optional(setting) : std::nullopt;
 }
@@ -120,14 +132,15 @@ template <class Setting>
 class response_view {
  public:
   /// A view of `response` if it is one valid response from its first to its last byte, or nothing.
-  [[nodiscard]] static constexpr std::optional<response_view> from(bytes response) noexcept {
-    const wire_check check = check_response(response);
+  [[nodiscard]] static constexpr std::optional<response_view> from(
+      bytes response, bool has_angles = false) noexcept {
+    const wire_check check = check_response(response, has_angles);
     if (check.state != wire_state::valid || check.size != response.size()) return std::nullopt;
     return response_view(response);
   }
   /// Deleted: the bytes are destroyed at the end of the call.
   template <dying_owner Owner>
-  static constexpr std::optional<response_view> from(Owner&&) = delete;
+  static constexpr std::optional<response_view> from(Owner&&, bool has_angles = false) = delete;
 
   /// All bytes of the response; valid as long as the bytes of the view.
   [[nodiscard]] constexpr bytes data() const noexcept { return response_; }
@@ -140,11 +153,13 @@ class response_view {
   [[nodiscard]] constexpr response_mode mode() const noexcept {
     return static_cast<response_mode>(response_[5] >> 6);
   }
-  /// The seventh byte: 04h, 06h or 81h. Several kinds have the same code; kind() distinguishes
+  /// The seventh byte: 04h, 06h, 10h or 81h. Several kinds have the same code; kind() distinguishes
   /// them.
   [[nodiscard]] constexpr std::uint8_t type_code() const noexcept { return response_[6]; }
-  /// The kind of the response, by its length byte.
+  /// The kind of the response, by its length byte, and pitch by its type.
   [[nodiscard]] constexpr response_kind kind() const noexcept {
+    constexpr response_layout last = response_layouts.back();
+    if (type_code() == last.header.back()) return last.kind;
     return response_layouts[layout_of_length(response_[2])].kind;  // always found: it was checked
   }
 
@@ -168,10 +183,16 @@ class response_view {
     if (kind() != response_kind::byte) return std::nullopt;
     return content()[0];
   }
-  /// The scan frequency in 0.01 Hz, if the response contains it.
+  /// The scan frequency in 0.01 Hz, if the response can be one.
   [[nodiscard]] constexpr std::optional<std::uint16_t> as_frequency_chz() const noexcept {
     if (kind() != response_kind::frequency) return std::nullopt;
-    return load_u16(content(), 0);  // the upper half is 0 in a valid response
+    if (load_u32(content(), 0) > max_frequency_chz) return std::nullopt;  // an angle
+    return load_u16(content(), 0);
+  }
+  /// The number of four bytes, if the response contains one: of an angle, in the unit of its command.
+  [[nodiscard]] constexpr std::optional<std::int32_t> as_angle() const noexcept {
+    if (kind() != response_kind::frequency && kind() != response_kind::pitch) return std::nullopt;
+    return static_cast<std::int32_t>(load_u32(content(), 0));
   }
 
  private:

@@ -50,20 +50,26 @@ namespace g4lidar {
 /// (protocol: Commands; The stream)
 class session {
  public:
-  /// In the state rest; nothing is known about the device.
-  explicit constexpr session(const session_times& times = session_times()) noexcept
-      : channel_(times) {}
+  /// In the state rest; nothing is known about the device but that it is like `which`, which must be
+  /// valid as long as the session.
+  explicit constexpr session(const session_times& times = session_times(),
+                             const model& which = g4_model) noexcept
+      : which_(&which), channel_(times) {}
+
+  /// From the next request on, the device is like `which`.
+  constexpr void use(const model& which) noexcept { which_ = &which; }
 
   /// Begins a request, or returns why it is refused. The first request after the connection was
   /// opened stops the device, which may be scanning.
   [[nodiscard]] constexpr std::optional<refusal> begin(
       const request& wanted, std::int64_t now_ns,
       while_scanning how = while_scanning::refuse) noexcept {
-    if (!is_possible(wanted)) return refusal::bad_setting;
+    if (!has_request(*which_, wanted.what)) return refusal::not_supported;
+    if (!is_possible(wanted, *which_)) return refusal::bad_setting;
     if (is_busy()) return refusal::busy;
     const bool disturbs = wanted.what != request_kind::start && wanted.what != request_kind::stop;
     if (scanning_ && disturbs && how == while_scanning::refuse) return refusal::scanning;
-    request_.begin(wanted, now_ns + channel_.times().request_ns);
+    request_.begin(wanted, now_ns + channel_.times().request_ns, *which_);
     starts_ = 0;
     watch_.forget_restarts();
     channel_.question().be_quick();
@@ -165,7 +171,7 @@ class session {
   constexpr void reset() noexcept {
     request_course request = request_;
     request.reset();
-    *this = session(channel_.times());
+    *this = session(channel_.times(), *which_);
     request_ = request;
   }
 
@@ -312,6 +318,7 @@ class session {
     drain(now_ns);
   }
 
+  const model* which_;
   command_channel channel_;
   scan_supervisor watch_;
   request_course request_;

@@ -81,7 +81,8 @@ namespace detail {
                                                    sample_format format = g4_format) noexcept {
   const bool maybe_packet = data[0] == packet_start[0];
   if (maybe_packet || data[0] == response_start[0]) {
-    const wire_check check = maybe_packet ? detail::check_aa(data, format) : check_response(data);
+    const wire_check check = maybe_packet ? detail::check_aa(data, format)
+                                          : check_response(data, format.has_angle_replies);
     switch (check.state) {
       case wire_state::valid:
         return {detail::kind_of_front(data), skip_reason::noise, check.size, check.size};

@@ -35,6 +35,8 @@ struct recorded_event {
     gap,       ///< Bytes are missing from the recording at this place.
     state,     ///< The current state, repeated for readers that begin here: all of the above.
     odometry,  ///< The robot's `odometry`, which is recorded beside the bytes.
+    dtr_low,   ///< The line DTR, which drives the motor of the model, was set to low.
+    dtr_high,  ///< The same, to high.
   };
   kind what;
   problem reason = problem::cancelled;  ///< Of `closed`; cancelled: no error.

@@ -25,6 +25,7 @@ struct setup {
   std::string path_file;   ///< For load_path(); empty: the path of the world.
   device_options device;
   std::vector<fault> faults;
+  std::string model;          ///< The word of `model`; empty: a G4.
   bool other_layout = false;  ///< For use_model(), of a `model` that follows.
 };
 

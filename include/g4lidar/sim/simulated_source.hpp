@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "g4lidar/detail/api.hpp"
@@ -19,6 +20,7 @@ struct simulated_source {
   std::shared_ptr<background_pty> port;
   std::optional<odometry> robot;  ///< Without errors; nothing without a path.
   std::int64_t begin_ns;          ///< The time 0 of both, by std::chrono::steady_clock.
+  std::string model;              ///< Its word; empty: a G4.
 };
 
 /// The lidar that "sim:?NAME=VALUE&..." describes, at a port as that of

@@ -52,7 +52,7 @@ struct sample_code {
 struct wire_format {
   sample_code code{};
   beam_shape beam = triangle_beam;
-  /// Samples per second, for each sample_rate in turn; 0: the model has no such rate.
+  /// Samples per second, in the order of their codes; 0: no further one.
   std::array<std::uint32_t, 3> rates_hz{4000, 8000, 9000};
   std::uint16_t min_frequency_chz = 500;    ///< Revolutions per 100 s, at least.
   std::uint16_t max_frequency_chz = 1200;   ///< The same, at most.

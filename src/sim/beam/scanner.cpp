@@ -44,8 +44,7 @@ double slow_wave(std::int64_t time_ns) noexcept {
 // The true sample rate in 0.001 Hz.
 std::uint64_t true_rate_mhz(const scanner_options& options, std::int64_t time_ns) noexcept {
   const double drift = options.sample_rate_drift_ppm * 1e-6 * slow_wave(time_ns);
-  const auto code = static_cast<std::size_t>(options.sample_rate);
-  const double nominal = 1000.0 * options.format.rates_hz[code];
+  const double nominal = 1000.0 * to_hz(options.sample_rate);
   return static_cast<std::uint64_t>(nominal * options.sample_rate_ratio * (1.0 + drift) + 0.5);
 }
 
@@ -64,7 +63,9 @@ std::uint8_t flags_of(const sample_truth& sample, std::uint8_t usual) noexcept {
 }
 
 std::string_view problem_with(const wire_format& format, const scanner_options& options) noexcept {
-  const bool has_rate = format.rates_hz[static_cast<std::size_t>(options.sample_rate)] != 0;
+  const bool has_rate =
+      options.sample_rate != sample_rate{} &&
+      std::ranges::find(format.rates_hz, to_hz(options.sample_rate)) != format.rates_hz.end();
   const sample_code& code = format.code;
   if (!has_rate || code.intensity_bytes > 2 || code.units_per_mm == 0 ||
       code.size() * format.max_samples > longest_packet - packet_head_bytes) {

@@ -116,7 +116,7 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
   format.is_turned = of.is_turned;
 
   const std::size_t rate = first_rate(of, format.code);
-  scanner.sample_rate = static_cast<sample_rate>(rate);
+  scanner.sample_rate = static_cast<sample_rate>(of.rates.rows[rate].hz);
   scanner.scan_frequency_chz = first_frequency_chz(of);
   scanner.index_deg = of.index_deg;
   scanner.reports_frequency = of.frequency.is_reported;

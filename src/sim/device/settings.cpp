@@ -65,11 +65,20 @@ answer_bytes step(std::uint16_t& frequency_chz, int by_chz,
   return answer_with_frequency(frequency_chz, options);
 }
 
+std::size_t code_of(sample_rate now, const wire_format& format) noexcept {
+  const auto at = std::ranges::find(format.rates_hz, to_hz(now));
+  return static_cast<std::size_t>(at - format.rates_hz.begin());
+}
+
 // The first one behind the last one.
 sample_rate next_of(sample_rate now, const wire_format& format) noexcept {
-  const std::size_t next = static_cast<std::size_t>(now) + 1;
+  const std::size_t next = code_of(now, format) + 1;
   const bool is_there = next < format.rates_hz.size() && format.rates_hz[next] != 0;
-  return is_there ? static_cast<sample_rate>(next) : sample_rate::khz_4;
+  return static_cast<sample_rate>(format.rates_hz[is_there ? next : 0]);
+}
+
+answer_bytes answer_with_rate(sample_rate now, const wire_format& format) noexcept {
+  return answer_with_byte(static_cast<std::uint8_t>(code_of(now, format)));
 }
 
 power_down_protection other_than(power_down_protection now) noexcept {
@@ -145,10 +154,11 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
     case command::constant_frequency_off:
       return set(now.constancy, constant_frequency::off);
     case command::sample_rate_next:
-      return set(now.sample_rate, next_of(now.sample_rate, options.scanner.format));
+      now.sample_rate = next_of(now.sample_rate, options.scanner.format);
+      return answer_with_rate(now.sample_rate, options.scanner.format);
     case command::sample_rate_query:
       if (!options.answers_sample_rate) return std::nullopt;
-      return set(now.sample_rate, now.sample_rate);
+      return answer_with_rate(now.sample_rate, options.scanner.format);
     case command::protection_toggle:
       return set(now.protection, other_than(now.protection));
     default:

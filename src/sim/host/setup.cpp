@@ -192,6 +192,7 @@ std::string read_firmware(device_information& info, std::string_view value) {
 }
 
 std::string read_model(setup& into, std::string_view value) {
+  into.model = value;
   if (use_model(into.device, value, into.other_layout)) return {};
   std::string known;
   for (const std::string_view word : model_words()) {

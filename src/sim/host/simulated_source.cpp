@@ -32,10 +32,6 @@ result<simulated_source> open_simulated(std::string_view source) {
     return refused(problem::bad_option, "sim:", wrong->message);
   }
   const setup& wanted = std::get<setup>(read);
-  if (wanted.device.one_way) {
-    return failure(task::opening, problem::bad_option,
-                   "sim: of a model that answers nothing (only a G4 can be opened)");
-  }
   auto scene = load_world(wanted.world_file);
   if (const auto* wrong = std::get_if<world_error>(&scene))
     return refused(wanted.world_file, *wrong);
@@ -46,7 +42,7 @@ result<simulated_source> open_simulated(std::string_view source) {
   }
   auto served = serve_alone(device(in, wanted.device, wanted.faults));
   if (!served) return tl::unexpected(served.error());
-  simulated_source made{*std::move(served), std::nullopt, 0};
+  simulated_source made{*std::move(served), std::nullopt, 0, wanted.model};
   made.port->with([&](const device&, std::int64_t now_ns) {
     const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
     made.begin_ns = now.count() - now_ns;

@@ -76,6 +76,8 @@ inline buffer frequency_reply(unsigned chz) {
       return "scanning";
     case refusal::bad_setting:
       return "bad_setting";
+    case refusal::not_supported:
+      return "not_supported";
   }
   return "?";
 }
@@ -98,7 +100,7 @@ inline buffer frequency_reply(unsigned chz) {
   }
   return "?";
 }
-/// The number in an answer: a setting's byte, a frequency, a health's status; nothing for the
+/// The number in an answer: a setting's byte, an angle, a frequency, a health's status; nothing for the
 /// others.
 [[nodiscard]] inline std::string word_for(const answer& value) {
   return std::visit(
@@ -112,6 +114,11 @@ inline buffer frequency_reply(unsigned chz) {
           return ":" + std::to_string(static_cast<int>(held.status));
         } else if constexpr (std::is_same_v<held_type, scan_frequency>) {
           return ":" + std::to_string(held.chz);
+        } else if constexpr (std::is_same_v<held_type, sample_rate>) {
+          return ":" + std::to_string(code_of_rate(g4_model, to_hz(held)));
+        } else if constexpr (std::is_same_v<held_type, zero_angle> ||
+                             std::is_same_v<held_type, pitch_angle>) {
+          return ":" + std::to_string(held.cdeg);
         } else {
           return ":" + std::to_string(static_cast<int>(held));
         }

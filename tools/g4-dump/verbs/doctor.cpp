@@ -147,7 +147,7 @@ int examine(const doctor_options& options) {
     throw bad_value("doctor examines a device or a file, not standard input");
   }
   diagnostic_options how;
-  how.baud = options.expected.baud;
+  how.baud = options.expected.rate();
   const source_kind kind = kind_of_source(options.source);
   const bool is_raw = kind == source_kind::raw_bytes;
   const bool is_named = options.expected.model != nullptr;

@@ -2,6 +2,7 @@
 // The verb info: the information and settings of a device, or of a recording.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
+#include "g4lidar/core/session/request_retry.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_source.hpp"
 #include "io/input.hpp"
@@ -25,7 +27,7 @@ struct device_facts {
   std::string source;
   std::optional<device_information> information{};
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
-  const g4lidar::model* model = nullptr;                      ///< That a recording states.
+  const g4lidar::model* model = nullptr;       ///< That a recording states, or that was named.
   std::string_view why_unknown = "no answer";  ///< For settings that a G4 can be asked for.
 };
 
@@ -40,10 +42,23 @@ device_facts facts_of_recording(const std::string& source) {
   return facts;
 }
 
+/// A one-way lidar says who it is in a whole revolution, if it does.
+void listen(g4lidar::lidar& lidar) {
+  constexpr int revolutions = 3;
+  value_of(lidar.start());
+  for (int i = 0; i < revolutions && !lidar.information().is_known(); ++i) {
+    if (!lidar.wait_scan(std::chrono::seconds(2))) break;
+  }
+  value_of(lidar.stop());
+}
+
 device_facts facts_of_device(const common_options& options) {
   command_source source(options, task::asking);
   g4lidar::lidar& lidar = source.lidar();
-  device_facts facts{.source = std::string(lidar.name()), .information = lidar.information()};
+  device_facts facts{.source = std::string(lidar.name())};
+  facts.model = options.expected.model;
+  if (!lidar.information().is_known()) listen(lidar);
+  if (lidar.information().is_known()) facts.information = lidar.information();
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);
   }
@@ -61,7 +76,11 @@ device_facts facts_of(const common_options& options) {
 std::string words_for(const device_facts& facts, std::size_t index) {
   std::string text = text_of(facts.settings[index]);
   if (facts.settings[index]) return text;
-  const bool can_ask = all_settings()[index].query.has_value();
+  const setting_info& which = all_settings()[index];
+  if (facts.model != nullptr && !has_request(*facts.model, which.change)) {
+    return fmt::format("{} ({} has no such setting)", text, facts.model->name);
+  }
+  const bool can_ask = which.query.has_value();
   return fmt::format("{} ({})", text, can_ask ? facts.why_unknown : "a G4 cannot be asked for it");
 }
 
@@ -69,7 +88,7 @@ void write(const device_facts& facts, bool as_json, output& out) {
   ordered_json all{{"source", facts.source}};
   all.update(json_of(facts.information));
   if (!as_json && facts.information && facts.information->model == model_g4) all["model"] = "G4";
-  if (!as_json && !facts.information && facts.model != nullptr) all["model"] = facts.model->name;
+  if (!as_json && facts.model != nullptr) all["model"] = facts.model->name;
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
     value = as_json ? json_of(facts.settings[i]) : ordered_json(words_for(facts, i));

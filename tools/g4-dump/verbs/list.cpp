@@ -52,7 +52,7 @@ void probe(std::vector<listed_port>& ports, const list_options& options) {
   for (listed_port& each : ports) {
     if (!options.all && !is_g4_bridge(each.port)) continue;
     if (interrupt() != 0) throw interrupted();
-    const auto& answer = each.answer.emplace(ask_at(each.port, options.common.expected.baud));
+    const auto& answer = each.answer.emplace(ask_at(each.port, options.common.expected.rate()));
     if (!answer) logger::info(in_tool_words(answer.error().message()) + "\n");
   }
 }

@@ -12,7 +12,6 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
-#include "g4lidar/core/model.hpp"
 #include "g4lidar/export/digits.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/sim/scanner.hpp"
@@ -94,9 +93,7 @@ std::vector<sim::pty_port> open_ports(const sim_options& options,
                                     : sim::pty_port::listen(std::move(simulated), address, port),
                            address, advice));
     const std::string& path = ports.back().path();
-    const g4lidar::model* const served = g4lidar::model_named(devices[i].model);
-    logger::write(fmt::format("{} {} at {}\n", served == nullptr ? devices[i].model : served->name,
-                              devices[i].info.serial_number(),
+    logger::write(fmt::format("G4 {} at {}\n", devices[i].info.serial_number(),
                               printable(path.empty() ? address : path)));
   }
   return ports;
@@ -196,7 +193,7 @@ sample_rate rate_of(const std::string& word, const sim::wire_format& format) {
   if (found == known.end()) {
     throw bad_value(fmt::format("'{}' is not one of {}", word, fmt::join(known, ", ")));
   }
-  return static_cast<sample_rate>(found - known.begin());
+  return static_cast<sample_rate>(format.rates_hz[static_cast<std::size_t>(found - known.begin())]);
 }
 
 option_rows scanner_rows(sim::scanner_options& scanner) {

@@ -224,13 +224,14 @@ option_row format_row(text_format& into, const char* help) {
 }
 
 option_rows baud_row(common_options& options) {
-  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (230400)",
-                                        options.expected.baud, 1U, 10'000'000U)});
+  return in_group("Device",
+                  {number_row("--baud", "RATE", "Baud rate (by the model; of a G4 230400)",
+                              options.expected.baud, 1U, 10'000'000U)});
 }
 
 option_row model_row(common_options& options) {
   return value_row(
-      "--model", "MODEL", "The model of a file: g4, x4, t-mini-pro (as the file shows)",
+      "--model", "MODEL", "The model of lidar: g4, x4, x2 (g4, or as a file shows)",
       options.expected.model, [](const std::string& word) {
         const g4lidar::model* const found = g4lidar::model_named(word);
         if (found != nullptr) return found;

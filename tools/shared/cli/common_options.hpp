@@ -55,8 +55,13 @@ enum class loss_rule : unsigned char {
 
 /// What is at the source.
 struct expected_device {
-  std::uint32_t baud = 230400;
-  const g4lidar::model* model = nullptr;  ///< What sent the bytes of a file; null: as it shows.
+  std::uint32_t baud = 0;                 ///< 0: the usual rate of the model.
+  const g4lidar::model* model = nullptr;  ///< What sends the bytes; null: as a file shows, a G4.
+
+  [[nodiscard]] std::uint32_t rate() const noexcept {
+    if (baud != 0) return baud;
+    return (model != nullptr ? *model : g4lidar::g4_model).bauds[0];
+  }
 };
 
 struct common_options {

@@ -10,6 +10,7 @@ exit_code exit_code_for(const g4lidar::error& why, bool was_running) noexcept {
   switch (why.code()) {
     case bad_option:
     case bad_setting:
+    case not_supported:
     case scanning:
     case not_scanning:
       return exit_code::usage;

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <string_view>
 #include <variant>
 
 #include "exit_code.hpp"
@@ -21,9 +24,24 @@ choices<answer> choices_of(const setting_info& which) {
   return all;
 }
 
-/// A multiple of the step of a decimal.
+/// A sample rate that a G4 does not have: "18k", "18000".
+std::optional<answer> rate_of_another(const setting_info& which, std::string_view word) {
+  if (which.type != setting_type::whole) return std::nullopt;
+  const bool is_thousands = word.ends_with('k');
+  if (is_thousands) word.remove_suffix(1);
+  std::int32_t hz = 0;
+  const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), hz);
+  if (wrong != std::errc() || end != word.data() + word.size() || hz > 1'000'000) return {};
+  return value_of(which, is_thousands ? hz * 1000 : hz);
+}
+
+/// A multiple of the step of a decimal. Other models may have values beyond the limits of a G4.
 answer decimal_of(const setting_info& which, const std::string& word) {
-  const double number = number_of(word, which.least / 100.0, which.most / 100.0);
+  const double far = number_of(word, 0.0, 1000.0);
+  const bool is_of_another =
+      value_of(which, static_cast<std::int32_t>(std::lround(far * 100.0))).has_value();
+  const double number =
+      is_of_another ? far : number_of(word, which.least / 100.0, which.most / 100.0);
   const double steps = number * 100.0 / which.step;
   if (std::abs(steps - std::round(steps)) > 1e-6) {
     throw bad_value(
@@ -70,6 +88,7 @@ setting_change change_of(const std::string& word) {
       return {&which, each.value};
     }
   }
+  if (const auto other = rate_of_another(which, wanted)) return {&which, *other};
   try {
     return {&which, which.values.empty() ? decimal_of(which, wanted)
                                          : choice_of(wanted, choices_of(which))};

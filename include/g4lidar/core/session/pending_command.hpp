@@ -23,6 +23,8 @@ namespace g4lidar {
       return reply::byte;
     case response_kind::frequency:
       return reply::frequency;
+    case response_kind::pitch:
+      return reply::pitch;
   }
   return reply::none;
 }
@@ -32,7 +34,8 @@ namespace g4lidar {
   const auto traits = traits_of(code);
   if (!traits || traits->answered_by != as_reply(heard.kind())) return false;
   const auto byte = heard.as_byte();
-  if (!byte) return true;
+  const bool is_frequency = traits->answered_by == reply::frequency && code != command::zero_angle;
+  if (!byte) return !is_frequency || heard.as_frequency_chz();
   if (traits->fixed_answer) return *byte == *traits->fixed_answer;
   const bool has_three = code == command::sample_rate_next || code == command::sample_rate_query;
   return *byte < (has_three ? 3 : 2);

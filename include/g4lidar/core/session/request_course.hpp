@@ -18,10 +18,10 @@ namespace g4lidar {
 class request_course {
  public:
   /// Begins a request. It ends at the first lost answer after `limit_ns`.
-  constexpr void begin(const request& wanted, std::int64_t limit_ns) noexcept {
+  constexpr void begin(const request& wanted, std::int64_t limit_ns, const model& which) noexcept {
     outcome_ = outcome{};
     outcome_.asked = wanted;
-    steps_ = request_retry(wanted);
+    steps_ = request_retry(wanted, which);
     is_running_ = true;
     is_broken_ = false;
     disturbances_ = 0;

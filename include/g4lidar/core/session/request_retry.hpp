@@ -6,22 +6,56 @@
 #include <utility>
 
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/response.hpp"
 
 namespace g4lidar {
 
-/// Whether a G4 can have the value: a frequency of 5 to 12 Hz, an enumerator of its type. *Pure.*
-/// (protocol: Commands)
-[[nodiscard]] constexpr bool is_possible(const request& wanted) noexcept {
+/// Whether lidars like `which` have the command of the request, as far as it is known. *Pure.* One-way
+/// lidars have none, but can be started and stopped in the sense of the driver.
+[[nodiscard]] constexpr bool has_request(const model& which, request_kind what) noexcept {
+  const bool is_run = what == request_kind::start || what == request_kind::stop;
+  if (which.link == link_kind::one_way) return is_run;
+  switch (what) {
+    case request_kind::get_low_power:
+    case request_kind::set_low_power:
+    case request_kind::get_direction:
+    case request_kind::set_direction:
+    case request_kind::set_constant_frequency:
+      return which.has_motor_settings;
+    case request_kind::get_scan_frequency:
+    case request_kind::step_scan_frequency:
+    case request_kind::set_scan_frequency:
+      return which.frequency.max_dhz != 0;
+    case request_kind::get_sample_rate:
+      return which.rates.is_settable || which.rates.nominal_hz == 0;
+    case request_kind::set_sample_rate:
+      return which.rates.is_settable;
+    case request_kind::set_protection:
+      return which.protection != presence::no;
+    case request_kind::zero_angle:
+      return which.zero_angle_divisor != 0;
+    case request_kind::pitch:
+      return which.has_pitch;
+    default:
+      return true;
+  }
+}
+
+/// Whether a lidar like `which` can have the value: a frequency within its limits, one of its sample
+/// rates, an enumerator of its type. *Pure.* (protocol: Commands)
+[[nodiscard]] constexpr bool is_possible(const request& wanted,
+                                         const model& which = g4_model) noexcept {
   switch (wanted.what) {
     case request_kind::set_scan_frequency:
-      return wanted.value >= min_scan_frequency_chz && wanted.value <= max_scan_frequency_chz;
+      return wanted.value >= 10 * which.frequency.min_dhz &&
+             wanted.value <= 10 * which.frequency.max_dhz;
     case request_kind::step_scan_frequency:
       return wanted.value >= static_cast<std::uint16_t>(frequency_step::up_0_1_hz) &&
              wanted.value <= static_cast<std::uint16_t>(frequency_step::down_1_hz);
     case request_kind::set_sample_rate:
-      return wanted.value <= static_cast<std::uint16_t>(sample_rate::khz_9);
+      return wanted.value != 0 && code_of_rate(which, wanted.value) < rate_count(which);
     case request_kind::set_low_power:
     case request_kind::set_direction:
     case request_kind::set_constant_frequency:
@@ -30,6 +64,22 @@ namespace g4lidar {
     default:
       return wanted.what <= request_kind::stop && wanted.value == 0;
   }
+}
+
+/// The answer of a lidar like `which` to command 93; nothing if it is no angle within a turn. *Pure.*
+[[nodiscard]] constexpr std::optional<zero_angle> zero_angle_of(const response_view& heard,
+                                                                const model& which) noexcept {
+  const std::int32_t divisor = which.zero_angle_divisor;
+  const std::optional<std::int32_t> value = heard.as_angle();
+  if (divisor == 0 || !value || *value < -360 * divisor || *value > 360 * divisor) return {};
+  return zero_angle{*value * (100 / divisor)};
+}
+
+/// The answer to command 98, in the same way. *Pure.*
+[[nodiscard]] constexpr std::optional<pitch_angle> pitch_of(const response_view& heard) noexcept {
+  const std::optional<std::int32_t> value = heard.as_angle();
+  if (!value || *value < -36'000 || *value > 36'000) return {};
+  return pitch_angle{*value};
 }
 
 /// The next step of a request.
@@ -60,8 +110,12 @@ struct request_step {
 class request_retry {
  public:
   constexpr request_retry() noexcept = default;
-  /// The steps of `wanted`.
-  explicit constexpr request_retry(const request& wanted) noexcept : wanted_(wanted) {}
+  /// The steps of `wanted`, which lidars like `which` have.
+  explicit constexpr request_retry(const request& wanted, const model& which = g4_model) noexcept
+      : wanted_(wanted),
+        which_(&which),
+        target_(wanted.what == request_kind::set_sample_rate ? code_of_rate(which, wanted.value)
+                                                             : wanted.value) {}
 
   /// The first step, to a device that is idle and silent.
   [[nodiscard]] constexpr request_step first() const noexcept {
@@ -81,7 +135,10 @@ class request_retry {
   [[nodiscard]] constexpr request_step answered(const response_view& heard) noexcept {
     if (const auto info = heard.as_device_info()) return end(*info);
     if (const auto state = heard.as_health()) return end(*state);
-    const std::uint16_t value = heard.as_frequency_chz().value_or(heard.as_byte().value_or(0));
+    if (wanted_.what == request_kind::zero_angle) return measured(zero_angle_of(heard, *which_));
+    if (wanted_.what == request_kind::pitch) return measured(pitch_of(heard));
+    if (heard.as_byte() && is_rate() && rate_of(*heard.as_byte()) == sample_rate{}) return doubt();
+    const std::uint16_t value = value_in(heard);
     if (wanted_.what == request_kind::set_protection) return toggled(value);
     if (!is_moving()) return end(as_answer(value));
     switch (waits_for_) {
@@ -97,7 +154,8 @@ class request_retry {
 
   /// The answer was missing or impossible, and no bytes are in transit.
   [[nodiscard]] constexpr request_step lost() noexcept {
-    if (++losses_ == max_losses) return {};
+    const bool may_be_unknown = is_rate() && !which_->rates.is_settable;
+    if (++losses_ == max_losses || may_be_unknown) return {};
     waits_for_ = answer_of::query;
     is_known_ = false;
     return ask(question());
@@ -125,6 +183,22 @@ class request_retry {
   }
   [[nodiscard]] static constexpr request_step doubt() noexcept {
     return {request_step::action::doubt, command::device_info, false, verdict::answered, {}};
+  }
+
+  [[nodiscard]] constexpr bool is_rate() const noexcept {
+    return wanted_.what == request_kind::get_sample_rate ||
+           wanted_.what == request_kind::set_sample_rate;
+  }
+  /// None if the model has no such code.
+  [[nodiscard]] constexpr sample_rate rate_of(std::uint8_t code) const noexcept {
+    return static_cast<sample_rate>(rate_hz_of_code(*which_, code));
+  }
+  /// A byte, or a frequency without the offset of the model.
+  [[nodiscard]] constexpr std::uint16_t value_in(const response_view& heard) const noexcept {
+    const auto chz = heard.as_frequency_chz();
+    if (!chz) return heard.as_byte().value_or(0);
+    const int corrected = int{*chz} + which_->frequency.reply_offset_chz;
+    return corrected > 0 ? static_cast<std::uint16_t>(corrected) : std::uint16_t{0};
   }
 
   /// Whether the request needs commands that change state, and queries of that state.
@@ -160,6 +234,10 @@ class request_retry {
         return command::sample_rate_query;
       case request_kind::set_protection:
         return command::protection_toggle;
+      case request_kind::zero_angle:
+        return command::zero_angle;
+      case request_kind::pitch:
+        return command::pitch;
       default:
         return command::device_info;
     }
@@ -179,12 +257,18 @@ class request_retry {
         return static_cast<constant_frequency>(byte);
       case request_kind::get_sample_rate:
       case request_kind::set_sample_rate:
-        return static_cast<sample_rate>(byte);
+        return rate_of(byte);
       case request_kind::set_protection:
         return static_cast<power_down_protection>(byte);
       default:
         return scan_frequency{value};
     }
+  }
+
+  // ---- 93 and 98: an angle beyond a turn is none ----
+  template <class Angle>
+  [[nodiscard]] static constexpr request_step measured(const std::optional<Angle>& value) noexcept {
+    return value ? end(*value) : doubt();
   }
 
   // ---- D9 has no query: its answers must alternate ----
@@ -249,7 +333,7 @@ class request_retry {
   }
 
   [[nodiscard]] constexpr int missing() const noexcept {
-    return static_cast<int>(wanted_.value) - static_cast<int>(current_);
+    return static_cast<int>(target_) - static_cast<int>(current_);
   }
   [[nodiscard]] constexpr bool has_arrived() const noexcept {
     if (wanted_.what == request_kind::step_scan_frequency) return current_ != origin_;
@@ -285,13 +369,17 @@ class request_retry {
   /// Whether the last change can have led from `current_` to `value`; at the end of the device's
   /// range a step may be shorter.
   [[nodiscard]] constexpr bool is_move_to(std::uint16_t value) const noexcept {
-    if (wanted_.what == request_kind::set_sample_rate) return value == (current_ + 1) % 3;
+    if (wanted_.what == request_kind::set_sample_rate) {
+      return value == (current_ + 1) % rate_count(*which_);
+    }
     const bool is_up = move_ == command::frequency_up_0_1_hz || move_ == command::frequency_up_1_hz;
     const int by = is_up ? value - current_ : current_ - value;
     return by > 0 && by <= (is_coarse_ ? coarse_chz : fine_chz);
   }
 
   request wanted_{request_kind::device_info};
+  const model* which_ = &g4_model;
+  std::uint16_t target_ = 0;  // the wanted value, or its code
   answer_of waits_for_ = answer_of::query;
   command move_ = command::frequency_query;
   std::uint16_t origin_ = 0;   // the first value

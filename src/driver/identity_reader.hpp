@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// What a lidar says about itself without being asked.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "g4lidar/core/ct_information.hpp"
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/device_information.hpp"
+
+namespace g4lidar {
+
+/// *Single thread, never allocates.* A device information comes after power-on, and from some two-way
+/// lidars behind the scan header. One-way lidars put what they know into CT bytes.
+class identity_reader {
+ public:
+  explicit identity_reader(const model& which) noexcept : which_(&which) {}
+
+  void take(const event& found) noexcept {
+    if (const auto* const packet = std::get_if<packet_view>(&found)) {
+      if (!packet->is_suspect()) ++packets_;
+      if (which_->link == link_kind::one_way && in_ct_.add(*packet)) take_ct(*in_ct_.last());
+    } else if (const auto* const gone = std::get_if<skipped>(&found)) {
+      in_ct_.add(*gone);
+    } else if (const auto* const heard = std::get_if<response_view>(&found)) {
+      if (const auto who = heard->as_device_info()) set(*who);
+    }
+  }
+  /// Another transport follows.
+  void reset() noexcept { *this = identity_reader(*which_); }
+
+  /// The valid packets.
+  [[nodiscard]] std::uint64_t packets() const noexcept { return packets_; }
+  /// The last information.
+  [[nodiscard]] const std::optional<device_information>& who() const noexcept { return who_; }
+  /// The last health, from CT bytes.
+  [[nodiscard]] const std::optional<health>& condition() const noexcept { return condition_; }
+  /// Whether who() has changed since the last call.
+  [[nodiscard]] bool take_news() noexcept { return std::exchange(is_new_, false); }
+
+ private:
+  void set(const device_information& who) noexcept {
+    if (who_ == who) return;
+    who_ = who;
+    is_new_ = true;
+  }
+  void take_ct(const ct_information& found) noexcept {
+    const bool is_well = found.faults == ct_faults::none;
+    condition_ = health{is_well ? health_status::ok : health_status::error,
+                        static_cast<std::uint8_t>(found.faults)};
+    // CT has only the lower bits of the number of the model.
+    std::uint8_t number = found.id_low_bits;
+    for (const std::uint8_t id : which_->ids) {
+      if ((id & 15U) == found.id_low_bits) number = id;
+    }
+    set({number, found.firmware_major, found.firmware_minor, found.hardware, found.serial_digits});
+  }
+
+  const model* which_;
+  ct_information_reader in_ct_;
+  std::uint64_t packets_ = 0;
+  std::optional<device_information> who_;
+  std::optional<health> condition_;
+  bool is_new_ = false;
+};
+
+}  // namespace g4lidar

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+#include "listening_driver.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "error_context.hpp"
+#include "outcome_error.hpp"
+
+namespace g4lidar {
+namespace {
+
+/// For the first byte, before the line DTR gets a pulse, and for the first packets after it: the motor
+/// may be about to spin up.
+constexpr std::int64_t listen_ns = 1'000'000'000;
+constexpr std::int64_t spin_up_ns = 2'000'000'000;
+constexpr std::uint64_t packets_to_recognise = 3;
+
+}  // namespace
+
+listening_driver::listening_driver(parts& of, const lidar_options& options)
+    : scan_source(of, options),
+      options_(options),
+      stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
+
+// ---- one round ----------------------------------------------------------------------------------
+
+result<void> listening_driver::advance(std::int64_t deadline_ns) {
+  switch (stage_) {
+    case live_stage::closed:
+      return tl::unexpected(reconnection_.why());
+    case live_stage::lost:
+      if (!reconnection_.wait(connection_, deadline_ns)) return {};
+      if (auto connected = connect(); !connected) return break_off(connected.error());
+      return {};
+    case live_stage::breaking:
+      if (stream_.parse()) return {};
+      pipeline_.end();
+      stage_ = live_stage::broken;
+      return {};
+    case live_stage::broken:
+      if (pipeline_.has_scan()) return {};
+      return hang_up();
+    case live_stage::idle:
+      connection_.pause(deadline_ns);
+      return {};
+    default:
+      break;
+  }
+  if (auto done = round(deadline_ns); !done) return break_off(done.error());
+  return {};
+}
+
+result<void> listening_driver::round(std::int64_t deadline_ns) {
+  stream_.follow_delivery();
+  if (stream_.parse()) return {};
+  if (auto looked = look(); !looked || stage_ == live_stage::idle) return looked;
+  if (auto got = stream_.receive(std::min(deadline_ns, next_deadline_ns())); !got) return got;
+  if (stream_.parse()) return {};
+  return look();
+}
+
+/// What the bytes that were parsed mean, and whether they came in time.
+result<void> listening_driver::look() {
+  identity_reader& said = stream_.said();
+  if (said.take_news()) {
+    if (auto known = identified(); !known) return known;
+  }
+  if (stage_ == live_stage::identifying && said.packets() >= packets_to_recognise) {
+    return recognised();
+  }
+  const bool is_moving = stage_ == live_stage::scanning && said.packets() != packets_;
+  if (is_moving) {
+    packets_ = said.packets();
+    pulse_ = pulse::none;
+    due_ns_ =
+        receiver_.read_until_ns() + std::chrono::nanoseconds(options_.tuning.stall_time).count();
+  }
+  // Bytes that arrived while the program was suspended are read before that.
+  if (now_ns() < due_ns_ || receiver_.read_until_ns() < due_ns_) return {};
+  const bool is_stalled = stage_ == live_stage::scanning;
+  const bool is_silent = is_stalled || pipeline_.input().bytes_parsed() == bytes_before_;
+  const bool may_help = !is_stalled || options_.model->motor == motor_kind::dtr;
+  if (pulse_ != pulse::done && may_help) return try_pulse(is_silent);
+  if (is_stalled) return failure(task::reading, problem::stalled, connection_.name());
+  const error_context about = error_context(connection_.name()).add(", ").add(options_.model->name);
+  return failure(task::opening, is_silent ? problem::silence : problem::garbage, about);
+}
+
+/// Some boards start the motor, or the lidar, at an edge of DTR only.
+result<void> listening_driver::try_pulse(bool is_silent) {
+  if (pulse_ == pulse::none && is_silent) {
+    if (auto lowered = stream_.set_motor(false); !lowered) return lowered;
+    pulse_ = pulse::low;
+    due_ns_ = stream_.motor_ready_ns();
+    if (due_ns_ > now_ns()) return {};
+  }
+  if (pulse_ == pulse::low) {
+    if (auto raised = stream_.set_motor(true); !raised) return raised;
+  }
+  pulse_ = pulse::done;
+  due_ns_ = now_ns() + spin_up_ns;
+  return {};
+}
+
+result<void> listening_driver::recognised() {
+  is_recognised_ = true;
+  stage_ = live_stage::idle;
+  if (reconnection_.is_under_way() && reconnection_.end()) report(lidar_event::kind::reconnected);
+  if (!wants_scan_) return {};
+  stage_ = live_stage::scanning;
+  packets_ = 0;
+  stream_.follow_delivery();
+  return look();
+}
+
+/// It may say who it is at any time: after a revolution, and when it gets power.
+result<void> listening_driver::identified() {
+  const device_information& who = *stream_.said().who();
+  if (!may_be(*options_.model, who)) {
+    return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
+  }
+  if (information_.is_known() && who.serial_digits != information_.serial_digits) {
+    connection_.from().refuse();
+    if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
+    return failure(task::finding, problem::no_port, connection_.name());
+  }
+  information_ = who;
+  return {};
+}
+
+std::int64_t listening_driver::next_deadline_ns() const noexcept {
+  if (stage_ == live_stage::closed || stage_ == live_stage::idle) return never_ns;
+  if (stage_ == live_stage::lost) return reconnection_.next_attempt_ns();
+  if (stage_ >= live_stage::breaking) return now_ns();
+  return std::min(stream_.next_deadline_ns(), due_ns_);
+}
+
+// ---- the connection -------------------------------------------------------------------------------
+
+result<void> listening_driver::connect() {
+  if (auto opened = connection_.open(); !opened) return opened;
+  stream_.begin();
+  stage_ = live_stage::identifying;
+  pulse_ = pulse::none;
+  due_ns_ = now_ns() + listen_ns;
+  bytes_before_ = pipeline_.input().bytes_parsed();
+  return stream_.set_motor(true);
+}
+
+/// As that of live_driver, but nothing is sent.
+result<void> listening_driver::break_off(const error& broken) {
+  reconnection_.lost(stream_.error_after(broken));
+  if (stage_ <= live_stage::identifying) return hang_up();
+  stream_.cut();
+  stage_ = live_stage::breaking;
+  return {};
+}
+
+result<void> listening_driver::hang_up() {
+  const bool was_up = stage_ == live_stage::broken;
+  if (!was_up) stream_.flush();
+  connection_.close();
+  if (was_up) {
+    report(lidar_event::kind::lost, reconnection_.why().code());
+    reconnection_.begin();
+  }
+  if (!options_.reconnect || !is_recognised_) {
+    stage_ = live_stage::closed;
+    return tl::unexpected(reconnection_.why());
+  }
+  stage_ = live_stage::lost;
+  reconnection_.found();  // whatever is found at its place
+  connection_.watch();
+  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.tuning.longest_backoff).count());
+  if (was_up) return tl::unexpected(reconnection_.reconnecting());
+  return {};
+}
+
+result<void> listening_driver::can_read() const noexcept {
+  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
+  if (wants_scan_) return {};
+  return failure(task::reading, problem::not_scanning, connection_.name());
+}
+
+scan_expectation listening_driver::expects() const noexcept {
+  if (stage_ == live_stage::closed || !wants_scan_) return {};
+  if (stage_ != live_stage::scanning) {
+    return {never_ns, error_detail::searching, reconnection_.why().subject()};
+  }
+  if (!spins_up()) return {};
+  return {spin_up_.ends_ns(), error_detail::spinning_up};
+}
+
+// ---- requests -----------------------------------------------------------------------------------
+
+result<void> listening_driver::be_ready() {
+  if (stage_ == live_stage::lost) {
+    if (auto tried = step(now_ns()); !tried) return tried;
+  }
+  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
+  while (stage_ == live_stage::identifying || stage_ >= live_stage::breaking) {
+    pipeline_.drop_scan();
+    if (auto done = step(never_ns); !done) return done;
+  }
+  if (stage_ == live_stage::lost) return tl::unexpected(reconnection_.reconnecting());
+  return {};
+}
+
+result<void> listening_driver::open() {
+  if (auto connected = connect(); !connected) {
+    connection_.close();
+    stage_ = live_stage::closed;
+    return connected;
+  }
+  return be_ready();
+}
+
+/// What arrived while nobody read is older than the start.
+result<void> listening_driver::drop_old() {
+  constexpr int most_reads = 64;
+  for (int i = 0; i < most_reads; ++i) {
+    const std::uint64_t before = pipeline_.input().bytes_parsed();
+    if (auto got = stream_.receive(now_ns()); !got) return got;
+    while (stream_.parse()) pipeline_.drop_scan();
+    if (pipeline_.input().bytes_parsed() == before) break;
+  }
+  return {};
+}
+
+result<void> listening_driver::start() {
+  if (is_scanning()) return {};
+  if (auto ready = be_ready(); !ready) return ready;
+  wants_scan_ = true;
+  if (is_scanning()) return {};  // a start that was woken
+  pipeline_.drop_scan();
+  spin_up_.forget();
+  if (auto dropped = drop_old(); !dropped) {
+    const auto broken = break_off(dropped.error());
+    return broken ? dropped : broken;
+  }
+  pipeline_.begin_scans();
+  stage_ = live_stage::scanning;
+  packets_ = 0;  // some have come: look() sets the time of the next ones
+  stream_.follow_delivery();
+  return {};
+}
+
+result<void> listening_driver::stop() {
+  wants_scan_ = false;
+  if (stage_ == live_stage::lost) return {};
+  if (auto ready = be_ready(); !ready) return ready;
+  pipeline_.drop_scan();
+  if (stage_ != live_stage::scanning) return {};
+  stream_.flush();
+  stage_ = live_stage::idle;
+  stream_.follow_delivery();
+  pipeline_.end();
+  report(lidar_event::kind::still_turning);
+  return {};
+}
+
+void listening_driver::release() noexcept {
+  stream_.flush();
+  pipeline_.drop_scan();
+  connection_.close();
+  stage_ = live_stage::closed;
+  reconnection_.lost(error(task::reading, problem::gone, "this lidar, which was closed"));
+}
+
+result<answer> listening_driver::ask(const request& wanted, while_scanning /*how*/) {
+  if (auto ready = be_ready(); !ready) return tl::unexpected(ready.error());
+  const auto condition = stream_.said().condition();
+  if (wanted.what == request_kind::device_info && information_.is_known()) return information_;
+  if (wanted.what == request_kind::health && condition) return *condition;
+  return tl::unexpected(refusal_error(task::asking, refusal::not_supported, wanted, *options_.model,
+                                      connection_.name()));
+}
+
+}  // namespace g4lidar
