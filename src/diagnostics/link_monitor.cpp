@@ -75,9 +75,12 @@ void event_splitter::look_for_text(bytes raw) {
   if (letters_ == 0) in_text_ = false;
 }
 
-link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled)
+link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
+                           const model& which)
     : transport_(std::move(opened)),
       is_cancelled_(std::move(is_cancelled)),
+      format_(which.samples),
+      splitter_(format_),
       link_(splitter_.parser(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns}, cut_off_after_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
@@ -213,7 +216,7 @@ void link_monitor::replace(const std::function<std::unique_ptr<transport>()>& ma
   ended_ns_ = now_ns();
   transport_.reset();
   transport_ = make();
-  splitter_ = {};
+  splitter_ = event_splitter(format_);
   layout_ = {};
   silence_ns_ = 0;
   read_ns_ = -1;

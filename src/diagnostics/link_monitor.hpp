@@ -13,6 +13,7 @@
 #include "driver/device_link.hpp"
 #include "g4lidar/core/command.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -94,7 +95,9 @@ struct exchange {
 /// *Single thread.* After a loss (error()) nothing arrives, and every call returns immediately.
 class link_monitor {
  public:
-  link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled);
+  /// `which` sends the packets; valid as long as this.
+  link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
+               const model& which = g4_model);
 
   /// Observes until `until_ns`, which the observer may change.
   void listen(const std::int64_t& until_ns, const observer& to);
@@ -138,6 +141,8 @@ class link_monitor {
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
   /// Of everything observed since replace().
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
+  /// The transport; null after a loss of it in replace().
+  [[nodiscard]] transport* port() noexcept { return transport_.get(); }
   /// The name of the transport. Empty without one.
   [[nodiscard]] std::string_view name() const noexcept {
     return transport_ ? transport_->name() : std::string_view{};
@@ -151,6 +156,7 @@ class link_monitor {
 
   std::unique_ptr<transport> transport_;
   std::function<bool()> is_cancelled_;
+  sample_format format_;
   std::optional<error> error_;
   bool cancelled_ = false;
   bool has_backlog_ = false;

@@ -181,11 +181,23 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
 void recording_writer::file_writer::device(const recorded_device& known) noexcept {
   static_cast<void>(guarded([&]() -> result<void> {
     device_ = known;
-    if (!chunk_.is_empty()) {
-      if (auto ended = end_chunk(); !ended) return ended;
-    }
-    return file_->add_metadata(mcap::device_metadata, mcap::words_of(known));
+    return add_metadata(mcap::device_metadata, mcap::words_of(known));
   }));
+}
+
+void recording_writer::file_writer::metadata(
+    std::string_view name, std::span<const std::pair<std::string, std::string>> words) noexcept {
+  static_cast<void>(
+      guarded([&] { return add_metadata(name, mcap::word_map(words.begin(), words.end())); }));
+}
+
+/// Behind the items that were recorded before it.
+result<void> recording_writer::file_writer::add_metadata(std::string_view name,
+                                                         const mcap::word_map& words) {
+  if (!chunk_.is_empty()) {
+    if (auto ended = end_chunk(); !ended) return ended;
+  }
+  return file_->add_metadata(name, words);
 }
 
 result<void> recording_writer::file_writer::take_model(const model& which) {

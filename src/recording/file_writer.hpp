@@ -71,6 +71,8 @@ class recording_writer::file_writer {
   void odometry(const stamped_odometry& what) noexcept;
   void points(std::span<const point> delivered) noexcept { points_.add(delivered); }
   void device(const recorded_device& known) noexcept;
+  void metadata(std::string_view name,
+                std::span<const std::pair<std::string, std::string>> words) noexcept;
   /// What sends the bytes: the file begins again if it is empty and for another model.
   [[nodiscard]] result<void> take_model(const model& which);
   void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
@@ -93,6 +95,7 @@ class recording_writer::file_writer {
   [[nodiscard]] result<void> add_transform();
   [[nodiscard]] result<void> end_chunk();
   [[nodiscard]] result<bytes> pack();
+  [[nodiscard]] result<void> add_metadata(std::string_view name, const mcap::word_map& words);
   [[nodiscard]] result<void> rotate();
   [[nodiscard]] result<void> end_file(bool is_only_one);
   [[nodiscard]] std::string next_path() const;

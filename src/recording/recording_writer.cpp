@@ -125,6 +125,10 @@ void recording_writer::points(std::span<const point> delivered) noexcept {
 void recording_writer::device(const recorded_device& known) noexcept {
   if (made_) made_->device(known);
 }
+void recording_writer::metadata(
+    std::string_view name, std::span<const std::pair<std::string, std::string>> words) noexcept {
+  if (made_) made_->metadata(name, words);
+}
 void recording_writer::set_wall_clock(std::int64_t ahead_ns) noexcept {
   if (made_) made_->set_wall_clock(ahead_ns);
 }

@@ -97,6 +97,13 @@ TEST_F(Serve, NoLog_PrintsNoCommands) {
   EXPECT_EQ(simulator.wait().err, "G4 2021101000070073 at " + path("lidar") + "\n");
 }
 
+TEST_F(Serve, AnotherModel_HasItsName) {
+  cli::program simulator({"sim", "--model", "t-mini-plus-sh", "--link", path("lidar")});
+  ASSERT_TRUE(appears(path("lidar")));
+  simulator.send(SIGTERM);
+  EXPECT_EQ(simulator.wait().err, "T-mini Plus SH 2021101000070073 at " + path("lidar") + "\n");
+}
+
 TEST_F(Serve, Faults_AreApplied) {
   cli::program simulator({"sim", "--link", path("lidar"), "--fault", "mute@0+60s", "--fault",
                           "scanning@100ms", "--fault", "unplug@2s+1s"});

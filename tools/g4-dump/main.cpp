@@ -9,8 +9,8 @@ constexpr const char* description =
 Without a command it prints points, and without a source it takes the only G4 that is connected.
 On a terminal, without any word, it lists the attached lidars and the commands, and sends nothing.
 
-Data goes to standard output, messages go to standard error. The tool never asks a question, and
-only the command set changes settings of the device. Control characters in what a device or a
+Data goes to standard output, messages go to standard error. Only the command acceptance asks
+questions, and only acceptance and set change settings of the device. Control characters in what a device or a
 file sent are escaped.)";
 
 }  // namespace
@@ -23,7 +23,7 @@ std::vector<verb> all_verbs() {
       make_stats_verb(),   make_doctor_verb(),  make_dump_verb(),    make_scan_verb(),
       make_packets_verb(), make_decode_verb(),  make_sim_verb(),     make_set_verb(),
       make_start_verb(),   make_stop_verb(),    make_restart_verb(), make_record_verb(),
-      make_replay_verb(),  make_convert_verb(), make_serve_verb(),
+      make_replay_verb(),  make_convert_verb(), make_serve_verb(),   make_acceptance_verb(),
 #if G4LIDAR_VIEW
       make_view_verb(),
 #endif

@@ -26,10 +26,15 @@ constexpr const char* details =
   /tf_static     the place of the lidar on the robot, with --mount
   odom, /tf      the way of the robot, of a recording with odometry or a simulated robot
   /clock         the time of a recording
+  NODE/run       subscribed, std_msgs/Bool: false rests the motors, true lets them turn
 
 Services, for rmw_cyclonedds: get_parameters, set_parameters, list_parameters, ... of the node, as
 ros2 param uses them, with frequency, sample_rate, range_max, fov, speckle and others;
-start and stop (std_srvs/Trigger).
+start and stop (std_srvs/Trigger). With another middleware a call would wait for ever, so they are
+offered if RMW_IMPLEMENTATION is rmw_cyclonedds_cpp here, or with --services on.
+
+--announce auto announces the node to ROS 2 from Iron on if ROS_DISTRO names such a release, and to
+Humble if only such programs are in the domain.
 
 Several lidars have names: front=/dev/ttyUSB0 rear=/dev/ttyUSB1. Then each name is a namespace,
 and begins the frame of its lidar: front_laser. --merge publishes one scan and one cloud of all

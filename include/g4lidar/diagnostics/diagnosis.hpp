@@ -126,6 +126,18 @@ struct evidence {
   [[nodiscard]] G4LIDAR_API std::string text() const;
 };
 
+/// A measurement from a value of any type: a whole number, a number, or else a text. Allocates.
+template <class Value>
+[[nodiscard]] evidence make_evidence(std::string name, Value value) {
+  if constexpr (std::is_integral_v<Value>) {
+    return {std::move(name), static_cast<std::int64_t>(value)};
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    return {std::move(name), static_cast<double>(value)};
+  } else {
+    return {std::move(name), std::string(std::move(value))};
+  }
+}
+
 /// How one stage ended.
 struct stage_report {
   diagnostic_stage stage = diagnostic_stage::port;
@@ -139,13 +151,7 @@ struct stage_report {
   /// Adds evidence.
   template <class Value>
   void add(std::string name, Value value) {
-    if constexpr (std::is_integral_v<Value>) {
-      measurements.push_back({std::move(name), static_cast<std::int64_t>(value)});
-    } else if constexpr (std::is_floating_point_v<Value>) {
-      measurements.push_back({std::move(name), static_cast<double>(value)});
-    } else {
-      measurements.push_back({std::move(name), std::string(std::move(value))});
-    }
+    measurements.push_back(make_evidence(std::move(name), std::move(value)));
   }
 };
 

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/model_record.hpp"
@@ -129,6 +130,10 @@ class G4LIDAR_API recording_writer {
   void points(std::span<const point> delivered) noexcept;
   /// Identity and settings of the lidar, for the metadata of this file and of those that follow.
   void device(const recorded_device& known) noexcept;
+  /// Adds a record of words to the current file: metadata of this name, which must not begin with
+  /// "g4lidar.device" or "g4lidar.digest". Readers of MCAP show it; a replay ignores it.
+  void metadata(std::string_view name,
+                std::span<const std::pair<std::string, std::string>> words) noexcept;
   /// From now on the wall clock is the transport's clock plus `ahead_ns`; for transports with a
   /// time of their own: simulations and recordings.
   void set_wall_clock(std::int64_t ahead_ns) noexcept;

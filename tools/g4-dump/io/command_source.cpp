@@ -16,13 +16,6 @@
 namespace g4_tool {
 namespace {
 
-/// Throws a failure if the source is a file, which cannot answer.
-void refuse_files(const common_options& options, task doing) {
-  const source_kind kind = kind_of_source(options.source);
-  if (kind == source_kind::device || kind == source_kind::simulated) return;
-  throw failure(error(doing, problem::read_only, options.source));
-}
-
 /// In this time the slowest G4 sends a packet.
 constexpr std::int64_t listen_ns = 60'000'000;
 
@@ -53,6 +46,12 @@ lidar_options listening(bool& heard) {
 }
 
 }  // namespace
+
+void refuse_files(const common_options& options, task doing) {
+  const source_kind kind = kind_of_source(options.source);
+  if (kind == source_kind::device || kind == source_kind::simulated) return;
+  throw failure(error(doing, problem::read_only, options.source));
+}
 
 command_source::command_source(const common_options& options, task doing)
     : source_((refuse_files(options, doing), options), listening(was_scanning_)) {

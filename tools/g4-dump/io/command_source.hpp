@@ -13,6 +13,9 @@ namespace g4_tool {
 
 class output;
 
+/// Throws a failure if the source is a file, which cannot answer.
+void refuse_files(const common_options& options, g4lidar::task doing);
+
 /// A device that is opened for commands, which stops it. It first listens whether the device is scanning,
 /// and logs that. (Discovery by serial number or among several devices has stopped it before.)
 class command_source {

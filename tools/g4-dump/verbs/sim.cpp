@@ -12,6 +12,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/export/digits.hpp"
 #include "g4lidar/export/protocol_log.hpp"
 #include "g4lidar/sim/scanner.hpp"
@@ -93,7 +94,9 @@ std::vector<sim::pty_port> open_ports(const sim_options& options,
                                     : sim::pty_port::listen(std::move(simulated), address, port),
                            address, advice));
     const std::string& path = ports.back().path();
-    logger::write(fmt::format("G4 {} at {}\n", devices[i].info.serial_number(),
+    const g4lidar::model* const served = g4lidar::model_named(devices[i].model);
+    logger::write(fmt::format("{} {} at {}\n", served == nullptr ? devices[i].model : served->name,
+                              devices[i].info.serial_number(),
                               printable(path.empty() ? address : path)));
   }
   return ports;

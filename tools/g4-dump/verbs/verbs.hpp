@@ -18,6 +18,7 @@ namespace g4_tool {
 [[nodiscard]] verb make_dump_verb();
 [[nodiscard]] verb make_scan_verb();
 [[nodiscard]] verb make_doctor_verb();
+[[nodiscard]] verb make_acceptance_verb();
 [[nodiscard]] verb make_packets_verb();
 [[nodiscard]] verb make_decode_verb();
 [[nodiscard]] verb make_sim_verb();

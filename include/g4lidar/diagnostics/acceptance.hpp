@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// The acceptance run: what a real lidar does, step by step, compared with what the table of models says.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/detail/api.hpp"
+#include "g4lidar/diagnostics/diagnosis.hpp"
+#include "g4lidar/discovery.hpp"
+#include "g4lidar/transport/connector.hpp"
+
+namespace g4lidar {
+
+/// The steps of an acceptance run, in their order.
+enum class acceptance_step : std::uint8_t {
+  bridge,          ///< The USB bridge, and the baud rate that the system set.
+  listening,       ///< What arrives before anything is sent.
+  identity,        ///< The answer to 90.
+  queries,         ///< Each query: its answer and its time.
+  protection,      ///< Power-down protection, D9: switched and switched back.
+  frequency,       ///< The limits of the scan frequency; then it is as before.
+  sample_rate,     ///< The sample rate behind each code; then it is as before.
+  start_and_stop,  ///< The times of spin-up and stop, and whether 00 alone stops.
+  dtr,             ///< What the line DTR does.
+  stream,          ///< Packets, rates and damage of a scan.
+  sample_bits,     ///< The two lower bits of the samples.
+  ct_information,  ///< The CT bytes of the revolutions, and the CRC byte behind them.
+  time_packets,    ///< Whether there are any.
+  near_target,     ///< The range and the direction of a target that the user places.
+  far_target,      ///< The range of a farther one in the same direction.
+  unplug,          ///< The lidar is unplugged and plugged in again by the user.
+};
+/// The number of steps.
+inline constexpr std::size_t acceptance_step_count =
+    static_cast<std::size_t>(acceptance_step::unplug) + 1;
+
+/// How a step ended.
+enum class acceptance_verdict : std::uint8_t {
+  agrees,    ///< As the table says.
+  observed,  ///< The table says nothing about it; now it is known.
+  not_done,  ///< Not possible with this lidar or connection, or the user declined.
+  differs,   ///< Not as the table says.
+};
+
+/// The result of one step.
+struct acceptance_result {
+  acceptance_step step = acceptance_step::bridge;
+  acceptance_verdict outcome = acceptance_verdict::agrees;
+  std::vector<evidence> measurements{};
+  std::string text{};  ///< What was found, in sentences.
+
+  /// Adds a sentence, and makes the outcome at least this one.
+  G4LIDAR_API void say(acceptance_verdict how, std::string_view sentence);
+  /// Adds evidence.
+  void add(std::string name, auto value) {
+    measurements.push_back(make_evidence(std::move(name), std::move(value)));
+  }
+};
+
+/// What the user is asked to do.
+enum class acceptance_action : std::uint8_t {
+  place_near,  ///< To place a target 0.3 m to 1 m away, and to measure its distance.
+  place_far,   ///< To place one 2 m to 5 m away in the same direction, and to measure its distance.
+  unplug,      ///< To unplug the USB cable.
+  plug_in,     ///< To plug it in again.
+};
+
+/// A question about the family that only a real device answers, and the step that answers it.
+struct open_question {
+  std::string_view text;
+  acceptance_step step;
+};
+
+/// How an acceptance run is done. Functions that are not set are not called.
+struct acceptance_options {
+  const g4lidar::model* model = &g4_model;
+  std::uint32_t baud = 0;           ///< 0: the usual one of the model.
+  const port_info* port = nullptr;  ///< That of the connection, if it is known.
+  /// How long the scan of the steps `stream` to `time_packets` is observed.
+  std::chrono::milliseconds stream_time = std::chrono::minutes(1);
+  /// The longest wait for the user to unplug, and to plug in.
+  std::chrono::milliseconds plug_time = std::chrono::minutes(2);
+  /// Asks the user. Returns the distance that was measured, in millimetres, of a target; any number
+  /// for the other actions; nothing if the user declines, which skips the step. Not set: all decline.
+  std::function<std::optional<double>(acceptance_action)> ask{};
+  /// Called when a step begins.
+  std::function<void(acceptance_step)> on_step{};
+  /// Called with the result of each step.
+  std::function<void(const acceptance_result&)> on_result{};
+  /// Called about 20 times a second; true ends the run. The lidar is stopped then, too.
+  std::function<bool()> is_cancelled{};
+};
+
+/// Does all steps with the lidar behind `from`, and returns their results. Sends every query and
+/// command that changes a setting, which is set back; what a model does not have is skipped. Stops the
+/// motor at the end. Takes about 15 minutes with a real device, most of it for its user. Without a
+/// connection, or when it breaks for another reason than the unplug, the remaining steps are skipped.
+/// *Allocates. Single thread.*
+[[nodiscard]] G4LIDAR_API std::vector<acceptance_result> run_acceptance(
+    connector& from, const acceptance_options& options);
+
+/// The open questions. Valid forever.
+[[nodiscard]] G4LIDAR_API std::span<const open_question> open_questions() noexcept;
+/// "start_and_stop". The names do not change.
+[[nodiscard]] G4LIDAR_API std::string_view name_of(acceptance_step step) noexcept;
+/// "agrees", "observed", "not_done", "differs".
+[[nodiscard]] G4LIDAR_API std::string_view name_of(acceptance_verdict how) noexcept;
+
+}  // namespace g4lidar

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "stream_survey.hpp"
+
+#include <algorithm>
+#include <variant>
+
+namespace g4lidar {
+
+void direction_survey::take(packet_view packet) {
+  std::array<point, max_samples> memory;
+  bytes input = packet.data();
+  for (const point& each : decoder_.decode(input, memory)) {
+    if (each.range_mm <= 0.0F) continue;
+    const auto degree = static_cast<std::size_t>(each.angle_deg);
+    if (degree < ranges_.size()) ranges_[degree].push_back(each.range_mm);
+  }
+}
+
+std::optional<double> direction_survey::range_mm(std::size_t degree) const {
+  constexpr std::size_t fewest = 5;
+  std::vector<float> all = ranges_.at(degree);
+  if (all.size() < fewest) return std::nullopt;
+  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, middle);
+  return *middle;
+}
+
+std::optional<std::size_t> direction_survey::nearest() const {
+  std::optional<std::size_t> best;
+  for (std::size_t degree = 0; degree < ranges_.size(); ++degree) {
+    const auto here = range_mm(degree);
+    if (here && (!best || *here < *range_mm(*best))) best = degree;
+  }
+  return best;
+}
+
+void stream_survey::take(const event& found, std::int64_t arrival_ns) {
+  if (const auto* const packet = std::get_if<packet_view>(&found)) {
+    take(*packet, arrival_ns);
+  } else if (const auto* const gone = std::get_if<skipped>(&found)) {
+    if (gone->reason == skip_reason::bad_checksum) ++bad_checksums_;
+    revolution_.add(*gone);
+    reader_.add(*gone);
+  } else if (std::holds_alternative<time_packet_view>(found)) {
+    ++time_packets_;
+  } else {
+    ++responses_;
+  }
+}
+
+void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
+  ++packets_;
+  if (const auto fits = revolution_.add(packet)) ++crc_.at(*fits ? 1 : 0);
+  static_cast<void>(reader_.add(packet));
+  if (packet.is_zero()) {
+    if (zero_packets_ == 0) first_zero_ns_ = arrival_ns;
+    last_zero_ns_ = arrival_ns;
+    samples_at_zero_ = samples_;
+    reported_dhz_ += static_cast<std::uint64_t>(packet.reported_frequency_dhz());
+    ++zero_packets_;
+  } else if (packet.ct() >> 1 != 0) {
+    ++informing_;
+  }
+  const std::size_t count = packet.sample_count();
+  most_samples_ = std::max(most_samples_, count);
+  if (zero_packets_ > 0) samples_ += count;
+  const int units = range_units_per_mm(which_.samples.layout);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t word = packet.sample(i);
+    const int range_mm = word / units;
+    const zone where = range_mm == 0     ? no_return
+                       : range_mm < 1000 ? below_1_m
+                       : range_mm < 2000 ? below_2_m
+                                         : beyond;
+    ++bits_.at(where).at(word & 3U);
+  }
+}
+
+double stream_survey::frequency_hz() const noexcept {
+  const double seconds = static_cast<double>(last_zero_ns_ - first_zero_ns_) / 1e9;
+  return seconds > 0.0 ? static_cast<double>(zero_packets_ - 1) / seconds : 0.0;
+}
+
+double stream_survey::sample_rate_hz() const noexcept {
+  const double seconds = static_cast<double>(last_zero_ns_ - first_zero_ns_) / 1e9;
+  return seconds > 0.0 ? static_cast<double>(samples_at_zero_) / seconds : 0.0;
+}
+
+double stream_survey::reported_hz() const noexcept {
+  if (zero_packets_ == 0) return 0.0;
+  return static_cast<double>(reported_dhz_) / 10.0 / static_cast<double>(zero_packets_);
+}
+
+}  // namespace g4lidar

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// g4-dump acceptance as a person runs it: its page, its file, its questions.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "g4lidar/diagnostics/acceptance.hpp"
+#include "program.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::program;
+using cli::run;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class AcceptanceVerb : public cli::scratch {};
+
+// With a user who gives a wrong distance first, then a right one, and declines the rest.
+TEST_F(AcceptanceVerb, AsksItsUser_AndWritesAFileThatReplays) {
+  const std::string file = path("g4.mcap");
+  program asked({"acceptance", "--json", "-d", "1s", "--file", file, "sim:"});
+  asked.feed("far\n345\ns\ns\n");
+  asked.close_input();
+  const outcome done = asked.wait();
+  EXPECT_EQ(done.code, 0) << done.err;
+  std::vector<json> steps;
+  for (const std::string& line : lines_of(done.out)) steps.push_back(json::parse(line));
+  ASSERT_EQ(steps.size(), g4lidar::acceptance_step_count);
+  const json& near = steps.at(static_cast<std::size_t>(g4lidar::acceptance_step::near_target));
+  EXPECT_EQ(near.at("evidence").at("placed_mm"), 345.0);
+  EXPECT_EQ(steps.back().at("verdict"), "not_done");
+  EXPECT_THAT(done.err, HasSubstr("'far' is no distance"));
+  EXPECT_THAT(done.err, HasSubstr("unplug"));
+
+  const outcome played = run({"scan", "-n", "2", file});
+  EXPECT_EQ(played.code, 0) << played.err;
+  EXPECT_EQ(lines_of(played.out).size(), 2U) << played.out;
+}
+
+TEST_F(AcceptanceVerb, AFileThatExists_IsNotReplaced) {
+  const std::string file = path("g4.mcap");
+  ASSERT_EQ(run({"record", "-d", "500ms", "-o", file, "sim:"}).code, 0);
+  const auto size = std::filesystem::file_size(file);
+  const outcome done = run({"acceptance", "--alone", "--file", file, "sim:"});
+  EXPECT_EQ(done.code, 10) << done.err;
+  EXPECT_EQ(std::filesystem::file_size(file), size);
+}
+
+TEST_F(AcceptanceVerb, ARecording_IsRefused) {
+  const std::string file = path("g4.mcap");
+  ASSERT_EQ(run({"record", "-d", "500ms", "-o", file, "sim:"}).code, 0);
+  const outcome done = run({"acceptance", "--file", path("other.mcap"), file});
+  EXPECT_NE(done.code, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("other.mcap")));
+}
+
+}  // namespace

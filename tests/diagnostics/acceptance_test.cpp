@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// The acceptance run with simulated lidars, in virtual time: what it reports of a healthy one, and
+// that it notices each planted difference.
+#include "g4lidar/diagnostics/acceptance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "g4lidar/sim/device_options.hpp"
+#include "g4lidar/sim/virtual_port.hpp"
+#include "g4lidar/sim/world.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using enum acceptance_verdict;
+
+/// One simulated lidar, the model that is expected, and the user who serves the run.
+struct bench {
+  sim::device_options options;
+  std::string_view expected = "g4";
+  double placed_mm = 800.0;
+  bool declines = false;
+  bool cancels = false;
+
+  explicit bench(std::string_view word) : expected(word) {
+    EXPECT_TRUE(sim::use_model(options, word));
+  }
+
+  [[nodiscard]] std::vector<acceptance_result> run() {
+    // A room with a wall 0.8 m ahead of the lidar, whose cable points to +x; the others are 4 m away.
+    const sim::world room{{{4, -4, 4, 4}, {4, 4, -0.8, 4}, {-0.8, 4, -0.8, -4}, {-0.8, -4, 4, -4}},
+                          {0.0, 0.0, 0.0}};
+    sim::device simulated(room, options);
+    sim::virtual_clock clock;
+    sim::virtual_connector from(simulated, clock);
+    acceptance_options how;
+    how.model = model_named(expected);
+    how.stream_time = std::chrono::seconds(10);
+    how.ask = [&](acceptance_action what) -> std::optional<double> {
+      if (declines) return std::nullopt;
+      if (what == acceptance_action::unplug) simulated.unplug(clock.now_ns() + 1);
+      if (what == acceptance_action::plug_in) simulated.replug(clock.now_ns() + 1);
+      return placed_mm;
+    };
+    how.is_cancelled = [this] { return cancels; };
+    auto all = run_acceptance(from, how);
+    static_cast<void>(simulated.is_plugged(clock.now_ns() + 1'000'000'000));
+    motor_turns = simulated.motor_turns();
+    settings = simulated.settings();
+    return all;
+  }
+
+  bool motor_turns = true;
+  sim::device_settings settings;
+};
+
+const acceptance_result& at(const std::vector<acceptance_result>& all, acceptance_step step) {
+  return all.at(static_cast<std::size_t>(step));
+}
+
+double number_of(const acceptance_result& of, std::string_view name) {
+  const auto found = std::ranges::find(of.measurements, name, &evidence::name);
+  if (found == of.measurements.end()) return -1.0;
+  if (const auto* whole = std::get_if<std::int64_t>(&found->value)) {
+    return static_cast<double>(*whole);
+  }
+  const auto* const number = std::get_if<double>(&found->value);
+  return number == nullptr ? -1.0 : *number;
+}
+
+std::string all_of(const std::vector<acceptance_result>& results) {
+  std::string text;
+  for (const acceptance_result& each : results) {
+    text += std::string(name_of(each.step)) + " " + std::string(name_of(each.outcome)) + ": " +
+            each.text;
+    for (const evidence& one : each.measurements) text += " " + one.name + "=" + one.text();
+    text += '\n';
+  }
+  return text;
+}
+
+using enum acceptance_step;
+
+class AcceptanceOf : public testing::TestWithParam<std::string_view> {};
+
+TEST_P(AcceptanceOf, AHealthyOne_NothingDiffers) {
+  bench of(GetParam());
+  const auto all = of.run();
+  ASSERT_EQ(all.size(), acceptance_step_count);
+  for (const acceptance_result& each : all) {
+    EXPECT_NE(each.outcome, differs) << name_of(each.step) << '\n' << all_of(all);
+  }
+  EXPECT_GT(number_of(at(all, stream), "packets"), 100.0) << all_of(all);
+  EXPECT_EQ(number_of(at(all, near_target), "measured_mm"), 800.0) << all_of(all);
+  EXPECT_NEAR(number_of(at(all, near_target), "robot_bearing_deg"), 0.0, 2.0) << all_of(all);
+  const bool is_one_way = of.options.one_way;
+  EXPECT_EQ(at(all, start_and_stop).outcome == not_done, is_one_way) << all_of(all);
+  EXPECT_TRUE(is_one_way || !of.motor_turns);
+  EXPECT_EQ(of.settings.protection, power_down_protection::off);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, AcceptanceOf, testing::ValuesIn(sim::model_words()),
+                         [](const auto& of) {
+                           std::string name(of.param);
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST(Acceptance, TheSettingsAreAsBefore) {
+  bench of("g4");
+  const auto before = of.options.scanner.sample_rate = g4lidar::sample_rate::khz_8;
+  const auto all = of.run();
+  EXPECT_EQ(of.settings.sample_rate, before) << all_of(all);
+  EXPECT_EQ(of.settings.scan_frequency_chz, of.options.scanner.scan_frequency_chz);
+}
+
+TEST(Acceptance, EachQuestionHasAStepThatIsDone) {
+  bench of("g4");
+  const auto all = of.run();
+  std::set<acceptance_step> asked;
+  for (const open_question& each : open_questions()) asked.insert(each.step);
+  EXPECT_EQ(asked.size(), acceptance_step_count);
+  for (const acceptance_result& each : all) {
+    EXPECT_FALSE(each.text.empty()) << name_of(each.step);
+    const bool has_evidence = !each.measurements.empty();
+    EXPECT_TRUE(has_evidence || each.outcome == not_done) << name_of(each.step);
+  }
+}
+
+/// A lidar that is not as the table says, and the steps that must notice it.
+struct planted {
+  std::string_view name;
+  std::function<void(bench&)> plant;
+  std::vector<acceptance_step> noticed_by;
+};
+
+class Planted : public testing::TestWithParam<planted> {};
+
+TEST_P(Planted, IsNoticed) {
+  bench of("g4");
+  GetParam().plant(of);
+  const auto all = of.run();
+  for (const acceptance_step step : GetParam().noticed_by) {
+    EXPECT_EQ(at(all, step).outcome, differs) << name_of(step) << '\n' << all_of(all);
+  }
+}
+
+const std::vector<planted> differences{
+    {"AnotherNumber", [](bench& of) { of.options.info.model = 9; }, {identity}},
+    {"NoHealth",
+     [](bench& of) { of.options.answers_health_91 = of.options.answers_health_92 = false; },
+     {queries}},
+    {"AnotherHighestFrequency",
+     [](bench& of) { of.options.highest_frequency_chz = 900; },
+     {acceptance_step::frequency}},
+    {"OtherRates",
+     [](bench& of) { of.options.scanner.format.rates_hz = {4000, 6000, 9000}; },
+     {acceptance_step::sample_rate}},
+    {"RangesOfTwiceTheSize",
+     [](bench& of) { of.options.scanner.format.code.units_per_mm *= 2; },
+     {near_target, far_target}},
+    {"TheFrequencyInZeroPacketsWithAnOffset",
+     [](bench& of) { of.options.scanner.format.ct_offset_dhz = 10; },
+     {stream}},
+    {"SamplesOfThreeBytes",
+     [](bench& of) {
+       bench other("t-mini-pro");
+       of.options.scanner.format.code = other.options.scanner.format.code;
+     },
+     {stream}},
+    {"NoMotor",
+     [](bench& of) {
+       bench other("x2");
+       of.options = other.options;
+     },
+     {identity, queries}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Difference, Planted, testing::ValuesIn(differences),
+                         [](const auto& of) { return std::string(of.param.name); });
+
+TEST(Acceptance, AUserWhoDeclines_OnlyHisStepsAreLeftOut) {
+  bench of("g4");
+  of.declines = true;
+  const auto all = of.run();
+  for (const acceptance_result& each : all) {
+    const bool needs_user = each.step >= near_target;
+    const bool is_possible = each.step != acceptance_step::unplug;
+    EXPECT_EQ(each.outcome == not_done, needs_user) << name_of(each.step) << is_possible;
+  }
+}
+
+TEST(Acceptance, Cancelled_TheLidarIsStopped) {
+  bench of("g4");
+  of.cancels = true;
+  const auto all = of.run();
+  EXPECT_EQ(at(all, stream).text, "Interrupted.");
+  EXPECT_FALSE(of.motor_turns);
+}
+
+TEST(Acceptance, WithoutALidar_TheReasonIsStated) {
+  sim::device simulated(sim::built_in_world());
+  sim::virtual_clock clock;
+  sim::virtual_connector from(simulated, clock);
+  simulated.unplug(1);
+  const auto all = run_acceptance(from, {});
+  ASSERT_EQ(all.size(), acceptance_step_count);
+  EXPECT_EQ(all.front().outcome, not_done);
+  EXPECT_NE(all.front().text.find("virtual:g4"), std::string::npos) << all.front().text;
+}
+
+}  // namespace
+}  // namespace g4lidar::test

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// The verb acceptance: compares a real lidar with the table of models, with the help of its user.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cli/common_options.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "g4lidar/diagnostics/acceptance.hpp"
+#include "g4lidar/recording/writer.hpp"
+#include "io/command_source.hpp"
+#include "io/interrupt.hpp"
+#include "io/output.hpp"
+#include "io/recorder.hpp"
+#include "io/source.hpp"
+#include "verbs/verbs.hpp"
+
+namespace g4_tool {
+namespace {
+
+constexpr std::size_t indent = 16;
+
+struct acceptance_settings : common_options {
+  std::string file = "acceptance.mcap";
+  bool alone = false;
+  bool overwrites = false;
+};
+
+/// A line of standard input; nothing at its end, and after a signal.
+std::optional<std::string> read_line() {
+  std::string line;
+  while (wait_for_input(STDIN_FILENO, -1) == wake::input) {
+    char next = 0;
+    if (::read(STDIN_FILENO, &next, 1) != 1) return std::nullopt;
+    if (next == '\n') return line;
+    line += next;
+  }
+  return std::nullopt;
+}
+
+std::string_view task_of(acceptance_action what) noexcept {
+  switch (what) {
+    case acceptance_action::place_near:
+      return "Place a flat target straight ahead of the lidar, opposite to its cable, 0.3 m to 1 m "
+             "away. Nothing else may be nearer. Measure its distance from the middle of the head.";
+    case acceptance_action::place_far:
+      return "Place the target 2 m to 5 m away in the same direction, or remove it if there is a "
+             "wall. Measure the distance.";
+    case acceptance_action::unplug:
+      return "Press Enter, and then unplug the USB cable of the lidar within 2 minutes.";
+    case acceptance_action::plug_in:
+      return "Press Enter, and then plug the cable in again within 2 minutes.";
+  }
+  return {};
+}
+
+/// The answer of the user; asks again until it is one.
+std::optional<double> ask_user(acceptance_action what) {
+  const bool wants_distance =
+      what == acceptance_action::place_near || what == acceptance_action::place_far;
+  constexpr double longest_mm = 100'000.0;
+  logger::info(fmt::format("{}\n", task_of(what)));
+  while (true) {
+    logger::info(wants_distance ? "Distance in mm, or s to skip this step:\n"
+                                : "Enter, or s to skip this step:\n");
+    const auto line = read_line();
+    if (!line || *line == "s") return std::nullopt;
+    if (!wants_distance) return 0.0;
+    double value_mm = 0.0;
+    const char* const end = line->data() + line->size();
+    const auto [rest, wrong] = std::from_chars(line->data(), end, value_mm);
+    if (wrong == std::errc() && rest == end && value_mm > 0.0 && value_mm <= longest_mm) {
+      return value_mm;
+    }
+    logger::info(fmt::format("{} is no distance in mm, such as 640.\n", in_quotes(*line)));
+  }
+}
+
+nlohmann::ordered_json json_of_step(const acceptance_result& of) {
+  nlohmann::ordered_json line{{"step", name_of(of.step)},
+                              {"verdict", name_of(of.outcome)},
+                              {"evidence", nlohmann::ordered_json::object()},
+                              {"text", of.text}};
+  for (const evidence& each : of.measurements) {
+    std::visit([&](const auto& value) { line["evidence"][each.name] = value; }, each.value);
+  }
+  return line;
+}
+
+std::string text_of_step(const acceptance_result& of) {
+  std::string measured;
+  for (const evidence& each : of.measurements) {
+    measured +=
+        fmt::format("{}{} {}", measured.empty() ? "" : ", ", each.name, printable(each.text()));
+  }
+  std::string text = fmt::format("{:<15} {:<9}", name_of(of.step), name_of(of.outcome));
+  text += wrapped(" " + printable(of.text), indent + 9, indent) + "\n";
+  if (!measured.empty()) {
+    text += std::string(indent, ' ') + wrapped(measured, indent, indent) + "\n";
+  }
+  return text;
+}
+
+/// The open questions that this run has answered.
+std::string answered_questions(const std::vector<acceptance_result>& all) {
+  std::string text = "\nQuestions that this answers:\n";
+  for (const open_question& each : open_questions()) {
+    const auto done = std::ranges::find(all, each.step, &acceptance_result::step);
+    const bool is_answered = done != all.end() && done->outcome != acceptance_verdict::not_done;
+    text += fmt::format("  {} {}\n", is_answered ? "yes" : "no ", each.text);
+  }
+  return text;
+}
+
+/// The port of the name, as the system knows it.
+std::optional<port_info> port_of(std::string_view name) {
+  const auto ports = list_ports();
+  if (!ports) return std::nullopt;
+  const auto found = std::ranges::find(*ports, name, &port_info::path);
+  return found == ports->end() ? std::nullopt : std::optional(*found);
+}
+
+int accept(const acceptance_settings& options) {
+  output out(options.output);
+  refuse_files(options, task::asking);
+  if (!options.overwrites) refuse_existing(options.file);
+  acceptance_options how;
+  how.model = &model_of(options);
+  if (options.duration.count() > 0) {
+    how.stream_time = std::chrono::ceil<std::chrono::milliseconds>(options.duration);
+  }
+  auto from = connector_for(options_for(options, {}));
+  if (!from) throw failure_of(options, from.error());
+  auto file = recording_writer::create(
+      options.file, {.model = how.model, .overwrite = options.overwrites, .scans = false});
+  if (!file) throw failure(file.error());
+  auto observed = recorded(*std::move(from), *file);
+  if (!observed) throw failure(observed.error());
+
+  const auto port = select_port(options.source);
+  const std::optional<port_info> known = port ? port_of(port->path) : std::nullopt;
+  if (known) how.port = &*known;
+  if (!options.alone) how.ask = ask_user;
+  how.is_cancelled = [] { return interrupt() != 0; };
+  how.on_step = [](acceptance_step step) { logger::info(fmt::format("{} ...\n", name_of(step))); };
+  how.on_result = [&](const acceptance_result& done) {
+    out.write(options.json ? json_line(json_of_step(done)) : text_of_step(done));
+    out.flush();
+  };
+  if (!options.json)
+    out.write(fmt::format("A {} as the table of models has it:\n", how.model->name));
+  const auto all = run_acceptance(**observed, how);
+
+  std::vector<std::pair<std::string, std::string>> words{{"model", std::string(how.model->word)}};
+  for (const acceptance_result& each : all) {
+    words.emplace_back(name_of(each.step), json_of_step(each).dump());
+  }
+  file->metadata("g4lidar.acceptance", words);
+  if (auto closed = file->close(); !closed) throw failure(closed.error());
+  if (!options.json) out.write(answered_questions(all));
+  out.commit();
+  logger::info(fmt::format("{} has all bytes and these results. Attach it to a report: {}\n",
+                           in_quotes(options.file), G4LIDAR_ISSUES));
+  if (interrupt() != 0) return 128 + interrupt();
+  const bool differs =
+      std::ranges::find(all, acceptance_verdict::differs, &acceptance_result::outcome) != all.end();
+  return static_cast<int>(differs ? exit_code::unhealthy : exit_code::ok);
+}
+
+constexpr const char* acceptance_details =
+    R"(It compares a lidar with what the table of models says, in about 15 minutes: identity, each
+command with its answer and time, frequencies and sample rates, start and stop, DTR, a minute of
+the scan with its CT bytes, lower bits and time packets. It asks its user for a target that is
+near, one that is far, and an unplug; s skips such a step, and --alone all of them. Settings are
+changed and set back, and the motor is stopped at the end. docs/models.md says which models need
+such a run most: nobody has tried them with a real device.
+
+The output is a page of text: for each step agrees, observed (the table says nothing), not_done or
+differs, and what was measured. The file contains all bytes in both directions and these results;
+it is a recording, which every other command reads. A step that differs makes the exit code 8.)";
+
+}  // namespace
+
+verb make_acceptance_verb() {
+  const auto options = std::make_shared<acceptance_settings>();
+  option_row json = json_row(*options);
+  json.help = "A JSON object for each step, a line each";
+  option_row time = duration_row(*options);
+  time.help = "Observe the scan for so long (1m)";
+  option_row file =
+      text_row("--file", "FILE", "The file for a report (acceptance.mcap)", options->file);
+  return {.name = "acceptance",
+          .summary = "Compare a real lidar with the table of models, for a report",
+          .arguments = {source_argument(*options)},
+          .options = joined(
+              output_row(*options), json, time, baud_row(*options), model_row(*options),
+              option_rows{
+                  file, flag_row("--alone", "Leave out the steps that need a user", options->alone),
+                  flag_row("--force", "Replace an existing file", options->overwrites)}),
+          .details = acceptance_details,
+          .examples = {{"g4-dump acceptance --model x4 /dev/ttyUSB0", "Examine an X4"},
+                       {"g4-dump acceptance --alone --file g4.mcap sim:",
+                        "A simulated G4, without its user"}},
+          .run = [options] { return accept(*options); }};
+}
+
+}  // namespace g4_tool
