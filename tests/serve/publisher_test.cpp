@@ -246,23 +246,39 @@ TEST_F(Ranges, WhatMayBeTooNearIsMinusInfinity_WithTheOption) {
   EXPECT_GE(last_with(-infinity, options), 200U);
 }
 
+/// What g4-serve sends of a drive, to programs and to pages.
 class EqualShapes : public Served {
  protected:
   EqualShapes() {
-    EXPECT_TRUE(center_.receive(*viewer_,
-                                R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":2}]})"));
+    EXPECT_TRUE(center_.receive(
+        *viewer_,
+        R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":2},{"id":1,"channelId":1}]})"));
   }
   bool read_all() override {
     while (const auto message = center_.take(*viewer_)) {
-      if (!message->is_text)
-        clouds_.emplace_back(message->payload->begin(), message->payload->end());
+      constexpr std::size_t id = 1;  // of the subscription, behind the kind of the message
+      if (!message->is_text) {
+        (message->prefix[id] == 0 ? clouds_ : grids_).push_back(text_of(message->payload));
+      }
+    }
+    while (const auto message = center_.take(*page_)) {
+      if (!message->is_text) shown_.push_back(text_of(message->payload));
     }
     return true;
   }
+  static std::string text_of(const auto& payload) { return {payload->begin(), payload->end()}; }
 
   client_registry::client* viewer_ = center_.connect(client_kind::foxglove, nullptr);
+  client_registry::client* page_ = center_.connect(client_kind::page, nullptr);
   std::vector<std::string> clouds_;
+  std::vector<std::string> grids_;
+  std::vector<std::string> shown_;
 };
+
+/// The bytes of numbers in the order of this machine, which is that of the messages.
+std::string bytes_of(std::span<const float> numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()};
+}
 
 TEST_F(EqualShapes, ToThoseOfTheLibrary_BitForBit) {
   const g4lidar::test::shaped_drive drive(G4_DUMP, path("."));
@@ -272,22 +288,39 @@ TEST_F(EqualShapes, ToThoseOfTheLibrary_BitForBit) {
       .speckle = speckle_limits{}, .edges = edge_limits{}, .near = near_limits{}};
   options.common.deskew = deskewing::by_scans;
   play(drive.recording(), false, options);
-  const auto expected = g4lidar::test::cloud_rows_of(drive.recording());
-  ASSERT_EQ(clouds_.size(), expected.size());
-  auto cloud = clouds_.begin();
+  std::size_t at = 0;
   int deskewed = 0;
-  for (const std::string& rows : expected) {
-    ASSERT_GT(cloud->size(), rows.size());
-    const std::string got = cloud->substr(cloud->size() - 1 - rows.size(), rows.size());
-    ASSERT_TRUE(g4lidar::test::without_times(got) == rows) << cloud - clouds_.begin();
-    ++cloud;
+  const auto compare = [&](scan_shaper& shaper, const scan& of) {
+    ASSERT_LT(at, clouds_.size());
+    ASSERT_EQ(grids_.size(), clouds_.size());
+    ASSERT_EQ(shown_.size(), clouds_.size());
+    const std::string rows = g4lidar::test::rows_of(shaper.kept().points, of.time_ns());
+    const std::string& cloud = clouds_[at];
+    ASSERT_GT(cloud.size(), rows.size());
+    const std::string got = cloud.substr(cloud.size() - 1 - rows.size(), rows.size());
+    ASSERT_TRUE(g4lidar::test::without_times(got) == rows) << at;
     bool is_at_one_time = true;
-    for (std::size_t at = 12; at < got.size(); at += g4lidar::test::cloud_row_size) {
-      is_at_one_time = is_at_one_time && got.substr(at, 4) == std::string(4, '\0');
+    for (std::size_t t = 12; t < got.size(); t += g4lidar::test::cloud_row_size) {
+      is_at_one_time = is_at_one_time && got.substr(t, 4) == std::string(4, '\0');
     }
     deskewed += is_at_one_time ? 1 : 0;
-  }
-  EXPECT_GT(deskewed, 30) << "nobody is to deskew them again";
+    std::array<float, 720> ranges_m{};
+    fill_grid(shaper.for_grid(), ranges_m);
+    EXPECT_NE(grids_[at].find(bytes_of(ranges_m)), std::string::npos) << at;
+    std::vector<float> places;
+    for (const point& p : shaper.kept()) {
+      if (p.is_no_return()) continue;
+      const xy_point place = to_xy(p, frame::robot);
+      places.insert(places.end(), {place.x_m, place.y_m});
+    }
+    constexpr std::size_t head = 16;
+    ASSERT_GT(shown_[at].size(), head);
+    EXPECT_TRUE(shown_[at].substr(head) == bytes_of(places)) << at;
+    ++at;
+  };
+  g4lidar::test::shape_drive(drive, false, deskewing::by_scans, compare);
+  EXPECT_EQ(at, clouds_.size());
+  EXPECT_GT(deskewed, 25) << "nobody is to deskew them again";
 }
 
 class Setting : public Served {

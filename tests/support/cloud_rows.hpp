@@ -8,12 +8,14 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/scan_shaper.hpp"
+#include "shaped_drive.hpp"
 
 namespace g4lidar::test {
 
@@ -25,30 +27,44 @@ inline std::string without_times(std::string rows) {
   return rows;
 }
 
-/// As shaping_words of shaped_drive.hpp.
-inline shaping_options drive_shaping() {
+/// As the options of shaped_drive.hpp.
+inline shaping_options drive_shaping(deskewing how = deskewing::by_scans) {
   return {.filter = {.least_range_mm = 300.0F},
           .marks = {.speckle = speckle_limits{}, .edges = edge_limits{}, .near = near_limits{}},
-          .deskew = deskewing::by_scans};
+          .deskew = how};
 }
 
-/// Such rows of each revolution of a recording.
-inline std::vector<std::string> cloud_rows_of(const std::string& recording) {
-  auto opened = lidar::open("file:" + recording);
-  EXPECT_TRUE(opened && opened->start());
-  scan_shaper shaper(drive_shaping());
-  std::vector<std::string> made;
+/// Shapes the scans of a drive; calls `use(shaper, scan)` after each.
+template <class Use>
+void shape_drive(const shaped_drive& drive, bool pieces, deskewing how, Use use) {
+  auto opened = lidar::open("file:" + drive.recording(), {.partial_scans = pieces});
+  ASSERT_TRUE(opened && opened->start());
+  scan_shaper shaper(drive_shaping(how));
+  const auto path = drive.poses();
   while (const auto scan = opened->next_scan(std::chrono::milliseconds(500))) {
-    shaper.shape(*scan);
-    const auto kept = shaper.kept();
-    std::vector<std::uint8_t> message;
-    put_point_cloud2(kept, {.stamp_ns = scan->time_ns(), .frame_id = "laser"}, message);
-    const std::ptrdiff_t size =
-        std::ranges::count_if(kept, [](const point& p) { return !p.is_no_return(); }) *
-        static_cast<std::ptrdiff_t>(cloud_row_size);
-    const auto end = message.end() - 1;  // one more byte follows the rows
-    made.push_back(without_times({end - size, end}));
+    shaper.shape(*scan, path);
+    use(shaper, *scan);
   }
+}
+
+/// Rows of points, without their times.
+inline std::string rows_of(std::span<const point> points, std::int64_t stamp_ns) {
+  std::vector<std::uint8_t> message;
+  put_point_cloud2(points, {.stamp_ns = stamp_ns, .frame_id = "laser"}, message);
+  const std::ptrdiff_t size =
+      std::ranges::count_if(points, [](const point& p) { return !p.is_no_return(); }) *
+      static_cast<std::ptrdiff_t>(cloud_row_size);
+  const auto end = message.end() - 1;  // one more byte follows the rows
+  return without_times({end - size, end});
+}
+
+/// Such rows of each revolution of a drive.
+inline std::vector<std::string> cloud_rows_of(const shaped_drive& drive,
+                                              deskewing how = deskewing::by_scans) {
+  std::vector<std::string> made;
+  shape_drive(drive, false, how, [&](scan_shaper& shaper, const scan& of) {
+    made.push_back(rows_of(shaper.kept().points, of.time_ns()));
+  });
   EXPECT_GT(made.size(), 30U);
   return made;
 }
