@@ -25,8 +25,8 @@ function(g4lidar_headers target)
   endif()
 endfunction()
 
-# g4lidar_layers(<variable> <first layer> <last layer>): the public headers of these layers, by cmake/layers.txt, which is
-# the only list of them that is kept by hand.
+# g4lidar_layers(<variable> <first layer> <last layer>): the public headers of these layers, by
+# cmake/layers.txt, which is the only list of them that is kept by hand.
 function(g4lidar_layers variable first last)
   set(list "${PROJECT_SOURCE_DIR}/cmake/layers.txt")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${list}")
