@@ -149,7 +149,7 @@ TEST_F(Announcement, OfAllThatTheNodeHasInBothForms) {
                        : heard<humble_message>(humble_described());
     EXPECT_EQ(node.node, "/robot1 lidars");
     EXPECT_GT(node.has.writers.size(), 12U);  // two lidars, eight services
-    EXPECT_EQ(node.has.readers.size(), 9U);  // eight services, run
+    EXPECT_EQ(node.has.readers.size(), 9U);   // eight services, run
     EXPECT_TRUE(comes_true([&] { return found() == node.has; }));
     EXPECT_EQ(user_data_, "enclave=/;");
     tool.send(SIGINT);
