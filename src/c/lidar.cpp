@@ -289,7 +289,7 @@ int g4lidar_next_event(g4lidar_lidar* lidar, g4lidar_event* event) {
 }
 
 const char* g4lidar_event_name(int kind) {
-  if (kind < G4LIDAR_EVENT_LOST || kind > G4LIDAR_EVENT_OVERFLOW) return "unknown";
+  if (kind < G4LIDAR_EVENT_LOST || kind > G4LIDAR_EVENT_STILL_TURNING) return "unknown";
   return literal(name_of(static_cast<lidar_event::kind>(kind - 1)));
 }
 
