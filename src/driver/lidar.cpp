@@ -11,7 +11,7 @@
 
 #include "driver.hpp"
 #include "error_context.hpp"
-#include "g4lidar/core/session/request_retry.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/source.hpp"
 
 namespace g4lidar {

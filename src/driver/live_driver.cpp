@@ -71,6 +71,10 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, next_deadline_ns());
   if (auto got = stream_.receive(until); !got) return got;
   if (stream_.parse()) return {};
+  if (stream_.said().take_news()) {
+    const auto& who = stream_.said().who();
+    if (information_.is_known() && who != information_) module_ = who;
+  }
   // An event loop may not call again before bytes arrive: everything must be sent now.
   if (auto served = serve(); !served) return tl::unexpected(served.error());
   return {};
@@ -98,8 +102,9 @@ std::int64_t live_driver::next_deadline_ns() const noexcept {
   if (stage_ == live_stage::closed) return never_ns;
   if (stage_ == live_stage::lost) return reconnection_.next_attempt_ns();
   if (stage_ >= live_stage::breaking) return now_ns();
-  return is_motor_due() ? std::min(stream_.next_deadline_ns(), stream_.motor_ready_ns())
-                        : stream_.next_deadline_ns();
+  const bool is_motor_due = setup_.starts_next() && !stream_.talk().is_busy();
+  return is_motor_due ? std::min(stream_.next_deadline_ns(), stream_.motor_ready_ns())
+                      : stream_.next_deadline_ns();
 }
 
 // ---- the connection -------------------------------------------------------------------------------

@@ -37,10 +37,6 @@ class live_driver final : public scan_source {
   [[nodiscard]] std::int64_t rest_until_ns() const noexcept override {
     return stream_.rest_until_ns();
   }
-  [[nodiscard]] std::optional<device_information> module_information() const noexcept override {
-    const std::optional<device_information>& said = stream_.said().who();
-    return said != information_ ? said : std::nullopt;
-  }
   void add_to(lidar_counts& counts) const noexcept override;
 
  private:
@@ -61,10 +57,6 @@ class live_driver final : public scan_source {
   [[nodiscard]] result<void> finish_step(const outcome& done);
   [[nodiscard]] result<void> identified(const device_information& who);
   [[nodiscard]] result<void> give_up(const error& why);
-  /// Whether the next step is to start the motor.
-  [[nodiscard]] bool is_motor_due() const noexcept {
-    return !setup_.is_done() && setup_.next() == setup_step::start && !stream_.talk().is_busy();
-  }
 
   lidar_options options_;
   live_stage stage_ = live_stage::closed;

@@ -71,7 +71,7 @@ result<bool> live_driver::go_on_with_setup() {
       if (auto good = take_outcome(*done); !good) return tl::unexpected(good.error());
     }
     if (question_.is_open() || setup_.is_done() || talk.is_busy()) return has_outcome;
-    if (setup_.next() == setup_step::start) {
+    if (setup_.starts_next()) {
       if (stream_.motor_ready_ns() > now_ns()) return has_outcome;
       if (auto raised = stream_.set_motor(true); !raised) return tl::unexpected(raised.error());
       stream_.begin_points();

@@ -41,7 +41,10 @@ void live_stream::begin() {
 }
 
 result<void> live_stream::send() {
-  return link_.send([&](bytes command) { return of_.on.send(command); });
+  return link_.send([&](bytes command) {
+    of_.pipeline.sent(command);
+    return of_.on.send(command);
+  });
 }
 
 result<void> live_stream::look_if_due() {
@@ -97,10 +100,11 @@ bool live_stream::parse() {
     follow_delivery();
     const auto* const packet = std::get_if<packet_view>(found);
     if (packet != nullptr && pipeline.delivers()) {
-      const double period_ns = pipeline.period_ns();
+      const double period_ns = pipeline.decoder().period_ns();
       const auto way_ns = static_cast<double>(packet->sample_count() - 1) * period_ns;
       of_.from.packet(*packet, pipeline.input().unparsed().size(),
-                      pipeline.next_sample_ns() + static_cast<std::int64_t>(way_ns), period_ns);
+                      pipeline.decoder().next_sample_ns() + static_cast<std::int64_t>(way_ns),
+                      period_ns);
     }
   }
   return true;
@@ -147,7 +151,6 @@ result<void> live_stream::set_motor(bool on) {
 }
 
 void live_stream::learn(const answer& heard) {
-  if (const auto* zero = std::get_if<zero_angle>(&heard)) return of_.pipeline.set_zero(*zero);
   const auto* rate = std::get_if<sample_rate>(&heard);
   if (rate == nullptr || to_hz(*rate) == sample_rate_hz_) return;
   sample_rate_hz_ = to_hz(*rate);

@@ -38,7 +38,6 @@ class live_stream {
 
   /// What the device has said unasked.
   [[nodiscard]] identity_reader& said() noexcept { return said_; }
-  [[nodiscard]] const identity_reader& said() const noexcept { return said_; }
 
   /// The connection was opened.
   void begin();
@@ -61,7 +60,7 @@ class live_stream {
   void follow_delivery();
   /// The motor is started, or was interrupted: the points that follow are a new stream.
   void begin_points();
-  /// Uses the sample rate or the zero angle, if one of them is the answer.
+  /// Uses the sample rate, if it is the answer.
   void learn(const answer& heard);
 
   /// Sets the line DTR where it drives the motor, which starts at an edge to high.

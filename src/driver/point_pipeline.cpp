@@ -10,6 +10,7 @@ const event* point_pipeline::next() noexcept {
   const event* const found = input_.next();
   if (found != nullptr) {
     stream_counts_.add(*found);
+    if (const auto zero = zero_.take(*found)) decoder_.set_zero(*zero);
   } else if (has_bytes && delivers_) {
     decoder_.seen(input_.held(), input_.arrival_ns());
   }

@@ -21,6 +21,7 @@
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/lidar.hpp"
 #include "timed_decoder.hpp"
+#include "zero_angle_watch.hpp"
 
 namespace g4lidar {
 
@@ -101,6 +102,7 @@ class point_pipeline {
       : partial_scans_(partial_scans),
         input_(which.samples),
         decoder_(transport_delay_ns, which),
+        zero_(which),
         ring_(which),
         storage_(largest_scan(which)),
         assembler_(storage_.all(), which) {}
@@ -132,8 +134,8 @@ class point_pipeline {
     decoder_.follow(baud);
   }
 
-  /// What the device has answered to command 93, which is added to all angles from here on.
-  void set_zero(zero_angle offset) noexcept { decoder_.set_zero(offset); }
+  /// A command was sent: the answer to 93 is added to all angles behind it.
+  void sent(bytes command) noexcept { zero_.sent(command); }
 
   // ---- scans ----
 
@@ -158,10 +160,8 @@ class point_pipeline {
   [[nodiscard]] std::uint64_t scans() const noexcept { return counts_.scans; }
   /// Whether a whole revolution was complete since begin_scans().
   [[nodiscard]] bool has_begun() const noexcept { return counts_.scans > scans_at_begin_; }
-  /// The time from one sample to the next, as far as it is known.
-  [[nodiscard]] double period_ns() const noexcept { return decoder_.period_ns(); }
-  /// When the first sample of the next packet, or of the last event, was measured, if none was lost.
-  [[nodiscard]] std::int64_t next_sample_ns() const noexcept { return decoder_.next_sample_ns(); }
+  /// Of the packets. Its next_sample_ns() is that of the last event.
+  [[nodiscard]] const timed_decoder& decoder() const noexcept { return decoder_; }
 
   // ---- points ----
 
@@ -195,6 +195,7 @@ class point_pipeline {
   bool is_open_ = false;  // the last packet may complete more scans
   event_reader input_;
   timed_decoder decoder_;
+  zero_angle_watch zero_;
   ring_on_demand ring_;
   point_storage storage_;
   scan_assembler assembler_;

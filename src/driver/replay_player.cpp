@@ -10,9 +10,7 @@
 namespace g4lidar {
 
 replay_player::replay_player(parts& of, const lidar_options& options)
-    : scan_source(of, options),
-      model_(*options.model),
-      sample_rate_hz_(first_rate_hz(*options.model)) {}
+    : scan_source(of, options), sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
@@ -137,8 +135,7 @@ void replay_player::report_long_pause() {
 bool replay_player::parse_bytes() {
   while (!pipeline_.find_scan()) {
     static_cast<void>(play_events(false));
-    if (const event* const found = pipeline_.next()) {
-      learn(*found);
+    if (pipeline_.next() != nullptr) {
       static_cast<void>(play_events(false));
       follow_delivery();
     } else if (!play_events(true)) {
@@ -233,21 +230,13 @@ void replay_player::play(const recorded_event& what) {
     case recorded_event::kind::state:
       return play_state(what);
     case recorded_event::kind::sent:
-      if (what.data.size() == 2) asked_ = static_cast<command>(what.data[1]);
-      return;
+      return pipeline_.sent(what.data);
     case recorded_event::kind::cut:
     case recorded_event::kind::odometry:
     case recorded_event::kind::dtr_low:
     case recorded_event::kind::dtr_high:
       return;
   }
-}
-
-/// The angles of the recorded driver had the offset that the device had answered.
-void replay_player::learn(const event& found) noexcept {
-  const auto* const heard = std::get_if<response_view>(&found);
-  if (heard == nullptr || asked_ != command::zero_angle) return;
-  if (const auto zero = zero_angle_of(*heard, model_)) pipeline_.set_zero(*zero);
 }
 
 /// Repeated regularly in a recording: usually nothing changes.

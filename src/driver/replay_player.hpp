@@ -52,7 +52,6 @@ class replay_player final : public scan_source {
   [[nodiscard]] bool play_events(bool all);
   [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
-  void learn(const event& found) noexcept;
   void play_state(const recorded_event& what);
 
   played_file* file_ = nullptr;              // null: a pipe
@@ -65,8 +64,6 @@ class replay_player final : public scan_source {
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
   bool is_released_ = false;
-  const model& model_;
-  command asked_ = command::forced_stop;  // the last one that was recorded
   std::uint32_t sample_rate_hz_;
   std::uint64_t reconnects_ = 0;
 };

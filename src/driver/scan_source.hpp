@@ -84,8 +84,8 @@ class scan_source {
   }
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
   /// Of the turning part, if it has said another one.
-  [[nodiscard]] virtual std::optional<device_information> module_information() const noexcept {
-    return std::nullopt;
+  [[nodiscard]] const std::optional<device_information>& module_information() const noexcept {
+    return module_;
   }
   /// Of a file that is played; else null.
   [[nodiscard]] virtual player* controls() noexcept { return nullptr; }
@@ -115,6 +115,7 @@ class scan_source {
   receiver receiver_;
   spin_up spin_up_;
   device_information information_{};
+  std::optional<device_information> module_;
 };
 
 }  // namespace g4lidar

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "g4lidar/core/session/request_retry.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar.hpp"
 
 namespace g4lidar {
@@ -69,6 +69,10 @@ class setup_sequence {
   /// The first remaining step; only if not is_done().
   [[nodiscard]] setup_step next() const noexcept {
     return static_cast<setup_step>(std::countr_zero(left_));
+  }
+  /// Whether next() is the start.
+  [[nodiscard]] bool starts_next() const noexcept {
+    return !is_done() && next() == setup_step::start;
   }
   /// Removes next().
   void finish_next() noexcept { left_ &= left_ - 1U; }

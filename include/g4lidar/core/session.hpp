@@ -56,9 +56,6 @@ class session {
                              const model& which = g4_model) noexcept
       : which_(&which), channel_(times) {}
 
-  /// From the next request on, the device is like `which`.
-  constexpr void use(const model& which) noexcept { which_ = &which; }
-
   /// Begins a request, or returns why it is refused. The first request after the connection was
   /// opened stops the device, which may be scanning.
   [[nodiscard]] constexpr std::optional<refusal> begin(

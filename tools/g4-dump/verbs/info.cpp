@@ -11,7 +11,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
-#include "g4lidar/core/session/request_retry.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_source.hpp"
 #include "io/input.hpp"
