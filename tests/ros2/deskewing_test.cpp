@@ -168,7 +168,7 @@ TEST_F(DeskewedRobot, MergedScansAreThoseOfTheLibrary_BitForBit) {
 
 TEST(OdometryPath, GoesOnForALittleWithTheLastVelocity) {
   constexpr std::int64_t ms = 1'000'000;
-  g4_tool::odometry_path path;
+  g4lidar::odometry_path path;
   EXPECT_TRUE(path.until(100 * ms).empty());
   path.add({1000 * ms, {1, 0, 0}, {2, 0, 0}});
   path.add({1020 * ms, {1.04, 0, 0}, {2, 0, 0}});

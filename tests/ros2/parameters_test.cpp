@@ -29,8 +29,8 @@ class filtered {
         if (row.names == name) row.take(word);
       }
     }
-    parameters_ = std::make_unique<g4_tool::lidar_parameters>(
-        options_->common, options_->filter_words, false, *shaper_);
+    parameters_ = std::unique_ptr<g4lidar::lidar_parameters>(new g4lidar::lidar_parameters(
+        g4_tool::parameters_of(options_->common, options_->filter_words, false, *shaper_)));
     for (int i = 0; i < 360; ++i) {
       g4lidar::point& made = points_.emplace_back();
       made.angle_deg = static_cast<float>(i);
@@ -38,11 +38,11 @@ class filtered {
     }
   }
   /// Why not, or empty.
-  std::string set(const std::string& name, g4_tool::parameter_value to) {
-    return parameters_->change(nullptr, std::vector<g4_tool::named_value>{{name, std::move(to)}});
+  std::string set(const std::string& name, g4lidar::parameter_value to) {
+    return parameters_->change(nullptr, std::vector<g4lidar::named_value>{{name, std::move(to)}});
   }
   [[nodiscard]] std::string value(const char* name) const {
-    return std::get<std::string>(parameters_->value(*g4_tool::find_parameter(name)));
+    return std::get<std::string>(parameters_->value(*g4lidar::find_parameter(name)));
   }
   /// The angles of the device that are missing in the cloud.
   std::set<int> missing() {
@@ -79,7 +79,7 @@ class filtered {
  private:
   std::shared_ptr<g4_tool::ros2_options> options_ = std::make_shared<g4_tool::ros2_options>();
   std::unique_ptr<g4lidar::scan_shaper> shaper_ = std::make_unique<g4lidar::scan_shaper>();
-  std::unique_ptr<g4_tool::lidar_parameters> parameters_;
+  std::unique_ptr<g4lidar::lidar_parameters> parameters_;
   std::vector<g4lidar::point> points_;
 };
 

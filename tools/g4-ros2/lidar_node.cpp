@@ -61,7 +61,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
       merger_(into),
       index_(index),
       diagnostics_(on, options, name_space_, which.name),
-      parameters_(options_of(options, which), options.filter_words, into != nullptr, shaper_) {
+      parameters_(parameters_of(options_of(options, which), options.filter_words, into != nullptr,
+                                shaper_)) {
   const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
   parameters_.fix(
@@ -118,8 +119,10 @@ void lidar_node::update() {
 }
 
 void lidar_node::change(std::vector<named_value> wanted, std::function<void(std::string)> done) {
-  device_->reader().ask([this, what = std::move(wanted), after = std::move(done)](
-                            g4lidar::lidar* lidar) { after(parameters_.change(lidar, what)); });
+  device_->reader().ask(
+      [this, what = std::move(wanted), after = std::move(done)](g4lidar::lidar* lidar) {
+        after(in_tool_words(parameters_.change(lidar, what)));
+      });
 }
 
 void lidar_node::on_open(g4lidar::lidar& device) {

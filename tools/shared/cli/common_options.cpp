@@ -5,12 +5,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <numbers>
+#include <functional>
 #include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
 
+#include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "suggestion.hpp"
 
 namespace g4_tool {
 
@@ -70,52 +74,57 @@ option_rows ending_rows(common_options& options, bool with_idle) {
 
 namespace {
 
-/// A flag whose optional value sets some of `Limits`. `numbers_of` names the members that it can set.
-template <class Limits, class NumbersOf>
-option_row limits_row(const char* name, const char* help, std::optional<Limits>& into,
-                      NumbersOf numbers_of) {
-  option_row row{name, "", help};
+/// The name in `text`, a word or limits, that is none of `known`.
+std::string unknown_name(std::string_view text, const std::vector<std::string>& known) {
+  while (!text.empty()) {
+    const std::string_view piece = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(piece.size() + 1, text.size()));
+    std::string name(piece.substr(0, piece.find('=')));
+    if (std::ranges::find(known, name) == known.end()) return name;
+  }
+  return {};
+}
+
+/// Sets a filter by its text. Throws bad_value.
+void take_filter(filter_settings& into, std::string_view name, const std::string& text) {
+  const std::string wrong = set_filter(into, name, text);
+  if (wrong.empty()) return;
+  const auto words = filter_words(name);
+  const std::vector<std::string> known(words.begin(), words.end());
+  throw bad_value(wrong + did_you_mean(unknown_name(text, known), known));
+}
+
+/// The same for the marks.
+void take_marks(mark_limits& into, std::string_view name, const std::string& text) {
+  filter_settings now{.marks = into};
+  take_filter(now, name, text);
+  into = now.marks;
+}
+
+/// The option of a filter: "--near-as" of near_as.
+option_row filter_row(const char* names, std::string value, const char* help,
+                      std::function<void(const std::string&)> take) {
+  option_row row{names, std::move(value), help, std::move(take)};
   row.group = "Filters";
-  row.optional_value = "LIMITS";
-  row.take = [&into, numbers_of](const std::string& word) {
-    Limits limits;
-    take_numbers(word, numbers_of(limits));
-    into = limits;
-  };
   return row;
 }
 
-/// Stores a number, times `factor`, in a member of limits.
-template <class Member>
-std::function<void(double)> store_in(Member& into, double factor = 1.0) {
-  return [&into, factor](double value) { into = static_cast<Member>(value * factor); };
-}
-
-option_row speckle_row(common_options& options) {
-  return limits_row("--speckle", "Leave out returns without another one near them",
-                    options.marks.speckle, [](speckle_limits& limits) -> named_numbers {
-                      return {{"window", 1, max_window, true, store_in(limits.window)},
-                              {"count", 1, 2 * max_window, true, store_in(limits.count)},
-                              {"near", 0, 100, false, store_in(limits.near_m)},
-                              {"ratio", 0, 1, false, store_in(limits.near_ratio)}};
-                    });
-}
-
-option_row edges_row(common_options& options) {
-  return limits_row("--edges", "Leave out veiling points at jumps of the range",
-                    options.marks.edges, [](edge_limits& limits) -> named_numbers {
-                      return {{"window", 1, max_window, true, store_in(limits.window)},
-                              {"angle", 0.1, 45, false, store_in(limits.least_angle_deg)}};
-                    });
+/// A flag whose optional value sets some limits.
+option_row limits_row(const char* names, const char* help,
+                      std::function<void(const std::string&)> take) {
+  option_row row = filter_row(names, "", help, std::move(take));
+  row.optional_value = "LIMITS";
+  return row;
 }
 
 }  // namespace
 
 option_row near_row(std::optional<near_limits>& into) {
-  return limits_row("--near", "Flag directions where something may be too near for a return", into,
-                    [](near_limits& limits) -> named_numbers {
-                      return {{"shortest", 0.01, 16, false, store_in(limits.shortest_mm, 1e3)},
-                              {"revolutions", 0, 1e9, true, store_in(limits.revolutions)}};
+  return limits_row("--near", "Flag directions where something may be too near for a return",
+                    [&into](const std::string& word) {
+                      mark_limits marks;
+                      take_marks(marks, "near", word);
+                      into = marks.near;
                     });
 }
 
@@ -133,46 +142,39 @@ option_rows grid_rows(grid_options& into) {
 }
 
 option_rows filter_rows(common_options& options) {
-  option_row range{"--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16"};
-  range.take = [&filter = options.filter](const std::string& word) {
-    const auto [from, to] = range_of(word, 0.0, 100.0);
-    if (to < from) throw bad_value("'" + word + "' ends before it begins");
-    // Rounded to a thousandth of a millimetre, so that 0.28 is 280.
-    filter.least_range_mm = static_cast<float>(std::round(from * 1e6) / 1e3);
-    filter.greatest_range_mm = static_cast<float>(std::round(to * 1e6) / 1e3);
+  const auto take = [&options](std::string_view name, const std::string& word) {
+    filter_settings now{.filter = options.filter, .marks = options.marks};
+    take_filter(now, name, word);
+    options.filter = now.filter;
+    options.marks = now.marks;
   };
-  const auto directions = [](const std::string& word) {
-    const auto [from, to] = range_of(word, -360.0, 360.0);
-    return sector(from, to);
+  const auto taken = [take](std::string_view name) {
+    return [take, name](const std::string& word) { take(name, word); };
   };
-  option_row ignore{"--ignore", "FROM:TO", "Leave out these directions: 30:40; may be repeated",
-                    [&options, directions](const std::string& word) {
-                      options.ignored.push_back(directions(word));
-                    }};
+  option_row ignore = filter_row(
+      "--ignore", "FROM:TO", "Leave out these directions: 30:40; may be repeated",
+      [&options](const std::string& word) {
+        filter_settings more;
+        take_filter(more, "ignore", word);
+        options.ignored.insert(options.ignored.end(), more.ignored.begin(), more.ignored.end());
+      });
   ignore.repeatable = true;
   return in_group(
       "Filters",
-      {range,
-       value_row("--fov", "FROM:TO", "Keep these directions, in degrees of the frame: -90:90",
-                 options.filter.field_of_view, directions),
+      {filter_row("--range", "FROM:TO", "Keep returns in this range, in meters: 0.28:16",
+                  taken("range")),
+       filter_row("--fov", "FROM:TO", "Keep these directions, in degrees of the frame: -90:90",
+                  taken("fov")),
        ignore,
        text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask),
-       speckle_row(options), edges_row(options)});
+       limits_row("--speckle", "Leave out returns without another one near them", taken("speckle")),
+       limits_row("--edges", "Leave out veiling points at jumps of the range", taken("edges"))});
 }
 
 mounting mounting_of(const std::string& text) {
-  const bool is_down = text.ends_with(",down");
-  const std::string place = is_down ? text.substr(0, text.rfind(',')) : text;
-  const std::size_t first = place.find(',');
-  const std::size_t second = std::min(place.find(',', first + 1), place.size());
-  if (first == std::string::npos || second == place.size()) {
-    throw bad_value("'" + text + "' is not a place such as 0.1,0,180 (m, m, degrees)");
-  }
-  const auto metres = [](const std::string& word) { return number_of(word, -100.0, 100.0); };
-  const double yaw_deg = number_of(place.substr(second + 1), -360.0, 360.0);
-  return {{metres(place.substr(0, first)), metres(place.substr(first + 1, second - first - 1)),
-           yaw_deg * std::numbers::pi / 180.0},
-          is_down};
+  const auto made = mounting_in(text);
+  if (const auto* wrong = std::get_if<std::string>(&made)) throw bad_value(*wrong);
+  return std::get<mounting>(made);
 }
 
 option_rows motion_rows(common_options& options) {

@@ -2,7 +2,6 @@
 #include "rows.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <initializer_list>
 
 namespace g4_tool {
@@ -65,39 +64,6 @@ std::uint64_t byte_count_of(const std::string& text) {
                                                      {"tb", 1e12}});
   if (bytes >= 1.0 && bytes <= 1e18) return static_cast<std::uint64_t>(bytes);
   throw bad_value(fmt::format("'{}' is not a size such as 500M or 1G", text));
-}
-
-void take_numbers(const std::string& text, const named_numbers& known) {
-  std::string_view rest = text;
-  while (!rest.empty()) {
-    const std::string_view piece = rest.substr(0, rest.find(','));
-    rest.remove_prefix(std::min(piece.size() + 1, rest.size()));
-    const std::size_t equals = std::min(piece.find('='), piece.size());
-    const auto found = std::ranges::find(known, piece.substr(0, equals), &named_number::name);
-    if (found == known.end() || equals == piece.size()) {
-      const auto names = known | std::views::transform(&named_number::name);
-      throw bad_value(
-          fmt::format("'{}' is not one of {}=N{}", piece, fmt::join(names, "=N, "),
-                      did_you_mean(piece.substr(0, equals), {names.begin(), names.end()})));
-    }
-    const double value =
-        number_of(std::string(piece.substr(equals + 1)), found->least, found->most);
-    if (found->is_whole && value != std::floor(value)) {
-      throw bad_value(fmt::format("'{}' is not a whole number", piece));
-    }
-    found->take(value);
-  }
-}
-
-number_range range_of(const std::string& text, double least, double most) {
-  const std::size_t colon = text.find(':');
-  if (colon == std::string::npos) {
-    throw bad_value(fmt::format("'{}' is not a range such as {}:{}", text, least, most));
-  }
-  const std::string from = text.substr(0, colon);
-  const std::string to = text.substr(colon + 1);
-  return {from.empty() ? least : number_of(from, least, most),
-          to.empty() ? most : number_of(to, least, most)};
 }
 
 }  // namespace g4_tool

@@ -65,25 +65,6 @@ template <class Value>
 /// "1G", "500M", "64k": multiples of 1024; "1GB": of 1000. A number alone: bytes.
 [[nodiscard]] std::uint64_t byte_count_of(const std::string& text);
 
-/// Two numbers separated by a colon; either may be missing: "0.28:16", "-90:90", ":4".
-struct number_range {
-  double from;
-  double to;
-};
-[[nodiscard]] number_range range_of(const std::string& text, double least, double most);
-
-/// One of the numbers that a word such as "window=3,near=0.1" can set.
-struct named_number {
-  std::string_view name;
-  double least;
-  double most;
-  bool is_whole;
-  std::function<void(double)> take;
-};
-using named_numbers = std::vector<named_number>;
-/// Sets the numbers that `text` names; it may be empty. Throws bad_value.
-void take_numbers(const std::string& text, const named_numbers& known);
-
 /// An option whose value `parse` converts; `parse` throws bad_value.
 template <class Target, class Parse>
 [[nodiscard]] option_row value_row(const char* names, std::string value, const char* help,

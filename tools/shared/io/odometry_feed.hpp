@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The odometry of a robot: its newest poses; and that of a file, a recording or a simulation, beside points.
+// The odometry of a file, a recording or a simulated robot, beside points.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,11 @@
 #include <vector>
 
 #include "g4lidar/motion.hpp"
+#include "g4lidar/odometry_path.hpp"
 #include "g4lidar/point.hpp"
 #include "source.hpp"
 
 namespace g4_tool {
-
-/// The newest poses of a robot, by its odometry.
-class odometry_path {
- public:
-  /// A pose that is not after the last one begins a new path.
-  void add(const stamped_odometry& now);
-  /// The poses, times ascending. If the last one is a little before `time_ns`, one more at that time, as if the
-  /// robot had kept its velocity. Valid until the next call.
-  [[nodiscard]] std::span<const stamped_pose> until(std::int64_t time_ns);
-  [[nodiscard]] const std::optional<stamped_odometry>& newest() const noexcept { return newest_; }
-
- private:
-  std::optional<stamped_odometry> newest_;
-  std::vector<stamped_pose> poses_;
-  bool is_last_guessed_ = false;
-};
 
 class odometry_feed {
  public:

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "g4lidar/lidar_parameters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "number_text.hpp"
+
+namespace g4lidar {
+namespace {
+
+constexpr std::uint8_t is_bool = 1;
+constexpr std::uint8_t is_integer = 2;
+constexpr std::uint8_t is_double = 3;
+constexpr std::uint8_t is_string = 4;
+
+/// Nobody writes a longer value.
+constexpr std::size_t longest_text = 100;
+
+/// As a person writes it.
+std::string word_of(const parameter_value& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "on" : "off";
+  if (const auto* whole = std::get_if<std::int64_t>(&value)) return std::to_string(*whole);
+  if (const auto* number = std::get_if<double>(&value)) return text_of_number(*number);
+  const auto* const text = std::get_if<std::string>(&value);
+  return text != nullptr ? *text : std::string();
+}
+
+/// A whole number is a double, too.
+text_result<parameter_value> converted(const parameter& to, const parameter_value& from) {
+  constexpr std::array<std::string_view, 5> types{"not set", "a bool", "an integer", "a double",
+                                                  "a string"};
+  const auto* const whole = std::get_if<std::int64_t>(&from);
+  if (to.type == is_double && whole != nullptr) return static_cast<double>(*whole);
+  // "on" is true in the YAML of `ros2 param`.
+  if (to.type == is_string && from.index() == is_bool) return word_of(from);
+  if (from.index() != to.type)
+    return tl::unexpected(std::string(to.name) + ": it is " + std::string(types.at(to.type)));
+  const auto* const text = std::get_if<std::string>(&from);
+  if (text != nullptr && text->size() > longest_text)
+    return tl::unexpected(std::string(to.name) + ": the text is too long");
+  return from;
+}
+
+parameter parameter_of(const setting_info& which) {
+  constexpr std::array types{is_integer, is_double, is_string, is_bool};
+  parameter made{which.name, types.at(static_cast<std::size_t>(which.type)), parameter_kind::device,
+                 std::string(which.text), which.query ? "" : "known when it was set"};
+  made.setting = &which;
+  if (!which.unit.empty()) made.description.append(", ").append(which.unit);
+  if (which.type == setting_type::decimal) {
+    made.constraints = "multiples of " + text_of_number(which.step / 100.0);
+    made.range = {which.least / 100.0, which.most / 100.0, which.step / 100.0};
+  } else if (which.type != setting_type::on_off) {
+    const bool is_whole = which.type == setting_type::whole;
+    for (const setting_value& each : which.values) {
+      made.constraints.append(made.constraints.empty() ? "" : ", ");
+      made.constraints.append(is_whole ? std::to_string(each.number) : std::string(each.word));
+    }
+  }
+  return made;
+}
+
+/// A multiple of the step of a decimal.
+std::variant<answer, std::string> decimal_of(const setting_info& of, double number) {
+  const std::string text = text_of_number(number);
+  // Other models may have values beyond the limits of a G4.
+  const bool is_of_another = number >= 0.0 && number <= 1000.0 &&
+                             value_of(of, static_cast<std::int32_t>(std::lround(number * 100.0)));
+  if (!is_of_another && !(number >= of.least / 100.0 && number <= of.most / 100.0))
+    return not_in_range(text, of.least / 100.0, of.most / 100.0);
+  const double steps = number * 100.0 / of.step;
+  const auto made = value_of(of, static_cast<std::int32_t>(std::lround(steps)) * of.step);
+  if (std::abs(steps - std::round(steps)) > 1e-6 || !made) {
+    return in_quotes(text) + " is not a multiple of " + text_of_number(of.step / 100.0) +
+           ", such as 7.5";
+  }
+  return *made;
+}
+
+}  // namespace
+
+parameter_value value_of(const answer& given) {
+  const setting_info* const of = setting_of(given);
+  const auto number = number_of(given);
+  if (of == nullptr || !number) return {};
+  if (of->type == setting_type::on_off) return *number == 2;
+  if (of->type == setting_type::whole) return std::int64_t{*number};
+  if (of->type == setting_type::decimal) return *number / 100.0;
+  const setting_value* const word = find_value(given);
+  return word == nullptr ? parameter_value() : std::string(word->word);
+}
+
+std::variant<answer, std::string> answer_of(const setting_info& of, const parameter_value& wanted) {
+  if (of.type == setting_type::decimal) {
+    const auto* const whole = std::get_if<std::int64_t>(&wanted);
+    const auto* const number = std::get_if<double>(&wanted);
+    if (whole == nullptr && number == nullptr) return in_quotes(word_of(wanted)) + " is no number";
+    return decimal_of(of, whole != nullptr ? static_cast<double>(*whole) : *number);
+  }
+  const std::string word = word_of(wanted);
+  std::string known;
+  for (const setting_value& each : of.values) {
+    const bool is_number = of.type == setting_type::whole && word == std::to_string(each.number);
+    if (is_number || word == each.word) return each.value;
+    known.append(known.empty() ? "" : ", ").append(each.word);
+  }
+  // A sample rate that a G4 does not have.
+  const auto* const number = std::get_if<std::int64_t>(&wanted);
+  if (of.type == setting_type::whole && number != nullptr && *number > 0 && *number <= 1'000'000) {
+    if (const auto made = value_of(of, static_cast<std::int32_t>(*number))) return *made;
+  }
+  return in_quotes(word) + " is not one of " + known;
+}
+
+std::span<const parameter> all_parameters() {
+  using enum parameter_kind;
+  static const std::vector<parameter> all = [] {
+    std::vector<parameter> made{
+        {"edges", is_string, filter, "Leave out veiling points at jumps of the range",
+         "off, on, or limits as --edges"},
+        {"fov", is_string, filter, "Directions that are kept, degrees in the frame of the robot",
+         "FROM:TO, such as -90:90"},
+        {"frame_id", is_string, read_only, "Frame of the scans", ""},
+        {"grid", is_integer, read_only, "Ranges of each LaserScan", ""},
+        {"ignore", is_string, filter, "Directions that are left out, as fov",
+         "several with spaces between them: 30:40 90:100; off: none"},
+        {"model", is_string, read_only, "Model of the lidar", "a word as that of --model"},
+        {"near", is_string, filter,
+         "Flag directions where something may be too near for a return: in a LaserScan as near_as",
+         "off, on, or limits as --near"},
+        {"near_as", is_string, filter, "What ranges in directions that near flags become",
+         "nan, minus-inf"},
+        {"no_return", is_string, filter,
+         "What ranges without return become, which are not free space", "inf, nan, max"},
+        {"order", is_string, read_only, "Order of the ranges of a LaserScan", "angle, time"},
+        {"range_max", is_double, filter, "Longest range that is kept, m", "", {0.0, 100.0, 0.0}},
+        {"range_min", is_double, filter, "Shortest range that is kept, m", "", {0.0, 100.0, 0.0}},
+        {"serial_number", is_string, read_only, "Serial number of the lidar", ""},
+        {"speckle", is_string, filter, "Leave out returns without another one near them",
+         "off, on, or limits as --speckle"}};
+    for (const setting_info& each : all_settings()) made.push_back(parameter_of(each));
+    std::ranges::sort(made, {}, &parameter::name);
+    return made;
+  }();
+  return all;
+}
+
+const parameter* find_parameter(std::string_view name) {
+  const auto all = all_parameters();
+  const auto at = std::ranges::find(all, name, &parameter::name);
+  return at == all.end() ? nullptr : &*at;
+}
+
+lidar_parameters::lidar_parameters(const shaping_options& how, filter_settings start,
+                                   g4lidar::mask mask,
+                                   const std::map<std::string, std::string>& words,
+                                   scan_shaper& shaper)
+    : how_(how), now_(std::move(start)), mask_(std::move(mask)), shaper_(shaper) {
+  shape();
+  const point_filter& filter = now_.filter;
+  fix("range_min", static_cast<double>(filter.least_range_mm) / 1e3);
+  fix("range_max", std::min(static_cast<double>(filter.greatest_range_mm) / 1e3, 100.0));
+  for (const auto& [name, word] : words) fix(name, word);
+}
+
+void lidar_parameters::shape() {
+  how_.filter = now_.filter;
+  how_.filter.ignored_sectors = now_.ignored;
+  how_.filter.masks = mask_.polygons();
+  how_.marks = now_.marks;
+  shaper_.set_options(how_);
+}
+
+void lidar_parameters::fix(std::string_view name, parameter_value value) {
+  const std::lock_guard lock(mutex_);
+  values_.insert_or_assign(std::string(name), std::move(value));
+}
+
+parameter_value lidar_parameters::value(const parameter& of) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = values_.find(of.name);
+  return at == values_.end() ? parameter_value() : at->second;
+}
+
+void lidar_parameters::read_device(lidar& device) {
+  for (const parameter& each : all_parameters()) {
+    if (each.setting == nullptr || !each.setting->query) continue;
+    const auto given = device.ask(*each.setting->query);
+    if (given)
+      fix(each.name, value_of(*given));
+    else if (given.error().is_fatal())
+      return;  // the next read of the lidar finds it
+  }
+}
+
+std::string lidar_parameters::set_device(lidar* device, std::span<const device_change> changes) {
+  if (!changes.empty() && device == nullptr) return "the lidar is not connected";
+  std::vector<std::pair<const parameter*, parameter_value>> before;
+  for (const auto& [known, wanted] : changes) {
+    const auto given = device->ask(change_to(wanted), while_scanning::stop_and_resume);
+    if (given) {
+      before.emplace_back(known, value(*known));
+      fix(known->name, value_of(*given));
+      continue;
+    }
+    for (const auto& [earlier, old] : before) {
+      const auto back = answer_of(*earlier->setting, old);
+      if (old.index() == 0 || back.index() != 0) continue;  // was not known
+      if (device->ask(change_to(std::get<answer>(back)), while_scanning::stop_and_resume))
+        fix(earlier->name, old);
+    }
+    return given.error().message();
+  }
+  return {};
+}
+
+std::string lidar_parameters::change(lidar* device, std::span<const named_value> wanted) {
+  std::map<std::string_view, parameter_value> values;  // of the filters
+  std::vector<device_change> changes;
+  filter_settings next = now_;
+  for (const auto& [name, given] : wanted) {
+    const parameter* const known = find_parameter(name);
+    if (known == nullptr) return "there is no such parameter";
+    if (known->kind == parameter_kind::read_only)
+      return std::string(known->name) + ": it cannot change while the program runs";
+    const auto value = converted(*known, given);
+    if (!value) return value.error();
+    if (known->kind == parameter_kind::filter) {
+      values[known->name] = *value;
+      continue;
+    }
+    auto change = answer_of(*known->setting, *value);
+    if (const auto* wrong = std::get_if<std::string>(&change))
+      return std::string(known->name) + ": " + *wrong;
+    changes.emplace_back(known, std::get<answer>(change));
+  }
+  for (const auto& [name, one] : values) {
+    if (name.starts_with("range_")) continue;
+    if (std::string wrong = set_filter(next, name, word_of(one)); !wrong.empty()) return wrong;
+  }
+  if (values.contains("range_min") || values.contains("range_max")) {
+    for (const std::string_view name : {"range_min", "range_max"}) {
+      values.try_emplace(name, value(*find_parameter(name)));
+    }
+    std::string wrong = set_filter(
+        next, "range", word_of(values["range_min"]) + ":" + word_of(values["range_max"]));
+    if (!wrong.empty()) return wrong;
+  }
+  if (std::string reason = set_device(device, changes); !reason.empty()) return reason;
+  if (values.empty()) return {};
+  now_ = std::move(next);
+  shape();
+  for (const auto& [name, value] : values) fix(name, value);
+  return {};
+}
+
+}  // namespace g4lidar

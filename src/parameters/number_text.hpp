@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Numbers from text and as text, independent of the locale.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <tl/expected.hpp>
+
+namespace g4lidar {
+
+/// A value, or why the text is not valid.
+template <class Value>
+using text_result = tl::expected<Value, std::string>;
+
+/// "'east'"
+inline std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+/// As a person writes it: 5, 0.28.
+inline std::string text_of_number(double value) {
+  std::array<char, 64> text;
+  const bool is_whole = value == std::floor(value) && std::fabs(value) < 1e15;
+  const auto end = is_whole ? std::to_chars(text.data(), text.data() + text.size(),
+                                            static_cast<std::int64_t>(value))
+                            : std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end.ptr};
+}
+
+inline std::string not_in_range(std::string_view text, double least, double most) {
+  return in_quotes(text) + " is not in the range " + text_of_number(least) + " to " +
+         text_of_number(most);
+}
+
+/// The number that is all of `text`.
+inline text_result<double> number_in(std::string_view text, double least, double most) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, wrong] = std::from_chars(text.data(), end, value);
+  if (wrong != std::errc() || at != end || !(least <= value && value <= most))
+    return tl::unexpected(not_in_range(text, least, most));
+  return value;
+}
+
+}  // namespace g4lidar
