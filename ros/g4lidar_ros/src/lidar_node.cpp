@@ -44,6 +44,7 @@ LidarNode::LidarNode(const rclcpp::NodeOptions& options)
 LidarNode::~LidarNode() {
   timer_.reset();
   diagnostics_.reset();
+  parameters_.reset();
   session_.reset();
 }
 
@@ -66,6 +67,7 @@ LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State&
     return CallbackReturn::FAILURE;
   }
   diagnostics_->follow(session_);
+  parameters_->follow(session_);
   return CallbackReturn::SUCCESS;
 }
 
@@ -87,6 +89,7 @@ LidarNode::CallbackReturn LidarNode::on_deactivate(const rclcpp_lifecycle::State
 
 LidarNode::CallbackReturn LidarNode::on_cleanup(const rclcpp_lifecycle::State& /*previous*/) {
   diagnostics_->follow(nullptr);
+  parameters_->follow(nullptr);
   session_.reset();
   return CallbackReturn::SUCCESS;
 }
@@ -104,6 +107,7 @@ void LidarNode::update() {
     if (configure().id() == State::PRIMARY_STATE_INACTIVE) activate();
     return;
   }
+  parameters_->update();
   if (!session_ || get_current_state().id() != State::PRIMARY_STATE_ACTIVE) return;
   if (const auto why = session_->failure()) {
     RCLCPP_ERROR(get_logger(), "deactivated: %s", why->message().c_str());

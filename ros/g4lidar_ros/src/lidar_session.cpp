@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "lidar_session.hpp"
 
+#include <cstdlib>
 #include <exception>
+#include <fstream>
+#include <future>
+#include <iterator>
+#include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "g4lidar/source.hpp"
 
@@ -24,6 +30,29 @@ std::int64_t wall_now_ns() {
   return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+/// So long a change of settings may take; the lidar stops and starts for it.
+constexpr auto change_time = 10s;
+
+g4lidar::mask load_mask(const std::string& path) {
+  if (path.empty()) return {};
+  std::ifstream file(path);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw std::invalid_argument("mask: '" + path + "' cannot be read");
+  auto made = g4lidar::parse_mask(text);
+  if (const auto* wrong = std::get_if<g4lidar::mask_error>(&made)) {
+    throw std::invalid_argument("mask: '" + path + "', line " + std::to_string(wrong->line) + ": " +
+                                wrong->message);
+  }
+  return std::get<g4lidar::mask>(std::move(made));
+}
+
+/// Everything is kept until a parameter is set.
+g4lidar::filter_settings first_filters() {
+  g4lidar::filter_settings made;
+  made.filter.in = g4lidar::frame::robot;
+  return made;
+}
+
 }  // namespace
 
 lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const session_options& options)
@@ -32,6 +61,8 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const sessio
       is_file_(is_file_name(options.lidar.device)),
       scans_(node, "scan", scan_quality()),
       clouds_(node, "points", scan_quality()),
+      motion_(node, options.motion, options.frame_id, options.lidar.device),
+      parameters_(options.shaping, first_filters(), load_mask(options.mask), {}, shaper_),
       reader_(
           [this] {
             g4lidar::lidar_options made = options_.lidar;
@@ -41,7 +72,13 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const sessio
             };
             return made;
           }(),
-          {.wants_points = false, .starts_rested = true}, this) {
+          {.wants_points = is_file_, .starts_rested = true}, this) {
+  if (g4lidar::kind_of_source(options.lidar.device) == g4lidar::source_kind::recording) {
+    clock_ = std::make_unique<counted_publisher<rosgraph_msgs::msg::Clock>>(
+        node, "/clock", rclcpp::QoS(10).reliable());
+  }
+  if (const std::string wrong = parameters_.change(nullptr, options.filters); !wrong.empty())
+    throw std::invalid_argument(wrong);
   // The motor rests at once, also in a container whose other components take their time.
   before_shutdown_ = node.get_node_base_interface()->get_context()->add_pre_shutdown_callback(
       [this] { reader_.rest(true); });
@@ -77,6 +114,21 @@ void lidar_session::rest(bool rests, std::chrono::nanoseconds longest) {
                     [this] { return reader_.status().state != reader_state::running; });
 }
 
+std::string lidar_session::change(std::vector<g4lidar::named_value> wanted) {
+  const auto reply = std::make_shared<std::promise<std::string>>();
+  auto answered = reply->get_future();
+  reader_.ask([this, reply, what = std::move(wanted)](g4lidar::lidar* lidar) {
+    std::string reason;
+    guard([&] {
+      reason = "it could not be set";
+      reason = parameters_.change(lidar, what);
+    });
+    reply->set_value(reason);
+  });
+  if (answered.wait_for(change_time) == std::future_status::ready) return answered.get();
+  return "the lidar did not answer in time; it may be set later";
+}
+
 void lidar_session::restart_file() {
   if (is_file_ && reader_.status().state == reader_state::ended) reader_.seek(0);
 }
@@ -96,10 +148,31 @@ std::int64_t lidar_session::stamp_ns(std::int64_t time_ns) const {
 }
 
 void lidar_session::on_open(g4lidar::lidar& device) {
-  guard([&] { RCLCPP_INFO(node_.get_logger(), "opened %s", std::string(device.name()).c_str()); });
+  guard([&] {
+    RCLCPP_INFO(node_.get_logger(), "opened %s", std::string(device.name()).c_str());
+    motion_.follow(device);
+    if (is_file_) return;
+    parameters_.fix("serial_number", std::string(device.information().serial_number()));
+    parameters_.read_device(device);
+    is_news_ = true;
+  });
 }
 
-void lidar_session::on_points(std::span<const g4lidar::point> /*points*/) {}
+void lidar_session::on_points(std::span<const g4lidar::point> points) {
+  guard([&] {
+    motion_.follow(points, stamp_ns(0));
+    publish_clock(stamp_ns(points.back().time_ns));
+  });
+}
+
+void lidar_session::publish_clock(std::int64_t now_ns) {
+  constexpr std::int64_t clock_step_ns = 10'000'000;
+  if (!clock_ || !clock_->is_wanted() || std::abs(now_ns - clock_ns_) < clock_step_ns) return;
+  clock_ns_ = now_ns;
+  auto made = std::make_unique<rosgraph_msgs::msg::Clock>();
+  made->clock = rclcpp::Time(now_ns);
+  clock_->publish(std::move(made));
+}
 
 void lidar_session::on_scan(const g4lidar::scan& whole) {
   if (whole.is_piece()) return;
@@ -107,7 +180,8 @@ void lidar_session::on_scan(const g4lidar::scan& whole) {
 }
 
 void lidar_session::publish(const g4lidar::scan& whole) {
-  shaper_.shape(whole);
+  shaper_.shape(whole, motion_.path_of(whole, stamp_ns(0)));
+  not_deskewed_ = shaper_.points_not_deskewed();
   g4lidar::message_header header{.stamp_ns = stamp_ns(whole.time_ns()),
                                  .frame_id = options_.frame_id,
                                  .duration_ns = whole.duration_ns,
@@ -115,7 +189,7 @@ void lidar_session::publish(const g4lidar::scan& whole) {
                                  .model = whole.model};
   if (scans_.is_wanted()) {
     const std::size_t bins = options_.bins.value_or(g4lidar::default_bins(*whole.model));
-    scans_.publish(laser_scan_of(shaper_.for_grid(), header, {}, bins));
+    scans_.publish(laser_scan_of(shaper_.for_grid(), header, parameters_.filters().grid, bins));
   }
   if (!clouds_.is_wanted()) return;
   const g4lidar::scan kept = shaper_.kept();

@@ -17,7 +17,9 @@
 
 #include "g4lidar/background_reader.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/scan_shaper.hpp"
+#include "robot_motion.hpp"
 #include "topics.hpp"
 
 namespace g4lidar_ros {
@@ -28,12 +30,17 @@ struct session_options {
   std::string frame_id;
   std::optional<std::uint32_t> bins;  ///< Nothing: default_bins() of the model.
   g4lidar::scan_order order = g4lidar::scan_order::angle;
+  g4lidar::shaping_options shaping;
+  motion_options motion;
+  std::string mask;                           ///< The file of the mask; empty: none.
+  std::vector<g4lidar::named_value> filters;  ///< The parameters that are filters.
 };
 
 /// Publishes in the thread of the reader while the publishers are active. *Any thread* may call its functions.
 class lidar_session final : private g4lidar::reader_listener {
  public:
-  /// Makes the publishers. `node` outlives it. Throws what rclcpp throws.
+  /// Makes the publishers. `node` outlives it. Throws what rclcpp throws, and std::invalid_argument for a filter or a
+  /// mask.
   lidar_session(rclcpp_lifecycle::LifecycleNode& node, const session_options& options);
   /// Stops the motor and closes the lidar.
   ~lidar_session() override;
@@ -44,6 +51,12 @@ class lidar_session final : private g4lidar::reader_listener {
   [[nodiscard]] bool wait_until_open(std::chrono::nanoseconds longest);
   /// Whether the motor is to stand; waits at most `longest` until it does.
   void rest(bool rests, std::chrono::nanoseconds longest = {});
+  /// Sets parameters of the lidar, all or none: why not, or empty. Blocks until the lidar has answered.
+  [[nodiscard]] std::string change(std::vector<g4lidar::named_value> wanted);
+  /// The parameters of the lidar, if they became known since the last call.
+  [[nodiscard]] const g4lidar::lidar_parameters* news() noexcept {
+    return is_news_.exchange(false) ? &parameters_ : nullptr;
+  }
   /// A file that is at its end begins again.
   void restart_file();
 
@@ -54,6 +67,8 @@ class lidar_session final : private g4lidar::reader_listener {
   [[nodiscard]] bool is_wanted() const { return scans_.is_wanted() || clouds_.is_wanted(); }
   [[nodiscard]] const g4lidar::running_diagnosis& diagnosis() const noexcept { return diagnosis_; }
   [[nodiscard]] g4lidar::lidar_counts counts() const { return reader_.counts(); }
+  /// How many points were not deskewed, because their motion is not known.
+  [[nodiscard]] std::uint64_t points_not_deskewed() const noexcept { return not_deskewed_; }
   [[nodiscard]] const counted_publisher<sensor_msgs::msg::LaserScan>& scans() const noexcept {
     return scans_;
   }
@@ -70,6 +85,7 @@ class lidar_session final : private g4lidar::reader_listener {
   template <class Call>
   void guard(Call call) noexcept;
   void publish(const g4lidar::scan& whole);
+  void publish_clock(std::int64_t now_ns);
   /// The stamp of a point::time_ns. Only in the thread of the reader.
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const;
 
@@ -78,7 +94,13 @@ class lidar_session final : private g4lidar::reader_listener {
   bool is_file_;
   counted_publisher<sensor_msgs::msg::LaserScan> scans_;
   counted_publisher<sensor_msgs::msg::PointCloud2> clouds_;
+  std::unique_ptr<counted_publisher<rosgraph_msgs::msg::Clock>> clock_;  // of a recording
+  std::int64_t clock_ns_ = 0;                                            // as published
+  robot_motion motion_;
   g4lidar::scan_shaper shaper_;
+  std::atomic<std::uint64_t> not_deskewed_ = 0;
+  g4lidar::lidar_parameters parameters_;
+  std::atomic<bool> is_news_ = false;
   g4lidar::running_diagnosis diagnosis_;
   std::mutex mutex_;
   std::condition_variable changed_;  // the state of the reader

@@ -27,6 +27,7 @@ node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node) : upda
                  [this, which](wrapper& status) { report_stage(which, status); });
   }
   updater_.add("counts", this, &node_diagnostics::report_counts);
+  updater_.add("deskewing", this, &node_diagnostics::report_deskewing);
   updater_.add("topics", this, &node_diagnostics::report_topics);
 }
 
@@ -72,6 +73,17 @@ void node_diagnostics::report_topics(wrapper& status) {
     status.summary(wrapper::WARN, "a subscriber wants a quality of service that is not offered");
   else
     status.summary(wrapper::OK, "ok");
+}
+
+void node_diagnostics::report_deskewing(wrapper& status) {
+  const std::uint64_t now = session_ ? session_->points_not_deskewed() : 0;
+  const bool is_bad = now > std::exchange(not_deskewed_, now);
+  if (is_bad)
+    status.summary(wrapper::WARN,
+                   "points are not deskewed: the motion at their times is not known");
+  else
+    status.summary(wrapper::OK, "ok");
+  status.add("points_not_deskewed", now);
 }
 
 }  // namespace g4lidar_ros

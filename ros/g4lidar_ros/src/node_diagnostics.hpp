@@ -26,9 +26,11 @@ class node_diagnostics {
   void report_stage(g4lidar::diagnostic_stage which, wrapper& status);
   void report_counts(wrapper& status);
   void report_topics(wrapper& status);
+  void report_deskewing(wrapper& status);
 
   std::shared_ptr<const lidar_session> session_;
-  std::uint64_t refused_ = 0;  // at the last report
+  std::uint64_t refused_ = 0;       // at the last report
+  std::uint64_t not_deskewed_ = 0;  // the same
   diagnostic_updater::Updater updater_;
 };
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
@@ -23,8 +25,20 @@ class node_parameters {
   [[nodiscard]] bool starts_itself() const;
   [[nodiscard]] bool is_standby() const;
 
+  /// The lidar whose parameters they are; null: none is open, and they are used when one is opened.
+  void follow(std::shared_ptr<lidar_session> session);
+  /// Takes over what has become known of the lidar.
+  void update();
+
  private:
+  using changes = std::vector<rclcpp::Parameter>;
+  void take_motion(session_options& into) const;
+  [[nodiscard]] std::string refuse(const changes& wanted);
+
   rclcpp_lifecycle::LifecycleNode& node_;
+  std::shared_ptr<lidar_session> session_;
+  bool is_update_ = false;  // they are set by update()
+  rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr refusing_;
 };
 
 }  // namespace g4lidar_ros

@@ -20,17 +20,21 @@ def program(name, variable):
     return os.environ.get(variable) or shutil.which(name)
 
 
-def recording(seconds=6, seed=7, setup=()):
-    """The path of a recording of a simulated lidar; None without g4-dump."""
+def recording(seconds=6, seed=7):
+    """The path of a recording of a lidar on a robot that drives, with its odometry; None without g4-dump."""
     g4_dump = program("g4-dump", "G4_DUMP")
     if not g4_dump:
         return None
     directory = tempfile.mkdtemp(prefix="g4lidar-ros-")
     path = os.path.join(directory, "walk.mcap")
     raw = os.path.join(directory, "walk.bin")
-    subprocess.run([g4_dump, "sim", "-q", "--seconds", str(seconds), "--seed", str(seed), *setup, "-o", raw],
-                   check=True)
-    subprocess.run([g4_dump, "convert", "-q", raw, path], check=True)
+    way = os.path.join(directory, "way.txt")
+    driven = os.path.join(directory, "way.odo")
+    with open(way, "w") as file:
+        file.write("drive forward 0.4 0.3\ndrive turn 180 60\ndrive forward 0.4 0.3\n")
+    subprocess.run([g4_dump, "sim", "-q", "--seconds", str(seconds), "--seed", str(seed), "--path", way, "--odometry",
+                    driven, "-o", raw], check=True)
+    subprocess.run([g4_dump, "convert", "-q", raw, path, "--odometry", driven], check=True)
     return path
 
 

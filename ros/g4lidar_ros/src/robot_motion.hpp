@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The motion of the robot: from a recording or a simulated robot, which is published; from odometry, or from tf.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+#include <nav_msgs/msg/odometry.hpp>
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/odometry_path.hpp"
+#include "topics.hpp"
+
+namespace g4lidar_ros {
+
+/// From where the motion is known by which points are deskewed.
+enum class motion_source : unsigned char { none, scans, odometry, tf };
+
+struct motion_options {
+  motion_source from = motion_source::none;
+  std::string base_frame = "base_link";
+  std::string odometry_frame = "odom";
+  std::optional<g4lidar::mounting> mount;  ///< Published on /tf_static.
+  bool is_turned = false;                  ///< The frame of the scans has z down.
+};
+
+/// *Single thread*: that of the reader, except construction.
+class robot_motion {
+ public:
+  /// Of a lidar whose frame is `frame_id`, and whose source is `source`.
+  robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_options& options,
+               const std::string& frame_id, const std::string& source);
+
+  /// The lidar is open: what it carries is followed.
+  void follow(g4lidar::lidar& device);
+  /// Publishes the odometry until the last of these points. `ahead_ns`: their stamps minus their times.
+  void follow(std::span<const g4lidar::point> points, std::int64_t ahead_ns);
+  /// The poses of the robot until the end of a scan, by the clock of its points.
+  [[nodiscard]] std::span<const g4lidar::stamped_pose> path_of(const g4lidar::scan& whole,
+                                                               std::int64_t ahead_ns);
+
+ private:
+  void publish(const g4lidar::stamped_odometry& at, std::int64_t ahead_ns);
+  void take_subscribed(std::int64_t ahead_ns);
+  void take_transforms(const g4lidar::scan& whole, std::int64_t ahead_ns);
+
+  rclcpp_lifecycle::LifecycleNode& node_;
+  motion_options options_;
+  std::vector<g4lidar::stamped_odometry> recorded_;
+  std::size_t next_ = 0;               // of recorded_
+  std::int64_t begin_ns_ = 0;          // of the round of the recording
+  g4lidar::player* player_ = nullptr;  // of the recording that is open
+  g4lidar::odometry_path path_;
+  std::unique_ptr<counted_publisher<nav_msgs::msg::Odometry>> odometry_;
+  std::unique_ptr<tf2_ros::TransformBroadcaster> tf_;
+  std::unique_ptr<tf2_ros::StaticTransformBroadcaster> place_;
+  std::mutex mutex_;                                   // protects the next one
+  std::vector<g4lidar::stamped_odometry> subscribed_;  // by the clock of the stamps
+  rclcpp::SubscriptionBase::SharedPtr subscription_;
+  std::unique_ptr<tf2_ros::Buffer> buffer_;
+  std::unique_ptr<tf2_ros::TransformListener> listener_;
+};
+
+}  // namespace g4lidar_ros

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""Two lidars in one container."""
+
+import os
+import sys
+import unittest
+
+import launch
+import launch_testing.actions
+import launch_testing.asserts
+from ament_index_python.packages import get_package_share_directory
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import AnyLaunchDescriptionSource
+from sensor_msgs.msg import LaserScan
+
+sys.path.insert(0, os.path.dirname(__file__))
+import support  # noqa: E402
+
+
+def generate_test_description():
+    launches = os.path.join(get_package_share_directory("g4lidar_ros"), "launch")
+    return launch.LaunchDescription([
+        IncludeLaunchDescription(AnyLaunchDescriptionSource(os.path.join(launches, "two_lidars.launch.py")),
+                                 launch_arguments={"front": "sim:?seed=1", "rear": "sim:?seed=2"}.items()),
+        IncludeLaunchDescription(AnyLaunchDescriptionSource(os.path.join(launches, "lidar.launch.xml")),
+                                 launch_arguments={"sim": "true", "namespace": "xml"}.items()),
+        launch_testing.actions.ReadyToTest(),
+    ])
+
+
+class TestContainer(unittest.TestCase):
+    def test_each_has_its_topic_and_frame(self):
+        watcher = support.Watcher()
+        frames = {"front": "front_laser", "rear": "rear_laser", "xml": "laser"}
+        scans = {name: watcher.collect(LaserScan, f"/{name}/scan") for name in frames}
+        self.assertTrue(support.wait_for(lambda: all(len(each) > 3 for each in scans.values())),
+                        {name: len(each) for name, each in scans.items()})
+        for name, frame in frames.items():
+            self.assertEqual(scans[name][-1].header.frame_id, frame)
+        watcher.close()
+
+
+@launch_testing.post_shutdown_test()
+class TestExit(unittest.TestCase):
+    def test_all_end_well(self, proc_info):
+        launch_testing.asserts.assertExitCodes(proc_info)

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: MIT
+"""The node with simulated lidars: transitions, parameters, services, unplug, an error that it cannot recover from."""
+
+import os
+import sys
+import tempfile
+import unittest
+
+import launch
+import launch_testing.actions
+import launch_testing.asserts
+from diagnostic_msgs.msg import DiagnosticArray
+from launch_ros.actions import Node
+from lifecycle_msgs.msg import State, Transition
+from lifecycle_msgs.srv import ChangeState, GetState
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import (DescribeParameters, GetParameters, ListParameters, SetParameters,
+                                SetParametersAtomically)
+from sensor_msgs.msg import LaserScan
+from std_srvs.srv import Trigger
+
+sys.path.insert(0, os.path.dirname(__file__))
+import support  # noqa: E402
+
+DIRECTORY = tempfile.mkdtemp(prefix="g4lidar-ros-")
+ABSENT = os.path.join(DIRECTORY, "lidar")
+
+UNPLUGS = "&".join(f"fault=unplug@{at}s+3s" for at in range(4, 200, 12))
+
+# The nodes by their namespaces.
+NODES = {
+    "life": {"source": "sim:?seed=7"},
+    "values": {"source": "sim:?seed=8", "autostart": True, "range_max": 9.0},
+    "plug": {"source": "sim:?seed=9&" + UNPLUGS, "autostart": True},
+    "never": {"source": ABSENT, "connect_timeout": 0.0},
+    "idle": {"source": "sim:?seed=10", "autostart": True, "standby": True},
+    "missing": {"source": "/dev/g4lidar-absent", "connect_timeout": 0.5},
+}
+
+
+def generate_test_description():
+    nodes = [Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace=name, output="screen",
+                  parameters=[{key: launch_value(value) for key, value in values.items()}])
+             for name, values in NODES.items()]
+    return launch.LaunchDescription([*nodes, launch_testing.actions.ReadyToTest()])
+
+
+def launch_value(value):
+    from launch_ros.parameter_descriptions import ParameterValue as Typed
+    return Typed(value, value_type=str) if isinstance(value, str) else value
+
+
+def double(value):
+    return ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value)
+
+
+def text(value):
+    return ParameterValue(type=ParameterType.PARAMETER_STRING, string_value=value)
+
+
+class NodeTest(unittest.TestCase):
+    def setUp(self):
+        self.watcher = support.Watcher()
+
+    def tearDown(self):
+        self.watcher.close()
+
+    def state(self, name):
+        return self.watcher.call(GetState, f"/{name}/g4lidar/get_state", GetState.Request()).current_state.id
+
+    def change(self, name, transition):
+        request = ChangeState.Request(transition=Transition(id=transition))
+        return self.watcher.call(ChangeState, f"/{name}/g4lidar/change_state", request).success
+
+    def wait_for_state(self, name, state):
+        self.assertTrue(support.wait_for(lambda: self.state(name) == state), f"/{name} in {self.state(name)}")
+
+    def scans(self, name):
+        return self.watcher.collect(LaserScan, f"/{name}/scan")
+
+
+class TestLifecycle(NodeTest):
+    def test_transitions(self):
+        scans = self.scans("life")
+        self.assertEqual(self.state("life"), State.PRIMARY_STATE_UNCONFIGURED)
+        for _ in range(2):
+            self.assertTrue(self.change("life", Transition.TRANSITION_CONFIGURE))
+            self.assertEqual(self.state("life"), State.PRIMARY_STATE_INACTIVE)
+            count = len(scans)
+            self.assertTrue(self.change("life", Transition.TRANSITION_ACTIVATE))
+            self.assertTrue(support.wait_for(lambda: len(scans) > count + 2))
+            self.assertTrue(self.change("life", Transition.TRANSITION_DEACTIVATE))
+            self.assertEqual(self.state("life"), State.PRIMARY_STATE_INACTIVE)
+            self.assertTrue(self.change("life", Transition.TRANSITION_CLEANUP))
+            self.assertEqual(self.state("life"), State.PRIMARY_STATE_UNCONFIGURED)
+
+    def test_a_lidar_that_is_not_there_is_not_configured(self):
+        self.assertFalse(self.change("missing", Transition.TRANSITION_CONFIGURE))
+        self.assertEqual(self.state("missing"), State.PRIMARY_STATE_UNCONFIGURED)
+
+    def test_an_error_that_cannot_heal_ends_in_unconfigured(self):
+        self.assertTrue(self.change("never", Transition.TRANSITION_CONFIGURE))
+        self.assertTrue(self.change("never", Transition.TRANSITION_ACTIVATE))
+        self.assertEqual(self.state("never"), State.PRIMARY_STATE_ACTIVE)
+        with open(ABSENT + ".new", "wb") as file:
+            file.write(b"this is no recording and no lidar\n" * 1000)
+        os.rename(ABSENT + ".new", ABSENT)
+        self.wait_for_state("never", State.PRIMARY_STATE_UNCONFIGURED)
+
+    def test_an_unplug_heals_by_itself(self):
+        scans = self.scans("plug")
+        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+        stamps = lambda: [each.header.stamp.sec + each.header.stamp.nanosec * 1e-9 for each in list(scans)]
+
+        def gaps():
+            times = stamps()
+            return [later - earlier for earlier, later in zip(times, times[1:]) if later - earlier > 2.0]
+        self.assertTrue(support.wait_for(gaps), "no gap of the unplug, or no scan after it")
+        self.assertEqual(self.state("plug"), State.PRIMARY_STATE_ACTIVE)
+
+
+class TestMotor(NodeTest):
+    def test_stop_and_start(self):
+        scans = self.scans("values")
+        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+        self.assertTrue(self.watcher.call(Trigger, "/values/g4lidar/stop", Trigger.Request()).success)
+
+        def has_stopped():
+            count = len(scans)
+            return not support.wait_for(lambda: len(scans) > count, 2.0)
+        self.assertTrue(support.wait_for(has_stopped))
+        self.assertTrue(self.watcher.call(Trigger, "/values/g4lidar/start", Trigger.Request()).success)
+        count = len(scans)
+        self.assertTrue(support.wait_for(lambda: len(scans) > count))
+
+    def test_standby_turns_for_a_subscriber(self):
+        self.wait_for_state("idle", State.PRIMARY_STATE_ACTIVE)
+        found = self.watcher.collect(DiagnosticArray, "/diagnostics")
+
+        def sent():
+            values = [value for array in list(found) for status in array.status
+                      if status.name == "g4lidar: topics" for value in status.values
+                      if value.key == "/idle/scan sent"]
+            return int(values[-1].value) if values else -1
+        self.assertTrue(support.wait_for(lambda: sent() == 0))
+        scans = self.scans("idle")
+        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+
+
+class TestParameters(NodeTest):
+    def get(self, name):
+        request = GetParameters.Request(names=[name])
+        return self.watcher.call(GetParameters, "/values/g4lidar/get_parameters", request).values[0]
+
+    def set(self, name, value):
+        request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
+        return self.watcher.call(SetParameters, "/values/g4lidar/set_parameters", request).results[0]
+
+    def test_settings_of_the_device(self):
+        self.assertTrue(support.wait_for(lambda: self.get("frequency").type == ParameterType.PARAMETER_DOUBLE))
+        scans = self.scans("values")
+        self.assertTrue(self.set("frequency", double(9.5)).successful)
+        self.assertEqual(self.get("frequency").double_value, 9.5)
+        # The lidar turns so: a revolution takes 1 / 9.5 s.
+        self.assertTrue(support.wait_for(lambda: scans and abs(scans[-1].scan_time - 1 / 9.5) < 0.005))
+        self.assertFalse(self.set("frequency", double(20.0)).successful)
+        self.assertEqual(self.get("frequency").double_value, 9.5)
+        refused = self.set("source", text("sim:"))
+        self.assertFalse(refused.successful)
+
+    def test_filters(self):
+        scans = self.scans("values")
+        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+        self.assertLessEqual(max(each for each in scans[-1].ranges if each < 100.0), 9.0)
+        self.assertTrue(self.set("fov", text("-90:90")).successful)
+        # Behind the lidar nothing is kept: NaN in the first and in the last quarter.
+        quarter = 178
+        self.assertTrue(support.wait_for(
+            lambda: all(each != each for each in [*scans[-1].ranges[:quarter], *scans[-1].ranges[-quarter:]])))
+        refused = self.set("fov", text("north"))
+        self.assertFalse(refused.successful)
+        self.assertIn("north", refused.reason)
+        self.assertTrue(self.set("fov", text("-180:180")).successful)
+
+    def test_all_or_none(self):
+        request = SetParametersAtomically.Request(parameters=[
+            Parameter(name="range_min", value=double(0.5)), Parameter(name="ignore", value=text("30:east"))])
+        result = self.watcher.call(SetParametersAtomically, "/values/g4lidar/set_parameters_atomically", request).result
+        self.assertFalse(result.successful)
+        self.assertEqual(self.get("range_min").double_value, 0.0)
+
+    def test_each_has_a_description(self):
+        service = "/values/g4lidar/"
+        names = self.watcher.call(ListParameters, service + "list_parameters", ListParameters.Request()).result.names
+        ours = [name for name in names if "." not in name and name != "use_sim_time"
+                and name != "start_type_description_service"]
+        self.assertIn("sample_rate", ours)
+        request = DescribeParameters.Request(names=ours)
+        for each in self.watcher.call(DescribeParameters, service + "describe_parameters", request).descriptors:
+            self.assertTrue(each.description, each.name)
+            if each.name in ("source", "frame_id", "grid", "order"):
+                self.assertTrue(each.read_only, each.name)
+
+
+@launch_testing.post_shutdown_test()
+class TestExit(unittest.TestCase):
+    def test_all_end_well(self, proc_info):
+        launch_testing.asserts.assertExitCodes(proc_info)
