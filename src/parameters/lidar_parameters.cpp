@@ -35,6 +35,9 @@ text_result<parameter_value> converted(const parameter& to, const parameter_valu
   if (to.type == is_double && whole != nullptr) return static_cast<double>(*whole);
   // "on" is true in the YAML of `ros2 param`.
   if (to.type == is_string && from.index() == is_bool) return word_of(from);
+  // "nan" and "inf" are numbers there.
+  const auto* const number = std::get_if<double>(&from);
+  if (to.type == is_string && number != nullptr && !std::isfinite(*number)) return word_of(from);
   if (from.index() != to.type)
     return tl::unexpected(std::string(to.name) + ": it is " + std::string(types.at(to.type)));
   const auto* const text = std::get_if<std::string>(&from);

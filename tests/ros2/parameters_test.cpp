@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <memory>
 #include <set>
 #include <string>
@@ -131,7 +132,7 @@ TEST(FilterParameters, RangesWithoutReturn_ChangeFromNowOn) {
   EXPECT_EQ(lidar.value("near_as"), "nan");
   EXPECT_EQ(lidar.grid().no_return, max);
   EXPECT_FALSE(lidar.grid().near_is_minus_infinity);
-  EXPECT_EQ(lidar.set("no_return", "nan"), "");
+  EXPECT_EQ(lidar.set("no_return", std::nan("")), "") << "nan in YAML";
   EXPECT_EQ(lidar.set("near_as", "minus-inf"), "");
   EXPECT_EQ(lidar.grid().no_return, nan);
   EXPECT_TRUE(lidar.grid().near_is_minus_infinity);

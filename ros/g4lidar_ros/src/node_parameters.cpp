@@ -63,7 +63,10 @@ void declare(rclcpp_lifecycle::LifecycleNode& node, const g4lidar::parameter& of
   made.description = of.description;
   made.additional_constraints = of.constraints;
   made.dynamic_typing = true;
-  if (const auto [least, most, step] = of.range; least < most) {
+  // The limits of the device are those of a G4; another model refuses what it does not have.
+  const std::string model = node.get_parameter("model").as_string();
+  const bool is_limited = of.setting == nullptr || model.empty() || model == g4lidar::g4_model.word;
+  if (const auto [least, most, step] = of.range; is_limited && least < most) {
     made.floating_point_range.resize(1);
     made.floating_point_range[0].from_value = least;
     made.floating_point_range[0].to_value = most;
