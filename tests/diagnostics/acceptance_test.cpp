@@ -136,7 +136,7 @@ TEST(Acceptance, EachQuestionHasAStepThatIsDone) {
   }
 }
 
-/// A lidar that is not as the table says, and the steps that must notice it.
+/// A lidar that is not as in the table, and the steps that must notice it.
 struct planted {
   std::string_view name;
   std::function<void(bench&)> plant;

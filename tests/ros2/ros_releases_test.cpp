@@ -72,9 +72,10 @@ class ros_writer {
   ros_writer(const test_domain& in, const std::string& name, const std::string& user_data)
       : topic_(dds_create_topic(in.participant(), dds::bool_message.descriptor, name.c_str(),
                                 nullptr, nullptr)) {
-    const dds::qos wish = dds::qos_of({.type = &dds::bool_message});
-    dds_qset_userdata(wish.get(), user_data.data(), user_data.size());
-    writer_ = dds::entity(dds_create_writer(in.participant(), topic_.get(), wish.get(), nullptr));
+    const dds::qos quality = dds::qos_of({.type = &dds::bool_message});
+    dds_qset_userdata(quality.get(), user_data.data(), user_data.size());
+    writer_ =
+        dds::entity(dds_create_writer(in.participant(), topic_.get(), quality.get(), nullptr));
     EXPECT_TRUE(writer_);
   }
 
@@ -166,9 +167,9 @@ TEST_F(Releases, RequestsWithoutTheNumberOfTheClientAreCounted) {
   const dds::entity topic(dds_create_topic(domain_.participant(), &described,
                                            "rq/g4lidar/stopRequest", nullptr, nullptr));
   const dds::message_type type{&described, ""};
-  const dds::qos wish = dds::qos_of({.type = &type});
+  const dds::qos quality = dds::qos_of({.type = &type});
   const dds::entity writer(
-      dds_create_writer(domain_.participant(), topic.get(), wish.get(), nullptr));
+      dds_create_writer(domain_.participant(), topic.get(), quality.get(), nullptr));
   diagnosis diagnostics(domain_);
   cli::program tool({"sim:"});
   ASSERT_TRUE(comes_true([&] { return diagnostics["unreadable"] == "0"; }));

@@ -156,7 +156,7 @@ TEST_F(SimPty, HasTheRateThatAProgramSets) {
   EXPECT_EQ(other.read(27).size(), 27U) << "this program sets no rate";
 }
 
-TEST_F(SimPty, AnyRateWorks_IfTheOptionsSaySo) {
+TEST_F(SimPty, AnyRateWorks_WithTheOption) {
   sim::device_options options;
   options.any_baud = true;
   const auto port = sim::background_pty::open(simulated(options));

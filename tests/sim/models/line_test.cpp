@@ -182,7 +182,7 @@ TEST(SimLine, PacketsThatNobodyCanReadAreNotWhole) {
   for (const sim::sent_sample& each : truth) EXPECT_FALSE(each.whole);
 }
 
-TEST(SimLine, AnyRate_IfTheOptionsSaySo) {
+TEST(SimLine, AnyRate_WithTheOption) {
   sim::device_options options = x4_options();
   options.any_baud = true;
   test::host_side host(options);

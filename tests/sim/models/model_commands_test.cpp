@@ -63,7 +63,7 @@ const std::map<std::string, codes> expected{
     {"tg50", all_two_way + stepped + codes{0x93, 0xD9}},
 };
 
-// What a device has not, it neither obeys nor answers; the log says so.
+// What a device has not, it neither obeys nor answers; the log shows it.
 TEST(SimModelCommands, EachModelHasItsOwn) {
   for (const test::family_model& each : test::family_models) {
     if (!each.answers) continue;
@@ -99,18 +99,18 @@ TEST(SimModelCommands, TheFrequencyHasTheStepsAndLimitsOfTheModel) {
         row{"tg15", 700, 300, 1600, 40}, row{"tg50", 700, 300, 1600, 40}}) {
     SCOPED_TRACE(each.word);
     test::host_side host(test::options_of(each.word));
-    const auto says = [&](std::uint8_t code, int chz) {
+    const auto reports = [&](std::uint8_t code, int chz) {
       EXPECT_EQ(host.ask(code), four_bytes(chz + each.more_chz)) << std::hex << unsigned{code};
     };
-    says(0x0D, each.first_chz);
-    says(0x09, each.first_chz + 10);
-    says(0x0A, each.first_chz);
-    says(0x0B, each.first_chz + 100);
-    says(0x0C, each.first_chz);
+    reports(0x0D, each.first_chz);
+    reports(0x09, each.first_chz + 10);
+    reports(0x0A, each.first_chz);
+    reports(0x0B, each.first_chz + 100);
+    reports(0x0C, each.first_chz);
     for (int i = 0; i < 15; ++i) (void)host.ask(0x0B);
-    says(0x0D, each.most_chz);
+    reports(0x0D, each.most_chz);
     for (int i = 0; i < 15; ++i) (void)host.ask(0x0C);
-    says(0x0D, each.least_chz);
+    reports(0x0D, each.least_chz);
     EXPECT_EQ(host.device.settings().scan_frequency_chz, each.least_chz);
   }
 }
