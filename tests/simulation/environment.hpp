@@ -66,6 +66,14 @@ class observed_transport final : public transport {
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return port_->now_ns(); }
   void wake() noexcept override { port_->wake(); }
+  [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override {
+    environment_->on_call();
+    return port_->set_baud(baud);
+  }
+  [[nodiscard]] result<bool> set_dtr(bool high) noexcept override {
+    environment_->on_call();
+    return port_->set_dtr(high);
+  }
   [[nodiscard]] std::string_view name() const noexcept override { return port_->name(); }
   [[nodiscard]] std::uint32_t baud() const noexcept override { return port_->baud(); }
   [[nodiscard]] std::size_t kept_bytes() const noexcept override { return port_->kept_bytes(); }

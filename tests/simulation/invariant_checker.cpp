@@ -28,7 +28,7 @@ void invariant_checker::begin(lidar& opened) {
   reader_ = opened.points().make_reader();
   last_ = {};
   read_ = missed_ = 0;
-  last_time_ns_ = 0;
+  last_time_ns_ = -second;  // what is measured before a port is opened has a time before 0
   history_.clear();
   is_broken_ = true;
   is_breaking_ = false;

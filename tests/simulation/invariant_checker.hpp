@@ -29,7 +29,7 @@ struct time_counts {
 class invariant_checker {
  public:
   invariant_checker(const run_parameters& parameters, environment& on)
-      : parameters_(&parameters), environment_(&on) {}
+      : parameters_(&parameters), environment_(&on), matcher_(parameters.device.scanner.format) {}
 
   /// A lidar is there and is watched; it is not, any more.
   void begin(lidar& opened);

@@ -230,7 +230,7 @@ double dice::spread(double least, double most) {
   return std::exp(real(std::log(least), std::log(most)));
 }
 
-run_parameters draw_run(std::uint64_t seed) {
+run_parameters draw_run(std::uint64_t seed, std::string_view model) {
   dice d(seed, 0x11FE);
   run_parameters parameters;
   parameters.seed = seed;
@@ -242,6 +242,10 @@ run_parameters draw_run(std::uint64_t seed) {
     parameters.calm_ns = d.between(10 * second, 40 * second);
   } else {
     draw_faults(d, parameters);
+  }
+  if (!model.empty()) {
+    dice of_model(seed, 0x30DE1);
+    become(of_model, model, parameters);
   }
   parameters.end_ns =
       parameters.calm_ns + recovery_time_ns(parameters) + d.between(4 * second, 10 * second);

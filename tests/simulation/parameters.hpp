@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
@@ -62,7 +63,11 @@ struct run_parameters {
   application_behavior application;
 };
 
-[[nodiscard]] run_parameters draw_run(std::uint64_t seed);
+/// Of a G4, or of the model of this name.
+[[nodiscard]] run_parameters draw_run(std::uint64_t seed, std::string_view model = {});
+
+/// Makes of them those of the model of this name: what only a G4 has is left out.
+void become(dice& d, std::string_view model, run_parameters& parameters);
 
 /// How long the device needs by itself for a whole revolution: boot, answers, spin-up, two turns.
 [[nodiscard]] std::int64_t own_time_ns(const run_parameters& parameters);

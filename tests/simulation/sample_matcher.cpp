@@ -11,13 +11,6 @@
 namespace g4lidar::simulation {
 namespace {
 
-/// The manual's formula, in double precision and written anew; without a return its limit.
-double corrected_deg(double first_level_deg, std::uint16_t raw) {
-  const double range_mm = raw == 0 ? 1e15 : raw / 4.0;
-  const double turn_rad = std::atan(21.8 * (155.3 - range_mm) / (155.3 * range_mm));
-  return first_level_deg + turn_rad * 180.0 / std::numbers::pi;
-}
-
 double apart_deg(double a, double b) { return std::abs(std::remainder(a - b, 360.0)); }
 
 /// First and last angle of a packet are rounded to 1/64 degree.
@@ -26,6 +19,14 @@ constexpr double angle_slack_deg = 1.0 / 64 + 0.001;
 constexpr std::size_t most_open = 400;
 
 }  // namespace
+
+/// The manual's formula, in double precision and written anew; without a return its limit.
+double sample_matcher::corrected_deg(const sim::sample_truth& truth) const {
+  const double range_mm =
+      truth.raw == 0 ? 1e15 : static_cast<double>(truth.raw) / format_.code.units_per_mm;
+  const double turn_rad = std::atan(format_.beam.offset_mm / range_mm - format_.beam.slope);
+  return truth.first_level_deg + turn_rad * 180.0 / std::numbers::pi;
+}
 
 void sample_matcher::add(std::span<const sim::sent_sample> samples) {
   for (const sim::sent_sample& s : samples) {
@@ -42,7 +43,7 @@ void sample_matcher::add(std::span<const sim::sent_sample> samples) {
       ++counts_.damaged;
     }
     into.samples[s.position] = {static_cast<std::int64_t>(s.truth.index), s.truth.time_ns,
-                                corrected_deg(s.truth.first_level_deg, s.truth.raw), s.truth.raw};
+                                corrected_deg(s.truth), s.truth.raw};
     ++into.known;
   }
 }
@@ -52,7 +53,8 @@ bool sample_matcher::fits(const packet& sent, std::size_t at) const {
   for (std::size_t i = 0; i < sent.count; ++i) {
     const point& seen = open_[at + i];
     const sample& truth = sent.samples[i];
-    if (static_cast<float>(truth.raw) * 0.25F != seen.range_mm) return false;
+    const auto units = static_cast<float>(format_.code.units_per_mm);
+    if (static_cast<float>(truth.raw) / units != seen.range_mm) return false;
     if (seen.is_revolution_start() != (sent.zero && i == 0)) return false;
     if (apart_deg(truth.angle_deg, static_cast<double>(seen.angle_deg)) > angle_slack_deg)
       return false;

@@ -38,6 +38,9 @@ struct known_point {
 /// sim::device::take_truth() gives them, before the points of them. *Single thread.*
 class sample_matcher {
  public:
+  /// Of samples that were sent in this format.
+  explicit sample_matcher(const sim::wire_format& format = {}) : format_(format) {}
+
   void add(std::span<const sim::sent_sample> samples);
   void add(std::span<const point> points) {
     open_.insert(open_.end(), points.begin(), points.end());
@@ -71,6 +74,7 @@ class sample_matcher {
     bool whole;  ///< As it was sent, and its angles show how the head turned.
   };
 
+  [[nodiscard]] double corrected_deg(const sim::sample_truth& truth) const;
   [[nodiscard]] bool fits(const packet& sent, std::size_t at) const;
   /// Of a packet that was sent with the open points from one on.
   enum class likeness : std::uint8_t {
@@ -96,6 +100,7 @@ class sample_matcher {
   std::deque<point> open_;
   std::vector<known_point> known_;
   truth_counts counts_;
+  sim::wire_format format_;
   std::string problem_;
   bool is_cut_ = false;
 };

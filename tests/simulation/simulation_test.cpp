@@ -2,6 +2,10 @@
 // Some simulation runs of the driver; scripts/ci/simulation has thousands.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <string_view>
+
+#include "g4lidar/sim/device_options.hpp"
 #include "simulation_run.hpp"
 #include "soak.hpp"
 #include "summary.hpp"
@@ -21,6 +25,18 @@ TEST(SimulationRuns, HoldAllInvariants) {
                                   << seed << " --verbose";
   }
   EXPECT_EQ(all.problem(), "");
+}
+
+TEST(SimulationRuns, HoldAllInvariantsForEachModel) {
+  for (const std::string_view model : sim::model_words()) {
+    for (const std::uint64_t seed :
+         {std::uint64_t{2}, std::uint64_t{5}}) {  // with faults, and healthy
+      const run_report report = run_simulation(draw_run(seed, model), false);
+      EXPECT_EQ(report.failure, "")
+          << "again: build/release/tests/simulation/simulation_run --seed " << seed << " --model "
+          << model << " --verbose";
+    }
+  }
 }
 
 TEST(SimulationRuns, AreTheSameEachTime) {

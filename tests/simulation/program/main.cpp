@@ -4,6 +4,8 @@
 //     simulation_run --seed 7 --verbose              one run, and what happens in it
 //     simulation_run --from 1 --count 100 --jobs 2   a hundred, two at a time
 //     simulation_run --from 1 --minutes 3 --jobs 2   as many as there is time for
+//     simulation_run --from 1 --count 8 --models     each model with some of these seeds
+//     simulation_run --seed 7 --model x4 --verbose   one of them
 //     simulation_run --unplugs 10000                 a single long one, unplugged again and again
 #include <algorithm>
 #include <atomic>
@@ -17,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "g4lidar/sim/device_options.hpp"
 #include "simulation/simulation_run.hpp"
 #include "simulation/soak.hpp"
 #include "simulation/summary.hpp"
@@ -32,6 +35,8 @@ struct arguments {
   std::uint64_t unplugs = 0;
   double minutes = 0.0;  // 0: `count` of them
   bool verbose = false;
+  std::string_view model;  // empty: a G4 with all that is not known of it
+  bool every_model = false;
   bool good = true;
 };
 
@@ -43,8 +48,14 @@ arguments read_arguments(int count, char** words) {
     const auto number = [&] { return std::strtoull(words[++i], nullptr, 10); };
     if (word == "--verbose") {
       read.verbose = true;
+    } else if (word == "--models") {
+      read.every_model = true;
     } else if (value == nullptr) {
       read.good = false;
+    } else if (word == "--model") {
+      read.model = words[++i];
+      read.good = read.good && std::ranges::find(g4lidar::sim::model_words(), read.model) !=
+                                   g4lidar::sim::model_words().end();
     } else if (word == "--seed" || word == "--from") {
       read.from = number();
     } else if (word == "--count") {
@@ -86,17 +97,21 @@ summary run_all(const arguments& wanted, const char* program) {
   const auto work = [&] {
     while (wanted.minutes <= 0.0 || clock::now() < end) {
       const std::uint64_t index = next++;
-      if (wanted.minutes <= 0.0 && index >= wanted.count) return;
-      const std::uint64_t seed = wanted.from + index;
-      const run_parameters parameters = draw_run(seed);
+      const auto models = g4lidar::sim::model_words();
+      const std::uint64_t in_turn = wanted.every_model ? models.size() : 1;
+      if (wanted.minutes <= 0.0 && index >= wanted.count * in_turn) return;
+      const std::uint64_t seed = wanted.from + index / in_turn;
+      const std::string_view model = wanted.every_model ? models[index % in_turn] : wanted.model;
+      const run_parameters parameters = draw_run(seed, model);
       const run_report report = run_simulation(parameters, wanted.verbose);
       const std::lock_guard lock(one_at_a_time);
       all.add(parameters, report);
       if (report.failure.empty()) continue;
-      std::printf("run %llu failed at %.6f s: %s\n  again: %s --seed %llu --verbose\n",
+      std::printf("run %llu failed at %.6f s: %s\n  again: %s --seed %llu%s%.*s --verbose\n",
                   static_cast<unsigned long long>(seed),
                   static_cast<double>(report.failed_ns) * 1e-9, report.failure.c_str(), program,
-                  static_cast<unsigned long long>(seed));
+                  static_cast<unsigned long long>(seed), model.empty() ? "" : " --model ",
+                  static_cast<int>(model.size()), model.data());
       std::fflush(stdout);
     }
   };
@@ -114,7 +129,7 @@ int main(int count, char** words) {
   if (!wanted.good) {
     std::fputs(
         "usage: simulation_run [--seed N | --from N] [--count N | --minutes M] [--jobs N] "
-        "[--verbose] [--unplugs N]\n",
+        "[--model WORD | --models] [--verbose] [--unplugs N]\n",
         stderr);
     return 2;
   }
