@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Discovery: which serial ports there are, which appear and disappear, and at which of them a G4
-// answers.
+// Discovery: which serial ports there are, which appear and disappear, and which lidar is attached to them.
 #pragma once
 
 #include <chrono>
@@ -85,32 +84,56 @@ class G4LIDAR_API port_monitor {
   std::unique_ptr<state> state_;
 };
 
-/// Checks whether a G4 answers: stops a scan that may be running, waits until no bytes arrive, and
-/// queries the device information. Leaves the device idle. Takes about 0.1 s with an idle G4;
-/// returns by the deadline, in the clock of the transport's now_ns().
+/// A lidar, as far as its bytes name it.
+struct recognised_lidar {
+  const g4lidar::model* model = nullptr;  ///< The most usual of `candidates`. Valid forever.
+  std::uint32_t baud = 0;                 ///< Of the port; 0 where bytes take no time.
+  /// As it reported; is_known() is false for one-way lidars that report nothing.
+  device_information device{};
+  bool was_scanning = false;  ///< Packets arrived. A two-way lidar was stopped.
+  /// All models between which the bytes do not decide, `model` first: an X2 and an X3 send the same.
+  std::vector<const g4lidar::model*> candidates{};
+};
+
+/// What is known before a search.
+struct search_options {
+  const g4lidar::model* model =
+      nullptr;             ///< Not searched for if it is set: only its rates are tried.
+  std::uint32_t baud = 0;  ///< Not searched for if it is not 0.
+  /// Whether the user has named the port: if nothing arrives, DTR gets a pulse, because some models need
+  /// it to turn. Takes 2 s more.
+  bool may_pulse_dtr = false;
+};
+
+/// Finds out which lidar is attached to an open port, and at which rate it sends. Listens, and where it is
+/// silent asks for the device information: two bytes that change nothing. Only a stream of packets that a
+/// two-way lidar may send is stopped. Leaves a two-way lidar idle, and the port at the rate that was
+/// found. Takes about 0.1 s with an idle G4, and at most 3 s with another lidar; returns by the deadline,
+/// in the clock of the transport's now_ns(). *Allocates.*
 ///
-/// Fails with silence, garbage (bytes arrived, but no answer), other_device (a device answers that
-/// is not a G4), does_not_stop, or like the transport.
-[[nodiscard]] G4LIDAR_API result<device_information> probe(transport& port,
-                                                           std::int64_t deadline_ns);
+/// Fails with silence, garbage (bytes arrived, but no packet and no answer; the subject lists the rates),
+/// other_device (a product that is not supported; the subject names it), does_not_stop, or like the
+/// transport.
+[[nodiscard]] G4LIDAR_API result<recognised_lidar> search(transport& port, std::int64_t deadline_ns,
+                                                          const search_options& options = {});
 
 /// A port with the lidar that is attached to it.
 struct found_lidar {
   port_info port;
-  device_information device;
+  recognised_lidar lidar;
 };
 
 /// How lidars are searched.
 struct find_options {
-  /// Write to every serial port, also to ports without the USB bridge of a G4. Two commands of two
-  /// bytes each are then sent to any device: a printer, a modem, a robot arm.
+  /// Write to every serial port, also to ports without the USB bridge of a G4. Commands of two bytes each
+  /// are then sent to any device, at several rates: a printer, a modem, a robot arm.
   bool probe_all_ports = false;
-  std::uint32_t baud = g4_model.bauds[0];
-  std::chrono::milliseconds probe_timeout{2500};  ///< For each port.
+  std::uint32_t baud = 0;                         ///< 0: all that lidars have.
+  std::chrono::milliseconds probe_timeout{3000};  ///< For each port.
 };
 
-/// Every G4 that answers, ordered by path. Opens the ports one after the other and restores their
-/// settings; skips those that cannot be opened or where no G4 answers. Takes at most
+/// Every lidar that answers or sends, ordered by path. Opens the ports one after the other and restores their
+/// settings; skips those that cannot be opened or where no lidar is found. Takes at most
 /// `probe_timeout` a port. *Allocates.* Fails with system.
 [[nodiscard]] G4LIDAR_API result<std::vector<found_lidar>> find_lidars(
     const find_options& options = {});
@@ -119,8 +142,8 @@ struct find_options {
 /// - "/dev/...", or any path: that port; only its path is set;
 /// - "usb:1-1.4": the port at that USB port;
 /// - "serial:2021101000070073": the port at which the lidar with this number answers (writes);
-/// - "": the port of the only G4. With one USB bridge of a G4, its port; with several, they are
-///   queried (writes), and one that cannot be queried counts as a G4.
+/// - "": the port of the only lidar. With one USB bridge of a G4, its port; with several, they are
+///   searched (writes), and one that cannot be searched counts as one with a lidar.
 ///
 /// The path is not opened and need not exist. Fails with bad_option, no_port, several_ports (the
 /// subject lists them), or system; for "serial:" also with permission or busy, if that prevented

@@ -77,6 +77,7 @@ enum class error_detail : std::uint8_t {
   no_simulator,   ///< bad_option: `sim:`, in a library that was built without the simulator.
   motor_line,     ///< brown_out: a motor that the line DTR drives has never turned.
   unknown_model,  ///< bad_file: a recording of a model, or in a version, that is not known.
+  unsupported_product,  ///< other_device: a product of the manufacturer with another protocol.
 };
 
 /// One error. Trivially copyable, never allocates.

@@ -22,6 +22,7 @@ from ._g4lidar import (
     DeviceInformation,
     Diagnosis,
     Event,
+    FoundLidar,
     Lidar,
     Mounting,
     Player,
@@ -57,8 +58,8 @@ from .errors import Error
 
 __all__ = [
     "POINT_DTYPE", "POSE_DTYPE", "BackgroundReader", "Decoder", "DeviceInformation", "Diagnosis", "Error", "Event",
-    "Lidar", "Mounting", "Player", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter", "Scan",
-    "ScanFlag", "ScanShaper", "Scans", "Simulator", "StageReport", "Twist", "TwistEstimate", "TwistEstimator",
+    "FoundLidar", "Lidar", "Mounting", "Player", "PointFlag", "Port", "RecordedItem", "Recording", "RecordingWriter",
+    "Scan", "ScanFlag", "ScanShaper", "Scans", "Simulator", "StageReport", "Twist", "TwistEstimate", "TwistEstimator",
     "decode", "deskew", "doctor", "errors", "fill_grid", "find_lidars", "list_ports", "mark_bit_errors",
     "mark_isolated", "mark_veiling", "merge_scans", "open", "to_xy",
 ]

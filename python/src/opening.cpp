@@ -2,6 +2,7 @@
 // open(), and what is connected.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
@@ -157,21 +158,21 @@ live_lidar* open_by_keywords(
   return open_lidar(device, options, {speed, loop, begin, end}, record, overwrite);
 }
 
-using found_ports = std::vector<std::tuple<port_info, device_information>>;
+using found_ports = std::vector<std::tuple<port_info, recognised_lidar>>;
 
-/// What the lidar at each port answers, as far as there are any.
+/// The lidar at each port, as far as there are any.
 found_ports ask(std::vector<port_info> ports) {
   const auto asking = std::make_shared<std::atomic<progress>>(progress::running);
   const auto work = [ports = std::move(ports), asking] {
     found_ports found;
     for (const port_info& port : ports) {
       if (*asking == progress::abandoned) break;
-      auto opened = serial_port::open(port.path);
+      auto opened = serial_port::open(port.path, {});
       if (!opened) continue;
       abandonable_transport to(std::move(*opened), asking);
       const auto longest = std::chrono::nanoseconds(find_options().probe_timeout);
-      if (const auto device = probe(to, to.now_ns() + longest.count())) {
-        found.emplace_back(port, *device);
+      if (auto lidar = search(to, to.now_ns() + longest.count())) {
+        found.emplace_back(port, *std::move(lidar));
       }
     }
     return found;
@@ -193,6 +194,28 @@ void bind_discovery(nb::module_& module) {
       .def_ro("product_id", &port_info::product_id, "USB.")
       .def_ro("may_open", &port_info::may_open, "Whether this user may read and write it.")
       .def("__repr__", [](const port_info& p) { return "<g4lidar.Port " + p.path + ">"; });
+  nb::class_<recognised_lidar>(module, "FoundLidar", "A lidar, as far as its bytes name it.")
+      .def_prop_ro(
+          "model", [](const recognised_lidar& of) { return of.model->word; },
+          "The name of its model, 'x2': the most usual of `candidates`.")
+      .def_prop_ro(
+          "candidates",
+          [](const recognised_lidar& of) {
+            std::vector<std::string_view> words;
+            for (const model* each : of.candidates) words.push_back(each->word);
+            return words;
+          },
+          "All models that send such bytes, `model` first.")
+      .def_ro("baud", &recognised_lidar::baud, "Bits per second.")
+      .def_prop_ro(
+          "information",
+          [](const recognised_lidar& of) {
+            return of.device.model != 0 ? std::optional(of.device) : std::nullopt;
+          },
+          "What it reports about itself; None if it reports nothing.")
+      .def("__repr__", [](const recognised_lidar& of) {
+        return "<g4lidar.FoundLidar " + std::string(of.model->word) + ">";
+      });
   module.def(
       "list_ports",
       [] {
@@ -214,7 +237,8 @@ void bind_discovery(nb::module_& module) {
         return ask(std::move(ports));
       },
       nb::kw_only(), "probe_all_ports"_a = false,
-      "Every G4 that answers, with its port, ordered by path. Takes at most 2.5 s a port. Writes "
+      "Every lidar that answers or sends, with its port, ordered by path. Takes at most 3 s a "
+      "port. Writes "
       "only to ports with the "
       "USB bridge of a G4, unless `probe_all_ports` is set.");
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,8 @@ using namespace g4lidar::c;
 
 struct g4lidar_ports {
   std::vector<port_info> found;
-  std::vector<g4lidar_port> shown;  // views of `found`
+  std::vector<std::string> candidates;  // of each lidar that was found
+  std::vector<g4lidar_port> shown;      // views of both
 };
 
 struct g4lidar_port_monitor {
@@ -30,7 +32,7 @@ struct g4lidar_port_monitor {
 namespace {
 
 constexpr g4lidar_find_options find_defaults{
-    sizeof(g4lidar_find_options), 230400, 2500, false, false, {}};
+    sizeof(g4lidar_find_options), 0, 3000, false, false, {}};
 
 g4lidar_port view_of(const port_info& from) noexcept {
   g4lidar_port made{};
@@ -46,7 +48,14 @@ g4lidar_port view_of(const port_info& from) noexcept {
   made.product_id = from.product_id;
   made.may_open = from.may_open;
   made.is_g4_bridge = is_g4_bridge(from);
+  made.model = made.candidates = "";
   return made;
+}
+
+std::string words_of(const std::vector<const model*>& all) {
+  std::string words;
+  for (const model* each : all) words.append(words.empty() ? "" : ", ").append(each->word);
+  return words;
 }
 
 /// Makes a list of what `find` finds. It gets the options, and returns a result of ports.
@@ -60,15 +69,22 @@ int listed(const g4lidar_find_options* given, g4lidar_ports** ports, g4lidar_err
                                .baud = taken.baud,
                                .probe_timeout = std::chrono::milliseconds(taken.probe_timeout_ms)};
     auto made = std::make_unique<g4lidar_ports>();
-    std::vector<device_information> lidars;
+    std::vector<recognised_lidar> lidars;
     if (const auto found = find(options, made->found, lidars); !found) {
       return fail(error, found.error());
     }
     if (taken.find_holders) find_holders(made->found);
     for (const port_info& each : made->found) made->shown.push_back(view_of(each));
+    for (const recognised_lidar& each : lidars) {
+      made->candidates.push_back(words_of(each.candidates));
+    }
     for (std::size_t i = 0; i < lidars.size(); ++i) {
-      made->shown[i].has_lidar = true;
-      made->shown[i].lidar = identity_of(lidars[i]);
+      g4lidar_port& shown = made->shown[i];
+      shown.has_lidar = true;
+      shown.lidar = identity_of(lidars[i].device);
+      shown.model = lidars[i].model->word.data();  // literals
+      shown.candidates = made->candidates[i].c_str();
+      shown.baud = lidars[i].baud;
     }
     *ports = made.release();
     return succeed(error);
@@ -100,7 +116,7 @@ int g4lidar_find_lidars(const g4lidar_find_options* options, g4lidar_ports** por
                   if (!all) return tl::unexpected(all.error());
                   for (found_lidar& each : *all) {
                     found.push_back(std::move(each.port));
-                    lidars.push_back(each.device);
+                    lidars.push_back(std::move(each.lidar));
                   }
                   return {};
                 });

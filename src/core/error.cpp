@@ -107,7 +107,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 10> all_details{{
+constexpr std::array<detail_words, 11> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -140,8 +140,10 @@ constexpr std::array<detail_words, 10> all_details{{
      "DTR of the port must reach the board: it starts and stops the motor."},
     {"a recording of a model of lidar, or in a version, that this library does not know",
      "Read it with the libg4lidar that made it, or a newer one."},
+    {"a product with another protocol, which this library does not read",
+     "Use its manufacturer's software. docs/models.md lists the models that this library reads."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::unknown_model));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::unsupported_product));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

@@ -10,12 +10,14 @@
 namespace g4lidar {
 namespace {
 
-result<device_information> probe_of(const port_info& port, const find_options& options) {
-  auto opened = serial_port::open(port.path, {.baud = options.baud});
+result<recognised_lidar> search_at(const port_info& port, const find_options& options) {
+  auto opened =
+      serial_port::open(port.path, {.baud = options.baud != 0 ? options.baud : g4_model.bauds[0]});
   if (!opened) return tl::unexpected(opened.error());
   transport& to_device = **opened;
-  return probe(to_device,
-               to_device.now_ns() + std::chrono::nanoseconds(options.probe_timeout).count());
+  return search(to_device,
+                to_device.now_ns() + std::chrono::nanoseconds(options.probe_timeout).count(),
+                {.baud = options.baud});
 }
 
 /// The ports that the library may write to: only this function decides that.
@@ -27,7 +29,7 @@ result<std::vector<port_info>> candidates(const find_options& options) {
   return ports;
 }
 
-/// A port that could not be queried, so that it may belong to a G4.
+/// A port that could not be queried, so that a lidar may be attached to it.
 bool is_unasked(const error& why) noexcept {
   return why == problem::busy || why == problem::permission;
 }
@@ -65,21 +67,21 @@ result<port_info> with_serial_number(std::string_view digits, std::string_view w
   if (!ports) return tl::unexpected(ports.error());
   std::optional<error> unasked;
   for (const port_info& port : *ports) {
-    const auto device = probe_of(port, options);
-    if (device && device->serial_number() == digits) return port;
-    if (!device && !unasked && is_unasked(device.error())) unasked = device.error();
+    const auto found = search_at(port, options);
+    if (found && found->device.serial_number() == digits) return port;
+    if (!found && !unasked && is_unasked(found.error())) unasked = found.error();
   }
   if (unasked) return tl::unexpected(*unasked);
   return failure(task::finding, problem::no_port, which);
 }
 
-result<port_info> the_only_g4(const find_options& options) {
+result<port_info> the_only_lidar(const find_options& options) {
   auto ports = candidates(options);
   if (!ports) return tl::unexpected(ports.error());
   if (ports->size() == 1) return the_only_one(*std::move(ports), "");
   std::erase_if(*ports, [&](const port_info& port) {
-    const auto device = probe_of(port, options);
-    return !device && !is_unasked(device.error());
+    const auto lidar = search_at(port, options);
+    return !lidar && !is_unasked(lidar.error());
   });
   return the_only_one(*std::move(ports), "");
 }
@@ -91,13 +93,14 @@ result<std::vector<found_lidar>> find_lidars(const find_options& options) {
   if (!ports) return tl::unexpected(ports.error());
   std::vector<found_lidar> found;
   for (port_info& port : *ports) {
-    if (const auto device = probe_of(port, options)) found.push_back({std::move(port), *device});
+    if (auto lidar = search_at(port, options))
+      found.push_back({std::move(port), *std::move(lidar)});
   }
   return found;
 }
 
 result<port_info> select_port(std::string_view which, const find_options& options) {
-  if (which.empty()) return the_only_g4(options);
+  if (which.empty()) return the_only_lidar(options);
   if (which.starts_with(usb_prefix)) return at_usb_place(which.substr(usb_prefix.size()), which);
   if (which.starts_with(serial_prefix)) {
     return with_serial_number(which.substr(serial_prefix.size()), which, options);

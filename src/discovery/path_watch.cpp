@@ -43,11 +43,11 @@ bool path_watch::take() noexcept {
   for (ssize_t size = 0; (size = ::read(fd_.get(), read.data(), read.size())) > 0;) {
     const char* const end = read.data() + size;
     for (const char* at = read.data(); at < end;) {
-      inotify_event event{};
-      std::memcpy(&event, at, sizeof event);
-      at += sizeof event;
-      changed = concerns(event.len > 0 ? std::string_view(at) : std::string_view()) || changed;
-      at += event.len;
+      inotify_event change{};
+      std::memcpy(&change, at, sizeof change);
+      at += sizeof change;
+      changed = concerns(change.len > 0 ? std::string_view(at) : std::string_view()) || changed;
+      at += change.len;
     }
     follow();
   }

@@ -52,12 +52,7 @@ class identity_reader {
     const bool is_well = found.faults == ct_faults::none;
     condition_ = health{is_well ? health_status::ok : health_status::error,
                         static_cast<std::uint8_t>(found.faults)};
-    // CT has only the lower bits of the number of the model.
-    std::uint8_t number = found.id_low_bits;
-    for (const std::uint8_t id : which_->ids) {
-      if ((id & 15U) == found.id_low_bits) number = id;
-    }
-    set({number, found.firmware_major, found.firmware_minor, found.hardware, found.serial_digits});
+    set(information_of(found, *which_));
   }
 
   const model* which_;

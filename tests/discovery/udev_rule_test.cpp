@@ -23,7 +23,7 @@ struct term {
 
 std::vector<std::filesystem::path> files() {
   std::vector<std::filesystem::path> found;
-  for (const auto& entry : std::filesystem::directory_iterator(rules)) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(rules)) {
     if (entry.path().extension() == ".rules") found.push_back(entry.path());
   }
   return found;
@@ -54,7 +54,7 @@ void expect_known(const term& one) {
 }
 
 TEST(UdevRules, EveryLine_IsARule) {
-  ASSERT_EQ(files().size(), 2U);
+  ASSERT_EQ(files().size(), 3U);
   for (const auto& path : files()) {
     SCOPED_TRACE(path.filename());
     std::ifstream file(path);
@@ -80,9 +80,30 @@ TEST(UdevRules, HaveWorkingNumbers) {
   EXPECT_GT(std::string("91-g4lidar-no-brltty.rules"), "90-brltty-usb-generic.rules");
 }
 
+std::string contents_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// They belong to many devices, so `cp packaging/udev/*.rules` and an installation must not take them.
+TEST(UdevRules, OtherBridges_AreInAFileThatIsNotInstalled) {
+  const std::string name = "72-g4lidar-other-bridges.rules";
+  const std::string all = contents_of(rules / "examples" / name);
+  for (const std::string_view part :
+       {R"(ATTRS{idVendor}=="067b", ATTRS{idProduct}=="2303", GROUP="dialout", MODE="0660")",
+        R"(ATTRS{idVendor}=="0483", ATTRS{idProduct}=="5740", GROUP="dialout", MODE="0660")"}) {
+    EXPECT_NE(all.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(all.find("10c4"), std::string::npos);
+  EXPECT_LT(name, "73-seat-late.rules");
+  EXPECT_FALSE(std::filesystem::exists(rules / name));
+  const auto source = std::filesystem::path(G4LIDAR_SOURCE_DIR);
+  EXPECT_EQ(contents_of(rules / "72-g4lidar.rules").find("067b"), std::string::npos);
+  EXPECT_EQ(contents_of(source / "cmake/install.cmake").find("rules.d/" + name), std::string::npos);
+}
+
 TEST(UdevRules, ContainThePromisedRules) {
-  std::ifstream file(rules / "72-g4lidar.rules");
-  const std::string all(std::istreambuf_iterator<char>(file), {});
+  const std::string all = contents_of(rules / "72-g4lidar.rules");
   for (const std::string_view part :
        {R"(ATTRS{idVendor}=="10c4", ATTRS{idProduct}=="ea60")", R"(GROUP="dialout")",
         R"(MODE="0660")", R"(TAG+="uaccess")", R"(SYMLINK+="g4lidar-$id")",

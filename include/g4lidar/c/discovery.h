@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file
- * Discovery: which serial ports there are, which appear and disappear, and at which a G4 answers.
+ * Discovery: which serial ports there are, which appear and disappear, and which lidar is attached.
  */
 #ifndef G4LIDAR_C_DISCOVERY_H
 #define G4LIDAR_C_DISCOVERY_H
@@ -26,8 +26,11 @@ typedef struct g4lidar_port {
   uint16_t product_id;      /**< USB. */
   bool may_open;            /**< Whether this user may read and write it. */
   bool is_g4_bridge;        /**< Whether its USB bridge is the model that comes with a G4. */
-  bool has_lidar;           /**< Whether a G4 answered: `lidar`. */
-  g4lidar_identity lidar;   /**< Of g4lidar_find_lidars(). */
+  bool has_lidar;           /**< Whether g4lidar_find_lidars() has found a lidar. */
+  g4lidar_identity lidar;   /**< As it reported; 0 where it reports nothing. */
+  const char* model;        /**< The model that was found, "x2"; see `candidates`. */
+  const char* candidates;   /**< All models that send the same bytes: "x2, x2l, x3". */
+  uint32_t baud;            /**< The rate at which it was found. */
 } g4lidar_port;
 
 /** A list of ports. */
@@ -36,10 +39,10 @@ typedef struct g4lidar_ports g4lidar_ports;
 /** How ports and lidars are searched. */
 typedef struct g4lidar_find_options {
   size_t struct_size;       /**< Set by g4lidar_find_options_init(). */
-  uint32_t baud;            /**< Bits per second; 230400. */
-  int32_t probe_timeout_ms; /**< For each port; 2500. */
-  /** Write to every serial port, also to ports without the USB bridge of a G4. Two commands of two
-   *  bytes each are then sent to any device: a printer, a modem, a robot arm. */
+  uint32_t baud;            /**< Bits per second; 0: all that lidars have. */
+  int32_t probe_timeout_ms; /**< For each port; 3000. */
+  /** Write to every serial port, also to ports without the USB bridge of a G4. Commands of two bytes
+   *  each are then sent to any device, at several rates: a printer, a modem, a robot arm. */
   bool probe_all_ports;
   bool find_holders;   /**< Find out which process has each port open: takes some 10 ms. */
   uint8_t reserved[6]; /**< 0. */
@@ -51,7 +54,7 @@ G4LIDAR_C_API void g4lidar_find_options_init(g4lidar_find_options* options, size
 /** Lists all serial ports, ordered by path, and writes to none. `options` may be NULL, here and below. */
 G4LIDAR_C_API int g4lidar_list_ports(const g4lidar_find_options* options, g4lidar_ports** ports,
                                      g4lidar_error* error);
-/** Lists the ports at which a G4 answers: opens them one after the other. Takes at most
+/** Lists the ports at which a lidar answers or sends: opens them one after the other. Takes at most
  *  `probe_timeout_ms` for each port. */
 G4LIDAR_C_API int g4lidar_find_lidars(const g4lidar_find_options* options, g4lidar_ports** ports,
                                       g4lidar_error* error);

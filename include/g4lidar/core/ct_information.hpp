@@ -8,8 +8,10 @@
 #include <optional>
 
 #include "g4lidar/core/ct_check.hpp"
+#include "g4lidar/core/model_record.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/skipped.hpp"
+#include "g4lidar/device_information.hpp"
 
 namespace g4lidar {
 
@@ -37,6 +39,18 @@ struct ct_information {
 
   friend constexpr bool operator==(const ct_information&, const ct_information&) = default;
 };
+
+/// What a device of the model `which` would report with `stated`. CT has only the lower bits of the number
+/// of the model. *Pure.*
+[[nodiscard]] constexpr device_information information_of(const ct_information& stated,
+                                                          const model& which) noexcept {
+  std::uint8_t number = stated.id_low_bits;
+  for (const std::uint8_t id : which.ids) {
+    if ((id & 15U) == stated.id_low_bits) number = id;
+  }
+  return {number, stated.firmware_major, stated.firmware_minor, stated.hardware,
+          stated.serial_digits};
+}
 
 /// Reads the information from the packets of a stream. *Single thread, never allocates.* A revolution
 /// is believed only if the CRC byte behind it fits, and if it names a model and a possible date: other

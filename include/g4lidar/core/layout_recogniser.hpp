@@ -159,6 +159,17 @@ class layout_recogniser {
            candidates_[2].has_packet();
   }
 
+  /// What the bytes CT state, as long as the size of a sample is decided.
+  [[nodiscard]] constexpr std::optional<ct_information> information() const noexcept {
+    const detail::layout_candidate* const sent = decided();
+    return sent == nullptr ? std::nullopt : sent->information();
+  }
+  /// Samples per second, by the frequency that a zero packet reports; 0: not known.
+  [[nodiscard]] constexpr std::uint32_t rate_hz() const noexcept {
+    const detail::layout_candidate* const sent = decided();
+    return sent == nullptr ? 0 : sent->rate_hz();
+  }
+
   /// The model as far as the bytes show it; the G4 as long as the size of a sample is not decided.
   /// Valid forever.
   [[nodiscard]] constexpr const model& most_likely() const noexcept { return *found().which; }
@@ -198,11 +209,12 @@ class layout_recogniser {
 
   /// The model that is taken where the bytes name none.
   [[nodiscard]] static constexpr const model& usual(std::size_t size, bool has_flags) noexcept {
-    if (size == 2 && !has_flags) return g4_model;
-    const model* const row = model_named(size == 2   ? "x2"
-                                         : size == 3 ? "t-mini-pro"
-                                                     : "t-mini-plus-sh");
-    return row != nullptr ? *row : g4_model;
+    for (const model& row : models) {
+      const bool is_usual = row.usual == usual_kind::of_its_layout;
+      if (!is_usual || sample_size(row.samples.layout) != size) continue;
+      if (size != 2 || has_sample_flags(row.samples.layout) == has_flags) return row;
+    }
+    return g4_model;
   }
 
   [[nodiscard]] constexpr const detail::layout_candidate* decided() const noexcept {

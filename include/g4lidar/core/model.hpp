@@ -29,6 +29,7 @@ inline constexpr model g4_model{
     .protection = presence::yes,
     .ct_information = presence::unknown,
     .has_motor_settings = true,
+    .usual = usual_kind::of_its_layout,
 };
 /// How its samples are read.
 inline constexpr sample_format g4_format = g4_model.samples;
@@ -43,6 +44,8 @@ inline constexpr auto models = [] {
   using enum link_kind;
   using enum motor_kind;
   using enum presence;
+  constexpr auto at_its_rate = usual_kind::at_its_rate;
+  constexpr auto of_its_layout = usual_kind::of_its_layout;
   constexpr sample_format quarter_samples{quarter_mm, triangle};
   constexpr sample_format flagged_samples{flagged_mm, triangle};
   constexpr sample_format half_mm_samples{half_mm, triangle};
@@ -77,7 +80,7 @@ inline constexpr auto models = [] {
   // clang-format off
   // word, name, ids, bauds, samples, link, motor,
   // rates, frequency, range, turn, divisor of the zero angle, protection, information in CT,
-  // motor settings, other layout, old firmware, pitch
+  // motor settings, other layout, old firmware, pitch, whether it is the usual one
   return std::to_array<model>({
       g4_model,
       {"g4-pro",         "G4 Pro",         {7},     {230400},         g4_format,       two_way, command,
@@ -109,9 +112,9 @@ inline constexpr auto models = [] {
       {"x4",             "X4",             {6},     {128000},         flagged_samples, two_way, dtr,
        fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      no},
       {"x4-pro",         "X4 Pro",         {4, 6},  {128000},         flagged_samples, one_way, supply,
-       fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      yes},
+       fixed(5000),      not_set,      {120, 10000}, 0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
       {"x2",             "X2",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
+       fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, of_its_layout},
       {"x2l",            "X2L",            {4, 6},  {115200},         flagged_samples, one_way, dtr,
        fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
       {"x3",             "X3",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
@@ -121,12 +124,12 @@ inline constexpr auto models = [] {
       {"s2",             "S2",             {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
        s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8},
       {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
-       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8},
+       s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8, {}, false, at_its_rate},
       // Their bauds carry 3 kHz of such samples, not 4.
       {"s2-intensity",   "S2 with intensity", {4, 12}, {115200, 128000}, triangle_8,   one_way, dtr,
        fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
       {"s2-pro-intensity", "S2 Pro with intensity", {4, 12}, {115200, 128000}, triangle_8, one_way, dtr,
-       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm},
+       fixed(3000),      not_set,      {80, 12000},  0,   0,   no,      yes, false, flagged_mm, {}, false, at_its_rate},
       {"s4",             "S4",             {4},     {115200},         flagged_samples, two_way, dtr,
        fixed(4000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
       {"s4b",            "S4B",            {4, 11}, {153600},         triangle_8,      two_way, dtr,
@@ -136,11 +139,11 @@ inline constexpr auto models = [] {
       {"t-mini",         "T-mini",         {140},   {230400},         tof_8,           two_way, command,
        fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
       {"t-mini-pro",     "T-mini Pro",     {150},   {230400},         tof_8,           two_way, command,
-       fixed(4000),      set_6_to_12,  {20, 12000},  0,   0,   unknown, unknown},
+       fixed(4000),      set_6_to_12,  {20, 12000},  0,   0,   unknown, unknown, false, intensity_8, {}, false, of_its_layout},
       {"t-mini-plus",    "T-mini Plus",    {151},   {230400},         tof_8,           two_way, command,
        fixed(4000),      set_6_to_12,  {50, 12000},  0,   0,   unknown, unknown},
       {"t-mini-plus-sh", "T-mini Plus SH", {152},   {230400},         tof_16,          two_way, command,
-       fixed(4000),      set_6_to_12,  {50, 25000},  0,   0,   unknown, unknown, false, intensity_16, {}, true},
+       fixed(4000),      set_6_to_12,  {50, 25000},  0,   0,   unknown, unknown, false, intensity_16, {}, true, of_its_layout},
       {"tg15",           "TG15",           {100},   {512000},         tg_samples,      two_way, command,
        tg_rates,         tg_frequency, {50, 30000},  180, 4,   yes,     unknown, false, whole_mm, tg_old},
       {"tg30",           "TG30",           {101},   {512000},         tg_samples,      two_way, command,

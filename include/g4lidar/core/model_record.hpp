@@ -57,6 +57,13 @@ enum class correction_kind : std::uint8_t {
 /// Whether a lidar answers commands, or sends from power-on and answers nothing.
 enum class link_kind : std::uint8_t { two_way, one_way };
 
+/// When a model is taken where bytes fit several.
+enum class usual_kind : std::uint8_t {
+  no,
+  at_its_rate,    ///< Among those with its layout and its baud rate.
+  of_its_layout,  ///< Also where the baud rate is not known.
+};
+
 /// What starts and stops the motor.
 enum class motor_kind : std::uint8_t {
   command,  ///< The commands start and stop.
@@ -142,7 +149,13 @@ struct model {
   sample_layout other_layout = samples.layout;
   firmware_difference old_firmware{};
   bool has_pitch = false;  ///< Command 98.
+  usual_kind usual = usual_kind::no;  ///< Whether it is taken where bytes fit several models.
 };
+
+/// Whether `which` is taken where bytes fit several models, and their baud rate is known. *Pure.*
+[[nodiscard]] constexpr bool is_usual(const model& which) noexcept {
+  return which.usual != usual_kind::no;
+}
 
 /// Whether `which` measures the intensity of returns. *Pure.*
 [[nodiscard]] constexpr bool has_intensity(const model& which) noexcept {

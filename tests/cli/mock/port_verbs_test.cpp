@@ -151,13 +151,13 @@ TEST_F(PortVerbs, Probe_ReportsWhichLidarAnswersAndWhatFailed) {
   ASSERT_EQ(lines.size(), 4U);
   const auto answer = [&](std::size_t line) {
     const std::vector<std::string> words = words_of(lines[line]);
-    return words.size() < 10 ? std::vector<std::string>()
-                             : std::vector<std::string>(words.begin() + 7, words.begin() + 10);
+    return words.size() < 12 ? std::vector<std::string>()
+                             : std::vector<std::string>(words.begin() + 7, words.begin() + 12);
   };
-  EXPECT_THAT(answer(0), ElementsAre("ANSWER", "SERIAL", "FIRMWARE"));
-  EXPECT_THAT(answer(1), ElementsAre("g4", "2021101000070071", "3.2"));
-  EXPECT_THAT(answer(2), ElementsAre("silence", "-", "-"));
-  EXPECT_THAT(answer(3), ElementsAre("-", "-", "-"));
+  EXPECT_THAT(answer(0), ElementsAre("ANSWER", "SERIAL", "FIRMWARE", "BAUD", "OR"));
+  EXPECT_THAT(answer(1), ElementsAre("g4", "2021101000070071", "3.2", "230400", "-"));
+  EXPECT_THAT(answer(2), ElementsAre("silence", "-", "-", "-", "-"));
+  EXPECT_THAT(answer(3), ElementsAre("-", "-", "-", "-", "-"));
   EXPECT_THAT(done.err, HasSubstr("/dev/ttyUSB1"));
 }
 
@@ -165,19 +165,22 @@ TEST_F(PortVerbs, Probe_Json) {
   bed.plug(first);
   bed.plug(second);
   const auto lidar = serve(first, '1');
-  const auto other_model = serve(second, '2', 4);
+  const auto other_model = serve(second, '2', 77);
   const std::vector<std::string> lines = lines_of(run({"list", "--probe", "--json"}).out);
   ASSERT_EQ(lines.size(), 2U);
   EXPECT_EQ(
       json::parse(lines[0]).at("device"),
       (json{{"model", 5}, {"serial", "2021101000070071"}, {"firmware", "3.2"}, {"hardware", 3}}));
+  EXPECT_EQ(json::parse(lines[0]).at("lidar"),
+            (json{{"model", "g4"}, {"baud", 230400}, {"candidates", {"g4"}}}));
   EXPECT_EQ(json::parse(lines[1]).at("problem").at("name"), "other_device");
+  EXPECT_EQ(json::parse(lines[1]).at("lidar"), nullptr);
 }
 
 TEST_F(PortVerbs, Probe_ExitCodes) {
   EXPECT_EQ(run({"list", "--probe"}).code, 3);
   bed.plug(second);
-  const auto other_model = serve(second, '2', 4);
+  const auto other_model = serve(second, '2', 77);
   EXPECT_EQ(run({"list", "--probe"}).code, 7);
   bed.plug(first);  // whose node is missing
   EXPECT_EQ(run({"list", "--probe"}).code, 3);
@@ -295,7 +298,7 @@ TEST(PortVerbsHelp, NamesEveryColumn) {
     for (const std::string& line : lines_of(help)) EXPECT_LE(line.size(), 100U) << line;
   }
   const std::string help = run({"list", "--help"}).out;
-  for (const char* const column : {"ANSWER", "SERIAL", "FIRMWARE", "HOLDER"}) {
+  for (const char* const column : {"ANSWER", "SERIAL", "FIRMWARE", "BAUD", "OR ", "HOLDER"}) {
     EXPECT_THAT(help, HasSubstr(column));
   }
 }

@@ -33,19 +33,20 @@ struct list_options {
 /// A port and, if it was probed, the result.
 struct listed_port {
   port_info port;
-  std::optional<result<device_information>> answer{};
+  std::optional<result<recognised_lidar>> answer{};
 };
 
-result<device_information> ask_at(const port_info& port, std::uint32_t baud) {
+result<recognised_lidar> ask_at(const port_info& port, std::uint32_t baud) {
   using enum g4lidar::problem;
   // Probing would disturb a program that has not locked the port.
   if (!port.holder.empty()) {
     return g4lidar::failure(task::opening, busy, port.path + ", held by " + port.holder);
   }
-  auto opened = serial_port::open(port.path, {.baud = baud});
+  auto opened = serial_port::open(port.path, {.baud = baud != 0 ? baud : g4_model.bauds[0]});
   if (!opened) return tl::unexpected(opened.error());
   const auto longest = find_options{}.probe_timeout;
-  return probe(**opened, (*opened)->now_ns() + std::chrono::nanoseconds(longest).count());
+  return search(**opened, (*opened)->now_ns() + std::chrono::nanoseconds(longest).count(),
+                {.baud = baud});
 }
 
 void probe(std::vector<listed_port>& ports, const list_options& options) {
@@ -57,15 +58,29 @@ void probe(std::vector<listed_port>& ports, const list_options& options) {
   }
 }
 
+/// The other models that send the same: "x2l,x3"; "-" if there is none.
+std::string other_words(const recognised_lidar& lidar) {
+  std::string all;
+  for (const model* each : lidar.candidates) {
+    if (each == lidar.model) continue;
+    all.append(all.empty() ? "" : ",").append(each->word);
+  }
+  return all.empty() ? "-" : all;
+}
+
 std::vector<std::string> cells_of(const listed_port& listed, bool probed) {
   const auto& [port, answer] = listed;
   std::vector<std::string> cells = port_cells(port);
   if (answer && *answer) {
-    const device_information& who = **answer;
-    cells.insert(cells.end(), {"g4", std::string(who.serial_number()), firmware_of(who)});
+    const recognised_lidar& lidar = **answer;
+    const bool is_known = lidar.device.model != 0;
+    cells.insert(cells.end(), {std::string(lidar.model->word),
+                               is_known ? std::string(lidar.device.serial_number()) : "-",
+                               is_known ? firmware_of(lidar.device) : "-",
+                               std::to_string(lidar.baud), other_words(lidar)});
   } else if (probed) {
     cells.insert(cells.end(),
-                 {answer ? std::string(name_of(answer->error().code())) : "-", "-", "-"});
+                 {answer ? std::string(name_of(answer->error().code())) : "-", "-", "-", "-", "-"});
   }
   cells.push_back(port.holder.empty() ? "-" : printable(port.holder));
   return cells;
@@ -73,7 +88,7 @@ std::vector<std::string> cells_of(const listed_port& listed, bool probed) {
 
 void write_table(const std::vector<listed_port>& ports, bool probed, output& out) {
   std::vector<std::vector<std::string>> rows{port_columns()};
-  if (probed) rows[0].insert(rows[0].end(), {"ANSWER", "SERIAL", "FIRMWARE"});
+  if (probed) rows[0].insert(rows[0].end(), {"ANSWER", "SERIAL", "FIRMWARE", "BAUD", "OR"});
   rows[0].emplace_back("HOLDER");
   for (const listed_port& each : ports) rows.push_back(cells_of(each, probed));
   std::vector<std::size_t> widths(rows[0].size());
@@ -86,7 +101,15 @@ void write_table(const std::vector<listed_port>& ports, bool probed, output& out
 nlohmann::ordered_json object_of(const listed_port& listed) {
   const auto& [port, answer] = listed;
   nlohmann::ordered_json all = port_object(port);
-  all["device"] = answer && *answer ? json_of(std::optional(**answer)) : nullptr;
+  all["device"] = nullptr;
+  all["lidar"] = nullptr;
+  if (answer && *answer) {
+    const recognised_lidar& lidar = **answer;
+    if (lidar.device.model != 0) all["device"] = json_of(std::optional(lidar.device));
+    auto words = nlohmann::ordered_json::array();
+    for (const model* each : lidar.candidates) words.push_back(each->word);
+    all["lidar"] = {{"model", lidar.model->word}, {"baud", lidar.baud}, {"candidates", words}};
+  }
   all["problem"] = nullptr;
   if (answer && !*answer) {
     all["problem"] = {{"name", name_of(answer->error().code())},
@@ -95,7 +118,7 @@ nlohmann::ordered_json object_of(const listed_port& listed) {
   return all;
 }
 
-/// 0 if a G4 (without probing: its bridge) was found; else the reason.
+/// 0 if a lidar (without probing: the bridge of a G4) was found; else the reason.
 exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
   const bool found = std::any_of(ports.begin(), ports.end(), [probed](const listed_port& each) {
     return probed ? each.answer && *each.answer : is_g4_bridge(each.port);
@@ -141,18 +164,23 @@ constexpr const char* list_details =
   BRIDGE     g4: a CP2102, as in a G4 and in many other devices; other; -: not a USB device
   OPEN       whether this user may open it
   BY-ID      the link made by udev
-  ANSWER     with --probe: g4, or the problem (busy, silence, ...); -: not probed
+  ANSWER     with --probe: the model (g4, x4, ...), or the problem (busy, silence, ...); -: not
+             probed
   SERIAL     with --probe: serial number of the lidar; as SOURCE: serial:NUMBER
   FIRMWARE   with --probe
+  BAUD       with --probe: the baud rate at which it was found
+  OR         with --probe: other models that send the same bytes; name yours with --model
   HOLDER     the process that has it open, if this user may see it; may contain blanks
 
 With --json: an object for each port, with path, usb, id, driver, is_g4_bridge, may_open, by_id,
-holder, manufacturer, product, usb_serial, device (model, serial, firmware, hardware) and problem
-(name, message); unknown values are null.
+holder, manufacturer, product, usb_serial, device (model, serial, firmware, hardware), lidar
+(model, baud, candidates) and problem (name, message); unknown values are null.
 
---probe sends two commands to each port with the bridge of a G4 that no process has open, and
-stops a lidar that is scanning. The exit code is 3 if no port has that bridge; with --probe, if
-no G4 answered, that of the problem at the first such port.)";
+--probe listens at each port with the bridge of a G4 that no process has open. Where it is silent,
+it asks with two bytes, at each baud rate that lidars have; --baud: at this one only. It stops a
+lidar that is scanning, if that has commands. It takes at most 3 s a port. The exit code is 3 if
+no port has that bridge; with --probe, if no lidar was found, that of the problem at the first
+such port.)";
 
 }  // namespace
 
@@ -182,18 +210,18 @@ int print_overview() {
 
 verb make_list_verb() {
   const auto options = std::make_shared<list_options>();
-  return {.name = "list",
-          .summary = "List serial ports and the lidars attached to them",
-          .options = joined(
-              flag_row("--probe", "Query the device at each port with a bridge of a G4",
-                       options->probe),
-              flag_row("--all", "Query every port: sends two commands to any device", options->all),
-              json_row(options->common), output_row(options->common), baud_row(options->common)),
-          .details = list_details,
-          .examples = {{"g4-dump list", "The serial ports"},
-                       {"g4-dump list --probe", "The lidars that answer"}},
-          .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
-          .run = [options] { return list(*options); }};
+  return {
+      .name = "list",
+      .summary = "List serial ports and the lidars attached to them",
+      .options = joined(
+          flag_row("--probe", "Search a lidar at each port with a bridge of a G4", options->probe),
+          flag_row("--all", "Query every port: sends commands to any device", options->all),
+          json_row(options->common), output_row(options->common), baud_row(options->common)),
+      .details = list_details,
+      .examples = {{"g4-dump list", "The serial ports"},
+                   {"g4-dump list --probe", "The lidars, their models and baud rates"}},
+      .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
+      .run = [options] { return list(*options); }};
 }
 
 }  // namespace g4_tool

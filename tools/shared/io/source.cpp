@@ -135,7 +135,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.model = options.expected.model;
   if (kind_of_source(options.source) == source_kind::raw_bytes) how.model = &model_of(options);
-  how.baud = options.expected.baud;
+  if (options.expected.baud != 0) how.baud = options.expected.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))

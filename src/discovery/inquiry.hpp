@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: MIT
+// The question who sends packets.
+#pragma once
+
 #include <algorithm>
 #include <array>
-#include <string>
+#include <cstdint>
 #include <variant>
 
 #include "driver/device_link.hpp"
 #include "g4lidar/core/request.hpp"
-#include "g4lidar/discovery.hpp"
+#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/error.hpp"
 
 namespace g4lidar {
-namespace {
 
-/// One query to an unknown device.
+/// One query to a device that sends packets: it is stopped first.
 class inquiry {
  public:
-  explicit inquiry(transport& port) noexcept : port_(port) {}
+  /// `samples` as the device sends them.
+  inquiry(transport& port, sample_format samples) noexcept : port_(port), parser_(samples) {}
 
   [[nodiscard]] result<device_information> ask(std::int64_t deadline_ns) {
     static_cast<void>(link_.talk().begin(requests::device_info(), port_.now_ns()));
@@ -52,13 +56,9 @@ class inquiry {
   [[nodiscard]] result<device_information> judge(const outcome& ended) const {
     const auto* device = std::get_if<device_information>(&ended.value);
     if (ended.how != verdict::answered || device == nullptr) return nothing_believable();
-    if (device->model == model_g4) return *device;
-    return failure(task::asking, problem::other_device,
-                   std::string(port_.name()) + ", model " + std::to_string(device->model));
+    return *device;
   }
 
-  // A connection that is never silent is that of a G4 only if it contains packets; otherwise it is
-  // another baud rate or another device.
   [[nodiscard]] tl::unexpected<error> nothing_believable() const noexcept {
     if (has_packets_) return fail(problem::does_not_stop);
     return fail(has_heard_ ? problem::garbage : problem::silence);
@@ -75,11 +75,5 @@ class inquiry {
   bool has_heard_ = false;
   bool has_packets_ = false;
 };
-
-}  // namespace
-
-result<device_information> probe(transport& port, std::int64_t deadline_ns) {
-  return inquiry(port).ask(deadline_ns);
-}
 
 }  // namespace g4lidar

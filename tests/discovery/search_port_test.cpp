@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The probe with a G4, with other devices, and without an answer.
+// The search at a port with a G4, with other devices, and without an answer.
 #include <algorithm>
 #include <cstdint>
 #include <span>
@@ -20,19 +20,18 @@ namespace {
 using namespace std::chrono_literals;
 using sim::fault_kind;
 
-result<device_information> probe_at(const std::string& path,
-                                    std::chrono::milliseconds time = patience) {
+result<recognised_lidar> search_path(const std::string& path) {
   auto port = serial_port::open(path);
   if (!port) return tl::unexpected(port.error());
-  return probe(**port, in(**port, time));
+  return search(**port, in(**port, patience));
 }
 
 /// In virtual time.
-result<device_information> probe_device(const sim::device_options& options,
-                                        const std::vector<sim::fault>& faults = {}) {
+result<recognised_lidar> search_device(const sim::device_options& options,
+                                       const std::vector<sim::fault>& faults = {}) {
   virtual_bench bench(options, faults);
   virtual_transport to_device(bench);
-  return probe(to_device, in(to_device, patience));
+  return search(to_device, in(to_device, 3s));
 }
 
 /// A device that sends the same text again and again, in virtual time.
@@ -65,26 +64,28 @@ class text_sender final : public transport {
   std::int64_t now_ns_ = 0;
 };
 
-TEST(Probe, G4_ReturnsItsSerialNumber) {
-  const auto found = probe_device({});
+TEST(SearchAtAPort, G4_ReturnsItsSerialNumber) {
+  const auto found = search_device({});
   ASSERT_TRUE(found) << found.error().message();
-  EXPECT_EQ(*found, sim::device_options{}.info);
+  EXPECT_EQ(found->device, sim::device_options{}.info);
+  EXPECT_EQ(found->model, &models.front());
+  EXPECT_EQ(found->candidates, std::vector<const model*>{&models.front()});
 }
 
-TEST(Probe, G4_IsLeftIdle) {
+TEST(SearchAtAPort, G4_IsLeftIdle) {
   auto served = sim::background_pty::open(
       sim::device(sim::built_in_world(), {}, std::vector{sim::make_fault(fault_kind::scanning)}));
   ASSERT_TRUE(served);
-  const auto found = probe_at(served->path());
+  const auto found = search_path(served->path());
   ASSERT_TRUE(found) << found.error().message();
-  EXPECT_EQ(found->serial_number(), "2021101000070073");
+  EXPECT_EQ(found->device.serial_number(), "2021101000070073");
   served->with([](sim::device& simulated, std::int64_t) { EXPECT_FALSE(simulated.is_scanning()); });
 }
 
-TEST(Probe, SendsOnlyStopsAndQueries) {
+TEST(SearchAtAPort, SendsOnlyStopsAndQueries) {
   auto served = sim::background_pty::open(sim::device(sim::built_in_world()));
   ASSERT_TRUE(served);
-  ASSERT_TRUE(probe_at(served->path()));
+  ASSERT_TRUE(search_path(served->path()));
   served->with([](sim::device& simulated, std::int64_t) {
     EXPECT_FALSE(simulated.log().empty());
     for (const sim::asked& one : simulated.log()) {
@@ -93,82 +94,83 @@ TEST(Probe, SendsOnlyStopsAndQueries) {
   });
 }
 
-TEST(Probe, OtherDevice_ErrorNamesTheModel) {
+TEST(SearchAtAPort, OtherDevice_ErrorNamesTheModel) {
   sim::device_options other;
-  other.info.model = 4;
-  const auto found = probe_device(other);
+  other.info.model = 77;
+  const auto found = search_device(other);
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code(), problem::other_device);
-  EXPECT_TRUE(found.error().subject().ends_with(", model 4"));
+  EXPECT_TRUE(found.error().subject().ends_with(", model 77"));
 }
 
-TEST(Probe, NoAnswer_Silence) {
-  const auto found = probe_device({}, {sim::make_fault(fault_kind::deaf)});
+TEST(SearchAtAPort, NoAnswer_Silence) {
+  const auto found = search_device({}, {sim::make_fault(fault_kind::deaf)});
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code(), problem::silence);
   EXPECT_EQ(found.error().doing(), task::asking);
 }
 
-TEST(Probe, ScansAndReceivesNothing_DoesNotStop) {
+TEST(SearchAtAPort, ScansAndReceivesNothing_DoesNotStop) {
   const auto found =
-      probe_device({}, {sim::make_fault(fault_kind::scanning), sim::make_fault(fault_kind::deaf)});
+      search_device({}, {sim::make_fault(fault_kind::scanning), sim::make_fault(fault_kind::deaf)});
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code(), problem::does_not_stop);
 }
 
-TEST(Probe, WrongBaudRate_Garbage) {
+TEST(SearchAtAPort, OtherProtocol_IsRefusedByName) {
+  struct product {
+    std::uint8_t id;
+    std::string_view name;
+  };
+  constexpr product all[] = {{23, "R3"}, {52, "GS2"}, {110, "TEA"}, {160, "SDM15"}, {211, "TIA"}};
+  for (const auto& [id, name] : all) {
+    sim::device_options other;
+    other.info.model = id;
+    const auto found = search_device(other);
+    ASSERT_FALSE(found) << name;
+    EXPECT_EQ(found.error().code(), problem::other_device);
+    EXPECT_EQ(found.error().detail(), error_detail::unsupported_product);
+    EXPECT_TRUE(found.error().subject().ends_with(", a " + std::string(name)));
+  }
+}
+
+TEST(SearchAtAPort, WrongBaudRate_Garbage) {
   const auto found =
-      probe_device({}, {sim::make_fault(fault_kind::scanning), sim::make_fault(fault_kind::baud)});
+      search_device({}, {sim::make_fault(fault_kind::scanning), sim::make_fault(fault_kind::baud)});
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code(), problem::garbage);
 }
 
-TEST(Probe, AnotherKindOfDevice_Garbage) {
+TEST(SearchAtAPort, AnotherKindOfDevice_Garbage) {
   text_sender device;
-  const auto found = probe(device, in(device, 3s));
+  const auto found = search(device, in(device, 3s));
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code(), problem::garbage);
 }
 
-TEST(Probe, DeadlinesAreKept) {
+TEST(SearchAtAPort, DeadlinesAreKept) {
   const pty device;
   auto port = serial_port::open(device.path());
   ASSERT_TRUE(port);
   const std::int64_t deadline_ns = in(**port, 20ms);
-  EXPECT_EQ(probe(**port, deadline_ns).error().code(), problem::silence);
+  EXPECT_EQ(search(**port, deadline_ns).error().code(), problem::silence);
   EXPECT_LT((*port)->now_ns(), deadline_ns + std::chrono::nanoseconds(patience).count());
 }
 
-TEST(Probe, Unplugged_Gone) {
+TEST(SearchAtAPort, Unplugged_Gone) {
   pty device;
   auto port = serial_port::open(device.path());
   ASSERT_TRUE(port);
   device.unplug();
-  EXPECT_EQ(probe(**port, in(**port, patience)).error().code(), problem::gone);
+  EXPECT_EQ(search(**port, in(**port, patience)).error().code(), problem::gone);
 }
 
-TEST(Probe, Woken_Cancelled) {
+TEST(SearchAtAPort, Woken_Cancelled) {
   const pty device;
   auto port = serial_port::open(device.path());
   ASSERT_TRUE(port);
   (*port)->wake();
-  EXPECT_EQ(probe(**port, in(**port, patience)).error().code(), problem::cancelled);
-}
-
-TEST(SelectPort, Path_IsUsedUnchanged) {
-  const auto port = select_port("/dev/no-such-port");
-  ASSERT_TRUE(port);
-  EXPECT_EQ(port->path, "/dev/no-such-port");
-}
-
-TEST(SelectPort, WrongForms_AreRefused) {
-  for (const std::string_view wrong :
-       {"serial:", "serial:123", "serial:20211010000700733", "serial:202110100007007x", "usb:"}) {
-    const auto port = select_port(wrong);
-    ASSERT_FALSE(port) << wrong;
-    EXPECT_EQ(port.error().code(), problem::bad_option) << wrong;
-    EXPECT_TRUE(port.error().subject().starts_with(wrong)) << port.error().subject();
-  }
+  EXPECT_EQ(search(**port, in(**port, patience)).error().code(), problem::cancelled);
 }
 
 }  // namespace

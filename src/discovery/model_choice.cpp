@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+#include "model_choice.hpp"
+
+#include <algorithm>
+
+#include "transport/custom_baud.hpp"
+
+namespace g4lidar {
+namespace {
+
+bool has_id(const model& row, std::uint8_t id, std::uint8_t bits) noexcept {
+  return std::ranges::any_of(row.ids,
+                             [&](std::uint8_t of) { return of != 0 && (of & bits) == id; });
+}
+
+bool has_size(const model& row, std::size_t bytes) noexcept {
+  return sample_size(row.samples.layout) == bytes;
+}
+
+bool has_rate(const model& row, std::uint32_t baud) noexcept {
+  return std::ranges::any_of(
+      row.bauds, [baud](std::uint32_t own) { return own != 0 && is_tolerable(baud, own); });
+}
+
+/// The difference between what was measured and the nearest sample rate of the row, in percent.
+std::uint32_t rate_difference(const model& row, std::uint32_t hz) noexcept {
+  std::uint32_t least = hz == 0 ? 0 : 100;
+  for (const sample_rate_entry& own : row.rates.entries) {
+    if (own.hz == 0 || hz == 0) continue;
+    const std::uint32_t off = own.hz > hz ? own.hz - hz : hz - own.hz;
+    least = std::min(least, 100 * off / own.hz);
+  }
+  return least;
+}
+
+}  // namespace
+
+std::vector<const model*> models_that_fit(const lidar_signs& seen) {
+  const auto all_with = [&seen](bool by_rate, bool by_ct) {
+    std::vector<const model*> found;
+    for (const model& row : models) {
+      if (seen.answers == presence::yes && row.link != link_kind::two_way) continue;
+      if (seen.answers == presence::no && row.link != link_kind::one_way) continue;
+      if (seen.id != 0 && !has_id(row, seen.id, 0xFF)) continue;
+      if (seen.sample_bytes != 0 && !has_size(row, seen.sample_bytes)) continue;
+      if (by_rate && seen.baud != 0 && !has_rate(row, seen.baud)) continue;
+      if (by_ct && seen.ct_id_low_bits != 0 &&
+          (row.ct_information == presence::no || !has_id(row, seen.ct_id_low_bits, 0x0F))) {
+        continue;
+      }
+      found.push_back(&row);
+    }
+    return found;
+  };
+  const auto is_far = [&seen](const model* row) {
+    return rate_difference(*row, seen.sample_rate_hz) > 10;
+  };
+  std::vector<const model*> found = all_with(true, true);
+  const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;
+  const bool is_variant =
+      std::ranges::none_of(models, [&seen](const model& row) { return has_rate(row, seen.baud); });
+  if (found.empty() && (is_stated || is_variant || !seen.is_baud_certain)) {
+    found = all_with(false, true);
+    std::erase_if(found, is_far);
+  }
+  if (found.empty()) found = all_with(true, false);
+  // A sample rate decides between models with one each; within a tenth they are equal.
+  std::ranges::stable_partition(found, [&](const model* row) { return !is_far(row); });
+  const auto near_end = std::ranges::find_if(found, is_far);
+  const auto end = near_end == found.begin() ? found.end() : near_end;
+  const auto usual =
+      std::find_if(found.begin(), end, [](const model* row) { return is_usual(*row); });
+  if (usual != end) std::rotate(found.begin(), usual, usual + 1);
+  return found;
+}
+
+}  // namespace g4lidar

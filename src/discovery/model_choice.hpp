@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// Which models of the table fit what is known about a lidar, and which other products are known by their
+// numbers.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "g4lidar/core/model.hpp"
+
+namespace g4lidar {
+
+/// What is known about a lidar at a port.
+struct lidar_signs {
+  std::uint32_t baud = 0;  ///< Of the port.
+  bool is_baud_certain =
+      true;  ///< False: that behind a network bridge, as far as the user knows it.
+  std::size_t sample_bytes = 0;  ///< 0: no packets were received.
+  std::uint8_t id = 0;           ///< As it reported by a reply or after power-on; 0: not.
+  std::uint8_t ct_id_low_bits =
+      0;  ///< As its CT bytes state, in a revolution whose CRC fits; 0: not.
+  std::uint32_t sample_rate_hz = 0;      ///< As measured; 0: not.
+  presence answers = presence::unknown;  ///< Whether it answered a command.
+};
+
+/// The models that `seen` may come from, the usual one first: all that agree with the number, the size of
+/// samples, the baud rate and the kind of connection. The baud rate is ignored where no model agrees with
+/// it and the number, where no model has it, or where it is not certain; then the CT bytes, which other devices use otherwise.
+/// Empty if there is none. *Allocates.*
+[[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
+
+/// Another product of the same manufacturer that identifies itself with `id`, and that has another
+/// protocol; empty if none is known. Valid forever. *Pure.*
+[[nodiscard]] constexpr std::string_view other_product(std::uint8_t id) noexcept {
+  struct product {
+    std::uint8_t first;
+    std::uint8_t last;
+    std::string_view name;
+  };
+  constexpr std::array<product, 12> all{{{23, 23, "R3"},
+                                         {51, 51, "GS1"},
+                                         {52, 52, "GS2"},
+                                         {53, 53, "GS5"},
+                                         {54, 54, "GS6"},
+                                         {110, 110, "TEA"},
+                                         {130, 130, "TSA"},
+                                         {131, 131, "TSA Pro"},
+                                         {160, 160, "SDM15"},
+                                         {161, 161, "SDM18"},
+                                         {200, 200, "T15 or T30"},
+                                         {210, 212, "TIA"}}};
+  for (const product& each : all) {
+    if (each.first <= id && id <= each.last) return each.name;
+  }
+  return {};
+}
+
+}  // namespace g4lidar

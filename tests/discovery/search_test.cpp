@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// The search at a port of which nothing is known, for each model of the table.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "search_bench.hpp"
+
+namespace g4lidar::test {
+namespace {
+
+using sim::fault_kind;
+
+constexpr std::int64_t ms = 1'000'000;
+
+/// The name that a search gives to a model whose bytes are those of others. All others get their own.
+constexpr std::pair<std::string_view, std::string_view> shared_names[] = {
+    {"x2l", "x2"},
+    {"x3", "x2"},
+    {"x3-pro", "s2-pro"},  // 4 kHz at this rate
+    {"s2", "s2-pro"},
+    {"tx8", "s2-pro"},
+    {"tx20", "s2-pro"},
+    {"s2-intensity", "s2-pro-intensity"},
+    {"scl", "s2-pro-intensity"},
+};
+
+std::string_view name_of(const model& which) {
+  const auto* const shared =
+      std::ranges::find(shared_names, which.word, [](const auto& each) { return each.first; });
+  return shared == std::end(shared_names) ? which.word : shared->second;
+}
+
+sim::device_options options_of(std::string_view word, bool other_layout = false) {
+  sim::device_options options;
+  EXPECT_TRUE(sim::use_model(options, word, other_layout));
+  return options;
+}
+
+std::string list_of(const std::vector<const model*>& all) {
+  std::string text;
+  for (const model* each : all) text.append(text.empty() ? "" : " ").append(each->word);
+  return text;
+}
+
+std::string text_of(const std::vector<std::string>& notes) {
+  std::string text;
+  for (const std::string& each : notes) text.append(text.empty() ? "" : " ").append(each);
+  return text;
+}
+
+/// Only questions, and stops; a stop only before the question at the same rate, after packets.
+void expect_harmless(const std::vector<std::string>& notes, bool may_pulse) {
+  for (const std::string& each : notes) {
+    const std::string command = each.substr(0, 2);
+    const bool is_pulse = may_pulse && command == "dt";
+    EXPECT_TRUE(command == "90" || command == "00" || command == "65" || is_pulse) << each;
+  }
+}
+
+TEST(Search, EveryModel_IsFoundInTime) {
+  std::printf("| model | time | baud | name | candidates | written |\n|---|---|---|---|---|---|\n");
+  for (const model& each : models) {
+    for (const bool scanning : {false, true}) {
+      if (scanning && each.link == link_kind::one_way) continue;
+      SCOPED_TRACE(each.word);
+      std::vector<sim::fault> faults;
+      if (scanning) faults.push_back(sim::make_fault(fault_kind::scanning));
+      // A scan whose motor does not turn sends nothing, and the device ignores commands.
+      const bool needs_pulse = scanning && each.motor == motor_kind::dtr;
+      const searched done =
+          search_at(options_of(each.word), {.may_pulse_dtr = needs_pulse}, faults);
+      ASSERT_TRUE(done.lidar) << done.lidar.error().message() << text_of(done.notes);
+      const recognised_lidar& lidar = *done.lidar;
+      std::printf("| %s%s | %d ms | %u | %s | %s | %s |\n", each.name.data(),
+                  scanning ? ", scanning" : "", static_cast<int>(done.took_ns / ms), lidar.baud,
+                  lidar.model->name.data(), list_of(lidar.candidates).c_str(),
+                  text_of(done.notes).c_str());
+      EXPECT_NE(std::ranges::find(lidar.candidates, &each), lidar.candidates.end())
+          << list_of(lidar.candidates);
+      EXPECT_EQ(lidar.model, lidar.candidates.front());
+      EXPECT_EQ(lidar.model->word, name_of(each));
+      EXPECT_EQ(sample_size(lidar.model->samples.layout), sample_size(each.samples.layout));
+      EXPECT_EQ(lidar.baud, each.bauds[0]);
+      const std::int64_t longest_ns = needs_pulse ? 5000 * ms : longest_search_ns;
+      EXPECT_LE(done.took_ns, each.word == "g4" ? 100 * ms : longest_ns);
+      EXPECT_EQ(lidar.was_scanning, scanning || each.link == link_kind::one_way);
+      expect_harmless(done.notes, needs_pulse);
+    }
+  }
+}
+
+TEST(Search, NamedRate_IsNotSearchedFor) {
+  const searched done = search_at(options_of("x4"), {.baud = 128'000});
+  ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+  EXPECT_EQ(done.lidar->model->word, "x4");
+  EXPECT_EQ(done.notes, std::vector<std::string>{"90@128000"});
+  EXPECT_LT(done.took_ns, 100 * ms);
+}
+
+TEST(Search, NamedModel_IsNotSearchedFor) {
+  const searched done = search_at(options_of("tg15"), {.model = model_named("tg15")});
+  ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+  EXPECT_EQ(done.notes, std::vector<std::string>{"90@512000"});
+  const searched scl = search_at(options_of("scl"), {.model = model_named("scl")});
+  ASSERT_TRUE(scl.lidar) << scl.lidar.error().message();
+  EXPECT_EQ(scl.lidar->model->word, "scl");
+  EXPECT_EQ(scl.notes, std::vector<std::string>{});
+}
+
+TEST(Search, NothingThere_IsSilenceAfterTheDeadline) {
+  const searched done = search_at({}, {}, {sim::make_fault(fault_kind::deaf)});
+  ASSERT_FALSE(done.lidar);
+  EXPECT_EQ(done.lidar.error().code(), problem::silence);
+  EXPECT_LE(done.took_ns, longest_search_ns + 10 * ms);
+  for (const std::string& each : done.notes) EXPECT_TRUE(each.starts_with("90@")) << each;
+}
+
+// A port that the user has not named gets no pulse.
+TEST(Search, MotorThatWaitsForDtr_TurnsOnlyBehindANamedPort) {
+  sim::device_options options = options_of("x2");
+  options.dtr_starts_by = sim::dtr_start::pulse;
+  const searched unnamed = search_at(options, {}, {}, true);
+  ASSERT_FALSE(unnamed.lidar);
+  EXPECT_EQ(unnamed.lidar.error().code(), problem::silence);
+  EXPECT_EQ(std::ranges::count(unnamed.notes, "dtr=0"), 0);
+  const searched named = search_at(options, {.may_pulse_dtr = true}, {}, true);
+  ASSERT_TRUE(named.lidar) << named.lidar.error().message();
+  EXPECT_EQ(named.lidar->model->word, "x2");
+  EXPECT_EQ(std::ranges::count(named.notes, "dtr=0"), 1);
+}
+
+// What the error says: every rate that was tried.
+TEST(Search, SomethingSendsAtEveryRate_NamesTheRates) {
+  sim::device_options options = options_of("g4");
+  options.baud = 57'600;
+  const searched done = search_at(options, {}, {sim::make_fault(fault_kind::scanning)});
+  ASSERT_FALSE(done.lidar);
+  EXPECT_EQ(done.lidar.error().code(), problem::garbage) << done.lidar.error().message();
+  EXPECT_TRUE(done.lidar.error().subject().find(" at 230400, 115200, 128000, 512000, 153600") !=
+              std::string_view::npos)
+      << done.lidar.error().subject();
+}
+
+TEST(Search, VariantAtAnUnusualRate_IsFoundWhileItSends) {
+  sim::device_options options = options_of("s4");
+  options.baud = 214'285;
+  options.driven_by = sim::drive::power;
+  const searched done = search_at(options, {}, {sim::make_fault(fault_kind::scanning)});
+  ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+  EXPECT_EQ(done.lidar->model->word, "s4");
+  EXPECT_EQ(done.lidar->baud, 214'285U);
+}
+
+}  // namespace
+}  // namespace g4lidar::test
