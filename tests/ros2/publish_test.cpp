@@ -168,7 +168,7 @@ TEST_F(Publish, AnotherModelEndsItWithTheReason) {
   cli::program tool({"sim:?model_id=4"});
   const cli::outcome end = tool.wait();
   EXPECT_EQ(end.code, 7);
-  EXPECT_NE(end.err.find("is not a G4"), std::string::npos) << end.err;
+  EXPECT_NE(end.err.find("model 4, not G4"), std::string::npos) << end.err;
 }
 
 TEST_F(Publish, AMissingFileIsReportedOnce) {
