@@ -53,7 +53,12 @@ class Hub : public ::testing::Test {
                                 commands.push_back(wanted.name + '=' + wanted.value);
                                 done.push_back(std::move(when_done));
                               },
-                          .play = [this](const play_request&) { ++plays; }},
+                          .play = [this](const play_request&) { ++plays; },
+                          .record =
+                              [this](const record_request& wanted, auto when_done) {
+                                commands.emplace_back(wanted.is_on ? "record" : "end");
+                                done.push_back(std::move(when_done));
+                              }},
                          [this] { ++woken; }};
 };
 
@@ -98,6 +103,26 @@ TEST_F(Hub, PageThatNeverReads_HasABoundedOutbox) {
     center.page_scan({1});
   }
   EXPECT_LE(take_all(deaf).size(), outbox::longest_queue + outbox::slot_count);
+}
+
+TEST_F(Hub, ARecording_IsAskedForOnceAtATime) {
+  client_registry::client& asking = page();
+  client_registry::client& other = page();
+  take_all(asking);
+  take_all(other);
+  EXPECT_TRUE(center.receive(asking, R"({"op":"record","on":true})"));
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_TRUE(center.receive(asking, R"({"op":"record","on":false})"));
+  }
+  EXPECT_THAT(commands, ElementsAre("record"));
+  EXPECT_THAT(take_all(asking), ::testing::Each("error"));
+  done.at(0)("the disk is full");
+  EXPECT_THAT(take_all(asking), ElementsAre("error"));
+  EXPECT_EQ(json::parse(last)["of"], "record");
+  EXPECT_EQ(json::parse(last)["message"], "the disk is full");
+  EXPECT_TRUE(center.receive(asking, R"({"op":"record","on":false})"));
+  EXPECT_THAT(commands, ElementsAre("record", "end"));
+  EXPECT_THAT(take_all(other), ElementsAre());
 }
 
 TEST_F(Hub, SlotsTakeTurns) {

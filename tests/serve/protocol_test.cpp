@@ -137,7 +137,7 @@ TEST(PageScan, HasTheReturnsInTheRobotsFrame) {
       {.angle_deg = 0.0F, .range_mm = 0.0F, .flags = g4lidar::point_flags::no_return},
       {.angle_deg = 90.0F, .range_mm = 500.0F}};  // clockwise from the cable: left
   std::vector<std::uint8_t> data{7};
-  put_page_scan({.points = points, .revolution = 42}, 1.5, data);
+  put_page_scan({.revolution = {.points = points, .revolution = 42}, .stamp_s = 1.5}, data);
   data.erase(data.begin());
   ASSERT_EQ(data.size(), 16U + 2 * 8);
   EXPECT_EQ(data[0], 0x10);
@@ -155,13 +155,50 @@ TEST(PageScan, IsTurnedAsItsModel) {
   if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
   const std::vector<g4lidar::point> points{{.angle_deg = 270.0F, .range_mm = 2000.0F}};
   std::vector<std::uint8_t> data;
-  put_page_scan({.points = points,
-                 .flags = g4lidar::scan_flags::data_lost,
-                 .model = g4lidar::model_named("x4")},
-                1.5, data);
+  put_page_scan({.revolution = {.points = points,
+                                .flags = g4lidar::scan_flags::data_lost,
+                                .model = g4lidar::model_named("x4")},
+                 .stamp_s = 1.5},
+                data);
   EXPECT_EQ(data[1], 0);
   EXPECT_NEAR(number_at<float>(data, 16), 0.0F, 1e-5F);
   EXPECT_NEAR(number_at<float>(data, 20), 2.0F, 1e-5F);  // to the left
+}
+
+TEST(PageScan, HasThePlace_AfterTheReturns) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  using g4lidar::point;
+  const std::vector<point> points{
+      {.angle_deg = 90.0F, .range_mm = 500.0F},
+      {.angle_deg = 0.0F, .range_mm = 0.0F, .flags = g4lidar::point_flags::no_return},
+      {.angle_deg = 180.0F, .range_mm = 2000.0F}};
+  std::vector<std::uint8_t> data;
+  put_page_scan({.revolution = {.points = points},
+                 .stamp_s = 1.5,
+                 .place = lidar_place{{1.0, -2.0, 0.5}, 7},
+                 .is_upside_down = true},
+                data);
+  ASSERT_EQ(data.size(), 16U + 2 * 8 + 28);
+  EXPECT_EQ(data[1], 1 + 2);
+  EXPECT_NEAR(number_at<float>(data, 20), -0.5F, 1e-5F);  // seen from above it is at the other side
+  EXPECT_EQ(number_at<std::uint32_t>(data, 32), 7U);
+  EXPECT_EQ(number_at<double>(data, 36), 1.0);
+  EXPECT_EQ(number_at<double>(data, 44), -2.0);
+  EXPECT_EQ(number_at<double>(data, 52), 0.5);
+}
+
+TEST(PageRequests, OfARecording_HaveNothingElse) {
+  const auto of = [](const char* text) { return parse_page_request(text); };
+  EXPECT_TRUE(std::get<record_request>(*of(R"({"op":"record","on":true})")).is_on);
+  EXPECT_FALSE(std::get<record_request>(*of(R"({"op":"record","on":false})")).is_on);
+  for (const char* const bad :
+       {R"({"op":"record"})", R"({"op":"record","on":1})", R"({"op":"record","on":"true"})",
+        R"({"op":"record","on":true,"file":"../../etc/passwd"})",
+        R"({"op":"record","file":"x.mcap"})"}) {
+    const auto got = of(bad);
+    ASSERT_TRUE(got && std::holds_alternative<bad_request>(*got)) << bad;
+    EXPECT_EQ(std::get<bad_request>(*got).of, "record");
+  }
 }
 
 TEST(PageTexts, AdviceIsNotForACommandLine) {

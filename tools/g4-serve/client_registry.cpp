@@ -28,7 +28,7 @@ struct client_registry::client {
   std::uint64_t id;
   outbox waiting{};
   std::array<std::optional<std::uint32_t>, channel_count> subscriptions{};
-  bool is_setting = false;  // its last setting is not finished
+  bool is_waiting = false;  // its last setting or recording is not finished
 };
 
 client_registry::client_registry(std::string_view session, bool allows_set, lidar_actions actions,
@@ -71,31 +71,36 @@ bool client_registry::receive_page(client& from, std::string_view text) {
   if (const auto* bad = std::get_if<bad_request>(&*request)) {
     answer(from.id, bad->of, bad->message);
   } else if (const auto* wanted = std::get_if<set_request>(&*request)) {
-    take_set(from, *wanted);
+    if (!allows_set_) {
+      answer(from.id, "set", "the settings are read-only: start g4-serve with --allow-set");
+    } else {
+      take_slow(from, "set", [&](auto done) { actions_.set(*wanted, std::move(done)); });
+    }
+  } else if (const auto* recording = std::get_if<record_request>(&*request)) {
+    take_slow(from, "record", [&](auto done) { actions_.record(*recording, std::move(done)); });
   } else {
     actions_.play(std::get<play_request>(*request));
   }
   return true;
 }
 
-void client_registry::take_set(client& from, const set_request& wanted) {
-  if (!allows_set_) {
-    return answer(from.id, "set", "the settings are read-only: start g4-serve with --allow-set");
-  }
+void client_registry::take_slow(
+    client& from, const std::string& op,
+    const std::function<void(std::function<void(const std::string&)>)>& act) {
   {
     const std::lock_guard lock(mutex_);
-    if (std::exchange(from.is_setting, true)) {
-      from.waiting.add(text_of(error_text("set", "the setting before it is not done yet")));
+    if (std::exchange(from.is_waiting, true)) {
+      from.waiting.add(text_of(error_text(op, "the request before it is not done yet")));
       return;
     }
   }
-  actions_.set(wanted, [this, id = from.id](const std::string& error) {
+  act([this, op, id = from.id](const std::string& error) {
     {
       const std::lock_guard lock(mutex_);
       const auto found = std::ranges::find(clients_, id, &client::id);
-      if (found != clients_.end()) found->is_setting = false;
+      if (found != clients_.end()) found->is_waiting = false;
     }
-    if (!error.empty()) answer(id, "set", error);
+    if (!error.empty()) answer(id, op, error);
   });
 }
 

@@ -22,11 +22,13 @@ namespace g4_tool {
 /// The protocol of a client.
 enum class client_kind : std::uint8_t { page, foxglove };
 
-/// How requests of clients reach the lidar. Both may be called in any thread, without a lock.
+/// How requests of clients reach the lidar. All may be called in any thread, without a lock.
 struct lidar_actions {
   /// Changes a setting, and calls `done` later, in any thread, with the error; empty if there is none.
   std::function<void(const set_request&, std::function<void(const std::string&)> done)> set;
   std::function<void(const play_request&)> play;
+  /// The same as `set`, for a recording.
+  std::function<void(const record_request&, std::function<void(const std::string&)> done)> record{};
 };
 
 /// *Any thread.* Its memory is bounded by the number of clients.
@@ -87,7 +89,9 @@ class client_registry {
   void put_messages(const std::function<void(client&)>& put);
   void to_pages(std::size_t slot, bool is_text, const shared_bytes& payload);
   void answer(std::uint64_t id, std::string_view of, const std::string& message);
-  void take_set(client& from, const set_request& wanted);
+  /// Calls `act` unless the last such request of the client is not done yet.
+  void take_slow(client& from, const std::string& op,
+                 const std::function<void(std::function<void(const std::string&)>)>& act);
   [[nodiscard]] bool receive_page(client& from, std::string_view text);
   [[nodiscard]] bool receive_foxglove(client& from, std::string_view text);
   /// Returns the error; empty if there is none.

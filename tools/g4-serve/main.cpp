@@ -40,7 +40,9 @@ class lidar_server {
         registry_(new_session(), options.allows_set,
                   {.set = [this](const set_request& wanted,
                                  auto done) { publisher_.set(wanted, std::move(done)); },
-                   .play = [this](const play_request& wanted) { publisher_.play(wanted); }},
+                   .play = [this](const play_request& wanted) { publisher_.play(wanted); },
+                   .record = [this](const record_request& wanted,
+                                    auto done) { publisher_.record(wanted, std::move(done)); }},
                   [this] { wake(); }),
         publisher_(options, registry_),
         reader_(options.common, publisher_.how_to_open(), publisher_) {

@@ -70,6 +70,25 @@ page_request parse_play(const nlohmann::json& object) {
   return made;
 }
 
+page_request parse_record(const nlohmann::json& object) {
+  const auto on = object.find("on");
+  if (on == object.end() || !on->is_boolean() || object.size() != 2) {
+    return bad_request{"record", "needs on, and nothing else"};
+  }
+  return record_request{on->get<bool>()};
+}
+
+json json_of(const page_recording& recording) {
+  const auto name_or_null = [](const std::string& name) {
+    return name.empty() ? json(nullptr) : json(name);
+  };
+  return {{"file", name_or_null(recording.file)},
+          {"last", name_or_null(recording.last)},
+          {"why", recording.why},
+          {"bytes", recording.bytes},
+          {"seconds", recording.seconds}};
+}
+
 json json_of(const lidar_counts& counts) {
   return {{"bytes", counts.bytes},
           {"packets", counts.stream.packets},
@@ -152,6 +171,7 @@ std::optional<page_request> parse_page_request(std::string_view text) {
   const std::string op = object->at("op").get<std::string>();
   if (op == "set") return parse_set(*object);
   if (op == "play") return parse_play(*object);
+  if (op == "record") return parse_record(*object);
   return bad_request{op, "is not a request"};
 }
 
@@ -164,6 +184,7 @@ std::string hello_text(const page_hello& hello) {
        {"frame", "robot"},
        {"device", json_of(hello.device)},
        {"allow_set", hello.allows_set},
+       {"allow_record", hello.allows_record},
        {"settings", hello.settings},
        {"setting_rows", setting_rows()},
        {"recording", hello.recording_s ? json{{"length_s", *hello.recording_s}} : json(nullptr)}});
@@ -201,26 +222,36 @@ std::string status_text(const page_status& status) {
     made["paused"] = status.playback->is_paused;
     made["speed"] = status.playback->speed;
   }
+  if (status.recording) made["recording"] = json_of(*status.recording);
   return json_line(made);
 }
 
-void put_page_scan(const scan& revolution, double stamp_s, std::vector<std::uint8_t>& out) {
+void put_page_scan(const page_scan& what, std::vector<std::uint8_t>& out) {
+  constexpr unsigned has_place = 2;
+  const scan& revolution = what.revolution;
   const std::size_t begin = out.size();
   out.push_back(0x10);
-  out.push_back(revolution.is_whole() ? 1 : 0);
+  out.push_back(
+      static_cast<std::uint8_t>((revolution.is_whole() ? 1U : 0U) | (what.place ? has_place : 0U)));
   put_little(std::uint16_t{0}, out);
   put_little(revolution.revolution, out);
-  put_little(std::bit_cast<std::uint64_t>(stamp_s), out);
+  put_little(std::bit_cast<std::uint64_t>(what.stamp_s), out);
   std::uint16_t count = 0;
   for (const point& p : revolution) {
     if (p.is_no_return() || count == UINT16_MAX) continue;
     const xy_point at = to_xy(p, frame::robot, revolution.model->turn_deg);
     put_little(std::bit_cast<std::uint32_t>(at.x_m), out);
-    put_little(std::bit_cast<std::uint32_t>(at.y_m), out);
+    put_little(std::bit_cast<std::uint32_t>(what.is_upside_down ? -at.y_m : at.y_m), out);
     ++count;
   }
   out[begin + 2] = static_cast<std::uint8_t>(count);
   out[begin + 3] = static_cast<std::uint8_t>(count >> 8U);
+  if (what.place) {
+    put_little(what.place->map, out);
+    for (const double value :
+         {what.place->pose.x_m, what.place->pose.y_m, what.place->pose.yaw_rad})
+      put_little(std::bit_cast<std::uint64_t>(value), out);
+  }
 }
 
 }  // namespace g4_tool

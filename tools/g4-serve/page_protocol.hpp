@@ -15,6 +15,7 @@
 #include "g4lidar/diagnostics/diagnosis.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/scan.hpp"
+#include "io/moving_scans.hpp"
 
 namespace g4_tool {
 
@@ -31,12 +32,16 @@ struct play_request {
   std::optional<double> speed;
   std::optional<double> seek_s;
 };
+/// {"op":"record"}: begins or ends the recording. What else it holds is refused: the server chooses the name.
+struct record_request {
+  bool is_on;
+};
 /// An object that is not a valid request, and why.
 struct bad_request {
   std::string of;  ///< Its "op".
   std::string message;
 };
-using page_request = std::variant<set_request, play_request, bad_request>;
+using page_request = std::variant<set_request, play_request, record_request, bad_request>;
 
 /// Nothing for a text that a page never sends: close the connection.
 [[nodiscard]] std::optional<page_request> parse_page_request(std::string_view text);
@@ -46,6 +51,7 @@ struct page_hello {
   std::string source;
   std::optional<device_information> device;
   bool allows_set = false;
+  bool allows_record = false;
   nlohmann::ordered_json settings;
   std::optional<double> recording_s;  ///< The length of a recording.
 };
@@ -53,6 +59,16 @@ struct page_hello {
 [[nodiscard]] std::string settings_text(const nlohmann::ordered_json& settings);
 [[nodiscard]] std::string event_text(std::string_view what, double time_s);
 [[nodiscard]] std::string error_text(std::string_view of, std::string_view message);
+
+/// The recording of the server.
+struct page_recording {
+  std::string
+      file{};  ///< The name of the file that is written, without its directory; empty: none.
+  std::string last{};  ///< That of the file before it.
+  std::string why{};   ///< Why that one ended by itself.
+  std::uint64_t bytes = 0;
+  double seconds = 0;
+};
 
 /// The contents of a status.
 struct page_status {
@@ -65,10 +81,18 @@ struct page_status {
   lidar_counts counts{};
   std::vector<stage_report> stages{};
   std::optional<playback_status> playback{};
+  std::optional<page_recording> recording{};  ///< With --allow-record.
 };
 [[nodiscard]] std::string status_text(const page_status& status);
 
+/// A revolution, and what belongs to it.
+struct page_scan {
+  const scan& revolution;
+  double stamp_s;
+  std::optional<lidar_place> place{};
+  bool is_upside_down = false;
+};
 /// Appends the binary message of a revolution: its returns in the robot's frame.
-void put_page_scan(const scan& revolution, double stamp_s, std::vector<std::uint8_t>& out);
+void put_page_scan(const page_scan& what, std::vector<std::uint8_t>& out);
 
 }  // namespace g4_tool

@@ -70,17 +70,36 @@ double loss_window::add(const lidar_counts& counts) {
 }
 
 scan_publisher::scan_publisher(const serve_options& options, client_registry& to)
-    : options_(options), registry_(to), settings_(unknown_settings()) {
+    : options_(options),
+      registry_(to),
+      scans_(options.common, true),  // nobody is to deskew the points of a message again
+      recorder_(options.record_directory, options.record_limit),
+      settings_(unknown_settings()) {
   const g4lidar::mask mask = load_mask(options.common.mask);
-  shaping_options shape = shape_of(options.common, mask);
-  shape.restamps = true;  // nobody is to deskew the points of a message again
-  shaper_.set_options(shape);
-  if (shape.deskew != deskewing::none) report_.emplace(shape.deskew, "");
+  const shaping_options shape = shape_of(options.common, mask);
+  if (shape.deskew == deskewing::none) unmoved_.set_options(shape);
+  if (shape.deskew != deskewing::none) report_.emplace(shape.deskew, "in the source");
+}
+
+lidar_options scan_publisher::how_to_open() {
+  auto tap = for_each_connection([this](auto inner) { return bytes_.observe(std::move(inner)); });
+  if (is_live() && recorder_.is_allowed()) {
+    tap = [this, bytes = std::move(tap)](std::unique_ptr<connector> from) {
+      return bytes(recorder_.observe(std::move(from)));
+    };
+  }
+  return {.playback = {.speed = options_.speed, .loop = options_.loops}, .wrap = std::move(tap)};
+}
+
+bool scan_publisher::is_live() const {
+  const source_kind kind = kind_of_source(options_.common.source);
+  return kind == source_kind::device || kind == source_kind::simulated;
 }
 
 void scan_publisher::on_open(g4lidar::lidar& device) {
-  const source_kind kind = kind_of_source(options_.common.source);
-  if (kind == source_kind::device || kind == source_kind::simulated) {
+  scans_.open(device, source_->simulation());
+  if (is_live()) {
+    recorder_.opened(device);
     for (const setting_info& each : all_settings()) {
       settings_[std::string(each.name)] = json_of(read_setting(device, each));
     }
@@ -94,6 +113,7 @@ void scan_publisher::send_hello(bool sends) {
       hello_text({.source = options_.common.source.empty() ? now.name : options_.common.source,
                   .device = now.information,
                   .allows_set = options_.allows_set,
+                  .allows_record = recorder_.is_allowed() && is_live(),
                   .settings = settings_,
                   .recording_s = now.playback ? std::optional(seconds_of(now.playback->length_ns))
                                               : std::nullopt}),
@@ -107,33 +127,41 @@ void scan_publisher::on_scan(const g4lidar::scan& scan) {
   const bool wants_points = wanted.wants(channel::points);
   // A file that a client makes of them has no model, so it would be read as that of a G4.
   publish_bytes(wanted.wants(channel::from_device) && scan.model->word == g4_model.word);
-  shaper_.shape(scan);
-  if (report_) report_->add(scan.size(), shaper_.outside());
+  scans_.add(scan, [this](const stamped_odometry& at) { recorder_.add(at); });
+  recorder_.add(scan);
+  if (report_) report_->add(scan.size(), scans_.shaper().outside());
+  if (!report_) unmoved_.shape(scan);
+  scan_shaper& shaped = report_ ? scans_.shaper() : unmoved_;
   message_header header{.stamp_ns = reader().wall_ns(scan.time_ns()),
                         .frame_id = options_.frame_id,
                         .duration_ns = scan.duration_ns,
                         .model = scan.model};
-  if (wanted.page) {
-    const g4lidar::scan kept = shaper_.kept();
-    std::vector<std::uint8_t> message;
-    message.reserve(16 + 8 * kept.size());
-    put_page_scan(kept, seconds_of(header.stamp_ns), message);
-    registry_.page_scan(std::move(message));
-  }
+  if (wanted.page) publish_page(scans_.shaper().kept());
   if (wants_scan) {
     std::vector<std::uint8_t> message;
     ranges_m_.resize(options_.bins.value_or(default_bins(*scan.model)));
     intensities_.resize(has_intensity(*scan.model) ? ranges_m_.size() : 0);
     header.intensities = intensities_;
-    fill_grid(shaper_.for_grid(), ranges_m_, options_.common.grid, intensities_);
+    fill_grid(shaped.for_grid(), ranges_m_, options_.common.grid, intensities_);
     put_laser_scan(ranges_m_, header, message);
     registry_.publish(channel::scan, header.stamp_ns, std::move(message));
   }
   if (wants_points) {
     std::vector<std::uint8_t> message;
-    put_point_cloud2(shaper_.kept().points, header, message);
+    put_point_cloud2(shaped.kept().points, header, message);
     registry_.publish(channel::points, header.stamp_ns, std::move(message));
   }
+}
+
+void scan_publisher::publish_page(const g4lidar::scan& scan) {
+  std::vector<std::uint8_t> message;
+  message.reserve(64 + 8 * scan.size());
+  put_page_scan({.revolution = scan,
+                 .stamp_s = seconds_of(reader().wall_ns(scan.time_ns())),
+                 .place = scans_.place(),
+                 .is_upside_down = scans_.is_upside_down()},
+                message);
+  registry_.page_scan(std::move(message));
 }
 
 /// Publishes one message per revolution.
@@ -163,7 +191,8 @@ void scan_publisher::tick() {
                      .why = source_->why(),
                      .counts = reader().counts(),
                      .stages = source_->stages(),
-                     .playback = now.playback};
+                     .playback = now.playback,
+                     .recording = recorder_.status()};
   rates_.put(status, scan_rates::clock::now());
   status.loss = loss_.add(status.counts);
   registry_.status(status_text(status));
@@ -204,6 +233,15 @@ void scan_publisher::execute(g4lidar::lidar* lidar, const std::string& word,
   send_hello(false);
   done({});  // first, because a page may send the next setting at once
   registry_.settings(settings_text(settings_));
+}
+
+void scan_publisher::record(const record_request& wanted,
+                            std::function<void(const std::string&)> done) {
+  if (recorder_.is_allowed() && !is_live()) return done("a recording cannot be recorded again");
+  if (!recorder_.is_allowed()) return done(recorder_.set(true));
+  reader().ask([this, wanted, then = std::move(done)](g4lidar::lidar* /*lidar*/) {
+    then(recorder_.set(wanted.is_on));
+  });
 }
 
 void scan_publisher::play(const play_request& wanted) {

@@ -17,7 +17,9 @@
 #include "client_registry.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "io/deskew_report.hpp"
+#include "io/moving_scans.hpp"
 #include "io/source_reader.hpp"
+#include "page_recorder.hpp"
 
 namespace g4_tool {
 
@@ -58,11 +60,7 @@ class scan_publisher final : public reader_listener {
   /// Call it before `from` is started. `from` outlives this.
   void attach(source_reader& from) { source_ = &from; }
   /// The options for opening the source. This outlives the reader.
-  [[nodiscard]] lidar_options how_to_open() {
-    return {.playback = {.speed = options_.speed, .loop = options_.loops},
-            .wrap = for_each_connection(
-                [this](auto inner) { return bytes_.observe(std::move(inner)); })};
-  }
+  [[nodiscard]] lidar_options how_to_open();
 
   // In the thread of the reader.
   void on_open(g4lidar::lidar& device) override;
@@ -76,19 +74,24 @@ class scan_publisher final : public reader_listener {
   // lidar_actions. *Any thread.*
   void set(const set_request& wanted, std::function<void(const std::string&)> done);
   void play(const play_request& wanted);
+  void record(const record_request& wanted, std::function<void(const std::string&)> done);
 
  private:
   [[nodiscard]] background_reader& reader() const { return source_->reader(); }
   void send_hello(bool sends);
   void execute(g4lidar::lidar* lidar, const std::string& word,
                const std::function<void(const std::string&)>& done);
+  [[nodiscard]] bool is_live() const;
+  void publish_page(const g4lidar::scan& scan);
   void publish_diagnostics(const page_status& status);
   void publish_bytes(bool is_wanted);
 
   const serve_options options_;
   client_registry& registry_;
   source_reader* source_ = nullptr;
-  scan_shaper shaper_;
+  moving_scans scans_;   // of the thread of the reader, as the next two
+  scan_shaper unmoved_;  // for messages, if only the page's points are deskewed
+  page_recorder recorder_;
   std::optional<deskew_report> report_;  // if it deskews
   byte_tap bytes_;                       // of the thread of the reader
   scan_rates rates_;

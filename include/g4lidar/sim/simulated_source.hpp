@@ -10,6 +10,7 @@
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/pty_port.hpp"
 
@@ -21,6 +22,7 @@ struct simulated_source {
   std::optional<odometry> robot;  ///< Without errors; nothing without a path.
   std::int64_t begin_ns;          ///< The time 0 of both, by std::chrono::steady_clock.
   std::string model;              ///< Its word; empty: a G4.
+  mounting mount{};               ///< Where the lidar is on the robot.
 };
 
 /// The lidar that "sim:?NAME=VALUE&..." describes, at a port as that of

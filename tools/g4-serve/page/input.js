@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Input by mouse, touch and keys on the radar.
+import { bearing_deg, inverse, placed } from './frames.js';
 
 /** @typedef {import('./view.js').View} View */
 /** @typedef {import('./ruler.js').Ruler} Ruler */
@@ -110,9 +111,9 @@ export class Pointers {
 export class Controls {
   /**
    * @param {HTMLElement} surface @param {View} view @param {Ruler} ruler @param {Scans} scans
-   * @param {() => void} pause  Pauses or continues a recording.
+   * @param {{pause: () => void, save: () => void}} actions  Pause or continue a recording; save the picture.
    */
-  constructor(surface, view, ruler, scans, pause) {
+  constructor(surface, view, ruler, scans, actions) {
     this.surface = surface;
     this.view = view;
     this.ruler = ruler;
@@ -120,6 +121,8 @@ export class Controls {
     this.trails = /** @type {HTMLInputElement} */ (element('trails'));
     this.freeze_button = button('freeze', () => this.freeze());
     this.ruler_button = button('ruler', () => this.turn_ruler());
+    this.map_button = /** @type {HTMLButtonElement} */ (button('map', () => this.turn_map()));
+    button('save', actions.save);
     const keys = /** @type {HTMLDialogElement} */ (element('keys'));
     button('zoom_in', () => view.zoom(zoom_step));
     button('zoom_out', () => view.zoom(1 / zoom_step));
@@ -138,7 +141,9 @@ export class Controls {
       f: () => this.freeze(),
       r: () => this.turn_ruler(),
       t: () => this.next_trails(),
-      p: pause,
+      m: () => this.turn_map(),
+      s: actions.save,
+      p: actions.pause,
       Escape: () => this.ruler.is_on && this.turn_ruler(),
       '?': () => keys.showModal(),
     };
@@ -192,6 +197,19 @@ export class Controls {
     this.surface.classList.toggle('measures', this.ruler.is_on);
   }
 
+  /** Between the robot's frame and the map, where the motion is known. */
+  turn_map() {
+    if (this.map_button.disabled) return;
+    this.scans.wants_map = !this.scans.wants_map;
+    this.scans.version++;
+    this.map_button.setAttribute('aria-pressed', String(this.scans.wants_map));
+  }
+
+  /** @param {boolean} is_known  Whether the motion is known. */
+  allow_map(is_known) {
+    this.map_button.disabled = !is_known && !this.scans.wants_map;
+  }
+
   use_trails() {
     this.scans.trail_s = Number(this.trails.value);
     const text = this.scans.trail_s > 0 ? `${this.scans.trail_s} s` : 'off';
@@ -223,8 +241,8 @@ export class Controls {
 
   /** @param {number} column @param {number} row */
   #hover(column, row) {
-    const { x, y } = this.view.place(column, row);
-    const bearing = Math.round((Math.atan2(y, x) * 180) / Math.PI);
-    this.pointer_text.textContent = `${Math.hypot(x, y).toFixed(2)} m, ${bearing}\u00b0`;
+    const at = placed(inverse(this.scans.robot), this.view.place(column, row));
+    const bearing = Math.round(bearing_deg(at));
+    this.pointer_text.textContent = `${Math.hypot(at.x, at.y).toFixed(2)} m, ${bearing}\u00b0`;
   }
 }

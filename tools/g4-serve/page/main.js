@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The page: connects its parts, and draws one picture per frame.
 import { Connection } from './connection.js';
+import { bearing_deg, composed, origin, placed } from './frames.js';
 import { Controls, element } from './input.js';
+import { save_picture } from './picture.js';
 import { Playback } from './playback.js';
 import { Radar } from './radar.js';
-import { Ruler, measure } from './ruler.js';
+import { Recorder } from './recorder.js';
+import { Ruler, measure, measure_text } from './ruler.js';
 import { Scans } from './scans.js';
 import { Settings } from './settings.js';
 import { Panels, write } from './status.js';
@@ -33,7 +36,8 @@ let status = null;
 const connection = new Connection({ on_message: take_message, on_data: take_data, on_change: show_state });
 const settings = new Settings(connection);
 const playback = new Playback(connection, () => show_state());
-const controls = new Controls(surface, view, ruler, scans, () => playback.pause());
+const recorder = new Recorder(connection);
+const controls = new Controls(surface, view, ruler, scans, { pause: () => playback.pause(), save });
 
 /** @param {any} message */
 function take_message(message) {
@@ -45,6 +49,7 @@ function take_message(message) {
   status = message;
   panels.show(status);
   playback.show(status);
+  recorder.show(status);
   show_state();
 }
 
@@ -57,7 +62,7 @@ function show_hello(message) {
     who.serial && `serial number ${who.serial}`];
   write(element('source'), hello.source ?? '');
   write(element('device'), parts.filter(Boolean).join(', '));
-  write(element('frame'), hello.frame ?? 'robot');
+  recorder.allow(hello.allow_record === true);
   settings.use(hello.setting_rows ?? []);
   settings.allow(hello.allow_set === true);
   settings.show(hello.settings ?? {});
@@ -67,6 +72,7 @@ function show_hello(message) {
 /** @param {any} message */
 function fail(message) {
   if (message.of === 'set') settings.fail(message.message);
+  else if (message.of === 'record') recorder.fail(message.message);
   else panels.add_event({ what: `${message.of}: ${message.message}` });
 }
 
@@ -76,7 +82,42 @@ function take_data(data) {
   const scan = scans.newest;
   if (!scan) return;
   panels.show_points(scan.colours.length);
+  controls.allow_map(scan.pose !== null);
+  show_nearest();
   if (!view.is_chosen && (scan.whole || scans.received === 1)) follow();
+}
+
+/** The nearest return, in the robot's frame. */
+function show_nearest() {
+  const found = scans.nearest_return();
+  const text = found ? measure_text(origin, found) : '-';
+  panels.numbers.set('Nearest obstacle', text);
+  write(element('nearest'), found ? `Nearest: ${text}` : '');
+}
+
+/** What the picture shows: the map with a number, or the robot's frame. */
+const shown = { map: 0, robot: origin };
+
+function follow_frame() {
+  const { robot } = scans;
+  const map = scans.is_map ? (scans.newest?.map ?? 0) : 0;
+  if (map === shown.map) {
+    view.follow(robot);
+  } else {
+    view.change_frame(shown.robot, robot);
+    ruler.clear();
+    write(element('frame'), map ? 'map' : 'robot');
+    element('axes').innerText = map ? 'up: x\nleft: y' : 'up: x, ahead\nleft: y';
+  }
+  shown.map = map;
+  shown.robot = robot;
+}
+
+function save() {
+  const now = new Date(1000 * (scans.newest?.stamp ?? Date.now() / 1000));
+  const caption = `${hello?.source ?? ''}  ${now.toLocaleString()}  ${element('nearest').textContent}`;
+  const name = `g4-${now.toISOString().replace(/[-:]|\.\d+/g, '')}.png`;
+  save_picture([grid, surface], caption, radar.theme.text, radar.ratio, name);
 }
 
 /** Until the user zooms, nearly all points stay visible: the view zooms out, but not in. */
@@ -128,7 +169,7 @@ const frames = {
   draws: new Float32Array(frames_kept),
   last_ms: 0,
 };
-const drawn = { view: -1, ruler: -1, scans: -1 };
+const drawn = { view: -1, ruler: -1, scans: -1, newest: /** @type {object | undefined} */ (undefined) };
 
 /** @param {number} now_ms */
 function frame(now_ms) {
@@ -136,11 +177,13 @@ function frame(now_ms) {
   frames.last_ms = now_ms;
   scans.advance(interval_ms / 1000);
   const begin_ms = performance.now();
+  follow_frame();
   const view_changed = drawn.view !== view.version;
-  if (view_changed || drawn.ruler !== ruler.version) {
-    radar.draw_grid(ruler);
+  if (view_changed || drawn.ruler !== ruler.version || drawn.newest !== scans.newest) {
+    radar.draw_grid(ruler, scans);
     write(element('measured'), ruler.text());
     element('measured').hidden = !ruler.is_on;
+    element('nearest').hidden = ruler.is_on;
   }
   if (view_changed || drawn.scans !== scans.version) {
     radar.draw_points(scans);
@@ -149,6 +192,7 @@ function frame(now_ms) {
   drawn.view = view.version;
   drawn.ruler = ruler.version;
   drawn.scans = scans.version;
+  drawn.newest = scans.newest;
   frames.intervals[frames.count % frames_kept] = interval_ms;
   frames.draws[frames.count % frames_kept] = performance.now() - begin_ms;
   frames.count++;
@@ -184,8 +228,30 @@ Object.defineProperty(window, 'g4lidar', {
     get scan() {
       const scan = scans.newest;
       if (!scan) return null;
-      const { revolution, stamp, whole } = scan;
-      return { revolution, stamp, whole, points: Array.from(scan.xy), trails: scans.shown.length - 1 };
+      const { revolution, stamp, whole, pose, map } = scan;
+      return { revolution, stamp, whole, pose, map, points: Array.from(scan.xy), trails: scans.shown.length - 1 };
+    },
+    /** All scans that are shown, the oldest first, with points in the frame of the picture. */
+    get shown() {
+      return scans.shown.map((scan) => {
+        const frame = scans.frame_of(scan);
+        const places = Array.from(scan.colours, (_, i) => placed(frame, { x: scan.xy[2 * i], y: scan.xy[2 * i + 1] }));
+        return { revolution: scan.revolution, points: places.flatMap(({ x, y }) => [x, y]) };
+      });
+    },
+    /** Where the robot, and the way that it has driven, are in the picture. */
+    get robot() {
+      return { ...scans.robot };
+    },
+    get way() {
+      return scans.way.poses.map((pose) => composed(scans.map, pose));
+    },
+    get is_map() {
+      return scans.is_map;
+    },
+    get nearest() {
+      const found = scans.nearest_return();
+      return found && { distance_m: Math.hypot(found.x, found.y), bearing_deg: bearing_deg(found) };
     },
     get received() {
       return { scans: scans.received, points: scans.points_received };

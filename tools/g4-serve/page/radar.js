@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Draws the radar: rings, robot and ruler on one canvas, and above it the points as pixels.
+import { placed } from './frames.js';
 import { colour_count } from './scans.js';
 
 /** @typedef {import('./view.js').View} View */
 /** @typedef {import('./scans.js').Scan} Scan */
 /** @typedef {import('./scans.js').Scans} Scans */
 /** @typedef {import('./ruler.js').Ruler} Ruler */
+/** @typedef {import('./frames.js').Pose} Pose */
 
 const most_pixels_per_point = 2; // more pixels per CSS pixel are not visible
 const ring_pixels = 70;
@@ -39,6 +41,7 @@ function theme_now() {
   const style = getComputedStyle(document.documentElement);
   /** @param {string} name */
   const colour = (name) => style.getPropertyValue(name).trim();
+  const is_dark = matchMedia('(prefers-color-scheme: dark)').matches;
   return {
     background: colour('--background'),
     ring: colour('--ring'),
@@ -46,7 +49,9 @@ function theme_now() {
     axis_x: colour('--axis_x'),
     axis_y: colour('--axis_y'),
     ruler: colour('--ruler'),
-    anchors: matchMedia('(prefers-color-scheme: dark)').matches ? on_dark : on_light,
+    way: colour('--way'),
+    nearest: colour('--nearest'),
+    anchors: is_dark ? on_dark : on_light,
   };
 }
 
@@ -111,27 +116,33 @@ export class Radar {
     for (let i = 0; i < last; i++) {
       const age = (scans.now - scans.shown[i].born) / Math.max(scans.trail_s, 0.001);
       const alpha = trail_alpha * (1 - age);
-      if (alpha >= 1) this.#draw_scan(scans.shown[i], alpha, Math.round(2 * this.ratio));
+      if (alpha < 1) continue;
+      this.#draw_scan(scans.shown[i], scans.frame_of(scans.shown[i]), alpha, Math.round(2 * this.ratio));
     }
-    if (last >= 0) this.#draw_scan(scans.shown[last], newest_alpha, Math.round(3 * this.ratio));
+    if (last >= 0) this.#draw_scan(scans.shown[last], scans.robot, newest_alpha, Math.round(3 * this.ratio));
     this.screen.putImageData(this.picture, 0, 0);
   }
 
-  /** @param {Scan} scan @param {number} alpha @param {number} size  Of a point, in pixels. */
-  #draw_scan(scan, alpha, size) {
+  /**
+   * @param {Scan} scan @param {Pose} frame  Where its frame is in the picture.
+   * @param {number} alpha @param {number} size  Of a point, in pixels.
+   */
+  #draw_scan(scan, frame, alpha, size) {
     const { view, ratio, pixels, colours } = this;
+    const cosine = Math.cos(frame.yaw);
+    const sine = Math.sin(frame.yaw);
     const width = this.points.width;
     const scale = view.scale * ratio;
     const half = (size - 1) / 2;
-    const left = view.column(0) * ratio - half;
-    const top = view.row(0) * ratio - half;
+    const left = view.column(frame.y) * ratio - half;
+    const top = view.row(frame.x) * ratio - half;
     const last_column = width - size;
     const last_row = this.points.height - size;
     const opaque = Math.round(alpha) << 24;
     const { xy } = scan;
     for (let i = 0, k = 0; k < xy.length; i++, k += 2) {
-      const column = Math.round(left - xy[k + 1] * scale);
-      const row = Math.round(top - xy[k] * scale);
+      const column = Math.round(left - (sine * xy[k] + cosine * xy[k + 1]) * scale);
+      const row = Math.round(top - (cosine * xy[k] - sine * xy[k + 1]) * scale);
       if (column < 0 || row < 0 || column > last_column || row > last_row) continue;
       const pixel = colours[scan.colours[i]] | opaque;
       let at = row * width + column;
@@ -141,16 +152,45 @@ export class Radar {
     }
   }
 
-  /** @param {Ruler} ruler  Rings, axes, robot and ruler. */
-  draw_grid(ruler) {
+  /** @param {Ruler} ruler @param {Scans} scans  Rings, way, robot, nearest return and ruler. */
+  draw_grid(ruler, scans) {
     const { paper, theme, view } = this;
     paper.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     paper.fillStyle = theme.background;
     paper.fillRect(0, 0, view.width, view.height);
     this.labels = [];
-    this.#draw_rings(view.column(0), view.row(0));
-    this.#draw_robot(view.column(0), view.row(0));
+    const { robot } = scans;
+    this.#draw_rings(view.column(robot.y), view.row(robot.x));
+    this.#draw_way(scans);
+    this.#draw_nearest(scans);
+    this.#draw_robot(robot);
     this.#draw_ruler(ruler);
+  }
+
+  /** @param {Scans} scans */
+  #draw_way(scans) {
+    if (!scans.newest?.pose) return;
+    const { paper, view } = this;
+    const poses = [...scans.way.poses, scans.newest.pose].map((pose) => placed(scans.map, pose));
+    paper.lineWidth = 2;
+    paper.strokeStyle = this.theme.way;
+    paper.beginPath();
+    for (const at of poses) paper.lineTo(view.column(at.y), view.row(at.x));
+    paper.stroke();
+  }
+
+  /** @param {Scans} scans */
+  #draw_nearest(scans) {
+    const found = scans.nearest_return();
+    if (!found) return;
+    const { paper, view } = this;
+    const at = placed(scans.robot, found);
+    const [column, row] = [view.column(at.y), view.row(at.x)];
+    paper.lineWidth = 1.5;
+    this.#lines(this.theme.nearest, [[view.column(scans.robot.y), view.row(scans.robot.x), column, row]]);
+    paper.beginPath();
+    paper.arc(column, row, 7, 0, 2 * Math.PI);
+    paper.stroke();
   }
 
   /** @param {number} column @param {number} row  Of the lidar. */
@@ -209,18 +249,22 @@ export class Radar {
     this.labels.push({ text, left: column - width / 2, top: row - label_pixels, width, height: 2 * label_pixels });
   }
 
-  /** @param {number} column @param {number} row  A triangle that points ahead, and the axes. */
-  #draw_robot(column, row) {
-    const { paper, theme } = this;
+  /** @param {Pose} robot  A triangle that points ahead, and the axes. */
+  #draw_robot(robot) {
+    const { paper, theme, view } = this;
+    paper.save();
+    paper.translate(view.column(robot.y), view.row(robot.x));
+    paper.rotate(-robot.yaw);
     paper.lineWidth = 2;
-    this.#lines(theme.axis_x, [[column, row, column, row - 26]]);
-    this.#lines(theme.axis_y, [[column, row, column - 26, row]]);
+    this.#lines(theme.axis_x, [[0, 0, 0, -26]]);
+    this.#lines(theme.axis_y, [[0, 0, -26, 0]]);
     paper.fillStyle = theme.text;
     paper.beginPath();
-    paper.moveTo(column, row - 10);
-    paper.lineTo(column + 7, row + 7);
-    paper.lineTo(column - 7, row + 7);
+    paper.moveTo(0, -10);
+    paper.lineTo(7, 7);
+    paper.lineTo(-7, 7);
     paper.fill();
+    paper.restore();
   }
 
   /** @param {Ruler} ruler */

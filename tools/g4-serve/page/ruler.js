@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A ruler between two places of the robot's frame.
+// A ruler between two places of the picture.
+import { bearing_deg } from './frames.js';
 
 /** @typedef {import('./view.js').Place} Place */
 
 /** @param {Place} from @param {Place} to @returns {{distance_m: number, bearing_deg: number}} */
 export function measure(from, to) {
-  const x = to.x - from.x;
-  const y = to.y - from.y;
-  return { distance_m: Math.hypot(x, y), bearing_deg: (Math.atan2(y, x) * 180) / Math.PI };
+  const way = { x: to.x - from.x, y: to.y - from.y };
+  return { distance_m: Math.hypot(way.x, way.y), bearing_deg: bearing_deg(way) };
 }
 
 /** @param {Place} from @param {Place} to @returns {string} Such as "1.234 m, bearing +5.0°". */
@@ -36,6 +36,12 @@ export class Ruler {
     this.is_on = on;
     if (!on) this.from = this.to = null;
     this.shows_middle = false;
+    this.version++;
+  }
+
+  /** Its places are those of another frame. */
+  clear() {
+    this.from = this.to = null;
     this.version++;
   }
 

@@ -1,18 +1,31 @@
 // SPDX-License-Identifier: MIT
 // The visible scans: the newest, and older ones as trails.
+import { Way, composed, inverse, origin, placed } from './frames.js';
 
 const header_bytes = 16;
 const scan_message = 0x10;
+const is_whole = 1;
+const has_place = 2;
+const place_bytes = 28;
 const most_scans = 512;
 export const colour_count = 256;
 /** The range of the last colour, in metres. */
 export const colour_range_m = 16;
 
+/** @typedef {import('./frames.js').Pose} Pose */
+
 /**
- * A scan as it was received. Coordinates in metres, in the robot's frame: x, y, x, y, ...
+ * A scan as it was received. Coordinates in metres, in the robot's frame: x, y, x, y, ... `pose` is that of this frame
+ * in the map with the number `map`, if it is known.
  * @typedef {{revolution: number, stamp: number, whole: boolean, xy: Float32Array,
- *   colours: Uint8Array, born: number}} Scan
+ *   colours: Uint8Array, pose: Pose | null, map: number, born: number}} Scan
  */
+
+/** @param {DataView} head @param {number} at @returns {{pose: Pose, map: number}} */
+function place_at(head, at) {
+  const [x, y, yaw] = [4, 12, 20].map((offset) => head.getFloat64(at + offset, true));
+  return { pose: { x, y, yaw }, map: head.getUint32(at, true) };
+}
 
 /**
  * @param {ArrayBuffer} message @param {number} born  The time of the picture, in seconds.
@@ -23,7 +36,9 @@ export function scan_of(message, born) {
   const head = new DataView(message);
   const count = head.getUint16(2, true);
   if (head.getUint8(0) !== scan_message) return null;
-  if (message.byteLength !== header_bytes + 8 * count) return null;
+  const flags = head.getUint8(1);
+  const end = header_bytes + 8 * count;
+  if (message.byteLength !== end + (flags & has_place ? place_bytes : 0)) return null;
   const xy = new Float32Array(message, header_bytes, 2 * count); // every browser is little-endian
   const colours = new Uint8Array(count);
   for (let i = 0; i < count; i++) {
@@ -34,9 +49,10 @@ export function scan_of(message, born) {
   return {
     revolution: head.getUint32(4, true),
     stamp: head.getFloat64(8, true),
-    whole: (head.getUint8(1) & 1) !== 0,
+    whole: (flags & is_whole) !== 0,
     xy,
     colours,
+    ...(flags & has_place ? place_at(head, end) : { pose: null, map: 0 }),
     born,
   };
 }
@@ -50,6 +66,9 @@ export class Scans {
     /** The time of the picture, in seconds; it stops while the picture is frozen. */
     this.now = 0;
     this.is_frozen = false;
+    /** Whether the picture is in the map: it stays where the walls are, and the robot moves. */
+    this.wants_map = false;
+    this.way = new Way();
     this.received = 0;
     this.points_received = 0;
     /** Counts changes. */
@@ -68,8 +87,14 @@ export class Scans {
     this.received++;
     this.points_received += scan.colours.length;
     if (this.is_frozen) return true;
-    if (this.newest && scan.stamp < this.newest.stamp) this.shown.length = 0; // seek to an earlier position
+    if (this.newest && scan.stamp < this.newest.stamp) { // seek to an earlier position
+      this.shown.length = 0;
+      this.way.clear();
+    }
+    // What was measured in another map cannot be placed.
+    if (this.newest && this.newest.map !== scan.map) this.shown.length = 0;
     this.shown.push(scan);
+    if (scan.pose) this.way.add(scan.pose, scan.map);
     if (this.shown.length > most_scans) this.shown.shift(); // the page is hidden
     this.version++;
     return true;
@@ -86,22 +111,61 @@ export class Scans {
     if (old > 0 || this.shown.length > 1) this.version++;
   }
 
+  /** Whether the picture is in the map. */
+  get is_map() {
+    return this.wants_map && Boolean(this.newest?.pose);
+  }
+
+  /** The robot of the newest scan, in the frame of the picture. */
+  get robot() {
+    return (this.is_map && this.newest?.pose) || origin;
+  }
+
+  /** @returns {Pose} The map, in the frame of the picture. */
+  get map() {
+    return this.is_map || !this.newest?.pose ? origin : inverse(this.newest.pose);
+  }
+
   /**
-   * The point of the newest scan that is nearest to a place.
+   * The frame of a scan, in the frame of the picture. Without a known motion it is as if the robot had not moved.
+   * @param {Scan} scan @returns {Pose}
+   */
+  frame_of(scan) {
+    if (scan === this.newest) return this.robot;
+    return scan.pose ? composed(this.map, scan.pose) : origin;
+  }
+
+  /** @returns {{x: number, y: number, index: number} | null} The nearest return, in the robot's frame. */
+  nearest_return() {
+    const xy = this.newest?.xy ?? [];
+    let found = null;
+    let least = Infinity;
+    for (let i = 0; i < xy.length; i += 2) {
+      const square = xy[i] * xy[i] + xy[i + 1] * xy[i + 1];
+      if (square >= least) continue;
+      least = square;
+      found = { x: xy[i], y: xy[i + 1], index: i / 2 };
+    }
+    return found;
+  }
+
+  /**
+   * The point of the newest scan that is nearest to a place of the picture.
    * @param {{x: number, y: number}} place @param {number} within_m
    * @returns {{x: number, y: number} | null}
    */
   nearest(place, within_m) {
     const xy = this.newest?.xy ?? new Float32Array(0);
+    const at = placed(inverse(this.robot), place);
     let found = null;
     let least = within_m;
     for (let i = 0; i < xy.length; i += 2) {
-      const distance = Math.hypot(xy[i] - place.x, xy[i + 1] - place.y);
+      const distance = Math.hypot(xy[i] - at.x, xy[i + 1] - at.y);
       if (distance > least) continue;
       least = distance;
       found = { x: xy[i], y: xy[i + 1] };
     }
-    return found;
+    return found && placed(this.robot, found);
   }
 
   /**

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The visible part of the robot's frame: x (ahead) is up, y is left. Pixels are CSS pixels.
+// The visible part of the robot's frame or of the map: x is up, y is left. Pixels are CSS pixels.
 
 const least_scale = 4;
 const largest_scale = 4000;
-const farthest_m = 60;
+const farthest_m = 60; // from the robot
+/** The robot may be so far from the middle, as a part of the picture. */
+const follow_part = 0.3;
 
 /** @typedef {{x: number, y: number}} Place In metres. */
 
@@ -12,6 +14,8 @@ export class View {
     /** The place in the middle, in metres. */
     this.x = 0;
     this.y = 0;
+    /** Where the robot is. @type {Place} */
+    this.robot = { x: 0, y: 0 };
     /** Pixels per metre. */
     this.scale = 60;
     this.width = 1;
@@ -68,13 +72,30 @@ export class View {
   /** @param {number} range_m  Shows this range around the lidar, which is in the middle. */
   fit(range_m) {
     this.scale = Math.min(this.width, this.height) / 2 / range_m;
-    this.#look_at(0, 0);
+    this.#look_at(this.robot.x, this.robot.y);
+  }
+
+  /** @param {Place} robot  It has moved: the picture follows when it leaves the middle. */
+  follow(robot) {
+    if (robot.x === this.robot.x && robot.y === this.robot.y) return;
+    this.robot = { x: robot.x, y: robot.y };
+    const free = (follow_part * Math.min(this.width, this.height)) / this.scale;
+    const away = Math.max(Math.abs(robot.x - this.x), Math.abs(robot.y - this.y));
+    if (away > free && !this.is_chosen) this.#look_at(robot.x, robot.y);
+    this.version++;
+  }
+
+  /** @param {Place} from @param {Place} to  The robot in the frame before, and in another one, which begins. */
+  change_frame(from, to) {
+    this.robot = { x: to.x, y: to.y };
+    this.#look_at(this.x - from.x + to.x, this.y - from.y + to.y);
   }
 
   /** @param {number} x @param {number} y */
   #look_at(x, y) {
-    this.x = Math.min(farthest_m, Math.max(-farthest_m, x));
-    this.y = Math.min(farthest_m, Math.max(-farthest_m, y));
+    const { robot } = this;
+    this.x = robot.x + Math.min(farthest_m, Math.max(-farthest_m, x - robot.x));
+    this.y = robot.y + Math.min(farthest_m, Math.max(-farthest_m, y - robot.y));
     this.version++;
   }
 }

@@ -177,13 +177,17 @@ mounting mounting_of(const std::string& text) {
   return std::get<mounting>(made);
 }
 
+option_row mount_row(common_options& options) {
+  return value_row("--mount", "X,Y,DEG[,down]",
+                   "Where the lidar is on the robot; down: top down (0,0,0)", options.mount,
+                   mounting_of);
+}
+
 option_rows motion_rows(common_options& options) {
   return in_group("Motion of the robot",
                   {text_row("--odometry", "FILE", "Poses: lines of time_ns, x, y and yaw_rad",
                             options.odometry),
-                   value_row("--mount", "X,Y,DEG[,down]",
-                             "Where the lidar is on the robot; down: top down (0,0,0)",
-                             options.mount, mounting_of)});
+                   mount_row(options)});
 }
 
 option_row deskew_row(common_options& options) {

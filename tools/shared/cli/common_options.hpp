@@ -103,6 +103,8 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_rows grid_rows(grid_options& into);
 /// "X,Y,DEG" or "X,Y,DEG,down" in metres and degrees. Throws bad_value.
 [[nodiscard]] mounting mounting_of(const std::string& text);
+/// --mount.
+[[nodiscard]] option_row mount_row(common_options& options);
 /// --odometry, --mount.
 [[nodiscard]] option_rows motion_rows(common_options& options);
 /// --deskew.

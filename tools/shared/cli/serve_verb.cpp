@@ -16,7 +16,7 @@ settings, and for a recording a time line. Foxglove connects to ws://localhost:8
 Only programs of this machine can connect, unless --address is given: 0.0.0.0 for all networks.
 There is no password and no encryption. Web pages of other origins are refused, but those of
 --allow-origin, such as https://app.foxglove.dev. The settings of the lidar can be changed only
-with --allow-set.
+with --allow-set, and pages can record into a directory only with --allow-record.
 
 The web page draws all points in the robot's frame: x ahead, y left.)";
 
@@ -44,6 +44,10 @@ option_rows server_rows(serve_options& options) {
                    return word == "localhost" ? std::string("127.0.0.1") : word;
                  }),
        flag_row("--allow-set", "Let clients change the settings of the lidar", options.allows_set),
+       text_row("--allow-record", "DIRECTORY", "Let pages record into this directory",
+                options.record_directory, completion::file),
+       value_row("--record-limit", "SIZE", "Of all recordings in this directory (4G)",
+                 options.record_limit, byte_count_of),
        origin});
 }
 
@@ -52,8 +56,11 @@ option_rows scan_rows(serve_options& options) {
       "Scans",
       {frame_row("--frame", "Of --fov and --ignore; vendor: clockwise from the cable (robot)",
                  options.common.frame),
-       choice_row("--deskew", "Deskew each revolution by the scans alone", options.common.deskew,
-                  choices<deskewing>{{"scans", deskewing::by_scans}}),
+       choice_row(
+           "--deskew", "Deskew by the odometry of the source, or by the scans alone",
+           options.common.deskew,
+           choices<deskewing>{{"odometry", deskewing::by_path}, {"scans", deskewing::by_scans}}),
+       mount_row(options.common),
        number_row("--grid", "N", "Ranges of each LaserScan (G4: 720)", options.bins, 1U, 65536U),
        text_row("--frame-id", "NAME", "frame_id of the messages for Foxglove (laser)",
                 options.frame_id, completion::nothing)});

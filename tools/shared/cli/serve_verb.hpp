@@ -23,7 +23,9 @@ struct serve_options {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8765;  ///< 0: any free port.
   bool allows_set = false;
-  std::vector<std::string> origins;   ///< Of other web pages that may connect.
+  std::string record_directory;                          ///< Empty: nobody may record.
+  std::uint64_t record_limit = std::uint64_t{4} << 30U;  ///< Bytes of all recordings in it.
+  std::vector<std::string> origins;                      ///< Of other web pages that may connect.
   std::optional<std::uint32_t> bins;  ///< Ranges of a LaserScan; default_bins() of the model.
   std::string frame_id = "laser";
   double speed = 1.0;  ///< Of the playback of a recording.

@@ -7,6 +7,13 @@
 #include "shape_files.hpp"
 
 namespace g4_tool {
+namespace {
+
+/// Times of points that go back by less do so by the error of the clock.
+constexpr std::int64_t least_way_back_ns = 100'000'000;
+
+}  // namespace
+
 
 void odometry_feed::follow(const sim::simulated_source* carried) {
   robot_ = carried == nullptr ? std::nullopt : carried->robot;
@@ -49,9 +56,12 @@ void odometry_feed::follow_round(std::int64_t time_ns) {
 void odometry_feed::follow(std::span<const point> points, const taker& take) {
   if (points.empty()) return;
   if (player_ != nullptr) follow_round(points.front().time_ns);
+  const std::int64_t before_ns = std::exchange(points_ns_, points.front().time_ns);
+  if (points_ns_ < before_ns - least_way_back_ns) has_begun_ = false;  // a seek
   if (all_.empty() && robot_) return follow_robot(*robot_, points, take);
   if (all_.empty()) return;
   if (!std::exchange(has_begun_, true)) {
+    ++begun_;
     const auto first =
         std::ranges::upper_bound(all_, points.front().time_ns, {}, &stamped_odometry::time_ns);
     next_ = static_cast<std::size_t>(first - all_.begin()) - (first == all_.begin() ? 0 : 1);

@@ -35,7 +35,10 @@ class odometry_feed {
 
   /// Whether there is any.
   [[nodiscard]] bool is_known() const noexcept { return robot_ || !all_.empty(); }
-  /// Gives what was before these points, and the pose after them, in order, each once.
+  /// How often the odometry has begun: again where a recording does so, or goes on elsewhere.
+  [[nodiscard]] std::uint64_t begun() const noexcept { return begun_; }
+  /// Gives what was before these points, and the pose after them, in order, each once. Where the times of points go
+  /// back, those of the odometry do so, too.
   void follow(std::span<const g4lidar::point> points, const taker& take);
 
  private:
@@ -45,11 +48,13 @@ class odometry_feed {
 
   std::optional<sim::odometry> robot_;
   g4lidar::player* player_ = nullptr;
-  std::int64_t begin_ns_ = 0;  // of the robot, or of the round that is played
-  std::int64_t last_ns_ = 0;   // of the robot
+  std::int64_t begin_ns_ = 0;   // of the robot, or of the round that is played
+  std::int64_t last_ns_ = 0;    // of the robot
+  std::int64_t points_ns_ = 0;  // of the last points
   std::vector<g4lidar::stamped_odometry> all_;
   std::size_t next_ = 0;
   bool has_begun_ = false;
+  std::uint64_t begun_ = 0;
 };
 
 }  // namespace g4_tool

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+#include "page_recorder.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <ctime>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "g4lidar/transport/forwarding.hpp"
+#include "io/output.hpp"
+
+namespace g4_tool {
+namespace {
+
+using g4lidar::recorded_event;
+
+/// Less is no recording.
+constexpr std::uint64_t least_bytes = std::uint64_t{1} << 20U;
+constexpr std::string_view prefix = "g4-";
+constexpr std::string_view suffix = ".mcap";
+/// Of the recordings of one second.
+constexpr int most_of_a_second = 9;
+
+std::string name_now(int number) {
+  const std::string more = number > 1 ? fmt::format("-{}", number) : "";
+  return fmt::format("{}{:%Y%m%dT%H%M%SZ}{}{}", prefix, fmt::gmtime(std::time(nullptr)), more,
+                     suffix);
+}
+
+/// Without the path, which clients need not know.
+std::string reason_of(const g4lidar::error& why, const std::string& name) {
+  const int number = why.system_errno();
+  if (number == 0) return in_tool_words(why.message());
+  return fmt::format("cannot write {}: {}. {}", name, std::generic_category().message(number),
+                     advice_on_writing(number));
+}
+
+}  // namespace
+
+/// The bytes both ways.
+class page_recorder::tapped_transport final : public g4lidar::forwarding_transport {
+ public:
+  tapped_transport(std::unique_ptr<g4lidar::transport> inner, page_recorder& to)
+      : forwarding_transport(std::move(inner)), to_(to) {
+    to_.port_ = this;
+    if (to_.writer_) to_.writer_->event(opened());
+  }
+  tapped_transport(const tapped_transport&) = delete;
+  tapped_transport& operator=(const tapped_transport&) = delete;
+  ~tapped_transport() override {
+    if (to_.writer_) {
+      to_.writer_->event(
+          {.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
+    }
+    to_.port_ = nullptr;
+    to_.stream_.delivers = false;
+  }
+
+  [[nodiscard]] g4lidar::result<g4lidar::received> read(
+      std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
+    auto got = inner().read(out, deadline_ns);
+    if (!got && got.error() != problem::cancelled && got.error() != problem::timeout)
+      reason_ = got.error().code();
+    if (got && got->count > 0 && to_.writer_)
+      to_.writer_->from_device(out.first(got->count), got->arrival_ns);
+    return got;
+  }
+  [[nodiscard]] g4lidar::result<void> write(g4lidar::bytes data,
+                                            std::int64_t deadline_ns) noexcept override {
+    const std::int64_t begun_ns = now_ns();
+    auto sent = inner().write(data, deadline_ns);
+    if (sent && to_.writer_) to_.writer_->to_device(data, begun_ns);
+    return sent;
+  }
+
+ private:
+  [[nodiscard]] recorded_event opened() const noexcept {
+    recorded_event made{.what = recorded_event::kind::opened, .time_ns = now_ns()};
+    made.baud = baud();
+    made.name = name();
+    return made;
+  }
+
+  page_recorder& to_;
+  problem reason_ = problem::cancelled;
+};
+
+/// The events of the driver, without which a recording gives other points.
+class page_recorder::tap final : public g4lidar::forwarding_connector,
+                                 public g4lidar::recording_hook {
+ public:
+  tap(std::unique_ptr<g4lidar::connector> inner, page_recorder& to)
+      : forwarding_connector(std::move(inner)), to_(to) {}
+
+  [[nodiscard]] g4lidar::result<std::unique_ptr<g4lidar::transport>> connect() noexcept override {
+    auto port = inner().connect();
+    if (port) *port = std::make_unique<tapped_transport>(std::move(*port), to_);
+    return port;
+  }
+  void event(const recorded_event& what) noexcept override {
+    to_.stream_.delivers = what.delivers;
+    to_.stream_.sample_rate_hz = what.sample_rate_hz;
+    to_.stream_.baud = what.baud;
+    if (to_.writer_) to_.writer_->event(what);
+  }
+
+ private:
+  page_recorder& to_;
+};
+
+page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes)
+    : directory_(std::move(directory)), most_bytes_(most_bytes) {
+  if (directory_.empty()) return;
+  std::error_code why;
+  const bool is_directory = std::filesystem::is_directory(directory_, why);
+  if (!is_directory && !why) why = std::make_error_code(std::errc::not_a_directory);
+  if (is_directory && ::access(directory_.c_str(), R_OK | W_OK | X_OK) != 0)
+    why = std::error_code(errno, std::generic_category());
+  if (!why) return;
+  throw failure(exit_code::usage,
+                fmt::format("--allow-record: cannot write to {}: {}. {}", in_quotes(directory_),
+                            why.message(), advice_on_writing(why.value())));
+}
+
+page_recorder::~page_recorder() { end(); }
+
+std::unique_ptr<g4lidar::connector> page_recorder::observe(
+    std::unique_ptr<g4lidar::connector> from) {
+  if (!is_allowed()) return from;
+  return std::make_unique<tap>(std::move(from), *this);
+}
+
+void page_recorder::opened(g4lidar::lidar& device) {
+  if (!is_allowed()) return;
+  known_ = {.information = device.information()};
+  if (const auto got = device.ask(requests::get_sample_rate())) known_.sample_rate = *got;
+  if (const auto got = device.ask(requests::get_scan_frequency())) known_.frequency = *got;
+  if (writer_) writer_->device(known_);
+}
+
+std::string page_recorder::measure(std::uint64_t& free_bytes) const {
+  std::error_code why;
+  std::uint64_t bytes = 0;
+  std::size_t files = 0;
+  for (auto each = std::filesystem::directory_iterator(directory_, why);
+       !why && each != std::filesystem::directory_iterator(); each.increment(why)) {
+    const std::string name = each->path().filename().string();
+    std::error_code unimportant;
+    if (!name.starts_with(prefix) || !name.ends_with(suffix) ||
+        !each->is_regular_file(unimportant)) {
+      continue;
+    }
+    ++files;
+    const auto size = each->file_size(unimportant);
+    if (!unimportant) bytes += size;
+  }
+  if (why) return "cannot read the directory of --allow-record: " + why.message();
+  if (files >= most_files) return fmt::format("there are {} recordings: remove some", files);
+  if (bytes + least_bytes > most_bytes_) {
+    return fmt::format(
+        "the recordings have {} MB, and --record-limit allows {} MB: remove some, or raise it",
+        bytes >> 20U, most_bytes_ >> 20U);
+  }
+  free_bytes = most_bytes_ - bytes;
+  return {};
+}
+
+std::string page_recorder::set(bool is_on) {
+  if (!is_allowed()) {
+    return "nobody may record here: start g4-serve with --allow-record DIRECTORY";
+  }
+  if (!is_on) {
+    end();
+    return {};
+  }
+  if (writer_) return fmt::format("{} is being recorded already", shown_.file);
+  if (port_ == nullptr) return "the lidar is not connected";
+  if (model_ == nullptr) return "no scan has come yet";
+  return begin();
+}
+
+std::string page_recorder::begin() {
+  if (std::string why = measure(free_bytes_); !why.empty()) return why;
+  for (int number = 1; number <= most_of_a_second; ++number) {
+    const std::string name = name_now(number);
+    auto made = g4lidar::recording_writer::create(directory_ + '/' + name, {.model = model_});
+    if (!made && made.error().system_errno() == EEXIST) continue;
+    if (!made) return reason_of(made.error(), name);
+    writer_.emplace(std::move(*made));
+    writer_->device(known_);
+    recorded_event now{.what = recorded_event::kind::opened, .time_ns = port_->now_ns()};
+    now.baud = port_->baud();
+    now.name = port_->name();
+    writer_->event(now);
+    if (stream_.delivers) {
+      stream_.time_ns = now.time_ns;
+      writer_->event(stream_);
+    }
+    begin_ns_ = now.time_ns;
+    const std::lock_guard lock(mutex_);
+    shown_ = {.file = name};
+    logger::info(fmt::format("recording {}/{}\n", directory_, name));
+    return {};
+  }
+  return "too many recordings were begun in this second: try again";
+}
+
+void page_recorder::add(const g4lidar::scan& found) {
+  model_ = found.model;
+  if (!writer_) return;
+  if (!found.is_piece()) writer_->scan(found);
+  check();
+}
+
+void page_recorder::add(const g4lidar::stamped_odometry& at) {
+  if (writer_) writer_->odometry(at);
+}
+
+void page_recorder::check() {
+  if (const auto why = writer_->take_error()) return end(reason_of(*why, shown_.file));
+  const auto counts = writer_->counts();
+  if (counts.file_bytes >= free_bytes_) {
+    return end(fmt::format("the recordings have the {} MB that --record-limit allows",
+                           most_bytes_ >> 20U));
+  }
+  const std::lock_guard lock(mutex_);
+  shown_.bytes = counts.file_bytes;
+  if (port_ != nullptr) shown_.seconds = static_cast<double>(port_->now_ns() - begin_ns_) * 1e-9;
+}
+
+void page_recorder::end(const std::string& why) {
+  if (!writer_) return;
+  const auto closed = writer_->close();
+  auto failed = writer_->take_error();
+  if (!failed && !closed) failed = closed.error();
+  const std::uint64_t bytes = writer_->counts().file_bytes;
+  writer_.reset();
+  const std::lock_guard lock(mutex_);
+  shown_.last = std::exchange(shown_.file, "");
+  shown_.bytes = bytes;
+  shown_.why = why.empty() && failed ? reason_of(*failed, shown_.last) : why;
+  logger::info(fmt::format("recorded {}/{}: {} bytes{}{}\n", directory_, shown_.last, bytes,
+                           shown_.why.empty() ? "" : "; ", shown_.why));
+}
+
+std::optional<page_recording> page_recorder::status() const {
+  if (!is_allowed()) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  return shown_;
+}
+
+}  // namespace g4_tool
