@@ -176,10 +176,10 @@ class RadarTest(PageTest):
         reached = set()
         self.driver.execute_script("document.activeElement.blur()")
         actions = self.page.pointer()
-        for _ in range(25):
+        for _ in range(30):
             actions.send_keys(Keys.TAB).perform()
             reached.add(self.driver.switch_to.active_element.get_attribute("id"))
-        for name in ("points", "zoom_in", "zoom_out", "fit", "freeze", "ruler", "trails", "help"):
+        for name in ("points", "zoom_in", "zoom_out", "fit", "freeze", "ruler", "save", "trails", "help"):
             self.assertIn(name, reached)
         self.page.keys("?")
         self.assertTrue(self.page.element("keys").is_displayed())

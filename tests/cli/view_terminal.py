@@ -151,6 +151,32 @@ def test_pictures_keys_and_sizes():
     terminal.end(0)
 
 
+def test_map():
+    """Where the motion is known there is a third frame, in which the robot moves and the walls stay."""
+    with open("drive.txt", "w", encoding="utf-8") as world:
+        world.write("wall -2 -2 4 -2\nwall 4 -2 4 2\nwall 4 2 -2 2\nwall -2 2 -2 -2\nmount 0,0,0\nlidar 0 0 0\n"
+                    "drive wait 3\ndrive forward 2 0.5\ndrive wait 60\n")
+    terminal = Terminal("--zoom", "6", "--map", "sim:?world=drive.txt")
+    terminal.shows("map")
+
+    def robot():
+        rows = [row for row, line in enumerate(terminal.screen.display) if "+" in line[:53]]
+        return rows[0] if rows else None
+
+    terminal.wait_for("robot in the middle", lambda: robot() in (11, 12))
+    terminal.press("t")
+    terminal.wait_for("robot that has moved up", lambda: (robot() or 12) <= 8)  # 2 m are 15.8 dots: 4 rows
+    terminal.press("f")
+    terminal.wait_for("robot in the middle", lambda: robot() in (11, 12))
+    terminal.shows("robot")
+    terminal.press("f")
+    terminal.shows("vendor")
+    terminal.press("f")
+    terminal.shows("map")
+    terminal.press("q")
+    terminal.end(0)
+
+
 def test_ascii():
     terminal = Terminal(SOURCE, locale="C")
     terminal.shows("*")

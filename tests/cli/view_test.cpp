@@ -2,12 +2,16 @@
 // The picture of `g4-dump view`, without a terminal. All expected cells were calculated by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "view/canvas.hpp"
 #include "view/picture.hpp"
 #include "view/radar.hpp"
+#include "view/trails.hpp"
 
 namespace g4_tool {
 namespace {
@@ -124,6 +128,52 @@ TEST(Radar, RangeFollowsNearlyAllReturns) {
   EXPECT_EQ(next_range(3.0, false), 2.0);
   EXPECT_EQ(next_range(16.0, true), 16.0);
   EXPECT_EQ(next_range(0.5, false), 0.5);
+}
+
+// The wall is 3 m from where the robot begins, which turns to the left after 1 m.
+TEST(Trails, StayWhereTheWallsAre) {
+  const std::vector<point> first{at(180.0F, 3.0F)};
+  const std::vector<point> second{
+      at(270.0F, 2.0F)};  // it looks to the left: the wall is to the right
+  trails shown;
+  shown.change_length();
+  shown.add({.points = first}, lidar_place{{0, 0, 0}, 1});
+  shown.add({.points = second}, lidar_place{{1, 0, 1.5707963267948966}, 1});
+  radar_view view{.range_m = 8.0};
+  const auto has = [&view](float x_m, float y_m) {
+    return std::ranges::any_of(view.traces, [&](const g4lidar::xy_point& each) {
+      return std::abs(each.x_m - x_m) < 1e-5F && std::abs(each.y_m - y_m) < 1e-5F;
+    });
+  };
+  shown.show(view, false);
+  EXPECT_FALSE(view.is_map);
+  EXPECT_EQ(view.robot, g4lidar::pose_2d{});
+  EXPECT_TRUE(has(0.0F, -2.0F)) << "the wall, of both revolutions";
+  EXPECT_TRUE(has(0.0F, 1.0F)) << "where the robot began";
+  shown.show(view, true);
+  EXPECT_TRUE(view.is_map);
+  EXPECT_NEAR(view.robot.x_m, 1.0, 1e-9);
+  EXPECT_NEAR(view.robot.yaw_rad, 1.5707963, 1e-6);
+  EXPECT_TRUE(has(3.0F, 0.0F));
+  EXPECT_TRUE(has(0.0F, 0.0F));
+  // In another map nothing of this one has a place.
+  shown.add({.points = first}, lidar_place{{5, 5, 0}, 2});
+  shown.show(view, true);
+  EXPECT_EQ(view.traces.size(), 2U) << "where it begins, and the return";
+  shown.add({.points = first}, std::nullopt);
+  shown.show(view, true);
+  EXPECT_FALSE(view.is_map);
+  EXPECT_TRUE(view.traces.empty());
+}
+
+// 5 x 3 cells are 10 x 12 dots: the middle is at 4.5 and 5.5, and a metre has 4.5 dots.
+TEST(Radar, InTheMap_ARobotHasAPlaceAndADirection) {
+  canvas on(5, 3, glyphs::braille);
+  const radar_view view{
+      .range_m = 1.0, .grid = false, .is_map = true, .robot = {-0.8, 0.8, -1.5707963267948966}};
+  draw_radar(on, {0, 0, 5, 3}, std::vector<point>{at(180.0F, 1.6F)}, view);
+  EXPECT_EQ(on.at(0, 2).glyph, U'+');            // at the left and at the bottom
+  EXPECT_EQ(on.text(2).substr(1), "   \u2802");  // it looks to the right: the dot is at 8.1 and 9.1
 }
 
 view_facts facts() {

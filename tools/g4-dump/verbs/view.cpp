@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -16,9 +15,10 @@
 #include "io/output.hpp"
 #include "io/source_reader.hpp"
 #include "verbs/verbs.hpp"
+#include "view/newest_scan.hpp"
 #include "view/picture.hpp"
 #include "view/screen.hpp"
-#include "view/wake_descriptor.hpp"
+#include "view/trails.hpp"
 
 namespace g4_tool {
 namespace {
@@ -42,64 +42,11 @@ struct view_job {
   int rows = 24;
 };
 
-/// What the thread of the reader gives to that of the screen.
-class newest final : public reader_listener {
- public:
-  /// `keeps`: the first one at a steady speed stays.
-  explicit newest(bool keeps) : keeps_(keeps) {}
-
-  void on_scan(const scan& found) override {
-    {
-      const std::lock_guard lock(mutex_);
-      if ((!found.is_whole() && has_whole_) || (keeps_ && is_steady_)) return;
-      has_whole_ = found.is_whole();
-      // While the head speeds up, each revolution is faster than the one before.
-      const float frequency_hz = found.measured_frequency_hz();
-      is_steady_ = has_whole_ && std::abs(frequency_hz - frequency_hz_) < 0.02F * frequency_hz;
-      frequency_hz_ = frequency_hz;
-      scan_ = found;
-      is_new_ = true;
-    }
-    wake_.wake();
-  }
-  void on_event(const lidar_event& what) override {
-    const std::lock_guard lock(mutex_);
-    event_ = name_of(what.what);
-  }
-  void on_state(reader_state /*state*/, const std::optional<error>& /*why*/) override {
-    wake_.wake();
-  }
-
-  /// The newest revolution, if it was not taken yet.
-  [[nodiscard]] bool take(owned_scan& into, std::string& event) {
-    const std::lock_guard lock(mutex_);
-    event = event_;
-    if (!std::exchange(is_new_, false)) return false;
-    std::swap(into, scan_);
-    return true;
-  }
-  [[nodiscard]] bool is_steady() const {
-    const std::lock_guard lock(mutex_);
-    return is_steady_;
-  }
-  void wait(clock::time_point until, int other) const { wake_.wait(other, until); }
-
- private:
-  wake_descriptor wake_;
-  mutable std::mutex mutex_;
-  owned_scan scan_;
-  std::string event_;
-  bool is_new_ = false;
-  bool keeps_;
-  bool has_whole_ = false;
-  bool is_steady_ = false;
-  float frequency_hz_ = 0;
-};
-
 class viewer {
  public:
   explicit viewer(const view_job& job)
       : job_(job), settings_(job.settings), reader_(*job.common, job.source, newest_) {
+    newest_.attach(reader_);
     const blocked_signals handled_by_this_thread;
     reader_.start();
   }
@@ -141,8 +88,9 @@ class viewer {
   /// Takes the changes since the last call.
   void update() {
     std::string event;
-    if (!settings_.is_frozen && newest_.take(scan_, event)) {
+    if (!settings_.is_frozen && newest_.take(scan_, place_, event)) {
       const scan now = scan_.view();
+      trails_.add(now, place_);
       facts_.frequency_hz = static_cast<double>(now.measured_frequency_hz());
       facts_.sample_rate_hz = static_cast<double>(now.measured_sample_rate_hz());
       settings_.radar.turn_deg = now.model->turn_deg;
@@ -153,6 +101,7 @@ class viewer {
       facts_due_ = now + facts_pause;
       facts_.stages = reader_.stages();
     }
+    trails_.show(settings_.radar, settings_.wants_map);
     const lidar_counts counts = reader_.reader().counts();
     const auto all = static_cast<double>(counts.stream.points + counts.samples_lost);
     facts_.lost_percent = all > 0 ? 100.0 * static_cast<double>(counts.samples_lost) / all : -1;
@@ -202,6 +151,14 @@ class viewer {
     return made;
   }
 
+  /// Robot, vendor, and the map where the motion is known.
+  void change_frame() {
+    radar_view& radar = settings_.radar;
+    const bool is_robot = radar.frame == frame::robot;
+    const bool was_map = std::exchange(settings_.wants_map, !is_robot && trails_.has_map());
+    radar.frame = is_robot && !was_map ? frame::vendor : frame::robot;
+  }
+
   void press(int key) {
     radar_view& radar = settings_.radar;
     switch (key) {
@@ -225,7 +182,10 @@ class viewer {
         }
         break;
       case 'f':
-        radar.frame = radar.frame == frame::robot ? frame::vendor : frame::robot;
+        change_frame();
+        break;
+      case 't':
+        trails_.change_length();
         break;
       case 'g':
         radar.grid = !radar.grid;
@@ -245,9 +205,11 @@ class viewer {
   const view_job& job_;
   glyphs glyphs_ = job_.how.value_or(screen::has_utf8() ? glyphs::braille : glyphs::ascii);
   view_settings settings_;
-  newest newest_{job_.once};
+  newest_scan newest_{*job_.common, job_.once};
   source_reader reader_;
   owned_scan scan_;
+  std::optional<lidar_place> place_;
+  trails trails_;
   view_facts facts_;
   time_limits limits_{job_.once ? 0ns : job_.common->duration, 0ns};
   clock::time_point facts_due_{};
@@ -279,10 +241,14 @@ Up is ahead, or with --frame vendor the direction 0. Keys:
   0          the range follows the returns
   p          freeze the picture, or go on
   space      a recording: pause, play
-  f          the frame: robot or vendor
+  f          the frame: robot, vendor, and the map where the motion is known
+  t          trails: off, 2 s, 10 s, where the motion is known
   g          rings on, off
   h ?        help
   q, ^C      quit; ^Z puts it in the background
+
+The motion is known with --deskew, of a recording with odometry with --mount, and of a simulated
+robot. Then earlier returns stay at the walls, and the way driven is shown.
 
 The motor stops at the end. A lidar that is unplugged is awaited (--on-loss reconnect). With --once
 one revolution is printed as text, of the size that --size names, to any output.)";
@@ -303,25 +269,28 @@ verb make_view_verb() {
   option_row size{"--size", "COLUMNSxROWS", "Size of the picture of --once (80x24)",
                   [target = job.get()](const std::string& word) { take_size(*target, word); }};
   option_rows device = device_rows(common);
-  return {.name = "view",
-          .summary = "A radar in the terminal",
-          .arguments = {source_argument(common)},
-          .options = joined(
-              zoom,
-              frame_row("--frame", "What is up: ahead, or 0 degrees (robot)", settings.radar.frame),
-              choice_row("--glyphs", "What dots are made of (braille where the locale is UTF-8)",
-                         job->how,
-                         choices<glyphs>{{"braille", glyphs::braille}, {"ascii", glyphs::ascii}}),
-              flag_row("--once", "Print one revolution and end", job->once), size,
-              output_row(common), duration_row(common),
-              flag_row("--loop", "A recording begins again at its end", job->source.playback.loop),
-              sample_rate_row(job->source.raw_sample_rate_hz), device),
-          .details = view_details,
-          .examples = {{"g4-dump view", "The only G4"},
-                       {"g4-dump view sim:", "A simulated one"},
-                       {"g4-dump view walk.mcap --loop", "A recording, again and again"},
-                       {"g4-dump view --once sim: --glyphs ascii", "One picture as text"}},
-          .run = [job] { return view(*job); }};
+  return {
+      .name = "view",
+      .summary = "A radar in the terminal",
+      .arguments = {source_argument(common)},
+      .options = joined(
+          zoom,
+          frame_row("--frame", "What is up: ahead, or 0 degrees (robot)", settings.radar.frame),
+          flag_row("--map", "The frame of the map, where the motion is known", settings.wants_map),
+          deskew_row(common), mount_row(common),
+          choice_row("--glyphs", "What dots are made of (braille where the locale is UTF-8)",
+                     job->how,
+                     choices<glyphs>{{"braille", glyphs::braille}, {"ascii", glyphs::ascii}}),
+          flag_row("--once", "Print one revolution and end", job->once), size, output_row(common),
+          duration_row(common),
+          flag_row("--loop", "A recording begins again at its end", job->source.playback.loop),
+          sample_rate_row(job->source.raw_sample_rate_hz), device),
+      .details = view_details,
+      .examples = {{"g4-dump view", "The only G4"},
+                   {"g4-dump view sim:", "A simulated one"},
+                   {"g4-dump view walk.mcap --loop", "A recording, again and again"},
+                   {"g4-dump view --once sim: --glyphs ascii", "One picture as text"}},
+      .run = [job] { return view(*job); }};
 }
 
 }  // namespace g4_tool

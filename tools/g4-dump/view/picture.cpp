@@ -108,7 +108,8 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
              facts.lost_percent > 0.2 ? ink::warn : ink::plain);
   words.fact("checksum", number_or_dash(static_cast<double>(facts.checksum_errors), "", 0));
   words.fact("health", health_of(facts.stages));
-  words.fact("frame", how.radar.frame == g4lidar::frame::robot ? "robot" : "vendor");
+  const char* const frame = how.radar.frame == g4lidar::frame::robot ? "robot" : "vendor";
+  words.fact("frame", how.radar.is_map ? "map" : frame);
   words.fact("range", fmt::format("{:g} m{}", how.radar.range_m, how.is_zoomed ? "" : ", auto"));
   if (facts.length_s >= 0) {
     words.fact("position",
@@ -135,11 +136,12 @@ std::string summary_of(const view_facts& facts, const view_settings& how) {
                      number_or_dash(facts.lost_percent, "%", 2), words_of(all, facts.stages));
 }
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> keys{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> keys{
     {{"+ -", "nearer, farther"},
      {"0", "the range follows the returns"},
      {"p", "freeze the picture, or go on"},
-     {"f", "robot frame, or the vendor's"},
+     {"f", "frame: robot, vendor, map"},
+     {"t", "trails: off, 2 s, 10 s"},
      {"g", "rings on, off"},
      {"space", "a recording: pause, play"},
      {"h ?", "this help, on and off"},

@@ -36,6 +36,7 @@ struct view_settings {
   radar_view radar{};
   bool is_zoomed = false;  ///< The user has chosen the range; else it follows the returns.
   bool is_frozen = false;
+  bool wants_map = false;  ///< Where the motion is known.
   bool shows_help = false;
 };
 

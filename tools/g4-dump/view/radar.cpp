@@ -44,6 +44,13 @@ struct scale {
     const double radius = (std::min(end_x - begin_x, end_y - begin_y) - 1) / 2.0;
     dots_per_m = radius / range_m;
   }
+  /// The dots of the robot.
+  [[nodiscard]] int column_of(const radar_view& view) const {
+    return static_cast<int>(x - view.robot.y_m * dots_per_m);
+  }
+  [[nodiscard]] int row_of(const radar_view& view) const {
+    return static_cast<int>(y - view.robot.x_m * dots_per_m);
+  }
   void dot(canvas& on, double right_m, double up_m, ink what) const {
     const double at_x = x + right_m * dots_per_m;
     const double at_y = y - up_m * dots_per_m;
@@ -63,10 +70,12 @@ void draw_grid(canvas& on, const cell_area& in, const scale& to, const radar_vie
     const int dots = 4 * std::max(2, static_cast<int>(radius / 2.0));  // about every third one
     for (int i = 0; i < dots; ++i) {
       const double turn = 2.0 * std::numbers::pi * i / dots;
-      to.dot(on, ring_m * std::sin(turn), ring_m * std::cos(turn), ink::grid);
+      to.dot(on, ring_m * std::sin(turn) - view.robot.y_m, ring_m * std::cos(turn) + view.robot.x_m,
+             ink::grid);
     }
-    const int row = static_cast<int>(std::lround(to.y - radius)) / on.dots_down();
-    const int column = static_cast<int>(to.x) / on.dots_across() + 1;
+    const double top = to.y - view.robot.x_m * to.dots_per_m - radius;
+    const int row = static_cast<int>(std::lround(top)) / on.dots_down();
+    const int column = to.column_of(view) / on.dots_across() + 1;
     if (row >= in.row) on.write(column, row, fmt::format("{:g} m", ring_m), ink::faint, in);
   }
 }
@@ -101,15 +110,26 @@ void draw_radar(canvas& on, const cell_area& in, std::span<const point> points,
   const scale to(on, in, view.range_m);
   if (view.grid) draw_grid(on, in, to, view);
   const bool is_robot = view.frame == g4lidar::frame::robot;
+  for (const g4lidar::xy_point& at : view.traces)
+    to.dot(on, -static_cast<double>(at.y_m), static_cast<double>(at.x_m), ink::grid);
+  const g4lidar::rotation turned = g4lidar::rotation_by(view.robot.yaw_rad);
   for (const point& each : points) {
     if (each.is_no_return()) continue;
     const g4lidar::xy_point at = g4lidar::to_xy(each, view.frame, view.turn_deg);
+    const auto ahead_m = static_cast<double>(at.x_m);
     const auto side_m = static_cast<double>(at.y_m);  // to the left in the robot frame only
-    to.dot(on, is_robot ? -side_m : side_m, static_cast<double>(at.x_m), ink::points);
+    const double left_m =
+        view.robot.y_m + turned.sine * ahead_m + turned.cosine * (is_robot ? side_m : -side_m);
+    const double up_m =
+        view.robot.x_m + turned.cosine * ahead_m - turned.sine * (is_robot ? side_m : -side_m);
+    to.dot(on, -left_m, up_m, ink::points);
   }
-  const int column = static_cast<int>(to.x) / on.dots_across();
-  on.write(column, static_cast<int>(to.y) / on.dots_down(), "+", ink::title, in);
-  if (view.grid) on.write(column, in.row, is_robot ? "^" : "0", ink::title, in);
+  const int row = to.row_of(view);
+  if (row >= 0)
+    on.write(to.column_of(view) / on.dots_across(), row / on.dots_down(), "+", ink::title, in);
+  if (!view.grid) return;
+  const char* const up = view.is_map ? "x" : is_robot ? "^" : "0";
+  on.write(static_cast<int>(to.x) / on.dots_across(), in.row, up, ink::title, in);
 }
 
 }  // namespace g4_tool

@@ -6,6 +6,8 @@
 #include <span>
 
 #include "canvas.hpp"
+#include "g4lidar/cartesian.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4_tool {
@@ -16,6 +18,10 @@ struct radar_view {
   double range_m = 8.0;  ///< From the middle to the nearest edge.
   bool grid = true;
   std::uint16_t turn_deg = g4lidar::g4_model.turn_deg;  ///< Of the lidar's model.
+  bool is_map = false;       ///< The picture is in the map, with x up: `robot` is not its middle.
+  g4lidar::pose_2d robot{};  ///< In the picture, in metres from its middle.
+  std::span<const g4lidar::xy_point>
+      traces{};  ///< Earlier returns and the way driven, in the picture.
 };
 
 /// The zoom range that shows nearly all returns; the largest one if there are none.

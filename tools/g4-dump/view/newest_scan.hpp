@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// What the thread of the reader gives to that of the screen.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "g4lidar/owned_scan.hpp"
+#include "io/moving_scans.hpp"
+#include "io/source_reader.hpp"
+#include "wake_descriptor.hpp"
+
+namespace g4_tool {
+
+class newest_scan final : public reader_listener {
+ public:
+  /// `keeps`: the first one at a steady speed stays. Throws a failure.
+  newest_scan(const common_options& options, bool keeps) : scans_(options), keeps_(keeps) {}
+  /// Call it before `from` is started. `from` outlives this.
+  void attach(const source_reader& from) { source_ = &from; }
+
+  void on_open(g4lidar::lidar& device) override { scans_.open(device, source_->simulation()); }
+  void on_scan(const scan& found) override {
+    scans_.add(found);
+    {
+      const std::lock_guard lock(mutex_);
+      if ((!found.is_whole() && has_whole_) || (keeps_ && is_steady_)) return;
+      has_whole_ = found.is_whole();
+      // While the head speeds up, each revolution is faster than the one before.
+      const float frequency_hz = found.measured_frequency_hz();
+      is_steady_ = has_whole_ && std::abs(frequency_hz - frequency_hz_) < 0.02F * frequency_hz;
+      frequency_hz_ = frequency_hz;
+      scan_ = scans_.shaper().kept();
+      place_ = scans_.place();
+      is_new_ = true;
+    }
+    wake_.wake();
+  }
+  void on_event(const lidar_event& what) override {
+    const std::lock_guard lock(mutex_);
+    event_ = name_of(what.what);
+  }
+  void on_state(reader_state /*state*/, const std::optional<error>& /*why*/) override {
+    wake_.wake();
+  }
+
+  /// The newest revolution with its place, if it was not taken yet.
+  [[nodiscard]] bool take(owned_scan& into, std::optional<lidar_place>& place, std::string& event) {
+    const std::lock_guard lock(mutex_);
+    event = event_;
+    if (!std::exchange(is_new_, false)) return false;
+    std::swap(into, scan_);
+    place = place_;
+    return true;
+  }
+  [[nodiscard]] bool is_steady() const {
+    const std::lock_guard lock(mutex_);
+    return is_steady_;
+  }
+  void wait(std::chrono::steady_clock::time_point until, int other) const {
+    wake_.wait(other, until);
+  }
+
+ private:
+  wake_descriptor wake_;
+  const source_reader* source_ = nullptr;
+  moving_scans scans_;  // of the thread of the reader
+  mutable std::mutex mutex_;
+  owned_scan scan_;
+  std::optional<lidar_place> place_;
+  std::string event_;
+  bool is_new_ = false;
+  bool keeps_;
+  bool has_whole_ = false;
+  bool is_steady_ = false;
+  float frequency_hz_ = 0;
+};
+
+}  // namespace g4_tool
