@@ -79,7 +79,7 @@ void odometry_feed::follow_robot(sim::odometry& robot, std::span<const point> po
     const std::int64_t time_ns = at.time_ns + begin_ns_;
     // What was before the first point is of no use.
     if (has_begun_ || robot.next_ns() + begin_ns_ > points.front().time_ns) {
-      has_begun_ = true;
+      if (!std::exchange(has_begun_, true)) ++begun_;
       take({time_ns,
             {at.x_m, at.y_m, at.yaw_rad},
             {at.forward_m_per_s, at.left_m_per_s, at.yaw_rad_per_s}});
