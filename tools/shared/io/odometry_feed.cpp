@@ -14,7 +14,6 @@ constexpr std::int64_t least_way_back_ns = 100'000'000;
 
 }  // namespace
 
-
 void odometry_feed::follow(const sim::simulated_source* carried) {
   robot_ = carried == nullptr ? std::nullopt : carried->robot;
   begin_ns_ = robot_ ? carried->begin_ns : 0;
