@@ -226,6 +226,9 @@ lidar_search::found lidar_search::judge_stream() {
   std::vector<const model*> fitting = models_that_fit(known);
   const auto is_two_way = [](const model* row) { return row->link == link_kind::two_way; };
   const auto two_way = std::ranges::find_if(fitting, is_two_way);
+  const bool is_left =
+      left_running_ != nullptr && !fitting.empty() && fitting.front()->word == left_running_->word;
+  if (is_left) return made(std::move(fitting), known);
   if (two_way != fitting.end()) {
     const std::optional<device_information> announced = std::exchange(heard_.device, std::nullopt);
     auto device = stop_and_ask(**two_way);

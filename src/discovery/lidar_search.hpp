@@ -23,6 +23,9 @@ class lidar_search {
  public:
   lidar_search(transport& port, const search_options& options);
 
+  /// What may come from `which`, the model that the caller knows how to stop, is not stopped.
+  void leave_running(const model& which) noexcept { left_running_ = &which; }
+
   [[nodiscard]] result<recognised_lidar> run(std::int64_t deadline_ns);
 
  private:
@@ -64,6 +67,7 @@ class lidar_search {
   std::vector<std::uint32_t> rates_;  // in the order of listening
   std::vector<std::uint32_t> tried_;
   std::int64_t deadline_ns_ = 0;
+  const model* left_running_ = nullptr;
   bool has_fixed_rate_ = false;
   std::size_t sending_ = 0;  // rates at which something sends
   hearing heard_;

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <new>
 #include <utility>
 
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
+#include "lidar_search.hpp"
 
 namespace g4lidar {
 namespace {
@@ -68,6 +70,12 @@ error explained(const error& why, const std::string& device) {
           error_detail::missing_port};
 }
 
+/// Whether a driver would find nothing else. It waits longer for a device that boots, or stops late.
+bool is_final(const error& why) noexcept {
+  using enum problem;
+  return why == other_device || why == garbage || why == gone || why == cancelled;
+}
+
 }  // namespace
 
 system_connector::system_connector(std::string_view device, std::uint32_t baud, const model* named)
@@ -78,9 +86,42 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
   return std::unique_ptr<connector>(new system_connector(device, baud, named));
 }
 
+result<std::unique_ptr<connector>> system_connector::find(std::string_view device,
+                                                          std::uint32_t baud) {
+  std::unique_ptr<system_connector> made(
+      new system_connector(device, baud != 0 ? baud : g4_model.bauds[0], nullptr));
+  if (auto done = made->search_first(baud); !done) return tl::unexpected(done.error());
+  return made;
+}
+
+result<void> system_connector::search_first(std::uint32_t baud) {
+  auto opened = connect();
+  if (!opened) {
+    searched_ = std::move(opened);
+    return {};
+  }
+  transport& port = **opened;
+  lidar_search search(port, {.baud = baud, .may_pulse_dtr = names_path(device_)});
+  search.leave_running(g4_model);
+  const auto longest = std::chrono::nanoseconds(find_options{}.probe_timeout);
+  const auto lidar = search.run(port.now_ns() + longest.count());
+  if (lidar) {
+    named_ = lidar->model;
+    if (lidar->baud != 0) baud_ = lidar->baud;
+    if (named_->link == link_kind::one_way) find_place();
+  } else if (const error& why = lidar.error(); is_final(why)) {
+    return failure(task::opening, why.code(), why.subject(), why.system_errno(), why.detail());
+  } else if (const auto set = port.set_baud(baud_); !set) {
+    return tl::unexpected(set.error());
+  }
+  searched_ = std::move(opened);
+  return {};
+}
+
 /// A reconnect must not end the program if there is no memory.
 result<std::unique_ptr<transport>> system_connector::connect() noexcept {
   try {
+    if (searched_) return *std::exchange(searched_, std::nullopt);
     auto opened = open_transport();
     if (!opened && first_.path.empty()) return tl::unexpected(explained(opened.error(), device_));
     return opened;

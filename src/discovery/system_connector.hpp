@@ -30,6 +30,13 @@ class system_connector final : public connector {
                                                                std::uint32_t baud,
                                                                const model* named = nullptr);
 
+  /// The same, for a lidar of an unknown model: searches it now, at `baud`, or at all rates if that is 0.
+  /// The open transport is kept for the first connect(), because each opening raises DTR. Where nothing
+  /// answers or sends, it is taken for a G4, for which a driver waits longer. Fails with other_device,
+  /// garbage, gone or cancelled.
+  [[nodiscard]] static result<std::unique_ptr<connector>> find(std::string_view device,
+                                                               std::uint32_t baud);
+
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
   [[nodiscard]] bool pause(std::int64_t deadline_ns) noexcept override;
@@ -50,6 +57,7 @@ class system_connector final : public connector {
 
   system_connector(std::string_view device, std::uint32_t baud, const model* named);
 
+  [[nodiscard]] result<void> search_first(std::uint32_t baud);
   [[nodiscard]] result<std::unique_ptr<transport>> open_transport();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
@@ -65,7 +73,8 @@ class system_connector final : public connector {
 
   std::string device_;
   std::uint32_t baud_;
-  const model* named_;
+  const model* named_;  // or found
+  std::optional<result<std::unique_ptr<transport>>> searched_;  // for the first connect()
   port_info first_;                    // the port of the first connection
   std::vector<std::string> paths_;     // to be tried in this round
   std::string last_path_;              // of the last connection

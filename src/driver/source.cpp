@@ -119,9 +119,8 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
     case source_kind::device:
       break;
   }
-  return system_connector::make(
-      options.device, baud_of(options, options.model != nullptr ? *options.model : g4_model),
-      options.model);
+  if (options.model == nullptr) return system_connector::find(options.device, options.baud);
+  return system_connector::make(options.device, baud_of(options, *options.model), options.model);
 }
 
 const sim::simulated_source* simulation_of([[maybe_unused]] const connector& from) noexcept {
