@@ -9,6 +9,7 @@
 // | `usb:1-1.4` | the one at this USB port |
 // | `tcp:HOST:PORT` | the one behind a raw network bridge |
 // | `walk.mcap`, `file:PATH` | a recording, or the raw bytes of a port |
+// | `file:PATH?model=x4` | raw bytes of this model; `?` is a part of PATH if there is such a file |
 // | `-` | raw bytes from standard input |
 // | `sim:`, `sim:?seed=7&fault=unplug@5s` | a simulated G4 in real time: docs/sim.md |
 #pragma once
@@ -41,8 +42,12 @@ enum class source_kind : std::uint8_t {
 /// By the form of the name, and by what is at a path now. A path where nothing is names a device, with
 /// `file:` raw bytes.
 [[nodiscard]] G4LIDAR_API source_kind kind_of_source(std::string_view name);
-/// The path of a name that is a file, without `file:`. *Pure.*
+/// The path of a name that is a file, without `file:`, and without `?model=` unless there is a file with
+/// it in its name.
 [[nodiscard]] G4LIDAR_API std::string path_of_source(std::string_view name);
+/// The model of `file:PATH?model=x4`; null if the name has none. Fails with bad_option if there is no such
+/// model. Valid forever.
+[[nodiscard]] G4LIDAR_API result<const model*> model_in_source(std::string_view name);
 
 /// The connector for the source that `options.device` names, without options.wrap: for callers that
 /// open it themselves. lidar::open(options) is open(connector_for(options), options), with wrap and
@@ -56,7 +61,7 @@ enum class source_kind : std::uint8_t {
     const connector& from) noexcept;
 
 /// What sent the bytes of the file that `name` names: what a recording states, and of raw bytes
-/// model_of_bytes(). The G4 for everything else. `is_cancelled` is that of reading_options. Fails like
+/// model_in_source(), else model_of_bytes(). The G4 for everything else. `is_cancelled` is that of reading_options. Fails like
 /// recording_reader::open(). Valid forever.
 [[nodiscard]] G4LIDAR_API result<const model*> model_of_source(
     std::string_view name, const std::function<bool()>& is_cancelled = {});

@@ -178,7 +178,7 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
     }
     case source_kind::recording:
     case source_kind::raw_bytes:
-      examine_file(path_of_source(source), log);
+      examine_file(std::string(source), log);
       return std::move(log.stages());
   }
   port_stages first(log);

@@ -203,12 +203,12 @@ class file_run {
 
 }  // namespace
 
-void examine_file(const std::string& path, stage_log& log) {
+void examine_file(const std::string& source, stage_log& log) {
   const model* which = log.options().model;
   if (which == nullptr) {
-    which = model_of_source("file:" + path, log.options().is_cancelled).value_or(&g4_model);
+    which = model_of_source(source, log.options().is_cancelled).value_or(&g4_model);
   }
-  file_run(log, *which).run(path);
+  file_run(log, *which).run(path_of_source(source));
 }
 
 }  // namespace g4lidar

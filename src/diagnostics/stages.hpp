@@ -51,7 +51,7 @@ class stage_log {
 /// The message of an error without its advice, which the diagnosis has.
 [[nodiscard]] std::string cause_of(const error& why);
 /// Reports all stages of a recording or of raw bytes; those that need a device as skipped.
-void examine_file(const std::string& path, stage_log& log);
+void examine_file(const std::string& source, stage_log& log);
 
 // The stages that devices and files share.
 

@@ -108,6 +108,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
     stage_ = stage::ending;
     return {};
   }
+  may_have_more_ = got->count > 0;
   if (got->count == 0) return check();
   is_pause_reported_ = false;
   pipeline_.input().feed(receiver_.buffer(got->count), got->arrival_ns);
@@ -252,7 +253,9 @@ void replay_player::play_state(const recorded_event& what) {
 /// This depends on the bytes only. What is left to do is due at once, by every clock.
 std::int64_t replay_player::next_deadline_ns() const noexcept {
   if (stage_ == stage::closed) return never_ns;
-  return stage_ >= stage::ending || !pipeline_.is_empty() ? 0 : never_ns;
+  // What was read of a pipe while it was opened makes its descriptor not readable.
+  const bool has_more = source_ == nullptr && stage_ == stage::playing && may_have_more_;
+  return has_more || stage_ >= stage::ending || !pipeline_.is_empty() ? 0 : never_ns;
 }
 
 /// The caller's time, converted with the playback speed.

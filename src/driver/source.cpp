@@ -22,6 +22,24 @@ namespace {
 
 constexpr std::string_view file_prefix = "file:";
 constexpr std::string_view sim_prefix = "sim:";
+constexpr std::string_view model_suffix = "?model=";
+
+struct file_name {
+  std::string_view path;
+  std::string_view model;  // empty: not given
+};
+
+/// The parts of `file:PATH?model=WORD`.
+file_name divided(std::string_view name) {
+  if (!name.starts_with(file_prefix)) return {name, {}};
+  const std::string_view whole = name.substr(file_prefix.size());
+  const std::size_t at = whole.rfind(model_suffix);
+  struct stat found{};
+  if (at == std::string_view::npos || ::stat(std::string(whole).c_str(), &found) == 0) {
+    return {whole, {}};
+  }
+  return {whole.substr(0, at), whole.substr(at + model_suffix.size())};
+}
 
 std::uint32_t baud_of(const lidar_options& options, const model& which) noexcept {
   return options.baud != 0 ? options.baud : which.bauds[0];
@@ -64,6 +82,17 @@ result<std::unique_ptr<connector>> connect_simulated(const lidar_options& option
 }
 #endif
 
+/// `from`, or an error if it states another model than the name; null: the name has none.
+result<std::unique_ptr<connector>> of_model(result<std::unique_ptr<connector>> from,
+                                            const model* named) {
+  if (!from || named == nullptr) return from;
+  const model* const stated = (*from)->traits().model;
+  if (stated == nullptr || stated->word == named->word) return from;
+  return failure(task::opening, problem::bad_option,
+                 "model: " + std::string(named->word) + ", and the recording states " +
+                     std::string(stated->word));
+}
+
 }  // namespace
 
 source_kind kind_of_source(std::string_view name) {
@@ -78,15 +107,26 @@ source_kind kind_of_source(std::string_view name) {
                                                       : source_kind::raw_bytes;
 }
 
-std::string path_of_source(std::string_view name) {
-  return std::string(name.starts_with(file_prefix) ? name.substr(file_prefix.size()) : name);
+std::string path_of_source(std::string_view name) { return std::string(divided(name).path); }
+
+result<const model*> model_in_source(std::string_view name) {
+  const std::string_view word = divided(name).model;
+  if (word.empty()) return nullptr;
+  const model* const found = model_named(word);
+  if (found != nullptr) return found;
+  return failure(task::opening, problem::bad_option,
+                 "model: '" + std::string(word) + "' is not one of " + model_words());
 }
 
 result<const model*> model_of_source(std::string_view name,
                                      const std::function<bool()>& is_cancelled) {
   const std::string path = path_of_source(name);
   const source_kind kind = kind_of_source(name);
-  if (kind == source_kind::raw_bytes) return &model_of_bytes(path);
+  const auto stated = model_in_source(name);
+  if (!stated) return stated;
+  if (kind == source_kind::raw_bytes) {
+    return *stated != nullptr ? *stated : &model_of_bytes(path);
+  }
 #if defined(G4LIDAR_HAS_SIM)
   if (kind == source_kind::simulated) {
     const auto read = sim::parse_setup(name);
@@ -108,12 +148,20 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   if (const auto problem = problem_with(known)) return tl::unexpected(*problem);
   const std::string path = path_of_source(options.device);
   const source_kind kind = kind_of_source(options.device);
+  const auto named = model_in_source(options.device);
+  if (!named) return tl::unexpected(named.error());
+  const model* const wanted = *named != nullptr ? *named : options.model;
+  if (wanted != options.model && options.model != nullptr) {
+    return failure(task::opening, problem::bad_option,
+                   "model: " + std::string(options.model->word) + ", and the name states " +
+                       std::string(wanted->word));
+  }
   switch (kind) {
     case source_kind::recording:
-      return replay::open(path, options.playback, options.is_cancelled);
+      return of_model(replay::open(path, options.playback, options.is_cancelled), *named);
     case source_kind::raw_bytes:
       return open_raw_bytes(path, options.raw_sample_rate_hz, options.playback,
-                            options.is_cancelled, options.model);
+                            options.is_cancelled, wanted);
     case source_kind::simulated:
       return connect_simulated(options);
     case source_kind::device:

@@ -40,11 +40,31 @@ class pipe_transport final : public transport {
  public:
   pipe_transport(owned_fd fd, std::string name) : fd_(std::move(fd)), name_(std::move(name)) {}
 
+  /// Reads ahead until it is known what sends the bytes.
+  [[nodiscard]] result<recognised_model> recognise(const std::function<bool()>& is_cancelled) {
+    constexpr std::int64_t step_ns = 50'000'000;  // between two calls of is_cancelled
+    stream_head head(steady_now_ns());
+    std::array<std::uint8_t, 4096> memory;
+    while (!head.is_complete(steady_now_ns())) {
+      if (is_cancelled && is_cancelled()) return failure(task::opening, problem::cancelled, name_);
+      if (!wait(POLLIN, std::min(steady_now_ns() + step_ns, head.due_ns()))) continue;
+      const auto got = take(memory);
+      if (got) {
+        head.take(bytes(memory).first(*got), steady_now_ns());
+      } else {
+        end_ = got.error();
+        head.finish();
+      }
+    }
+    ahead_.assign(head.held().begin(), head.held().end());
+    return head.found();
+  }
+
   [[nodiscard]] result<received> read(std::span<std::uint8_t> out,
                                       std::int64_t deadline_ns) noexcept override {
     if (woken_.exchange(false)) return failure(task::reading, problem::cancelled, name_);
-    if (!wait(POLLIN, deadline_ns)) return received{};
-    const auto got = take(out);
+    if (!has_ahead() && !end_ && !wait(POLLIN, deadline_ns)) return received{};
+    const auto got = has_ahead() ? take_ahead(out) : take(out);
     if (!got) return tl::unexpected(got.error());
     // A recording must be a file; in a pipe it would be parsed as noise.
     const bool is_recording =
@@ -71,8 +91,17 @@ class pipe_transport final : public transport {
     pollfd waiting{events != 0 ? fd_.get() : -1, events, 0};
     return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000))) != 0;
   }
+  [[nodiscard]] bool has_ahead() const noexcept { return given_ < ahead_.size(); }
+  /// Of the bytes that were read while it was opened.
+  [[nodiscard]] result<std::size_t> take_ahead(std::span<std::uint8_t> out) noexcept {
+    const std::size_t count = std::min(out.size(), ahead_.size() - given_);
+    std::copy_n(ahead_.begin() + static_cast<std::ptrdiff_t>(given_), count, out.begin());
+    given_ += count;
+    return count;
+  }
   /// One call of read(), made only if it does not wait.
   [[nodiscard]] result<std::size_t> take(std::span<std::uint8_t> out) noexcept {
+    if (end_) return tl::unexpected(*end_);
     while (true) {
       const ssize_t count = ::read(fd_.get(), out.data(), out.size());
       if (count > 0) return static_cast<std::size_t>(count);
@@ -87,13 +116,17 @@ class pipe_transport final : public transport {
   std::string name_;
   std::atomic<bool> woken_{false};
   bool has_begun_ = false;
+  std::vector<std::uint8_t> ahead_;  // read while it was opened
+  std::size_t given_ = 0;            // of them
+  std::optional<error> end_;         // behind them
 };
 
 /// Returns its transport once.
 class pipe_connector final : public connector {
  public:
-  pipe_connector(std::unique_ptr<pipe_transport> port, const model* which)
-      : port_(std::move(port)), model_(which) {}
+  /// `is_usual`: as in connector_traits.
+  pipe_connector(std::unique_ptr<pipe_transport> port, const model& which, bool is_usual)
+      : port_(std::move(port)), model_(&which), is_usual_(is_usual) {}
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     if (port_ == nullptr) return failure(task::opening, problem::end_of_input);
@@ -103,12 +136,13 @@ class pipe_connector final : public connector {
   [[nodiscard]] bool pause(std::int64_t) noexcept override { return true; }
   void wake() noexcept override {}
   [[nodiscard]] connector_traits traits() const noexcept override {
-    return {.answers = false, .model = model_};
+    return {.answers = false, .model = model_, .is_usual_model = is_usual_};
   }
 
  private:
   std::unique_ptr<pipe_transport> port_;
   const model* model_;
+  bool is_usual_;
 };
 
 /// The bytes of a file: their times are counted from samples.
@@ -117,7 +151,7 @@ class counted_items final : public item_source {
   /// Of the file behind `fd` from `at` on, whose first sample was measured at `wall_ns`.
   counted_items(std::shared_ptr<const owned_fd> fd, off_t at, std::string name,
                 std::uint32_t sample_rate_hz, std::int64_t wall_ns, std::int64_t to_ns,
-                std::function<bool()> is_cancelled, const g4lidar::model& which)
+                std::function<bool()> is_cancelled, const recognised_model& found)
       : fd_(std::move(fd)),
         file_begin_(at),
         name_(std::move(name)),
@@ -125,7 +159,8 @@ class counted_items final : public item_source {
         wall_ahead_ns_(wall_ns - file_begin_ns),
         to_ns_(saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
-        model_(&which) {}
+        model_(found.which),
+        is_usual_(found.is_usual()) {}
 
   [[nodiscard]] result<std::optional<recorded_item>> next() noexcept override {
     while (true) {
@@ -150,13 +185,14 @@ class counted_items final : public item_source {
   [[nodiscard]] std::int64_t last_ns() noexcept override {
     if (!last_ns_) {
       counted_items all(fd_, file_begin_, name_, static_cast<std::uint32_t>(rate_hz_), 0, never_ns,
-                        is_cancelled_, *model_);
+                        is_cancelled_, {model_});
       for (auto piece = all.find_piece(); piece && !piece->empty();) piece = all.find_piece();
       last_ns_ = all.now_ns_;
     }
     return *last_ns_;
   }
   [[nodiscard]] const g4lidar::model& model() const noexcept override { return *model_; }
+  [[nodiscard]] bool is_usual_model() const noexcept override { return is_usual_; }
 
  private:
   /// Up to the end of the next packet, whose samples have been measured by then: no part of it arrives
@@ -211,6 +247,7 @@ class counted_items final : public item_source {
   std::optional<std::int64_t> last_ns_;
   std::int64_t samples_ = 0;
   const g4lidar::model* model_;
+  bool is_usual_;
   stream_parser parser_{model_->samples};
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
   off_t read_ = 0;          // of the file
@@ -225,7 +262,7 @@ owned_fd open_bytes(const std::string& name) noexcept {
 }
 
 /// Of the regular file from `at` on.
-const model& model_in(const owned_fd& fd, off_t at) {
+recognised_model recognised_at(const owned_fd& fd, off_t at) {
   constexpr std::size_t enough = std::size_t{64} << 10U;
   constexpr off_t most = off_t{1} << 20U;
   layout_recogniser seen;
@@ -240,18 +277,20 @@ const model& model_in(const owned_fd& fd, off_t at) {
     seen.take(bytes(piece).first(static_cast<std::size_t>(count)));
     read += count;
   }
-  return seen.most_likely();
+  return {&seen.most_likely(), seen.basis()};
 }
 
 }  // namespace
 
-const model& model_of_bytes(const std::string& path) {
+recognised_model recognised_in(const std::string& path) {
   struct stat file{};
   const bool is_known = (path == "-" ? ::fstat(0, &file) : ::stat(path.c_str(), &file)) == 0;
-  if (!is_known || !S_ISREG(file.st_mode)) return g4_model;
+  if (!is_known || !S_ISREG(file.st_mode)) return {};
   const owned_fd fd = open_bytes(path);
-  return model_in(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0));
+  return recognised_at(fd, std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0));
 }
+
+const model& model_of_bytes(const std::string& path) { return *recognised_in(path).which; }
 
 result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
                                                   std::optional<std::uint32_t> sample_rate_hz,
@@ -268,17 +307,21 @@ result<std::unique_ptr<connector>> open_raw_bytes(const std::string& name,
   }
   std::string title = name == "-" ? "standard input" : name;
   if (!is_known || !S_ISREG(file.st_mode)) {
-    return std::make_unique<pipe_connector>(
-        std::make_unique<pipe_transport>(std::move(fd), std::move(title)), which);
+    auto port = std::make_unique<pipe_transport>(std::move(fd), std::move(title));
+    if (which != nullptr) return std::make_unique<pipe_connector>(std::move(port), *which, false);
+    const auto found = port->recognise(is_cancelled);
+    if (!found) return tl::unexpected(found.error());
+    return std::make_unique<pipe_connector>(std::move(port), *found->which, found->is_usual());
   }
   const off_t at = std::max<off_t>(::lseek(fd.get(), 0, SEEK_CUR), 0);
-  const model& sent_by = which != nullptr ? *which : model_in(fd, at);
+  const recognised_model found = which == nullptr ? recognised_at(fd, at) : recognised_model{which};
+  const model& sent_by = *found.which;
   auto waits = std::make_shared<waker>(real_system_calls());
   auto items =
       std::make_unique<counted_items>(std::make_shared<const owned_fd>(std::move(fd)), at, title,
                                       sample_rate_hz.value_or(first_rate_hz(sent_by)),
                                       file.st_mtim.tv_sec * second_ns + file.st_mtim.tv_nsec,
-                                      options.to_ns, std::move(is_cancelled), sent_by);
+                                      options.to_ns, std::move(is_cancelled), found);
   if (auto moved = items->seek(options.from_ns); !moved) return tl::unexpected(moved.error());
   return connect_to(std::make_shared<played_file>(std::move(items), title, options,
                                                   recorded_device{}, std::move(waits)));

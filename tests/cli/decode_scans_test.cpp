@@ -117,6 +117,8 @@ TEST(Decode, StatsAsJson_OneObjectAndNothingElse) {
 TEST(Decode, StatsAsText) {
   for (const words& each : {words{"decode"}, {"dump", "-"}}) {
     EXPECT_EQ(run(each, small_recording()).err,
+              "read as G4: 2-byte samples do not name their model; --model names another one: f4, "
+              "g2a, g6, x4, x2, x3-pro, tg15, tx8\n"
               "92 bytes: 5 packets (1 suspect) with 9 points, 1 response\n"
               "13 bytes skipped: 1 noise, 0 bad header, 0 bad checksum, 12 truncated\n");
   }

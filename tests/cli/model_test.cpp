@@ -13,6 +13,7 @@
 namespace {
 
 using cli::outcome;
+using cli::program;
 using cli::run;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -38,7 +39,32 @@ std::string t_mini_stream(unsigned revolutions) {
 }
 
 constexpr const char* report =
-    "read as T-mini Pro: 3-byte samples with intensity; give --model for another one\n";
+    "read as T-mini Pro: 3-byte samples with intensity do not name their model; --model names "
+    "another one: g2, g4b, s2-intensity, s4b, scl\n";
+
+/// Packets of 30 samples of 2 bytes.
+std::string two_byte_stream(std::string_view model, unsigned word, unsigned revolutions) {
+  const reference::wire_format& how =
+      *std::ranges::find(reference::wire_formats, model, &reference::wire_format::model);
+  std::string all;
+  for (unsigned turn = 0; turn < revolutions; ++turn) {
+    for (unsigned packet = 0; packet < 13; ++packet) {
+      const unsigned count = packet == 0 ? 1 : 30;
+      const unsigned first = packet == 0 ? 0 : 64 * 30 * (packet - 1) + 32;
+      const auto made =
+          reference::packet_of(how, packet == 0 ? 1 : 0, first, first + 64 * (count - 1),
+                               std::vector<reference::wire_sample>(count, {0, word}));
+      all.append(made.begin(), made.end());
+    }
+  }
+  return all;
+}
+
+outcome fed(const std::vector<std::string>& arguments, const std::string& bytes) {
+  program started(arguments);
+  started.feed(bytes);
+  return started.wait();
+}
 
 class ModelOfAFile : public cli::scratch {
  protected:
@@ -76,6 +102,75 @@ TEST_F(ModelOfAFile, RawBytesAreRecognisedAndReported) {
     EXPECT_THAT(each.err, HasSubstr(report)) << words.front();
     EXPECT_EQ(each.err.find("read as"), each.err.rfind("read as")) << words.front();
   }
+}
+
+TEST_F(ModelOfAFile, BytesThatDoNotNameTheirModelAreReported) {
+  cli::write_file(path("tg.bin"), two_byte_stream("tg15", 8001, 3));
+  const outcome usual = run({"decode", path("tg.bin"), "-n", "1"});
+  EXPECT_THAT(usual.err, HasSubstr("read as G4: 2-byte samples do not name their model; --model "
+                                   "names another one: f4, g2a, g6, x4, x2, "));
+  EXPECT_THAT(usual.err, HasSubstr(", tg15, tx8\n"));
+  EXPECT_THAT(usual.out, HasSubstr(",2000.25,"));
+  const outcome named = run({"decode", path("tg.bin"), "-n", "1", "--model", "tg15"});
+  EXPECT_THAT(named.err, Not(HasSubstr("read as")));
+  EXPECT_THAT(named.out, HasSubstr(",8001.00,"));
+  cli::write_file(path("flags.bin"), two_byte_stream("x4", 1, 3));  // nothing but flags
+  EXPECT_THAT(run({"decode", path("flags.bin"), "-n", "1"}).err,
+              HasSubstr("read as X2: 2-byte samples with flags do not name their model; --model "
+                        "names another one: x4, x3-pro\n"));
+}
+
+TEST_F(ModelOfAFile, APipeIsRecognisedAsAFile) {
+  const std::string bytes = t_mini_stream(20);
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"dump", "-", "-f", "csv"},
+                                             {"decode", "-"},
+                                             {"scan", "-", "-f", "csv"},
+                                             {"packets", "-"},
+                                             {"record", "-", path("p.mcap"), "--force"}}) {
+    const outcome piped = fed(words, bytes);
+    EXPECT_EQ(piped.code, 0) << words.front() << piped.err;
+    EXPECT_THAT(piped.err, HasSubstr(report)) << words.front();
+    EXPECT_EQ(piped.err.find("read as"), piped.err.rfind("read as")) << words.front();
+  }
+  EXPECT_EQ(fed({"decode", "-"}, bytes).out, run({"decode", raw_}).out);
+  EXPECT_EQ(run({"info", path("p.mcap")}).code, 0);
+  EXPECT_THAT(run({"info", path("p.mcap")}).out, HasSubstr("T-mini Pro"));
+  EXPECT_EQ(run({"convert", path("p.mcap"), path("p.bin")}).code, 0);
+  EXPECT_EQ(cli::read_file(path("p.bin")), bytes);
+}
+
+// One packet, and then nothing: it is written although nothing is decided.
+TEST_F(ModelOfAFile, ASlowPipeIsFollowed) {
+  program started({"decode", "-"});
+  started.feed(two_byte_stream("g4", 4000, 1).substr(0, 12 + 70));
+  started.read_until(",1000.00,");
+  started.feed(two_byte_stream("g4", 6000, 1));
+  started.read_until(",1500.00,");
+  EXPECT_EQ(started.wait().code, 0);
+}
+
+TEST_F(ModelOfAFile, TheNameOfAFileStatesIt) {
+  cli::write_file(path("tg.bin"), two_byte_stream("tg15", 8001, 3));
+  const auto decoded = [this](const std::string& name) {
+    return run({"dump", "file:" + path(name), "-f", "csv", "-n", "1"});
+  };
+  const outcome named = decoded("tg.bin?model=tg15");
+  EXPECT_EQ(named.code, 0) << named.err;
+  EXPECT_THAT(named.out, HasSubstr(",8001.00,"));
+  EXPECT_THAT(named.err, Not(HasSubstr("read as")));
+  EXPECT_EQ(decoded("tg.bin?model=tg99").code, 2);
+  EXPECT_THAT(decoded("tg.bin?model=tg99").err, HasSubstr("'tg99' is not one of g4, "));
+  EXPECT_EQ(run({"dump", "file:" + path("tg.bin?model=tg15"), "--model", "x4"}).code, 2);
+  EXPECT_EQ(run({"record", "file:" + path("tg.bin?model=tg15"), path("tg.mcap")}).code, 0);
+  EXPECT_THAT(run({"info", path("tg.mcap")}).out, HasSubstr("TG15"));
+  EXPECT_EQ(run({"doctor", "file:" + path("tg.bin?model=tg15"), "--json"}).code, 0);
+  EXPECT_EQ(run({"dump", "file:" + recorded_ + "?model=t-mini-pro", "-n", "1"}).code, 0);
+  EXPECT_EQ(run({"dump", "file:" + recorded_ + "?model=x4", "-n", "1"}).code, 2);
+  // A file with this name is meant first.
+  cli::write_file(path("odd?model=x4"), two_byte_stream("tg15", 8001, 3));
+  EXPECT_THAT(decoded("odd?model=x4").out, HasSubstr(",2000.25,"));
+  EXPECT_THAT(decoded("odd?model=x4?model=tg15").out, HasSubstr(",8001.00,"));
 }
 
 TEST_F(ModelOfAFile, ARecordingStatesIt) {

@@ -188,14 +188,15 @@ TEST_F(Pipe, AProgressBarOnATerminalForLargeFilesOnly) {
   const std::string large = path("large.bin");
   cli::write_repeated(small, block, 100'000);
   cli::write_repeated(large, block, 17'000'000);
-  const std::string bar = shown_on_terminal({"decode", large, "--valid"}, "/dev/null");
+  const std::string bar =
+      shown_on_terminal({"decode", large, "--valid", "--model", "g4"}, "/dev/null");
   EXPECT_THAT(bar, StartsWith("\r["));
   EXPECT_THAT(bar, HasSubstr("% "));
   EXPECT_THAT(bar, HasSubstr("\r\x1b[K17"));  // wiped away before the counts
-  EXPECT_THAT(shown_on_terminal({"decode", small}, "/dev/null"), StartsWith("1"));
+  EXPECT_THAT(shown_on_terminal({"decode", small, "--model", "g4"}, "/dev/null"), StartsWith("1"));
   EXPECT_THAT(shown_on_terminal({"decode", large, "--stats", "json"}, "/dev/null"),
               StartsWith("{"));
-  program unseen({"decode", large}, {{}, stream::of_file("/dev/null"), {}});
+  program unseen({"decode", large, "--model", "g4"}, {{}, stream::of_file("/dev/null"), {}});
   EXPECT_THAT(unseen.wait().err, StartsWith("17"));
 }
 

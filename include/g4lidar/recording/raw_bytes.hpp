@@ -17,6 +17,7 @@
 #include "g4lidar/error.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/recording/player.hpp"
+#include "g4lidar/recording/stream_head.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
@@ -34,8 +35,9 @@ namespace g4lidar {
 /// `is_cancelled` is called at least once for each 64 KiB of a regular file, by the thread that reads, if
 /// it is set: while it returns true, reading fails with cancelled.
 ///
-/// `which`: what sent the bytes; valid as long as the connector. Null: model_of_bytes() of a regular
-/// file, else a G4.
+/// `which`: what sent the bytes; valid as long as the connector. Null: recognised_in() of a regular
+/// file. Of everything else the first bytes are read while it is opened, as stream_head states: so this
+/// waits until the lidar sends, at most 10 s, and up to 1 s longer; `is_cancelled` ends it.
 ///
 /// Fails with bad_option and system; reading fails with bad_file if a pipe contains a recording.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> open_raw_bytes(
@@ -46,7 +48,9 @@ namespace g4lidar {
 /// What sent the bytes in the regular file at `path`, or in that from which standard input comes for
 /// "-": what layout_recogniser finds in the first 64 KiB, and in up to 1 MiB until the size of a
 /// sample is decided. The G4 if that shows nothing, and of everything that is not a regular file.
-/// Nothing is taken from standard input. Valid forever. Allocates.
+/// Nothing is taken from standard input. Allocates.
+[[nodiscard]] G4LIDAR_API recognised_model recognised_in(const std::string& path);
+/// The model that recognised_in() finds. Valid forever. Allocates.
 [[nodiscard]] G4LIDAR_API const model& model_of_bytes(const std::string& path);
 
 /// The topic under which recordings keep the bytes of the lidar. A file in MCAP with these messages,

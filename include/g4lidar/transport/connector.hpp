@@ -25,6 +25,8 @@ struct connector_traits {
   std::optional<std::int64_t> wall_ahead_ns{};
   /// What sent the bytes of a file. Valid forever; null: not known, as of a device.
   const g4lidar::model* model = nullptr;
+  /// Whether this model was only recognised, and other models send such bytes, too.
+  bool is_usual_model = false;
 };
 
 /// Opens the transport to a device, the first time and after each loss. *Single thread* except

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,13 +17,13 @@
 #include "g4lidar/export/byte_points.hpp"
 #include "g4lidar/export/shaping_writer.hpp"
 #include "g4lidar/export/slam_text.hpp"
-#include "g4lidar/export/svg.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/shape_files.hpp"
 #include "read_loop.hpp"
+#include "scan_file_writer.hpp"
 
 namespace g4_tool {
 namespace {
@@ -63,34 +64,6 @@ writing_options how_to_write(const point_job& job, const common_options& common,
   return made;
 }
 
-/// Each revolution goes to the output, or to a file of its own.
-class scan_file_writer final : public point_writer {
- public:
-  scan_file_writer(scan_file format, frame frame, pcd_data data, numbered_files files)
-      : format_(format), frame_(frame), data_(data), files_(std::move(files)) {}
-
-  [[nodiscard]] bool takes_scans() const noexcept override { return true; }
-
-  void write_scan(const scan_record& record, text_sink& out) override {
-    if (!files_) return write(record.scan, out);
-    output file(files_(number_++));
-    write(record.scan, file);
-    file.commit();
-  }
-
- private:
-  void write(const scan& revolution, text_sink& out) const {
-    if (format_ == scan_file::svg) return write_svg(revolution, out);
-    write_pcd(revolution, frame_, data_, out);
-  }
-
-  scan_file format_;
-  frame frame_;
-  pcd_data data_;
-  numbered_files files_;
-  std::uint64_t number_ = 0;
-};
-
 /// One run of a job, from the options to the counts.
 class point_run {
  public:
@@ -98,7 +71,8 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
-    if (!job_.text) common_.expected.model = &model_of(common_);
+    if (!job_.text) common_.expected.model = model_of(common_, &recognised_);
+    if (common_.expected.model == nullptr && !job_.text) open_pipe();
     if (common_.expected.model == nullptr) common_.expected.model = &g4lidar::g4_model;
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
@@ -113,15 +87,30 @@ class point_run {
   }
 
   int run() {
+    if (recognised_ && !job_.json_counts) report_model(*recognised_);
     kind_ == source_kind::raw_bytes ? read_file() : read_lidar();
     return exit_code_now();
   }
 
  private:
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
+  void open_input() {
+    input_.emplace(path_of_source(common_.source),
+                   job_.text ? "Give csv or jsonl as g4-dump writes it."
+                             : "Give a file of raw bytes from the lidar's port, or "
+                               "pipe them in.");
+  }
+  /// The model of a pipe is not known before its first bytes.
+  void open_pipe() {
+    open_input();
+    recognised_ = input_->recognise(common_);
+    common_.expected.model = recognised_->which;
+  }
   /// The columns and the turn of the model.
   void use_model() {
     const g4lidar::model& which = *common_.expected.model;
+    // A G4 measures 1286 points at 7 Hz.
+    if (job_.log == slam_log::carmen && job_.bins == 0) job_.bins = 2 * default_bins(which);
     job_.style.intensity = has_intensity(which);
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     job_.style.turn_deg = which.turn_deg;
@@ -206,10 +195,8 @@ class point_run {
   }
 
   void read_file() {
-    input in(path_of_source(common_.source),
-             job_.text ? "Give csv or jsonl as g4-dump writes it."
-                       : "Give a file of raw bytes from the lidar's port, or "
-                         "pipe them in.");
+    if (!input_) open_input();
+    input& in = *input_;
     output out(output_name(), when_it_appears(in.id().has_value()));
     refuse_same_file(in.id(), out);
     const std::uint64_t found = job_.text ? read_text(in, out) : read_bytes(in, out);
@@ -336,6 +323,8 @@ class point_run {
   common_options common_;
   source_kind kind_;
   numbered_files files_;
+  std::optional<input> input_;
+  std::optional<recognised_model> recognised_;  // from raw bytes, if no model is named
   std::vector<stamped_pose> path_;
   std::unique_ptr<shaping_writer> writer_;
   point_file_writer* point_file_ = nullptr;  // behind writer_

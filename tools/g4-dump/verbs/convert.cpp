@@ -152,11 +152,7 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (const auto at = point_files.find(to); at != point_files.end()) job.point_file = at->second;
   job.keeps_existing = !options.overwrites;
   if (to == file_form::tum) job.log = slam_log::tum;
-  if (to == file_form::carmen) {
-    job.log = slam_log::carmen;
-    job.common->expected.model = &model_of(*job.common);
-    job.bins = 2 * default_bins(*job.common->expected.model);  // a G4 measures 1286 points at 7 Hz
-  }
+  if (to == file_form::carmen) job.log = slam_log::carmen;
   job.common->marks.near = options.made.near;
   job.partial = to != file_form::pcd && job.log == slam_log::none;
   job.style.format = to == file_form::csv ? text_format::csv : text_format::jsonl;
@@ -184,7 +180,7 @@ void copy_recording(const convert_options& options, output& out) {
 void copy_bytes(const convert_options& options, output& out) {
   const auto from = value_of(open_raw_bytes(path_of_source(options.in()),
                                             options.points.source.raw_sample_rate_hz, {}, {},
-                                            &model_of(*options.points.common)));
+                                            model_of(*options.points.common)));
   const std::int64_t begin_ns = from->now_ns();
   const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;

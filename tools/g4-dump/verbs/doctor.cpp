@@ -154,7 +154,7 @@ int examine(const doctor_options& options) {
   if (is_named && !is_raw && kind != source_kind::recording) {
     throw bad_value("--model: for recordings and files of raw bytes");
   }
-  if (is_named || is_raw) how.model = &model_of(options);
+  if (is_named || is_raw) how.model = model_of(options);
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;

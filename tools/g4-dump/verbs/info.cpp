@@ -68,7 +68,7 @@ device_facts facts_of_device(const common_options& options) {
 device_facts facts_of(const common_options& options) {
   if (kind_of_source(options.source) != source_kind::recording) return facts_of_device(options);
   device_facts facts = facts_of_recording(options.source);
-  facts.model = &model_of(options);
+  facts.model = model_of(options);
   return facts;
 }
 

@@ -26,7 +26,14 @@ namespace {
 struct packets_options {
   shared_options common = std::make_shared<common_options>();
   protocol_log_style style;
+  bool is_model_known = true;
 };
+
+/// The style for packets of `which`.
+protocol_log_style style_for(protocol_log_style style, const g4lidar::model& which) {
+  style.format = which.samples;
+  return style;
+}
 
 void end(protocol_log& log, output& out) {
   if (!log.is_done()) log.finish();
@@ -42,7 +49,13 @@ void list_bytes(const packets_options& options) {
            "Give a file of raw bytes from the lidar's port, or pipe them in.");
   output out(common.output, in.id() ? output::appears::whole : output::appears::growing);
   refuse_same_file(in.id(), out);
-  protocol_log log(options.style, time_shift(time_style::monotonic, 0), out);
+  protocol_log_style style = options.style;
+  if (!options.is_model_known) {
+    const recognised_model found = in.recognise(common);
+    report_model(found);
+    style = style_for(style, *found.which);
+  }
+  protocol_log log(style, time_shift(time_style::monotonic, 0), out);
   in.pump(out,
           {.take = [&](std::span<const std::uint8_t> got) { log.from_device(got, 0); },
            .is_done = [&] { return log.is_done(); }},
@@ -153,7 +166,9 @@ void list_lidar(const packets_options& options) {
 int run(packets_options options) {
   const source_kind kind = kind_of_source(options.common->source);
   options.style.lines = options.common->count;
-  options.style.format = model_of(*options.common).samples;
+  const g4lidar::model* const which = model_of(*options.common);
+  options.is_model_known = which != nullptr;
+  if (which != nullptr) options.style = style_for(options.style, *which);
   options.style.has_times = kind != source_kind::raw_bytes;
   const auto list = kind == source_kind::raw_bytes   ? list_bytes
                     : kind == source_kind::recording ? list_recording

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -94,13 +95,43 @@ bool input::wait(output& out, const time_limits& limits) const {
   return !out.is_closed() && wait_for_input(fd_, out.descriptor(), limits.end()) == wake::input;
 }
 
+recognised_model input::recognise(const common_options& options) {
+  using clock = time_limits::clock;
+  const auto now_ns = [] {
+    return std::chrono::nanoseconds(clock::now().time_since_epoch()).count();
+  };
+  stream_head head(now_ns());
+  time_limits limits(options.duration, options.idle);
+  std::vector<std::uint8_t> buffer(4096);
+  while (!head.is_complete(now_ns()) && !limits.is_over() && interrupt() == 0) {
+    const clock::time_point due{std::chrono::nanoseconds(head.due_ns())};
+    if (wait_for_input(fd_, -1, std::min(limits.end(), due)) != wake::input) continue;
+    const std::span<const std::uint8_t> got(buffer.data(), read(buffer));
+    if (got.empty()) break;
+    limits.restart_idle();
+    head.take(got, now_ns());
+  }
+  if (!head.is_complete(now_ns())) head.finish();
+  ahead_.assign(head.held().begin(), head.held().end());
+  return head.found();
+}
+
 void input::pump(output& out, const byte_sink& sink, const common_options& options) {
   constexpr std::size_t first_piece = 16'384;
   progress_bar bar(size_, sink.with_bar && !out.is_terminal());
   std::vector<std::uint8_t> buffer(std::size_t{256} * 1024);
   time_limits limits(options.duration, options.idle);
+  const auto is_done = [&] { return out.is_closed() || (sink.is_done && sink.is_done()); };
   std::uint64_t bytes = 0;
-  while (!out.is_closed() && !(sink.is_done && sink.is_done())) {
+  for (std::span<const std::uint8_t> rest = ahead_; !rest.empty() && !is_done();) {
+    const auto piece = rest.first(std::min(rest.size(), first_piece));
+    if (bytes == 0) refuse_recording(piece, title_);
+    sink.take(piece);
+    out.flush();
+    bytes += piece.size();
+    rest = rest.subspan(piece.size());
+  }
+  while (!is_done()) {
     if (!wait(out, limits) || (!id_ && limits.is_over())) return;
     const std::size_t most = bytes == 0 ? first_piece : buffer.size();
     const std::span<const std::uint8_t> got(buffer.data(), read(std::span(buffer).first(most)));

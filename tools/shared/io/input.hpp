@@ -10,10 +10,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "cli/common_options.hpp"
 #include "g4lidar/core/stream_counts.hpp"
 #include "g4lidar/recording/reader.hpp"
+#include "g4lidar/recording/stream_head.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
 
@@ -36,6 +38,10 @@ class input {
   input& operator=(const input&) = delete;
   ~input();
 
+  /// What sends the bytes of a pipe: reads ahead until it is known, as g4lidar::stream_head states, and
+  /// at most until -d or --idle ends.
+  [[nodiscard]] g4lidar::recognised_model recognise(const common_options& options);
+
   /// Waits for bytes and reads them. Returns their number: 0 at the end or after a signal.
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> into);
 
@@ -57,6 +63,7 @@ class input {
   std::string title_;
   std::optional<file_id> id_;
   std::uint64_t size_ = 0;
+  std::vector<std::uint8_t> ahead_;  // read by recognise()
 };
 
 /// Opens a recording; by default a signal cancels reading. Throws interrupted if opening was cancelled,

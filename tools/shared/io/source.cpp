@@ -2,13 +2,17 @@
 #include "source.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
@@ -83,6 +87,12 @@ sim::world load_scene(const sim::setup& setup, const output* out) {
 
 namespace {
 
+bool is_regular_file(const std::string& path) {
+  struct stat found{};
+  const bool is_known = (path == "-" ? ::fstat(0, &found) : ::stat(path.c_str(), &found)) == 0;
+  return is_known && S_ISREG(found.st_mode);
+}
+
 /// Whether a name at which nothing is was to be a file's.
 bool is_file_name(std::string_view name) {
   return name.ends_with(".mcap") || name.ends_with(".bin") || name.ends_with(".raw");
@@ -113,34 +123,100 @@ std::string_view words_for(sample_layout layout) {
 
 }  // namespace
 
-const g4lidar::model& model_of(const common_options& options) {
-  const source_kind kind = kind_of_source(options.source);
-  if (options.expected.model != nullptr && kind != source_kind::recording)
-    return *options.expected.model;
-  const auto shown = model_of_source(options.source, [] { return interrupt() != 0; });
-  if (interrupt() != 0) throw interrupted();
-  const g4lidar::model& found = *value_of(shown);
-  if (options.expected.model != nullptr && options.expected.model->word != found.word) {
-    throw bad_value(fmt::format("--model: {}, and {} states {}", options.expected.model->word,
-                                in_quotes(options.source), found.word));
+namespace {
+
+/// Whether points of both are made from the same bytes in the same way.
+bool are_alike(const g4lidar::model& a, const g4lidar::model& b) {
+  return a.samples.layout == b.samples.layout && a.samples.correction == b.samples.correction &&
+         a.turn_deg == b.turn_deg && first_rate_hz(a) == first_rate_hz(b);
+}
+
+/// The first model of each kind whose bytes are recognised as `found`, joined by commas: with samples of
+/// this size, and with flags if samples of 2 bytes have shown them.
+std::string alternatives_to(const g4lidar::model& found) {
+  const sample_layout layout = found.samples.layout;
+  const bool has_shown_flags = layout == sample_layout::flagged_mm;
+  std::vector<const g4lidar::model*> kinds{&found};
+  std::string words;
+  for (const g4lidar::model& each : models) {
+    const bool has_size = sample_size(each.samples.layout) == sample_size(layout);
+    if (!has_size || (has_shown_flags && !has_sample_flags(each.samples.layout))) continue;
+    if (std::ranges::any_of(kinds, [&](const auto* kind) { return are_alike(*kind, each); }))
+      continue;
+    kinds.push_back(&each);
+    words += (words.empty() ? "" : ", ") + std::string(each.word);
   }
-  if (kind == source_kind::raw_bytes && found.word != g4_model.word) {
-    logger::info(fmt::format("read as {}: {}; give --model for another one\n", found.name,
-                             words_for(found.samples.layout)));
+  return words;
+}
+
+/// That of --model, or of the name; null: none is named.
+const g4lidar::model* named_model(const common_options& options) {
+  const g4lidar::model* const named = value_of(model_in_source(options.source));
+  const g4lidar::model* const given = options.expected.model;
+  if (named != nullptr && given != nullptr && named != given) {
+    throw bad_value(fmt::format("--model: {}, and {} states {}", given->word,
+                                in_quotes(options.source), named->word));
+  }
+  return named != nullptr ? named : given;
+}
+
+}  // namespace
+
+void report_model(const g4lidar::model& found, bool is_usual) {
+  const std::string_view samples = words_for(found.samples.layout);
+  if (!is_usual) {
+    if (found.word != g4_model.word)
+      logger::info(fmt::format("read as {}, which these bytes name\n", found.name));
+    return;
+  }
+  const std::string others = alternatives_to(found);
+  if (others.empty()) return logger::info(fmt::format("read as {}: {}\n", found.name, samples));
+  logger::info(
+      fmt::format("read as {}: {} do not name their model; --model names another one: {}\n",
+                  found.name, samples, others));
+}
+
+void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
+
+const g4lidar::model* model_of(const common_options& options,
+                               std::optional<recognised_model>* shown) {
+  const source_kind kind = kind_of_source(options.source);
+  const g4lidar::model* const named = named_model(options);
+  if (kind == source_kind::raw_bytes) {
+    if (named != nullptr) return named;
+    const std::string path = path_of_source(options.source);
+    if (!is_regular_file(path)) return nullptr;
+    const recognised_model found = recognised_in(path);
+    if (shown == nullptr) report_model(found);
+    if (shown != nullptr) *shown = found;
+    return found.which;
+  }
+  if (named != nullptr && kind != source_kind::recording) return named;
+  const auto stated = model_of_source(options.source, [] { return interrupt() != 0; });
+  if (interrupt() != 0) throw interrupted();
+  const g4lidar::model* const found = value_of(stated);
+  if (named != nullptr && named->word != found->word) {
+    throw bad_value(fmt::format("--model: {}, and {} states {}", named->word,
+                                in_quotes(options.source), found->word));
   }
   return found;
 }
 
 lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
-  how.model = options.expected.model;
-  if (kind_of_source(options.source) == source_kind::raw_bytes) how.model = &model_of(options);
+  how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
     how.device_wait = std::chrono::milliseconds::max();
   if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
+  if (how.model != nullptr || kind_of_source(options.source) != source_kind::raw_bytes) return how;
+  how.wrap = [inner = std::move(how.wrap)](std::unique_ptr<connector> from) {
+    const connector_traits behind = from->traits();
+    if (behind.model != nullptr) report_model(*behind.model, behind.is_usual_model);
+    return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
+  };
   return how;
 }
 

@@ -10,6 +10,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/replay.hpp"
+#include "g4lidar/recording/stream_head.hpp"
 #include "g4lidar/sim/setup.hpp"
 #include "g4lidar/sim/simulated_source.hpp"
 #include "g4lidar/source.hpp"
@@ -28,12 +29,19 @@ using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<t
 [[nodiscard]] std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)>
 for_each_connection(transport_tap tap);
 
-/// `how` with device, model, baud, reconnect and waiting of the options. Signals cancel.
+/// `how` with device, model, baud, reconnect and waiting of the options. Signals cancel. The model that raw
+/// bytes show is logged when they are opened.
 [[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
-/// What sends the bytes of the source: that of --model, or what a file shows. Logs it if raw bytes show
-/// another model than the G4. Throws a failure,
-/// and a bad_value if a recording is of another model than that of --model.
-[[nodiscard]] const g4lidar::model& model_of(const common_options& options);
+/// What sends the bytes of the source: that of --model or of the name, or what a file shows. Raw bytes that
+/// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before the first bytes of a pipe are read, which
+/// input::recognise() does. Throws a failure, and a bad_value if a recording is of another model than that
+/// of --model.
+[[nodiscard]] const g4lidar::model* model_of(const common_options& options,
+                                             std::optional<recognised_model>* shown = nullptr);
+/// Logs what raw bytes were recognised as, in a line, unless it is a G4 for certain: which models also send
+/// such bytes, if the bytes do not name theirs (`is_usual`).
+void report_model(const g4lidar::model& found, bool is_usual);
+void report_model(const recognised_model& found);
 /// The error of a lidar that was opened so, in the words of the tool.
 [[nodiscard]] failure failure_of(const common_options& options, const g4lidar::error& why);
 

@@ -19,7 +19,7 @@ source_reader::source_reader(const common_options& options, const lidar_options&
       reader_(
           [&] {
             lidar_options made = options_for(options, how);
-            made.wrap = [this, inner = how.wrap](std::unique_ptr<connector> from) {
+            made.wrap = [this, inner = std::move(made.wrap)](std::unique_ptr<connector> from) {
               simulation_ = simulation_of(*from);
               auto tapped = inner ? inner(std::move(from))
                                   : result<std::unique_ptr<connector>>(std::move(from));
