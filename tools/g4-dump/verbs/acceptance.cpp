@@ -137,7 +137,7 @@ int accept(const acceptance_settings& options) {
   refuse_files(options, task::asking);
   if (!options.overwrites) refuse_existing(options.file);
   acceptance_options how;
-  how.model = &model_of(options);
+  how.model = model_of(options);
   if (options.duration.count() > 0) {
     how.stream_time = std::chrono::ceil<std::chrono::milliseconds>(options.duration);
   }
