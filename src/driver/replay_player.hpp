@@ -61,7 +61,7 @@ class replay_player final : public scan_source {
   std::optional<recorded_event> event_;      // the next one, whose place has not been reached yet
   bool is_cut_ = false;                      // for this event; the rest of it follows
   bool delivers_ = true;                     // whether packets produced points in the recording
-  bool may_have_more_ = true;  // after the last read
+  bool may_have_more_ = true;                // after the last read
   bool is_pause_reported_ = false;           // the event long_pause was reported
   bool is_lost_ = false;                     // the recorded connection was lost
   bool is_released_ = false;
