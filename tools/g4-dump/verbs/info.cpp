@@ -56,7 +56,7 @@ device_facts facts_of_device(const common_options& options) {
   command_source source(options, task::asking);
   g4lidar::lidar& lidar = source.lidar();
   device_facts facts{.source = std::string(lidar.name())};
-  facts.model = &model_of(options);
+  facts.model = model_of(options);
   if (!lidar.information().is_known()) listen(lidar);
   if (lidar.information().is_known()) facts.information = lidar.information();
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
