@@ -59,7 +59,7 @@ command_source::command_source(const common_options& options, task doing)
     was_scanning_ = was_scanning_ || event->what == lidar_event::kind::found_scanning;
   }
   // A one-way lidar always scans, and nothing stops it.
-  was_scanning_ = was_scanning_ && model_of(options).link == g4lidar::link_kind::two_way;
+  was_scanning_ = was_scanning_ && model_of(options)->link == g4lidar::link_kind::two_way;
   if (was_scanning_)
     logger::info(fmt::format("{}: was scanning and has been stopped\n", lidar().name()));
 }
