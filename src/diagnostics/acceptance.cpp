@@ -60,7 +60,7 @@ std::string_view name_of(acceptance_verdict how) noexcept {
   return verdict_names.at(static_cast<std::size_t>(how));
 }
 
-void acceptance_result::say(acceptance_verdict how, std::string_view sentence) {
+void acceptance_result::add_finding(acceptance_verdict how, std::string_view sentence) {
   outcome = std::max(outcome, how);
   if (!text.empty()) text += ' ';
   text += sentence;
@@ -76,14 +76,14 @@ std::vector<acceptance_result> acceptance_run::run() {
     const auto step = static_cast<acceptance_step>(i);
     acceptance_result into{.step = step};
     std::string why_not;
-    if (!is_open || !link_ || link_->is_over()) {
-      const bool is_cancelled = link_ && link_->is_cancelled();
-      const auto why = link_ ? link_->failure() : open_error_;
-      into.say(acceptance_verdict::not_done, is_cancelled ? "Interrupted."
-                                             : why        ? why->message()
-                                                          : "Not reached.");
+    if (!is_open || !link_ || link_->monitor().is_over()) {
+      const bool is_cancelled = link_ && link_->monitor().is_cancelled();
+      const auto why = link_ ? link_->monitor().failure() : open_error_;
+      into.add_finding(acceptance_verdict::not_done, is_cancelled ? "Interrupted."
+                                                     : why        ? why->message()
+                                                                  : "Not reached.");
     } else if (!is_possible(step, why_not)) {
-      into.say(acceptance_verdict::not_done, why_not);
+      into.add_finding(acceptance_verdict::not_done, why_not);
     } else {
       if (options_.on_step) options_.on_step(step);
       take(into);
@@ -92,8 +92,8 @@ std::vector<acceptance_result> acceptance_run::run() {
     results_.push_back(std::move(into));
   }
   if (link_) {
-    link_->ignore_cancel();
-    stop();
+    link_->monitor().ignore_cancel();
+    link_->stop();
   }
   return std::move(results_);
 }

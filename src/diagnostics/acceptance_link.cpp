@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "acceptance_run.hpp"
+#include "acceptance_link.hpp"
 #include "g4lidar/core/response.hpp"
 
 namespace g4lidar {
@@ -49,76 +49,76 @@ std::string raw_reply::text() const {
   return all;
 }
 
-raw_reply acceptance_run::ask(std::uint8_t code, std::int64_t patience_ns) {
+raw_reply acceptance_link::ask(std::uint8_t code, std::int64_t patience_ns) {
   constexpr std::int64_t rest_ns = 40 * ms;
   raw_reply got;
   send(code);
-  const std::int64_t asked_ns = link_->now_ns();
+  const std::int64_t asked_ns = monitor_.now_ns();
   std::int64_t until_ns = asked_ns + patience_ns;
-  link_->listen(until_ns, {.event = [&](const observed_event& found) {
-                  if (got.first_ns < 0) got.first_ns = found.arrival_ns - asked_ns;
-                  const std::size_t room = longest_reply - std::min(longest_reply, got.data.size());
-                  const bytes raw = found.raw.first(std::min(found.raw.size(), room));
-                  got.data.insert(got.data.end(), raw.begin(), raw.end());
-                  until_ns = std::min(until_ns, found.arrival_ns + rest_ns);
-                }});
+  monitor_.listen(until_ns, {.event = [&](const observed_event& found) {
+                    if (got.first_ns < 0) got.first_ns = found.arrival_ns - asked_ns;
+                    const std::size_t room =
+                        longest_reply - std::min(longest_reply, got.data.size());
+                    const bytes raw = found.raw.first(std::min(found.raw.size(), room));
+                    got.data.insert(got.data.end(), raw.begin(), raw.end());
+                    until_ns = std::min(until_ns, found.arrival_ns + rest_ns);
+                  }});
   got.begin = response_in(got.data);
   return got;
 }
 
-void acceptance_run::send(std::uint8_t code) { link_->send(static_cast<command>(code)); }
+void acceptance_link::send(std::uint8_t code) { monitor_.send(static_cast<command>(code)); }
 
-std::int64_t acceptance_run::wait_for_packet(std::int64_t patience_ns) {
-  const std::int64_t begin_ns = link_->now_ns();
+std::int64_t acceptance_link::wait_for_packet(std::int64_t patience_ns) {
+  const std::int64_t begin_ns = monitor_.now_ns();
   std::int64_t until_ns = begin_ns + patience_ns;
   std::int64_t found_ns = -1;
-  link_->listen(until_ns, {.event = [&](const observed_event& found) {
-                  if (found_ns >= 0 || !std::holds_alternative<packet_view>(found.what)) return;
-                  found_ns = std::max<std::int64_t>(found.arrival_ns - begin_ns, 0);
-                  until_ns = found.arrival_ns;
-                }});
+  monitor_.listen(until_ns, {.event = [&](const observed_event& found) {
+                    if (found_ns >= 0 || !std::holds_alternative<packet_view>(found.what)) return;
+                    found_ns = std::max<std::int64_t>(found.arrival_ns - begin_ns, 0);
+                    until_ns = found.arrival_ns;
+                  }});
   return found_ns;
 }
 
-std::int64_t acceptance_run::wait_for_silence(std::int64_t patience_ns) {
+std::int64_t acceptance_link::wait_for_silence(std::int64_t patience_ns) {
   constexpr std::int64_t quiet_ns = 150 * ms;
-  const std::int64_t begin_ns = link_->now_ns();
-  link_->listen_for_quiet(quiet_ns, begin_ns + patience_ns);
-  const bool is_silent = link_->now_ns() >= link_->heard_ns() + quiet_ns;
-  return is_silent ? std::max<std::int64_t>(link_->heard_ns() - begin_ns, 0) : -1;
+  const std::int64_t begin_ns = monitor_.now_ns();
+  monitor_.listen_for_quiet(quiet_ns, begin_ns + patience_ns);
+  const bool is_silent = monitor_.now_ns() >= monitor_.heard_ns() + quiet_ns;
+  return is_silent ? std::max<std::int64_t>(monitor_.heard_ns() - begin_ns, 0) : -1;
 }
 
-bool acceptance_run::set_dtr(bool high) {
-  transport* const port = link_->port();
-  if (port == nullptr) return false;
-  return port->set_dtr(high).value_or(false);
+bool acceptance_link::set_dtr(bool high) {
+  if (monitor_.is_over()) return false;
+  return port_->set_dtr(high).value_or(false);
 }
 
-std::int64_t acceptance_run::start() {
+std::int64_t acceptance_link::start() {
   constexpr std::int64_t pulse_ns = 120 * ms;
   if (which_.motor == motor_kind::dtr && set_dtr(false)) {
-    link_->listen_for(pulse_ns);
+    monitor_.listen_for(pulse_ns);
     static_cast<void>(set_dtr(true));
   }
   if (is_two_way()) send(static_cast<std::uint8_t>(command::start));
   return wait_for_packet(spin_up_ns);
 }
 
-void acceptance_run::stop() {
-  if (is_two_way()) static_cast<void>(link_->stop());
+void acceptance_link::stop() {
+  if (is_two_way()) static_cast<void>(monitor_.stop());
   if (which_.motor == motor_kind::dtr) static_cast<void>(set_dtr(false));
 }
 
-stream_survey acceptance_run::survey(std::int64_t time_ns) {
+stream_survey acceptance_link::survey(std::int64_t time_ns) {
   stream_survey made(which_);
-  std::int64_t until_ns = link_->now_ns() + time_ns;
-  link_->listen(until_ns, {.event = [&](const observed_event& found) {
-                  made.take(found.what, found.arrival_ns);
-                }});
+  std::int64_t until_ns = monitor_.now_ns() + time_ns;
+  monitor_.listen(until_ns, {.event = [&](const observed_event& found) {
+                    made.take(found.what, found.arrival_ns);
+                  }});
   return made;
 }
 
-std::optional<std::int32_t> acceptance_run::go_to_limit(std::uint8_t code) {
+std::optional<std::int32_t> acceptance_link::go_to_limit(std::uint8_t code) {
   constexpr int most_steps = 20;  // of 1 Hz
   std::optional<std::int32_t> last;
   for (int i = 0; i < most_steps; ++i) {

@@ -141,8 +141,6 @@ class link_monitor {
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
   /// Of everything observed since replace().
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
-  /// The transport; null after a loss of it in replace().
-  [[nodiscard]] transport* port() noexcept { return transport_.get(); }
   /// The name of the transport. Empty without one.
   [[nodiscard]] std::string_view name() const noexcept {
     return transport_ ? transport_->name() : std::string_view{};

@@ -73,13 +73,13 @@ class system_connector final : public connector {
 
   std::string device_;
   std::uint32_t baud_;
-  const model* named_;  // or found
+  const model* named_;                                          // or found
   std::optional<result<std::unique_ptr<transport>>> searched_;  // for the first connect()
-  port_info first_;                    // the port of the first connection
-  std::vector<std::string> paths_;     // to be tried in this round
-  std::string last_path_;              // of the last connection
-  std::vector<refused_port> refused_;  // ports of other lidars
-  std::optional<path_watch> watch_;    // from the first loss on
+  port_info first_;                                             // the port of the first connection
+  std::vector<std::string> paths_;                              // to be tried in this round
+  std::string last_path_;                                       // of the last connection
+  std::vector<refused_port> refused_;                           // ports of other lidars
+  std::optional<path_watch> watch_;                             // from the first loss on
   waker waker_{real_system_calls()};
 };
 

@@ -183,23 +183,23 @@ bool replay_player::is_here(const recorded_event& what) const noexcept {
 bool replay_player::play_events(bool all) {
   bool any = false;
   while (source_ != nullptr) {
-    if (!event_) event_ = source_->next_event();
-    if (!event_ || (!all && (is_cut_ || !is_here(*event_)))) return any;
-    const auto what = event_->what;
+    if (!next_.event) next_.event = source_->next_event();
+    if (!next_.event || (!all && (next_.is_cut || !is_here(*next_.event)))) return any;
+    const auto what = next_.event->what;
     const bool ends_here = what == recorded_event::kind::cut;
     const bool cuts =
         ends_here || what == recorded_event::kind::closed || what == recorded_event::kind::gap;
-    if (cuts && !std::exchange(is_cut_, true)) {
+    if (cuts && !std::exchange(next_.is_cut, true)) {
       pipeline_.input().cut();
       if (ends_here) {
-        is_cut_ = false;
-        event_.reset();
+        next_.is_cut = false;
+        next_.event.reset();
       }
       return true;
     }
-    is_cut_ = false;
-    play(*event_);
-    event_.reset();
+    next_.is_cut = false;
+    play(*next_.event);
+    next_.event.reset();
     any = true;
   }
   return any;
@@ -278,8 +278,8 @@ void replay_player::follow_seek() {
   } while (pipeline_.next() != nullptr);
   pipeline_.end();
   pipeline_.drop_scan();
-  event_.reset();
-  is_cut_ = is_lost_ = is_pause_reported_ = false;
+  next_.event.reset();
+  next_.is_cut = is_lost_ = is_pause_reported_ = false;
   delivers_ = true;
   if (!connection_.is_open()) static_cast<void>(connection_.open());
   receiver_.reset(0, 0, now_ns());

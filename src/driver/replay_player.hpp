@@ -43,6 +43,12 @@ class replay_player final : public scan_source {
     ended,    ///< Waits until the last scan is taken.
   };
 
+  /// The next event, whose place has not been reached yet.
+  struct awaited_event {
+    std::optional<recorded_event> event{};
+    bool is_cut = false;  ///< For this event; the rest of it follows.
+  };
+
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
   [[nodiscard]] bool parse_bytes();
   [[nodiscard]] result<void> check() const noexcept;
@@ -58,12 +64,11 @@ class replay_player final : public scan_source {
   recorded_event_source* source_ = nullptr;  // of a file
   stage stage_ = stage::closed;
   error why_{task::reading, problem::gone};  // why it ended
-  std::optional<recorded_event> event_;      // the next one, whose place has not been reached yet
-  bool is_cut_ = false;                      // for this event; the rest of it follows
-  bool delivers_ = true;                     // whether packets produced points in the recording
-  bool may_have_more_ = true;                // after the last read
-  bool is_pause_reported_ = false;           // the event long_pause was reported
-  bool is_lost_ = false;                     // the recorded connection was lost
+  awaited_event next_;
+  bool delivers_ = true;            // whether packets produced points in the recording
+  bool may_have_more_ = true;       // after the last read
+  bool is_pause_reported_ = false;  // the event long_pause was reported
+  bool is_lost_ = false;            // the recorded connection was lost
   bool is_released_ = false;
   std::uint32_t sample_rate_hz_;
   std::uint64_t reconnects_ = 0;

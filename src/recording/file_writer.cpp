@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "g4lidar/message/ros_messages.hpp"
+#include "numbered_path.hpp"
 
 namespace g4lidar {
 namespace {
@@ -181,23 +182,20 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
 void recording_writer::file_writer::device(const recorded_device& known) noexcept {
   static_cast<void>(guarded([&]() -> result<void> {
     device_ = known;
-    return add_metadata(mcap::device_metadata, mcap::words_of(known));
+    metadata(mcap::device_metadata, mcap::words_of(known));
+    return {};
   }));
 }
 
+/// Behind the items that were recorded before it.
 void recording_writer::file_writer::metadata(
     std::string_view name, std::span<const std::pair<std::string, std::string>> words) noexcept {
-  static_cast<void>(
-      guarded([&] { return add_metadata(name, mcap::word_map(words.begin(), words.end())); }));
-}
-
-/// Behind the items that were recorded before it.
-result<void> recording_writer::file_writer::add_metadata(std::string_view name,
-                                                         const mcap::word_map& words) {
-  if (!chunk_.is_empty()) {
-    if (auto ended = end_chunk(); !ended) return ended;
-  }
-  return file_->add_metadata(name, words);
+  static_cast<void>(guarded([&]() -> result<void> {
+    if (!chunk_.is_empty()) {
+      if (auto ended = end_chunk(); !ended) return ended;
+    }
+    return file_->add_metadata(name, mcap::word_map(words.begin(), words.end()));
+  }));
 }
 
 result<void> recording_writer::file_writer::take_model(const model& which) {
@@ -289,7 +287,8 @@ void recording_writer::file_writer::lose_chunk() noexcept {
 
 /// The new file is created first: if that fails, the old one is continued.
 result<void> recording_writer::file_writer::rotate() {
-  auto next = mcap::mcap_file::create(next_path(), channels_, options_.overwrite);
+  auto next = mcap::mcap_file::create(numbered_path(first_path_, counts_.files), channels_,
+                                      options_.overwrite);
   if (!next) return tl::unexpected(next.error());
   auto ended = end_file(false);
   ++counts_.files;
@@ -299,17 +298,6 @@ result<void> recording_writer::file_writer::rotate() {
   if (ended && device_)
     ended = file_->add_metadata(mcap::device_metadata, mcap::words_of(*device_));
   return ended;
-}
-
-std::string recording_writer::file_writer::next_path() const {
-  constexpr std::string_view extension = ".mcap";
-  std::string_view stem = first_path_;
-  const bool has_extension = stem.ends_with(extension);
-  if (has_extension) stem.remove_suffix(extension.size());
-  std::array<char, 16> number{};
-  std::snprintf(number.data(), number.size(), "-%04llu",
-                static_cast<unsigned long long>(counts_.files));
-  return std::string(stem) + number.data() + (has_extension ? std::string(extension) : "");
 }
 
 result<void> recording_writer::file_writer::end_file(bool is_only_one) {

@@ -95,10 +95,8 @@ class recording_writer::file_writer {
   [[nodiscard]] result<void> add_transform();
   [[nodiscard]] result<void> end_chunk();
   [[nodiscard]] result<bytes> pack();
-  [[nodiscard]] result<void> add_metadata(std::string_view name, const mcap::word_map& words);
   [[nodiscard]] result<void> rotate();
   [[nodiscard]] result<void> end_file(bool is_only_one);
-  [[nodiscard]] std::string next_path() const;
   void lose_chunk() noexcept;
 
   recording_options options_;

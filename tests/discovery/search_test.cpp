@@ -136,7 +136,7 @@ TEST(Search, MotorThatWaitsForDtr_TurnsOnlyBehindANamedPort) {
   EXPECT_EQ(std::ranges::count(named.notes, "dtr=0"), 1);
 }
 
-// What the error says: every rate that was tried.
+// The error lists every rate that was tried.
 TEST(Search, SomethingSendsAtEveryRate_NamesTheRates) {
   sim::device_options options = options_of("g4");
   options.baud = 57'600;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The acceptance run: what a real lidar does, step by step, compared with what the table of models says.
+// The acceptance run: what a real lidar does, step by step, compared with the table of models.
 #pragma once
 
 #include <chrono>
@@ -58,7 +58,7 @@ struct acceptance_result {
   std::string text{};  ///< What was found, in sentences.
 
   /// Adds a sentence, and makes the outcome at least this one.
-  G4LIDAR_API void say(acceptance_verdict how, std::string_view sentence);
+  G4LIDAR_API void add_finding(acceptance_verdict how, std::string_view sentence);
   /// Adds evidence.
   void add(std::string name, auto value) {
     measurements.push_back(make_evidence(std::move(name), std::move(value)));

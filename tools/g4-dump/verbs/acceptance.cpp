@@ -33,9 +33,12 @@ namespace {
 constexpr std::size_t indent = 16;
 
 struct acceptance_settings : common_options {
-  std::string file = "acceptance.mcap";
-  bool alone = false;
-  bool overwrites = false;
+  /// Beside those of the source.
+  struct choices {
+    std::string file = "acceptance.mcap";
+    bool is_alone = false;
+    bool overwrites = false;
+  } run;
 };
 
 /// A line of standard input; nothing at its end, and after a signal.
@@ -135,7 +138,7 @@ std::optional<port_info> port_of(std::string_view name) {
 int accept(const acceptance_settings& options) {
   output out(options.output);
   refuse_files(options, task::asking);
-  if (!options.overwrites) refuse_existing(options.file);
+  if (!options.run.overwrites) refuse_existing(options.run.file);
   acceptance_options how;
   how.model = model_of(options);
   if (options.duration.count() > 0) {
@@ -144,7 +147,7 @@ int accept(const acceptance_settings& options) {
   auto from = connector_for(options_for(options, {}));
   if (!from) throw failure_of(options, from.error());
   auto file = recording_writer::create(
-      options.file, {.model = how.model, .overwrite = options.overwrites, .scans = false});
+      options.run.file, {.model = how.model, .overwrite = options.run.overwrites, .scans = false});
   if (!file) throw failure(file.error());
   auto observed = recorded(*std::move(from), *file);
   if (!observed) throw failure(observed.error());
@@ -152,7 +155,7 @@ int accept(const acceptance_settings& options) {
   const auto port = select_port(options.source);
   const std::optional<port_info> known = port ? port_of(port->path) : std::nullopt;
   if (known) how.port = &*known;
-  if (!options.alone) how.ask = ask_user;
+  if (!options.run.is_alone) how.ask = ask_user;
   how.is_cancelled = [] { return interrupt() != 0; };
   how.on_step = [](acceptance_step step) { logger::info(fmt::format("{} ...\n", name_of(step))); };
   how.on_result = [&](const acceptance_result& done) {
@@ -172,7 +175,7 @@ int accept(const acceptance_settings& options) {
   if (!options.json) out.write(answered_questions(all));
   out.commit();
   logger::info(fmt::format("{} has all bytes and these results. Attach it to a report: {}\n",
-                           in_quotes(options.file), G4LIDAR_ISSUES));
+                           in_quotes(options.run.file), G4LIDAR_ISSUES));
   if (interrupt() != 0) return 128 + interrupt();
   const bool differs =
       std::ranges::find(all, acceptance_verdict::differs, &acceptance_result::outcome) != all.end();
@@ -180,14 +183,14 @@ int accept(const acceptance_settings& options) {
 }
 
 constexpr const char* acceptance_details =
-    R"(It compares a lidar with what the table of models says, in about 15 minutes: identity, each
+    R"(It compares a lidar with the table of models, in about 15 minutes: identity, each
 command with its answer and time, frequencies and sample rates, start and stop, DTR, a minute of
 the scan with its CT bytes, lower bits and time packets. It asks its user for a target that is
 near, one that is far, and an unplug; s skips such a step, and --alone all of them. Settings are
-changed and set back, and the motor is stopped at the end. docs/models.md says which models need
+changed and set back, and the motor is stopped at the end. docs/models.md lists which models need
 such a run most: nobody has tried them with a real device.
 
-The output is a page of text: for each step agrees, observed (the table says nothing), not_done or
+The output is a page of text: for each step agrees, observed (not in the table), not_done or
 differs, and what was measured. The file contains all bytes in both directions and these results;
 it is a recording, which every other command reads. A step that differs makes the exit code 8.)";
 
@@ -200,20 +203,22 @@ verb make_acceptance_verb() {
   option_row time = duration_row(*options);
   time.help = "Observe the scan for so long (1m)";
   option_row file =
-      text_row("--file", "FILE", "The file for a report (acceptance.mcap)", options->file);
-  return {.name = "acceptance",
-          .summary = "Compare a real lidar with the table of models, for a report",
-          .arguments = {source_argument(*options)},
-          .options = joined(
-              output_row(*options), json, time, baud_row(*options), model_row(*options),
-              option_rows{
-                  file, flag_row("--alone", "Leave out the steps that need a user", options->alone),
-                  flag_row("--force", "Replace an existing file", options->overwrites)}),
-          .details = acceptance_details,
-          .examples = {{"g4-dump acceptance --model x4 /dev/ttyUSB0", "Examine an X4"},
-                       {"g4-dump acceptance --alone --file g4.mcap sim:",
-                        "A simulated G4, without its user"}},
-          .run = [options] { return accept(*options); }};
+      text_row("--file", "FILE", "The file for a report (acceptance.mcap)", options->run.file);
+  return {
+      .name = "acceptance",
+      .summary = "Compare a real lidar with the table of models, for a report",
+      .arguments = {source_argument(*options)},
+      .options = joined(
+          output_row(*options), json, time, baud_row(*options), model_row(*options),
+          option_rows{
+              file,
+              flag_row("--alone", "Leave out the steps that need a user", options->run.is_alone),
+              flag_row("--force", "Replace an existing file", options->run.overwrites)}),
+      .details = acceptance_details,
+      .examples = {{"g4-dump acceptance --model x4 /dev/ttyUSB0", "Examine an X4"},
+                   {"g4-dump acceptance --alone --file g4.mcap sim:",
+                    "A simulated G4, without its user"}},
+      .run = [options] { return accept(*options); }};
 }
 
 }  // namespace g4_tool

@@ -42,7 +42,7 @@ device_facts facts_of_recording(const std::string& source) {
   return facts;
 }
 
-/// A one-way lidar says who it is in a whole revolution, if it does.
+/// A one-way lidar identifies itself in a whole revolution, if it does.
 void listen(g4lidar::lidar& lidar) {
   constexpr int revolutions = 3;
   value_of(lidar.start());

@@ -26,7 +26,7 @@ struct lidar_place {
 };
 
 /// Shapes scans as a scan_shaper, and follows the motion. With --deskew it is known by odometry or by the scans. Without
-/// it the odometry of the source is used, if the source or --mount tells where the lidar is on the robot: a wrong place
+/// it the odometry of the source is used, if the source or --mount states where the lidar is on the robot: a wrong place
 /// would be worse than none. *Single thread.*
 class moving_scans {
  public:
