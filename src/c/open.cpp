@@ -18,7 +18,7 @@ namespace {
 
 constexpr g4lidar_options lidar_defaults{
     sizeof(g4lidar_options), nullptr, nullptr, 0, 0, 0,     0,     0,  0, 0,      0,
-    G4LIDAR_AUTOMATIC,       0,       0,       0, 0,      false, false, {}, 0, nullptr};
+    G4LIDAR_AUTOMATIC,       0,       0,       0, 0, false, false, {}, 0, nullptr};
 
 void take_time(std::int32_t given_ms, std::chrono::milliseconds& into) noexcept {
   if (given_ms != 0) into = std::chrono::milliseconds(given_ms);

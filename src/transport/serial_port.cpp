@@ -234,10 +234,12 @@ result<void> serial_transport::apply(std::uint32_t baud, int when) noexcept {
   // tcsetattr() succeeds if any part of it does, so the settings are read back.
   termios got{};
   if (uninterrupted([&] { return calls().tcgetattr(fd(), &got); }) != 0) return refused(errno);
-  const bool has_name = speed && cfgetospeed(&got) == *speed;
+  const auto* const found = std::ranges::find(named_speeds, cfgetospeed(&got), &named_speed::speed);
+  const bool is_named = found != named_speeds.end();
+  if (is_named && !is_tolerable(found->baud, baud)) return refused_baud(baud, 0);
   const std::uint32_t real = custom_baud(calls().ioctl, fd());
   const bool is_usable = is_tolerable(real, baud);
-  if (!has_name && !is_usable) return refused_baud(baud, 0);
+  if (!is_named && !is_usable) return refused_baud(baud, 0);
   restart_at(is_usable ? real : baud);
   return {};
 }

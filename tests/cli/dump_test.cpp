@@ -190,10 +190,10 @@ TEST(Dump, AModelThatIsNone) {
   EXPECT_THAT(done.err, HasSubstr("'x44' is not one of g4, "));
 }
 
-TEST(Dump, AModelIsForFilesOnly) {
+TEST(Dump, AModelThatContradictsTheSource_IsRefused) {
   const outcome done = run({"dump", "sim:", "--model", "x4", "-n", "1"});
   EXPECT_EQ(done.code, 2);
-  EXPECT_THAT(done.err, HasSubstr("for files only"));
+  EXPECT_THAT(done.err, HasSubstr("model: x4, and the source states g4"));
 }
 
 }  // namespace

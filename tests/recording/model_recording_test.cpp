@@ -183,7 +183,7 @@ TEST_F(ModelRecording, RawBytesShowTheirModel) {
   EXPECT_LT(as_g4.size(), stream_.points.size() / 10);
   const auto refused = lidar::open("sim:", {.model = t_mini_});
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().message(), HasSubstr("model: for files only"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("model: t-mini-pro, and the source states g4"));
 }
 
 TEST_F(ModelRecording, AReplayedRecordingGivesAnEqualOne) {

@@ -266,7 +266,7 @@ TEST_F(Server, OnLossExit_EndsAsOtherCommands) {
 TEST_F(Server, AnotherModel_EndsWithTheReason) {
   const outcome done = cli::run({"serve", "sim:?model_id=4", "--port", "0"});
   EXPECT_EQ(done.code, 7);
-  EXPECT_THAT(done.err, HasSubstr("is not a G4"));
+  EXPECT_THAT(done.err, HasSubstr("model 4, not G4"));
 }
 
 TEST_F(Server, PortInUse_IsReported) {

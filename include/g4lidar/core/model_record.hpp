@@ -148,7 +148,7 @@ struct model {
   /// The layout of some of its devices; that of `samples` if there is no other.
   sample_layout other_layout = samples.layout;
   firmware_difference old_firmware{};
-  bool has_pitch = false;  ///< Command 98.
+  bool has_pitch = false;             ///< Command 98.
   usual_kind usual = usual_kind::no;  ///< Whether it is taken where bytes fit several models.
 };
 

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <initializer_list>
 
+#include "g4lidar/detail/cpp20.hpp"
+
 namespace g4lidar::sim {
 
 /// Commands by their second byte. A device does not answer what it does not have. *Single thread.*

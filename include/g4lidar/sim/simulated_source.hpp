@@ -10,9 +10,9 @@
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
-#include "g4lidar/motion.hpp"
 #include "g4lidar/sim/odometry.hpp"
 #include "g4lidar/sim/pty_port.hpp"
+#include "g4lidar/sim/world.hpp"
 
 namespace g4lidar::sim {
 
@@ -22,7 +22,7 @@ struct simulated_source {
   std::optional<odometry> robot;  ///< Without errors; nothing without a path.
   std::int64_t begin_ns;          ///< The time 0 of both, by std::chrono::steady_clock.
   std::string model;              ///< Its word; empty: a G4.
-  mounting mount{};               ///< Where the lidar is on the robot.
+  pose mounted_at{};              ///< As in world.
 };
 
 /// The lidar that "sim:?NAME=VALUE&..." describes, at a port as that of

@@ -2,7 +2,6 @@
 #include "g4lidar/sim/simulated_source.hpp"
 
 #include <chrono>
-#include <numbers>
 #include <string>
 #include <utility>
 #include <variant>
@@ -44,8 +43,7 @@ result<simulated_source> open_simulated(std::string_view source) {
   auto served = serve_alone(device(in, wanted.device, wanted.faults));
   if (!served) return tl::unexpected(served.error());
   simulated_source made{*std::move(served), std::nullopt, 0, wanted.model};
-  const pose& at = in.mounted_at;
-  made.mount.pose = {at.x_m, at.y_m, at.heading_deg * std::numbers::pi / 180.0};
+  made.mounted_at = in.mounted_at;
   made.port->with([&](const device&, std::int64_t now_ns) {
     const std::chrono::nanoseconds now = std::chrono::steady_clock::now().time_since_epoch();
     made.begin_ns = now.count() - now_ns;

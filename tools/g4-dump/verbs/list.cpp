@@ -168,7 +168,7 @@ constexpr const char* list_details =
              probed
   SERIAL     with --probe: serial number of the lidar; as SOURCE: serial:NUMBER
   FIRMWARE   with --probe
-  BAUD       with --probe: the baud rate at which it was found
+  BAUD       with --probe: baud rate of the lidar
   OR         with --probe: other models that send the same bytes; name yours with --model
   HOLDER     the process that has it open, if this user may see it; may contain blanks
 

@@ -10,6 +10,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -56,6 +57,20 @@ void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, b
   if (!given) throw failure(given.error());
 }
 
+/// Throws a bad_value if the lidar cannot have one of the values: then nothing is changed.
+void check(const set_options& options, const device_information& who) {
+  const g4lidar::model* const which = options.expected.model != nullptr
+                                          ? options.expected.model
+                                          : model_with_id(who.model, link_kind::two_way);
+  if (which == nullptr) return;
+  for (const setting_change& each : options.changes) {
+    const request wanted = change_to(each.value);
+    if (!has_request(*which, wanted.what) || is_possible(wanted, *which)) continue;
+    throw bad_value(fmt::format("{}={}: a {} cannot have it", each.which->name, text_of(each.value),
+                                which->name));
+  }
+}
+
 /// Logs what the changes mean for the user.
 void report_consequences(const std::vector<setting_change>& changes) {
   logger::info("The settings may be lost when the lidar restarts or has no power.\n");
@@ -72,6 +87,7 @@ int set(const set_options& options) {
     throw bad_value("nothing to set; give NAME=VALUE such as sample_rate=9k");
   output out("-");
   command_source source(options, task::configuring);
+  check(options, source.lidar().information());
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
   for (const setting_change& each : options.changes) {
     if (interrupt() != 0) return 128 + interrupt();

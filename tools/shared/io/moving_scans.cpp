@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "moving_scans.hpp"
 
+#include <numbers>
 #include <utility>
 
 #include "g4lidar/source.hpp"
@@ -43,8 +44,9 @@ void moving_scans::open(g4lidar::lidar& device, const sim::simulated_source* sim
   } else {
     feed_.follow(simulation);
   }
-  const bool is_simulated = simulation != nullptr;
-  choose(is_simulated ? std::optional(simulation->mount) : std::nullopt);
+  if (simulation == nullptr) return choose({});
+  const sim::pose& at = simulation->mounted_at;
+  choose(mounting{.pose = {at.x_m, at.y_m, at.heading_deg * std::numbers::pi / 180.0}});
 }
 
 void moving_scans::add(const scan& source, const odometry_feed::taker& take) {
