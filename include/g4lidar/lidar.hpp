@@ -154,10 +154,10 @@ class G4LIDAR_API lidar {
     return ask(requests::set(wanted), how);
   }
 
-  /// What the device reported about itself when it was opened; what a one-way lidar has said so far, which
+  /// What the device reported about itself when it was opened; what a one-way lidar has sent so far, which
   /// may be nothing: device_information::is_known(). Valid as long as this lidar.
   [[nodiscard]] const device_information& information() const noexcept;
-  /// What its turning part has said about itself, if that differs: some two-way lidars send it when they
+  /// What its turning part has reported, if that differs: some two-way lidars send it when they
   /// start.
   [[nodiscard]] std::optional<device_information> module_information() const noexcept;
   /// The player of a recording, or of raw bytes in a file; null for everything else, and after close().

@@ -52,7 +52,7 @@ struct lidar_options {
   std::chrono::milliseconds device_wait{0};
   /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording or `sim:`
   /// states, raw bytes show, or a search at the port finds; of a connector of the program a G4. A source
-  /// that states another model is refused with bad_option, and a device that says that it is another one
+  /// that states another model is refused with bad_option, and a device that reports another one
   /// with other_device.
   const g4lidar::model* model = nullptr;
   /// Bits per second, of a serial port and of the one behind `tcp:`; 0: the usual rate of the model.

@@ -42,13 +42,13 @@ enum class low_power : std::uint8_t { off = 0, on = 1 };
 /// Whether the lidar regulates its scan frequency. (commands 0E, 0F)
 enum class constant_frequency : std::uint8_t { off = 0, on = 1 };
 
-/// What is to be added to each angle of a device so that zero is where its housing says, in 0.01 degrees.
+/// What is to be added to each angle of a device so that zero is at the mark of its housing, in 0.01 degrees.
 /// (command 93)
 struct zero_angle {
   std::int32_t cdeg;
   /// In degrees. *Pure.*
   [[nodiscard]] constexpr double deg() const noexcept { return cdeg / 100.0; }
-  /// Whether it was measured: devices that were not calibrated say 180 degrees. *Pure.*
+  /// Whether it was measured: devices that were not calibrated report 180 degrees. *Pure.*
   [[nodiscard]] constexpr bool is_calibrated() const noexcept {
     return cdeg != 18'000 && cdeg != -18'000;
   }

@@ -243,7 +243,7 @@ lidar_search::found lidar_search::judge_stream() {
     }
     heard_.device = announced;
   }
-  // It does not answer. Its CT bytes may say more.
+  // It does not answer. Its CT bytes may identify it.
   known.answers = presence::no;
   const auto does_not_stop = [this] {
     return failure(task::asking, problem::does_not_stop, port_.name());

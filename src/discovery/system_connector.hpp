@@ -62,7 +62,7 @@ class system_connector final : public connector {
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
   [[nodiscard]] bool may_be_ours(const port_info& port) const noexcept;
-  /// A lidar that does not say who it is can only be known by its USB port.
+  /// A lidar that does not identify itself can only be known by its USB port.
   [[nodiscard]] bool goes_by_place() const noexcept {
     return named_ != nullptr && named_->link == link_kind::one_way && !first_.bus_path.empty();
   }

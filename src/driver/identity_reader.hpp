@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a lidar says about itself without being asked.
+// What a lidar reports about itself without being asked.
 #pragma once
 
 #include <cstdint>
@@ -49,8 +49,8 @@ class identity_reader {
     is_new_ = true;
   }
   void take_ct(const ct_information& found) noexcept {
-    const bool is_well = found.faults == ct_faults::none;
-    condition_ = health{is_well ? health_status::ok : health_status::error,
+    const bool is_ok = found.faults == ct_faults::none;
+    condition_ = health{is_ok ? health_status::ok : health_status::error,
                         static_cast<std::uint8_t>(found.faults)};
     set(information_of(found, *which_));
   }

@@ -63,16 +63,16 @@ result<void> listening_driver::round(std::int64_t deadline_ns) {
 
 /// What the bytes that were parsed mean, and whether they came in time.
 result<void> listening_driver::look() {
-  identity_reader& said = stream_.said();
-  if (said.take_news()) {
+  identity_reader& reported = stream_.reported();
+  if (reported.take_news()) {
     if (auto known = identified(); !known) return known;
   }
-  if (stage_ == live_stage::identifying && said.packets() >= packets_to_recognise) {
+  if (stage_ == live_stage::identifying && reported.packets() >= packets_to_recognise) {
     return recognised();
   }
-  const bool is_moving = stage_ == live_stage::scanning && said.packets() != packets_;
+  const bool is_moving = stage_ == live_stage::scanning && reported.packets() != packets_;
   if (is_moving) {
-    packets_ = said.packets();
+    packets_ = reported.packets();
     pulse_ = pulse::none;
     due_ns_ =
         receiver_.read_until_ns() + std::chrono::nanoseconds(options_.tuning.stall_time).count();
@@ -115,9 +115,9 @@ result<void> listening_driver::recognised() {
   return look();
 }
 
-/// It may say who it is at any time: after a revolution, and when it gets power.
+/// It may identify itself at any time: after a revolution, and when it gets power.
 result<void> listening_driver::identified() {
-  const device_information& who = *stream_.said().who();
+  const device_information& who = *stream_.reported().who();
   if (!may_be(*options_.model, who)) {
     return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
   }
@@ -271,7 +271,7 @@ void listening_driver::release() noexcept {
 
 result<answer> listening_driver::ask(const request& wanted, while_scanning /*how*/) {
   if (auto ready = be_ready(); !ready) return tl::unexpected(ready.error());
-  const auto condition = stream_.said().condition();
+  const auto condition = stream_.reported().condition();
   if (wanted.what == request_kind::device_info && information_.is_known()) return information_;
   if (wanted.what == request_kind::health && condition) return *condition;
   return tl::unexpected(refusal_error(task::asking, refusal::not_supported, wanted, *options_.model,

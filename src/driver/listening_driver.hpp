@@ -20,9 +20,9 @@ class listening_driver final : public scan_source {
 
   [[nodiscard]] result<void> open() override;
   [[nodiscard]] result<void> start() override;
-  /// Scans end. Nothing stops the motor: the event still_turning says so.
+  /// Scans end. Nothing stops the motor: the event still_turning reports it.
   [[nodiscard]] result<void> stop() override;
-  /// What the lidar has said unasked; every other request is refused.
+  /// What the lidar has reported unasked; every other request is refused.
   [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
   void release() noexcept override;
 

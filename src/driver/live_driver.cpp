@@ -71,8 +71,8 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, next_deadline_ns());
   if (auto got = stream_.receive(until); !got) return got;
   if (stream_.parse()) return {};
-  if (stream_.said().take_news()) {
-    const auto& who = stream_.said().who();
+  if (stream_.reported().take_news()) {
+    const auto& who = stream_.reported().who();
     if (information_.is_known() && who != information_) module_ = who;
   }
   // An event loop may not call again before bytes arrive: everything must be sent now.

@@ -27,13 +27,13 @@ live_stream::live_stream(const parts& of, const lidar_options& options)
             *options.model),
       motor_(options.model->motor),
       listens_(options.model->link == link_kind::one_way),
-      said_(*options.model),
+      reported_(*options.model),
       sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 void live_stream::begin() {
   const transport& on = of_.on.on();
   link_.reset(now_ns());
-  said_.reset();
+  reported_.reset();
   of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
   of_.pipeline.follow(on.baud());
   of_.motor.forget();
@@ -95,7 +95,7 @@ bool live_stream::parse() {
   while (!pipeline.find_scan()) {
     const event* const found = pipeline.next();
     if (found == nullptr) return false;
-    said_.take(*found);
+    reported_.take(*found);
     if (!listens_) link_.take(*found);
     follow_delivery();
     const auto* const packet = std::get_if<packet_view>(found);

@@ -19,7 +19,7 @@
 namespace g4lidar {
 
 /// The parts of a round on an open connection. *Single thread.* What it is made of must outlive it. The
-/// session of a one-way lidar has nothing to do: what scans is said by the stage alone.
+/// session of a one-way lidar has nothing to do: the stage alone decides whether it scans.
 class live_stream {
  public:
   struct parts {
@@ -36,8 +36,8 @@ class live_stream {
   [[nodiscard]] session& talk() noexcept { return link_.talk(); }
   [[nodiscard]] const session& talk() const noexcept { return link_.talk(); }
 
-  /// What the device has said unasked.
-  [[nodiscard]] identity_reader& said() noexcept { return said_; }
+  /// What the device has reported unasked.
+  [[nodiscard]] identity_reader& reported() noexcept { return reported_; }
 
   /// The connection was opened.
   void begin();
@@ -95,7 +95,7 @@ class live_stream {
   device_link link_;
   motor_kind motor_;
   bool listens_;  // nothing is sent
-  identity_reader said_;
+  identity_reader reported_;
   std::uint32_t sample_rate_hz_;
   std::int64_t motor_ready_ns_ = 0;
 };

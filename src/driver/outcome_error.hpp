@@ -50,7 +50,7 @@ namespace g4lidar {
   return {doing, why == refusal::bad_setting ? problem::bad_setting : problem::scanning, about};
 }
 
-/// Of a device that says that it is a model other than `which`.
+/// Of a device that reports a model other than `which`.
 [[nodiscard]] inline error other_device_error(const device_information& who, const model& which,
                                               std::string_view device) noexcept {
   error_context about = error_context(device).add(", model ").add(std::uint32_t{who.model});
@@ -60,7 +60,7 @@ namespace g4lidar {
   return {task::opening, problem::other_device, about.add(", not ").add(which.name)};
 }
 
-/// Whether a device of the model may say this number.
+/// Whether a device of the model may report this number.
 [[nodiscard]] constexpr bool may_be(const model& which, const device_information& who) noexcept {
   return who.model == which.ids[0] || who.model == which.ids[1];
 }

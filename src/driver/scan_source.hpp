@@ -83,7 +83,7 @@ class scan_source {
     return saturating_add(now_ns(), timeout_ns);
   }
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
-  /// Of the turning part, if it has said another one.
+  /// Of the turning part, if it has reported another one.
   [[nodiscard]] const std::optional<device_information>& module_information() const noexcept {
     return module_;
   }

@@ -67,8 +67,8 @@ while IFS=: read -r document path; do
 done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|python|\.ci)(/[A-Za-z0-9_./-]+)?`' \
   "${documents[@]}" | sort --unique)
 
-# Every option that a document names is one of a program. Those of other programs: apt, ros2 bag.
-others='--(no-install-recommends|qos-profile-overrides-path)'
+# Every option that a document names is one of a program. Those of other programs: apt, ros2 bag, ros2 topic.
+others='--(no-install-recommends|qos-profile-overrides-path|keep-alive)'
 programs=$(dirname "$G4_DUMP")
 for command in $("$G4_DUMP" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/\1/p'); do
   "$G4_DUMP" "$command" --help

@@ -44,10 +44,10 @@ inline constexpr std::size_t acceptance_step_count =
 
 /// How a step ended.
 enum class acceptance_verdict : std::uint8_t {
-  agrees,    ///< As the table says.
-  observed,  ///< The table says nothing about it; now it is known.
+  agrees,    ///< As in the table.
+  observed,  ///< Not in the table; now it is known.
   not_done,  ///< Not possible with this lidar or connection, or the user declined.
-  differs,   ///< Not as the table says.
+  differs,   ///< Not as in the table.
 };
 
 /// The result of one step.

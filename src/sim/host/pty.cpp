@@ -20,7 +20,7 @@
 namespace g4lidar::sim {
 namespace {
 
-// The rate of a new terminal: B38400. A program that sets it cannot be told from one that sets none.
+// The rate of a new terminal: B38400. A program that sets it cannot be distinguished from one that sets none.
 constexpr std::uint32_t unset_baud = 38'400;
 
 class pty final : public served_port {
