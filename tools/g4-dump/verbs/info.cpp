@@ -56,9 +56,15 @@ device_facts facts_of_device(const common_options& options) {
   command_source source(options, task::asking);
   g4lidar::lidar& lidar = source.lidar();
   device_facts facts{.source = std::string(lidar.name())};
-  facts.model = model_of(options);
   if (!lidar.information().is_known()) listen(lidar);
   if (lidar.information().is_known()) facts.information = lidar.information();
+  const bool is_unnamed =
+      kind_of_source(options.source) == source_kind::device && options.expected.model == nullptr;
+  if (!is_unnamed) {
+    facts.model = model_of(options);
+  } else if (facts.information) {
+    facts.model = model_with_id(facts.information->model, link_kind::two_way);
+  }
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);
   }
