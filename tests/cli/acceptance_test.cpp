@@ -41,7 +41,7 @@ TEST_F(AcceptanceVerb, AsksItsUser_AndWritesAFileThatReplays) {
 
   const outcome played = run({"scan", "-n", "2", file});
   EXPECT_EQ(played.code, 0) << played.err;
-  EXPECT_EQ(lines_of(played.out).size(), 2U) << played.out;
+  EXPECT_EQ(lines_of(played.out).size(), 3U) << played.out;  // a heading, and two scans
 }
 
 TEST_F(AcceptanceVerb, AFileThatExists_IsNotReplaced) {
