@@ -122,7 +122,8 @@ bool take_model(const char* word, const model*& into) noexcept {
   return into != nullptr;
 }
 
-int refuse_model(g4lidar_error* out, std::string_view word) {
+int refuse_model(g4lidar_error* out, const char* given) {
+  const std::string_view word(given != nullptr ? given : "");
   return fail(out, G4LIDAR_BAD_OPTION, G4LIDAR_CONFIGURING,
               "model: there is none with the word '" + std::string(word.substr(0, 40)) + "'",
               "Give one of " + model_words() + ".");

@@ -14,16 +14,20 @@ namespace g4lidar::sim {
 /// Commands by their second byte. A device does not answer what it does not have. *Single thread.*
 class command_set {
  public:
+  /// Those of `codes`.
   constexpr command_set(std::initializer_list<std::uint8_t> codes) noexcept {
     for (const std::uint8_t code : codes) add(code);
   }
 
+  /// Whether it contains the command.
   [[nodiscard]] constexpr bool has(std::uint8_t code) const noexcept {
     return (words_[code / 64U] >> code % 64U & 1U) != 0;
   }
+  /// Adds a command.
   constexpr void add(std::uint8_t code) noexcept {
     words_[code / 64U] |= std::uint64_t{1} << code % 64U;
   }
+  /// Adds all of `others`.
   constexpr void add(const command_set& others) noexcept {
     for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= others.words_[i];
   }
