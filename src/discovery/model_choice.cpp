@@ -2,6 +2,8 @@
 #include "model_choice.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 
 #include "transport/custom_baud.hpp"
 
@@ -65,8 +67,13 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   }
   if (found.empty()) found = all_with(true, false);
   // A sample rate decides between models with one each; within a tenth they are equal.
-  std::ranges::stable_partition(found, [&](const model* row) { return !is_far(row); });
-  const auto near_end = std::ranges::find_if(found, is_far);
+  // Not std::stable_partition, which uses a deprecated function, as clang reports.
+  std::vector<const model*> far;
+  std::ranges::copy_if(found, std::back_inserter(far), is_far);
+  std::erase_if(found, is_far);
+  const auto near_count = static_cast<std::ptrdiff_t>(found.size());
+  found.insert(found.end(), far.begin(), far.end());
+  const auto near_end = found.begin() + near_count;
   const auto end = near_end == found.begin() ? found.end() : near_end;
   const auto usual =
       std::find_if(found.begin(), end, [](const model* row) { return is_usual(*row); });

@@ -69,8 +69,8 @@ class Moving : public Served {
       if (!each.has_place()) continue;
       const pose_2d lidar = at * each.pose();
       for (std::size_t i = 0; i < each.count(); ++i) {
-        const double x = each.at<float>(16 + 8 * i);
-        const double y = each.at<float>(20 + 8 * i);
+        const auto x = static_cast<double>(each.at<float>(16 + 8 * i));
+        const auto y = static_cast<double>(each.at<float>(20 + 8 * i));
         const pose_2d point = lidar * pose_2d{x, y, 0};
         all.push_back(
             std::min(std::abs(std::abs(point.x_m) - 4), std::abs(std::abs(point.y_m) - 3)));

@@ -61,11 +61,11 @@ class endless_connector final : public g4lidar::connector {
 
 class PageRecorder : public cli::scratch {
  protected:
-  PageRecorder() { std::filesystem::create_directory(directory_); }
+  PageRecorder() { std::filesystem::create_directory(recordings_); }
 
   /// One that is connected, and has had a scan.
   std::unique_ptr<page_recorder> make(std::uint64_t most_bytes = 100 * megabyte) {
-    auto made = std::make_unique<page_recorder>(directory_, most_bytes);
+    auto made = std::make_unique<page_recorder>(recordings_, most_bytes);
     from_ = made->observe(std::make_unique<endless_connector>());
     port_ = std::move(*from_->connect());
     made->add(g4lidar::scan{});
@@ -80,13 +80,13 @@ class PageRecorder : public cli::scratch {
   }
   [[nodiscard]] std::set<std::string> files() const {
     std::set<std::string> all;
-    for (const auto& each : std::filesystem::directory_iterator(directory_)) {
+    for (const auto& each : std::filesystem::directory_iterator(recordings_)) {
       all.insert(each.path().filename().string());
     }
     return all;
   }
 
-  const std::string directory_ = path("recordings");
+  const std::string recordings_ = path("recordings");
   std::unique_ptr<g4lidar::connector> from_;
   std::unique_ptr<g4lidar::transport> port_;
 };
@@ -108,8 +108,8 @@ TEST_F(PageRecorder, NamesItsFiles_AndReplacesNone) {
 }
 
 TEST_F(PageRecorder, EndsAtItsLimit) {
-  cli::write_file(directory_ + "/g4-before.mcap", std::string(2 * megabyte, 'x'));
-  cli::write_file(directory_ + "/other.mcap", std::string(3 * megabyte, 'x'));
+  cli::write_file(recordings_ + "/g4-before.mcap", std::string(2 * megabyte, 'x'));
+  cli::write_file(recordings_ + "/other.mcap", std::string(3 * megabyte, 'x'));
   const auto recorder = make(4 * megabyte);
   ASSERT_EQ(recorder->set(true), "");
   read(*recorder, 1500);
@@ -117,18 +117,18 @@ TEST_F(PageRecorder, EndsAtItsLimit) {
   EXPECT_TRUE(status->file.empty());
   EXPECT_THAT(status->why, HasSubstr("4 MB that --record-limit allows"));
   // What is collected for half a second may exceed it.
-  EXPECT_GT(std::filesystem::file_size(directory_ + '/' + status->last), 2 * megabyte);
-  EXPECT_LT(std::filesystem::file_size(directory_ + '/' + status->last), 5 * megabyte);
+  EXPECT_GT(std::filesystem::file_size(recordings_ + '/' + status->last), 2 * megabyte);
+  EXPECT_LT(std::filesystem::file_size(recordings_ + '/' + status->last), 5 * megabyte);
   EXPECT_THAT(recorder->set(true), HasSubstr("remove some"));
 }
 
 TEST_F(PageRecorder, HasALargestNumberOfFiles) {
   for (std::size_t i = 0; i < page_recorder::most_files; ++i) {
-    cli::write_file(directory_ + "/g4-" + std::to_string(i) + ".mcap", "");
+    cli::write_file(recordings_ + "/g4-" + std::to_string(i) + ".mcap", "");
   }
   const auto recorder = make();
   EXPECT_THAT(recorder->set(true), HasSubstr("remove some"));
-  std::filesystem::remove(directory_ + "/g4-7.mcap");
+  std::filesystem::remove(recordings_ + "/g4-7.mcap");
   EXPECT_EQ(recorder->set(true), "");
 }
 
@@ -147,8 +147,8 @@ TEST_F(PageRecorder, ReportsAFullDisk_AndKeepsWhatWasWritten) {
   const auto status = recorder->status();
   EXPECT_TRUE(status->file.empty());
   EXPECT_THAT(status->why, HasSubstr("cannot write " + status->last));
-  EXPECT_THAT(status->why, Not(HasSubstr(directory_))) << "clients need not know it";
-  EXPECT_GT(std::filesystem::file_size(directory_ + '/' + status->last), megabyte);
+  EXPECT_THAT(status->why, Not(HasSubstr(recordings_))) << "clients need not know it";
+  EXPECT_GT(std::filesystem::file_size(recordings_ + '/' + status->last), megabyte);
 }
 
 TEST_F(PageRecorder, NeedsALidarAndADirectory) {
@@ -157,7 +157,7 @@ TEST_F(PageRecorder, NeedsALidarAndADirectory) {
   EXPECT_THROW(page_recorder(path("nowhere"), megabyte), g4_tool::failure);
   cli::write_file(path("file"), "");
   EXPECT_THROW(page_recorder(path("file"), megabyte), g4_tool::failure);
-  page_recorder alone(directory_, 100 * megabyte);
+  page_recorder alone(recordings_, 100 * megabyte);
   EXPECT_THAT(alone.set(true), HasSubstr("not connected"));
   EXPECT_TRUE(files().empty());
 }
@@ -172,12 +172,12 @@ class RecordingServer : public Server {
     }
     return status["recording"];
   }
-  const std::string directory_ = path("recordings");
+  const std::string recordings_ = path("recordings");
 };
 
 TEST_F(RecordingServer, RecordsWhatTheLidarSends) {
-  std::filesystem::create_directory(directory_);
-  begin({"--allow-record", directory_});
+  std::filesystem::create_directory(recordings_);
+  begin({"--allow-record", recordings_});
   const auto client = open_page();
   const auto other = open_page();
   EXPECT_EQ(next(*client, "hello")["allow_record"], true);
@@ -190,7 +190,7 @@ TEST_F(RecordingServer, RecordsWhatTheLidarSends) {
   ASSERT_TRUE(gets_scans(*client, 10));
   other->send_text(R"({"op":"record","on":false})");
   EXPECT_EQ(next_recording(*client, false)["last"], name);
-  const auto scans = json::parse(cli::run({"stats", "--json", directory_ + '/' + name}).out);
+  const auto scans = json::parse(cli::run({"stats", "--json", recordings_ + '/' + name}).out);
   EXPECT_GE(scans["scans"].get<int>(), 8);
   EXPECT_EQ(scans["samples_lost"], 0);
 }
@@ -205,8 +205,8 @@ TEST_F(RecordingServer, NobodyRecords_WithoutTheOption) {
 }
 
 TEST_F(RecordingServer, HostileRequests_MakeNoFile) {
-  std::filesystem::create_directory(directory_);
-  begin({"--allow-record", directory_});
+  std::filesystem::create_directory(recordings_);
+  begin({"--allow-record", recordings_});
   EXPECT_THAT(serve::raw_client(port_).upgrade(
                   serve::page, "Host: localhost\r\nOrigin: http://evil.example\r\n"),
               Not(HasSubstr(" 101 ")));
@@ -219,13 +219,13 @@ TEST_F(RecordingServer, HostileRequests_MakeNoFile) {
     client->send_text(bad);
     EXPECT_EQ(next(*client, "error")["of"], "record") << bad;
   }
-  EXPECT_TRUE(std::filesystem::is_empty(directory_));
+  EXPECT_TRUE(std::filesystem::is_empty(recordings_));
   // Many at once: at most one file, which is whole at the end.
   for (int i = 0; i < 200; ++i) client->send_text(R"({"op":"record","on":true})");
   EXPECT_FALSE(next_recording(*client, true).is_null());
   EXPECT_EQ(end().code, 128 + SIGTERM);
   std::vector<std::string> all;
-  for (const auto& each : std::filesystem::directory_iterator(directory_)) {
+  for (const auto& each : std::filesystem::directory_iterator(recordings_)) {
     all.push_back(each.path().string());
   }
   ASSERT_EQ(all.size(), 1U);

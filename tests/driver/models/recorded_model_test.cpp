@@ -89,8 +89,8 @@ TEST(RecordedModel, OffsetOfZero_IsAddedLiveAndReplayed) {
   ASSERT_EQ(plain.size(), turned.size());
   // The device measures in the same directions, and sends angles that are 10.5 degrees too small.
   for (std::size_t i = 0; i < plain.size(); ++i) {
-    const double apart_deg =
-        std::remainder(double{turned[i].first} - double{plain[i].first}, 360.0);
+    const double apart_deg = std::remainder(
+        static_cast<double>(turned[i].first) - static_cast<double>(plain[i].first), 360.0);
     ASSERT_LT(std::abs(apart_deg), 0.1) << i;
   }
 }
