@@ -70,6 +70,7 @@ result<recognised_lidar> lidar_search::run(std::int64_t deadline_ns) {
     auto done = round(is_first);
     if (done && !*done && options_.may_pulse_dtr && sending_ == 0) done = pulse();
     if (!done) return tl::unexpected(done.error());
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked by the caller
     if (*done) return std::move(**done);
   }
   return not_found();
@@ -234,6 +235,7 @@ lidar_search::found lidar_search::judge_stream() {
     auto device = stop_and_ask(**two_way);
     if (!device) return tl::unexpected(device.error());
     if (*device) {
+      // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked before
       heard_.device = **device;
       known.answers = presence::yes;
       known.id = heard_.device->model;

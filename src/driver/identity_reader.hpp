@@ -23,6 +23,7 @@ class identity_reader {
   void take(const event& found) noexcept {
     if (const auto* const packet = std::get_if<packet_view>(&found)) {
       if (!packet->is_suspect()) ++packets_;
+      // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked in the same expression
       if (which_->link == link_kind::one_way && in_ct_.add(*packet)) take_ct(*in_ct_.last());
     } else if (const auto* const gone = std::get_if<skipped>(&found)) {
       in_ct_.add(*gone);

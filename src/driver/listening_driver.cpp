@@ -62,6 +62,7 @@ result<void> listening_driver::round(std::int64_t deadline_ns) {
 }
 
 /// What the bytes that were parsed mean, and whether they came in time.
+// NOLINTNEXTLINE(misc-no-recursion): recognised() leaves the stage
 result<void> listening_driver::look() {
   identity_reader& reported = stream_.reported();
   if (reported.take_news()) {
@@ -104,6 +105,7 @@ result<void> listening_driver::try_pulse(bool is_silent) {
   return {};
 }
 
+// NOLINTNEXTLINE(misc-no-recursion): it leaves the stage, so look() calls it once
 result<void> listening_driver::recognised() {
   is_recognised_ = true;
   stage_ = live_stage::idle;
@@ -117,6 +119,7 @@ result<void> listening_driver::recognised() {
 
 /// It may identify itself at any time: after a revolution, and when it gets power.
 result<void> listening_driver::identified() {
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
   const device_information& who = *stream_.reported().who();
   if (!may_be(*options_.model, who)) {
     return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
