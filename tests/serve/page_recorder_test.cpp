@@ -11,6 +11,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <regex>
 #include <set>
 #include <string>
@@ -64,12 +65,12 @@ class PageRecorder : public cli::scratch {
   PageRecorder() { std::filesystem::create_directory(recordings_); }
 
   /// One that is connected, and has had a scan.
-  std::unique_ptr<page_recorder> make(std::uint64_t most_bytes = 100 * megabyte) {
-    auto made = std::make_unique<page_recorder>(recordings_, most_bytes);
-    from_ = made->observe(std::make_unique<endless_connector>());
+  page_recorder& make(std::uint64_t most_bytes = 100 * megabyte) {
+    recorder_.emplace(recordings_, most_bytes);
+    from_ = recorder_->observe(std::make_unique<endless_connector>());
     port_ = std::move(*from_->connect());
-    made->add(g4lidar::scan{});
-    return made;
+    recorder_->add(g4lidar::scan{});
+    return *recorder_;
   }
   void read(page_recorder& into, int count) {
     std::array<std::uint8_t, 4000> buffer{};
@@ -87,21 +88,22 @@ class PageRecorder : public cli::scratch {
   }
 
   const std::string recordings_ = path("recordings");
+  std::optional<page_recorder> recorder_;  // outlives the next two, which report to it
   std::unique_ptr<g4lidar::connector> from_;
   std::unique_ptr<g4lidar::transport> port_;
 };
 
 TEST_F(PageRecorder, NamesItsFiles_AndReplacesNone) {
-  const auto recorder = make();
+  page_recorder& recorder = make();
   std::set<std::string> named;
   for (int i = 0; i < 3; ++i) {
-    ASSERT_EQ(recorder->set(true), "");
-    EXPECT_TRUE(named.insert(recorder->status()->file).second);
-    EXPECT_THAT(recorder->set(true), HasSubstr("already"));
-    ASSERT_EQ(recorder->set(false), "");
-    EXPECT_TRUE(recorder->status()->file.empty());
+    ASSERT_EQ(recorder.set(true), "");
+    EXPECT_TRUE(named.insert(recorder.status()->file).second);
+    EXPECT_THAT(recorder.set(true), HasSubstr("already"));
+    ASSERT_EQ(recorder.set(false), "");
+    EXPECT_TRUE(recorder.status()->file.empty());
   }
-  EXPECT_EQ(recorder->set(false), "");
+  EXPECT_EQ(recorder.set(false), "");
   EXPECT_EQ(files(), named);
   const std::regex wanted(R"(g4-\d{8}T\d{6}Z(-\d)?\.mcap)");
   for (const std::string& name : named) EXPECT_TRUE(std::regex_match(name, wanted)) << name;
@@ -110,41 +112,41 @@ TEST_F(PageRecorder, NamesItsFiles_AndReplacesNone) {
 TEST_F(PageRecorder, EndsAtItsLimit) {
   cli::write_file(recordings_ + "/g4-before.mcap", std::string(2 * megabyte, 'x'));
   cli::write_file(recordings_ + "/other.mcap", std::string(3 * megabyte, 'x'));
-  const auto recorder = make(4 * megabyte);
-  ASSERT_EQ(recorder->set(true), "");
-  read(*recorder, 1500);
-  const auto status = recorder->status();
+  page_recorder& recorder = make(4 * megabyte);
+  ASSERT_EQ(recorder.set(true), "");
+  read(recorder, 1500);
+  const auto status = recorder.status();
   EXPECT_TRUE(status->file.empty());
   EXPECT_THAT(status->why, HasSubstr("4 MB that --record-limit allows"));
   // What is collected for half a second may exceed it.
   EXPECT_GT(std::filesystem::file_size(recordings_ + '/' + status->last), 2 * megabyte);
   EXPECT_LT(std::filesystem::file_size(recordings_ + '/' + status->last), 5 * megabyte);
-  EXPECT_THAT(recorder->set(true), HasSubstr("remove some"));
+  EXPECT_THAT(recorder.set(true), HasSubstr("remove some"));
 }
 
 TEST_F(PageRecorder, HasALargestNumberOfFiles) {
   for (std::size_t i = 0; i < page_recorder::most_files; ++i) {
     cli::write_file(recordings_ + "/g4-" + std::to_string(i) + ".mcap", "");
   }
-  const auto recorder = make();
-  EXPECT_THAT(recorder->set(true), HasSubstr("remove some"));
+  page_recorder& recorder = make();
+  EXPECT_THAT(recorder.set(true), HasSubstr("remove some"));
   std::filesystem::remove(recordings_ + "/g4-7.mcap");
-  EXPECT_EQ(recorder->set(true), "");
+  EXPECT_EQ(recorder.set(true), "");
 }
 
 TEST_F(PageRecorder, ReportsAFullDisk_AndKeepsWhatWasWritten) {
-  const auto recorder = make();
-  ASSERT_EQ(recorder->set(true), "");
-  read(*recorder, 600);
+  page_recorder& recorder = make();
+  ASSERT_EQ(recorder.set(true), "");
+  read(recorder, 600);
   rlimit before{};
   ::getrlimit(RLIMIT_FSIZE, &before);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit small{megabyte, before.rlim_max};
   ::setrlimit(RLIMIT_FSIZE, &small);
-  read(*recorder, 1500);
+  read(recorder, 1500);
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
-  const auto status = recorder->status();
+  const auto status = recorder.status();
   EXPECT_TRUE(status->file.empty());
   EXPECT_THAT(status->why, HasSubstr("cannot write " + status->last));
   EXPECT_THAT(status->why, Not(HasSubstr(recordings_))) << "clients need not know it";
