@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "live_source.hpp"
+
+#include <chrono>
+
+#include "outcome_error.hpp"
+
+namespace g4lidar {
+
+live_source::live_source(parts& of, const lidar_options& options)
+    : scan_source(of, options),
+      options_(options),
+      stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
+
+result<void> live_source::open() {
+  if (auto opened = connect(); !opened) return break_off(opened.error());
+  return settle();
+}
+
+result<void> live_source::connect() {
+  if (auto opened = connection_.open(); !opened) return opened;
+  stream_.begin();
+  stage_ = live_stage::identifying;
+  return connected();
+}
+
+result<void> live_source::advance(std::int64_t deadline_ns) {
+  result<void> done;
+  switch (stage_) {
+    case live_stage::closed:
+      return tl::unexpected(reconnection_.why());
+    case live_stage::lost:
+      if (!reconnection_.wait(connection_, deadline_ns)) return {};
+      done = connect();
+      break;
+    case live_stage::breaking:
+      if (stream_.parse()) return {};
+      pipeline_.end();
+      stage_ = live_stage::broken;
+      return {};
+    case live_stage::broken:
+      if (pipeline_.has_scan()) return {};
+      return hang_up();
+    default:
+      done = round(deadline_ns);
+  }
+  return done ? done : break_off(done.error());
+}
+
+result<void> live_source::break_off(const error& broken) {
+  reconnection_.lost(stream_.error_after(broken));
+  leave();
+  if (stage_ <= live_stage::identifying) return hang_up();
+  stream_.cut();
+  stage_ = live_stage::breaking;
+  return {};
+}
+
+/// Returns an error if waiting calls must know of it: not for a failed attempt to reconnect.
+result<void> live_source::hang_up() {
+  const bool was_up = stage_ == live_stage::broken;
+  if (!was_up) stream_.flush();
+  connection_.close();
+  if (was_up) {
+    report(lidar_event::kind::lost, reconnection_.why().code());
+    reconnection_.begin();
+  }
+  if (!options_.reconnect || !is_recognised_) {
+    stage_ = live_stage::closed;
+    return tl::unexpected(reconnection_.why());
+  }
+  stage_ = live_stage::lost;
+  connection_.watch();
+  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.tuning.longest_backoff).count());
+  if (was_up) return tl::unexpected(reconnection_.reconnecting());
+  return {};
+}
+
+void live_source::release() noexcept {
+  stream_.flush();
+  pipeline_.drop_scan();
+  connection_.close();
+  stage_ = live_stage::closed;
+  reconnection_.lost(error(task::reading, problem::gone, "this lidar, which was closed"));
+}
+
+result<void> live_source::settle() {
+  if (stage_ == live_stage::lost) {
+    if (auto tried = step(now_ns()); !tried) return tried;
+  }
+  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
+  while (stage_ != live_stage::lost && (stage_ >= live_stage::breaking || has_work())) {
+    // A scan may be complete before the start is done: next_scan() returns it.
+    const bool keeps = stage_ == live_stage::preparing && stream_.talk().is_scanning();
+    if (!keeps) pipeline_.drop_scan();
+    if (auto done = step(never_ns); !done) return done;
+  }
+  if (stage_ == live_stage::lost) return tl::unexpected(reconnection_.reconnecting());
+  return {};
+}
+
+result<void> live_source::identified(const device_information& who) {
+  if (!may_be(*options_.model, who)) {
+    return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
+  }
+  if (information_.is_known() && who.serial_digits != information_.serial_digits) {
+    connection_.from().refuse();  // the wanted lidar may be behind another port
+    if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
+    return failure(task::finding, problem::no_port, connection_.name());
+  }
+  information_ = who;
+  return {};
+}
+
+result<void> live_source::can_read() const noexcept {
+  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
+  if (wants_scan_) return {};
+  return failure(task::reading, problem::not_scanning, connection_.name());
+}
+
+/// A lidar that is lost or being set up sends no scan. Both end by themselves, the setup by the times
+/// of its requests.
+scan_expectation live_source::expects() const noexcept {
+  if (stage_ == live_stage::closed || !wants_scan_) return {};
+  if (stream_.is_scanning()) {
+    if (!spins_up()) return {};
+    return {spin_up_.ends_ns(), error_detail::spinning_up};
+  }
+  const bool is_set_up = stage_ == live_stage::preparing || stage_ == live_stage::scanning;
+  if (is_set_up && !reconnection_.is_under_way()) return {never_ns, error_detail::spinning_up};
+  return {never_ns, error_detail::searching, reconnection_.why().subject()};
+}
+
+std::int64_t live_source::next_deadline_ns() const noexcept {
+  if (stage_ == live_stage::closed) return never_ns;
+  if (stage_ == live_stage::lost) return reconnection_.next_attempt_ns();
+  return stage_ >= live_stage::breaking ? now_ns() : due_ns();
+}
+
+}  // namespace g4lidar
