@@ -19,40 +19,13 @@ constexpr std::uint64_t packets_to_recognise = 3;
 
 }  // namespace
 
-listening_driver::listening_driver(parts& of, const lidar_options& options)
-    : scan_source(of, options),
-      options_(options),
-      stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
-
 // ---- one round ----------------------------------------------------------------------------------
 
-result<void> listening_driver::advance(std::int64_t deadline_ns) {
-  switch (stage_) {
-    case live_stage::closed:
-      return tl::unexpected(reconnection_.why());
-    case live_stage::lost:
-      if (!reconnection_.wait(connection_, deadline_ns)) return {};
-      if (auto connected = connect(); !connected) return break_off(connected.error());
-      return {};
-    case live_stage::breaking:
-      if (stream_.parse()) return {};
-      pipeline_.end();
-      stage_ = live_stage::broken;
-      return {};
-    case live_stage::broken:
-      if (pipeline_.has_scan()) return {};
-      return hang_up();
-    case live_stage::idle:
-      connection_.pause(deadline_ns);
-      return {};
-    default:
-      break;
-  }
-  if (auto done = round(deadline_ns); !done) return break_off(done.error());
-  return {};
-}
-
 result<void> listening_driver::round(std::int64_t deadline_ns) {
+  if (stage_ == live_stage::idle) {
+    connection_.pause(deadline_ns);
+    return {};
+  }
   stream_.follow_delivery();
   if (stream_.parse()) return {};
   if (auto looked = look(); !looked || stage_ == live_stage::idle) return looked;
@@ -66,7 +39,9 @@ result<void> listening_driver::round(std::int64_t deadline_ns) {
 result<void> listening_driver::look() {
   identity_reader& reported = stream_.reported();
   if (reported.take_news()) {
-    if (auto known = identified(); !known) return known;
+    // It may identify itself at any time: after a revolution, and when it gets power.
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
+    if (auto known = identified(*reported.who()); !known) return known;
   }
   if (stage_ == live_stage::identifying && reported.packets() >= packets_to_recognise) {
     return recognised();
@@ -109,7 +84,7 @@ result<void> listening_driver::try_pulse(bool is_silent) {
 result<void> listening_driver::recognised() {
   is_recognised_ = true;
   stage_ = live_stage::idle;
-  if (reconnection_.is_under_way() && reconnection_.end()) report(lidar_event::kind::reconnected);
+  if (reconnection_.end()) report(lidar_event::kind::reconnected);
   if (!wants_scan_) return {};
   stage_ = live_stage::scanning;
   packets_ = 0;
@@ -117,108 +92,18 @@ result<void> listening_driver::recognised() {
   return look();
 }
 
-/// It may identify itself at any time: after a revolution, and when it gets power.
-result<void> listening_driver::identified() {
-  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
-  const device_information& who = *stream_.reported().who();
-  if (!may_be(*options_.model, who)) {
-    return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
-  }
-  if (information_.is_known() && who.serial_digits != information_.serial_digits) {
-    connection_.from().refuse();
-    if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
-    return failure(task::finding, problem::no_port, connection_.name());
-  }
-  information_ = who;
-  return {};
+std::int64_t listening_driver::due_ns() const noexcept {
+  return stage_ == live_stage::idle ? never_ns : std::min(stream_.next_deadline_ns(), due_ns_);
 }
 
-std::int64_t listening_driver::next_deadline_ns() const noexcept {
-  if (stage_ == live_stage::closed || stage_ == live_stage::idle) return never_ns;
-  if (stage_ == live_stage::lost) return reconnection_.next_attempt_ns();
-  if (stage_ >= live_stage::breaking) return now_ns();
-  return std::min(stream_.next_deadline_ns(), due_ns_);
-}
-
-// ---- the connection -------------------------------------------------------------------------------
-
-result<void> listening_driver::connect() {
-  if (auto opened = connection_.open(); !opened) return opened;
-  stream_.begin();
-  stage_ = live_stage::identifying;
+result<void> listening_driver::connected() {
   pulse_ = pulse::none;
   due_ns_ = now_ns() + listen_ns;
   bytes_before_ = pipeline_.input().bytes_parsed();
   return stream_.set_motor(true);
 }
 
-/// As that of live_driver, but nothing is sent.
-result<void> listening_driver::break_off(const error& broken) {
-  reconnection_.lost(stream_.error_after(broken));
-  if (stage_ <= live_stage::identifying) return hang_up();
-  stream_.cut();
-  stage_ = live_stage::breaking;
-  return {};
-}
-
-result<void> listening_driver::hang_up() {
-  const bool was_up = stage_ == live_stage::broken;
-  if (!was_up) stream_.flush();
-  connection_.close();
-  if (was_up) {
-    report(lidar_event::kind::lost, reconnection_.why().code());
-    reconnection_.begin();
-  }
-  if (!options_.reconnect || !is_recognised_) {
-    stage_ = live_stage::closed;
-    return tl::unexpected(reconnection_.why());
-  }
-  stage_ = live_stage::lost;
-  reconnection_.found();  // whatever is found at its place
-  connection_.watch();
-  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.tuning.longest_backoff).count());
-  if (was_up) return tl::unexpected(reconnection_.reconnecting());
-  return {};
-}
-
-result<void> listening_driver::can_read() const noexcept {
-  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
-  if (wants_scan_) return {};
-  return failure(task::reading, problem::not_scanning, connection_.name());
-}
-
-scan_expectation listening_driver::expects() const noexcept {
-  if (stage_ == live_stage::closed || !wants_scan_) return {};
-  if (stage_ != live_stage::scanning) {
-    return {never_ns, error_detail::searching, reconnection_.why().subject()};
-  }
-  if (!spins_up()) return {};
-  return {spin_up_.ends_ns(), error_detail::spinning_up};
-}
-
 // ---- requests -----------------------------------------------------------------------------------
-
-result<void> listening_driver::be_ready() {
-  if (stage_ == live_stage::lost) {
-    if (auto tried = step(now_ns()); !tried) return tried;
-  }
-  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
-  while (stage_ == live_stage::identifying || stage_ >= live_stage::breaking) {
-    pipeline_.drop_scan();
-    if (auto done = step(never_ns); !done) return done;
-  }
-  if (stage_ == live_stage::lost) return tl::unexpected(reconnection_.reconnecting());
-  return {};
-}
-
-result<void> listening_driver::open() {
-  if (auto connected = connect(); !connected) {
-    connection_.close();
-    stage_ = live_stage::closed;
-    return connected;
-  }
-  return be_ready();
-}
 
 /// What arrived while nobody read is older than the start.
 result<void> listening_driver::drop_old() {
@@ -234,7 +119,7 @@ result<void> listening_driver::drop_old() {
 
 result<void> listening_driver::start() {
   if (is_scanning()) return {};
-  if (auto ready = be_ready(); !ready) return ready;
+  if (auto ready = settle(); !ready) return ready;
   wants_scan_ = true;
   if (is_scanning()) return {};  // a start that was woken
   pipeline_.drop_scan();
@@ -253,7 +138,7 @@ result<void> listening_driver::start() {
 result<void> listening_driver::stop() {
   wants_scan_ = false;
   if (stage_ == live_stage::lost) return {};
-  if (auto ready = be_ready(); !ready) return ready;
+  if (auto ready = settle(); !ready) return ready;
   pipeline_.drop_scan();
   if (stage_ != live_stage::scanning) return {};
   stream_.flush();
@@ -264,16 +149,8 @@ result<void> listening_driver::stop() {
   return {};
 }
 
-void listening_driver::release() noexcept {
-  stream_.flush();
-  pipeline_.drop_scan();
-  connection_.close();
-  stage_ = live_stage::closed;
-  reconnection_.lost(error(task::reading, problem::gone, "this lidar, which was closed"));
-}
-
 result<answer> listening_driver::ask(const request& wanted, while_scanning /*how*/) {
-  if (auto ready = be_ready(); !ready) return tl::unexpected(ready.error());
+  if (auto ready = settle(); !ready) return tl::unexpected(ready.error());
   const auto condition = stream_.reported().condition();
   if (wanted.what == request_kind::device_info && information_.is_known()) return information_;
   if (wanted.what == request_kind::health && condition) return *condition;

@@ -3,7 +3,6 @@
 #include "live_driver.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "error_context.hpp"
@@ -29,34 +28,10 @@ lidar_event::kind event_of(notice what) noexcept {
 
 }  // namespace
 
-live_driver::live_driver(parts& of, const lidar_options& options)
-    : scan_source(of, options),
-      options_(options),
-      stream_({connection_, pipeline_, receiver_, spin_up_, stage_, takes_points_}, options) {}
-
 // ---- one round ----------------------------------------------------------------------------------
 
 result<void> live_driver::advance(std::int64_t deadline_ns) {
-  switch (stage_) {
-    case live_stage::closed:
-      return tl::unexpected(reconnection_.why());
-    case live_stage::lost:
-      if (!reconnection_.wait(connection_, deadline_ns)) return {};
-      if (auto connected = connect(); !connected) return break_off(connected.error());
-      if (auto served = serve(); !served) return break_off(served.error());
-      return {};
-    case live_stage::breaking:
-      if (stream_.parse()) return {};
-      pipeline_.end();
-      stage_ = live_stage::broken;
-      return {};
-    case live_stage::broken:
-      if (pipeline_.has_scan()) return {};
-      return hang_up();
-    default:
-      break;
-  }
-  if (auto done = round(deadline_ns); !done) return break_off(done.error());
+  if (auto done = live_source::advance(deadline_ns); !done) return done;
   if (const auto why = std::exchange(refused_, std::nullopt)) return tl::unexpected(*why);
   return {};
 }
@@ -98,10 +73,7 @@ result<bool> live_driver::serve() {
   return has_outcome;
 }
 
-std::int64_t live_driver::next_deadline_ns() const noexcept {
-  if (stage_ == live_stage::closed) return never_ns;
-  if (stage_ == live_stage::lost) return reconnection_.next_attempt_ns();
-  if (stage_ >= live_stage::breaking) return now_ns();
+std::int64_t live_driver::due_ns() const noexcept {
   const bool is_motor_due = setup_.starts_next() && !stream_.talk().is_busy();
   return is_motor_due ? std::min(stream_.next_deadline_ns(), stream_.motor_ready_ns())
                       : stream_.next_deadline_ns();
@@ -109,83 +81,31 @@ std::int64_t live_driver::next_deadline_ns() const noexcept {
 
 // ---- the connection -------------------------------------------------------------------------------
 
-result<void> live_driver::connect() {
-  if (auto opened = connection_.open(); !opened) return opened;
-  stream_.begin();
+result<void> live_driver::connected() {
   // The motor starts at an edge, and the system raises the line when it opens a port.
   if (auto lowered = stream_.set_motor(false); !lowered) return lowered;
-  setup_.clear();
   setup_.reset_short_scans();  // the session has forgotten the scans before, too
-  stage_ = live_stage::identifying;
   question_.forget_woken();
   setup_.add(setup_step::identify);
-  return {};
+  const auto served = serve();
+  return served ? result<void>() : tl::unexpected(served.error());
 }
 
-/// The connection has broken, or is of no use. The bytes received so far are still processed.
-result<void> live_driver::break_off(const error& broken) {
-  reconnection_.lost(stream_.error_after(broken));
-  if (stage_ <= live_stage::identifying) return hang_up();
-  // The device will not be controlled any more. It may receive this stop, even if nothing is
-  // received from it.
+/// Nothing would stop the motor later. The device may receive this stop, even if nothing is received
+/// from it.
+void live_driver::leave() noexcept {
+  setup_.clear();
+  if (stage_ <= live_stage::identifying) return;
   for (const command each : {command::forced_stop, command::stop}) {
     if (reconnection_.why() == problem::gone || !connection_.send(encode(each))) break;
   }
-  stream_.cut();
-  stage_ = live_stage::breaking;
-  return {};
-}
-
-/// Returns an error if waiting calls must know of it: not for a failed attempt to reconnect.
-result<void> live_driver::hang_up() {
-  const bool was_up = stage_ == live_stage::broken;
-  if (!was_up) stream_.flush();
-  connection_.close();
-  setup_.clear();
-  if (was_up) {
-    report(lidar_event::kind::lost, reconnection_.why().code());
-    reconnection_.begin();
-  }
-  if (!options_.reconnect || !information_.is_known()) {
-    stage_ = live_stage::closed;
-    return tl::unexpected(reconnection_.why());
-  }
-  stage_ = live_stage::lost;
-  connection_.watch();
-  reconnection_.plan(now_ns(), std::chrono::nanoseconds(options_.tuning.longest_backoff).count());
-  if (was_up) return tl::unexpected(reconnection_.reconnecting());
-  return {};
-}
-
-result<void> live_driver::can_read() const noexcept {
-  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
-  if (wants_scan_) return {};
-  return failure(task::reading, problem::not_scanning, connection_.name());
-}
-
-/// A lidar that is lost or being set up sends no scan. Both end by themselves, the setup by the times
-/// of its requests.
-scan_expectation live_driver::expects() const noexcept {
-  if (stage_ == live_stage::closed || !wants_scan_) return {};
-  if (stage_ == live_stage::scanning && stream_.talk().is_scanning()) {
-    if (!spins_up()) return {};
-    return {spin_up_.ends_ns(), error_detail::spinning_up};
-  }
-  const bool is_set_up = stage_ == live_stage::preparing || stage_ == live_stage::scanning;
-  if (is_set_up && !reconnection_.is_under_way()) return {never_ns, error_detail::spinning_up};
-  return {never_ns, error_detail::searching, reconnection_.why().subject()};
 }
 
 // ---- requests -----------------------------------------------------------------------------------
 
-result<void> live_driver::open() {
-  if (auto connected = connect(); !connected) return connected;
-  return run_setup();
-}
-
 result<void> live_driver::start() {
   if (is_scanning()) return {};
-  if (auto ready = run_setup(); !ready) return ready;
+  if (auto ready = settle(); !ready) return ready;
   const bool goes_on = stage_ == live_stage::scanning && stream_.talk().is_scanning();
   wants_scan_ = true;
   if (goes_on) return {};  // a start that was woken, and is complete now
@@ -195,7 +115,7 @@ result<void> live_driver::start() {
   stage_ = live_stage::preparing;
   question_.forget_woken();
   setup_.add_start(options_);
-  const auto started = run_setup();
+  const auto started = settle();
   // If it is woken, the next calls continue it, also next_scan().
   if (!started && started.error() != problem::cancelled) wants_scan_ = false;
   return started;
@@ -204,33 +124,24 @@ result<void> live_driver::start() {
 result<void> live_driver::stop() {
   wants_scan_ = false;
   if (stage_ == live_stage::lost) return {};  // it is stopped after the reconnect
-  if (auto ready = run_setup(); !ready) return ready;
+  if (auto ready = settle(); !ready) return ready;
   pipeline_.drop_scan();
   // A stop that was woken has continued in other calls.
   if (std::exchange(stage_, live_stage::stopping) != live_stage::stopping) {
     question_.forget_woken();
     setup_.add(setup_step::stop);
   }
-  if (auto stopped = run_setup(); !stopped) return stopped;
+  if (auto stopped = settle(); !stopped) return stopped;
   stream_.flush();
   pipeline_.end();
   stage_ = live_stage::idle;
   return {};
 }
 
-void live_driver::release() noexcept {
-  stream_.flush();
-  pipeline_.drop_scan();
-  connection_.close();
-  setup_.clear();
-  stage_ = live_stage::closed;
-  reconnection_.lost(error(task::reading, problem::gone, "this lidar, which was closed"));
-}
-
 result<answer> live_driver::ask(const request& wanted, while_scanning how) {
   if (!question_.was_woken(wanted) || !stream_.talk().is_busy()) {
     question_.forget_woken();
-    if (auto ready = run_setup(); !ready) return tl::unexpected(ready.error());
+    if (auto ready = settle(); !ready) return tl::unexpected(ready.error());
     if (const auto refused = stream_.talk().begin(wanted, now_ns(), how)) {
       return tl::unexpected(
           refusal_error(task::asking, *refused, wanted, *options_.model, connection_.name()));
@@ -254,17 +165,12 @@ result<answer> live_driver::ask(const request& wanted, while_scanning how) {
     return tl::unexpected(stream_.error_after(error_of(*found, stage_, connection_.name())));
   }
   if (!setup_.is_done()) {  // after a restart
-    const auto ready = run_setup();
+    const auto ready = settle();
     const bool wakes = !ready && ready.error() == problem::cancelled;
     if (!ready && !wakes) return tl::unexpected(ready.error());
     if (wakes) connection_.wake_next_call();  // the next call continues it
   }
   return found->value;
-}
-
-void live_driver::add_to(lidar_counts& counts) const noexcept {
-  counts.command_retries = stream_.talk().retries();
-  counts.reconnects = reconnection_.count();
 }
 
 }  // namespace g4lidar

@@ -43,24 +43,6 @@ bool live_driver::set_up_again() {
   return true;
 }
 
-/// Waits until all steps are done, or one fails. It ends, because every request ends. If the caller
-/// calls repeatedly while the device is away, a later call completes after the reconnect.
-result<void> live_driver::run_setup() {
-  if (stage_ == live_stage::lost) {
-    if (auto tried = step(now_ns()); !tried) return tried;
-  }
-  if (stage_ == live_stage::closed) return tl::unexpected(reconnection_.why());
-  while (stage_ != live_stage::lost &&
-         (stage_ >= live_stage::breaking || !setup_.is_done() || stream_.talk().is_busy())) {
-    // A scan may be complete before the start is done: next_scan() returns it.
-    const bool keeps = stage_ == live_stage::preparing && stream_.talk().is_scanning();
-    if (!keeps) pipeline_.drop_scan();
-    if (auto done = step(never_ns); !done) return done;
-  }
-  if (stage_ == live_stage::lost) return tl::unexpected(reconnection_.reconnecting());
-  return {};
-}
-
 /// Takes the outcome of the last command, and begins the next. Returns whether there was one.
 result<bool> live_driver::go_on_with_setup() {
   session& talk = stream_.talk();
@@ -129,7 +111,7 @@ result<void> live_driver::finish_step(const outcome& done) {
     }
     if (reply->status == health_status::warning) report(lidar_event::kind::health_warning);
   }
-  if (const auto* who = std::get_if<device_information>(&done.value)) return identified(*who);
+  if (const auto* who = std::get_if<device_information>(&done.value)) return answered(*who);
   const bool is_start = finished == setup_step::start;
   if (is_doubtful(finished, done) && setup_.repeat_start(options_, is_start)) return {};
   if (!is_start) return {};
@@ -154,18 +136,9 @@ result<void> live_driver::give_up(const error& why) {
   return {};
 }
 
-result<void> live_driver::identified(const device_information& who) {
-  if (!may_be(*options_.model, who)) {
-    return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
-  }
-  const bool is_known = information_.is_known();
-  if (is_known && who.serial_digits != information_.serial_digits) {
-    connection_.from().refuse();  // the wanted lidar may be behind another port
-    if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
-    return failure(task::finding, problem::no_port, connection_.name());
-  }
-  if (is_known) reconnection_.found();
-  information_ = who;
+result<void> live_driver::answered(const device_information& who) {
+  if (auto known = identified(who); !known) return known;
+  is_recognised_ = true;
   stage_ = live_stage::idle;
   if (wants_scan_) {
     stage_ = live_stage::preparing;

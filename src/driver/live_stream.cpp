@@ -177,8 +177,9 @@ std::int64_t live_stream::next_deadline_ns() const noexcept {
   return is_waiting_for_answer() ? std::min(next, link_.cut_off_ns()) : next;
 }
 
-/// An event loop that takes points is woken by each byte.
+/// An event loop that takes points is woken by each byte. What an idle one-way lidar sends is not read.
 std::int64_t live_stream::rest_until_ns() const noexcept {
+  if (listens_ && of_.stage == live_stage::idle) return never_ns;
   const reading how = how_to_read();
   if (how != reading::scans && how != reading::batched) return 0;
   const event_reader& input = of_.pipeline.input();

@@ -68,6 +68,11 @@ class live_stream {
   /// When the line has been low for long enough, so that the motor may be started.
   [[nodiscard]] std::int64_t motor_ready_ns() const noexcept { return motor_ready_ns_; }
 
+  /// Whether packets of a wanted scan come, or are resumed.
+  [[nodiscard]] bool is_scanning() const noexcept {
+    return of_.stage == live_stage::scanning && (listens_ || talk().is_scanning());
+  }
+
   /// When something is due, if nothing arrives.
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept;
   /// The time until which bytes need not be read.

@@ -25,7 +25,10 @@ class reconnection {
   }
 
   /// The lidar is lost: the first attempt is immediate.
-  void begin() noexcept { backoff_ns_ = 0; }
+  void begin() noexcept {
+    backoff_ns_ = 0;
+    is_under_way_ = true;
+  }
   /// Plans the next attempt; the pauses grow up to `longest_ns`.
   void plan(std::int64_t now_ns, std::int64_t longest_ns) noexcept {
     next_attempt_ns_ = now_ns + backoff_ns_;
@@ -50,8 +53,7 @@ class reconnection {
     refused_ = other.serial_digits;
     return is_new;
   }
-  /// The lidar has answered; its previous state is not restored yet.
-  void found() noexcept { is_under_way_ = true; }
+  /// The lidar is lost, or its previous state is not restored yet.
   [[nodiscard]] bool is_under_way() const noexcept { return is_under_way_; }
   /// Everything is as it was. Returns whether this ends a loss.
   [[nodiscard]] bool end() noexcept {
