@@ -61,16 +61,24 @@ result<bool> live_driver::serve() {
   session& talk = stream_.talk();
   if (talk.has_nothing() && setup_.is_done()) return false;  // the usual case
   if (const notice what = talk.noticed(); what != notice::none) {
-    if (what == notice::stalled) return tl::unexpected(stream_.silence_error());
+    if (what == notice::stalled) return tl::unexpected(silence_error());
     report(event_of(what));
     const bool is_reset = what == notice::restarted || what == notice::protection_found_on;
-    if (is_reset && wants_scan_ && !set_up_again()) return tl::unexpected(stream_.silence_error());
+    if (is_reset && wants_scan_ && !set_up_again()) return tl::unexpected(silence_error());
     if (is_reset || what == notice::protection_starved) stream_.begin_points();
   }
   const auto has_outcome = go_on_with_setup();
   if (!has_outcome) return has_outcome;
   if (auto sent = stream_.send(); !sent) return tl::unexpected(sent.error());
   return has_outcome;
+}
+
+/// Of a device that has ended a scan and does not continue.
+error live_driver::silence_error() const {
+  if (pipeline_.has_begun()) return {task::reading, problem::stalled, connection_.name()};
+  const bool is_by_line = options_.model->motor == motor_kind::dtr;
+  const auto why = is_by_line ? error_detail::motor_line : error_detail::usual;
+  return {task::starting, problem::brown_out, connection_.name(), 0, why};
 }
 
 std::int64_t live_driver::due_ns() const noexcept {

@@ -30,6 +30,7 @@ class live_driver final : public live_source {
   }
   void leave() noexcept override;
   [[nodiscard]] result<bool> serve();
+  [[nodiscard]] error silence_error() const;
 
   // The setup sequence, and the request of the caller.
   [[nodiscard]] bool set_up_again();

@@ -126,7 +126,7 @@ result<void> live_driver::give_up(const error& why) {
   const bool is_again = setup_.is_again();
   const bool is_silent = why == problem::silence || why == problem::timeout;
   setup_.clear();
-  if (is_again && is_silent) return tl::unexpected(stream_.silence_error());
+  if (is_again && is_silent) return tl::unexpected(silence_error());
   const bool of_use = stage_ == live_stage::preparing && why != problem::silence;
   const bool goes_on = wants_scan_ && (reconnection_.is_under_way() || is_again);
   if (!of_use || goes_on) return tl::unexpected(why);

@@ -186,12 +186,6 @@ std::int64_t live_stream::rest_until_ns() const noexcept {
   return of_.from.again_ns(how, input.held(), input.missing());
 }
 
-error live_stream::silence_error() const {
-  if (of_.pipeline.has_begun()) return {task::reading, problem::stalled, of_.on.name()};
-  const auto why = motor_ == motor_kind::dtr ? error_detail::motor_line : error_detail::usual;
-  return {task::starting, problem::brown_out, of_.on.name(), 0, why};
-}
-
 error live_stream::error_after(const error& why) const {
   return of_.on.is_open() ? with_port_conflict(why, of_.on.on()) : why;
 }

@@ -78,8 +78,6 @@ class live_stream {
   /// The time until which bytes need not be read.
   [[nodiscard]] std::int64_t rest_until_ns() const noexcept;
 
-  /// Of a device that has ended a scan and does not continue.
-  [[nodiscard]] error silence_error() const;
   /// `why`, or a process on the port that explains more than its effects.
   [[nodiscard]] error error_after(const error& why) const;
 
