@@ -166,7 +166,10 @@ const std::vector<planted> differences{
      [](bench& of) { of.options.scanner.format.rates_hz = {4000, 6000, 9000}; },
      {acceptance_step::sample_rate}},
     {"RangesOfTwiceTheSize",
-     [](bench& of) { of.options.scanner.format.code.units_per_mm *= 2; },
+     [](bench& of) {
+       of.options.scanner.format.code.units_per_mm *= 2;
+       of.options.scanner.max_range_mm = 8000.0;  // what such samples can contain
+     },
      {near_target, far_target}},
     {"TheFrequencyInZeroPacketsWithAnOffset",
      [](bench& of) { of.options.scanner.format.ct_offset_dhz = 10; },
@@ -175,6 +178,8 @@ const std::vector<planted> differences{
      [](bench& of) {
        bench other("t-mini-pro");
        of.options.scanner.format.code = other.options.scanner.format.code;
+       of.options.scanner.format.max_samples = other.options.scanner.format.max_samples;
+       of.options.scanner.max_range_mm = other.options.scanner.max_range_mm;
      },
      {stream}},
     {"NoMotor",
