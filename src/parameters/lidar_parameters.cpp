@@ -241,15 +241,16 @@ std::string lidar_parameters::change(lidar* device, std::span<const named_value>
   }
   for (const auto& [name, one] : values) {
     if (name.starts_with("range_")) continue;
-    if (std::string wrong = set_filter(next, name, word_of(one)); !wrong.empty()) return wrong;
+    const std::string wrong = set_filter(next, name, word_of(one));
+    if (!wrong.empty()) return std::string(name) + ": " + wrong;
   }
   if (values.contains("range_min") || values.contains("range_max")) {
     for (const std::string_view name : {"range_min", "range_max"}) {
       values.try_emplace(name, value(*find_parameter(name)));
     }
-    std::string wrong = set_filter(
+    const std::string wrong = set_filter(
         next, "range", word_of(values["range_min"]) + ":" + word_of(values["range_max"]));
-    if (!wrong.empty()) return wrong;
+    if (!wrong.empty()) return "range_min, range_max: " + wrong;
   }
   if (std::string reason = set_device(device, changes); !reason.empty()) return reason;
   if (values.empty()) return {};

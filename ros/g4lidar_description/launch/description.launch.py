@@ -16,7 +16,7 @@ def generate_launch_description():
     file = PathJoinSubstitution([FindPackageShare("g4lidar_description"), "urdf", "example.urdf.xacro"])
     text = Command(["xacro ", file, " housing:=", LaunchConfiguration("housing")])
     return LaunchDescription([
-        DeclareLaunchArgument("housing", default_value="g4", description="g4, g2, x4, x2 or t_mini"),
+        DeclareLaunchArgument("housing", default_value="g4", description="g4, g2, x4, x2, t_mini or tg"),
         Node(package="robot_state_publisher", executable="robot_state_publisher",
              parameters=[{"robot_description": ParameterValue(text, value_type=str)}]),
     ])

@@ -5,6 +5,8 @@
     ros2 launch g4lidar_ros lidar.launch.py sim:=true rviz:=true
     ros2 launch g4lidar_ros lidar.launch.py source:=/dev/ttyUSB0 frame_id:=front_laser
     ros2 launch g4lidar_ros lidar.launch.py container:=/my_container
+
+A launch file that includes it twice puts each into a GroupAction, as arguments are passed on to what follows.
 """
 
 import os
@@ -27,7 +29,7 @@ SHARE = get_package_share_directory("g4lidar_ros")
 # The parameters that are also arguments, with their types. An argument that is not given stays as in the file.
 PARAMETERS = {
     "source": (str, "the lidar or the recording; empty: the only lidar"),
-    "model": (str, "the model of the lidar; empty: a G4, or that of the recording"),
+    "model": (str, "the model of the lidar; empty: it is searched, or that of the recording"),
     "baud": (int, "bits per second; 0: those of the model"),
     "frame_id": (str, "frame of the scans"),
     "grid": (int, "ranges of each LaserScan; 0: those of the model"),
@@ -45,7 +47,17 @@ PARAMETERS = {
 
 
 def is_true(word):
+    if word.lower() not in ("true", "1", "yes", "on", "false", "0", "no", "off"):
+        raise ValueError(f"'{word}' is not true or false")
     return word.lower() in ("true", "1", "yes", "on")
+
+
+def converted(name, kind, word):
+    """The value of an argument; its name is in what is wrong with it."""
+    try:
+        return is_true(word) if kind is bool else kind(word)
+    except ValueError as wrong:
+        raise ValueError(f"argument {name}: {wrong}") from None
 
 
 def given_parameters(context):
@@ -58,8 +70,8 @@ def given_parameters(context):
         if kind is str:  # a text as it is, although it may look like YAML
             made[name] = ParameterValue(word, value_type=str)
         else:
-            made[name] = is_true(word) if kind is bool else kind(word)
-    if is_true(LaunchConfiguration("sim").perform(context)) and "source" not in made:
+            made[name] = converted(name, kind, word)
+    if converted("sim", bool, LaunchConfiguration("sim").perform(context)) and "source" not in made:
         made["source"] = ParameterValue("sim:", value_type=str)
     return made
 

@@ -31,6 +31,18 @@ LidarNode::LidarNode(const rclcpp::NodeOptions& options)
       parameters_(std::make_unique<node_parameters>(*this)),
       diagnostics_(std::make_unique<node_diagnostics>(*this)),
       starts_itself_(parameters_->starts_itself()) {
+  // As ~/start and ~/stop, with every middleware of the one who publishes.
+  rclcpp::SubscriptionOptions how;
+  how.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
+  running_ = create_subscription<std_msgs::msg::Bool>(
+      "~/run", rclcpp::QoS(10).reliable(),
+      [this](const std_msgs::msg::Bool& wanted) {
+        trigger::Response answer;
+        allow(wanted.data, answer);
+        RCLCPP_INFO(get_logger(), "~/run: %s: %s", wanted.data ? "true" : "false",
+                    answer.message.c_str());
+      },
+      how);
   const auto offer = [this](const char* name, bool runs) {
     services_.push_back(create_service<trigger>(
         name, [this, runs](const trigger::Request::SharedPtr&,
@@ -43,6 +55,7 @@ LidarNode::LidarNode(const rclcpp::NodeOptions& options)
 
 LidarNode::~LidarNode() {
   timer_.reset();
+  running_.reset();
   diagnostics_.reset();
   parameters_.reset();
   session_.reset();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "lidar_session.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
@@ -67,12 +68,13 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const sessio
           [this] {
             g4lidar::lidar_options made = options_.lidar;
             made.wrap = [this](std::unique_ptr<g4lidar::connector> from) {
+              simulation_ = g4lidar::simulation_of(*from);
               return g4lidar::result<std::unique_ptr<g4lidar::connector>>(
                   diagnosis_.observe(std::move(from)));
             };
             return made;
           }(),
-          {.wants_points = is_file_, .starts_rested = true}, this) {
+          {.wants_points = is_file_ || motion_.has_odometry(), .starts_rested = true}, this) {
   if (g4lidar::kind_of_source(options.lidar.device) == g4lidar::source_kind::recording) {
     clock_ = std::make_unique<counted_publisher<rosgraph_msgs::msg::Clock>>(
         node, "/clock", rclcpp::QoS(10).reliable());
@@ -80,8 +82,13 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const sessio
   if (const std::string wrong = parameters_.change(nullptr, options.filters); !wrong.empty())
     throw std::invalid_argument(wrong);
   // The motor rests at once, also in a container whose other components take their time.
-  before_shutdown_ = node.get_node_base_interface()->get_context()->add_pre_shutdown_callback(
-      [this] { reader_.rest(true); });
+  before_shutdown_ =
+      node.get_node_base_interface()->get_context()->add_pre_shutdown_callback([this] {
+        reader_.rest(true);
+        const std::lock_guard lock(mutex_);
+        is_ending_ = true;
+        changed_.notify_all();
+      });
 }
 
 lidar_session::~lidar_session() {
@@ -100,8 +107,9 @@ void lidar_session::guard(Call call) noexcept {
 
 bool lidar_session::wait_until_open(std::chrono::nanoseconds longest) {
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, longest,
-                    [this] { return reader_.status().state != reader_state::opening; });
+  changed_.wait_for(lock, longest, [this] {
+    return is_ending_ || reader_.status().state != reader_state::opening;
+  });
   const reader_state now = reader_.status().state;
   return now != reader_state::opening && now != reader_state::ended;
 }
@@ -125,7 +133,10 @@ std::string lidar_session::change(std::vector<g4lidar::named_value> wanted) {
     });
     reply->set_value(reason);
   });
-  if (answered.wait_for(change_time) == std::future_status::ready) return answered.get();
+  const auto end = std::chrono::steady_clock::now() + change_time;
+  while (!is_ending_ && std::chrono::steady_clock::now() < end) {
+    if (answered.wait_for(20ms) == std::future_status::ready) return answered.get();
+  }
   return "the lidar did not answer in time; it may be set later";
 }
 
@@ -144,13 +155,14 @@ std::int64_t lidar_session::stamp_ns(std::int64_t time_ns) const {
   const std::int64_t wall_ns = reader_.wall_ns(time_ns);
   const rclcpp::Clock::SharedPtr clock = node_.get_clock();
   if (is_file_ || !clock->ros_time_is_active()) return wall_ns;
-  return clock->now().nanoseconds() - (wall_now_ns() - wall_ns);
+  // Without /clock the time is 0.
+  return std::max<std::int64_t>(0, clock->now().nanoseconds() - (wall_now_ns() - wall_ns));
 }
 
 void lidar_session::on_open(g4lidar::lidar& device) {
   guard([&] {
     RCLCPP_INFO(node_.get_logger(), "opened %s", std::string(device.name()).c_str());
-    motion_.follow(device);
+    motion_.follow(device, simulation_);
     if (is_file_) return;
     parameters_.fix("serial_number", std::string(device.information().serial_number()));
     parameters_.read_device(device);

@@ -102,8 +102,10 @@ class lidar_session final : private g4lidar::reader_listener {
   g4lidar::lidar_parameters parameters_;
   std::atomic<bool> is_news_ = false;
   g4lidar::running_diagnosis diagnosis_;
+  const g4lidar::sim::simulated_source* simulation_ = nullptr;  // the lidar's
   std::mutex mutex_;
-  std::condition_variable changed_;  // the state of the reader
+  std::condition_variable changed_;  // the state of the reader, or the next one
+  std::atomic<bool> is_ending_ = false;
   rclcpp::PreShutdownCallbackHandle before_shutdown_;
   g4lidar::background_reader reader_;  // its thread ends first
 };

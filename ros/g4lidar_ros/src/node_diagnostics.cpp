@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
@@ -16,9 +17,20 @@ void fill(diagnostic_updater::DiagnosticStatusWrapper& status,
   for (const auto& [name, value] : from.values) status.add(name, value);
 }
 
+/// With a namespace, statuses have it in their names, so that those of several lidars differ.
+rclcpp_lifecycle::LifecycleNode* with_full_name(rclcpp_lifecycle::LifecycleNode& node) {
+  rcl_interfaces::msg::ParameterDescriptor made;
+  made.description = "Whether the names of statuses contain the namespace";
+  made.read_only = true;
+  const bool has_namespace = std::string_view(node.get_namespace()) != "/";
+  node.declare_parameter("diagnostic_updater.use_fqn", has_namespace, made);
+  return &node;
+}
+
 }  // namespace
 
-node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node) : updater_(&node) {
+node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node)
+    : updater_(with_full_name(node)) {
   updater_.setHardwareID("none");
   updater_.add("state", this, &node_diagnostics::report_state);
   for (std::size_t i = 0; i < g4lidar::diagnostic_stage_count; ++i) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>
@@ -10,6 +12,7 @@
 #include <variant>
 
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/setting_table.hpp"
@@ -57,16 +60,48 @@ rclcpp::ParameterValue first_value(const g4lidar::parameter& of) {
       of.kind == g4lidar::parameter_kind::filter && of.name != "ignore" ? "off" : "");
 }
 
+/// What a setting of the device can be. `model`: null if none is named, so that any may be found.
+void limit(descriptor& made, const g4lidar::parameter& of, const g4lidar::model* model) {
+  if (model != nullptr && !g4lidar::has_request(*model, of.setting->change)) {
+    made.additional_constraints = "this model does not have it";
+    return;
+  }
+  if (of.setting->type == g4lidar::setting_type::decimal) {
+    std::uint16_t least_dhz = UINT16_MAX;
+    std::uint16_t most_dhz = 0;
+    for (const g4lidar::model& each : g4lidar::models) {
+      const bool is_set = each.frequency.max_dhz != 0;
+      if (!is_set || (model != nullptr && model != &each)) continue;
+      least_dhz = std::min(least_dhz, each.frequency.min_dhz);
+      most_dhz = std::max(most_dhz, each.frequency.max_dhz);
+    }
+    made.floating_point_range.resize(1);
+    made.floating_point_range[0].from_value = least_dhz / 10.0;
+    made.floating_point_range[0].to_value = most_dhz / 10.0;
+    made.floating_point_range[0].step = of.range[2];
+  } else if (of.setting->type == g4lidar::setting_type::whole && model != nullptr) {
+    made.additional_constraints.clear();
+    for (const g4lidar::sample_rate_entry& each : model->rates.entries) {
+      if (each.hz == 0) break;
+      if (!made.additional_constraints.empty()) made.additional_constraints += ", ";
+      made.additional_constraints += std::to_string(each.hz);
+    }
+  } else if (of.setting->type == g4lidar::setting_type::whole) {
+    made.additional_constraints += " of a G4; those of the model";
+  }
+}
+
 /// A parameter of the lidar. Its type is that of the table, but 10 is also taken for 10.0, and true for "on".
-void declare(rclcpp_lifecycle::LifecycleNode& node, const g4lidar::parameter& of) {
+void declare(rclcpp_lifecycle::LifecycleNode& node, const g4lidar::parameter& of,
+             const g4lidar::model* model) {
   descriptor made;
   made.description = of.description;
   made.additional_constraints = of.constraints;
   made.dynamic_typing = true;
-  // The limits of the device are those of a G4; another model refuses what it does not have.
-  const std::string model = node.get_parameter("model").as_string();
-  const bool is_limited = of.setting == nullptr || model.empty() || model == g4lidar::g4_model.word;
-  if (const auto [least, most, step] = of.range; is_limited && least < most) {
+  if (of.kind == g4lidar::parameter_kind::read_only) made.additional_constraints = "read-only";
+  if (of.setting != nullptr) {
+    limit(made, of, model);
+  } else if (const auto [least, most, step] = of.range; least < most) {
     made.floating_point_range.resize(1);
     made.floating_point_range[0].from_value = least;
     made.floating_point_range[0].to_value = most;
@@ -117,9 +152,10 @@ node_parameters::node_parameters(rclcpp_lifecycle::LifecycleNode& node) : node_(
                          fixed("The lidar or the recording",
                                "empty: the only lidar; /dev/ttyUSB0, serial:NUMBER, "
                                "usb:PATH, tcp:HOST:PORT, a file, or sim:"));
-  node.declare_parameter("model", "",
-                         fixed("The model of the lidar",
-                               "empty: a G4, or that of a recording; " + g4lidar::model_words()));
+  node.declare_parameter(
+      "model", "",
+      fixed("The model of the lidar",
+            "empty: the lidar is searched, or that of a recording; " + g4lidar::model_words()));
   node.declare_parameter("baud", 0,
                          fixed_count("Bits per second; 0: those of the model", 0, 10'000'000));
   node.declare_parameter("frame_id", "laser", fixed("Frame of the scans"));
@@ -153,15 +189,27 @@ node_parameters::node_parameters(rclcpp_lifecycle::LifecycleNode& node) : node_(
   node.declare_parameter(
       "mask", "",
       fixed("File of polygons: returns inside of them, parts of the robot, are left out"));
+  const g4lidar::model* const model = g4lidar::model_named(node.get_parameter("model").as_string());
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
-    if (!node.has_parameter(std::string(each.name))) declare(node, each);
+    if (!node.has_parameter(std::string(each.name))) declare(node, each, model);
   }
+  warn_about_unknown_ones();
   refusing_ = node.add_on_set_parameters_callback([this](const changes& wanted) {
     rcl_interfaces::msg::SetParametersResult made;
     made.reason = is_update_ ? "" : refuse(wanted);
     made.successful = made.reason.empty();
     return made;
   });
+}
+
+void node_parameters::warn_about_unknown_ones() const {
+  for (const auto& [name, value] :
+       node_.get_node_parameters_interface()->get_parameter_overrides()) {
+    // Those with a dot belong to parts of ROS, which declare them later: qos_overrides./scan.publisher.depth.
+    if (name.find('.') != std::string::npos || node_.has_parameter(name)) continue;
+    RCLCPP_WARN(node_.get_logger(), "parameter '%s' is ignored: there is none of this name",
+                name.c_str());
+  }
 }
 
 void node_parameters::take_motion(session_options& into) const {
@@ -191,6 +239,10 @@ void node_parameters::take_motion(session_options& into) const {
 }
 
 session_options node_parameters::for_session() const {
+  for (const char* const name : {"connect_timeout", "playback_speed"}) {  // which ranges let pass
+    if (std::isnan(node_.get_parameter(name).as_double()))
+      throw std::invalid_argument(std::string(name) + ": it is not a number");
+  }
   session_options made;
   g4lidar::lidar_options& lidar = made.lidar;
   lidar.device = node_.get_parameter("source").as_string();
@@ -198,7 +250,6 @@ session_options node_parameters::for_session() const {
     lidar.model = g4lidar::model_named(word);
     if (lidar.model == nullptr)
       throw std::invalid_argument("model: '" + word + "' is not one of " + g4lidar::model_words());
-    lidar.baud = lidar.model->bauds[0];
   }
   if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
     lidar.baud = static_cast<std::uint32_t>(baud);

@@ -32,6 +32,7 @@ class node_parameters {
 
  private:
   using changes = std::vector<rclcpp::Parameter>;
+  void warn_about_unknown_ones() const;
   void take_motion(session_options& into) const;
   [[nodiscard]] std::string refuse(const changes& wanted);
 

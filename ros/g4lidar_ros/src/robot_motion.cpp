@@ -2,35 +2,17 @@
 #include "robot_motion.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <tuple>
 #include <utility>
 
 #include <geometry_msgs/msg/transform_stamped.hpp>
-
-#include "g4lidar/recording/reader.hpp"
-#include "g4lidar/source.hpp"
 
 namespace g4lidar_ros {
 namespace {
 
 /// Poses are looked up in tf so far apart.
 constexpr std::int64_t tf_step_ns = 20'000'000;
-
-std::vector<g4lidar::stamped_odometry> odometry_in(const std::string& source) {
-  std::vector<g4lidar::stamped_odometry> all;
-  auto reader = g4lidar::recording_reader::open(g4lidar::path_of_source(source));
-  if (!reader) return all;  // it is reported when it is opened as a lidar
-  const auto read = reader->for_each([&all](const g4lidar::recorded_item& item) {
-    if (item.what == g4lidar::recorded_item::kind::odometry) all.push_back(item.odometry);
-    return true;
-  });
-  static_cast<void>(read);  // what is damaged is left out
-  std::ranges::sort(all, {}, &g4lidar::stamped_odometry::time_ns);
-  const auto same = std::ranges::unique(all, {}, &g4lidar::stamped_odometry::time_ns);
-  all.erase(same.begin(), same.end());
-  return all;
-}
 
 void set(geometry_msgs::msg::Quaternion& turn, double yaw_rad, bool is_turned) {
   const auto [sine, cosine] = g4lidar::rotation_by(g4lidar::wrap_rad(yaw_rad) / 2.0);
@@ -57,10 +39,8 @@ geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const s
 
 robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_options& options,
                            const std::string& frame_id, const std::string& source)
-    : node_(node), options_(options) {
-  if (g4lidar::kind_of_source(source) == g4lidar::source_kind::recording)
-    recorded_ = odometry_in(source);
-  if (!recorded_.empty()) {
+    : node_(node), options_(options), carried_(source) {
+  if (carried_.is_known()) {
     odometry_ = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
         node, "odom", rclcpp::QoS(5).reliable());
     tf_ = std::make_unique<tf2_ros::TransformBroadcaster>(node);
@@ -71,7 +51,7 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
     place_->sendTransform(
         transform_of(0, options.base_frame, frame_id, {options.mount->pose, is_down}));
   }
-  if (options.from == motion_source::odometry && recorded_.empty()) {
+  if (options.from == motion_source::odometry && !carried_.is_known()) {
     const auto take = [this](const nav_msgs::msg::Odometry& from) {
       const auto& [place, turn] = std::pair(from.pose.pose.position, from.pose.pose.orientation);
       const auto& [linear, angular] = std::pair(from.twist.twist.linear, from.twist.twist.angular);
@@ -82,42 +62,31 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
       const std::lock_guard lock(mutex_);
       if (made && subscribed_.size() < 1000) subscribed_.push_back(*made);
     };
+    rclcpp::SubscriptionOptions how;
+    how.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
     // Whoever publishes: with best effort every quality of service is accepted.
     subscription_ = node.create_subscription<nav_msgs::msg::Odometry>(
-        "odom", rclcpp::QoS(100).best_effort(), take);
+        "odom", rclcpp::QoS(100).best_effort(), take, how);
   }
   if (options.from == motion_source::tf) {
     buffer_ = std::make_unique<tf2_ros::Buffer>(node.get_clock());
-    listener_ = std::make_unique<tf2_ros::TransformListener>(*buffer_);
+    // Subscriptions of this node, so that its remappings are used, in a thread of their own. Those of Humble cannot be
+    // transient local within a process.
+    auto fixed = tf2_ros::detail::get_default_transform_listener_static_sub_options();
+    fixed.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    listener_ = std::make_unique<tf2_ros::TransformListener>(
+        *buffer_, &node, true, tf2_ros::DynamicListenerQoS(), tf2_ros::StaticListenerQoS(),
+        tf2_ros::detail::get_default_transform_listener_sub_options(), fixed);
   }
 }
 
-void robot_motion::follow(g4lidar::lidar& device) {
-  player_ = device.player();
-  begin_ns_ = player_ != nullptr ? player_->begin_ns() : 0;
-  next_ = 0;
+void robot_motion::follow(g4lidar::lidar& device,
+                          const g4lidar::sim::simulated_source* simulation) {
+  carried_.follow(device, simulation);
 }
 
 void robot_motion::follow(std::span<const g4lidar::point> points, std::int64_t ahead_ns) {
-  if (recorded_.empty() || points.empty() || player_ == nullptr) return;
-  // Points are a little older than their bytes, and rounds are further apart.
-  constexpr std::int64_t largest_age_ns = 5'000'000;
-  const std::int64_t begin_ns = player_->begin_ns();
-  if (begin_ns != begin_ns_ && points.front().time_ns >= begin_ns - largest_age_ns) {
-    const std::int64_t shift_ns = begin_ns - std::exchange(begin_ns_, begin_ns);
-    for (g4lidar::stamped_odometry& each : recorded_) each.time_ns += shift_ns;
-    next_ = 0;
-  }
-  if (next_ == 0) {  // what was before the first point is of no use, but for the last one
-    const auto first = std::ranges::upper_bound(recorded_, points.front().time_ns, {},
-                                                &g4lidar::stamped_odometry::time_ns);
-    next_ =
-        static_cast<std::size_t>(first - recorded_.begin()) - (first == recorded_.begin() ? 0 : 1);
-  }
-  while (next_ < recorded_.size() &&
-         (next_ == 0 || recorded_[next_ - 1].time_ns < points.back().time_ns)) {
-    publish(recorded_[next_++], ahead_ns);
-  }
+  carried_.follow(points, [&](const g4lidar::stamped_odometry& at) { publish(at, ahead_ns); });
 }
 
 void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t ahead_ns) {
@@ -161,10 +130,13 @@ void robot_motion::take_transforms(const g4lidar::scan& whole, std::int64_t ahea
   std::int64_t time_ns = whole.time_ns() - tf_step_ns;
   if (newest) time_ns = std::max(time_ns, newest->time_ns + tf_step_ns);
   for (; time_ns < whole.end_ns() + tf_step_ns; time_ns += tf_step_ns) {
-    const rclcpp::Time stamp(time_ns + ahead_ns, node_.get_clock()->get_clock_type());
-    if (!buffer_->canTransform(options_.odometry_frame, options_.base_frame, stamp)) continue;
+    const tf2::TimePoint stamp{std::chrono::nanoseconds(time_ns + ahead_ns)};
+    std::string why;  // without it, each failure is printed
+    if (!buffer_->BufferCore::canTransform(options_.odometry_frame, options_.base_frame, stamp,
+                                           &why))
+      continue;
     const auto found =
-        buffer_->lookupTransform(options_.odometry_frame, options_.base_frame, stamp);
+        buffer_->BufferCore::lookupTransform(options_.odometry_frame, options_.base_frame, stamp);
     const auto& [x, y, z] = std::tuple(found.transform.translation.x, found.transform.translation.y,
                                        found.transform.translation.z);
     const auto& turn = found.transform.rotation;

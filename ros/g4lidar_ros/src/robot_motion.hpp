@@ -18,7 +18,7 @@
 #include <nav_msgs/msg/odometry.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "g4lidar/lidar.hpp"
+#include "carried_odometry.hpp"
 #include "g4lidar/odometry_path.hpp"
 #include "topics.hpp"
 
@@ -42,8 +42,10 @@ class robot_motion {
   robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_options& options,
                const std::string& frame_id, const std::string& source);
 
-  /// The lidar is open: what it carries is followed.
-  void follow(g4lidar::lidar& device);
+  /// Whether the source carries odometry, which needs its points as they come.
+  [[nodiscard]] bool has_odometry() const noexcept { return carried_.is_known(); }
+  /// The lidar is open. `simulation`: null unless it is simulated.
+  void follow(g4lidar::lidar& device, const g4lidar::sim::simulated_source* simulation);
   /// Publishes the odometry until the last of these points. `ahead_ns`: their stamps minus their times.
   void follow(std::span<const g4lidar::point> points, std::int64_t ahead_ns);
   /// The poses of the robot until the end of a scan, by the clock of its points.
@@ -57,10 +59,7 @@ class robot_motion {
 
   rclcpp_lifecycle::LifecycleNode& node_;
   motion_options options_;
-  std::vector<g4lidar::stamped_odometry> recorded_;
-  std::size_t next_ = 0;               // of recorded_
-  std::int64_t begin_ns_ = 0;          // of the round of the recording
-  g4lidar::player* player_ = nullptr;  // of the recording that is open
+  carried_odometry carried_;
   g4lidar::odometry_path path_;
   std::unique_ptr<counted_publisher<nav_msgs::msg::Odometry>> odometry_;
   std::unique_ptr<tf2_ros::TransformBroadcaster> tf_;

@@ -9,6 +9,8 @@ import threading
 import time
 
 import rclpy
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.executors import SingleThreadedExecutor
 
 # At least ten times what an idle machine needs.
@@ -20,22 +22,44 @@ def program(name, variable):
     return os.environ.get(variable) or shutil.which(name)
 
 
-def recording(seconds=6, seed=7):
-    """The path of a recording of a lidar on a robot that drives, with its odometry; None without g4-dump."""
+# A robot that drives and turns in a room of 4 by 3 m.
+ROOM = """wall -2 -1.5   2 -1.5
+wall  2 -1.5   2  1.5
+wall  2  1.5  -2  1.5
+wall -2  1.5  -2 -1.5
+lidar 0 0 0
+"""
+WAY = """drive forward 0.4 0.5
+drive turn 170 90
+drive forward 0.4 0.5
+"""
+
+
+def recordings(seconds=6, seed=7, world=None, way="drive forward 0.4 0.3\ndrive turn 180 60\ndrive forward 0.4 0.3\n"):
+    """Two recordings of a lidar on a robot that drives: with its odometry, and without; None without g4-dump."""
     g4_dump = program("g4-dump", "G4_DUMP")
     if not g4_dump:
-        return None
+        return None, None
     directory = tempfile.mkdtemp(prefix="g4lidar-ros-")
-    path = os.path.join(directory, "walk.mcap")
-    raw = os.path.join(directory, "walk.bin")
-    way = os.path.join(directory, "way.txt")
-    driven = os.path.join(directory, "way.odo")
-    with open(way, "w") as file:
-        file.write("drive forward 0.4 0.3\ndrive turn 180 60\ndrive forward 0.4 0.3\n")
-    subprocess.run([g4_dump, "sim", "-q", "--seconds", str(seconds), "--seed", str(seed), "--path", way, "--odometry",
-                    driven, "-o", raw], check=True)
-    subprocess.run([g4_dump, "convert", "-q", raw, path, "--odometry", driven], check=True)
-    return path
+    raw, path, driven, made, bare = (
+        os.path.join(directory, name) for name in ("walk.bin", "way.txt", "way.odo", "walk.mcap", "bare.mcap"))
+    options = []
+    if world:
+        options = ["--world", os.path.join(directory, "world.txt")]
+        with open(options[1], "w") as file:
+            file.write(world)
+    with open(path, "w") as file:
+        file.write(way)
+    subprocess.run([g4_dump, "sim", "-q", "--seconds", str(seconds), "--seed", str(seed), *options, "--path", path,
+                    "--odometry", driven, "-o", raw], check=True)
+    subprocess.run([g4_dump, "convert", "-q", raw, made, "--odometry", driven], check=True)
+    subprocess.run([g4_dump, "convert", "-q", raw, bare], check=True)
+    return made, bare
+
+
+def stamp_of(message):
+    """In nanoseconds since 1970."""
+    return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
 
 
 class Watcher:
@@ -67,6 +91,17 @@ class Watcher:
         found = []
         self.node.create_subscription(kind, topic, found.append, quality)
         return found
+
+    def wait_for_publishers(self, topic, count):
+        assert wait_for(lambda: self.node.count_publishers(topic) >= count), topic
+
+    def state(self, node):
+        """The state of a lifecycle node by its full name."""
+        return self.call(GetState, node + "/get_state", GetState.Request()).current_state.id
+
+    def change_state(self, node, transition):
+        request = ChangeState.Request(transition=Transition(id=transition))
+        return self.call(ChangeState, node + "/change_state", request).success
 
     def call(self, kind, name, request):
         """The reply of a service."""

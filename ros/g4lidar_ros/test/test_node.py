@@ -11,12 +11,13 @@ import launch_testing.actions
 import launch_testing.asserts
 from diagnostic_msgs.msg import DiagnosticArray
 from launch_ros.actions import Node
-from lifecycle_msgs.msg import State, Transition
-from lifecycle_msgs.srv import ChangeState, GetState
+from lifecycle_msgs.msg import State, Transition, TransitionEvent
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import (DescribeParameters, GetParameters, ListParameters, SetParameters,
                                 SetParametersAtomically)
+from rclpy.qos import ReliabilityPolicy, qos_profile_sensor_data
 from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -33,6 +34,8 @@ NODES = {
     "values": {"source": "sim:?seed=8", "autostart": True, "range_max": 9.0},
     "plug": {"source": "sim:?seed=9&" + UNPLUGS, "autostart": True},
     "never": {"source": ABSENT, "connect_timeout": 0.0},
+    "quality": {"source": "sim:?seed=11", "autostart": True, "qos_overrides./quality/scan.publisher.depth": 3,
+                "qos_overrides./quality/scan.publisher.reliability": "best_effort"},
     "idle": {"source": "sim:?seed=10", "autostart": True, "standby": True},
     "missing": {"source": "/dev/g4lidar-absent", "connect_timeout": 0.5},
 }
@@ -66,11 +69,10 @@ class NodeTest(unittest.TestCase):
         self.watcher.close()
 
     def state(self, name):
-        return self.watcher.call(GetState, f"/{name}/g4lidar/get_state", GetState.Request()).current_state.id
+        return self.watcher.state(f"/{name}/g4lidar")
 
     def change(self, name, transition):
-        request = ChangeState.Request(transition=Transition(id=transition))
-        return self.watcher.call(ChangeState, f"/{name}/g4lidar/change_state", request).success
+        return self.watcher.change_state(f"/{name}/g4lidar", transition)
 
     def wait_for_state(self, name, state):
         self.assertTrue(support.wait_for(lambda: self.state(name) == state), f"/{name} in {self.state(name)}")
@@ -99,6 +101,7 @@ class TestLifecycle(NodeTest):
         self.assertEqual(self.state("missing"), State.PRIMARY_STATE_UNCONFIGURED)
 
     def test_an_error_that_cannot_heal_ends_in_unconfigured(self):
+        events = self.watcher.collect(TransitionEvent, "/never/g4lidar/transition_event")
         self.assertTrue(self.change("never", Transition.TRANSITION_CONFIGURE))
         self.assertTrue(self.change("never", Transition.TRANSITION_ACTIVATE))
         self.assertEqual(self.state("never"), State.PRIMARY_STATE_ACTIVE)
@@ -106,6 +109,9 @@ class TestLifecycle(NodeTest):
             file.write(b"this is no recording and no lidar\n" * 1000)
         os.rename(ABSENT + ".new", ABSENT)
         self.wait_for_state("never", State.PRIMARY_STATE_UNCONFIGURED)
+        # on_deactivate() has returned ERROR: without it the node would be inactive.
+        self.assertTrue(support.wait_for(lambda: ("deactivating", "errorprocessing") in
+                                         [(each.start_state.label, each.goal_state.label) for each in list(events)]))
 
     def test_an_unplug_heals_by_itself(self):
         scans = self.scans("plug")
@@ -133,18 +139,46 @@ class TestMotor(NodeTest):
         count = len(scans)
         self.assertTrue(support.wait_for(lambda: len(scans) > count))
 
+    def test_the_topic_run_rests_and_turns_the_motor(self):
+        scans = self.scans("quality")
+        self.assertTrue(support.wait_for(lambda: len(scans) == 0 and self.state("quality") == State.PRIMARY_STATE_ACTIVE))
+        best = self.watcher.collect(LaserScan, "/quality/scan", qos_profile_sensor_data)
+        self.assertTrue(support.wait_for(lambda: len(best) > 2))
+        publisher = self.watcher.node.create_publisher(Bool, "/quality/g4lidar/run", 10)
+        self.assertTrue(support.wait_for(lambda: publisher.get_subscription_count() > 0))
+
+        def has_stopped():
+            publisher.publish(Bool(data=False))
+            count = len(best)
+            return not support.wait_for(lambda: len(best) > count, 2.0)
+        self.assertTrue(support.wait_for(has_stopped))
+        publisher.publish(Bool(data=True))
+        count = len(best)
+        self.assertTrue(support.wait_for(lambda: len(best) > count))
+
     def test_standby_turns_for_a_subscriber(self):
         self.wait_for_state("idle", State.PRIMARY_STATE_ACTIVE)
         found = self.watcher.collect(DiagnosticArray, "/diagnostics")
 
         def sent():
             values = [value for array in list(found) for status in array.status
-                      if status.name == "g4lidar: topics" for value in status.values
+                      if status.name == "/idle/g4lidar: topics" for value in status.values
                       if value.key == "/idle/scan sent"]
             return int(values[-1].value) if values else -1
         self.assertTrue(support.wait_for(lambda: sent() == 0))
         scans = self.scans("idle")
         self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+
+
+class TestQuality(NodeTest):
+    def test_overrides(self):
+        self.wait_for_state("quality", State.PRIMARY_STATE_ACTIVE)
+        reliability = {}
+        for topic in ("/quality/scan", "/quality/points"):
+            self.watcher.wait_for_publishers(topic, 1)
+            reliability[topic] = self.watcher.node.get_publishers_info_by_topic(topic)[0].qos_profile.reliability
+        self.assertEqual(reliability["/quality/scan"], ReliabilityPolicy.BEST_EFFORT)
+        self.assertEqual(reliability["/quality/points"], ReliabilityPolicy.RELIABLE)
 
 
 class TestParameters(NodeTest):
@@ -182,12 +216,29 @@ class TestParameters(NodeTest):
         self.assertIn("north", refused.reason)
         self.assertTrue(self.set("fov", text("-180:180")).successful)
 
+    def set_together(self, **values):
+        request = SetParametersAtomically.Request(
+            parameters=[Parameter(name=name, value=value) for name, value in values.items()])
+        return self.watcher.call(SetParametersAtomically, "/values/g4lidar/set_parameters_atomically", request).result
+
     def test_all_or_none(self):
-        request = SetParametersAtomically.Request(parameters=[
-            Parameter(name="range_min", value=double(0.5)), Parameter(name="ignore", value=text("30:east"))])
-        result = self.watcher.call(SetParametersAtomically, "/values/g4lidar/set_parameters_atomically", request).result
-        self.assertFalse(result.successful)
-        self.assertEqual(self.get("range_min").double_value, 0.0)
+        self.assertTrue(support.wait_for(lambda: self.get("frequency").type == ParameterType.PARAMETER_DOUBLE))
+        self.assertTrue(self.set("frequency", double(7.0)).successful)
+        refused = [{"ignore": text("30:east")}, {"range_max": double(500.0)}, {"source": text("sim:")},
+                   {"sample_rate": text("many")}, {"near_as": text("far")}]
+        for wrong in refused:
+            result = self.set_together(frequency=double(9.0), range_min=double(0.5), **wrong)
+            self.assertFalse(result.successful, wrong)
+            self.assertTrue(result.reason, wrong)
+            self.assertEqual(self.get("range_min").double_value, 0.0, wrong)
+            self.assertEqual(self.get("frequency").double_value, 7.0, wrong)
+        # The lidar was not asked, either.
+        scans = self.scans("values")
+        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+        self.assertAlmostEqual(scans[-1].scan_time, 1 / 7.0, delta=0.005)
+        self.assertTrue(self.set_together(frequency=double(9.0), range_min=double(0.5)).successful)
+        self.assertEqual((self.get("range_min").double_value, self.get("frequency").double_value), (0.5, 9.0))
+        self.assertTrue(self.set_together(frequency=double(7.0), range_min=double(0.0)).successful)
 
     def test_each_has_a_description(self):
         service = "/values/g4lidar/"

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -14,6 +15,7 @@ import launch
 import launch_testing.actions
 from launch.actions import ExecuteProcess
 from ament_index_python.packages import get_package_prefix
+from lifecycle_msgs.msg import State
 from sensor_msgs.msg import LaserScan, PointCloud2
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -77,6 +79,94 @@ class TestProcess(unittest.TestCase):
         self.assertEqual(bytes_within(link, 1.0), 0, "it still scans")
         device.send_signal(signal.SIGINT)
         device.wait(support.PATIENCE)
+
+    def test_ends_while_it_waits_for_a_lidar(self):
+        node = run_node("/dev/g4lidar-absent", "-p", "connect_timeout:=3600.0")
+        # The service of a lifecycle node is there; the node then waits in configure.
+        self.assertTrue(support.wait_for(lambda: "g4lidar" in self.watcher.node.get_node_names()))
+        time.sleep(2.0)
+        begin = time.monotonic()
+        node.send_signal(signal.SIGINT)
+        self.assertEqual(node.wait(support.PATIENCE), 0)
+        took = time.monotonic() - begin
+        print(f"ended after {took:.2f} s")
+        if os.getloadavg()[0] < (os.cpu_count() or 1):
+            self.assertLess(took, 2.0)
+
+    def fails(self, arguments, words):
+        """The node ends with exit code 1, and its last words contain these."""
+        done = subprocess.run([NODE, "--ros-args", *arguments], capture_output=True, text=True, timeout=support.PATIENCE)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def parameter_file(self, text):
+        path = os.path.join(tempfile.mkdtemp(prefix="g4lidar-ros-"), "bad.yaml")
+        with open(path, "w") as file:
+            file.write(text)
+        return ["--params-file", path]
+
+    def test_parameters_that_cannot_be_used_end_it_with_a_reason(self):
+        head = "/**:\n  ros__parameters:\n    "
+        self.fails(["--params-file", "/nonexistent.yaml"], ["/nonexistent.yaml"])
+        self.fails(self.parameter_file("/**: [\n"), ["bad.yaml"])
+        self.fails(self.parameter_file("source: here\n"), ["bad.yaml"])
+        self.fails(self.parameter_file(head + "grid: many\n"), ["grid"])
+        self.fails(self.parameter_file(head + "grid: -5\n"), ["grid"])
+        self.fails(self.parameter_file(head + "grid: 99999999999999\n"), ["grid"])
+        self.fails(self.parameter_file(head + "frame_id: [laser]\n"), ["frame_id"])
+        self.fails(self.parameter_file(head + "source: 7\n"), ["source"])
+        self.fails(self.parameter_file(head + "range_max: 200.0\n"), ["range_max"])
+        self.fails(self.parameter_file(head + "frequency: 100.0\n"), ["frequency"])
+        self.fails(self.parameter_file(head + "playback_speed: 0.0\n"), ["playback_speed"])
+        self.fails(["-p", "connect_timeout:=-1.0"], ["connect_timeout"])
+        self.fails(["-p", "frequency:=7.77"], ["frequency"])
+
+    def not_configured(self, arguments, words):
+        """configure fails with these words, and the node stays unconfigured."""
+        with self.subTest(arguments=arguments), subprocess.Popen(
+                [NODE, "--ros-args", "-p", "autostart:=true", "-r", "__ns:=/bad", *arguments],
+                stderr=subprocess.PIPE, text=True) as node:
+            said = []
+            watchdog = threading.Timer(support.PATIENCE, node.kill)
+            watchdog.start()
+            for line in node.stderr:
+                said.append(line)
+                if "[ERROR]" in line:
+                    break
+            watchdog.cancel()
+            state = self.watcher.state("/bad/g4lidar") if node.poll() is None else None
+            node.send_signal(signal.SIGINT)
+            node.communicate(timeout=support.PATIENCE)
+            self.assertEqual(node.returncode, 0, said)
+            self.assertEqual(state, State.PRIMARY_STATE_UNCONFIGURED)
+            for word in words:
+                self.assertIn(word, said[-1])
+        return "".join(said)
+
+    def test_values_that_cannot_be_used_are_errors_of_configure(self):
+        sim = ["-p", "source:='sim:'"]
+        self.not_configured([*sim, "-p", "model:=g99"], ["model", "g99"])
+        self.not_configured([*sim, "-p", "order:=size"], ["order", "size"])
+        self.not_configured([*sim, "-p", "deskew:=magic"], ["deskew", "magic"])
+        self.not_configured([*sim, "-p", "deskew:=tf", "-p", "order:=time"], ["order", "deskew"])
+        self.not_configured([*sim, "-p", "mount:='1,2'"], ["mount"])
+        self.not_configured([*sim, "-p", "mount:='nan,0,0'"], ["mount"])
+        self.not_configured([*sim, "-p", "mask:=/nonexistent.mask"], ["mask", "/nonexistent.mask"])
+        self.not_configured([*sim, "-p", "fov:=north"], ["fov", "north"])
+        self.not_configured([*sim, "-p", "direction:=up"], ["direction", "up"])
+        self.not_configured([*sim, "-p", "range_min:=.nan"], ["range"])
+        self.not_configured(["-p", "source:='sim:?seed=x'"], ["seed"])
+        self.not_configured(["-p", "source:='sim:?model=x2'", "-p", "model:=g4"], ["model"])
+        self.not_configured(["-p", "source:=/nonexistent.mcap", "-p", "connect_timeout:=0.5"], ["/nonexistent.mcap"])
+        broken = os.path.join(tempfile.mkdtemp(prefix="g4lidar-ros-"), "broken.mcap")
+        with open(broken, "wb") as file:
+            file.write(b"\x89MCAP0\r\n" + b"this is no recording\n" * 100)
+        self.not_configured(["-p", f"source:={broken}"], [broken])
+        self.not_configured([*sim, "-p", "playback_speed:=.nan"], ["playback_speed"])
+        self.not_configured([*sim, "-p", "connect_timeout:=.nan"], ["connect_timeout"])
+        said = self.not_configured([*sim, "-p", "frequncy:=7.0", "-p", "model:=g99"], ["g99"])
+        self.assertIn("'frequncy' is ignored", said)
 
     def test_does_not_grow(self):
         node = run_node("sim:?seed=3")

@@ -20,7 +20,7 @@ from tf2_msgs.msg import TFMessage
 sys.path.insert(0, os.path.dirname(__file__))
 import support  # noqa: E402
 
-RECORDING = support.recording()
+RECORDING, _ = support.recordings()
 MOUNT = "0.2,-0.1,90"
 G4_ROS2 = support.program("g4-ros2", "G4_ROS2")
 
@@ -36,10 +36,6 @@ def generate_test_description():
         actions.append(ExecuteProcess(cmd=[G4_ROS2, RECORDING, "--loop", "--namespace", "reference",
                                            "--deskew", "odometry", "--mount", MOUNT]))
     return launch.LaunchDescription([*actions, launch_testing.actions.ReadyToTest()])
-
-
-def stamp_of(message):
-    return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
 
 
 def same(a, b):
@@ -80,8 +76,8 @@ class TestRecording(unittest.TestCase):
 
         # Both repeat the recording, with times that continue: revolutions with equal stamps are the same ones.
         def pairs(ours_now, theirs_now):
-            by_stamp = {stamp_of(each): each for each in list(theirs_now)}
-            return [(each, by_stamp[stamp_of(each)]) for each in list(ours_now) if stamp_of(each) in by_stamp]
+            by_stamp = {support.stamp_of(each): each for each in list(theirs_now)}
+            return [(each, by_stamp[support.stamp_of(each)]) for each in list(ours_now) if support.stamp_of(each) in by_stamp]
 
         self.assertTrue(support.wait_for(
             lambda: len(pairs(ours, theirs)) >= 10 and len(pairs(our_clouds, their_clouds)) >= 10

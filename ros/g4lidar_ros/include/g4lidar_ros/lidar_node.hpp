@@ -9,6 +9,7 @@
 
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
+#include <std_msgs/msg/bool.hpp>
 #include <std_srvs/srv/trigger.hpp>
 
 namespace g4lidar_ros {
@@ -46,9 +47,10 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {
   std::shared_ptr<lidar_session> session_;  // null unless it is configured
   std::unique_ptr<node_diagnostics> diagnostics_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
+  rclcpp::SubscriptionBase::SharedPtr running_;
   rclcpp::TimerBase::SharedPtr timer_;
   std::chrono::steady_clock::time_point wanted_{};  // when it last had subscribers
-  bool is_allowed_ = true;                          // by ~/start and ~/stop
+  bool is_allowed_ = true;                          // by ~/start, ~/stop and ~/run
   bool starts_itself_ = false;
 };
 

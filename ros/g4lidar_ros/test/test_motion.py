@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: MIT
+"""Deskewing by a subscribed odometry and by tf: each point of a robot that turns is on a wall of the room, which this
+file computes from the true poses. Also a recording that is played twice, and the time of /clock."""
+
+import bisect
+import math
+import os
+import struct
+import sys
+import unittest
+
+import launch
+import launch_testing.actions
+import launch_testing.asserts
+from geometry_msgs.msg import TransformStamped
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from lifecycle_msgs.msg import State, Transition
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import LaserScan, PointCloud2
+from tf2_msgs.msg import TFMessage
+
+sys.path.insert(0, os.path.dirname(__file__))
+import support  # noqa: E402
+
+MOUNT = (0.2, -0.1, 90.0)
+MOUNT_TEXT = "{},{},{}".format(*MOUNT)
+WITH_ODOMETRY, BARE = support.recordings(seconds=5, seed=3, world=support.ROOM + f"mount {MOUNT_TEXT}\n",
+                                         way=support.WAY)
+
+# The nodes by their namespaces.
+NODES = {
+    "told": {"source": WITH_ODOMETRY},
+    "by_odometry": {"source": BARE, "deskew": "odometry", "mount": MOUNT_TEXT},
+    "by_tf": {"source": BARE, "deskew": "tf", "mount": MOUNT_TEXT},
+    "live": {"source": "sim:?seed=4", "use_sim_time": True, "autostart": True},
+    "robot": {"source": "", "mount": MOUNT_TEXT, "autostart": True, "deskew": "odometry"},
+}
+
+
+def moving_source():
+    """A simulated robot that moves for ten minutes."""
+    if not BARE:
+        return "sim:"
+    way = os.path.join(os.path.dirname(BARE), "long.txt")
+    with open(way, "w") as file:
+        file.write("drive turn 3600 60\n" * 10)
+    world = os.path.join(os.path.dirname(BARE), "world.txt")
+    return f"sim:?world={world}&path={way}&seed=5"
+
+
+def generate_test_description():
+    if not BARE:
+        return launch.LaunchDescription([launch_testing.actions.ReadyToTest()])
+    NODES["robot"]["source"] = moving_source()
+    nodes = [Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace=name, output="screen",
+                  remappings=[("/tf", "tf")],
+                  parameters=[{key: ParameterValue(value, value_type=type(value)) for key, value in values.items()}])
+             for name, values in NODES.items()]
+    return launch.LaunchDescription([*nodes, launch_testing.actions.ReadyToTest()])
+
+
+def pose_of(message):
+    turn = message.pose.pose.orientation
+    return (message.pose.pose.position.x, message.pose.pose.position.y, 2.0 * math.atan2(turn.z, turn.w))
+
+
+class Way:
+    """The true poses of the robot."""
+
+    def __init__(self, messages):
+        self.messages = sorted(messages, key=support.stamp_of)
+        self.times = [support.stamp_of(each) for each in self.messages]
+
+    def at(self, time_ns):
+        after = min(max(bisect.bisect(self.times, time_ns), 1), len(self.times) - 1)
+        first, last = self.times[after - 1], self.times[after]
+        part = (time_ns - first) / (last - first)
+        a, b = pose_of(self.messages[after - 1]), pose_of(self.messages[after])
+        turn = math.remainder(b[2] - a[2], math.tau)
+        return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * turn)
+
+    def turns_at(self, time_ns):
+        """Whether the robot turns by more than 45 degrees a second in the next 0.15 s."""
+        return abs(math.remainder(self.at(time_ns + 150_000_000)[2] - self.at(time_ns)[2], math.tau)) > 0.12
+
+
+def moved(pose, point):
+    x, y, yaw = pose
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    return x + cosine * point[0] - sine * point[1], y + sine * point[0] + cosine * point[1]
+
+
+def errors_m(cloud, way):
+    """How far each point of a cloud is from the nearest wall, if the robot was where it was at the stamp."""
+    pose = way.at(support.stamp_of(cloud))
+    place = (MOUNT[0], MOUNT[1], math.radians(MOUNT[2]))
+    found = []
+    for i in range(cloud.width):
+        x, y = moved(pose, moved(place, struct.unpack_from("<ff", cloud.data, i * cloud.point_step)))
+        found.append(min(abs(abs(x) - 2.0), abs(abs(y) - 1.5)))
+    return sorted(found)
+
+
+@unittest.skipUnless(BARE, "SKIPPED: g4-dump is not installed")
+class TestMotion(unittest.TestCase):
+    def setUp(self):
+        self.watcher = support.Watcher()
+
+    def tearDown(self):
+        self.watcher.close()
+
+    def play(self, name):
+        """Plays the recording of a node once: its odometry and its clouds."""
+        way = self.watcher.collect(Odometry, f"/{name}/odom", 1000)
+        clouds = self.watcher.collect(PointCloud2, f"/{name}/points", 100)
+        self.watcher.wait_for_publishers(f"/{name}/points", 1)
+        self.assertTrue(self.watcher.change_state(f"/{name}/g4lidar", Transition.TRANSITION_ACTIVATE))
+        self.assertTrue(support.wait_for(
+            lambda: self.watcher.state(f"/{name}/g4lidar") == State.PRIMARY_STATE_INACTIVE))
+        return list(way), list(clouds)
+
+    def truth(self):
+        if self.watcher.state("/told/g4lidar") == State.PRIMARY_STATE_UNCONFIGURED:
+            self.assertTrue(self.watcher.change_state("/told/g4lidar", Transition.TRANSITION_CONFIGURE))
+        way, clouds = self.play("told")
+        self.assertGreater(len(way), 200)
+        self.assertGreater(len(clouds), 25)
+        return Way(way), clouds
+
+    def check_deskewed(self, name, publish, count_of_subscribers):
+        """`publish` is called with each true pose, a little before the lidar gets there."""
+        way, skewed = self.truth()
+        self.assertTrue(self.watcher.change_state(f"/{name}/g4lidar", Transition.TRANSITION_CONFIGURE))
+        self.assertTrue(support.wait_for(lambda: count_of_subscribers() > 0), "it does not subscribe")
+        next_pose = 0
+
+        def publish_until(time_ns):
+            nonlocal next_pose
+            while next_pose < len(way.times) and way.times[next_pose] <= time_ns:
+                publish(way.messages[next_pose])
+                next_pose += 1
+        ahead_ns = 700_000_000
+        publish_until(way.times[0] + ahead_ns)
+        self.watcher.node.create_subscription(
+            Clock, "/clock", lambda now: publish_until(now.clock.sec * 10**9 + now.clock.nanosec + ahead_ns), 10)
+        _, clouds = self.play(name)
+        turning = [each for each in clouds if way.turns_at(support.stamp_of(each))]
+        self.assertGreater(len(turning), 5)
+        for cloud in turning:
+            errors = errors_m(cloud, way)
+            self.assertGreater(len(errors), 1000)
+            self.assertLess(errors[len(errors) * 95 // 100], 0.01)
+        # Without deskewing they are not there: the check can fail.
+        for cloud in skewed:
+            if way.turns_at(support.stamp_of(cloud)):
+                errors = errors_m(cloud, way)
+                self.assertGreater(errors[len(errors) * 95 // 100], 0.05)
+
+    def test_by_subscribed_odometry(self):
+        publisher = self.watcher.node.create_publisher(Odometry, "/by_odometry/odom", 1000)
+        self.check_deskewed("by_odometry", publisher.publish, publisher.get_subscription_count)
+
+    def test_by_tf(self):
+        publisher = self.watcher.node.create_publisher(TFMessage, "/by_tf/tf", 1000)
+
+        def publish(at):
+            made = TransformStamped(header=at.header, child_frame_id=at.child_frame_id)
+            made.transform.translation.x = at.pose.pose.position.x
+            made.transform.translation.y = at.pose.pose.position.y
+            made.transform.rotation = at.pose.pose.orientation
+            publisher.publish(TFMessage(transforms=[made]))
+        self.check_deskewed("by_tf", publish, publisher.get_subscription_count)
+
+    def test_a_recording_that_is_activated_again_is_played_again(self):
+        first, first_clouds = self.truth()
+        second, second_clouds = self.truth()
+        self.assertGreater(len(second.messages), len(first.messages) * 9 // 10)
+        self.assertGreater(len(second_clouds), len(first_clouds) * 9 // 10)
+
+    def test_use_sim_time_is_the_time_of_the_recording(self):
+        clock = self.watcher.collect(Clock, "/clock", 1000)
+        scans = self.watcher.collect(LaserScan, "/live/scan", 100)
+        self.assertTrue(support.wait_for(lambda: scans))
+        self.truth()
+        played = [each.clock.sec * 10**9 + each.clock.nanosec for each in list(clock)]
+        during = [each for each in list(scans) if played[0] <= support.stamp_of(each) <= played[-1]]
+        # 5 s at 7 Hz; the time since the recording was made is longer than that of a scan.
+        self.assertGreater(len(during), 15)
+        # When the recording has ended, time stands: stamps stay near the last one.
+        self.assertTrue(support.wait_for(lambda: abs(support.stamp_of(scans[-1]) - played[-1]) < 1_000_000_000))
+
+    def test_a_simulated_robot_publishes_its_odometry(self):
+        way = self.watcher.collect(Odometry, "/robot/odom", 1000)
+        moving = self.watcher.collect(TFMessage, "/robot/tf", 1000)
+        clouds = self.watcher.collect(PointCloud2, "/robot/points", 100)
+        self.assertTrue(support.wait_for(lambda: len(way) > 100 and len(moving) > 100 and len(clouds) > 10))
+        times = [support.stamp_of(each) for each in list(way)]
+        self.assertEqual({later - earlier for earlier, later in zip(times, times[1:])}, {20_000_000})
+        self.assertEqual(moving[-1].transforms[0].child_frame_id, "base_link")
+        known = Way(list(way))
+        checked = [each for each in list(clouds) if known.times[0] < support.stamp_of(each) < known.times[-1]]
+        self.assertGreater(len(checked), 5)
+        for cloud in checked:
+            errors = errors_m(cloud, known)
+            self.assertLess(errors[len(errors) * 95 // 100], 0.02)
+
+
+@launch_testing.post_shutdown_test()
+class TestExit(unittest.TestCase):
+    def test_all_end_well(self, proc_info):
+        launch_testing.asserts.assertExitCodes(proc_info)
