@@ -278,6 +278,18 @@ def test_doctor(g4_simulator: Make) -> None:
     assert loss.diagnoses[0].advice and loss.diagnoses[0].cause
 
 
+def test_doctor_takes_the_model(g4_simulator: Make) -> None:
+    def found(expected: str | None) -> list[str]:
+        simulated = g4_simulator(model="x4")
+        reports = g4lidar.doctor(simulated, measuring_time=1, model=expected)
+        return [each.name for report in reports for each in report.diagnoses]
+
+    assert found(None) == found("x4") == []
+    assert found("x2") == ["other_device"]
+    with pytest.raises(g4lidar.BadOption):
+        g4lidar.doctor(g4_simulator(), model="x44")
+
+
 def test_doctor_passes_on_what_its_callback_raises(g4_simulator: Make) -> None:
     def refuse(report: g4lidar.StageReport) -> None:
         raise LookupError(report.stage)

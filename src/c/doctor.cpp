@@ -76,7 +76,7 @@ struct g4lidar_report {
 namespace {
 
 constexpr g4lidar_doctor_options doctor_defaults{
-    sizeof(g4lidar_doctor_options), 5'000'000'000, nullptr, nullptr, nullptr, 230400, {}};
+    sizeof(g4lidar_doctor_options), 5'000'000'000, nullptr, nullptr, nullptr, 0, {}, nullptr};
 
 /// Runs `examine` with the options, and makes a report of its stages.
 template <class Examine, class... Pointers>
@@ -90,6 +90,7 @@ int examined(const g4lidar_doctor_options* given, g4lidar_report** report, g4lid
         if (taken.measuring_time_ns < 0) return bad_option(error, "measuring_time_ns: from 0 on");
         diagnostic_options options;
         options.baud = taken.baud;
+        if (!take_model(taken.model, options.model)) return refuse_model(error, taken.model);
         options.measuring_time = std::chrono::nanoseconds(taken.measuring_time_ns);
         options.is_cancelled = question_of(taken);
         if (taken.on_stage != nullptr) {

@@ -43,7 +43,7 @@ void acceptance_run::bridge(acceptance_result& into) {
   }
   constexpr double remarkable = 0.015;
   const std::uint32_t wanted = baud();
-  const std::uint32_t got = link_->monitor().baud();
+  const std::uint32_t got = link_->monitor().port().baud();
   into.add("wanted_baud", wanted);
   into.add("set_baud", got);
   if (got == 0) return;

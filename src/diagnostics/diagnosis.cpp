@@ -41,7 +41,7 @@ constexpr auto warn = stage_verdict::warn;
 
 // In the order of the enumeration.
 constexpr std::array rows{
-    row("no_port", fail, "There is no such port, or no port that a G4 could be attached to.",
+    row("no_port", fail, "There is no such port, or no port that a lidar could be attached to.",
         problem::no_port),
     row("several_ports", fail, "More than one lidar could be meant.", problem::several_ports),
     row("not_serial", fail, "This is not a serial port.", problem::not_serial),
@@ -64,6 +64,13 @@ constexpr std::array rows{
         problem::silence, {deaf, wrong_baud_rate, stalls}),
     row("deaf", fail, "The lidar sends but does not react: commands do not reach it.",
         problem::does_not_stop),
+    row("one_way_lidar", fail,
+        "The lidar sends and answers nothing, as one-way models do; the model that was named "
+        "answers.",
+        "Name the model that is attached: its word is in the remark. If it really is the one that "
+        "was "
+        "named, commands do not reach it: check the wire to the lidar.",
+        {deaf, other_device}),
     row("was_scanning", warn,
         "The lidar was scanning before the run: a program was killed, or another one uses it.",
         "Nothing, if a program has just been killed; the scan was stopped. If it happens again, "
@@ -78,7 +85,7 @@ constexpr std::array rows{
     row("answers_twice", warn, "Replies arrive twice.", answer_advice),
     row("answers_missing", fail, "Replies are missing, although commands reach the lidar.",
         answer_advice, {interference}),
-    row("other_device", fail, "A lidar of this maker answers, but it is another model.",
+    row("other_device", fail, "The lidar is another model than the one that was expected.",
         problem::other_device),
     row("health_warning", warn, "The lidar reports a warning about its own health.",
         "Clean the window and keep the lidar cool; give the code to the maker if it remains."),
@@ -91,6 +98,15 @@ constexpr std::array rows{
         "Query its health; unplug it and plug it in again. If this remains, it needs repair."),
     row("motor_stuck", fail, "The lidar measures, but the head does not turn.",
         "Check that nothing blocks the head and that the motor has power."),
+    row("no_motor_power", fail,
+        "The lidar answers and accepts the start, but its motor does not turn: most likely its "
+        "second "
+        "USB plug, which gives power to the motor, is not connected.",
+        "Connect the second plug of the lidar, to a charger or a powered hub. If it is connected, "
+        "use a "
+        "connection that has the line DTR, which starts the motor; check that nothing blocks the "
+        "head.",
+        {motor_stuck, does_not_start}),
     row("motor_unsteady", warn, "The head does not reach a steady speed.",
         "Check that nothing touches the head and that the power supply is strong enough."),
     row("unplugged", fail, "The port disappeared during the run.", problem::gone),
@@ -111,7 +127,8 @@ constexpr std::array rows{
         "Run fewer programs at the same time. Measurements during such a pause can be incomplete."),
     row("frequency_off", warn, "The head turns at another speed than the one that is set.",
         "Check that nothing touches the head; switch constant frequency on."),
-    row("sample_rate_off", warn, "The sample rate differs from the one that the lidar reports.",
+    row("sample_rate_off", warn,
+        "The sample rate differs from the one that the lidar reports, or from those of its model.",
         "Use the measured rate. Lost samples look the same: see the stage loss."),
     row("bits_flipped", fail,
         "Packets of the right length contain single wrong bits: the line is disturbed.",

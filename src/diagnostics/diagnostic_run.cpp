@@ -26,6 +26,9 @@
 namespace g4lidar {
 namespace {
 
+/// The rate at which a search begins.
+constexpr std::uint32_t searched_first = g4_model.bauds[0];
+
 std::string real_path(const std::string& path) {
   std::array<char, PATH_MAX> real{};
   return ::realpath(path.c_str(), real.data()) == nullptr ? path : std::string(real.data());
@@ -63,7 +66,7 @@ class port_stages {
 
   std::unique_ptr<transport> connect(const std::string& address) {
     report_.add("address", address);
-    auto opened = tcp_port::open(address, {.baud = log_.options().baud});
+    auto opened = tcp_port::open(address, {.baud = first_baud(log_.options(), searched_first)});
     if (!opened) return give_up(opened.error());
     pass(log_, report_);
     log_.skip(diagnostic_stage::permission, "A network bridge has none.");
@@ -77,7 +80,8 @@ class port_stages {
     port_info port = std::move(*found);
     if (!look_at_port(port) || !look_at_permission(port.path)) return nullptr;
     const std::string holder = find_holder(port);
-    auto opened = serial_port::open(port.path, {.baud = log_.options().baud});
+    auto opened =
+        serial_port::open(port.path, {.baud = first_baud(log_.options(), searched_first)});
     if (!opened) return give_up(opened.error());
     if (!holder.empty() && !is_pty(port.path)) {
       report_.find(diagnosis::interference);
@@ -158,8 +162,7 @@ std::string cause_of(const error& why) {
 }
 
 std::vector<stage_report> diagnose(std::string_view source, const diagnostic_options& options) {
-  diagnostic_options with_rates = options;
-  stage_log log(with_rates);
+  stage_log log(options);
   std::string device(source);
   std::unique_ptr<connector> simulated;  // outlives the run
   switch (kind_of_source(source)) {
@@ -184,22 +187,15 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
   port_stages first(log);
   auto opened = device.starts_with("tcp:") ? first.connect(device) : first.open(device);
   if (!opened) return std::move(log.stages());
-  const std::string path(opened->name());
-  // Other baud rates make no difference on a pseudo-terminal.
-  if (!options.reopen && path.starts_with('/') && !is_pty(path)) {
-    with_rates.reopen = [path](std::uint32_t rate) -> std::unique_ptr<transport> {
-      auto again = serial_port::open(path, {.baud = rate});
-      return again ? std::move(*again) : nullptr;
-    };
-  }
-  live_run(std::move(opened), log).run();
+  const bool is_named = !source.empty();
+  live_run(std::move(opened), log, is_named).run();
   return std::move(log.stages());
 }
 
 std::vector<stage_report> diagnose(std::unique_ptr<transport> opened,
                                    const diagnostic_options& options) {
   stage_log log(options);
-  live_run(std::move(opened), log).run();
+  live_run(std::move(opened), log, true).run();
   return std::move(log.stages());
 }
 

@@ -66,7 +66,7 @@ class file_run {
     if (const auto& device = reader.device()) {
       if (!device_.information) device_.information = device->information;
       device_.frequency = device->frequency;
-      device_.sample_rate = device->sample_rate;
+      if (device->sample_rate) device_.sample_rate_hz = to_hz(*device->sample_rate);
     }
     seconds_ = static_cast<double>(last_ns_ - reader.first_ns()) / 1e9;
     return true;
@@ -181,7 +181,7 @@ class file_run {
     judge_stream(stream, measured_, seconds_);
     log_.report(std::move(stream));
     report_rate(log_, measured_, device_, model_);
-    report_loss(log_, measured_);
+    report_loss(log_, measured_, model_);
     log_.skip(diagnostic_stage::usb_latency,
               "The reader of a file or a recording groups bytes itself.");
   }
@@ -192,7 +192,7 @@ class file_run {
   event_splitter splitter_;
   layout_recogniser layout_;
   observer to_{.event = [this](const observed_event& observed) { take(observed); }};
-  stream_statistics measured_;
+  stream_statistics measured_{model_};
   device_snapshot device_;
   std::uint64_t looked_ = 0;  // samples at the last check of the speed
   bool is_judging_ = false;

@@ -79,8 +79,8 @@ link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool
                            const model& which)
     : transport_(std::move(opened)),
       is_cancelled_(std::move(is_cancelled)),
-      format_(which.samples),
-      splitter_(format_),
+      which_(&which),
+      splitter_(which.samples),
       link_(splitter_.parser(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns}, cut_off_after_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
@@ -161,14 +161,10 @@ bool link_monitor::stop() {
   if (now_ns() < heard_ns() + quiet_ns) listen_for_quiet(quiet_ns, now_ns() + stop_ns);
   const bool is_quiet = now_ns() >= heard_ns() + quiet_ns;  // also without noise
   if (is_quiet) splitter_.finish({});
-  return done && done->how == verdict::answered && is_quiet;
-}
-
-void link_monitor::stop_after_failure() {
-  if (!transport_ || !error_) return;
   for (const command code : {command::forced_stop, command::stop}) {
-    static_cast<void>(transport_->write(encode(code), transport_->now_ns() + 100 * ms));
+    if (error_) static_cast<void>(transport_->write(encode(code), transport_->now_ns() + 100 * ms));
   }
+  return done && done->how == verdict::answered && is_quiet;
 }
 
 exchange link_monitor::ask(command code, std::int64_t patience_ns) {
@@ -212,14 +208,31 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
   made.is_disturbed |= boots() != boots_before || host_pauses_ != pauses_before;
 }
 
-void link_monitor::replace(const std::function<std::unique_ptr<transport>()>& make) {
-  ended_ns_ = now_ns();
-  transport_.reset();
-  transport_ = make();
-  splitter_ = event_splitter(format_);
+void link_monitor::read_as(const model& which) {
+  which_ = &which;
+  boots_before_ += splitter_.boots();
+  splitter_ = event_splitter(which.samples);
   layout_ = {};
   silence_ns_ = 0;
   read_ns_ = -1;
+}
+
+result<recognised_lidar> link_monitor::search(const search_options& known, std::int64_t time_ns) {
+  auto found = g4lidar::search(*transport_, now_ns() + time_ns, known);
+  const bool is_lost =
+      !found && (found.error() == problem::gone || found.error() == problem::system ||
+                 found.error() == problem::end_of_input || found.error() == problem::interference);
+  if (is_lost) error_ = found.error();
+  read_as(*which_);
+  return found;
+}
+
+bool link_monitor::set_baud(std::uint32_t baud) {
+  if (is_over()) return false;
+  const auto set = transport_->set_baud(baud);
+  if (!set) error_ = set.error();
+  read_as(*which_);
+  return set.value_or(false);
 }
 
 }  // namespace g4lidar

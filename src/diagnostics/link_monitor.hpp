@@ -15,6 +15,7 @@
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/stream_counter.hpp"
+#include "g4lidar/discovery.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/transport/transport.hpp"
 
@@ -112,14 +113,11 @@ class link_monitor {
   [[nodiscard]] exchange ask(command code, std::int64_t patience_ns);
   /// Waits for the reply to a command that was sent before.
   void await(exchange& made, std::int64_t patience_ns);
-  /// Stops the device, with up to three attempts. Returns whether it is silent.
+  /// Stops the device, with up to three attempts. Returns whether it is silent. If reading has failed, a
+  /// write may still stop the motor.
   bool stop();
-  /// If reading has failed, a write may still stop the motor.
-  void stop_after_failure();
 
-  [[nodiscard]] std::int64_t now_ns() const noexcept {
-    return transport_ ? transport_->now_ns() : ended_ns_;
-  }
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return transport_->now_ns(); }
   /// The error that ended the connection.
   [[nodiscard]] const std::optional<error>& failure() const noexcept { return error_; }
   [[nodiscard]] bool is_cancelled() const noexcept { return cancelled_; }
@@ -128,25 +126,27 @@ class link_monitor {
     is_cancelled_ = nullptr;
     cancelled_ = false;
   }
-  [[nodiscard]] bool is_over() const noexcept { return cancelled_ || error_ || !transport_; }
+  [[nodiscard]] bool is_over() const noexcept { return cancelled_ || error_; }
   /// When the last byte arrived.
   [[nodiscard]] std::int64_t heard_ns() const noexcept { return link_.heard_ns(); }
-  [[nodiscard]] std::uint64_t boots() const noexcept { return splitter_.boots(); }
-  /// Counts of everything observed since replace().
+  [[nodiscard]] std::uint64_t boots() const noexcept { return boots_before_ + splitter_.boots(); }
+  /// Counts of everything observed since read_as(), search() or set_baud().
   [[nodiscard]] const stream_counts& counts() const noexcept { return splitter_.counts(); }
-  [[nodiscard]] std::uint32_t baud() const noexcept { return transport_ ? transport_->baud() : 0; }
   /// When the last pause of the host ended that was as long as a stall of the lidar; 0: there was none.
   [[nodiscard]] std::int64_t host_paused_ns() const noexcept { return host_paused_ns_; }
   /// Pauses of the host of any length.
   [[nodiscard]] std::uint64_t host_pauses() const noexcept { return host_pauses_; }
-  /// Of everything observed since replace().
+  /// Of the same.
   [[nodiscard]] const layout_recogniser& layout() const noexcept { return layout_; }
-  /// The name of the transport. Empty without one.
-  [[nodiscard]] std::string_view name() const noexcept {
-    return transport_ ? transport_->name() : std::string_view{};
-  }
-  /// Uses another transport from now on; calls `make` after closing the earlier one.
-  void replace(const std::function<std::unique_ptr<transport>()>& make);
+  /// Where the bytes come from.
+  [[nodiscard]] transport& port() const noexcept { return *transport_; }
+  /// The bytes that follow are those of a lidar like `which`, valid as long as this, and do not continue
+  /// the earlier ones.
+  void read_as(const model& which);
+  /// Finds the lidar at the transport, as search() does, in this time, which begins now.
+  [[nodiscard]] result<recognised_lidar> search(const search_options& known, std::int64_t time_ns);
+  /// Sets the rate of the transport, if it has one that can be changed; returns whether it has.
+  bool set_baud(std::uint32_t baud);
 
  private:
   void take(const received& got, reading what, const observer& to);
@@ -154,13 +154,13 @@ class link_monitor {
 
   std::unique_ptr<transport> transport_;
   std::function<bool()> is_cancelled_;
-  sample_format format_;
+  const model* which_;
   std::optional<error> error_;
   bool cancelled_ = false;
   bool has_backlog_ = false;
-  std::int64_t ended_ns_ = 0;
   std::int64_t read_ns_ = -1;  // the end of the last read
   event_splitter splitter_;
+  std::uint64_t boots_before_ = 0;  // observed by earlier splitters
   device_link link_;
   std::array<std::uint8_t, 4096> buffer_{};
   std::int64_t silence_ns_ = 0;

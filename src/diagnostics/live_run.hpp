@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "first_contact.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "link_monitor.hpp"
 #include "reply_statistics.hpp"
@@ -17,8 +18,12 @@ namespace g4lidar {
 /// One run. *Single thread.*
 class live_run {
  public:
-  /// Reports the stages from baud_rate on to `log`, which must outlive this.
-  live_run(std::unique_ptr<transport> opened, stage_log& log);
+  /// Reports the stages from baud_rate on to `log`, which must outlive this. `may_pulse_dtr`: as in
+  /// search_options.
+  live_run(std::unique_ptr<transport> opened, stage_log& log, bool may_pulse_dtr);
+  live_run(const live_run&) = delete;
+  live_run& operator=(const live_run&) = delete;
+  ~live_run() = default;
 
   void run();
 
@@ -50,13 +55,12 @@ class live_run {
   void measure_scan();
   void report_stream();
 
-  /// Observes bytes without a query, and stops a scan. False if it does not stop, or there are no
-  /// packets.
-  bool make_quiet();
-  bool first_contact();
-  void ask_the_rest(exchange last, std::int64_t begin_ns);
-  void look_for_baud_rate(stage_report& baud);
-  [[nodiscard]] bool scans_when_started();
+  /// What CT bytes state about a lidar that answers nothing.
+  void read_information();
+  /// The motor of a lidar that answered to the start has never turned.
+  [[nodiscard]] diagnosis of_never_started() const noexcept;
+  /// Stops the scan and the motor, as far as that is possible. False: it continues.
+  bool end();
   void start_scan();
   /// Waits until the head has its speed, or will not reach it.
   [[nodiscard]] scan_state warm_up(stream_statistics& measured);
@@ -76,6 +80,7 @@ class live_run {
   void add_failure(stage_report& report);
 
   stage_log& log_;
+  examined_lidar lidar_;
   link_monitor link_;
   reply_statistics replies_;
   device_snapshot device_;
@@ -83,12 +88,11 @@ class live_run {
   stage_report answer_{.stage = diagnostic_stage::answers};
   stage_report stream_{.stage = diagnostic_stage::stream};
   start_record started_;
-  bool is_deaf_ = false;      // it scans and ignores commands
   bool keeps_alive_ = false;  // with keep-alives, because the protection is on
-  std::uint32_t baud_ = 0;
-  std::uint64_t garbage_ = 0;  // bytes outside packets and responses, before the first query
+  first_contact contact_;
   std::int64_t measured_ns_ = 0;
   unsigned restarts_ = 0;
+  bool has_motor_line_ = false;  // DTR
 };
 
 }  // namespace g4lidar

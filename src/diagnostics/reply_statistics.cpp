@@ -6,15 +6,26 @@
 #include <utility>
 
 #include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 
 namespace g4lidar {
 namespace {
 
 constexpr int rounds = 5;
-constexpr std::array questions{command::device_info,          command::health,
-                               command::health_vendor,        command::frequency_query,
-                               command::sample_rate_query,    command::low_power_query,
-                               command::motor_direction_query};
+struct question {
+  command code;
+  request_kind of;  // a lidar has it if it has this request
+};
+constexpr std::array all_questions{
+    question{command::device_info, request_kind::device_info},
+    question{command::health, request_kind::health},
+    question{command::health_vendor, request_kind::health},
+    question{command::frequency_query, request_kind::get_scan_frequency},
+    question{command::sample_rate_query, request_kind::get_sample_rate},
+    question{command::low_power_query, request_kind::get_low_power},
+    question{command::motor_direction_query, request_kind::get_direction},
+    question{command::zero_angle, request_kind::zero_angle},
+    question{command::pitch, request_kind::pitch}};
 /// A reply that takes longer is late.
 constexpr std::int64_t late_ns = 150 * ms;
 /// A single reply with this delay is caused by a stall of the link.
@@ -22,9 +33,24 @@ constexpr std::int64_t very_late_ns = 400 * ms;
 /// The number of commands without a reply at the end of a series that means a dead link.
 constexpr unsigned unanswered_of_dead_link = 6;
 
-bool may_be_unknown(command code) noexcept {
-  return code == command::health || code == command::health_vendor ||
-         code == command::motor_direction_query || code == command::low_power_query;
+std::vector<command> questions_to(const model& which) {
+  std::vector<command> all;
+  for (const question& each : all_questions) {
+    if (has_request(which, each.of)) all.push_back(each.code);
+  }
+  return all;
+}
+
+bool may_be_unknown(command code, const model& which) noexcept {
+  switch (code) {
+    case command::device_info:
+    case command::frequency_query:
+      return false;
+    case command::sample_rate_query:
+      return !which.rates.is_settable;
+    default:
+      return true;
+  }
 }
 
 }  // namespace
@@ -55,14 +81,14 @@ bool reply_statistics::is_odd(const exchange& one) const {
   return !std::ranges::equal(usual(one.asked), one.reply);
 }
 
-bool reply_statistics::is_unknown(command code) const {
-  if (!may_be_unknown(code)) return false;
+bool reply_statistics::is_unknown(command code, const model& which) const {
+  if (!may_be_unknown(code, which)) return false;
   return std::none_of(made_.begin(), made_.end(), [&](const exchange& e) {
     return e.asked == code && (e.is_answered() || e.wrong > 0);
   });
 }
 
-reply_statistics::tally reply_statistics::count() const {
+reply_statistics::tally reply_statistics::count(const model& which) const {
   tally sum;
   for (const exchange& one : made_) {
     if (one.packets > 0 || one.is_disturbed) continue;
@@ -75,7 +101,7 @@ reply_statistics::tally reply_statistics::count() const {
       sum.missing_before = sum.missing;
     } else if (one.heard_nothing()) {
       ++sum.missing_at_end;
-      if (!is_unknown(one.asked)) ++sum.missing;
+      if (!is_unknown(one.asked, which)) ++sum.missing;
     } else if (one.wrong == 0) {
       ++sum.damaged;
       sum.missing_at_end = 0;
@@ -85,18 +111,18 @@ reply_statistics::tally reply_statistics::count() const {
   return sum;
 }
 
-bool reply_statistics::is_clear() const {
-  const tally sum = count();
+bool reply_statistics::is_clear(const model& which) const {
+  const tally sum = count(which);
   return sum.late >= 4 || sum.wrong >= 6 || sum.missing_at_end >= unanswered_of_dead_link;
 }
 
-bool reply_statistics::has_died() const {
-  const tally sum = count();
+bool reply_statistics::has_died(const model& which) const {
+  const tally sum = count(which);
   return answered() > 0 && sum.missing_at_end >= unanswered_of_dead_link && sum.missing_before <= 1;
 }
 
-void reply_statistics::judge(stage_report& report, bool host_paused) const {
-  const tally sum = count();
+void reply_statistics::judge(stage_report& report, bool host_paused, const model& which) const {
+  const tally sum = count(which);
   std::int64_t slowest_ns = 0;
   for (const exchange& e : made_) {
     if (e.is_answered()) slowest_ns = std::max(slowest_ns, e.latency_ns());
@@ -109,7 +135,7 @@ void reply_statistics::judge(stage_report& report, bool host_paused) const {
         std::pair("missing", sum.missing), std::pair("damaged", sum.damaged)}) {
     if (value > 0) report.add(name, value);
   }
-  const bool died = has_died();
+  const bool died = has_died(which);
   // Late replies leave commands without a reply, and count as wrong replies to the next command.
   const bool is_late = sum.late >= 2;
   // The very first reply may have waited for the end of a boot.
@@ -128,30 +154,43 @@ void device_snapshot::take(const response_view& reply) {
   if (const auto found = reply.as_health()) condition = found;
 }
 
-device_snapshot reply_statistics::snapshot() const {
+void device_snapshot::take_setting(command asked, const response_view& reply, const model& which) {
+  const auto chz = reply.as_frequency_chz();
+  const bool is_step =
+      asked >= command::frequency_up_0_1_hz && asked <= command::frequency_down_1_hz;
+  if (chz && (asked == command::frequency_query || is_step)) {
+    const int true_chz = int{*chz} + which.frequency.reply_offset_chz;
+    frequency = scan_frequency{static_cast<std::uint16_t>(std::max(true_chz, 0))};
+  }
+  const auto value = reply.as_byte();
+  if (value && (asked == command::sample_rate_query || asked == command::sample_rate_next)) {
+    const std::uint32_t hz = rate_hz_of_code(which, *value);
+    if (hz != 0) sample_rate_hz = hz;
+  }
+}
+
+device_snapshot reply_statistics::snapshot(const model& which) const {
   device_snapshot known;
-  for (const command code : questions) {
-    const auto reply = response_view::from(usual(code));
+  for (const command code : questions_to(which)) {
+    const auto reply = response_view::from(usual(code), which.samples.has_angle_replies);
     if (!reply || (code == command::health_vendor && known.condition)) continue;
     known.take(*reply);
-    if (const auto chz = reply->as_frequency_chz()) known.frequency = scan_frequency{*chz};
-    const auto value = reply->as_byte();
-    if (value && code == command::sample_rate_query) {
-      known.sample_rate = reply_byte<sample_rate>(*value);
-    }
+    known.take_setting(code, *reply, which);
   }
   return known;
 }
 
-void ask_all(link_monitor& link, reply_statistics& replies, std::int64_t first_latency_ns) {
+void ask_all(link_monitor& link, reply_statistics& replies, const model& which,
+             std::int64_t first_latency_ns) {
+  const std::vector<command> questions = questions_to(which);
   const std::int64_t patience_ns =
       std::max<std::int64_t>(600 * ms, 2 * first_latency_ns + 300 * ms);
   bool has_waited_long = false;
-  std::array<int, questions.size()> silent{};
-  for (int round = 0; round < rounds && !link.is_over() && !replies.is_clear(); ++round) {
+  std::array<int, all_questions.size()> silent{};
+  for (int round = 0; round < rounds && !link.is_over() && !replies.is_clear(which); ++round) {
     for (std::size_t i = 0; i < questions.size() && !link.is_over(); ++i) {
       const bool is_known = silent[i] < 0;
-      if (silent[i] >= 2 && may_be_unknown(questions[i])) continue;
+      if (silent[i] >= 2 && may_be_unknown(questions[i], which)) continue;
       exchange made = link.ask(questions[i], patience_ns);
       if (made.packets > 0) return replies.add(std::move(made));  // it scans: that is handled first
       if (made.heard_nothing() && round > 0 && is_known && !has_waited_long) {

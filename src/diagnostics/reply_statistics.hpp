@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/diagnostics/diagnosis.hpp"
@@ -17,11 +18,13 @@ namespace g4lidar {
 struct device_snapshot {
   std::optional<device_information> information{};
   std::optional<health> condition{};
-  std::optional<scan_frequency> frequency{};
-  std::optional<g4lidar::sample_rate> sample_rate{};
+  std::optional<scan_frequency> frequency{};      ///< As set; without the offset of replies.
+  std::optional<std::uint32_t> sample_rate_hz{};  ///< As set.
 
   /// The information or the health, if the reply contains it.
   void take(const response_view& reply);
+  /// The frequency or the sample rate, if this is the reply of a lidar like `which` to such a command.
+  void take_setting(command asked, const response_view& reply, const model& which);
 };
 
 /// All commands that were sent. Those that were disturbed by packets, a boot or a pause of the host
@@ -31,14 +34,14 @@ class reply_statistics {
   void add(exchange made) { made_.push_back(std::move(made)); }
   [[nodiscard]] const std::vector<exchange>& exchanges() const noexcept { return made_; }
   [[nodiscard]] std::ptrdiff_t answered() const noexcept;
-  /// From most of its replies.
-  [[nodiscard]] device_snapshot snapshot() const;
+  /// From most of its replies, which are those of a lidar like `which`.
+  [[nodiscard]] device_snapshot snapshot(const model& which) const;
   /// Adds diagnoses and numbers. If the host paused, a few late replies are its own.
-  void judge(stage_report& report, bool host_paused) const;
+  void judge(stage_report& report, bool host_paused, const model& which) const;
   /// There were replies, and later none.
-  [[nodiscard]] bool has_died() const;
+  [[nodiscard]] bool has_died(const model& which) const;
   /// So many replies were wrong that further commands are useless.
-  [[nodiscard]] bool is_clear() const;
+  [[nodiscard]] bool is_clear(const model& which) const;
 
  private:
   struct tally {
@@ -51,9 +54,9 @@ class reply_statistics {
     unsigned missing_at_end = 0;  // consecutive, for any command
     unsigned missing_before = 0;  // the missing ones before these
   };
-  [[nodiscard]] tally count() const;
+  [[nodiscard]] tally count(const model& which) const;
   /// A query that firmware need not support, and without any reply.
-  [[nodiscard]] bool is_unknown(command code) const;
+  [[nodiscard]] bool is_unknown(command code, const model& which) const;
   /// Differs from the most frequent reply to the same command.
   [[nodiscard]] bool is_odd(const exchange& one) const;
   /// The most frequent reply; empty if there is none.
@@ -62,8 +65,9 @@ class reply_statistics {
   std::vector<exchange> made_;
 };
 
-/// Sends all queries, in rounds, and adds the replies. `first_latency_ns`: that of an earlier
-/// reply.
-void ask_all(link_monitor& link, reply_statistics& replies, std::int64_t first_latency_ns);
+/// Sends all queries that `which` has, in rounds, and adds the replies. `first_latency_ns`: that of an
+/// earlier reply.
+void ask_all(link_monitor& link, reply_statistics& replies, const model& which,
+             std::int64_t first_latency_ns);
 
 }  // namespace g4lidar

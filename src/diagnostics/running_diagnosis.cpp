@@ -112,7 +112,9 @@ running_diagnosis::~running_diagnosis() = default;
 std::unique_ptr<connector> running_diagnosis::observe(std::unique_ptr<connector> from) {
   recording_hook* const hook = recording_hook_of(*from);
   recorded_event_source* const played = hook != nullptr ? hook->events() : nullptr;
-  state_->begin(from->traits().answers, played != nullptr ? &played->device() : nullptr);
+  const connector_traits known = from->traits();
+  state_->begin(known.answers, played != nullptr ? &played->device() : nullptr,
+                known.model != nullptr ? *known.model : g4_model);
   return std::make_unique<observed_connector>(std::move(from), *state_);
 }
 

@@ -8,11 +8,17 @@
 namespace g4lidar {
 void running_scan::begin(bool is_device) {
   is_device_ = is_device;
-  splitter_ = {};
+  splitter_ = event_splitter(which_->samples);
   asked_.reset();
   garbage_ = 0;
   time_ns_ = 0;
-  enter(is_device ? phase::rests : phase::starts);
+  const bool awaits_start = is_device && which_->link == link_kind::two_way;
+  enter(awaits_start ? phase::rests : phase::starts);
+}
+
+void running_scan::read_as(const model& which) {
+  which_ = &which;
+  measured_ = stream_statistics(which);
 }
 
 void running_scan::end() {
@@ -97,10 +103,9 @@ void running_scan::take(const observed_event& found) {
 // What a byte means depends on the command; a device that introduces itself without one has booted.
 void running_scan::take(const response_view& response) {
   known_.take(response);
-  if (const auto chz = response.as_frequency_chz()) known_.frequency = scan_frequency{*chz};
-  const auto value = response.as_byte();
-  if (value && (asked_ == command::sample_rate_query || asked_ == command::sample_rate_next)) {
-    known_.sample_rate = reply_byte<sample_rate>(*value);
+  const bool is_frequency = response.as_frequency_chz() && !which_->samples.has_angle_replies;
+  if (is_frequency || asked_) {
+    known_.take_setting(is_frequency ? command::frequency_query : *asked_, response, *which_);
   }
   const bool is_unasked = is_device_ && asked_ == command::start;
   may_have_booted_ |= is_unasked && response.kind() == response_kind::device_info;

@@ -27,8 +27,11 @@ class running_scan {
   explicit running_scan(const running_diagnosis_options& options)
       : half_window_ns_(options.window.count() / 2) {
     known_.frequency = options.frequency;
-    known_.sample_rate = options.sample_rate;
+    if (options.sample_rate) known_.sample_rate_hz = to_hz(*options.sample_rate);
   }
+
+  /// From the next connection on, the bytes are those of a lidar like `which`. Valid forever.
+  void read_as(const model& which);
 
   /// A connection begins, to a device or to a file.
   void begin(bool is_device);
@@ -38,6 +41,7 @@ class running_scan {
   void sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns);
   void received(const reading& what, bytes data);
 
+  [[nodiscard]] const model& which() const noexcept { return *which_; }
   [[nodiscard]] phase now() const noexcept { return phase_; }
   [[nodiscard]] device_snapshot& known() noexcept { return known_; }
   [[nodiscard]] const device_snapshot& known() const noexcept { return known_; }
@@ -52,9 +56,7 @@ class running_scan {
   /// The same for a scan that was silent when it was started again.
   [[nodiscard]] bool take_stall() noexcept { return std::exchange(has_stalled_, false); }
   /// Whether many bytes have arrived that belong to nothing, also while no scan is wanted.
-  [[nodiscard]] bool has_garbage() const noexcept {
-    return garbage_ > stream_statistics::garbage_bytes;
-  }
+  [[nodiscard]] bool has_garbage() const noexcept { return garbage_ > garbage_bytes(*which_); }
 
  private:
   /// Between two checks of the speed of the head.
@@ -78,6 +80,7 @@ class running_scan {
   /// Whether packets arrive, so that a start command is a keep-alive.
   [[nodiscard]] bool is_current(std::int64_t now_ns) const noexcept;
 
+  const model* which_ = &g4_model;
   std::int64_t half_window_ns_;
   phase phase_ = phase::rests;
   bool is_device_ = true;

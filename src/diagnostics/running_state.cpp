@@ -89,6 +89,7 @@ running_state::copy running_state::take_copy() const {
   copy made{scan_.now(),
             scan_.window(),
             scan_.known(),
+            &scan_.which(),
             found_.since(now_ns_ - window_ns_),
             scan_.seconds(),
             baud_,
@@ -139,9 +140,9 @@ std::vector<stage_report> running_state::stages() const {
     if (of.seconds < shortest_rate_s) {
       log.skip(diagnostic_stage::rate, "The scan has not run for long enough.");
     } else {
-      report_rate(log, of.measured, of.known);
+      report_rate(log, of.measured, of.known, *of.which);
     }
-    report_loss(log, of.measured);
+    report_loss(log, of.measured, *of.which);
     report_latency(log, of.measured, of.baud, of.name);
     return std::move(log.stages());
   }

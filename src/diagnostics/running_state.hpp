@@ -49,13 +49,14 @@ class running_state {
       : window_ns_(std::clamp<std::int64_t>(options.window.count(), 1'000 * ms, 3'600'000 * ms)),
         scan_({std::chrono::nanoseconds(window_ns_), options.frequency, options.sample_rate}) {}
 
-  void begin(bool is_device, const recorded_device* recorded) {
+  void begin(bool is_device, const recorded_device* recorded, const model& which) {
     const std::lock_guard hold(mutex_);
     is_device_ = is_device;
+    scan_.read_as(which);
     if (recorded == nullptr) return;
     scan_.known().information = recorded->information;
     if (recorded->frequency) scan_.known().frequency = recorded->frequency;
-    if (recorded->sample_rate) scan_.known().sample_rate = recorded->sample_rate;
+    if (recorded->sample_rate) scan_.known().sample_rate_hz = to_hz(*recorded->sample_rate);
   }
   void connected(const transport& to) {
     const std::lock_guard hold(mutex_);
@@ -96,6 +97,7 @@ class running_state {
     running_scan::phase phase;
     stream_statistics measured;
     device_snapshot known;
+    const model* which;
     std::vector<diagnosis> found;
     double seconds;
     std::uint32_t baud;

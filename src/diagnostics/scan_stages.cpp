@@ -28,11 +28,18 @@ constexpr std::int64_t signs_ns = 2'500 * ms;
 constexpr std::int64_t protection_from_ns = 2'600 * ms;
 constexpr std::int64_t protection_to_ns = 3'400 * ms;
 constexpr unsigned most_restarts = 2;
+/// The line DTR is low for this time before it starts the motor.
+constexpr std::int64_t dtr_low_ns = 120 * ms;
 
 }  // namespace
 
 void live_run::start_scan() {
   log_.begin(diagnostic_activity::starting);
+  if (lidar_.is_driven_by_dtr()) {
+    has_motor_line_ = link_.port().set_dtr(false).value_or(false);
+    if (has_motor_line_) link_.listen_for(dtr_low_ns);
+    static_cast<void>(link_.port().set_dtr(true));
+  }
   link_.send(command::start);
   started_ = {
       .sent_ns = link_.now_ns(), .kept_alive_ns = link_.now_ns(), .boots_before = link_.boots()};
@@ -95,13 +102,20 @@ live_run::scan_state live_run::warm_up(stream_statistics& measured) {
 
 bool live_run::start_motor() {
   stage_report motor{.stage = diagnostic_stage::motor};
-  if (!is_deaf_) start_scan();
+  measured_ = stream_statistics(*lidar_.which);
+  const bool is_started = !lidar_.is_deaf && !lidar_.is_one_way();
+  if (is_started) {
+    start_scan();
+  } else {
+    started_.sent_ns = started_.kept_alive_ns = link_.now_ns();
+    started_.boots_before = link_.boots();
+  }
   scan_state state = warm_up(measured_);
   const bool had_packets = measured_.tally().counts.packets > 0;
   if (had_packets && state == scan_state::runs) {
     motor.add("spin_up_ms", (link_.now_ns() - started_.sent_ns) / ms);
     motor.add("first_packet_ms", (started_.first_packet_ns - started_.sent_ns) / ms);
-    if (is_deaf_) motor.measurements.clear();
+    if (!is_started) motor.measurements.clear();
   }
   if (state == scan_state::silent) {
     const fate what = fate_of_silent();
@@ -111,10 +125,15 @@ bool live_run::start_motor() {
     }
     if (what == fate::booted) motor.find(diagnosis::reboots);
     if (what == fate::dead) {
-      motor.find(replies_.has_died() ? diagnosis::stalls : diagnosis::brown_out);
+      const bool is_of_start = is_started && !replies_.has_died(*lidar_.which);
+      motor.find(is_of_start ? diagnosis::brown_out : diagnosis::stalls);
     }
     if (what == fate::answers) {
-      motor.find(had_packets ? diagnosis::reboots : diagnosis::does_not_start);
+      motor.find(had_packets ? diagnosis::reboots : of_never_started());
+      if (lidar_.is_driven_by_dtr() && !has_motor_line_) {
+        motor.remark = "This connection has no line DTR, which starts the motor of " +
+                       one_of(*lidar_.which) + ".";
+      }
     }
   }
   if (state == scan_state::runs) judge_motor(motor, measured_);
@@ -122,6 +141,12 @@ bool live_run::start_motor() {
   const bool runs = state == scan_state::runs && !link_.is_over();
   log_.report(std::move(motor));
   return runs;
+}
+
+// A start that it confirms with the scan header has reached it.
+diagnosis live_run::of_never_started() const noexcept {
+  const bool lacks_power = lidar_.is_driven_by_dtr() && started_.has_header;
+  return lacks_power ? diagnosis::no_motor_power : diagnosis::does_not_start;
 }
 
 bool live_run::is_host_busy() const noexcept { return link_.host_paused_ns() > started_.sent_ns; }
@@ -141,7 +166,10 @@ live_run::fate live_run::fate_of_silent() {
   if (link_.counts().packets > before) return fate::resumed;
   if (link_.is_over()) return fate::over;
   if (link_.boots() > started_.boots_before || started_.has_introduced_itself) return fate::booted;
-  for (int i = 0; i < 2 && !link_.is_over(); ++i) {
+  constexpr int attempts = 3;
+  for (int i = 0; i < attempts && !link_.is_over() && !lidar_.is_one_way(); ++i) {
+    // Some models ignore queries as long as they scan.
+    if (i == attempts - 1) link_.stop();
     const exchange made = link_.ask(command::device_info, 800 * ms);
     if (made.packets > 0) return fate::resumed;
     if (!made.heard_nothing()) return fate::answers;
@@ -173,15 +201,16 @@ bool live_run::revive(std::int64_t& until_ns) {
       stream_.find(diagnosis::reboots);
       return false;
     case fate::dead:
-      stream_.find(lasted_ns < of_the_start_ns ? diagnosis::brown_out : diagnosis::stalls);
+      stream_.find(lasted_ns < of_the_start_ns && !lidar_.is_one_way() ? diagnosis::brown_out
+                                                                       : diagnosis::stalls);
       return false;
     case fate::over:
       return false;
     case fate::answers:
       break;
   }
-  const bool may_be_protected =
-      !keeps_alive_ && unkept_ns >= protection_from_ns && unkept_ns <= protection_to_ns;
+  const bool may_be_protected = lidar_.which->protection != presence::no && !keeps_alive_ &&
+                                unkept_ns >= protection_from_ns && unkept_ns <= protection_to_ns;
   const bool is_starved = keeps_alive_ && is_host_busy();  // by the host
   if (!may_be_protected && !is_starved) stream_.find(diagnosis::scan_ends);
   if (restarts_ == most_restarts) return false;
@@ -193,7 +222,7 @@ bool live_run::revive(std::int64_t& until_ns) {
 
 bool live_run::restart_scan(std::int64_t& until_ns) {
   ++restarts_;
-  stream_statistics warming;
+  stream_statistics warming(*lidar_.which);
   start_scan();
   if (warm_up(warming) != scan_state::runs) return false;
   // With keep-alive commands it must last longer than without.

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "discovery/model_choice.hpp"
 #include "stages.hpp"
 
 namespace g4lidar {
@@ -13,12 +14,18 @@ namespace {
 
 constexpr double frequency_tolerance = 0.06;
 constexpr double sample_rate_tolerance = 0.12;
-/// Between the rates of a G4 and those of other models, 5000 and 10000.
+/// Between the rates of different models: of a G4 4000, 8000 and 9000, of others 5000 and 10000.
 constexpr double other_model_tolerance = 0.06;
 /// How far a number of samples per revolution may be beyond those at the limits of rate and frequency.
 constexpr double revolution_tolerance = 0.1;
 /// More than a USB packet of 64 bytes at 230400 baud.
 constexpr double held_back_limit_ms = 3.3;
+
+/// The same at this rate, if that is more.
+double held_back_limit_of_ms(std::uint32_t baud) noexcept {
+  constexpr double usual_baud = 230'400.0;
+  return held_back_limit_ms * std::max(1.0, usual_baud / baud);
+}
 /// The amount of damage up to which there is only a warning.
 constexpr std::uint64_t few_events = 2;
 constexpr double few_lost = 0.002;
@@ -67,6 +74,40 @@ void find_other_speed(stage_report& rate, double samples_per_s, double samples_p
   rate.remark += ".";
 }
 
+/// "The number 15 is that of a G2; that of an X4 is 6."
+std::string other_number(std::uint8_t id, const model& wanted) {
+  const std::string number = "The number " + std::to_string(id) + " is that of ";
+  const std::string_view product = other_product(id);
+  const auto having = models_that_fit({.id = id});
+  std::string text = number;
+  if (!product.empty()) {
+    text.append(product).append(", which is not supported");
+  } else if (having.empty()) {
+    text += "no known model";
+  } else {
+    text += one_of(*having.front());
+  }
+  text += "; that of " + one_of(wanted) + " is " + std::to_string(wanted.ids[0]);
+  if (wanted.ids[1] != 0) text += " or " + std::to_string(wanted.ids[1]);
+  return text + ".";
+}
+
+/// The sample rate that the lidar reports, or else the nearest one of `wanted`, if it has identified
+/// itself; 0: neither.
+double nominal_rate_hz(const device_snapshot& known, double measured_hz, const model& wanted) {
+  if (known.sample_rate_hz) return *known.sample_rate_hz;
+  if (!known.information) return 0.0;
+  double nearest_hz = 0.0;
+  for (const sample_rate_entry& each : wanted.rates.entries) {
+    if (each.hz == 0) continue;
+    const double hz = each.hz;
+    if (nearest_hz == 0.0 || std::abs(hz - measured_hz) < std::abs(nearest_hz - measured_hz)) {
+      nearest_hz = hz;
+    }
+  }
+  return nearest_hz;
+}
+
 /// The last diagnosis of each stage, in the order of the enumeration. An unplug belongs to the port.
 constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
     {{diagnosis::bad_file, diagnostic_stage::port},
@@ -97,6 +138,15 @@ diagnostic_stage stage_of(diagnosis what) noexcept {
       ->second;
 }
 
+std::string words_of(std::span<const model* const> all) {
+  std::string text;
+  for (const model* const& each : all) {
+    if (!text.empty()) text += &each == &all.back() ? " and " : ", ";
+    text += each->word;
+  }
+  return text;
+}
+
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
                      const model& wanted) {
   if (!known) {
@@ -112,7 +162,10 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
   identity.add("serial_number",
                std::string(known->serial_digits.begin(), known->serial_digits.end()));
   const bool is_wanted = known->model == wanted.ids[0] || known->model == wanted.ids[1];
-  if (!is_wanted) identity.find(diagnosis::other_device);
+  if (!is_wanted) {
+    identity.find(diagnosis::other_device);
+    identity.remark = other_number(known->model, wanted);
+  }
   log.report(std::move(identity));
   return is_wanted;
 }
@@ -175,7 +228,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   if (measured.tally().turns_per_sample() > 0.0) {
     rate.add("samples_per_revolution", 1.0 / measured.tally().turns_per_sample());
   }
-  const bool is_unknown_model = !known.information && !known.sample_rate && is_certain &&
+  const bool is_unknown_model = !known.information && !known.sample_rate_hz && is_certain &&
                                 measured.was_steady() && measured.tally().turns_per_sample() > 0.0;
   if (frequency_hz <= 0.0) {
     rate.outcome = stage_verdict::skipped;
@@ -195,8 +248,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   if (is_unknown_model) {
     find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample(), wanted);
   }
-  if (known.sample_rate) {
-    const double nominal_hz = to_hz(*known.sample_rate);
+  if (const double nominal_hz = nominal_rate_hz(known, rate_hz, wanted); nominal_hz > 0.0) {
     rate.add("nominal_samples_per_s", nominal_hz);
     const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
     if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);
@@ -204,7 +256,7 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
   log.report(std::move(rate));
 }
 
-void report_loss(stage_log& log, const stream_statistics& measured) {
+void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted) {
   if (measured.tally().arrivals.bytes() == 0)
     return log.skip(diagnostic_stage::loss, "Nothing arrived.");
   stage_report loss{.stage = diagnostic_stage::loss};
@@ -231,6 +283,12 @@ void report_loss(stage_log& log, const stream_statistics& measured) {
   }
   if (measured.was_steady()) {
     for (const diagnosis what : diagnoses_of(measured)) loss.find(what);
+  }
+  const stream_counter& counts = measured.tally().counts;
+  if (wanted.ct_information == presence::yes && counts.packets > few_packets &&
+      counts.crc_matches + counts.crc_mismatches == 0) {
+    loss.remark =
+        "No CRC byte was seen, which " + one_of(wanted) + " sends: old firmware has none.";
   }
   if (damage.all() <= few_events) {
     if (!loss.diagnoses.empty()) loss.remark = "This is little evidence: measure longer.";
@@ -263,7 +321,7 @@ void report_latency(stage_log& log, const stream_statistics& measured, std::uint
   latency.add("held_back_ms", held_ms);
   if (measured.tally().arrivals.longest_host_pause_ns() > 0) {
     latency.remark = "This computer was busy: that delays bytes, too.";
-  } else if (held_ms > held_back_limit_ms) {
+  } else if (held_ms > held_back_limit_of_ms(baud)) {
     latency.find(diagnosis::usb_latency);
   }
   log.report(std::move(latency));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,6 +47,12 @@ class stage_log {
   std::vector<stage_report> stages_;
 };
 
+/// The rate at which a run begins: that of the user, or of his model; else `otherwise`.
+[[nodiscard]] constexpr std::uint32_t first_baud(const diagnostic_options& options,
+                                                 std::uint32_t otherwise) noexcept {
+  if (options.baud != 0) return options.baud;
+  return options.model != nullptr ? options.model->bauds[0] : otherwise;
+}
 /// The stage to which a diagnosis of a connection or of a running scan belongs.
 [[nodiscard]] diagnostic_stage stage_of(diagnosis what) noexcept;
 /// The message of an error without its advice, which the diagnosis has.
@@ -57,7 +64,7 @@ void examine_file(const std::string& source, stage_log& log);
 
 /// identity; false for another model than `wanted`.
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
-                     const model& wanted = g4_model);
+                     const model& wanted);
 /// health; false if the device reports an error.
 bool report_health(stage_log& log, const std::optional<health>& known);
 /// Up to this number of packets the motor cannot be evaluated.
@@ -66,16 +73,17 @@ inline constexpr std::uint64_t few_packets = 30;
 void judge_motor(stage_report& motor, const stream_statistics& measured);
 /// rate, by the rates of `wanted`.
 void report_rate(stage_log& log, const stream_statistics& measured, const device_snapshot& known,
-                 const model& wanted = g4_model);
-void report_loss(stage_log& log, const stream_statistics& measured);
+                 const model& wanted);
+void report_loss(stage_log& log, const stream_statistics& measured, const model& wanted);
 /// `baud` 0: bytes take no time. `name` is that of the transport: not all have a USB bridge.
 void report_latency(stage_log& log, const stream_statistics& measured, std::uint32_t baud,
                     std::string_view name);
 /// "a G4", "an X4".
 [[nodiscard]] std::string one_of(const model& which);
+/// "x2, x2l and x3": the words of these models.
+[[nodiscard]] std::string words_of(std::span<const model* const> all);
 /// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
-bool find_other_layout(stage_report& report, const layout_recogniser& seen,
-                       const model& wanted = g4_model);
+bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted);
 /// Whether this path leads to a pseudo-terminal.
 [[nodiscard]] bool is_pty(const std::string& path);
 /// Numbers and diagnoses of the stage stream.

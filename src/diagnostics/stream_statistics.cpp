@@ -78,7 +78,7 @@ void stream_statistics::begin() {
 stream_tally stream_statistics::next_stretch() {
   tally_.pace.part();
   const ct_check crc = tally_.counts.crc;
-  stream_tally ended = std::exchange(tally_, {});
+  stream_tally ended = std::exchange(tally_, {.pace = sample_pace(*which_)});
   tally_.counts.crc = crc;
   return ended;
 }
@@ -206,14 +206,16 @@ void stream_statistics::judge(const place& before, const place& now, bool is_zer
 }
 
 void stream_statistics::judge_bytes(std::size_t lost_packets) {
-  const std::size_t expected = lost_packets * packet_size(usual_size_);
+  const sample_layout layout = which_->samples.layout;
+  const std::size_t expected = lost_packets * packet_size(usual_size_, layout);
   if (between_.size == expected) {
     if (lost_packets == 0) return;
     ++tally_.damage.changed;
     tally_.damage.changed_packets += lost_packets;
     if (lost_packets == 1 && between_.raw.size() == expected) {
       const bytes packet = between_.raw;
-      const auto wrong = static_cast<std::uint16_t>(packet_checksum(packet) ^ load_u16(packet, 8));
+      const auto wrong =
+          static_cast<std::uint16_t>(packet_checksum(packet, layout) ^ load_u16(packet, 8));
       ++tally_.damage.one_packet;
       tally_.damage.wrong_bits += static_cast<std::uint64_t>(std::popcount(wrong));
     }

@@ -31,8 +31,17 @@ class step_median {
   std::optional<double> recent_;
 };
 
+/// The bytes of a quarter of a second at the usual baud rate of `which`.
+[[nodiscard]] constexpr std::uint64_t garbage_bytes(const model& which) noexcept {
+  constexpr std::uint64_t bits_of_a_byte = 10;
+  return which.bauds[0] / bits_of_a_byte / 4;
+}
+
 class stream_statistics {
  public:
+  /// Of packets like those of `which`, which must be valid as long as this.
+  explicit stream_statistics(const model& which = g4_model) : which_(&which) {}
+
   void take(const observed_event& observed);
   void take(const reading& observed);
 
@@ -58,8 +67,9 @@ class stream_statistics {
   /// Bytes that have arrived and belong to no packet.
   [[nodiscard]] std::uint64_t bytes_since_packet() const noexcept { return since_packet_; }
   /// Whether there are more than by damage.
-  [[nodiscard]] bool has_become_garbage() const noexcept { return since_packet_ > garbage_bytes; }
-  static constexpr std::uint64_t garbage_bytes = 6'000;  ///< A third of a second.
+  [[nodiscard]] bool has_become_garbage() const noexcept {
+    return since_packet_ > garbage_bytes(*which_);
+  }
   /// Whether the head has reached its speed.
   [[nodiscard]] bool was_steady() const noexcept { return steady_; }
   /// Whether it does not turn, although it measures.
@@ -86,7 +96,8 @@ class stream_statistics {
   void judge_bytes(std::size_t lost_packets);
   void measure_pace(const place& before, const place& now, std::size_t missing);
 
-  stream_tally tally_;
+  const model* which_;
+  stream_tally tally_{.pace = sample_pace(*which_)};
   step_median steps_;
   stretch between_;
   std::optional<place> last_;

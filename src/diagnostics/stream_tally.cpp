@@ -13,8 +13,8 @@ constexpr double shortest_pace_ns = 100e6;
 constexpr unsigned blocks_of_fit = 32;
 /// The usual delay of bytes.
 constexpr double usual_delay_ns = 8e6;
-/// The greatest difference of the sample period from 1/9000 s, as a fraction of it: for 4000 Hz it
-/// is 1.25.
+/// The greatest difference of the sample period from the nominal one, as a fraction of it: of a G4, from
+/// 1/9000 s to 1/4000 s, it is 1.25.
 constexpr arrival_window::slopes any_rate{-0.5, 2.0};
 
 }  // namespace
@@ -84,7 +84,7 @@ void sample_pace::add(std::size_t samples, std::int64_t arrival_ns) noexcept {
 
 void sample_pace::part() noexcept {
   if (window_.span_ns() > shortest_pace_ns) {
-    const double samples = window_.span_ns() / nominal_ns;
+    const double samples = window_.span_ns() / nominal_ns_;
     parted_samples_ += samples;
     parted_ns_ += samples * window_.fit(any_rate, usual_delay_ns).period_ns;
   }

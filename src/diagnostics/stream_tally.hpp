@@ -65,7 +65,11 @@ class arrival_statistics {
 /// or a bridge that holds bytes back, makes some arrivals late and does not change the others.
 class sample_pace {
  public:
-  sample_pace() noexcept { window_.clear(); }
+  /// Of samples like those of `which`: the window needs their rate within a half.
+  explicit sample_pace(const model& which = g4_model) noexcept
+      : nominal_ns_(1e9 / first_rate_hz(which)) {
+    window_.clear();
+  }
 
   /// The number of further samples that had arrived by then.
   void add(std::size_t samples, std::int64_t arrival_ns) noexcept;
@@ -77,10 +81,9 @@ class sample_pace {
   [[nodiscard]] double rate_hz() const noexcept;
 
  private:
-  static constexpr double nominal_ns = 1e9 / g4_model.rates.nominal_hz;
-
-  arrival_window window_{nominal_ns};
-  double period_ns_ = nominal_ns;
+  double nominal_ns_;
+  arrival_window window_{nominal_ns_};
+  double period_ns_ = nominal_ns_;
   unsigned blocks_ = 0;
   std::int64_t samples_ = 0;
   double parted_samples_ = 0.0;  // before the last part()

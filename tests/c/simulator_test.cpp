@@ -166,6 +166,30 @@ TEST(CDoctor, FindsAFaultAndReportsEachStage) {
   EXPECT_TRUE(is_found);
 }
 
+TEST(CDoctor, TakesTheModelThatIsExpected) {
+  const auto remark_with = [](const char* expected) {
+    g4lidar_doctor_options options;
+    g4lidar_doctor_options_init(&options, sizeof options);
+    EXPECT_EQ(options.model, nullptr);
+    EXPECT_EQ(options.baud, 0U);
+    options.model = expected;
+    const report found = examine("sim:?model=x4", &options);
+    const g4lidar_stage* stage = g4lidar_report_at(found.get(), 0);
+    return std::string(stage->diagnosis_count > 0 ? stage->diagnoses[0].name : "") + stage->remark;
+  };
+  EXPECT_EQ(remark_with(nullptr), "");
+  EXPECT_EQ(remark_with("x4"), "");
+  EXPECT_EQ(remark_with("x2"), "other_deviceThe lidar is an X4 at 128000 baud, not an X2.");
+  g4lidar_doctor_options options;
+  g4lidar_doctor_options_init(&options, sizeof options);
+  options.model = "x44";
+  const simulator device = simulate();
+  g4lidar_report* made = nullptr;
+  g4lidar_error why;
+  EXPECT_EQ(g4lidar_diagnose_simulated(device.get(), &options, &made, &why), G4LIDAR_BAD_OPTION);
+  EXPECT_EQ(made, nullptr);
+}
+
 TEST(CDoctor, ExaminesTheSourceThatIsNamed) {
   g4lidar_report* made = nullptr;
   ASSERT_EQ(g4lidar_diagnose("/dev/no-such-port", nullptr, &made, nullptr), G4LIDAR_OK);

@@ -92,6 +92,8 @@ inline examined examine(const sim::device_options& options, std::span<const sim:
 
 /// The names of all diagnoses in the table of faults.
 std::string diagnoses_of_faults();
+/// The same of the tests of the family.
+std::string diagnoses_of_beliefs();
 
 /// Faults in the format of g4-dump.
 inline std::vector<sim::fault> faults_of(std::initializer_list<std::string_view> texts) {

@@ -123,7 +123,7 @@ const std::vector<scenario> scenarios{
     {"frequency_off", "frequency_off",
      [] { return on_link(wrap_in<lying_link>(response_kind::frequency)); }},
     {"other_device", "other_device",
-     [] { return examine(with([](auto& options) { options.info.model = 4; })); }},
+     [] { return examine(with([](auto& options) { options.info.model = 99; })); }},
     {"motor_stuck", "motor_stuck",
      [] { return examine(with([](auto& options) { options.standstill_ns = 60'000'000'000; })); }},
     {"motor_unsteady", "motor_unsteady",
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(All, Diagnosis, ::testing::ValuesIn(scenarios),
                          [](const auto& one) { return std::string(one.param.name); });
 
 TEST(Diagnoses, EachOneHasATest) {
-  std::string all = diagnoses_of_faults();
+  std::string all = diagnoses_of_faults() + diagnoses_of_beliefs();
   for (const scenario& one : scenarios) all.append(one.diagnoses).append(" ");
   std::istringstream words(all);
   std::vector<std::string> found;

@@ -176,27 +176,31 @@ TEST(Settings, DefectiveDeviceThatDoesNotStart) {
   EXPECT_EQ(examine(options).diagnoses(), "health_error");
 }
 
-// If there are no packets at the first baud rate, others are tried.
+// The rate that the user gave is not that of the device: the report has the right one.
 TEST(Settings, OtherBaudRate_IsFound) {
-  sim::virtual_clock clock;
-  const auto garbled = faults_of({"baud", "scanning"});
-  sim::device at_230400(sim::built_in_world(), {}, garbled);
-  sim::device at_128000(sim::built_in_world(), {});
-  diagnostic_options how;
-  std::vector<std::uint32_t> tried;
-  how.reopen = [&](std::uint32_t rate) -> std::unique_ptr<transport> {
-    tried.push_back(rate);
-    if (rate != 128'000) return nullptr;
-    return std::make_unique<sim::virtual_port>(at_128000, clock);
-  };
-  const examined done = examine(at_230400, clock, how);
-  EXPECT_EQ(done.diagnoses(), "wrong_baud_rate") << done;
-  EXPECT_TRUE(done.fails());
-  EXPECT_EQ(tried.back(), 128'000U);
-  const auto& facts = done.at(diagnostic_stage::baud_rate).measurements;
-  EXPECT_TRUE(std::any_of(facts.begin(), facts.end(), [](const evidence& each) {
-    return each.name == "rate_that_works" && each.value == decltype(each.value)(128'000);
-  })) << done;
+  for (const bool scans : {false, true}) {
+    sim::device_options options;
+    options.baud = 128'000;
+    diagnostic_options how;
+    how.baud = 230'400;
+    const auto scanning = faults_of({"scanning"});
+    sim::device simulated(
+        sim::built_in_world(), options,
+        scans ? std::span<const sim::fault>(scanning) : std::span<const sim::fault>());
+    sim::virtual_clock clock;
+    const examined done = examine(simulated, clock, how);
+    EXPECT_EQ(done.diagnoses(), "wrong_baud_rate") << done;
+    EXPECT_TRUE(done.fails());
+    EXPECT_FALSE(done.motor_turns);
+    const stage_report& baud = done.at(diagnostic_stage::baud_rate);
+    EXPECT_EQ(baud.remark, "The bytes are right at 128000 baud: those of a G4.");
+    EXPECT_TRUE(std::any_of(baud.measurements.begin(), baud.measurements.end(),
+                            [](const evidence& each) {
+                              return each.name == "rate_that_works" &&
+                                     each.value == decltype(each.value)(128'000);
+                            }))
+        << done;
+  }
 }
 
 /// A port whose bridge makes another rate than the one that was set.

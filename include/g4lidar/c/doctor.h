@@ -68,8 +68,10 @@ typedef struct g4lidar_doctor_options {
   /** Called with each stage when it ends; the view is valid during the call. NULL: not called. */
   void (*on_stage)(const g4lidar_stage* stage, void* context);
   void* context;       /**< Passed to both. They must not throw C++ exceptions. */
-  uint32_t baud;       /**< Bits per second; 230400. */
+  uint32_t baud;       /**< Bits per second; 0: those of the model, or as they are found. */
   uint8_t reserved[4]; /**< 0. */
+  /** The model that is expected: "x4"; NULL: the one that the device or the file shows. Copied. */
+  const char* model;
 } g4lidar_doctor_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_doctor_options). */
@@ -80,8 +82,8 @@ typedef struct g4lidar_report g4lidar_report;
 
 /** Examines what `source` names, as in g4lidar_options; with "file:PATH" or the path of a recording a
  *  file. A fault of the lidar is not an error: it is in the report. Takes about 3 s plus the measuring
- *  time with a healthy lidar, and at most 45 s plus the measuring time with one fault. Sends queries,
- *  one start, and stops. `options` may be NULL. */
+ *  time with a healthy lidar, 8 s if it has to be searched, and at most 45 s plus the measuring time with
+ *  one fault. Sends queries, one start, and stops. `options` may be NULL. */
 G4LIDAR_C_API int g4lidar_diagnose(const char* source, const g4lidar_doctor_options* options,
                                    g4lidar_report** report, g4lidar_error* error);
 /** The same for a simulated lidar; in virtual time it takes no time. */

@@ -21,6 +21,7 @@ namespace g4lidar {
 enum class diagnostic_activity : std::uint8_t {
   listening,    ///< Bytes that arrive without a query.
   asking,       ///< All queries, several times.
+  searching,    ///< All baud rates, for a lidar that was not found at the first one; up to 6 s.
   starting,     ///< The start command was sent.
   spinning_up,  ///< The lidar has accepted the start command and has sent no packet yet; up to 10 s.
   measuring,    ///< The running scan.
@@ -28,9 +29,10 @@ enum class diagnostic_activity : std::uint8_t {
 
 /// Options and callbacks of a diagnostic run. The callbacks may be empty.
 struct diagnostic_options {
-  std::uint32_t baud = g4_model.bauds[0];
-  /// What sent the bytes of a file. Null: what a recording states, or the raw bytes show; see
-  /// model_of_source(). Not of a device: that is to be a G4.
+  std::uint32_t baud = 0;  ///< Bits per second; 0: those of the model, or as search() finds them.
+  /// The model that is expected. Null: of a device the one that its replies or its bytes show, as
+  /// search() finds it; of a file what a recording states, or the raw bytes show, as
+  /// model_of_source() finds it. Valid forever.
   const g4lidar::model* model = nullptr;
   /// How long to measure the running scan; a file is always read completely.
   std::chrono::nanoseconds measuring_time = std::chrono::seconds(5);
@@ -40,17 +42,15 @@ struct diagnostic_options {
   std::function<void(const stage_report&)> on_stage{};
   /// Called when the run begins to wait for something.
   std::function<void(diagnostic_activity)> on_activity{};
-  /// Opens the same port with another baud rate, for a device whose bytes contain no packets;
-  /// returns null if that fails. Called after the earlier transport was closed.
-  std::function<std::unique_ptr<transport>(std::uint32_t)> reopen{};
 };
 
 /// Executes all stages and returns their reports, for the `source` of this name (source.hpp). Stages that
 /// need a device are skipped for a file.
 ///
-/// Takes about 3 s plus `measuring_time` with a healthy lidar, and at most 45 s plus `measuring_time`
-/// with one fault, if answers are at most 4 s late. Sends queries, one start, and stops;
-/// changes no setting; the motor is stopped at the end. *Allocates. Single thread.*
+/// Takes about 3 s plus `measuring_time` with a healthy lidar, 8 s if it has to be searched, and at most
+/// 45 s plus `measuring_time` with one fault, if answers are at most 4 s late. Sends queries, one start,
+/// and stops, and to a model without commands none but two bytes while it is searched; changes no
+/// setting; the motor is stopped at the end, if it can be. *Allocates. Single thread.*
 [[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
     std::string_view source, const diagnostic_options& options = {});
 

@@ -97,7 +97,7 @@ nlohmann::ordered_json json_of_report(const stage_report& report) {
 
 /// For all other diagnoses the exit code is unhealthy.
 using failure_code = std::pair<diagnosis, exit_code>;
-constexpr std::array<failure_code, 15> failure_codes{{
+constexpr std::array<failure_code, 16> failure_codes{{
     {diagnosis::no_port, exit_code::no_device},
     {diagnosis::several_ports, exit_code::no_device},
     {diagnosis::not_serial, exit_code::no_device},
@@ -111,6 +111,7 @@ constexpr std::array<failure_code, 15> failure_codes{{
     {diagnosis::wrong_baud_rate, exit_code::silent},
     {diagnosis::silent, exit_code::silent},
     {diagnosis::other_device, exit_code::not_a_g4},
+    {diagnosis::one_way_lidar, exit_code::not_a_g4},
     {diagnosis::unplugged, exit_code::lost},
     {diagnosis::stalls, exit_code::lost},
 }};
@@ -147,14 +148,10 @@ int examine(const doctor_options& options) {
     throw bad_value("doctor examines a device or a file, not standard input");
   }
   diagnostic_options how;
-  how.baud = options.expected.rate();
+  how.baud = options.expected.baud;
   const source_kind kind = kind_of_source(options.source);
-  const bool is_raw = kind == source_kind::raw_bytes;
-  const bool is_named = options.expected.model != nullptr;
-  if (is_named && !is_raw && kind != source_kind::recording) {
-    throw bad_value("--model: for recordings and files of raw bytes");
-  }
-  if (is_named || is_raw) how.model = model_of(options);
+  const bool is_file = kind == source_kind::raw_bytes || kind == source_kind::recording;
+  how.model = is_file ? model_of(options) : options.expected.model;
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
@@ -165,8 +162,12 @@ int examine(const doctor_options& options) {
     if (report) report->add(text_of_report(stage, false));
   };
   how.on_activity = [&](diagnostic_activity what) {
-    if (options.json || what != diagnostic_activity::spinning_up) return;
-    out.write("spinning up: the lidar has started and sends nothing yet\n");
+    if (options.json) return;
+    if (what == diagnostic_activity::spinning_up) {
+      out.write("spinning up: the lidar has started and sends nothing yet\n");
+    } else if (what == diagnostic_activity::searching) {
+      out.write("searching: nothing is known at the first baud rate; all are tried\n");
+    }
     out.flush();
   };
   const std::vector<stage_report> stages = diagnose(options.source, how);
@@ -184,7 +185,9 @@ constexpr const char* doctor_details =
     R"(It examines port, permission, holder, baud rate, answers, identity, health, motor, stream, rate,
 loss and USB latency. It reports for each what was measured; where something is wrong also the
 likely cause and what to try. For a healthy lidar it takes about 8 seconds. No setting is changed,
-and the motor is stopped at the end. A recording or a file of raw bytes is examined as far as its
+and the motor is stopped at the end, if it can be. The model and the baud rate are found, or are
+those of --model and --baud: then another one is reported. Models that answer nothing are listened
+to; what needs answers does not apply to them. A recording or a file of raw bytes is examined as far as its
 bytes allow; stages that need a device are skipped. The exit code is that of the first stage that
 failed; a stage that only warns leaves it at 0.
 
@@ -213,13 +216,15 @@ verb make_doctor_verb() {
                              options->report.path),
                     flag_row("--force", "Replace existing files", options->report.overwrites)})),
       .details = doctor_details,
-      .examples = {{"g4-dump doctor", "Examine the only G4"},
+      .examples = {{"g4-dump doctor", "Examine the only lidar"},
                    {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
                     "Listen to one port for 30 s, as JSON"},
                    {"g4-dump doctor walk.mcap", "Examine a recording"},
                    {"g4-dump doctor --report report.txt",
                     "Write report.txt and report.mcap, to attach to a report of a problem"},
-                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"}},
+                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
+                   {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
+                    "A simulated X4 without its second plug"}},
       .run = [options] { return examine(*options); }};
 }
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+// The first bytes of a run: which lidar is attached, at which baud rate, and whether it answers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/discovery.hpp"
+#include "link_monitor.hpp"
+#include "reply_statistics.hpp"
+#include "stages.hpp"
+
+namespace g4lidar {
+
+/// The lidar of a run, as far as it is known.
+struct examined_lidar {
+  const model* which = &g4_model;
+  bool is_named = false;                   ///< By the user: it is not replaced by another one.
+  std::vector<const model*> candidates{};  ///< If it was recognised: all that send such bytes.
+  bool was_scanning = false;               ///< Before the run; of a two-way lidar.
+  bool is_deaf = false;                    ///< It scans and ignores commands.
+  bool has_baud = false;                   ///< The connection has a rate.
+
+  [[nodiscard]] bool is_one_way() const noexcept { return which->link == link_kind::one_way; }
+  [[nodiscard]] bool is_driven_by_dtr() const noexcept { return which->motor == motor_kind::dtr; }
+};
+
+/// *Single thread.*
+class first_contact {
+ public:
+  enum class state : std::uint8_t {
+    none,  ///< Nothing that makes sense has arrived.
+    made,  ///< The run can go on.
+    refused,  ///< Another lidar, or another baud rate, than was expected: the reports have the diagnosis.
+  };
+  /// What the run shares with this, and what must outlive this.
+  struct parts {
+    stage_log& log;
+    link_monitor& link;
+    reply_statistics& replies;
+    examined_lidar& lidar;
+    stage_report& answers;
+  };
+
+  /// `may_pulse_dtr`: as in search_options.
+  first_contact(parts of, bool may_pulse_dtr) noexcept : of_(of), may_pulse_dtr_(may_pulse_dtr) {}
+
+  /// Listens, asks, and searches all baud rates if nothing comes. All queries are asked if the first is
+  /// answered. `baud` is the stage baud_rate.
+  [[nodiscard]] state make(stage_report& baud);
+  /// Observes bytes without a query, and stops a scan. False if it does not stop.
+  bool make_quiet();
+  /// Adds to the stage answers that it was scanning, or does not listen.
+  void report_scanning();
+
+ private:
+  [[nodiscard]] bool hear_stream();
+  [[nodiscard]] bool ask(std::size_t from, std::size_t to);
+  void ask_the_rest(exchange last);
+  [[nodiscard]] bool recognise(const exchange& first);
+  [[nodiscard]] state search(stage_report& baud);
+  /// The lidar that was found is not the one that was named.
+  void contradict(stage_report& baud, const recognised_lidar& found);
+  [[nodiscard]] bool is_expected_rate(std::uint32_t baud) const noexcept;
+  [[nodiscard]] bool scans_when_started();
+
+  parts of_;
+  bool may_pulse_dtr_;
+  std::int64_t asked_ns_ = -1;  // the first query without a reply
+  std::uint64_t garbage_ = 0;   // bytes outside packets and responses, before the first query
+};
+
+}  // namespace g4lidar
