@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "acceptance_run.hpp"
+#include "stages.hpp"
 
 namespace g4lidar {
 namespace {
@@ -78,10 +79,9 @@ std::vector<acceptance_result> acceptance_run::run() {
     std::string why_not;
     if (!is_open || !link_ || link_->monitor().is_over()) {
       const bool is_cancelled = link_ && link_->monitor().is_cancelled();
-      const auto why = link_ ? link_->monitor().failure() : open_error_;
-      into.add_finding(acceptance_verdict::not_done, is_cancelled ? "Interrupted."
-                                                     : why        ? why->message()
-                                                                  : "Not reached.");
+      std::string why = why_closed_.empty() ? "Not reached." : why_closed_;
+      if (link_ && link_->monitor().failure()) why = link_->monitor().failure()->message();
+      into.add_finding(acceptance_verdict::not_done, is_cancelled ? "Interrupted." : why);
     } else if (!is_possible(step, why_not)) {
       into.add_finding(acceptance_verdict::not_done, why_not);
     } else {
@@ -101,15 +101,34 @@ std::vector<acceptance_result> acceptance_run::run() {
 bool acceptance_run::open() {
   auto opened = from_.connect();
   if (!opened) {
-    open_error_ = opened.error();
+    why_closed_ = opened.error().message();
     return false;
   }
+  if (options_.model == nullptr && !recognise(**opened)) return false;
   const auto rate = (*opened)->set_baud(baud());
   if (!rate) {
-    open_error_ = rate.error();
+    why_closed_ = rate.error().message();
     return false;
   }
-  link_.emplace(*std::move(opened), options_.is_cancelled, which_);
+  link_.emplace(*std::move(opened), options_.is_cancelled, *which_);
+  return true;
+}
+
+bool acceptance_run::recognise(transport& port) {
+  constexpr std::int64_t search_ns = 3'000 * ms;
+  const auto found =
+      search(port, port.now_ns() + search_ns, {.baud = options_.baud, .may_pulse_dtr = true});
+  if (!found) {
+    why_closed_ = found.error().message();
+    return false;
+  }
+  if (found->candidates.size() > 1) {
+    why_closed_ =
+        "The bytes are those of several models: name one of " + words_of(found->candidates) + ".";
+    return false;
+  }
+  which_ = found->model;
+  found_baud_ = found->baud;
   return true;
 }
 
@@ -120,12 +139,12 @@ bool acceptance_run::is_possible(acceptance_step step, std::string& why_not) con
   };
   switch (step) {
     case acceptance_step::protection:
-      return needs(is_two_way() && which_.protection != presence::no,
+      return needs(is_two_way() && which_->protection != presence::no,
                    "The model does not have it.");
     case acceptance_step::frequency:
-      return needs(which_.frequency.max_dhz != 0, "The model has no command for it.");
+      return needs(which_->frequency.max_dhz != 0, "The model has no command for it.");
     case acceptance_step::sample_rate:
-      return needs(which_.rates.is_settable,
+      return needs(which_->rates.is_settable,
                    "The model has one sample rate, or no command for it.");
     case acceptance_step::start_and_stop:
       return needs(is_two_way(), "The model takes no commands.");

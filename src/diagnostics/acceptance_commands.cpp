@@ -54,7 +54,7 @@ void acceptance_run::bridge(acceptance_result& into) {
 
 void acceptance_run::listening(acceptance_result& into) {
   const std::int64_t time_ns = is_two_way() ? 1'000 * ms : 12'000 * ms;
-  if (!is_two_way() && which_.motor == motor_kind::dtr) static_cast<void>(link_->set_dtr(true));
+  if (!is_two_way() && which_->motor == motor_kind::dtr) static_cast<void>(link_->set_dtr(true));
   const std::int64_t first_ns = is_two_way() ? -1 : link_->wait_for_packet(time_ns);
   const stream_survey heard = link_->survey(1'000 * ms);
   into.add("packets", heard.packets());
@@ -87,22 +87,23 @@ void acceptance_run::identity(acceptance_result& into) {
   into.add("model_id", who[0]);
   into.add("firmware", std::to_string(who[2]) + "." + std::to_string(who[1]));
   into.add("hardware", who[3]);
-  const bool is_known = who[0] == which_.ids[0] || (which_.ids[1] != 0 && who[0] == which_.ids[1]);
+  const bool is_known =
+      who[0] == which_->ids[0] || (which_->ids[1] != 0 && who[0] == which_->ids[1]);
   into.add_finding(is_known ? agrees : differs, is_known ? "The number is that of the model."
                                                          : "The number is not that of the model.");
 }
 
 void acceptance_run::queries(acceptance_result& into) {
-  const bool is_g = which_.motor == motor_kind::command && is_two_way();
+  const bool is_g = which_->motor == motor_kind::command && is_two_way();
   const std::array all_queries{
       query{0x91, "health_91", presence::unknown},
       query{0x92, "health_92", presence::unknown},
-      query{0x0D, "frequency_0d", when(which_.frequency.max_dhz != 0)},
+      query{0x0D, "frequency_0d", when(which_->frequency.max_dhz != 0)},
       query{0xD1, "sample_rate_d1",
-            which_.rates.is_settable ? presence::yes
-            : is_g                   ? presence::unknown
-                                     : presence::no},
-      query{0x93, "zero_angle_93", when(which_.zero_angle_divisor != 0)},
+            which_->rates.is_settable ? presence::yes
+            : is_g                    ? presence::unknown
+                                      : presence::no},
+      query{0x93, "zero_angle_93", when(which_->zero_angle_divisor != 0)},
       query{0x98, "pitch_98", is_g ? presence::unknown : presence::no},
       query{0x05, "low_power_05", is_g ? presence::unknown : presence::no},
       query{0x08, "direction_08", is_g ? presence::unknown : presence::no},
@@ -145,7 +146,7 @@ void acceptance_run::protection(acceptance_result& into) {
   const raw_reply first = link_->ask(toggle);
   into.add("first_reply", first.text());
   if (!first.number()) {
-    return into.add_finding(which_.protection == presence::yes ? differs : observed,
+    return into.add_finding(which_->protection == presence::yes ? differs : observed,
                             "D9 is not answered.");
   }
   // 1 means off: another one only if the first switched it on.
@@ -153,7 +154,7 @@ void acceptance_run::protection(acceptance_result& into) {
   if (first.number() == 0) last = link_->ask(toggle);
   into.add("last_reply", last.text());
   const bool is_off = last.number() == 1;
-  const acceptance_verdict found = which_.protection == presence::yes ? agrees : observed;
+  const acceptance_verdict found = which_->protection == presence::yes ? agrees : observed;
   into.add_finding(is_off ? found : differs, is_off ? "D9 is answered; the protection is off."
                                                     : "The protection is not off again.");
 }
@@ -182,13 +183,13 @@ void acceptance_run::frequency(acceptance_result& into) {
   into.add("lowest_hz", in_hz(lowest.value_or(0)));
   into.add("after_hz", in_hz(now.value_or(0)));
   if (!now || std::abs(*now - *before) > 5) into.add_finding(differs, "It could not be set back.");
-  const int offset_chz = which_.frequency.reply_offset_chz;
+  const int offset_chz = which_->frequency.reply_offset_chz;
   const auto is_near = [&](std::optional<std::int32_t> reply, int limit_dhz) {
     constexpr int step_chz = 100;  // steps of 1 Hz may end so far before the limit
     return reply && std::abs(*reply + offset_chz - 10 * limit_dhz) <= step_chz;
   };
   const bool is_as_table =
-      is_near(highest, which_.frequency.max_dhz) && is_near(lowest, which_.frequency.min_dhz);
+      is_near(highest, which_->frequency.max_dhz) && is_near(lowest, which_->frequency.min_dhz);
   into.add_finding(is_as_table ? agrees : differs, is_as_table
                                                        ? "The limits are those of the table."
                                                        : "The limits are not those of the table.");
@@ -199,7 +200,7 @@ void acceptance_run::sample_rate(acceptance_result& into) {
   constexpr std::int64_t measured_ns = 3'000 * ms;
   constexpr double tolerance = 0.1;
   std::size_t codes = 0;
-  for (const sample_rate_entry& rate : which_.rates.entries) codes += rate.hz != 0 ? 1U : 0U;
+  for (const sample_rate_entry& rate : which_->rates.entries) codes += rate.hz != 0 ? 1U : 0U;
   for (std::size_t i = 0; i < codes; ++i) {
     const auto code = link_->ask(next).number();
     if (!code || *code < 0 || *code > 9) return into.add_finding(differs, "D0 is not answered.");
@@ -211,7 +212,7 @@ void acceptance_run::sample_rate(acceptance_result& into) {
     into.add(name + "_hz", heard.sample_rate_hz());
     into.add(name + "_most_samples", heard.most_samples());
     const auto at = static_cast<std::size_t>(*code);
-    const std::uint32_t stated = at < codes ? which_.rates.entries.at(at).hz : 0;
+    const std::uint32_t stated = at < codes ? which_->rates.entries.at(at).hz : 0;
     const double ratio = stated != 0 ? heard.sample_rate_hz() / stated : 0.0;
     if (std::abs(ratio - 1.0) > tolerance) {
       into.add_finding(differs,
@@ -227,7 +228,7 @@ void acceptance_run::start_and_stop(acceptance_result& into) {
   if (first_ns < 0) {
     link_->stop();
     return into.add_finding(differs,
-                            which_.motor == motor_kind::dtr
+                            which_->motor == motor_kind::dtr
                                 ? "No packet came. Does the second plug give power to the motor?"
                                 : "No packet came after the start.");
   }
@@ -287,7 +288,7 @@ void acceptance_run::dtr(acceptance_result& into) {
       link_->monitor().boots() != boots || link_->monitor().counts().responses != responses;
   into.add("boots_again", std::string(has_booted ? "yes" : "no"));
   const bool is_driven = silent_ns >= 0;
-  const bool as_table = is_driven == (which_.motor == motor_kind::dtr);
+  const bool as_table = is_driven == (which_->motor == motor_kind::dtr);
   into.add_finding(as_table ? agrees : differs,
                    is_driven ? "DTR stops it." : "DTR does not stop it.");
   if (is_driven) {

@@ -17,12 +17,15 @@ namespace g4lidar {
 class acceptance_run {
  public:
   acceptance_run(connector& from, const acceptance_options& options)
-      : from_(from), options_(options), which_(*options.model) {}
+      : from_(from),
+        options_(options),
+        which_(options.model != nullptr ? options.model : &g4_model) {}
 
   [[nodiscard]] std::vector<acceptance_result> run();
 
  private:
   [[nodiscard]] bool open();
+  [[nodiscard]] bool recognise(transport& port);
   void take(acceptance_result& into);
   [[nodiscard]] bool is_possible(acceptance_step step, std::string& why_not) const;
 
@@ -43,16 +46,18 @@ class acceptance_run {
   void target(acceptance_result& into, acceptance_action where);
   void unplug(acceptance_result& into);
 
-  [[nodiscard]] bool is_two_way() const noexcept { return which_.link == link_kind::two_way; }
+  [[nodiscard]] bool is_two_way() const noexcept { return which_->link == link_kind::two_way; }
   [[nodiscard]] std::uint32_t baud() const noexcept {
-    return options_.baud != 0 ? options_.baud : which_.bauds[0];
+    if (options_.baud != 0) return options_.baud;
+    return found_baud_ != 0 ? found_baud_ : which_->bauds[0];
   }
 
   connector& from_;
   const acceptance_options& options_;
-  const model& which_;
+  const model* which_;
   std::optional<acceptance_link> link_;
-  std::optional<error> open_error_;
+  std::string why_closed_{};      // why there is no link
+  std::uint32_t found_baud_ = 0;  // by the search
   std::vector<acceptance_result> results_;
   std::optional<stream_survey> surveyed_;
   std::optional<std::size_t> target_degree_;

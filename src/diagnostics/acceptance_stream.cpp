@@ -43,12 +43,12 @@ void acceptance_run::stream(acceptance_result& into) {
   into.add_finding(is_clean ? agrees : differs, is_clean
                                                     ? "The packets have the layout of the model."
                                                     : "Many packets have a wrong checksum.");
-  if (heard.most_samples() > which_.samples.max_samples) {
+  if (heard.most_samples() > which_->samples.max_samples) {
     into.add_finding(differs, "Packets are longer than in the table.");
   }
-  const expected_rate rate = expected_rate_of(which_, first_rate_hz(which_));
+  const expected_rate rate = expected_rate_of(*which_, first_rate_hz(*which_));
   const bool is_known_rate =
-      std::ranges::any_of(which_.rates.entries, [&](const sample_rate_entry& each) {
+      std::ranges::any_of(which_->rates.entries, [&](const sample_rate_entry& each) {
         return each.hz != 0 &&
                std::abs(heard.sample_rate_hz() / each.hz - 1.0) <= std::max(rate.tolerance, 0.1);
       });
@@ -59,7 +59,7 @@ void acceptance_run::stream(acceptance_result& into) {
     const double offset_hz = heard.frequency_hz() - heard.reported_hz();
     into.add("offset_hz", offset_hz);
     constexpr double tolerance_hz = 0.3;
-    const double stated_hz = which_.frequency.ct_offset_dhz / 10.0;
+    const double stated_hz = which_->frequency.ct_offset_dhz / 10.0;
     if (std::abs(offset_hz - stated_hz) > tolerance_hz) {
       into.add_finding(differs, "The frequency in zero packets has another offset.");
     }
@@ -103,11 +103,11 @@ void acceptance_run::ct_information(acceptance_result& into) const {
     return into.add_finding(observed, "A revolution has too few packets for the information.");
   }
   const presence seen = who ? presence::yes : presence::no;
-  const bool is_open = which_.ct_information == presence::unknown;
+  const bool is_open = which_->ct_information == presence::unknown;
   into.add_finding(
-      is_open                         ? observed
-      : seen == which_.ct_information ? agrees
-                                      : differs,
+      is_open                          ? observed
+      : seen == which_->ct_information ? agrees
+                                       : differs,
       who ? "The CT bytes contain information." : "The CT bytes contain no information.");
 }
 
@@ -125,7 +125,7 @@ void acceptance_run::target(acceptance_result& into, acceptance_action where) {
     return into.add_finding(differs, "No packet came.");
   }
   static_cast<void>(link_->survey(spun_up_ns));
-  direction_survey seen(which_);
+  direction_survey seen(*which_);
   std::int64_t until_ns = link_->monitor().now_ns() + 3'000 * ms;
   link_->monitor().listen(until_ns, {.event = [&](const observed_event& found) {
                             const auto* const packet = std::get_if<packet_view>(&found.what);
@@ -140,7 +140,7 @@ void acceptance_run::target(acceptance_result& into, acceptance_action where) {
   into.add("measured_mm", *range_mm);
   into.add("ratio", *range_mm / *placed_mm);
   into.add("device_angle_deg", angle_deg);
-  into.add("robot_bearing_deg", std::remainder(which_.turn_deg - angle_deg, 360.0));
+  into.add("robot_bearing_deg", std::remainder(which_->turn_deg - angle_deg, 360.0));
   const double allowed_mm = std::max(30.0, 0.05 * *placed_mm);
   const bool is_near = std::abs(*range_mm - *placed_mm) <= allowed_mm;
   into.add_finding(is_near ? agrees : differs, is_near ? "The range is that of the target."
@@ -154,7 +154,7 @@ void acceptance_run::unplug(acceptance_result& into) {
   constexpr std::int64_t retry_ns = 200 * ms;
   const auto wait_ns = std::chrono::nanoseconds(options_.plug_time).count();
   const auto frequency = [this]() -> std::optional<std::int32_t> {
-    if (which_.frequency.max_dhz == 0) return std::nullopt;
+    if (which_->frequency.max_dhz == 0) return std::nullopt;
     return link_->ask(static_cast<std::uint8_t>(command::frequency_query)).number();
   };
   const auto frequency_before = frequency();
@@ -178,7 +178,7 @@ void acceptance_run::unplug(acceptance_result& into) {
   if (!link_) return into.add_finding(differs, "The lidar did not come back.");
   into.add("back_after_ms", static_cast<double>(from_.now_ns() - gone_ns) / 1e6);
   if (!is_two_way()) {
-    if (which_.motor == motor_kind::dtr) static_cast<void>(link_->set_dtr(true));
+    if (which_->motor == motor_kind::dtr) static_cast<void>(link_->set_dtr(true));
     const bool sends = link_->wait_for_packet(12'000 * ms) >= 0;
     return into.add_finding(sends ? agrees : differs,
                             sends ? "It sends again." : "It does not send again.");

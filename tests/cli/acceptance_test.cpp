@@ -53,6 +53,19 @@ TEST_F(AcceptanceVerb, AFileThatExists_IsNotReplaced) {
   EXPECT_EQ(std::filesystem::file_size(file), size);
 }
 
+TEST_F(AcceptanceVerb, WithoutAModel_ItIsTheOneOfTheLidar) {
+  const outcome done = run({"acceptance", "--alone", "-d", "500ms", "--file", path("x4.mcap"),
+                            "sim:?model=x4&any_baud=true"});
+  EXPECT_THAT(done.err, ::testing::HasSubstr("recognised: X4\n"));
+  EXPECT_THAT(done.out, ::testing::HasSubstr("Compared with the X4 of the table of models:\n"));
+  EXPECT_THAT(run({"info", path("x4.mcap")}).out, ::testing::HasSubstr("X4"));
+  const outcome several =
+      run({"acceptance", "--alone", "--file", path("x2.mcap"), "sim:?model=x2"});
+  EXPECT_EQ(several.code, 2) << several.out;
+  EXPECT_THAT(several.err, ::testing::HasSubstr("--model names one of x2, x2l, x3"));
+  EXPECT_FALSE(std::filesystem::exists(path("x2.mcap")));
+}
+
 TEST_F(AcceptanceVerb, ARecording_IsRefused) {
   const std::string file = path("g4.mcap");
   ASSERT_EQ(run({"record", "-d", "500ms", "-o", file, "sim:"}).code, 0);

@@ -43,7 +43,7 @@ struct bench {
     sim::virtual_clock clock;
     sim::virtual_connector from(simulated, clock);
     acceptance_options how;
-    how.model = model_named(expected);
+    how.model = expected.empty() ? nullptr : model_named(expected);
     how.stream_time = std::chrono::seconds(10);
     how.ask = [&](acceptance_action what) -> std::optional<double> {
       if (declines) return std::nullopt;
@@ -133,6 +133,32 @@ TEST(Acceptance, EachQuestionHasAStepThatIsDone) {
     EXPECT_FALSE(each.text.empty()) << name_of(each.step);
     const bool has_evidence = !each.measurements.empty();
     EXPECT_TRUE(has_evidence || each.outcome == not_done) << name_of(each.step);
+  }
+}
+
+TEST(Acceptance, WithoutAModel_ItIsTheOneThatTheLidarShows) {
+  for (const std::string_view word : {"g4", "x4", "t-mini-pro", "tg30", "s4b"}) {
+    bench of(word);
+    of.expected = "";
+    const auto all = of.run();
+    for (const acceptance_result& each : all) {
+      EXPECT_NE(each.outcome, differs) << word << name_of(each.step) << '\n' << all_of(all);
+    }
+    EXPECT_EQ(at(all, identity).outcome, agrees) << word << all_of(all);
+    EXPECT_GT(number_of(at(all, stream), "packets"), 100.0) << word << all_of(all);
+  }
+}
+
+TEST(Acceptance, WithoutAModel_BytesOfSeveralAreRefused) {
+  bench of("x2");
+  of.expected = "";
+  const auto all = of.run();
+  ASSERT_EQ(all.size(), acceptance_step_count);
+  for (const acceptance_result& each : all) {
+    EXPECT_EQ(each.outcome, not_done) << name_of(each.step);
+    for (const std::string_view word : {"x2", "x2l", "x3"}) {
+      EXPECT_NE(each.text.find(word), std::string::npos) << each.text;
+    }
   }
 }
 

@@ -17,11 +17,16 @@
 
 namespace g4lidar::test {
 
-/// Wraps each transport of another connector.
+/// Wraps each transport of another connector, and states the model of the lidar as that of a port does.
 class wrapping_connector final : public forwarding_connector {
  public:
-  wrapping_connector(std::unique_ptr<connector> from, wrapper wrap)
-      : forwarding_connector(std::move(from)), wrap_(std::move(wrap)) {}
+  wrapping_connector(std::unique_ptr<connector> from, wrapper wrap, const model* which = nullptr)
+      : forwarding_connector(std::move(from)), wrap_(std::move(wrap)), which_(which) {}
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    connector_traits known = forwarding_connector::traits();
+    known.model = which_;
+    return known;
+  }
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
     auto port = inner().connect();
     if (!port || !wrap_) return port;
@@ -30,6 +35,7 @@ class wrapping_connector final : public forwarding_connector {
 
  private:
   wrapper wrap_;
+  const model* which_;
 };
 
 /// How a program uses a lidar.
@@ -81,7 +87,7 @@ inline seen watch(const use& how) {
   sim::virtual_clock clock;
   running_diagnosis judge(how.judged);
   auto from = std::make_unique<wrapping_connector>(
-      std::make_unique<sim::virtual_connector>(simulated, clock), how.wrap);
+      std::make_unique<sim::virtual_connector>(simulated, clock), how.wrap, how.options.model);
   auto opened = lidar::open(judge.observe(std::move(from)), how.options);
   seen all;
   if (!opened) {

@@ -62,6 +62,34 @@ TEST(RunningHealthy, HasNoDiagnosis_AndReportsItsMeasurements) {
   }
 }
 
+TEST(RunningHealthy, OtherModels_HaveNoDiagnosis) {
+  for (const std::string_view word :
+       {"x4", "x2", "x4-pro", "t-mini-pro", "t-mini-plus-sh", "g2", "g6", "tg30", "s4b", "scl"}) {
+    use how;
+    ASSERT_TRUE(sim::use_model(how.device, word));
+    how.options.model = model_named(word);
+    how.seconds = 12;
+    const seen found = watch(how);
+    ASSERT_EQ(found.diagnoses(), "") << word << found;
+    const auto& last = found.looks.back();
+    const double true_hz = how.device.scanner.scan_frequency_chz / 100.0;
+    EXPECT_NEAR(number_of(last, diagnostic_stage::rate, "measured_hz"), true_hz, 0.01 * true_hz)
+        << word << found;
+    EXPECT_EQ(number_of(last, diagnostic_stage::loss, "samples_lost"), 0.0) << word << found;
+  }
+}
+
+TEST(RunningHealthy, OtherModels_DamageIsFound) {
+  for (const std::string_view word : {"x2", "t-mini-pro", "tg30"}) {
+    use how;
+    ASSERT_TRUE(sim::use_model(how.device, word));
+    how.options.model = model_named(word);
+    how.faults = faults_of({"drop"});
+    how.seconds = 12;
+    EXPECT_EQ(watch(how).diagnoses(), "bytes_dropped") << word;
+  }
+}
+
 TEST(RunningHealthy, OtherDevices_HaveNoDiagnosis) {
   for (const int seed : test::seeds(4)) {
     for (const auto rate : {sample_rate::khz_4, sample_rate::khz_8}) {

@@ -81,8 +81,10 @@ struct open_question {
 
 /// How an acceptance run is done. Functions that are not set are not called.
 struct acceptance_options {
-  const g4lidar::model* model = &g4_model;
-  std::uint32_t baud = 0;           ///< 0: the usual one of the model.
+  /// What the lidar is compared with. Null: the model that search() finds; if its bytes fit several models,
+  /// no step is done, and the results list them. Valid as long as the run.
+  const g4lidar::model* model = nullptr;
+  std::uint32_t baud = 0;           ///< 0: as found, or the usual one of the model.
   const port_info* port = nullptr;  ///< That of the connection, if it is known.
   /// How long the scan of the steps `stream` to `time_packets` is observed.
   std::chrono::milliseconds stream_time = std::chrono::minutes(1);

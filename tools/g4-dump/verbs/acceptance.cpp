@@ -135,12 +135,41 @@ std::optional<port_info> port_of(std::string_view name) {
   return found == ports->end() ? std::nullopt : std::optional(*found);
 }
 
-int accept(const acceptance_settings& options) {
-  output out(options.output);
-  refuse_files(options, task::asking);
-  if (!options.run.overwrites) refuse_existing(options.run.file);
+/// The options with the model and the baud rate of the lidar, if the user has named no model. Throws a
+/// failure, or a bad_value if the bytes fit several models.
+acceptance_settings with_model(acceptance_settings options) {
+  constexpr std::int64_t search_ns = 3'000'000'000;
+  if (options.expected.model != nullptr) return options;
+  acceptance_settings as_found = options;
+  as_found.expected.model = &g4_model;  // opened at its rate, and not searched
+  auto from = connector_for(options_for(as_found, {}));
+  if (!from) throw failure_of(options, from.error());
+  auto port = (*from)->connect();
+  if (!port) throw failure_of(options, port.error());
+  const auto found =
+      search(**port, (*port)->now_ns() + search_ns,
+             {.baud = options.expected.baud, .may_pulse_dtr = !options.source.empty()});
+  if (!found) throw failure_of(options, found.error());
+  if (found->candidates.size() > 1) {
+    std::vector<std::string_view> words;
+    for (const model* each : found->candidates) words.push_back(each->word);
+    throw bad_value(fmt::format("the bytes are those of several models: --model names one of {}",
+                                fmt::join(words, ", ")));
+  }
+  logger::info(fmt::format("recognised: {}\n", found->model->name));
+  options.expected.model = found->model;
+  if (options.expected.baud == 0) options.expected.baud = found->baud;
+  return options;
+}
+
+int accept(const acceptance_settings& given) {
+  output out(given.output);
+  refuse_files(given, task::asking);
+  if (!given.run.overwrites) refuse_existing(given.run.file);
+  const acceptance_settings options = with_model(given);
   acceptance_options how;
-  how.model = model_of(options);
+  how.model = options.expected.model;
+  how.baud = options.expected.baud;
   if (options.duration.count() > 0) {
     how.stream_time = std::chrono::ceil<std::chrono::milliseconds>(options.duration);
   }
@@ -163,7 +192,7 @@ int accept(const acceptance_settings& options) {
     out.flush();
   };
   if (!options.json)
-    out.write(fmt::format("A {} as the table of models has it:\n", how.model->name));
+    out.write(fmt::format("Compared with the {} of the table of models:\n", how.model->name));
   const auto all = run_acceptance(**observed, how);
 
   std::vector<std::pair<std::string, std::string>> words{{"model", std::string(how.model->word)}};
@@ -183,7 +212,8 @@ int accept(const acceptance_settings& options) {
 }
 
 constexpr const char* acceptance_details =
-    R"(It compares a lidar with the table of models, in about 15 minutes: identity, each
+    R"(It compares a lidar with the model of --model in the table of models, or with the one that
+its bytes show; if they fit several models, name it. It takes about 15 minutes: identity, each
 command with its answer and time, frequencies and sample rates, start and stop, DTR, a minute of
 the scan with its CT bytes, lower bits and time packets. It asks its user for a target that is
 near, one that is far, and an unplug; s skips such a step, and --alone all of them. Settings are
