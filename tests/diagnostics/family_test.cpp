@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(All, DoctorOf, ::testing::ValuesIn(sim::model_words()),
 
 // ---- what is wrong with the model or the rate that was named ----
 
-/// A device, what its user believes, and what the doctor says.
+/// A device, what its user has named, and the expected diagnosis.
 struct belief {
   std::string_view name;
   std::string_view device;
