@@ -126,8 +126,31 @@ TEST(Radar, RangeFollowsNearlyAllReturns) {
   EXPECT_EQ(range_for({}), 16.0);
   EXPECT_EQ(next_range(3.0, true), 4.0);
   EXPECT_EQ(next_range(3.0, false), 2.0);
-  EXPECT_EQ(next_range(16.0, true), 16.0);
+  EXPECT_EQ(next_range(16.0, true), 24.0);
+  EXPECT_EQ(next_range(50.0, true), 50.0);
   EXPECT_EQ(next_range(0.5, false), 0.5);
+}
+
+// A TG15 measures up to 30 m, and a TG50 up to 50 m (family.md).
+TEST(Radar, RangeFollowsReturnsThatAreFarther) {
+  EXPECT_EQ(range_for(std::vector<point>(100, at(10.0F, 29.0F))), 32.0);
+  EXPECT_EQ(range_for(std::vector<point>(100, at(10.0F, 49.5F))), 50.0);
+  canvas on(21, 11, glyphs::ascii);
+  draw_radar(on, {0, 0, 21, 11}, {}, {.range_m = 32.0});  // 10 dots for 32 m: rings of 8 m
+  EXPECT_EQ(on.text(3).substr(11, 4), "16 m");
+}
+
+TEST(Picture, HasTheIntensities_OfModelsThatMeasureThem) {
+  const auto has = [](const view_facts& facts, std::string_view words) {
+    canvas on(80, 24, glyphs::ascii);
+    draw_view(on, {}, facts, {});
+    for (int row = 0; row < on.rows(); ++row) {
+      if (on.text(row).find(words) != std::string::npos) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(has({.intensity = std::pair(12, 1023)}, "intensity 12 to 1023"));
+  EXPECT_FALSE(has({}, "intensity"));
 }
 
 // The wall is 3 m from where the robot begins, which turns to the left after 1 m.

@@ -187,6 +187,74 @@ TEST(PageScan, HasThePlace_AfterTheReturns) {
   EXPECT_EQ(number_at<double>(data, 52), 0.5);
 }
 
+TEST(PageScan, OfSeveralLidars_SaysWhichPointIsOfWhich) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  using g4lidar::point;
+  const point none{.angle_deg = 0.0F, .flags = g4lidar::point_flags::no_return};
+  const std::vector<point> points{{.angle_deg = 180.0F, .range_mm = 1000.0F},
+                                  none,
+                                  {.angle_deg = 90.0F, .range_mm = 500.0F},
+                                  none,
+                                  {.angle_deg = 180.0F, .range_mm = 2000.0F}};
+  const std::vector<std::size_t> points_of_each{3, 0, 2};  // the second one has no fresh scan
+  std::vector<std::uint8_t> data;
+  put_page_scan({.revolution = {.points = points},
+                 .stamp_s = 1.5,
+                 .place = lidar_place{{1.0, -2.0, 0.5}, 7},
+                 .points_of_each = points_of_each},
+                data);
+  ASSERT_EQ(data.size(), 16U + 3 * 8 + 28 + 2 + 3 * 2);
+  EXPECT_EQ(data[1], 1 + 2 + 4);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 2), 3);
+  const std::size_t lidars = 16 + 3 * 8 + 28;
+  EXPECT_EQ(number_at<std::uint16_t>(data, lidars), 3);
+  EXPECT_EQ(number_at<std::uint16_t>(data, lidars + 2), 2);  // without the one that did not return
+  EXPECT_EQ(number_at<std::uint16_t>(data, lidars + 4), 0);
+  EXPECT_EQ(number_at<std::uint16_t>(data, lidars + 6), 1);
+}
+
+TEST(PageScan, OfManyReturns_CountsThoseThatItHas) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  const std::vector<g4lidar::point> points(70'000, {.angle_deg = 180.0F, .range_mm = 1000.0F});
+  const std::vector<std::size_t> points_of_each{60'000, 10'000};
+  std::vector<std::uint8_t> data;
+  put_page_scan(
+      {.revolution = {.points = points}, .stamp_s = 1.5, .points_of_each = points_of_each}, data);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 2), 65'535);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 16 + 65'535 * 8 + 2), 60'000);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 16 + 65'535 * 8 + 4), 5'535);
+}
+
+TEST(PageScan, HasTheIntensitiesOfAModelThatMeasuresThem_AtItsEnd) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  using g4lidar::point;
+  const std::vector<point> points{
+      {.angle_deg = 90.0F, .range_mm = 500.0F, .intensity = 258},
+      {.angle_deg = 0.0F, .flags = g4lidar::point_flags::no_return, .intensity = 3},
+      {.angle_deg = 180.0F, .range_mm = 2000.0F, .intensity = 7}};
+  std::vector<std::uint8_t> data;
+  put_page_scan(
+      {.revolution = {.points = points, .model = g4lidar::model_named("t-mini")}, .stamp_s = 1.5},
+      data);
+  ASSERT_EQ(data.size(), 16U + 2 * 8 + 2 * 2);
+  EXPECT_EQ(data[1], 1 + 8);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 32), 258);
+  EXPECT_EQ(number_at<std::uint16_t>(data, 34), 7);
+}
+
+TEST(PageRequests, ToOneOfSeveralLidars_NameIt) {
+  const auto of = [](const char* text) { return *parse_page_request(text); };
+  const auto set =
+      std::get<set_request>(of(R"({"op":"set","lidar":"rear","name":"frequency","value":7})"));
+  EXPECT_EQ(set.lidar, "rear");
+  EXPECT_EQ(std::get<set_request>(of(R"({"op":"set","name":"frequency","value":7})")).lidar, "");
+  for (const char* const bad : {R"({"op":"set","lidar":1,"name":"frequency","value":7})",
+                                R"({"op":"set","lidar":null,"name":"frequency","value":7})",
+                                R"({"op":"set","lidar":["rear"],"name":"frequency","value":7})"}) {
+    EXPECT_EQ(std::get<bad_request>(of(bad)).of, "set") << bad;
+  }
+}
+
 TEST(PageRequests, OfARecording_HaveNothingElse) {
   const auto of = [](const char* text) { return parse_page_request(text); };
   EXPECT_TRUE(std::get<record_request>(*of(R"({"op":"record","on":true})")).is_on);
@@ -213,11 +281,16 @@ TEST(PageTexts, AdviceIsNotForACommandLine) {
 }
 
 TEST(PageTexts, SayWhatIsKnownAndNullElse) {
-  const json hello = json::parse(hello_text(
-      {.source = "a\"b", .device = {}, .settings = {{"frequency", 7.0}}, .recording_s = 2.5}));
+  const json hello = json::parse(
+      hello_text({.source = "a\"b",
+                  .lidars = {{.model = &g4lidar::g4_model, .settings = {{"frequency", 7.0}}}},
+                  .recording_s = 2.5}));
   EXPECT_EQ(hello["op"], "hello");
   EXPECT_EQ(hello["source"], "a\"b");
   EXPECT_TRUE(hello["device"]["serial"].is_null());
+  EXPECT_EQ(hello["device"]["name"], "G4");
+  EXPECT_EQ(hello["settings"]["frequency"], 7.0);
+  EXPECT_FALSE(hello.contains("lidars"));
   EXPECT_EQ(hello["allow_set"], false);
   EXPECT_EQ(hello["recording"]["length_s"], 2.5);
   EXPECT_EQ(hello["frame"], "robot");
@@ -250,6 +323,76 @@ TEST(PageTexts, SayWhatIsKnownAndNullElse) {
   EXPECT_EQ(stage["diagnoses"][0]["name"], "bits_flipped");
   EXPECT_FALSE(stage["diagnoses"][0]["advice"].get<std::string>().empty());
   EXPECT_EQ(stage["evidence"][0]["value"], 3.5);
+}
+
+/// The names of the settings that a page of this model offers, and their rows.
+json rows_of(const char* model) {
+  return json::parse(hello_text(
+      {.source = "", .lidars = {{.model = g4lidar::model_named(model)}}}))["setting_rows"];
+}
+
+TEST(PageTexts, OfferTheSettingsThatTheModelHas) {
+  EXPECT_TRUE(json::parse(hello_text({.source = "", .lidars = {{}}}))["setting_rows"].empty())
+      << "as long as it is not known";
+  EXPECT_TRUE(rows_of("x2").empty()) << "it takes no commands";
+  // family.md: 6 to 12 Hz, one sample rate, nothing of the motor.
+  const json t_mini = rows_of("t-mini");
+  ASSERT_GE(t_mini.size(), 1U);
+  EXPECT_EQ(t_mini[0]["name"], "frequency");
+  EXPECT_EQ(t_mini[0]["least"], 6.0);
+  EXPECT_EQ(t_mini[0]["most"], 12.0);
+  // family.md: 3 to 16 Hz; its sample rate is that of the device.
+  const json tg15 = rows_of("tg15");
+  ASSERT_GE(tg15.size(), 1U);
+  EXPECT_EQ(tg15[0]["name"], "frequency");
+  EXPECT_EQ(tg15[0]["least"], 3.0);
+  EXPECT_EQ(tg15[0]["most"], 16.0);
+  for (const json& row : tg15) EXPECT_NE(row["name"], "direction");
+  // family.md: codes for 8, 16 and 18 kHz.
+  EXPECT_EQ(rows_of("g6")[0]["values"], (json{"8000", "16000", "18000"}));
+}
+
+TEST(PageTexts, OfSeveralLidars_HaveEachOfThem) {
+  const std::vector<page_lidar> lidars{
+      {.name = "front", .model = &g4lidar::g4_model, .settings = {{"frequency", 7.0}}},
+      {.name = "rear", .model = g4lidar::model_named("t-mini"), .settings = {{"frequency", 9.0}}}};
+  const json hello = json::parse(hello_text({.source = "a, b", .lidars = lidars}));
+  ASSERT_EQ(hello["lidars"].size(), 2U);
+  EXPECT_FALSE(hello.contains("device"));
+  EXPECT_EQ(hello["lidars"][1]["name"], "rear");
+  EXPECT_EQ(hello["lidars"][1]["device"]["name"], "T-mini");
+  EXPECT_EQ(hello["lidars"][1]["device"]["range_m"], 12.0);
+  EXPECT_EQ(hello["lidars"][1]["device"]["has_intensity"], true);
+  EXPECT_EQ(hello["lidars"][0]["device"]["has_intensity"], false);
+  EXPECT_EQ(hello["lidars"][0]["setting_rows"].size(), 6U);
+  const json settings = json::parse(settings_text(lidars));
+  EXPECT_EQ(settings["lidars"]["rear"]["frequency"], 9.0);
+  EXPECT_EQ(json::parse(event_text("lost", 1.0, "rear"))["lidar"], "rear");
+
+  page_status front{.lidar = "front", .state = g4lidar::reader_state::running, .loss = 0.25};
+  front.scan_rate_hz = 7.0;
+  front.sample_rate_hz = 9000.0;
+  front.counts.stream.packets = 3;
+  front.recording = page_recording{.file = "a.mcap", .bytes = 10, .seconds = 2};
+  page_status rear{.lidar = "rear", .state = g4lidar::reader_state::lost, .why = "Gone."};
+  rear.counts.stream.packets = 4;
+  rear.stages.push_back({.stage = g4lidar::diagnostic_stage::loss});
+  rear.recording = page_recording{.last = "b.mcap", .why = "full", .bytes = 5, .seconds = 1};
+  const json status = json::parse(status_text(merged_status({front, rear})));
+  EXPECT_EQ(status["state"], "running") << "what works is shown";
+  EXPECT_EQ(status["why"], "rear: Gone.");
+  EXPECT_EQ(status["scan_rate_hz"], 7.0);
+  EXPECT_EQ(status["sample_rate_hz"], 9000.0);
+  EXPECT_EQ(status["loss"], 0.25);
+  EXPECT_EQ(status["counts"]["packets"], 7);
+  ASSERT_EQ(status["lidars"].size(), 2U);
+  EXPECT_EQ(status["lidars"][1]["name"], "rear");
+  EXPECT_EQ(status["lidars"][1]["state"], "lost");
+  EXPECT_EQ(status["stages"][0]["lidar"], "rear");
+  EXPECT_EQ(status["recording"]["file"], "a.mcap");
+  EXPECT_EQ(status["recording"]["last"], "b.mcap");
+  EXPECT_EQ(status["recording"]["bytes"], 15);
+  EXPECT_EQ(json::parse(status_text(merged_status({rear, rear})))["state"], "lost");
 }
 
 // Texts that are nearly requests: whatever they are, there is an answer, and no crash.

@@ -24,13 +24,13 @@ class Served : public cli::scratch, public reader_listener {
  protected:
   /// Without waiting, until its end, or until read_all() returns false.
   void play(const std::string& source, bool loops, serve_options options = {}) {
-    options.common.source = source;
     options.speed = 0;
     options.loops = loops;
-    scan_publisher publisher(options, center_);
+    scan_publisher publisher(options, {{"", source, options.common.mount}}, center_);
     publisher_ = &publisher;
-    source_reader from(options.common, publisher.how_to_open(), *this);
-    publisher.attach(from);
+    lidar_ = publisher.lidars().front().get();
+    source_reader from(lidar_->options(), lidar_->how_to_open(), *this);
+    lidar_->attach(from);
     from.start();
     std::unique_lock lock(mutex_);
     ended_.wait(lock, [this] { return is_over_; });
@@ -41,18 +41,18 @@ class Served : public cli::scratch, public reader_listener {
   /// After each scan.
   virtual bool read_all() = 0;
 
-  void on_open(g4lidar::lidar& device) override { publisher_->on_open(device); }
+  void on_open(g4lidar::lidar& device) override { lidar_->on_open(device); }
   void on_event(const lidar_event& event) override {
     ++events_;
-    publisher_->on_event(event);
+    lidar_->on_event(event);
   }
   void on_state(reader_state state, const std::optional<error>& why) override {
-    publisher_->on_state(state, why);
+    lidar_->on_state(state, why);
     if (state == reader_state::ended) end();
   }
   void on_scan(const g4lidar::scan& scan) override {
     if (is_over_) return;
-    publisher_->on_scan(scan);
+    lidar_->on_scan(scan);
     if (scans_++ % 6 == 0) publisher_->tick();
     if (!read_all()) end();
   }
@@ -66,6 +66,7 @@ class Served : public cli::scratch, public reader_listener {
   int events_ = 0;
   client_registry center_{"session", false, {.set = {}, .play = {}}, [] {}};
   scan_publisher* publisher_ = nullptr;
+  served_lidar* lidar_ = nullptr;
 
  private:
   std::mutex mutex_;

@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <variant>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/sim/setup.hpp"
 #include "io/interrupt.hpp"
 #include "merger.hpp"
 
@@ -36,18 +34,6 @@ const model& expected_model(const ros2_options& options, const named_source& whi
   if (options.common.expected.model != nullptr) return *options.common.expected.model;
   const auto found = model_of_source(which.source, [] { return interrupt() != 0; });
   return found ? **found : g4_model;
-}
-
-/// Whether it is a simulated lidar that moves. What cannot be read is an error when it is opened.
-bool has_simulated_path(const std::string& source) {
-  if (!sim::is_simulated(source)) return false;
-  const auto read = sim::parse_setup(source);
-  const auto* const setup = std::get_if<sim::setup>(&read);
-  if (setup == nullptr) return false;
-  if (!setup->path_file.empty()) return true;
-  const auto scene = sim::load_world(setup->world_file);
-  const auto* const world = std::get_if<sim::world>(&scene);
-  return world != nullptr && !world->path.empty();
 }
 
 }  // namespace

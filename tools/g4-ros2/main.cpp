@@ -50,13 +50,10 @@ verb make_verb() {
   const auto options = std::make_shared<ros2_options>();
   options->common.frame = frame::robot;
   options->common.on_loss = loss_rule::wait;
-  option_row source{"SOURCE", "", "A lidar or a recording, or NAME=SOURCE (the only G4)",
-                    [options](const std::string& word) { options->sources.push_back(word); }};
-  source.complete = completion::source;
-  source.repeatable = true;
   return {.name = "g4-ros2",
           .summary = "Publish lidars as ROS 2 topics",
-          .arguments = {source},
+          .arguments = {named_source_arguments(
+              options->sources, "A lidar or a recording, or NAME=SOURCE (the only G4)")},
           .options = ros2_rows(options),
           .details = details,
           .examples = {{"g4-ros2", "Publish the only G4 on /scan and /points"},

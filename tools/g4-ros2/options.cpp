@@ -5,16 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
 
 namespace g4_tool {
 namespace {
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The longest name of ROS 2: that of a topic, with its namespace.
 constexpr std::size_t longest_name = 247;
@@ -23,19 +19,6 @@ void check_length(std::string_view name) {
   if (name.size() <= longest_name) return;
   throw bad_value(fmt::format("a name of ROS 2 has at most {} characters; '{}...' has {}",
                               longest_name, name.substr(0, 20), name.size()));
-}
-
-/// Whether it is a valid part of a name of ROS 2, between slashes.
-bool is_token(std::string_view word) {
-  return !word.empty() && is_letter(word.front()) &&
-         std::ranges::all_of(word, [](char c) { return is_letter(c) || is_digit(c); });
-}
-
-/// The name and the value of "front=/dev/ttyUSB0"; without a name the whole word is the value.
-std::pair<std::string, std::string> split_name(const std::string& word) {
-  const std::size_t at = word.find('=');
-  if (at == std::string::npos || !is_token(word.substr(0, at))) return {"", word};
-  return {word.substr(0, at), word.substr(at + 1)};
 }
 
 option_row name_row(const char* names, const char* help, std::string& into) {
@@ -64,7 +47,7 @@ option_rows topic_rows(ros2_options& options) {
                        options.node, completion::nothing),
               [](const std::string& word) {
                 check_length(word);
-                if (!is_token(word))
+                if (!is_lidar_name(word))
                   throw bad_value(in_quotes(word) + " is not the name of a node");
               });
   return in_group(
@@ -92,7 +75,7 @@ option_rows scan_rows(ros2_options& options) {
                   options.order,
                   choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}}),
        number_row("--grid", "N", "Ranges of each LaserScan (G4: 720)", options.bins, 1U, 65536U),
-       flag_row("--merge", "Join the lidars by their mountings into one scan", options.merges)});
+       merge_row(options.merges)});
 }
 
 option_rows network_rows(ros2_options& options) {
@@ -119,14 +102,12 @@ option_rows network_rows(ros2_options& options) {
 }
 
 option_rows place_rows(ros2_options& options) {
-  option_row mount{"--mount", "X,Y,DEG[,down]",
-                   "Where the lidar is on the robot; NAME=X,Y,DEG: that lidar; for /tf_static",
-                   [&into = options.mounts](const std::string& word) {
-                     const auto [name, place] = split_name(word);
-                     into.emplace_back(name, mounting_of(place));
-                   }};
-  mount.repeatable = true;
-  return in_group("Motion of the robot", joined(mount, deskew_row(options.common)));
+  return in_group(
+      "Motion of the robot",
+      joined(named_mount_row(
+                 "Where the lidar is on the robot; NAME=X,Y,DEG: that lidar; for /tf_static",
+                 options.mounts),
+             deskew_row(options.common)));
 }
 
 option_rows device_and_player_rows(ros2_options& options) {
@@ -167,16 +148,6 @@ option_rows filter_rows_of(ros2_options& options) {
   return rows;
 }
 
-/// "'front', 'rear'"
-std::string list_of(const std::vector<named_source>& lidars) {
-  std::string made;
-  for (const named_source& each : lidars) {
-    made += (made.empty() ? "" : ", ") +
-            (each.name.empty() ? "one without a name" : in_quotes(each.name));
-  }
-  return made;
-}
-
 /// Refuses two uses of one topic, which can have only one type.
 void check_topics(const ros2_options& options, const std::vector<named_source>& lidars) {
   const topic_names& topics = options.topics;
@@ -215,7 +186,7 @@ std::string full_name(std::string_view name_space, std::string_view name) {
   for (std::size_t at = 0; at < made.size();) {
     const std::size_t end = std::min(made.find('/', at + 1), made.size());
     const std::string_view token = std::string_view(made).substr(at + 1, end - at - 1);
-    if ((!is_token(token) && made != "/") || token.find("__") != std::string_view::npos) {
+    if ((!is_lidar_name(token) && made != "/") || token.find("__") != std::string_view::npos) {
       throw bad_value(in_quotes(std::string(name)) +
                       " is not a name of ROS 2: letters, digits, single _ and / between them");
     }
@@ -235,36 +206,7 @@ std::string run_topic(const ros2_options& options) {
 }
 
 std::vector<named_source> sources_of(const ros2_options& options) {
-  std::vector<named_source> made;
-  std::set<std::string> names;
-  for (const std::string& word : options.sources) {
-    auto [name, source] = split_name(word);
-    if (!names.insert(name).second) {
-      throw bad_value(options.sources.size() > 1 && name.empty()
-                          ? "several lidars need names: front=" + options.sources.front()
-                          : in_quotes(name) + " names two lidars");
-    }
-    made.push_back({std::move(name), std::move(source), std::nullopt});
-  }
-  if (made.empty()) made.push_back({"", "", std::nullopt});
-  if (made.size() > 1 && names.contains("")) {
-    throw bad_value("several lidars need names: front=/dev/ttyUSB0");
-  }
-  const auto has_own_clock = [](const named_source& each) {
-    const source_kind kind = kind_of_source(each.source);
-    return kind == source_kind::recording || kind == source_kind::raw_bytes;
-  };
-  if (options.merges && std::ranges::any_of(made, has_own_clock)) {
-    throw bad_value("--merge joins lidars; a file has a clock of its own");
-  }
-  for (const auto& [name, place] : options.mounts) {
-    const auto lidar = std::ranges::find(made, name, &named_source::name);
-    if (lidar == made.end()) {
-      throw bad_value(fmt::format("--mount: there is no lidar {}; there is {}", in_quotes(name),
-                                  list_of(made)));
-    }
-    lidar->mount = place;
-  }
+  std::vector<named_source> made = named_sources(options.sources, options.mounts, options.merges);
   check_topics(options, made);
   return made;
 }

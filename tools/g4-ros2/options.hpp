@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cli/common_options.hpp"
+#include "cli/named_sources.hpp"
 #include "cli/settings.hpp"
 #include "cli/verbs.hpp"
 #include "g4lidar/message/ros_messages.hpp"
@@ -51,9 +52,6 @@ struct delivery {
   std::optional<bool> has_services{};  ///< Nothing: by RMW_IMPLEMENTATION.
 };
 
-/// The name of a lidar (empty for the only one) and its mounting.
-using named_mounting = std::pair<std::string, mounting>;
-
 struct ros2_options {
   /// Of every lidar; without its source. The filters use the robot's frame.
   common_options common;
@@ -74,12 +72,6 @@ struct ros2_options {
       {"near_as", "nan"}, {"no_return", "inf"}, {"speckle", "off"}};
   bool merges = false;
   bool is_standby = false;
-};
-
-struct named_source {
-  std::string name;  ///< Empty for the only one.
-  std::string source;
-  std::optional<mounting> mount;
 };
 
 /// The lidars that the options name, at least one. Throws bad_value.

@@ -13,16 +13,10 @@
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "g4lidar/scan.hpp"
+#include "io/scan_merger.hpp"
 #include "options.hpp"
 
 namespace g4_tool {
-
-/// When a revolution was measured, in nanoseconds.
-struct scan_times {
-  std::int64_t first_ns = 0;     ///< Of its first point, by the clock of the points.
-  std::int64_t duration_ns = 0;  ///< Until the first point of the next one.
-  std::int64_t ahead_ns = 0;     ///< The wall clock minus the clock of the points.
-};
 
 /// The counts of topics by their names.
 using named_counts = std::vector<std::pair<std::string, dds::publisher_counts>>;

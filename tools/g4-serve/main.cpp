@@ -2,6 +2,7 @@
 // g4-serve: a lidar in a web page and in Foxglove, from one port.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -24,8 +25,8 @@ namespace g4_tool {
 namespace {
 
 constexpr const char* description =
-    R"(g4-serve shows a YDLIDAR G4, a recording or a simulated lidar in a web page, and to Foxglove, from
-one TCP port. It is what g4-dump serve runs.)";
+    R"(g4-serve shows a lidar, a recording or a simulated lidar in a web page, and to Foxglove, from one
+TCP port. It is what g4-dump serve runs.)";
 
 std::string new_session() {
   std::random_device random;
@@ -35,7 +36,7 @@ std::string new_session() {
 /// All parts of the server.
 class lidar_server {
  public:
-  explicit lidar_server(const serve_options& options)
+  lidar_server(const serve_options& options, const std::vector<named_source>& lidars)
       : options_(options),
         registry_(new_session(), options.allows_set,
                   {.set = [this](const set_request& wanted,
@@ -44,9 +45,12 @@ class lidar_server {
                    .record = [this](const record_request& wanted,
                                     auto done) { publisher_.record(wanted, std::move(done)); }},
                   [this] { wake(); }),
-        publisher_(options, registry_),
-        reader_(options.common, publisher_.how_to_open(), publisher_) {
-    publisher_.attach(reader_);
+        publisher_(options, lidars, registry_) {
+    for (const auto& each : publisher_.lidars()) {
+      readers_.push_back(
+          std::make_unique<source_reader>(each->options(), each->how_to_open(), *each));
+      each->attach(*readers_.back());
+    }
     server_ =
         std::make_unique<web_server>(options.address, options.port, options.origins, registry_);
     served_ = server_.get();
@@ -55,7 +59,7 @@ class lidar_server {
   lidar_server(const lidar_server&) = delete;
   lidar_server& operator=(const lidar_server&) = delete;
   ~lidar_server() {
-    reader_.stop();  // the motor first
+    for (const auto& each : readers_) each->stop();  // the motors first
     served_ = nullptr;
     server_.reset();
   }
@@ -65,14 +69,13 @@ class lidar_server {
     using namespace std::chrono_literals;
     using clock = std::chrono::steady_clock;
     for (const std::string& url : urls_) logger::info(url + '\n');
-    reader_.start();
+    for (const auto& each : readers_) each->start();
     time_limits limits(options_.common.duration, std::chrono::nanoseconds(0));
     clock::time_point due = clock::now();
     while (!limits.is_over()) {
       if (wait_for_input(-1, -1, std::min(due, limits.end())) == wake::interrupt) return;
-      if (const auto why = reader_.failure()) std::rethrow_exception(why);
-      publisher_.tick();
-      report();
+      if (const auto why = failure_of_all()) std::rethrow_exception(why);
+      report(publisher_.tick().state);
       due = std::max(due + 500ms, clock::now());
     }
   }
@@ -82,17 +85,23 @@ class lidar_server {
     if (web_server* const server = served_) server->wake();
   }
 
-  void report() {
-    if (reader_.state() != reader_state::opening) watch_.ready();
+  /// The first failure if all lidars have one: what works is shown.
+  [[nodiscard]] std::exception_ptr failure_of_all() const {
+    const auto has_failed = [](const auto& each) { return each->failure() != nullptr; };
+    return std::ranges::all_of(readers_, has_failed) ? readers_.front()->failure() : nullptr;
+  }
+
+  void report(reader_state state) {
+    if (state != reader_state::opening) watch_.ready();
     watch_.alive();
-    watch_.status(fmt::format("{}, {} at {}", name_of(reader_.state()),
+    watch_.status(fmt::format("{}, {} at {}", name_of(state),
                               counted(registry_.client_count(), "client"), urls_.front()));
   }
 
   const serve_options options_;
   client_registry registry_;
   scan_publisher publisher_;
-  source_reader reader_;
+  std::vector<std::unique_ptr<source_reader>> readers_;
   std::unique_ptr<web_server> server_;
   std::atomic<web_server*> served_ = nullptr;
   std::vector<std::string> urls_;
@@ -100,7 +109,7 @@ class lidar_server {
 };
 
 int serve(const serve_options& options) {
-  lidar_server(options).run();
+  lidar_server(options, served_sources(options)).run();
   return exit_code_now();
 }
 
@@ -111,7 +120,7 @@ std::vector<verb> verbs() { return {make_serve_verb("g4-serve", serve)}; }
 
 int main(int argc, char** argv) {
   const g4_tool::program g4_serve{.name = "g4-serve",
-                                  .title = "A YDLIDAR G4 in a web page and in Foxglove",
+                                  .title = "A lidar in a web page and in Foxglove",
                                   .description = g4_tool::description,
                                   .verbs = g4_tool::verbs,
                                   .default_verb = "g4-serve"};

@@ -4,14 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <cstddef>
 
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
-#include "client_json.hpp"
-#include "g4lidar/cartesian.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "g4lidar/version.hpp"
 
@@ -19,13 +16,6 @@ namespace g4_tool {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-template <class Unsigned>
-void put_little(Unsigned value, std::vector<std::uint8_t>& out) {
-  for (std::size_t i = 0; i < sizeof(value); ++i) {
-    out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
-  }
-}
 
 /// Texts for the page, which has no command line and reconnects automatically.
 std::string in_page_words(std::string_view text) {
@@ -36,47 +26,6 @@ std::string in_page_words(std::string_view text) {
 }
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
-/// A value as a word of `g4-dump set`; empty if it is not one.
-std::string word_of(const nlohmann::json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_boolean()) return value.get<bool>() ? "on" : "off";
-  if (value.is_number_integer()) return value.dump();
-  if (value.is_number() && std::isfinite(value.get<double>())) {
-    return fmt::format("{}", value.get<double>());
-  }
-  return {};
-}
-
-page_request parse_set(const nlohmann::json& object) {
-  const auto name = object.find("name");
-  const auto value = object.find("value");
-  const std::string word = value == object.end() ? "" : word_of(*value);
-  if (name == object.end() || !name->is_string() || word.empty()) {
-    return bad_request{"set", "needs a name and a value"};
-  }
-  return set_request{name->get<std::string>(), word};
-}
-
-page_request parse_play(const nlohmann::json& object) {
-  play_request made{{}, number_in(object, "speed"), number_in(object, "seek_s")};
-  const auto paused = object.find("paused");
-  if (paused != object.end() && paused->is_boolean()) made.paused = paused->get<bool>();
-  const auto known = std::size_t{made.paused.has_value()} + std::size_t{made.speed.has_value()} +
-                     std::size_t{made.seek_s.has_value()};
-  if (known == 0 || known + 1 != object.size()) {
-    return bad_request{"play", "needs paused, speed or seek_s, and nothing else"};
-  }
-  return made;
-}
-
-page_request parse_record(const nlohmann::json& object) {
-  const auto on = object.find("on");
-  if (on == object.end() || !on->is_boolean() || object.size() != 2) {
-    return bad_request{"record", "needs on, and nothing else"};
-  }
-  return record_request{on->get<bool>()};
-}
 
 json json_of(const page_recording& recording) {
   const auto name_or_null = [](const std::string& name) {
@@ -108,8 +57,9 @@ json json_of(const evidence& measured) {
   return std::visit([](const auto& held) { return json(held); }, measured.value);
 }
 
-json json_of(const stage_report& stage) {
+json json_of(const stage_report& stage, const std::string& lidar) {
   json made{{"stage", name_of(stage.stage)}, {"verdict", name_of(stage.outcome)}};
+  if (!lidar.empty()) made["lidar"] = lidar;
   json& diagnoses = made["diagnoses"] = json::array();
   for (const diagnosis what : stage.diagnoses) {
     const diagnosis_info info = describe(what);
@@ -136,26 +86,87 @@ json measured(const std::vector<stage_report>& stages, diagnostic_stage where,
   return nullptr;
 }
 
-/// A row of the table of settings: how the page asks for a value.
-json json_of(const setting_info& row) {
+/// A row of the table of settings, with the values and limits of a model: how the page asks for a value.
+json json_of(const setting_info& row, const g4lidar::model& of) {
   json made{{"name", row.name}, {"text", row.text}, {"unit", row.unit}};
-  if (row.values.empty()) {
-    made["least"] = row.least / 100.0;
-    made["most"] = row.most / 100.0;
+  if (row.change == request_kind::set_scan_frequency) {
+    made["least"] = of.frequency.min_dhz / 10.0;
+    made["most"] = of.frequency.max_dhz / 10.0;
     made["step"] = row.step / 100.0;
-    return made;
-  }
-  for (const setting_value& each : row.values) {
-    const bool is_number = row.type == setting_type::whole;
-    made["values"].push_back(is_number ? std::to_string(each.number) : std::string(each.word));
+  } else if (row.change == request_kind::set_sample_rate) {
+    for (const auto& rate : of.rates.entries) {
+      if (rate.hz != 0) made["values"].push_back(std::to_string(rate.hz));
+    }
+  } else {
+    for (const setting_value& each : row.values) made["values"].push_back(std::string(each.word));
   }
   return made;
 }
 
-json setting_rows() {
+/// The settings that a model has; none while it is not known.
+json setting_rows(const g4lidar::model* of) {
   json rows = json::array();
-  for (const setting_info& each : all_settings()) rows.push_back(json_of(each));
+  if (of == nullptr) return rows;
+  for (const setting_info& each : all_settings()) {
+    if (has_request(*of, each.change)) rows.push_back(json_of(each, *of));
+  }
   return rows;
+}
+
+json device_of(const page_lidar& lidar) {
+  json made = g4_tool::json_of(lidar.device);
+  const g4lidar::model* const model = lidar.model;
+  made["name"] = model == nullptr ? json(nullptr) : json(model->name);
+  made["range_m"] = model == nullptr ? json(nullptr) : json(model->range.max_mm / 1000.0);
+  made["has_intensity"] = model == nullptr ? json(nullptr) : json(has_intensity(*model));
+  return made;
+}
+
+/// What belongs to one lidar in a hello.
+json json_of(const page_lidar& lidar) {
+  return {{"device", device_of(lidar)},
+          {"settings", lidar.settings},
+          {"setting_rows", setting_rows(lidar.model)}};
+}
+
+/// Adds what belongs to one of several lidars to a status: itself, its stages and its counts.
+void add_lidar(json& status, const page_status& lidar) {
+  status["lidars"].push_back({{"name", lidar.lidar},
+                              {"state", name_of(lidar.state)},
+                              {"why", lidar.why},
+                              {"scan_rate_hz", or_null(lidar.scan_rate_hz)},
+                              {"sample_rate_hz", or_null(lidar.sample_rate_hz)},
+                              {"frequency_hz", or_null(lidar.frequency_hz)},
+                              {"loss", lidar.loss}});
+  for (const stage_report& stage : lidar.stages) {
+    status["stages"].push_back(json_of(stage, lidar.lidar));
+  }
+  const json counts = json_of(lidar.counts);
+  for (auto& [name, count] : status["counts"].items()) {
+    count = count.get<std::uint64_t>() + counts.at(name).get<std::uint64_t>();
+  }
+  status["checksum_errors"] = status["checksum_errors"].get<std::uint64_t>() +
+                              lidar.counts.stream.skipped(skip_reason::bad_checksum);
+}
+
+/// The recording of one of several lidars, with those of the others.
+void add(const page_recording& one, std::optional<page_recording>& all) {
+  if (!all) {
+    all = one;
+    return;
+  }
+  const auto join = [](std::string& to, const std::string& more) {
+    if (!more.empty()) to += (to.empty() ? "" : ", ") + more;
+  };
+  join(all->file, one.file);
+  join(all->last, one.last);
+  join(all->why, one.why);
+  all->bytes += one.bytes;
+  all->seconds = std::max(all->seconds, one.seconds);
+}
+
+bool is_only_one(const std::vector<page_lidar>& lidars) {
+  return lidars.size() == 1 && lidars.front().name.empty();
 }
 
 json verdict_of(const std::vector<stage_report>& stages, diagnostic_stage where) {
@@ -165,41 +176,66 @@ json verdict_of(const std::vector<stage_report>& stages, diagnostic_stage where)
 
 }  // namespace
 
-std::optional<page_request> parse_page_request(std::string_view text) {
-  const auto object = request_in(text);
-  if (!object) return std::nullopt;
-  const std::string op = object->at("op").get<std::string>();
-  if (op == "set") return parse_set(*object);
-  if (op == "play") return parse_play(*object);
-  if (op == "record") return parse_record(*object);
-  return bad_request{op, "is not a request"};
-}
-
 std::string hello_text(const page_hello& hello) {
-  return json_line(
-      {{"op", "hello"},
-       {"version", fmt::format("{}.{}.{}", G4LIDAR_VERSION_MAJOR, G4LIDAR_VERSION_MINOR,
-                               G4LIDAR_VERSION_PATCH)},
-       {"source", hello.source},
-       {"frame", "robot"},
-       {"device", json_of(hello.device)},
-       {"allow_set", hello.allows_set},
-       {"allow_record", hello.allows_record},
-       {"settings", hello.settings},
-       {"setting_rows", setting_rows()},
-       {"recording", hello.recording_s ? json{{"length_s", *hello.recording_s}} : json(nullptr)}});
+  json made{
+      {"op", "hello"},
+      {"version", fmt::format("{}.{}.{}", G4LIDAR_VERSION_MAJOR, G4LIDAR_VERSION_MINOR,
+                              G4LIDAR_VERSION_PATCH)},
+      {"source", hello.source},
+      {"frame", "robot"},
+      {"allow_set", hello.allows_set},
+      {"allow_record", hello.allows_record},
+      {"recording", hello.recording_s ? json{{"length_s", *hello.recording_s}} : json(nullptr)}};
+  if (is_only_one(hello.lidars)) {
+    made.update(json_of(hello.lidars.front()));
+    return json_line(made);
+  }
+  for (const page_lidar& each : hello.lidars) {
+    json lidar{{"name", each.name}};
+    lidar.update(json_of(each));
+    made["lidars"].push_back(std::move(lidar));
+  }
+  return json_line(made);
 }
 
-std::string settings_text(const json& settings) {
-  return json_line({{"op", "settings"}, {"settings", settings}});
+std::string settings_text(const std::vector<page_lidar>& lidars) {
+  json made{{"op", "settings"}};
+  if (is_only_one(lidars)) {
+    made["settings"] = lidars.front().settings;
+  } else {
+    for (const page_lidar& each : lidars) made["lidars"][each.name] = each.settings;
+  }
+  return json_line(made);
 }
 
-std::string event_text(std::string_view what, double time_s) {
-  return json_line({{"op", "event"}, {"what", what}, {"time", time_s}});
+std::string event_text(std::string_view what, double time_s, std::string_view lidar) {
+  json made{{"op", "event"}, {"what", what}, {"time", time_s}};
+  if (!lidar.empty()) made["lidar"] = lidar;
+  return json_line(made);
 }
 
 std::string error_text(std::string_view of, std::string_view message) {
   return json_line({{"op", "error"}, {"of", of}, {"message", message}});
+}
+
+page_status merged_status(std::vector<page_status> lidars) {
+  page_status made;
+  std::size_t running = 0;
+  for (const page_status& each : lidars) {
+    if (each.state == reader_state::running && running++ == 0) {
+      made.scan_rate_hz = each.scan_rate_hz;
+      made.frequency_hz = each.frequency_hz;
+    }
+    if (each.sample_rate_hz) {
+      made.sample_rate_hz = made.sample_rate_hz.value_or(0) + *each.sample_rate_hz;
+    }
+    made.loss = std::max(made.loss, each.loss);
+    if (!each.why.empty()) made.why += (made.why.empty() ? "" : " ") + each.lidar + ": " + each.why;
+    if (each.recording) add(*each.recording, made.recording);
+  }
+  made.state = running > 0 || lidars.empty() ? reader_state::running : lidars.front().state;
+  made.lidars = std::move(lidars);
+  return made;
 }
 
 std::string status_text(const page_status& status) {
@@ -216,7 +252,8 @@ std::string status_text(const page_status& status) {
       {"usb_latency_ms", measured(status.stages, diagnostic_stage::usb_latency, "held_back_ms")},
       {"health", verdict_of(status.stages, diagnostic_stage::health)},
       {"stages", json::array()}};
-  for (const stage_report& stage : status.stages) made["stages"].push_back(json_of(stage));
+  for (const stage_report& stage : status.stages) made["stages"].push_back(json_of(stage, ""));
+  for (const page_status& each : status.lidars) add_lidar(made, each);
   if (status.playback) {
     made["position_s"] = static_cast<double>(status.playback->position_ns) * 1e-9;
     made["paused"] = status.playback->is_paused;
@@ -224,34 +261,6 @@ std::string status_text(const page_status& status) {
   }
   if (status.recording) made["recording"] = json_of(*status.recording);
   return json_line(made);
-}
-
-void put_page_scan(const page_scan& what, std::vector<std::uint8_t>& out) {
-  constexpr unsigned has_place = 2;
-  const scan& revolution = what.revolution;
-  const std::size_t begin = out.size();
-  out.push_back(0x10);
-  out.push_back(
-      static_cast<std::uint8_t>((revolution.is_whole() ? 1U : 0U) | (what.place ? has_place : 0U)));
-  put_little(std::uint16_t{0}, out);
-  put_little(revolution.revolution, out);
-  put_little(std::bit_cast<std::uint64_t>(what.stamp_s), out);
-  std::uint16_t count = 0;
-  for (const point& p : revolution) {
-    if (p.is_no_return() || count == UINT16_MAX) continue;
-    const xy_point at = to_xy(p, frame::robot, revolution.model->turn_deg);
-    put_little(std::bit_cast<std::uint32_t>(at.x_m), out);
-    put_little(std::bit_cast<std::uint32_t>(what.is_upside_down ? -at.y_m : at.y_m), out);
-    ++count;
-  }
-  out[begin + 2] = static_cast<std::uint8_t>(count);
-  out[begin + 3] = static_cast<std::uint8_t>(count >> 8U);
-  if (what.place) {
-    put_little(what.place->map, out);
-    for (const double value :
-         {what.place->pose.x_m, what.place->pose.y_m, what.place->pose.yaw_rad})
-      put_little(std::bit_cast<std::uint64_t>(value), out);
-  }
 }
 
 }  // namespace g4_tool

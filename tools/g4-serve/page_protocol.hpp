@@ -2,9 +2,11 @@
 // The protocol of the web page, g4lidar.page.v1, in both directions. docs/serve.md describes it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -24,7 +26,8 @@ inline constexpr const char* page_subprotocol = "g4lidar.page.v1";
 /// {"op":"set"}.
 struct set_request {
   std::string name;
-  std::string value;  ///< As in `g4-dump set`.
+  std::string value;    ///< As in `g4-dump set`.
+  std::string lidar{};  ///< Of several ones; else empty.
 };
 /// {"op":"play"}: the changes of the playback.
 struct play_request {
@@ -46,18 +49,27 @@ using page_request = std::variant<set_request, play_request, record_request, bad
 /// Nothing for a text that a page never sends: close the connection.
 [[nodiscard]] std::optional<page_request> parse_page_request(std::string_view text);
 
+/// A lidar as pages know it.
+struct page_lidar {
+  std::string name{};  ///< Of one of several; empty for the only one.
+  std::optional<device_information> device{};
+  const g4lidar::model* model = nullptr;  ///< Null: not known yet.
+  nlohmann::ordered_json settings{};
+};
+
 /// The contents of the first message, which is sent again when it changes.
 struct page_hello {
   std::string source;
-  std::optional<device_information> device;
+  std::vector<page_lidar> lidars{};  ///< The only one, or those of merged scans.
   bool allows_set = false;
   bool allows_record = false;
-  nlohmann::ordered_json settings;
-  std::optional<double> recording_s;  ///< The length of a recording.
+  std::optional<double> recording_s{};  ///< The length of a recording.
 };
 [[nodiscard]] std::string hello_text(const page_hello& hello);
-[[nodiscard]] std::string settings_text(const nlohmann::ordered_json& settings);
-[[nodiscard]] std::string event_text(std::string_view what, double time_s);
+[[nodiscard]] std::string settings_text(const std::vector<page_lidar>& lidars);
+/// `lidar`: of several ones; else empty.
+[[nodiscard]] std::string event_text(std::string_view what, double time_s,
+                                     std::string_view lidar = {});
 [[nodiscard]] std::string error_text(std::string_view of, std::string_view message);
 
 /// The recording of the server.
@@ -72,6 +84,7 @@ struct page_recording {
 
 /// The contents of a status.
 struct page_status {
+  std::string lidar{};  ///< The name of one of several; else empty.
   reader_state state = reader_state::opening;
   std::string why{};
   std::optional<double> scan_rate_hz{};    ///< Received scans per second.
@@ -82,7 +95,10 @@ struct page_status {
   std::vector<stage_report> stages{};
   std::optional<playback_status> playback{};
   std::optional<page_recording> recording{};  ///< With --allow-record.
+  std::vector<page_status> lidars{};          ///< Of merged scans; see merged_status().
 };
+/// The status of several lidars together, with that of each.
+[[nodiscard]] page_status merged_status(std::vector<page_status> lidars);
 [[nodiscard]] std::string status_text(const page_status& status);
 
 /// A revolution, and what belongs to it.
@@ -91,8 +107,11 @@ struct page_scan {
   double stamp_s;
   std::optional<lidar_place> place{};
   bool is_upside_down = false;
+  /// So many points are of each lidar, in order; empty for one lidar.
+  std::span<const std::size_t> points_of_each{};
 };
-/// Appends the binary message of a revolution: its returns in the robot's frame.
+/// Appends the binary message of a revolution: its returns in the robot's frame, with their intensities if the model
+/// has them.
 void put_page_scan(const page_scan& what, std::vector<std::uint8_t>& out);
 
 }  // namespace g4_tool

@@ -29,8 +29,9 @@ constexpr std::string_view suffix = ".mcap";
 /// Of the recordings of one second.
 constexpr int most_of_a_second = 9;
 
-std::string name_now(int number) {
-  const std::string more = number > 1 ? fmt::format("-{}", number) : "";
+std::string name_now(const std::string& lidar, int number) {
+  std::string more = lidar.empty() ? "" : '-' + lidar;
+  if (number > 1) more += fmt::format("-{}", number);
   return fmt::format("{}{:%Y%m%dT%H%M%SZ}{}{}", prefix, fmt::gmtime(std::time(nullptr)), more,
                      suffix);
 }
@@ -116,8 +117,9 @@ class page_recorder::tap final : public g4lidar::forwarding_connector,
   page_recorder& to_;
 };
 
-page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes)
-    : directory_(std::move(directory)), most_bytes_(most_bytes) {
+page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes,
+                             const recorded_lidar& which)
+    : directory_(std::move(directory)), most_bytes_(most_bytes), which_(which) {
   if (directory_.empty()) return;
   std::error_code why;
   const bool is_directory = std::filesystem::is_directory(directory_, why);
@@ -169,7 +171,7 @@ std::string page_recorder::measure(std::uint64_t& free_bytes) const {
         "the recordings have {} MB, and --record-limit allows {} MB: remove some, or raise it",
         bytes >> 20U, most_bytes_ >> 20U);
   }
-  free_bytes = most_bytes_ - bytes;
+  free_bytes = (most_bytes_ - bytes) / which_.count;
   return {};
 }
 
@@ -190,7 +192,7 @@ std::string page_recorder::set(bool is_on) {
 std::string page_recorder::begin() {
   if (std::string why = measure(free_bytes_); !why.empty()) return why;
   for (int number = 1; number <= most_of_a_second; ++number) {
-    const std::string name = name_now(number);
+    const std::string name = name_now(which_.name, number);
     auto made = g4lidar::recording_writer::create(directory_ + '/' + name, {.model = model_});
     if (!made && made.error().system_errno() == EEXIST) continue;
     if (!made) return reason_of(made.error(), name);

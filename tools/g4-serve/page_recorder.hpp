@@ -2,6 +2,7 @@
 // Records the connection to the lidar while a page wants it, into the directory of --allow-record.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -26,9 +27,16 @@ class page_recorder {
   /// The largest number of recordings in the directory.
   static constexpr std::size_t most_files = 1000;
 
-  /// `directory`: empty if nobody may record. `most_bytes`: of all recordings in it. Throws a failure if it cannot be
-  /// written to.
-  page_recorder(std::string directory, std::uint64_t most_bytes);
+  /// The lidar among those that are recorded at the same time.
+  struct recorded_lidar {
+    std::string name{};  ///< A part of the names of files; empty for the only one.
+    std::size_t count = 1;
+  };
+
+  /// `directory`: empty if nobody may record. `most_bytes`: of all recordings in it; each lidar gets an equal part of
+  /// what is free. Throws a failure if it cannot be written to.
+  page_recorder(std::string directory, std::uint64_t most_bytes,
+                const recorded_lidar& which = only_lidar());
   page_recorder(const page_recorder&) = delete;
   page_recorder& operator=(const page_recorder&) = delete;
   ~page_recorder();
@@ -53,6 +61,7 @@ class page_recorder {
  private:
   class tap;
   class tapped_transport;
+  [[nodiscard]] static recorded_lidar only_lidar() { return {}; }
 
   [[nodiscard]] std::string begin();
   /// What is wrong with the directory, or how much may be written.
@@ -62,6 +71,7 @@ class page_recorder {
 
   const std::string directory_;
   const std::uint64_t most_bytes_;
+  const recorded_lidar which_;
   std::uint64_t free_bytes_ = 0;  // of this recording
   g4lidar::recorded_device known_;
   const g4lidar::transport* port_ = nullptr;  // null: not connected

@@ -32,6 +32,19 @@ constexpr auto facts_pause = 500ms;
 /// How long --once waits for a revolution.
 constexpr std::chrono::nanoseconds longest_wait = 20s;
 
+/// The least and the greatest intensity of the returns; nothing if the model does not measure it.
+std::optional<std::pair<int, int>> intensities_of(const scan& now) {
+  if (!has_intensity(*now.model)) return std::nullopt;
+  std::optional<std::pair<int, int>> found;
+  for (const point& each : now) {
+    if (each.is_no_return()) continue;
+    const int here = each.intensity;
+    if (!found) found.emplace(here, here);
+    found = {std::min(found->first, here), std::max(found->second, here)};
+  }
+  return found;
+}
+
 struct view_job {
   shared_options common = std::make_shared<common_options>();
   lidar_options source{.playback = {.speed = 1}};
@@ -91,6 +104,7 @@ class viewer {
     if (!settings_.is_frozen && newest_.take(scan_, place_, event)) {
       const scan now = scan_.view();
       trails_.add(now, place_);
+      facts_.intensity = intensities_of(now);
       facts_.frequency_hz = static_cast<double>(now.measured_frequency_hz());
       facts_.sample_rate_hz = static_cast<double>(now.measured_sample_rate_hz());
       settings_.radar.turn_deg = now.model->turn_deg;
@@ -264,7 +278,7 @@ verb make_view_verb() {
       value_row("--zoom", "METERS", "From the middle to the edge (as far as the returns)",
                 settings.radar.range_m, [&settings](const std::string& word) {
                   settings.is_zoomed = true;
-                  return number_of(word, 0.5, 16.0);
+                  return number_of(word, 0.5, 50.0);
                 });
   option_row size{"--size", "COLUMNSxROWS", "Size of the picture of --once (80x24)",
                   [target = job.get()](const std::string& word) { take_size(*target, word); }};
@@ -286,7 +300,7 @@ verb make_view_verb() {
           flag_row("--loop", "A recording begins again at its end", job->source.playback.loop),
           sample_rate_row(job->source.raw_sample_rate_hz), device),
       .details = view_details,
-      .examples = {{"g4-dump view", "The only G4"},
+      .examples = {{"g4-dump view", "The only lidar"},
                    {"g4-dump view sim:", "A simulated one"},
                    {"g4-dump view walk.mcap --loop", "A recording, again and again"},
                    {"g4-dump view --once sim: --glyphs ascii", "One picture as text"}},

@@ -104,6 +104,8 @@ void draw_panel(canvas& on, const cell_area& in, const view_facts& facts,
   words.fact("frequency", number_or_dash(facts.frequency_hz, " Hz", 2));
   words.fact("samples", number_or_dash(facts.sample_rate_hz, " /s", 0));
   words.fact("scans", number_or_dash(static_cast<double>(facts.scans), "", 0));
+  if (const auto& found = facts.intensity)
+    words.fact("intensity", fmt::format("{} to {}", found->first, found->second));
   words.fact("lost", number_or_dash(facts.lost_percent, " %", 2),
              facts.lost_percent > 0.2 ? ink::warn : ink::plain);
   words.fact("checksum", number_or_dash(static_cast<double>(facts.checksum_errors), "", 0));

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "canvas.hpp"
@@ -26,6 +28,8 @@ struct view_facts {
   double lost_percent = -1;
   std::int64_t checksum_errors = -1;
   std::int64_t scans = -1;
+  /// The least and the greatest of the newest revolution; nothing if the model does not measure it.
+  std::optional<std::pair<int, int>> intensity{};
   double position_s = -1;  ///< In a recording.
   double length_s = -1;
   std::vector<g4lidar::stage_report> stages{};

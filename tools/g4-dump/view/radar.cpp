@@ -16,9 +16,13 @@ namespace {
 using g4lidar::point;
 
 /// The zoom ranges in metres.
-constexpr std::array<double, 9> ranges{0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0};
+constexpr std::array<double, 12> ranges{0.5, 1.0,  2.0,  3.0,  4.0,  6.0,
+                                        8.0, 12.0, 16.0, 24.0, 32.0, 50.0};
 /// The distance between the rings of each.
-constexpr std::array<double, 9> steps{0.25, 0.5, 0.5, 1.0, 1.0, 2.0, 2.0, 4.0, 4.0};
+constexpr std::array<double, 12> steps{0.25, 0.5, 0.5, 1.0, 1.0, 2.0,
+                                       2.0,  4.0, 4.0, 8.0, 8.0, 10.0};
+/// The range without any return.
+constexpr double usual_range_m = 16.0;
 /// The share of the returns that range_for() shows.
 constexpr double nearly_all = 0.97;
 
@@ -96,8 +100,9 @@ double range_for(std::span<const point> points) noexcept {
     ++counts[level_of(static_cast<double>(each.range_mm) / 1000.0)];
     ++all;
   }
+  if (all == 0) return usual_range_m;
   std::size_t seen = 0;
-  for (std::size_t level = 0; level < ranges.size() && all > 0; ++level) {
+  for (std::size_t level = 0; level < ranges.size(); ++level) {
     seen += counts[level];
     if (static_cast<double>(seen) >= nearly_all * static_cast<double>(all)) return ranges[level];
   }

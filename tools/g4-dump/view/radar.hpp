@@ -24,7 +24,7 @@ struct radar_view {
       traces{};  ///< Earlier returns and the way driven, in the picture.
 };
 
-/// The zoom range that shows nearly all returns; the largest one if there are none.
+/// The zoom range that shows nearly all returns; 16 m if there are none.
 [[nodiscard]] double range_for(std::span<const g4lidar::point> points) noexcept;
 /// The next smaller or larger zoom range; the last one stays.
 [[nodiscard]] double next_range(double range_m, bool farther) noexcept;

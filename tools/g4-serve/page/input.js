@@ -111,7 +111,8 @@ export class Pointers {
 export class Controls {
   /**
    * @param {HTMLElement} surface @param {View} view @param {Ruler} ruler @param {Scans} scans
-   * @param {{pause: () => void, save: () => void}} actions  Pause or continue a recording; save the picture.
+   * @param {{pause: () => void, save: () => void, colour: () => void}} actions  Pause or continue a recording; save the
+   *   picture; change the meaning of colours.
    */
   constructor(surface, view, ruler, scans, actions) {
     this.surface = surface;
@@ -143,6 +144,7 @@ export class Controls {
       t: () => this.next_trails(),
       m: () => this.turn_map(),
       s: actions.save,
+      c: actions.colour,
       p: actions.pause,
       Escape: () => this.ruler.is_on && this.turn_ruler(),
       '?': () => keys.showModal(),

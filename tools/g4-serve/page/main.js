@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The page: connects its parts, and draws one picture per frame.
+import { Colours } from './colours.js';
 import { Connection } from './connection.js';
 import { bearing_deg, composed, origin, placed } from './frames.js';
 import { Controls, element } from './input.js';
@@ -17,16 +18,13 @@ const frames_kept = 1024;
 /** The part of the points that is visible at first; a few may be far away, through a door. */
 const first_part = 0.95;
 
-/** By the model number in the device information. @type {Record<number, string>} */
-const model_names = { 5: 'G4' };
-
 const surface = /** @type {HTMLCanvasElement} */ (element('points'));
 const grid = /** @type {HTMLCanvasElement} */ (element('grid'));
-const legend = /** @type {HTMLCanvasElement} */ (element('colours'));
 const view = new View();
 const ruler = new Ruler();
-const scans = new Scans();
-const radar = new Radar(grid, surface, view);
+const colours = new Colours();
+const scans = new Scans(colours);
+const radar = new Radar(grid, surface, view, colours);
 const panels = new Panels();
 /** @type {any} */
 let hello = null;
@@ -37,12 +35,14 @@ const connection = new Connection({ on_message: take_message, on_data: take_data
 const settings = new Settings(connection);
 const playback = new Playback(connection, () => show_state());
 const recorder = new Recorder(connection);
-const controls = new Controls(surface, view, ruler, scans, { pause: () => playback.pause(), save });
+const controls = new Controls(surface, view, ruler, scans, {
+  pause: () => playback.pause(), save, colour: () => colours.next(),
+});
 
 /** @param {any} message */
 function take_message(message) {
   if (message.op === 'hello') show_hello(message);
-  if (message.op === 'settings') settings.show(message.settings ?? {});
+  if (message.op === 'settings') settings.show(message.lidars ?? { '': message.settings });
   if (message.op === 'error') fail(message);
   if (message.op === 'event') panels.add_event(message);
   if (message.op !== 'status') return;
@@ -53,19 +53,30 @@ function take_message(message) {
   show_state();
 }
 
+/** @param {any} message  A hello. @returns {any[]} The only lidar, or those of merged scans. */
+function lidars_of(message) {
+  return message.lidars ?? [{ ...message, name: '' }];
+}
+
+/** @param {any} lidar @returns {string} */
+function device_text({ name, device }) {
+  const who = device ?? {};
+  const parts = [who.name ?? (who.model && `model ${who.model}`), who.firmware && `firmware ${who.firmware}`,
+    who.serial && `serial number ${who.serial}`];
+  const text = parts.filter(Boolean).join(', ');
+  return name && text ? `${name}: ${text}` : text;
+}
+
 /** @param {any} message */
 function show_hello(message) {
   hello = message;
   document.title = `g4lidar: ${hello.source ?? ''}`;
-  const who = hello.device ?? {};
-  const parts = [who.model && (model_names[who.model] ?? `model ${who.model}`), who.firmware && `firmware ${who.firmware}`,
-    who.serial && `serial number ${who.serial}`];
+  const lidars = lidars_of(hello);
   write(element('source'), hello.source ?? '');
-  write(element('device'), parts.filter(Boolean).join(', '));
+  write(element('device'), lidars.map(device_text).filter(Boolean).join('; '));
   recorder.allow(hello.allow_record === true);
-  settings.use(hello.setting_rows ?? []);
-  settings.allow(hello.allow_set === true);
-  settings.show(hello.settings ?? {});
+  settings.use(lidars, hello.allow_set === true);
+  colours.use(lidars);
   playback.use(hello.recording ?? null);
 }
 
@@ -81,7 +92,7 @@ function take_data(data) {
   if (!scans.take(data)) return;
   const scan = scans.newest;
   if (!scan) return;
-  panels.show_points(scan.colours.length);
+  panels.show_points(scan.count);
   controls.allow_map(scan.pose !== null);
   show_nearest();
   if (!view.is_chosen && (scan.whole || scans.received === 1)) follow();
@@ -126,6 +137,12 @@ function follow() {
   if (scans.range_of(first_part) > shown_m || scans.received === 1) controls.fit(first_part);
 }
 
+/** @param {{name: string, state: string}[]} lidars @returns {string} Those that give no scans. */
+function without(lidars) {
+  const names = lidars.filter((each) => each.state !== 'running').map((each) => each.name);
+  return names.length ? ` without ${names.join(', ')}` : '';
+}
+
 /** @returns {{state: string, text: string}} What is connected, and why it is not. */
 function state_now() {
   if (connection.state === 'waiting') {
@@ -138,7 +155,7 @@ function state_now() {
   if (status.state === 'running' && playback.paused) return { state: 'paused', text: 'Paused' };
   const why = status.why ? `: ${status.why}` : '';
   const texts = /** @type {Record<string, string>} */ ({
-    running: 'Running',
+    running: `Running${without(status.lidars ?? [])}`,
     opening: `Opening the lidar${why}`,
     resting: `The motor rests${why}`,
     lost: `The lidar is lost${why}`,
@@ -169,7 +186,7 @@ const frames = {
   draws: new Float32Array(frames_kept),
   last_ms: 0,
 };
-const drawn = { view: -1, ruler: -1, scans: -1, newest: /** @type {object | undefined} */ (undefined) };
+const drawn = { view: -1, ruler: -1, scans: -1, colours: -1, newest: /** @type {object | undefined} */ (undefined) };
 
 /** @param {number} now_ms */
 function frame(now_ms) {
@@ -185,13 +202,14 @@ function frame(now_ms) {
     element('measured').hidden = !ruler.is_on;
     element('nearest').hidden = ruler.is_on;
   }
-  if (view_changed || drawn.scans !== scans.version) {
+  if (view_changed || drawn.scans !== scans.version || drawn.colours !== colours.version) {
     radar.draw_points(scans);
     frames.drawn++;
   }
   drawn.view = view.version;
   drawn.ruler = ruler.version;
   drawn.scans = scans.version;
+  drawn.colours = colours.version;
   drawn.newest = scans.newest;
   frames.intervals[frames.count % frames_kept] = interval_ms;
   frames.draws[frames.count % frames_kept] = performance.now() - begin_ms;
@@ -206,9 +224,8 @@ new ResizeObserver(() => {
 }).observe(surface);
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   radar.use_theme();
-  radar.draw_legend(legend);
+  colours.use_theme();
 });
-radar.draw_legend(legend);
 connection.start();
 requestAnimationFrame(frame);
 
@@ -229,13 +246,17 @@ Object.defineProperty(window, 'g4lidar', {
       const scan = scans.newest;
       if (!scan) return null;
       const { revolution, stamp, whole, pose, map } = scan;
-      return { revolution, stamp, whole, pose, map, points: Array.from(scan.xy), trails: scans.shown.length - 1 };
+      return {
+        revolution, stamp, whole, pose, map, points: Array.from(scan.xy), trails: scans.shown.length - 1,
+        lidars: scan.lidars && Array.from(scan.lidars),
+        intensities: scan.intensities && Array.from(scan.intensities),
+      };
     },
     /** All scans that are shown, the oldest first, with points in the frame of the picture. */
     get shown() {
       return scans.shown.map((scan) => {
         const frame = scans.frame_of(scan);
-        const places = Array.from(scan.colours, (_, i) => placed(frame, { x: scan.xy[2 * i], y: scan.xy[2 * i + 1] }));
+        const places = Array.from({ length: scan.count }, (_, i) => placed(frame, { x: scan.xy[2 * i], y: scan.xy[2 * i + 1] }));
         return { revolution: scan.revolution, points: places.flatMap(({ x, y }) => [x, y]) };
       });
     },
@@ -245,6 +266,11 @@ Object.defineProperty(window, 'g4lidar', {
     },
     get way() {
       return scans.way.poses.map((pose) => composed(scans.map, pose));
+    },
+    /** By what the points are coloured, and by what they can be. */
+    get colour() {
+      const { way, ways, range_m, intensity } = colours;
+      return { way, ways: [...ways], range_m, intensity };
     },
     get is_map() {
       return scans.is_map;

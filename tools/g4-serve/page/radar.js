@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Draws the radar: rings, robot and ruler on one canvas, and above it the points as pixels.
 import { placed } from './frames.js';
-import { colour_count } from './scans.js';
 
+/** @typedef {import('./colours.js').Colours} Colours */
 /** @typedef {import('./view.js').View} View */
 /** @typedef {import('./scans.js').Scan} Scan */
 /** @typedef {import('./scans.js').Scans} Scans */
@@ -19,29 +19,11 @@ const label_pixels = 8;
 const newest_alpha = 255;
 const trail_alpha = 150;
 
-/** Anchors of the colours by range, near to far: readable on a light and on a dark background. */
-const on_light = [[130, 10, 20], [200, 35, 75], [160, 50, 180], [60, 90, 225], [10, 110, 130]];
-const on_dark = [[255, 240, 150], [255, 175, 70], [245, 100, 120], [190, 110, 230], [105, 150, 255]];
-
-/** @param {number[][]} anchors @returns {Uint32Array} Colours without alpha, as in ImageData. */
-function colours_between(anchors) {
-  const table = new Uint32Array(colour_count);
-  for (let i = 0; i < colour_count; i++) {
-    const at = (i / (colour_count - 1)) * (anchors.length - 1);
-    const below = Math.min(Math.floor(at), anchors.length - 2);
-    const mixed = anchors[below].map((from, c) =>
-      Math.round(from + (anchors[below + 1][c] - from) * (at - below)));
-    table[i] = mixed[0] | (mixed[1] << 8) | (mixed[2] << 16);
-  }
-  return table;
-}
-
 /** The colours of the style sheet. */
 function theme_now() {
   const style = getComputedStyle(document.documentElement);
   /** @param {string} name */
   const colour = (name) => style.getPropertyValue(name).trim();
-  const is_dark = matchMedia('(prefers-color-scheme: dark)').matches;
   return {
     background: colour('--background'),
     ring: colour('--ring'),
@@ -51,7 +33,6 @@ function theme_now() {
     ruler: colour('--ruler'),
     way: colour('--way'),
     nearest: colour('--nearest'),
-    anchors: is_dark ? on_dark : on_light,
   };
 }
 
@@ -63,8 +44,8 @@ export function ring_distance(scale) {
 }
 
 export class Radar {
-  /** @param {HTMLCanvasElement} grid @param {HTMLCanvasElement} points @param {View} view */
-  constructor(grid, points, view) {
+  /** @param {HTMLCanvasElement} grid @param {HTMLCanvasElement} points @param {View} view @param {Colours} colours */
+  constructor(grid, points, view, colours) {
     this.grid = grid;
     this.points = points;
     this.view = view;
@@ -79,22 +60,13 @@ export class Radar {
      */
     this.labels = [];
     this.theme = theme_now();
-    this.colours = colours_between(this.theme.anchors);
+    this.colours = colours;
+    this.table = colours.table;
   }
 
   use_theme() {
     this.theme = theme_now();
-    this.colours = colours_between(this.theme.anchors);
     this.view.version++;
-  }
-
-  /** @param {HTMLCanvasElement} canvas  The colours from the first to the last. */
-  draw_legend(canvas) {
-    const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
-    const strip = context.createImageData(colour_count, 1);
-    const pixels = new Uint32Array(strip.data.buffer);
-    for (let i = 0; i < colour_count; i++) pixels[i] = this.colours[i] | (newest_alpha << 24);
-    context.putImageData(strip, 0, 0);
   }
 
   /** Follows the size of the window. @param {number} width @param {number} height */
@@ -112,6 +84,7 @@ export class Radar {
   /** @param {Scans} scans  The trails, the oldest first, and the newest scan above them. */
   draw_points(scans) {
     this.pixels.fill(0);
+    this.table = this.colours.table;
     const last = scans.shown.length - 1;
     for (let i = 0; i < last; i++) {
       const age = (scans.now - scans.shown[i].born) / Math.max(scans.trail_s, 0.001);
@@ -128,7 +101,8 @@ export class Radar {
    * @param {number} alpha @param {number} size  Of a point, in pixels.
    */
   #draw_scan(scan, frame, alpha, size) {
-    const { view, ratio, pixels, colours } = this;
+    const { view, ratio, pixels, table } = this;
+    const colours = scan.colours[this.colours.way];
     const cosine = Math.cos(frame.yaw);
     const sine = Math.sin(frame.yaw);
     const width = this.points.width;
@@ -144,7 +118,7 @@ export class Radar {
       const column = Math.round(left - (sine * xy[k] + cosine * xy[k + 1]) * scale);
       const row = Math.round(top - (cosine * xy[k] - sine * xy[k + 1]) * scale);
       if (column < 0 || row < 0 || column > last_column || row > last_row) continue;
-      const pixel = colours[scan.colours[i]] | opaque;
+      const pixel = table[colours[i]] | opaque;
       let at = row * width + column;
       for (let line = 0; line < size; line++, at += width) {
         for (let n = 0; n < size; n++) pixels[at + n] = pixel;

@@ -1,64 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The visible scans: the newest, and older ones as trails.
 import { Way, composed, inverse, origin, placed } from './frames.js';
+import { message_of } from './message.js';
 
-const header_bytes = 16;
-const scan_message = 0x10;
-const is_whole = 1;
-const has_place = 2;
-const place_bytes = 28;
 const most_scans = 512;
-export const colour_count = 256;
-/** The range of the last colour, in metres. */
-export const colour_range_m = 16;
 
 /** @typedef {import('./frames.js').Pose} Pose */
+/** @typedef {import('./message.js').Message} Message */
+/** @typedef {import('./colours.js').Colours} Colours */
 
 /**
- * A scan as it was received. Coordinates in metres, in the robot's frame: x, y, x, y, ... `pose` is that of this frame
- * in the map with the number `map`, if it is known.
- * @typedef {{revolution: number, stamp: number, whole: boolean, xy: Float32Array,
- *   colours: Uint8Array, pose: Pose | null, map: number, born: number}} Scan
+ * A scan as it was received, the colours of its points, and the time of the picture then, in seconds.
+ * @typedef {Message & {colours: ReturnType<Colours['of']>, born: number}} Scan
  */
-
-/** @param {DataView} head @param {number} at @returns {{pose: Pose, map: number}} */
-function place_at(head, at) {
-  const [x, y, yaw] = [4, 12, 20].map((offset) => head.getFloat64(at + offset, true));
-  return { pose: { x, y, yaw }, map: head.getUint32(at, true) };
-}
-
-/**
- * @param {ArrayBuffer} message @param {number} born  The time of the picture, in seconds.
- * @returns {Scan | null} Null if it is not a scan.
- */
-export function scan_of(message, born) {
-  if (message.byteLength < header_bytes) return null;
-  const head = new DataView(message);
-  const count = head.getUint16(2, true);
-  if (head.getUint8(0) !== scan_message) return null;
-  const flags = head.getUint8(1);
-  const end = header_bytes + 8 * count;
-  if (message.byteLength !== end + (flags & has_place ? place_bytes : 0)) return null;
-  const xy = new Float32Array(message, header_bytes, 2 * count); // every browser is little-endian
-  const colours = new Uint8Array(count);
-  for (let i = 0; i < count; i++) {
-    // By the square root of the range, for more colours near the lidar.
-    const part = Math.sqrt(Math.hypot(xy[2 * i], xy[2 * i + 1]) / colour_range_m);
-    colours[i] = Math.min(colour_count - 1, part * colour_count);
-  }
-  return {
-    revolution: head.getUint32(4, true),
-    stamp: head.getFloat64(8, true),
-    whole: (flags & is_whole) !== 0,
-    xy,
-    colours,
-    ...(flags & has_place ? place_at(head, end) : { pose: null, map: 0 }),
-    born,
-  };
-}
 
 export class Scans {
-  constructor() {
+  /** @param {Colours} colours */
+  constructor(colours) {
+    this.colours = colours;
     /** @type {Scan[]} The newest is the last. */
     this.shown = [];
     /** The duration of a trail, in seconds. */
@@ -80,13 +39,14 @@ export class Scans {
     return this.shown[this.shown.length - 1];
   }
 
-  /** @param {ArrayBuffer} message @returns {boolean} Whether it was a scan. */
-  take(message) {
-    const scan = scan_of(message, this.now);
-    if (!scan) return false;
+  /** @param {ArrayBuffer} data @returns {boolean} Whether it was a scan. */
+  take(data) {
+    const message = message_of(data);
+    if (!message) return false;
     this.received++;
-    this.points_received += scan.colours.length;
+    this.points_received += message.count;
     if (this.is_frozen) return true;
+    const scan = { ...message, colours: this.colours.of(message), born: this.now };
     if (this.newest && scan.stamp < this.newest.stamp) { // seek to an earlier position
       this.shown.length = 0;
       this.way.clear();
@@ -173,8 +133,8 @@ export class Scans {
    * @param {number} part  1: all.
    */
   range_of(part) {
-    const { xy, colours } = this.newest ?? { xy: [], colours: [] };
-    const ranges = new Float32Array(colours.length);
+    const { xy, count } = this.newest ?? { xy: [], count: 0 };
+    const ranges = new Float32Array(count);
     for (let i = 0; i < ranges.length; i++) ranges[i] = Math.hypot(xy[2 * i], xy[2 * i + 1]);
     return ranges.sort()[Math.ceil(part * ranges.length) - 1] ?? 0;
   }

@@ -33,47 +33,48 @@ function field_of(row) {
   return input;
 }
 
+/** @param {string} lidar @param {string} name  Of a setting. @returns {string} The name of its field. */
+function field_name(lidar, name) {
+  return lidar ? `${lidar}.${name}` : name;
+}
+
+/** The settings of the only lidar, or of each of several ones. */
 export class Settings {
   /** @param {Sender} connection */
   constructor(connection) {
     this.connection = connection;
+    this.form = element('settings');
     this.error = element('settings_error');
-    /** @type {Record<string, unknown>} */
+    /** By the names of lidars. @type {Record<string, Record<string, unknown>>} */
     this.values = {};
-    /** @type {Map<string, HTMLSelectElement | HTMLInputElement>} */
+    /** By their names. @type {Map<string, HTMLSelectElement | HTMLInputElement>} */
     this.fields = new Map();
-    element('settings').addEventListener('submit', (event) => event.preventDefault());
+    this.shown = '';
+    this.form.addEventListener('submit', (event) => event.preventDefault());
   }
 
-  /** @param {Row[]} rows  The same ones each time. */
-  use(rows) {
-    if (this.fields.size > 0) return;
-    for (const row of rows) {
-      const field = field_of(row);
-      field.name = row.name;
-      field.disabled = true;
-      field.addEventListener('change', () => this.#change(field));
-      this.fields.set(row.name, field);
-      const label = make('label', row.unit ? `${row.name} (${row.unit}) ` : `${row.name} `);
-      label.title = row.text;
-      label.append(field);
-      element('settings').append(label);
+  /** @param {{name: string, setting_rows?: Row[], settings?: any}[]} lidars  Of a hello. @param {boolean} allowed */
+  use(lidars, allowed) {
+    const key = JSON.stringify(lidars.map((each) => [each.name, each.setting_rows]));
+    if (key !== this.shown) {
+      this.shown = key;
+      this.fields.clear();
+      this.form.replaceChildren(...lidars.map((each) => this.#group(each.name, each.setting_rows ?? [])));
     }
-  }
-
-  /** @param {boolean} allowed */
-  allow(allowed) {
     for (const field of this.fields.values()) field.disabled = !allowed;
-    write(element('settings_note'),
-      allowed ? '' : 'Read-only: the server was started without --allow-set.');
+    const note = allowed ? '' : 'Read-only: the server was started without --allow-set.';
+    write(element('settings_note'), this.fields.size > 0 ? note : 'None.');
+    this.show(Object.fromEntries(lidars.map((each) => [each.name, each.settings ?? {}])));
   }
 
-  /** @param {Record<string, unknown>} values */
+  /** @param {Record<string, Record<string, unknown>>} values  By the names of lidars. */
   show(values) {
     this.values = values;
-    for (const [name, field] of this.fields) {
-      if (field !== document.activeElement || field instanceof HTMLSelectElement) {
-        field.value = text_of(values[name]);
+    for (const [lidar, known] of Object.entries(values)) {
+      for (const [name, value] of Object.entries(known ?? {})) {
+        const field = this.fields.get(field_name(lidar, name));
+        if (!field || (field === document.activeElement && !(field instanceof HTMLSelectElement))) continue;
+        field.value = text_of(value);
       }
     }
     write(this.error, '');
@@ -85,10 +86,27 @@ export class Settings {
     write(this.error, message);
   }
 
-  /** @param {HTMLSelectElement | HTMLInputElement} field */
-  #change(field) {
+  /** @param {string} lidar @param {Row[]} rows @returns {HTMLElement} */
+  #group(lidar, rows) {
+    const group = make(lidar ? 'fieldset' : 'div');
+    if (lidar) group.append(make('legend', lidar));
+    for (const row of rows) {
+      const field = field_of(row);
+      field.name = field_name(lidar, row.name);
+      field.addEventListener('change', () => this.#change(field, lidar, row.name));
+      this.fields.set(field.name, field);
+      const label = make('label', row.unit ? `${row.name} (${row.unit}) ` : `${row.name} `);
+      label.title = row.text;
+      label.append(field);
+      group.append(label);
+    }
+    return group;
+  }
+
+  /** @param {HTMLSelectElement | HTMLInputElement} field @param {string} lidar @param {string} name */
+  #change(field, lidar, name) {
     write(this.error, '');
     if (!field.value || !field.checkValidity()) return field.reportValidity();
-    this.connection.send({ op: 'set', name: field.name, value: field.value });
+    this.connection.send({ op: 'set', ...(lidar && { lidar }), name, value: field.value });
   }
 }

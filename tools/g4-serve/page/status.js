@@ -5,7 +5,7 @@ import { element } from './input.js';
 /**
  * @typedef {{name: string, cause: string, advice: string}} Diagnosis
  * @typedef {{name: string, value: number | string, unit?: string}} Evidence
- * @typedef {{stage: string, verdict: string, diagnoses: Diagnosis[], evidence: Evidence[],
+ * @typedef {{stage: string, lidar?: string, verdict: string, diagnoses: Diagnosis[], evidence: Evidence[],
  *   remark?: string}} Stage
  */
 
@@ -82,6 +82,11 @@ class Table {
   }
 }
 
+/** @param {Stage} stage @returns {string} Its name, after that of the lidar if there are several. */
+function head_of({ stage, lidar }) {
+  return lidar ? `${lidar}: ${words_of(stage)}` : words_of(stage);
+}
+
 /** A stage of the doctor: a line, with its evidence folded below. */
 class StageRow {
   constructor() {
@@ -95,7 +100,7 @@ class StageRow {
   /** @param {Stage} stage */
   show(stage) {
     const names = stage.diagnoses.map((each) => words_of(each.name)).join(', ');
-    write(this.summary, `${marks[stage.verdict] ?? ''} ${words_of(stage.stage)}: ${names || stage.verdict}`);
+    write(this.summary, `${marks[stage.verdict] ?? ''} ${head_of(stage)}: ${names || stage.verdict}`);
     this.summary.dataset.verdict = stage.verdict;
     write(this.remark, stage.remark ?? '');
     const known = new Set(stage.evidence.map(evidence_name));
@@ -145,10 +150,11 @@ export class Panels {
     write(this.verdict, worst < 0 ? '-' : verdicts[worst]);
     this.verdict.dataset.verdict = verdicts[worst] ?? 'skipped';
     for (const stage of stages) {
-      let row = this.rows.get(stage.stage);
+      const name = head_of(stage);
+      let row = this.rows.get(name);
       if (!row) {
         row = new StageRow();
-        this.rows.set(stage.stage, row);
+        this.rows.set(name, row);
         this.stages.append(row.row);
       }
       row.show(stage);
@@ -159,13 +165,14 @@ export class Panels {
   /** @param {Stage[]} stages */
   #show_advice(stages) {
     const found = stages.flatMap((stage) =>
-      stage.diagnoses.map((each) => ({ ...each, verdict: stage.verdict })));
+      stage.diagnoses.map((each) => ({ ...each, verdict: stage.verdict, lidar: stage.lidar })));
     const key = JSON.stringify(found);
     if (key === this.advice_shown) return;
     this.advice_shown = key;
     this.advice.replaceChildren(...found.map((each) => {
       const head = make('p');
-      head.append(make('strong', words_of(each.name)), `: ${each.cause}`);
+      const name = each.lidar ? `${each.lidar}: ${words_of(each.name)}` : words_of(each.name);
+      head.append(make('strong', name), `: ${each.cause}`);
       const advice = make('p', each.advice);
       advice.className = 'advice';
       const box = make('div', '', head, advice);
@@ -175,14 +182,15 @@ export class Panels {
     }));
   }
 
-  /** @param {{what: string, time?: number | string}} event */
+  /** @param {{what: string, time?: number | string, lidar?: string}} event */
   add_event(event) {
     let time = event.time ?? '';
     // Seconds since 1970, or since the beginning of a recording.
     if (typeof time === 'number') {
       time = time > 1e9 ? new Date(1000 * time).toLocaleTimeString() : `${time.toFixed(1)} s`;
     }
-    this.events.prepend(make('li', `${time} ${event.what}`));
+    const lidar = event.lidar ? `${event.lidar}: ` : '';
+    this.events.prepend(make('li', `${time} ${lidar}${event.what}`));
     while (this.events.childElementCount > most_events) this.events.lastElementChild?.remove();
   }
 }

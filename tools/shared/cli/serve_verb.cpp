@@ -18,6 +18,10 @@ There is no password and no encryption. Web pages of other origins are refused, 
 --allow-origin, such as https://app.foxglove.dev. The settings of the lidar can be changed only
 with --allow-set, and pages can record into a directory only with --allow-record.
 
+Several lidars on one robot have names, and are joined into one scan in the frame of the robot:
+front=/dev/ttyUSB0 rear=/dev/ttyUSB1 --merge --mount front=0.2,0,0 --mount rear=-0.2,0,180. The page
+can show each of them in a colour of its own.
+
 The web page draws all points in the robot's frame: x ahead, y left.)";
 
 std::string origin_of(const std::string& word) {
@@ -60,13 +64,36 @@ option_rows scan_rows(serve_options& options) {
            "--deskew", "Deskew by the odometry of the source, or by the scans alone",
            options.common.deskew,
            choices<deskewing>{{"odometry", deskewing::by_path}, {"scans", deskewing::by_scans}}),
-       mount_row(options.common),
-       number_row("--grid", "N", "Ranges of each LaserScan (G4: 720)", options.bins, 1U, 65536U),
-       text_row("--frame-id", "NAME", "frame_id of the messages for Foxglove (laser)",
+       merge_row(options.merges),
+       named_mount_row("Where the lidar is on the robot; NAME=X,Y,DEG: that lidar (0,0,0)",
+                       options.mounts),
+       number_row("--grid", "N", "Ranges of each LaserScan (by the model; G4: 720)", options.bins,
+                  1U, 65536U),
+       text_row("--frame-id", "NAME", "For Foxglove (laser; base_link of merged scans)",
                 options.frame_id, completion::nothing)});
 }
 
 }  // namespace
+
+std::vector<named_source> served_sources(const serve_options& options) {
+  std::vector<named_source> made = named_sources(options.sources, options.mounts, options.merges);
+  if (options.merges) return made;
+  if (made.size() > 1) throw bad_value("several lidars are shown as one scan: add --merge");
+  made.front().name.clear();
+  return made;
+}
+
+serve_options options_of(const serve_options& options, const named_source& which) {
+  serve_options made = options;
+  made.common.source = which.source;
+  made.common.mount = which.mount;
+  return made;
+}
+
+std::string frame_id_of(const serve_options& options) {
+  if (!options.frame_id.empty()) return options.frame_id;
+  return options.merges ? "base_link" : "laser";
+}
 
 verb make_serve_verb(std::string name, const std::function<int(const serve_options&)>& run) {
   const auto options = std::make_shared<serve_options>();
@@ -74,15 +101,20 @@ verb make_serve_verb(std::string name, const std::function<int(const serve_optio
   return {
       .name = std::move(name),
       .summary = "Show the lidar in a web page, and to Foxglove",
-      .arguments = {source_argument(options->common)},
+      .arguments = {named_source_arguments(
+          options->sources,
+          "The lidar, a recording, raw bytes, or sim:; NAME=SOURCE (the only lidar)")},
       .options =
           joined(server_rows(*options), device_rows(options->common), filter_rows(options->common),
                  near_row(options->common.marks.near), scan_rows(*options),
                  grid_rows(options->common.grid), player_rows(options->speed, options->loops),
                  in_group("End condition", {duration_row(options->common)})),
       .details = serve_details,
-      .examples = {{command, "Serve the only G4 at http://localhost:8765/"},
+      .examples = {{command, "Serve the only lidar at http://localhost:8765/"},
                    {command + " walk.mcap --loop --port 8000", "Play a recording, again and again"},
+                   {command + " front=/dev/ttyUSB0 rear=/dev/ttyUSB1 --merge "
+                              "--mount front=0.2,0,0 --mount rear=-0.2,0,180",
+                    "Join two lidars into one scan"},
                    {command + " --address 0.0.0.0 --allow-set",
                     "For all machines of the network, which may change settings"}},
       .run = [options, run] { return run(*options); }};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common_options.hpp"
+#include "named_sources.hpp"
 #include "verbs.hpp"
 
 namespace g4_tool {
@@ -19,7 +20,11 @@ struct serve_options {
     common.frame = frame::robot;  // as in the page
   }
 
+  /// Of every lidar; without source and mounting.
   common_options common;
+  std::vector<std::string> sources;  ///< "SOURCE", or "NAME=SOURCE".
+  std::vector<named_mounting> mounts;
+  bool merges = false;
   std::string address = "127.0.0.1";
   std::uint16_t port = 8765;  ///< 0: any free port.
   bool allows_set = false;
@@ -27,10 +32,17 @@ struct serve_options {
   std::uint64_t record_limit = std::uint64_t{4} << 30U;  ///< Bytes of all recordings in it.
   std::vector<std::string> origins;                      ///< Of other web pages that may connect.
   std::optional<std::uint32_t> bins;  ///< Ranges of a LaserScan; default_bins() of the model.
-  std::string frame_id = "laser";
-  double speed = 1.0;  ///< Of the playback of a recording.
+  std::string frame_id;               ///< Empty: see frame_id_of().
+  double speed = 1.0;                 ///< Of the playback of a recording.
   bool loops = false;
 };
+
+/// The lidars to serve: one without a name or, with `merges`, at least one. Throws bad_value.
+[[nodiscard]] std::vector<named_source> served_sources(const serve_options& options);
+/// The options with the source and the mounting of a lidar.
+[[nodiscard]] serve_options options_of(const serve_options& options, const named_source& which);
+/// The frame of the messages: that of the lidar or, of merged scans, of the robot.
+[[nodiscard]] std::string frame_id_of(const serve_options& options);
 
 /// The verb `name`, executed by `run`.
 [[nodiscard]] verb make_serve_verb(std::string name,

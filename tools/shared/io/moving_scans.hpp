@@ -2,7 +2,6 @@
 // The scans of a lidar on a robot that moves, with the place of the lidar at each of them.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "cli/common_options.hpp"
@@ -14,16 +13,9 @@
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/sim/simulated_source.hpp"
 #include "odometry_feed.hpp"
+#include "place_tracker.hpp"
 
 namespace g4_tool {
-
-/// Where the lidar's own frame (frame::robot) was at the time of a scan's first point.
-struct lidar_place {
-  pose_2d pose{};         ///< In the map.
-  std::uint32_t map = 0;  ///< Its number; poses of different maps have nothing in common.
-
-  friend bool operator==(const lidar_place&, const lidar_place&) = default;
-};
 
 /// Shapes scans as a scan_shaper, and follows the motion. With --deskew it is known by odometry or by the scans. Without
 /// it the odometry of the source is used, if the source or --mount states where the lidar is on the robot: a wrong place
@@ -40,7 +32,7 @@ class moving_scans {
 
   /// Of the last scan.
   [[nodiscard]] scan_shaper& shaper() noexcept { return shaper_; }
-  /// Nothing if the motion is not known.
+  /// Of the lidar's own frame (frame::robot) at the time of the scan's first point. Nothing if the motion is not known.
   [[nodiscard]] const std::optional<lidar_place>& place() const noexcept { return place_; }
   /// Whether the lidar has its top down: seen from above, its y axis points to the other side.
   [[nodiscard]] bool is_upside_down() const noexcept { return mount_.upside_down; }
@@ -49,9 +41,6 @@ class moving_scans {
 
  private:
   void choose(const std::optional<mounting>& simulated);
-  [[nodiscard]] std::optional<lidar_place> place_on(std::span<const stamped_pose> path,
-                                                    std::int64_t time_ns);
-  [[nodiscard]] std::optional<lidar_place> place_by_scans(std::int64_t time_ns);
 
   const common_options options_;
   const g4lidar::mask mask_;
@@ -61,12 +50,8 @@ class moving_scans {
   odometry_feed feed_;
   odometry_path path_;
   scan_shaper shaper_;
+  place_tracker tracker_;
   std::optional<lidar_place> place_;
-  std::optional<stamped_pose> last_;  // in the map
-  twist_2d velocity_;
-  std::int64_t known_ns_ = 0;  // when the velocity was last known
-  std::uint64_t begun_ = 0;    // of the feed, at the last place
-  std::uint32_t map_ = 0;
 };
 
 }  // namespace g4_tool

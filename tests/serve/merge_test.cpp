@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+// Several lidars as one scan: where their points are, which lidar each point is of, and requests to one of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server.hpp"
+#include "support/cdr_reader.hpp"
+
+namespace {
+
+using nlohmann::json;
+using serve::raw_client;
+using serve::Server;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+struct place {
+  double x;
+  double y;
+};
+
+/// A message of a revolution, by docs/serve.md.
+struct revolution {
+  std::vector<place> points;
+  std::vector<std::size_t> of_each{};  // so many points are of each lidar
+  std::optional<std::array<double, 3>> pose{};
+};
+
+template <class Number>
+Number number_at(const std::string& data, std::size_t at) {
+  Number value{};
+  std::memcpy(&value, data.substr(at, sizeof(value)).data(), sizeof(value));
+  return value;
+}
+
+std::optional<revolution> revolution_of(const std::string& data) {
+  if (!data.starts_with('\x10')) return std::nullopt;
+  revolution made;
+  const auto flags = static_cast<unsigned char>(data.at(1));
+  std::size_t at = 16;
+  for (int left = number_at<std::uint16_t>(data, 2); left > 0; --left, at += 8) {
+    made.points.push_back({static_cast<double>(number_at<float>(data, at)),
+                           static_cast<double>(number_at<float>(data, at + 4))});
+  }
+  if ((flags & 2U) != 0) {
+    made.pose = {number_at<double>(data, at + 4), number_at<double>(data, at + 12),
+                 number_at<double>(data, at + 20)};
+    at += 28;
+  }
+  if ((flags & 4U) != 0) {
+    const int lidars = number_at<std::uint16_t>(data, at);
+    at += 2;
+    for (int i = 0; i < lidars; ++i, at += 2) {
+      made.of_each.push_back(number_at<std::uint16_t>(data, at));
+    }
+  }
+  EXPECT_EQ(at, data.size());
+  return made;
+}
+
+/// The room of 5 m by 2.7 m, in its frame.
+constexpr const char* small_room =
+    "wall -2 -1.5 3 -1.5\nwall 3 -1.5 3 1.2\nwall 3 1.2 -2 1.2\nwall -2 1.2 -2 -1.5\n";
+
+double to_wall(const place& at) {
+  return std::min(std::min(std::fabs(at.x + 2), std::fabs(at.x - 3)),
+                  std::min(std::fabs(at.y + 1.5), std::fabs(at.y - 1.2)));
+}
+
+class Merged : public Server {
+ protected:
+  Merged() {
+    // The direction of a lidar's cable is opposite to that of its mounting.
+    cli::write_file(path("front.txt"), std::string(small_room) + "lidar 0.3 0.1 -160\n");
+    cli::write_file(path("rear.txt"), std::string(small_room) + "lidar -0.4 -0.2 30\n");
+  }
+  /// Two lidars in one room: `front_more` and `rear_more` are added to the setups.
+  void begin_both(const std::vector<std::string>& more = {}, const std::string& front_more = "",
+                  const std::string& rear_more = "") {
+    std::vector<std::string> words{"rear=sim:?world=" + path("rear.txt") + rear_more,
+                                   "--merge",
+                                   "--mount",
+                                   "front=0.3,0.1,20",
+                                   "--mount",
+                                   "rear=-0.4,-0.2,-150"};
+    words.insert(words.end(), more.begin(), more.end());
+    begin(words, "front=sim:?world=" + path("front.txt") + front_more);
+  }
+  /// The next revolution that is as wanted; one without points if none came.
+  static revolution next_revolution(raw_client& client,
+                                    const std::function<bool(const revolution&)>& is_wanted) {
+    const auto end = std::chrono::steady_clock::now() + g4lidar::test::patience;
+    while (std::chrono::steady_clock::now() < end) {
+      const auto message = client.next_frame();
+      if (!message) break;
+      const auto got = revolution_of(*message);
+      if (got && is_wanted(*got)) return *got;
+    }
+    ADD_FAILURE() << "no such revolution";
+    return {};
+  }
+  static bool has_both(const revolution& got) {
+    return got.of_each.size() == 2 &&
+           std::ranges::all_of(got.of_each, [](std::size_t points) { return points > 800; });
+  }
+  /// The next status that is as wanted.
+  static json next_status(raw_client& client, const std::function<bool(const json&)>& is_wanted) {
+    json status = next(client, "status");
+    while (!status.is_null() && !is_wanted(status)) status = next(client, "status");
+    return status;
+  }
+  static json answer_to(raw_client& client, const char* request, const char* op) {
+    client.send_text(request);
+    return next(client, op);
+  }
+};
+
+TEST_F(Merged, EachPointIsWhereItsLidarHasMeasuredIt) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  begin_both();
+  const auto client = open_page();
+  const revolution got = next_revolution(*client, has_both);
+  ASSERT_EQ(got.of_each.size(), 2U);
+  EXPECT_EQ(got.of_each[0] + got.of_each[1], got.points.size());
+  for (const place& at : got.points) EXPECT_LT(to_wall(at), 0.06) << at.x << ' ' << at.y;
+  EXPECT_FALSE(got.pose) << "the motion is not known";
+  // Points of one lidar follow each other clockwise around its own place, so each belongs to the lidar that is named.
+  const std::array<place, 2> lidars{{{0.3, 0.1}, {-0.4, -0.2}}};
+  std::size_t from = 0;
+  for (std::size_t lidar = 0; lidar < 2; ++lidar) {
+    std::array<std::size_t, 2> back{};  // around the place of each lidar
+    for (std::size_t i = from + 1; i < from + got.of_each[lidar]; ++i) {
+      for (std::size_t around = 0; around < 2; ++around) {
+        const auto bearing = [&](const place& at) {
+          return std::atan2(at.y - lidars[around].y, at.x - lidars[around].x);
+        };
+        const double step = std::remainder(bearing(got.points[i]) - bearing(got.points[i - 1]),
+                                           2 * 3.14159265358979);
+        if (step > 0.0005) ++back[around];
+      }
+    }
+    EXPECT_LT(back[lidar], 20U) << lidar;
+    from += got.of_each[lidar];
+  }
+}
+
+TEST_F(Merged, PagesKnowTheLidars) {
+  begin_both({"--allow-set"}, "", "&model=t-mini");
+  const auto client = open_page();
+  json hello = next(*client, "hello");
+  while (!hello.is_null() && (hello["lidars"][0]["device"]["name"].is_null() ||
+                              hello["lidars"][1]["device"]["name"].is_null())) {
+    hello = next(*client, "hello");
+  }
+  ASSERT_EQ(hello["lidars"].size(), 2U);
+  EXPECT_EQ(hello["lidars"][0]["name"], "front");
+  EXPECT_EQ(hello["lidars"][0]["device"]["name"], "G4");
+  EXPECT_EQ(hello["lidars"][1]["name"], "rear");
+  EXPECT_EQ(hello["lidars"][1]["device"]["name"], "T-mini");
+  const json status =
+      next_status(*client, [](const json& now) { return now["lidars"][1]["state"] == "running"; });
+  EXPECT_EQ(status["lidars"][0]["name"], "front");
+  // A setting of one of them.
+  const json settings =
+      answer_to(*client, R"({"op":"set","lidar":"rear","name":"frequency","value":9})", "settings");
+  EXPECT_EQ(settings["lidars"]["rear"]["frequency"], 9.0);
+  EXPECT_NE(settings["lidars"]["front"]["frequency"], 9.0);
+  for (const char* const bad : {R"({"op":"set","lidar":"left","name":"frequency","value":9})",
+                                R"({"op":"set","name":"frequency","value":9})",
+                                R"({"op":"set","lidar":"","name":"frequency","value":9})"}) {
+    EXPECT_THAT(answer_to(*client, bad, "error")["message"].get<std::string>(),
+                HasSubstr("there is no lidar"))
+        << bad;
+  }
+  const std::string of_long_name =
+      R"({"op":"set","lidar":")" + std::string(9000, 'x') + R"(","name":"frequency","value":9})";
+  EXPECT_EQ(answer_to(*client, of_long_name.c_str(), "error")["of"], "set");
+  // The T-mini has no direction.
+  EXPECT_EQ(answer_to(*client, R"({"op":"set","lidar":"rear","name":"direction","value":"cw"})",
+                      "error")["of"],
+            "set");
+}
+
+TEST_F(Merged, WithoutOneOfThem_TheOthersAreShown) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  begin_both({}, "&fault=unplug@4s");
+  const auto client = open_page();
+  const json status =
+      next_status(*client, [](const json& now) { return now["lidars"][0]["state"] == "lost"; });
+  EXPECT_EQ(status["state"], "running");
+  EXPECT_THAT(status["why"].get<std::string>(), StartsWith("front: "));
+  const revolution got = next_revolution(*client, [](const revolution& each) {
+    return each.of_each.size() == 2 && each.of_each[0] == 0 && each.of_each[1] > 800;
+  });
+  for (const place& at : got.points) EXPECT_LT(to_wall(at), 0.06);
+}
+
+TEST_F(Merged, EachLidarIsRecorded_WithinTheLimitTogether) {
+  const std::string recordings = path("recordings");
+  std::filesystem::create_directory(recordings);
+  begin_both({"--allow-record", recordings});
+  const auto client = open_page();
+  next_status(*client, [](const json& now) {
+    return std::ranges::all_of(now["lidars"],
+                               [](const json& each) { return each["scan_rate_hz"].is_number(); });
+  });
+  client->send_text(R"({"op":"record","on":true})");
+  const auto of_both = [](const json& now) {
+    return now["recording"]["file"].is_string() &&
+           now["recording"]["file"].get<std::string>().find(", ") != std::string::npos;
+  };
+  const json status = next_status(*client, of_both);
+  const auto names = status["recording"]["file"].get<std::string>();
+  EXPECT_THAT(names, ::testing::MatchesRegex("g4-[0-9TZ]+-front\\.mcap, g4-[0-9TZ]+-rear\\.mcap"));
+  EXPECT_THAT(
+      answer_to(*client, R"({"op":"record","on":true})", "error")["message"].get<std::string>(),
+      HasSubstr("rear: "));
+  ASSERT_TRUE(gets_scans(*client, 12));
+  client->send_text(R"({"op":"record","on":false})");
+  next_status(*client, [](const json& now) { return now["recording"]["file"].is_null(); });
+  const std::size_t comma = names.find(", ");
+  for (const std::string& name : {names.substr(0, comma), names.substr(comma + 2)}) {
+    const auto done = cli::run({"stats", "--json", recordings + '/' + name});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_GE(json::parse(done.out)["scans"].get<int>(), 5) << name;
+  }
+}
+
+TEST_F(Merged, FoxgloveGetsThem_InTheFrameOfTheRobot) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  begin_both();
+  raw_client client(port_);
+  ASSERT_THAT(client.upgrade("foxglove.sdk.v1"), StartsWith("HTTP/1.1 101"));
+  client.send_text(R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":2}]})");
+  std::vector<std::uint8_t> cloud;
+  EXPECT_TRUE(g4lidar::test::comes_true([&] {
+    const auto message = client.next_frame();
+    constexpr std::size_t head = 13;  // kind, subscription, time
+    if (message && message->starts_with('\x01')) {
+      cloud.assign(message->begin() + head, message->end());
+    }
+    return cloud.size() > 2000U * 24;
+  }));
+  g4lidar::test::cdr_reader reader(cloud);
+  for (int of_stamp = 0; of_stamp < 2; ++of_stamp) static_cast<void>(reader.number<std::int32_t>());
+  EXPECT_EQ(reader.text(), "base_link");
+  constexpr std::size_t row = 24;  // x, y, z, t, range, angle
+  const std::size_t rows = (cloud.size() - 1) / row;
+  const std::string data(cloud.begin(), cloud.end() - 1);  // is_dense follows
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i + 2 < rows && seen < 2000; ++i, ++seen) {
+    const std::size_t at = data.size() - (seen + 1) * row;
+    EXPECT_LT(to_wall({static_cast<double>(number_at<float>(data, at)),
+                       static_cast<double>(number_at<float>(data, at + 4))}),
+              0.06);
+  }
+  EXPECT_EQ(seen, 2000U);
+}
+
+TEST_F(Merged, OnARobotThatMoves_TheWallsStay) {
+  if constexpr (std::endian::native != std::endian::little) GTEST_SKIP();
+  const char* const way = "drive wait 2\ndrive forward 1 0.5\ndrive turn 90 60\ndrive wait 60\n";
+  cli::write_file(path("front.txt"),
+                  std::string(small_room) + "mount 0.3,0.1,20\nlidar 0 0 0\n" + way);
+  cli::write_file(path("rear.txt"),
+                  std::string(small_room) + "mount -0.4,-0.2,-150\nlidar 0 0 0\n" + way);
+  begin_both();
+  const auto client = open_page();
+  std::vector<double> distances;
+  double farthest_m = 0;
+  next_revolution(*client, [&](const revolution& got) {
+    if (!got.pose || !has_both(got)) return false;
+    const auto [x, y, yaw] = *got.pose;
+    for (const place& at : got.points) {
+      distances.push_back(to_wall({x + std::cos(yaw) * at.x - std::sin(yaw) * at.y,
+                                   y + std::sin(yaw) * at.x + std::cos(yaw) * at.y}));
+    }
+    farthest_m = std::max(farthest_m, std::hypot(x, y));
+    return yaw > 1.5;
+  });
+  EXPECT_GT(farthest_m, 0.9);
+  ASSERT_GT(distances.size(), 20'000U);
+  std::ranges::sort(distances);
+  // The rear lidar's robot is another one, which has started at nearly the same time.
+  EXPECT_LT(distances[distances.size() / 2], 0.03);
+  EXPECT_LT(distances[distances.size() * 9 / 10], 0.12);
+}
+
+TEST_F(Merged, WhatCannotBeMerged_IsAnErrorAtTheStart) {
+  const auto refusal = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"serve", "--port", "0"});
+    const auto done = cli::run(words);
+    EXPECT_EQ(done.code, 2) << done.err;
+    return done.err;
+  };
+  EXPECT_THAT(refusal({"front=sim:", "rear=sim:"}), HasSubstr("--merge"));
+  EXPECT_THAT(refusal({"sim:", "rear=sim:", "--merge"}), HasSubstr("need names"));
+  EXPECT_THAT(refusal({"a=sim:", "a=sim:", "--merge"}), HasSubstr("names two lidars"));
+  EXPECT_THAT(refusal({"a=sim:", "--merge", "--mount", "b=0,0,0"}),
+              HasSubstr("there is no lidar 'b'"));
+  cli::write_file(path("walk.bin"), "");
+  EXPECT_THAT(refusal({"a=sim:", "b=file:" + path("walk.bin"), "--merge"}), HasSubstr("clock"));
+}
+
+}  // namespace

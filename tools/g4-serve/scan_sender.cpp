@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "scan_sender.hpp"
+
+#include <utility>
+
+#include "g4lidar/grid.hpp"
+#include "g4lidar/message/ros_messages.hpp"
+
+namespace g4_tool {
+
+scan_sender::scan_sender(const serve_options& options, client_registry& to)
+    : registry_(to),
+      frame_id_(frame_id_of(options)),
+      bins_(options.bins),
+      grid_(options.common.grid) {}
+
+void scan_sender::send_page(const page_scan& what) {
+  std::vector<std::uint8_t> message;
+  message.reserve(128 + 10 * what.revolution.size());
+  put_page_scan(what, message);
+  registry_.page_scan(std::move(message));
+}
+
+void scan_sender::send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when) {
+  const g4lidar::model& model = *for_grid.model;
+  ranges_m_.resize(bins_.value_or(default_bins(model)));
+  intensities_.resize(has_intensity(model) ? ranges_m_.size() : 0);
+  fill_grid(for_grid, ranges_m_, grid_, intensities_);
+  std::vector<std::uint8_t> message;
+  put_laser_scan(ranges_m_,
+                 {.stamp_ns = when.stamp_ns,
+                  .frame_id = frame_id_,
+                  .duration_ns = when.duration_ns,
+                  .model = &model,
+                  .intensities = intensities_},
+                 message);
+  registry_.publish(channel::scan, when.stamp_ns, std::move(message));
+}
+
+void scan_sender::send_points(const g4lidar::scan& kept, const scan_stamp& when) {
+  std::vector<std::uint8_t> message;
+  put_point_cloud2(kept.points,
+                   {.stamp_ns = when.stamp_ns,
+                    .frame_id = frame_id_,
+                    .duration_ns = when.duration_ns,
+                    .model = kept.model},
+                   message);
+  registry_.publish(channel::points, when.stamp_ns, std::move(message));
+}
+
+void scan_sender::send_bytes(std::int64_t stamp_ns, std::vector<std::uint8_t> message) {
+  registry_.publish(channel::from_device, stamp_ns, std::move(message));
+}
+
+}  // namespace g4_tool
