@@ -13,7 +13,7 @@
 namespace g4_tool {
 namespace {
 
-/// How the motion is known: as the options say, else by the path of a simulated robot.
+/// How the motion is known: by the options, else by the path of a simulated robot.
 deskewing deskewing_of(const serve_options& options, const std::vector<named_source>& lidars) {
   const bool is_known = has_simulated_path(lidars.front().source);
   const deskewing wanted = options.common.deskew;

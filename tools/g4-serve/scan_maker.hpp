@@ -29,7 +29,7 @@ class scan_maker {
   virtual void open(served_lidar& from, g4lidar::lidar& device) = 0;
   /// Sends what is wanted of a scan, and records the odometry that comes with it.
   virtual void add(served_lidar& from, const g4lidar::scan& found) = 0;
-  /// What diagnostics say of it. Call them in one thread.
+  /// Its parts of the diagnostics. Call them in one thread.
   [[nodiscard]] virtual std::vector<std::function<g4lidar::diagnostic_status()>> reports() = 0;
 };
 
