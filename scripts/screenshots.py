@@ -33,19 +33,31 @@ def take(driver, server, path, width, height, scale, is_phone, metre_pixels):
         sys.exit(f"{path} has more than {MOST_BYTES} bytes")
 
 
+def write_world(name, place):
+    """people.txt with a robot that stands, and its lidar at this place on it."""
+    lines = (WORLDS / "people.txt").read_text("utf-8").splitlines()
+    stands = [line for line in lines if not line.startswith(("drive", "mount"))]
+    pathlib.Path(scratch.name, name).write_text("\n".join([*stands, f"mount {place}", ""]), encoding="utf-8")
+
+
 def main():
     docs = pathlib.Path(sys.argv[1])
-    world = (WORLDS / "people.txt").read_text("utf-8")
-    stands = [line for line in world.splitlines() if not line.startswith("drive")]
-    pathlib.Path(scratch.name, "people.txt").write_text("\n".join(stands), encoding="utf-8")
-    server = Server("sim:?world=people.txt", directory=scratch.name)
+    front, rear = "1,0.4,0", "-1,-0.4,180"  # of a long vehicle
+    for name, place in (("people.txt", "0,0,0"), ("front.txt", front), ("rear.txt", rear)):
+        write_world(name, place)
     driver = new_driver()
+    servers = []
     try:
-        take(driver, server, docs / "serve.png", 1200, 780, 1, False, 40)
-        take(driver, server, docs / "serve_phone.png", 390, 844, 1.5, True, 26)
+        servers.append(Server("sim:?world=people.txt", directory=scratch.name))
+        take(driver, servers[0], docs / "serve.png", 1160, 740, 1, False, 40)
+        take(driver, servers[0], docs / "serve_phone.png", 390, 844, 1.5, True, 26)
+        servers.append(Server("front=sim:?world=front.txt", "rear=sim:?world=rear.txt", "--merge", "--mount",
+                              f"front={front}", "--mount", f"rear={rear}", directory=scratch.name))
+        take(driver, servers[1], docs / "serve_lidars.png", 900, 640, 1, False, 40)
     finally:
         driver.quit()
-        server.stop()
+        for server in servers:
+            server.stop()
 
 
 main()

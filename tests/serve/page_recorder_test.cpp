@@ -65,8 +65,9 @@ class PageRecorder : public cli::scratch {
   PageRecorder() { std::filesystem::create_directory(recordings_); }
 
   /// One that is connected, and has had a scan.
-  page_recorder& make(std::uint64_t most_bytes = 100 * megabyte) {
-    recorder_.emplace(recordings_, most_bytes);
+  page_recorder& make(std::uint64_t most_bytes = 100 * megabyte,
+                      const page_recorder::recorded_lidar& which = {}) {
+    recorder_.emplace(recordings_, most_bytes, which);
     from_ = recorder_->observe(std::make_unique<endless_connector>());
     port_ = std::move(*from_->connect());
     recorder_->add(g4lidar::scan{});
@@ -122,6 +123,34 @@ TEST_F(PageRecorder, EndsAtItsLimit) {
   EXPECT_GT(std::filesystem::file_size(recordings_ + '/' + status->last), 2 * megabyte);
   EXPECT_LT(std::filesystem::file_size(recordings_ + '/' + status->last), 5 * megabyte);
   EXPECT_THAT(recorder.set(true), HasSubstr("remove some"));
+}
+
+TEST_F(PageRecorder, OfOneOfSeveralLidars_HasItsNameAndItsPartOfTheLimit) {
+  page_recorder& recorder = make(8 * megabyte, {.name = "rear", .count = 2});
+  ASSERT_EQ(recorder.set(true), "");
+  EXPECT_TRUE(
+      std::regex_match(recorder.status()->file, std::regex(R"(g4-\d{8}T\d{6}Z-rear\.mcap)")))
+      << recorder.status()->file;
+  read(recorder, 3000);
+  const auto status = recorder.status();
+  EXPECT_THAT(status->why, HasSubstr("--record-limit"));
+  EXPECT_GT(status->bytes, 4 * megabyte);
+  EXPECT_LT(status->bytes, 7 * megabyte);
+}
+
+TEST_F(PageRecorder, InADirectoryThatVanishes_IsReported) {
+  page_recorder& recorder = make();
+  ASSERT_EQ(recorder.set(true), "");
+  read(recorder, 300);
+  std::filesystem::remove_all(recordings_);
+  read(recorder, 300);
+  ASSERT_EQ(recorder.set(false), "");
+  EXPECT_THAT(recorder.status()->why, HasSubstr("removed"));
+  EXPECT_THAT(recorder.set(true), HasSubstr("No such file or directory"));
+  EXPECT_TRUE(recorder.status()->file.empty());
+  EXPECT_FALSE(std::filesystem::exists(recordings_)) << "it is not made again";
+  std::filesystem::create_directory(recordings_);
+  EXPECT_EQ(recorder.set(true), "");
 }
 
 TEST_F(PageRecorder, HasALargestNumberOfFiles) {

@@ -277,6 +277,8 @@ TEST(PageTexts, OfSeveralLidars_HaveEachOfThem) {
 TEST(Requests, DamagedTexts_AreAnsweredOrRefused) {
   const std::vector<std::string> good{
       R"({"op":"set","name":"frequency","value":7.5})",
+      R"({"op":"set","lidar":"rear","name":"frequency","value":7.5})",
+      R"({"op":"record","on":true})",
       R"({"op":"play","paused":true,"speed":2,"seek_s":1e300})",
       R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":1},{"id":1,"channelId":2}]})",
       R"({"op":"unsubscribe","subscriptionIds":[0,1]})"};

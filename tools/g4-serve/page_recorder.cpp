@@ -249,6 +249,9 @@ void page_recorder::end(const std::string& why) {
   shown_.last = std::exchange(shown_.file, "");
   shown_.bytes = bytes;
   shown_.why = why.empty() && failed ? reason_of(*failed, shown_.last) : why;
+  std::error_code unimportant;
+  if (shown_.why.empty() && !std::filesystem::exists(directory_ + '/' + shown_.last, unimportant))
+    shown_.why = "it was removed while it was written";
   logger::info(fmt::format("recorded {}/{}: {} bytes{}{}\n", directory_, shown_.last, bytes,
                            shown_.why.empty() ? "" : "; ", shown_.why));
 }
