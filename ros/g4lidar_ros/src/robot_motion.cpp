@@ -47,7 +47,11 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
   }
   if (options.mount) {
     const bool is_down = options.mount->upside_down != options.is_turned;
-    place_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>(node);
+    // Within a process, Jazzy keeps nothing for the late subscribers of other processes.
+    rclcpp::PublisherOptions options_of_place;
+    options_of_place.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+    place_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>(
+        node, tf2_ros::StaticBroadcasterQoS(), options_of_place);
     place_->sendTransform(
         transform_of(0, options.base_frame, frame_id, {options.mount->pose, is_down}));
   }

@@ -44,8 +44,10 @@ class TestContainer(unittest.TestCase):
         # Both share the transforms of the process: each has a place.
         quality = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         places = watcher.collect(TFMessage, "/tf_static", quality)
-        self.assertTrue(support.wait_for(lambda: {each.child_frame_id for message in list(places)
-                                                  for each in message.transforms} >= {"front_laser", "rear_laser"}))
+
+        def children():
+            return {each.child_frame_id for message in list(places) for each in message.transforms}
+        self.assertTrue(support.wait_for(lambda: children() >= {"front_laser", "rear_laser"}), children())
         # One process: both nodes are components of the container.
         listed = watcher.call(ListNodes, "/lidars/_container/list_nodes", ListNodes.Request())
         self.assertEqual(sorted(listed.full_node_names), ["/front/g4lidar", "/rear/g4lidar"])
