@@ -164,7 +164,8 @@ void lidar_session::on_open(g4lidar::lidar& device) {
     RCLCPP_INFO(node_.get_logger(), "opened %s", std::string(device.name()).c_str());
     motion_.follow(device, simulation_);
     if (is_file_) return;
-    parameters_.fix("serial_number", std::string(device.information().serial_number()));
+    if (device.information().is_known())
+      parameters_.fix("serial_number", std::string(device.information().serial_number()));
     parameters_.read_device(device);
     is_news_ = true;
   });

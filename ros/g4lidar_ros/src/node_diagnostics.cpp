@@ -46,7 +46,8 @@ node_diagnostics::node_diagnostics(rclcpp_lifecycle::LifecycleNode& node)
 void node_diagnostics::report_state(wrapper& status) {
   if (!session_) return status.summary(wrapper::OK, "unconfigured");
   const g4lidar::reader_status now = session_->status();
-  if (now.information) updater_.setHardwareID(std::string(now.information->serial_number()));
+  if (now.information && now.information->is_known())
+    updater_.setHardwareID(std::string(now.information->serial_number()));
   const bool is_bad = now.state == g4lidar::reader_state::opening ||
                       now.state == g4lidar::reader_state::lost || session_->failure();
   std::string text(name_of(now.state));
