@@ -71,8 +71,8 @@ class read_times {
   static constexpr std::int64_t host_pause_after_ns = 25 * ms;
   /// A program that does not call for this time lets bytes accumulate.
   static constexpr std::int64_t idle_ns = 1 * ms;
-  /// Half of what a G4 sends at 4 kHz.
-  static constexpr std::size_t least_bytes_per_ms = 5;
+  /// Half of what the slowest models send: 3000 samples of 2 bytes a second, and the headers of packets.
+  static constexpr std::size_t least_bytes_per_ms = 3;
   static constexpr std::size_t few_bytes = 1024;
 
   [[nodiscard]] static bool is_late(std::int64_t begin_ns, std::int64_t until_ns,

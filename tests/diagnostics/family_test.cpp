@@ -15,6 +15,7 @@
 #include "diagnostics/doctor_bench.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device_options.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 #include "support/test_scale.hpp"
 
 namespace {
@@ -213,6 +214,51 @@ const std::vector<belief> beliefs{
 INSTANTIATE_TEST_SUITE_P(All, Belief, ::testing::ValuesIn(beliefs),
                          [](const auto& one) { return std::string(one.param.name); });
 
+/// A bridge that makes another rate than the one that was set.
+class bridge_with_few_rates final : public forwarding_transport {
+ public:
+  bridge_with_few_rates(std::unique_ptr<transport> inner, std::uint32_t wanted, std::uint32_t made)
+      : forwarding_transport(std::move(inner)), wanted_(wanted), made_(made) {}
+  [[nodiscard]] std::uint32_t baud() const noexcept override {
+    const std::uint32_t set = inner().baud();
+    return set == wanted_ ? made_ : set;
+  }
+
+ private:
+  std::uint32_t wanted_;
+  std::uint32_t made_;
+};
+
+// A CP2102 makes 500000 of 512000, and bytes arrive. (family.md, section 5)
+TEST(Bridge, MakesAnotherRate_IsARemark) {
+  const std::vector<std::pair<std::uint32_t, std::string>> bridges{
+      {500'000, "The port runs at 500000 baud instead of 512000."}, {510'638, ""}};
+  for (const auto& [made, remark] : bridges) {
+    for (const char* const named : {"tg30", ""}) {
+      sim::device simulated(sim::built_in_world(), device_of("tg30"));
+      sim::virtual_clock clock;
+      diagnostic_options how;
+      how.model = model_named(named);
+      auto port = std::make_unique<sim::virtual_port>(simulated, clock);
+      EXPECT_TRUE(port->set_baud(230'400).value_or(false));
+      examined done;
+      done.stages =
+          diagnose(std::make_unique<bridge_with_few_rates>(std::move(port), 512'000, made), how);
+      EXPECT_EQ(done.diagnoses(), "") << done;
+      EXPECT_EQ(done.at(diagnostic_stage::baud_rate).remark, remark) << done;
+      EXPECT_EQ(fact(done, diagnostic_stage::baud_rate, "baud"), std::to_string(made)) << done;
+    }
+  }
+}
+
+// 64 bytes, a packet of USB, take 5.6 ms at 115200 baud.
+TEST(Bridge, FillsItsPackets_IsNoDelay) {
+  sim::device_options options = device_of("x2");
+  options.batch_min_ns = options.batch_max_ns = 5'500'000;
+  EXPECT_EQ(examine_as(options, "x2").diagnoses(), "");
+  EXPECT_EQ(examine_as(device_of("x2"), "x2", 0, {"batch=24ms"}).diagnoses(), "usb_latency");
+}
+
 // ---- the motor of an X4 ----
 
 TEST(MotorOfAnX4, WithoutItsSecondPlug) {
@@ -267,6 +313,16 @@ TEST(OneWay, ItsIdentityIsThatOfItsCtBytes) {
   EXPECT_EQ(fact(done, diagnostic_stage::identity, "serial_number"), serial) << done;
   EXPECT_GT(std::stoi(fact(done, diagnostic_stage::loss, "crc_matches")), 20) << done;
   EXPECT_EQ(fact(done, diagnostic_stage::loss, "crc_mismatches"), "none") << done;
+}
+
+// The number of an S2 is 4, that of an SCL 22; CT bytes have the lower four bits. (family.md, section 3.4)
+TEST(OneWay, AnotherNumberInItsCtBytes) {
+  sim::device_options options = device_of("s2-intensity");
+  options.scanner.scan_frequency_chz = 500;  // a revolution has 15 packets
+  EXPECT_EQ(examine_as(options, "s2-intensity").diagnoses(), "");
+  const examined done = examine_as(options, "scl");
+  EXPECT_EQ(done.diagnoses(), "other_device") << done;
+  EXPECT_NE(remarks(done).find("that of an SCL is 22"), std::string::npos) << done;
 }
 
 TEST(OneWay, WithoutTheCrcByteOfItsModel_IsARemark) {
