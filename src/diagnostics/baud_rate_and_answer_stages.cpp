@@ -122,6 +122,11 @@ bool live_run::interview() {
     log_.skip(diagnostic_stage::answers,
               "It does not apply: a model like " + name + " answers nothing.");
     read_information();
+    if (link_.failure()) {
+      stage_report identity{.stage = diagnostic_stage::identity};
+      add_failure(identity);
+      log_.report(std::move(identity));
+    }
   } else {
     const auto is_disturbed = [&] {
       return !replies_.exchanges().empty() && replies_.exchanges().back().packets > 0;

@@ -18,6 +18,8 @@ constexpr std::int64_t silence_ns = 500 * ms;
 constexpr std::int64_t cut_off_after_ns = 60 * ms;
 /// The time by which the head has its speed.
 constexpr std::int64_t spin_up_ns = 6'000 * ms;
+/// For the first packet, whatever else arrives; longer than the motor may spin up.
+constexpr std::int64_t longest_without_packet_ns = 15'000 * ms;
 /// Between two checks of the speed.
 constexpr std::int64_t steady_ns = 250 * ms;
 /// A device that becomes silent this soon after the start does so because of the start.
@@ -92,7 +94,11 @@ live_run::scan_state live_run::warm_up(stream_statistics& measured) {
   while (link_.now_ns() < until_ns) {
     const scan_state state = listen_once(measured);
     if (state != scan_state::runs) return state;
-    if (started_.first_packet_ns == 0) until_ns = link_.now_ns() + spin_up_ns;
+    if (started_.first_packet_ns == 0) {
+      // A device that boots again and again is never silent.
+      if (link_.now_ns() > started_.sent_ns + longest_without_packet_ns) return scan_state::silent;
+      until_ns = link_.now_ns() + spin_up_ns;
+    }
     if (link_.now_ns() < looked_ns + steady_ns) continue;
     if (measured.is_steady()) return scan_state::runs;
     looked_ns = link_.now_ns();
