@@ -9,8 +9,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "bulk_kernels.hpp"
-#include "g4lidar/core/correction.hpp"
+#include "bulk_kernel.hpp"
 
 namespace g4lidar {
 
@@ -18,36 +17,8 @@ namespace bulk {
 
 namespace {
 
-template <correction_kind Kind>
-using form_of = std::conditional_t<
-    Kind == correction_kind::triangle, compact_correction,
-    std::conditional_t<Kind == correction_kind::scl, scl_correction, no_correction>>;
-
-/// The portable code, for the samples of one layout and one correction.
-template <sample_layout Layout, correction_kind Kind>
-struct plain {
-  static void to_points(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
-                        std::span<point, max_samples> out) noexcept {
-    static_cast<void>(
-        g4lidar::decode<Layout>(packet, form_of<Kind>{}, revolution, out, shortest_mm));
-  }
-  static void to_timed_points(packet_view packet, std::uint32_t revolution,
-                              std::uint16_t shortest_mm, const packet_times& times,
-                              std::span<point, max_samples> out) noexcept {
-    to_points(packet, revolution, shortest_mm, out);
-    times.write_to(out.first(packet.sample_count()));
-  }
-  static void to_xy(packet_view packet, frame to, std::uint16_t turn_deg,
-                    std::span<xy_point, max_samples> out) noexcept {
-    std::array<point, max_samples> points;
-    to_points(packet, 0, 1, points);
-    g4lidar::to_xy(std::span(points).first(packet.sample_count()), to, out, turn_deg);
-  }
-  static constexpr kernels all{to_points, to_timed_points, to_xy};
-};
-
 constexpr bool has_kernels(sample_layout layout, correction_kind correction) noexcept {
-  return find_kernels<plain>({layout, correction}) != nullptr;
+  return find_kernels<vector_kernels>({layout, correction}) != nullptr;
 }
 static_assert(std::ranges::all_of(models, [](const model& each) {
   const correction_kind correction = each.samples.correction;
@@ -63,7 +34,7 @@ const kernels& kernels_of(instruction_set set, sample_format format) noexcept {
   if (set == instruction_set::avx2) return avx2_kernels_of(format);
 #endif
   static_cast<void>(set);
-  const kernels* const found = find_kernels<plain>(format);
+  const kernels* const found = find_kernels<vector_kernels>(format);
   assert(found != nullptr);
   return *found;
 }
@@ -72,7 +43,7 @@ const kernels& kernels_of(instruction_set set, sample_format format) noexcept {
 
 instruction_set best_instruction_set() noexcept {
 #if G4LIDAR_HAS_AVX2_KERNELS
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return instruction_set::avx2;
+  if (__builtin_cpu_supports("avx2")) return instruction_set::avx2;
 #endif
   return instruction_set::portable;
 }
@@ -158,7 +129,7 @@ auto points_with(instruction_set set, sample_format format, std::uint16_t shorte
   return [kernel = bulk::kernels_of(set, format).to_points, shortest_mm](
              packet_view packet, std::uint32_t revolution,
              std::span<point, max_samples> out) noexcept {
-    kernel(packet, revolution, shortest_mm, out);
+    kernel(packet, revolution, shortest_mm, {}, out);
   };
 }
 

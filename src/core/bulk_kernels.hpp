@@ -19,10 +19,7 @@ namespace g4lidar::bulk {
 /// them in `out` may be overwritten. Returns below `shortest_mm`, at least 1, are too near.
 struct kernels {
   void (*to_points)(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
-                    std::span<point, max_samples> out) noexcept;
-  /// With their times.
-  void (*to_timed_points)(packet_view packet, std::uint32_t revolution, std::uint16_t shortest_mm,
-                          const packet_times& times, std::span<point, max_samples> out) noexcept;
+                    const packet_times& times, std::span<point, max_samples> out) noexcept;
   /// `turn_deg` is that of the model.
   void (*to_xy)(packet_view packet, frame to, std::uint16_t turn_deg,
                 std::span<xy_point, max_samples> out) noexcept;

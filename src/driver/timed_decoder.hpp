@@ -24,7 +24,7 @@ class timed_decoder {
       : transport_delay_ns_(transport_delay_ns),
         which_(&which),
         shortest_mm_(which.range.min_mm),
-        to_points_(bulk::kernels_of(best_instruction_set(), which.samples).to_timed_points) {}
+        to_points_(bulk::kernels_of(best_instruction_set(), which.samples).to_points) {}
 
   /// The following bytes are from another transport; see transport::baud(). Before begin().
   void follow(std::uint32_t baud) noexcept {
@@ -114,7 +114,7 @@ class timed_decoder {
   std::int64_t transport_delay_ns_;
   const model* which_;
   std::uint16_t shortest_mm_;
-  decltype(bulk::kernels::to_timed_points) to_points_;
+  decltype(bulk::kernels::to_points) to_points_;
   std::optional<std::uint32_t> baud_;  // of its transport
   std::int64_t byte_ns_ = 0;           // the time of a byte
   float zero_deg_ = 0.0F;              // see set_zero()

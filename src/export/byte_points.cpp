@@ -59,8 +59,8 @@ void byte_points::take(g4lidar::packet_view packet) {
   if (counts_.packets == 1) writer_.begin(out_);
   g4lidar::decoded decoded = without_points(packet, revolutions_.count(packet));
   if (!decoded.suspect) {
-    bulk::kernels_of(instruction_set::portable, format_)
-        .to_points(packet, decoded.revolution, shortest_mm_, points_);
+    bulk::kernels_of(best_instruction_set(), format_)
+        .to_points(packet, decoded.revolution, shortest_mm_, {}, points_);
     decoded.points = std::span(points_).first(packet.sample_count());
   }
   for (g4lidar::point& p : std::span(points_).first(decoded.points.size())) {
