@@ -34,8 +34,8 @@ TEST(TimedPoints, PointsHaveTheTimesOfThePacket) {
         for (const packet_times& times : all_times) {
           std::array<point, max_samples> expected{};
           std::array<point, max_samples> found{};
-          kernels.to_points(packet.view(), 7, g4_model.range.min_mm, expected);
-          kernels.to_timed_points(packet.view(), 7, g4_model.range.min_mm, times, found);
+          kernels.to_points(packet.view(), 7, g4_model.range.min_mm, {}, expected);
+          kernels.to_points(packet.view(), 7, g4_model.range.min_mm, times, found);
           for (std::size_t i = 0; i < samples; ++i) {
             expected[i].time_ns = times.at(i);
             ASSERT_EQ(found[i], expected[i]) << samples << " samples, " << nearest << ", at " << i;

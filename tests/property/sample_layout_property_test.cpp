@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <random>
 #include <span>
 #include <string>
@@ -96,6 +97,71 @@ TEST_P(SampleLayout, PointsAreThoseOfTheReference) {
       expect_points(how, which, packet, decoder.decode(input, out));
       RC_ASSERT(decoder.counts().packets == 1U);
     }
+  });
+}
+
+// The nearest targets that the fast kernels process: their corrections are the largest ones.
+TEST_P(SampleLayout, PointsWrapOnBothSidesOfZero) {
+  const wire_format& how = GetParam();
+  const model& which = *model_named(how.model);
+  for (unsigned first = 340 * 64; first < 380 * 64; first += 7) {
+    random_packet packet{first % 23'040, (first + 5) % 23'040, {}, {}};
+    for (unsigned i = 0; i < 40; ++i) {
+      const unsigned range_mm = std::max<unsigned>(100, which.range.min_mm) + 2 * i;
+      const auto units = static_cast<unsigned>(range_mm / how.mm_per_unit);
+      packet.samples.push_back({0, units << static_cast<unsigned>(how.low_bits)});
+    }
+    packet.data = reference::packet_of(how, 0, packet.first, packet.last, packet.samples);
+    for (const instruction_set set : {instruction_set::portable, best_instruction_set()}) {
+      SCOPED_TRACE(name_of(set));
+      bulk_decoder decoder(which, set);
+      std::array<point, max_samples> out{};
+      bytes input(packet.data);
+      const std::span<const point> points = decoder.decode(input, out);
+      ASSERT_EQ(points.size(), packet.samples.size());
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const double first_deg = packet.first / 64.0 + 5.0 / 64.0 / 39.0 * static_cast<double>(i);
+        const auto wanted = reference::point_of(how, first_deg, packet.samples[i]);
+        ASSERT_TRUE(points[i].angle_deg >= 0.0F && points[i].angle_deg < 360.0F)
+            << points[i].angle_deg;
+        ASSERT_LT(reference::apart_deg(static_cast<double>(points[i].angle_deg), wanted.angle_deg),
+                  1e-4);
+      }
+    }
+  }
+}
+
+TEST_P(SampleLayout, InstructionSetsGiveTheSameBits) {
+  const wire_format& how = GetParam();
+  const model& which = *model_named(how.model);
+  // 24 and 16 bytes without padding.
+  const auto same = [](const auto& a, const auto& b) {
+    return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+  };
+  check_cases(1000, [&] {
+    random_packet packet = any_packet(how);
+    if (*rc::gen::arbitrary<bool>()) {  // without returns that are nearer than 300 mm
+      for (wire_sample& each : packet.samples) each.word = 0x1000 | (each.word * 40503U & 0xFFFFU);
+      const unsigned ct = packet.samples.size() == 1 ? 1 : 0;
+      packet.data = reference::packet_of(how, ct, packet.first, packet.last, packet.samples);
+    }
+    std::array<bulk_decoder, 4> decoders{
+        bulk_decoder(which, instruction_set::portable), bulk_decoder(which),
+        bulk_decoder(which, instruction_set::portable), bulk_decoder(which)};
+    std::array<std::array<point, max_samples>, 2> points{};
+    std::array<std::array<xy_point, max_samples>, 2> places{};
+    for (std::size_t i = 0; i < 2; ++i) {
+      bytes input(packet.data);
+      const auto written = decoders[i].decode(input, points[i]);
+      RC_ASSERT(written.size() == packet.samples.size());
+      std::ranges::fill(std::span(points[i]).subspan(written.size()), point{});
+      input = packet.data;
+      const auto placed = decoders[2 + i].decode_xy(input, frame::robot, places[i]);
+      RC_ASSERT(placed.size() == packet.samples.size());
+      std::ranges::fill(std::span(places[i]).subspan(placed.size()), xy_point{});
+    }
+    RC_ASSERT(same(std::span(points[0]), std::span(points[1])));
+    RC_ASSERT(same(std::span(places[0]), std::span(places[1])));
   });
 }
 
