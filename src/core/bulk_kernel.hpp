@@ -87,15 +87,16 @@ class samples {
       std::memcpy(&last[1], data + size * lanes * whole, size * (packet.sample_count() % lanes));
       raw_[whole] = loaded(&last[1], every_lane);
     }
-    for (std::size_t i = 0; i < count_; ++i) measure(i);
     const auto shortest = static_cast<float>(std::max<int>(nearest_raw, 4 * shortest_mm));
-    has_near_ = has_correction && any(largest_ > tangent_by_raw<Kind> / shortest);
+    limit_ = tangent_by_raw<Kind> / shortest;
   }
 
   static constexpr bool has_correction = Kind != correction_kind::none;
   /// Whether the angle of a sample below 100 mm or `shortest_mm` has a correction, which is rare: then
   /// its angle is wrong.
-  [[nodiscard]] bool has_near() const noexcept { return has_near_; }
+  [[nodiscard]] G4LIDAR_KERNEL bool has_near() const {
+    return has_correction && any(largest_ > limit_);
+  }
   /// The number of groups.
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
 
@@ -122,25 +123,23 @@ class samples {
     if constexpr (Layout == intensity_16) return (raw_[i] & 0xFFFF) << intensity_at;
     return words{};
   }
-  /// In millimetres, 0 for no return.
-  [[nodiscard]] G4LIDAR_KERNEL floats range(std::size_t i) const { return range_[i]; }
-  /// In degrees, not wrapped: the angles of points and up to a turn more or less.
-  [[nodiscard]] G4LIDAR_KERNEL floats angle(std::size_t i) const { return angle_[i]; }
+  [[nodiscard]] G4LIDAR_KERNEL floats sample(std::size_t i) const {
+    return __builtin_convertvector(quarters(i), floats);
+  }
+  /// In degrees, not wrapped.
+  [[nodiscard]] G4LIDAR_KERNEL floats angle(std::size_t i) {
+    floats turned = places(i) * angles_.step;
+    if constexpr (has_correction) {
+      const floats tangent = masked(returned(i), tangent_by_raw<Kind> / sample(i));
+      largest_ = tangent > largest_ ? tangent : largest_;
+      turned += arctangent_deg(tangent + far_tangent<Kind>);
+    }
+    return angles_.first + turned;
+  }
 
  private:
   static constexpr std::size_t size = sample_size(Layout);
 
-  G4LIDAR_KERNEL void measure(std::size_t i) {
-    const auto sample = __builtin_convertvector(quarters(i), floats);
-    range_[i] = masked(returned(i), sample * 0.25F);
-    floats turned = places(i) * angles_.step;
-    if constexpr (has_correction) {
-      const floats tangent = masked(returned(i), tangent_by_raw<Kind> / sample);
-      largest_ = tangent > largest_ ? tangent : largest_;
-      turned += arctangent_deg(tangent + far_tangent<Kind>);
-    }
-    angle_[i] = angles_.first + turned;
-  }
   /// In lanes of 32 bits, the first byte at the bottom. The byte before them is readable.
   template <std::size_t... i>
   [[nodiscard]] static G4LIDAR_KERNEL words loaded(const std::uint8_t* from,
@@ -169,10 +168,8 @@ class samples {
   first_level_angles<float> angles_;
   std::size_t count_;
   words raw_[most_groups];
-  floats range_[most_groups];
-  floats angle_[most_groups];
   floats largest_{};  // tangent
-  bool has_near_;
+  float limit_;
 };
 
 /// The times of the points, in the order of paired(), bit for bit like packet_times::at().
@@ -237,10 +234,7 @@ G4LIDAR_KERNEL floats wrapped(floats x) {
 template <sample_layout Layout, correction_kind Kind>
 G4LIDAR_KERNEL bool write_points(packet_view packet, std::uint32_t revolution,
                                  std::uint16_t shortest_mm, running_times times, point* out) {
-  // One pass after the other, with a few instructions per group: a single one would be a chain of
-  // sixty instructions, and the processor, which looks ahead only so far, would wait for each result.
-  const samples<Layout, Kind> all(packet, shortest_mm);
-  if (all.has_near()) return false;
+  samples<Layout, Kind> all(packet, shortest_mm);
   const bool wraps = touches_zero(packet);
   const words revolutions = words{} + static_cast<std::int32_t>(revolution);
   for (std::size_t i = 0; i < all.count(); ++i) {
@@ -251,32 +245,32 @@ G4LIDAR_KERNEL bool write_points(packet_view packet, std::uint32_t revolution,
       flags = ((all.quarters(i) < 4 * shortest_mm) & 2) - flags;
     }
     flags = flags << flags_at | all.others(i);
-    const floats angle = wraps ? wrapped(all.angle(i)) : all.angle(i);
-    store_points(angle, all.range(i), revolutions, flags, times, out + lanes * i);
+    floats angle = all.angle(i);
+    if (wraps) angle = wrapped(angle);
+    store_points(angle, masked(all.returned(i), all.sample(i) * 0.25F), revolutions, flags, times,
+                 out + lanes * i);
   }
   if (packet.is_zero()) out[0].flags = out[0].flags | point_flags::revolution_start;
-  return true;
+  return !all.has_near();
 }
 
-/// Sine and cosine, within 1e-7.
 struct direction {
   floats sine;
   floats cosine;
 };
-G4LIDAR_KERNEL direction direction_of(floats degrees) {
+/// Of angles in half turns, within 1e-7.
+G4LIDAR_KERNEL direction direction_of(floats turned) {
   // Numbers of this size have no bits behind the point: the sum is rounded, and its last bit says
   // whether the number of half turns is odd.
   constexpr float rounding = 0x1.8p23F;
-  const floats turned = degrees * (1.0F / 180.0F);
   const floats sum = turned + rounding;
   const floats x = turned - (sum - rounding);
   const floats x2 = x * x;
-  const floats s =
-      x * (3.14159264F +
-           x2 * (-5.16771008F + x2 * (2.55007739F + x2 * (-0.598290411F + x2 * 0.0776559123F))));
-  const floats c =
-      0.999999953F +
-      x2 * (-4.93479280F + x2 * (4.05841079F + x2 * (-1.33187297F + x2 * 0.219682424F)));
+  const floats x4 = x2 * x2;
+  const floats s = x * ((3.14159264F + x2 * -5.16771008F) +
+                        x4 * ((2.55007739F + x2 * -0.598290411F) + x4 * 0.0776559123F));
+  const floats c = (0.999999953F + x2 * -4.93479280F) +
+                   x4 * ((4.05841079F + x2 * -1.33187297F) + x4 * 0.219682424F);
   const words sign = bits_of(sum) << 31;
   return {floats_of(bits_of(s) ^ sign), floats_of(bits_of(c) ^ sign)};
 }
@@ -287,23 +281,29 @@ static_assert(offsetof(xy_point, x_m) == 0 && offsetof(xy_point, y_m) == 4 &&
 template <sample_layout Layout, correction_kind Kind>
 G4LIDAR_KERNEL bool write_places(packet_view packet, frame to, std::uint16_t turn_deg,
                                  xy_point* out) {
-  const samples<Layout, Kind> all(packet, 1);
-  if (all.has_near()) return false;
-  const bool mirrored = to == frame::robot;
-  const float x_m = mirrored && turn_deg != 0 ? -0.001F : 0.001F;
-  const float y_m = mirrored && turn_deg == 0 ? -0.001F : 0.001F;
+  samples<Layout, Kind> all(packet, 1);
+  // The frame of a robot is mirrored, and turned by 180 degrees or by none.
+  const float half_turns = (to == frame::robot ? -1.0F : 1.0F) / 180.0F;
+  const float metres = to == frame::robot && turn_deg != 0 ? -0.00025F : 0.00025F;
+  // Two passes: a single one would be so long a chain that the processor, which looks ahead only so
+  // far, would wait for each result.
+  floats turned[most_groups];
+  floats range[most_groups];
   for (std::size_t i = 0; i < all.count(); ++i) {
-    const auto [sine, cosine] = direction_of(all.angle(i));
-    const floats range = floats_of(bits_of(all.range(i)) | ~all.returned(i));  // or NaN
-    const floats x = range * x_m * cosine;
-    const floats y = range * y_m * sine;
+    turned[i] = all.angle(i) * half_turns;
+    range[i] = floats_of(bits_of(all.sample(i) * metres) | ~all.returned(i));  // or NaN
+  }
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    const auto [sine, cosine] = direction_of(turned[i]);
+    const floats x = range[i] * cosine;
+    const floats y = range[i] * sine;
     const pairs first = paired<0>(x, y);
     const pairs second = paired<1>(x, y);
     store_blocks({joined<0, 0>(first, pairs{}), joined<1, 0>(first, pairs{}),
                   joined<0, 0>(second, pairs{}), joined<1, 0>(second, pairs{})},
                  out + lanes * i);
   }
-  return true;
+  return !all.has_near();
 }
 
 template <sample_layout Layout, correction_kind Kind>

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/message/ros_messages.hpp"
@@ -27,9 +26,8 @@ std::string_view name_of(recorded_event::kind what) noexcept {
 }
 
 std::string_view computed_with() noexcept {
-  [[maybe_unused]] const bool has_avx2 = best_instruction_set() == instruction_set::avx2;
 #if defined(__x86_64__)
-  return has_avx2 ? "x86_64 avx2" : "x86_64";
+  return "x86_64";
 #elif defined(__aarch64__)
   return "aarch64";
 #elif defined(__arm__)
@@ -41,7 +39,7 @@ std::string_view computed_with() noexcept {
 #elif defined(__s390x__)
   return "s390x";
 #else
-  return has_avx2 ? "avx2" : "portable";
+  return "portable";
 #endif
 }
 

@@ -49,7 +49,7 @@ inline constexpr std::string_view digest_metadata = "g4lidar.digest";
 /// The version of the computation of points from bytes. It increases with each change that gives
 /// other points: digests of points of different versions cannot be compared. A recording without
 /// one has version 1.
-inline constexpr std::string_view points_version = "4";
+inline constexpr std::string_view points_version = "5";
 [[nodiscard]] word_map words_of(const recorded_device& device);
 /// Missing or invalid fields are not known.
 [[nodiscard]] recorded_device device_of(field_reader& map);

@@ -40,7 +40,7 @@ class payload_digest {
 };
 
 /// The same for points, in words of 32 bits: all their members, including the times. The last bits
-/// of angles and times depend on the processor: see computed_with().
+/// may depend on the architecture: see computed_with().
 class point_digest {
  public:
   /// Adds points, in order.
@@ -81,7 +81,7 @@ struct recorded_digest {
   bool is_comparable = true;  ///< Whether points computed on this machine have the same last bits.
 };
 
-/// The instruction set that points are computed with on this machine, "x86_64 avx2". If it differs,
+/// The architecture that points are computed with on this machine, "x86_64". If it differs,
 /// the last bits of angles and times may differ, and digests of points cannot be compared. Valid
 /// forever.
 [[nodiscard]] G4LIDAR_API std::string_view computed_with() noexcept;
