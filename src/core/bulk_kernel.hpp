@@ -123,6 +123,7 @@ class samples {
     if constexpr (Layout == intensity_16) return (raw_[i] & 0xFFFF) << intensity_at;
     return words{};
   }
+  /// The same as quarters(), as numbers.
   [[nodiscard]] G4LIDAR_KERNEL floats sample(std::size_t i) const {
     return __builtin_convertvector(quarters(i), floats);
   }
