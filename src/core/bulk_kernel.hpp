@@ -261,8 +261,8 @@ struct direction {
 };
 /// Of angles in half turns, within 1e-7.
 G4LIDAR_KERNEL direction direction_of(floats turned) {
-  // Numbers of this size have no bits behind the point: the sum is rounded, and its last bit says
-  // whether the number of half turns is odd.
+  // The sum is rounded, because numbers of this size have no bits behind the point. Its last bit is
+  // set if the number of half turns is odd.
   constexpr float rounding = 0x1.8p23F;
   const floats sum = turned + rounding;
   const floats x = turned - (sum - rounding);
