@@ -13,24 +13,6 @@ namespace {
 
 using namespace g4lidar_c_test;
 
-/// Revolutions of a T-mini, a packet of 30 samples each 30 degrees: 2000 mm, flags 2, intensity 100 + packet.
-std::vector<std::uint8_t> t_mini_stream(unsigned revolutions) {
-  const reference::wire_format& how =
-      *std::ranges::find(reference::wire_formats, "t-mini", &reference::wire_format::model);
-  std::vector<std::uint8_t> all;
-  for (unsigned turn = 0; turn < revolutions; ++turn) {
-    for (unsigned packet = 0; packet < 13; ++packet) {
-      const unsigned count = packet == 0 ? 1 : 30;
-      const unsigned first = packet == 0 ? 0 : 64 * 30 * (packet - 1) + 32;
-      const auto made =
-          reference::packet_of(how, packet == 0 ? 1 : 0, first, first + 64 * (count - 1),
-                               std::vector<reference::wire_sample>(count, {100 + packet, 8002}));
-      all.insert(all.end(), made.begin(), made.end());
-    }
-  }
-  return all;
-}
-
 class CModel : public testing::Test {
  protected:
   CModel() {
@@ -54,7 +36,7 @@ class CModel : public testing::Test {
   }
 
   scratch scratch_;
-  const std::vector<std::uint8_t> data_ = t_mini_stream(6);
+  const std::vector<std::uint8_t> data_ = reference::t_mini_stream(6);
   std::string raw_ = scratch_.path("raw.bin");
   std::string recorded_ = scratch_.path("walk.mcap");
   g4lidar_error why_{};

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "c_handles.hpp"
-#include "support/cdr_reader.hpp"
+#include "support/laser_scan.hpp"
 #include "support/mcap_messages.hpp"
 
 namespace {
@@ -55,14 +55,9 @@ TEST_F(CRecordedRanges, NoReturnsFollowItsOptions) {
     std::ifstream file(path_, std::ios::binary);
     const auto messages = g4lidar::test::mcap_messages(
         std::string(std::istreambuf_iterator<char>(file), {}), "/scan");
-    g4lidar::test::cdr_reader message(messages.at(messages.size() - 1));
-    message.number<std::uint64_t>();  // the stamp
-    message.text();
-    for (int i = 0; i < 7; ++i) message.number<float>();  // angles, times, limits
-    EXPECT_EQ(message.number<std::uint32_t>(), 720U);
-    std::vector<float> ranges;
-    for (int i = 0; i < 720; ++i) ranges.push_back(message.number<float>());
-    return seen{ranges[360], ranges[0]};
+    const std::vector<float> ranges = g4lidar::test::read_laser_scan(messages.back()).ranges;
+    EXPECT_EQ(ranges.size(), 720U);
+    return seen{ranges.at(360), ranges.at(0)};
   };
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const seen usual = last_scan([](auto&) {});

@@ -20,7 +20,7 @@
 #include "g4lidar/sim/fault.hpp"
 #include "g4lidar/sim/world.hpp"
 #include "program.hpp"
-#include "support/cdr_reader.hpp"
+#include "support/laser_scan.hpp"
 #include "support/mcap_messages.hpp"
 #include "support/measured_truth.hpp"
 
@@ -29,8 +29,10 @@ namespace {
 using cli::outcome;
 using cli::run;
 using g4lidar::test::direction_of;
+using g4lidar::test::laser_scan;
 using g4lidar::test::looks_like;
 using g4lidar::test::measured_truth;
+using g4lidar::test::read_laser_scan;
 using nlohmann::json;
 namespace sim = g4lidar::sim;
 
@@ -38,29 +40,6 @@ struct damage {
   const char* name;
   const char* fault;
 };
-
-/// The messages of a recording: a range for each half degree of the robot's frame.
-struct laser_scan {
-  float angle_min = 0.0F;
-  float angle_step = 0.0F;
-  std::vector<float> ranges_m;
-};
-
-laser_scan laser_scan_of(const std::vector<std::uint8_t>& message) {
-  g4lidar::test::cdr_reader read(message);
-  static_cast<void>(read.number<std::uint64_t>());  // the stamp
-  static_cast<void>(read.text());
-  laser_scan scan;
-  scan.angle_min = read.number<float>();
-  static_cast<void>(read.number<float>());
-  scan.angle_step = read.number<float>();
-  static_cast<void>(read.number<float>());
-  static_cast<void>(read.number<float>());
-  static_cast<void>(read.number<std::uint64_t>());  // the least and the greatest range
-  scan.ranges_m.resize(read.number<std::uint32_t>());
-  for (float& range : scan.ranges_m) range = read.number<float>();
-  return scan;
-}
 
 class DamagedScan : public cli::scratch, public testing::WithParamInterface<damage> {
  protected:
@@ -162,7 +141,7 @@ class turn_in_bins {
     for (std::size_t bin = 0; bin < samples_.size(); ++bin) {
       const auto near = around(bin);
       const bool is_seen = std::any_of(near.begin(), near.end(), [&](std::size_t each) {
-        return !std::isnan(scan.ranges_m[each]);
+        return !std::isnan(scan.ranges[each]);
       });
       if (!is_seen) continue;
       count += static_cast<std::size_t>(
@@ -198,8 +177,8 @@ TEST_P(DamagedScan, IsALaserScanOfTheRecording) {
   std::size_t covered = 0;
   const auto messages = g4lidar::test::mcap_messages(cli::read_file(file), "/scan");
   for (const std::vector<std::uint8_t>& message : messages) {
-    const laser_scan scan = laser_scan_of(message);
-    ASSERT_EQ(scan.ranges_m.size(), 720U);
+    const laser_scan scan = read_laser_scan(message);
+    ASSERT_EQ(scan.ranges.size(), 720U);
     // The turn that most of its ranges are of, behind that of the message before.
     std::size_t ranges = 0;
     std::size_t most = 0;
@@ -207,10 +186,10 @@ TEST_P(DamagedScan, IsALaserScanOfTheRecording) {
     for (auto turn = from; turn != turns.end() && std::distance(from, turn) < 5; ++turn) {
       std::size_t own = 0;
       ranges = 0;
-      for (std::size_t bin = 0; bin < scan.ranges_m.size(); ++bin) {
-        if (!std::isfinite(scan.ranges_m[bin])) continue;
+      for (std::size_t bin = 0; bin < scan.ranges.size(); ++bin) {
+        if (!std::isfinite(scan.ranges[bin])) continue;
         ++ranges;
-        own += turn->second.has(bin, scan.ranges_m[bin]);
+        own += turn->second.has(bin, scan.ranges[bin]);
       }
       if (own > most) best = turn;
       most = std::max(most, own);

@@ -20,22 +20,10 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// Revolutions of a T-mini, a packet of 30 samples each 30 degrees; the intensity is 100 + packet.
+std::string text_of(const std::vector<std::uint8_t>& data) { return {data.begin(), data.end()}; }
+
 std::string t_mini_stream(unsigned revolutions) {
-  const reference::wire_format& how =
-      *std::ranges::find(reference::wire_formats, "t-mini", &reference::wire_format::model);
-  std::string all;
-  for (unsigned turn = 0; turn < revolutions; ++turn) {
-    for (unsigned packet = 0; packet < 13; ++packet) {
-      const unsigned count = packet == 0 ? 1 : 30;
-      const unsigned first = packet == 0 ? 0 : 64 * 30 * (packet - 1) + 32;
-      const auto made =
-          reference::packet_of(how, packet == 0 ? 2 * 70 + 1 : 0, first, first + 64 * (count - 1),
-                               std::vector<reference::wire_sample>(count, {100 + packet, 8002}));
-      all.append(made.begin(), made.end());
-    }
-  }
-  return all;
+  return text_of(reference::t_mini_stream(revolutions));
 }
 
 constexpr const char* report =
@@ -44,20 +32,11 @@ constexpr const char* report =
 
 /// Packets of 30 samples of 2 bytes.
 std::string two_byte_stream(std::string_view model, unsigned word, unsigned revolutions) {
-  const reference::wire_format& how =
-      *std::ranges::find(reference::wire_formats, model, &reference::wire_format::model);
-  std::string all;
-  for (unsigned turn = 0; turn < revolutions; ++turn) {
-    for (unsigned packet = 0; packet < 13; ++packet) {
-      const unsigned count = packet == 0 ? 1 : 30;
-      const unsigned first = packet == 0 ? 0 : 64 * 30 * (packet - 1) + 32;
-      const auto made =
-          reference::packet_of(how, packet == 0 ? 1 : 0, first, first + 64 * (count - 1),
-                               std::vector<reference::wire_sample>(count, {0, word}));
-      all.append(made.begin(), made.end());
-    }
-  }
-  return all;
+  return text_of(reference::revolutions_of(reference::wire_format_of(model), revolutions, 30, 1,
+                                           [word](unsigned, unsigned, unsigned) {
+                                             return reference::wire_sample{0, word};
+                                           })
+                     .data);
 }
 
 outcome fed(const std::vector<std::string>& arguments, const std::string& bytes) {

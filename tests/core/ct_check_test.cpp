@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "g4lidar/core/stream_counter.hpp"
+#include "support/crc_reference.hpp"
 #include "support/packet_maker.hpp"
 #include "turned_scans.hpp"
 
@@ -32,18 +33,8 @@ constexpr std::uint8_t crc_of(bytes data) {
 constexpr std::array<std::uint8_t, 9> digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
 static_assert(crc_of(digits) == 0xA1);
 
-/// CRC-8/MAXIM bit by bit.
-std::uint8_t slow_crc(const std::vector<std::uint8_t>& data) {
-  unsigned crc = 0;
-  for (const unsigned byte : data) {
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      const bool is_set = ((crc ^ byte >> bit) & 1U) != 0;
-      crc >>= 1;
-      if (is_set) crc ^= 0x8CU;
-    }
-  }
-  return static_cast<std::uint8_t>(crc);
-}
+using reference::crc_8_maxim;
+static_assert(crc_8_maxim(digits) == 0xA1);
 
 /// A device with 36 packets in a revolution, and its bytes.
 class revolving {
@@ -61,8 +52,8 @@ class revolving {
   }
   void byte(std::uint8_t value) { stream_.push_back(value); }
   /// The byte that the device sends before the next zero packet.
-  void crc() { byte(slow_crc(cts_)); }
-  void wrong_crc() { byte(static_cast<std::uint8_t>(slow_crc(cts_) ^ 0x40U)); }
+  void crc() { byte(crc_8_maxim(cts_)); }
+  void wrong_crc() { byte(static_cast<std::uint8_t>(crc_8_maxim(cts_) ^ 0x40U)); }
   void add(const made::packet& packet) {
     const bytes data = packet.data();
     stream_.insert(stream_.end(), data.begin(), data.end());

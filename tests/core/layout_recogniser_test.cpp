@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "support/crc_reference.hpp"
 #include "support/family_reference.hpp"
 
 namespace g4lidar {
@@ -43,18 +44,6 @@ struct information {
   bool has_crc = true;
 };
 
-/// CRC-8/MAXIM, bit by bit.
-unsigned crc_of(const std::vector<unsigned>& all) {
-  unsigned crc = 0;
-  for (const unsigned byte : all) {
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      const bool low = ((crc ^ byte >> bit) & 1U) != 0;
-      crc = crc >> 1U ^ (low ? 0x8CU : 0U);
-    }
-  }
-  return crc;
-}
-
 /// Revolutions of a room: a zero packet with one sample, and packets of 40.
 class room {
  public:
@@ -68,14 +57,14 @@ class room {
   [[nodiscard]] byte_vector of(unsigned revolutions) {
     byte_vector made = reply;
     for (unsigned turn = 0; turn < revolutions; ++turn) {
-      std::vector<unsigned> cts;
+      byte_vector cts;
       const auto put = [&](unsigned index, unsigned from, unsigned count) {
         unsigned ct = index == 0 ? 2 * stated.dhz + 1 : 0;
         if (stated.id != 0 && index == 7) ct = 2 * (stated.id % 16);
         if (stated.id != 0 && index == 9) ct = 2 * (2023 - 2020) * 4;  // a year, a month, a day
         if (stated.id != 0 && index == 10) ct = 2 * 3 * 8;
         if (stated.id != 0 && index == 11) ct = 2 * 15 * 4;
-        cts.push_back(ct);
+        cts.push_back(static_cast<std::uint8_t>(ct));
         std::vector<reference::wire_sample> row;
         for (unsigned i = 0; i < count; ++i) row.push_back(sample_at(from + i));
         const unsigned step = 64 * 360 / samples;
@@ -87,7 +76,7 @@ class room {
       for (unsigned at = 1, index = 1; at < samples; at += 40, ++index) {
         put(index, at, std::min(40U, samples - at));
       }
-      if (stated.id != 0 && stated.has_crc) made.push_back(static_cast<std::uint8_t>(crc_of(cts)));
+      if (stated.id != 0 && stated.has_crc) made.push_back(reference::crc_8_maxim(cts));
     }
     return made;
   }

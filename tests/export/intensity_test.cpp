@@ -14,6 +14,7 @@
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "support/cdr_reader.hpp"
+#include "support/laser_scan.hpp"
 #include "support/written.hpp"
 
 namespace g4lidar::test {
@@ -53,36 +54,18 @@ TEST(Intensity, OfAGridIsThatOfThePointWithTheRange) {
   EXPECT_EQ(without[1], ranges_m[1]);
 }
 
-/// The ranges and the intensities at the end of a LaserScan.
-struct laser_scan {
-  std::vector<float> ranges_m, intensities;
-};
-laser_scan read_scan(const std::vector<std::uint8_t>& message) {
-  cdr_reader read(message);
-  static_cast<void>(read.number<std::uint64_t>());
-  static_cast<void>(read.text());
-  for (int i = 0; i < 7; ++i) static_cast<void>(read.number<float>());
-  laser_scan found;
-  for (auto* const values : {&found.ranges_m, &found.intensities}) {
-    values->resize(read.number<std::uint32_t>());
-    for (float& value : *values) value = read.number<float>();
-  }
-  EXPECT_TRUE(read.is_at_end());
-  return found;
-}
-
 TEST(Intensity, OfALaserScanHasTheOrderOfItsRanges) {
   const std::array ranges_m{1.0F, 2.0F, 3.0F, 4.0F};
   const std::array intensities{10.0F, 20.0F, 30.0F, 40.0F};
   std::vector<std::uint8_t> by_angle;
   put_laser_scan(ranges_m, {.intensities = intensities}, by_angle);
-  EXPECT_THAT(read_scan(by_angle).ranges_m, ElementsAre(1.0F, 2.0F, 3.0F, 4.0F));
-  EXPECT_THAT(read_scan(by_angle).intensities, ElementsAre(10.0F, 20.0F, 30.0F, 40.0F));
+  EXPECT_THAT(read_laser_scan(by_angle).ranges, ElementsAre(1.0F, 2.0F, 3.0F, 4.0F));
+  EXPECT_THAT(read_laser_scan(by_angle).intensities, ElementsAre(10.0F, 20.0F, 30.0F, 40.0F));
   std::vector<std::uint8_t> by_time;
   put_laser_scan(ranges_m, {.order = scan_order::time, .first_bin = 3, .intensities = intensities},
                  by_time);
-  EXPECT_THAT(read_scan(by_time).ranges_m, ElementsAre(4.0F, 1.0F, 2.0F, 3.0F));
-  EXPECT_THAT(read_scan(by_time).intensities, ElementsAre(40.0F, 10.0F, 20.0F, 30.0F));
+  EXPECT_THAT(read_laser_scan(by_time).ranges, ElementsAre(4.0F, 1.0F, 2.0F, 3.0F));
+  EXPECT_THAT(read_laser_scan(by_time).intensities, ElementsAre(40.0F, 10.0F, 20.0F, 30.0F));
 }
 
 TEST(Intensity, InTheOrderOfTimeIsThatOfThePointWithTheRange) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/cdr_reader.hpp"
+#include "support/laser_scan.hpp"
 
 namespace g4lidar::test {
 namespace {
@@ -45,24 +46,23 @@ TEST(LaserScan, IsReadByTheRulesOfCdr) {
   std::vector<std::uint8_t> message{99, 99};  // appends
   put_laser_scan(ranges, {.stamp_ns = 1'700'000'000'123'456'789, .frame_id = "laser"}, message);
   message.erase(message.begin(), message.begin() + 2);
-  cdr_reader read(message);
-  EXPECT_EQ(read.number<std::int32_t>(), 1'700'000'000);
-  EXPECT_EQ(read.number<std::uint32_t>(), 123'456'789U);
-  EXPECT_EQ(read.text(), "laser");
-  EXPECT_NEAR(read.number<float>(), -3.14159265, 1e-6);
-  EXPECT_NEAR(read.number<float>(), 1.57079633, 1e-6);  // the last of four bins
-  EXPECT_NEAR(read.number<float>(), 1.57079633, 1e-6);
-  EXPECT_EQ(read.number<float>(), 0.0F);
-  EXPECT_EQ(read.number<float>(), 0.0F) << "not known how long it took";
-  EXPECT_EQ(read.number<float>(), 0.1F);
-  EXPECT_EQ(read.number<float>(), 16.38375F);
-  EXPECT_EQ(read.number<std::uint32_t>(), 4U);
-  EXPECT_EQ(read.number<float>(), 0.5F);
-  EXPECT_EQ(read.number<float>(), inf);
-  EXPECT_TRUE(std::isnan(read.number<float>()));
-  EXPECT_EQ(read.number<float>(), 16.0F);
-  EXPECT_EQ(read.number<std::uint32_t>(), 0U);
-  EXPECT_TRUE(read.is_at_end());
+  const laser_scan read = read_laser_scan(message);
+  EXPECT_EQ(read.seconds, 1'700'000'000);
+  EXPECT_EQ(read.nanoseconds, 123'456'789U);
+  EXPECT_EQ(read.frame_id, "laser");
+  EXPECT_NEAR(read.angle_min, -3.14159265, 1e-6);
+  EXPECT_NEAR(read.angle_max, 1.57079633, 1e-6);  // the last of four bins
+  EXPECT_NEAR(read.increment, 1.57079633, 1e-6);
+  EXPECT_EQ(read.time_increment, 0.0F);
+  EXPECT_EQ(read.scan_time, 0.0F) << "not known how long it took";
+  EXPECT_EQ(read.range_min, 0.1F);
+  EXPECT_EQ(read.range_max, 16.38375F);
+  ASSERT_EQ(read.ranges.size(), 4U);
+  EXPECT_EQ(read.ranges[0], 0.5F);
+  EXPECT_EQ(read.ranges[1], inf);
+  EXPECT_TRUE(std::isnan(read.ranges[2]));
+  EXPECT_EQ(read.ranges[3], 16.0F);
+  EXPECT_TRUE(read.intensities.empty());
 }
 
 /// SLAM programs compute the number of ranges from the angles, as slam_toolbox does in single precision, and reject a
@@ -70,13 +70,10 @@ TEST(LaserScan, IsReadByTheRulesOfCdr) {
 void expect_angles_give(std::size_t bins, const message_header& header) {
   std::vector<std::uint8_t> message;
   put_laser_scan(std::vector<float>(bins, 1.0F), header, message);
-  cdr_reader read(message);
-  static_cast<void>(read.number<std::int32_t>());
-  static_cast<void>(read.number<std::uint32_t>());
-  static_cast<void>(read.text());
-  const auto first = read.number<float>();
-  const auto last = read.number<float>();
-  const auto step = read.number<float>();
+  const laser_scan read = read_laser_scan(message);
+  const float first = read.angle_min;
+  const float last = read.angle_max;
+  const float step = read.increment;
   ASSERT_EQ(std::lround((last - first) / step) + 1, static_cast<long>(bins)) << header.first_bin;
   ASSERT_NEAR((static_cast<double>(last) - static_cast<double>(first)) / static_cast<double>(step),
               static_cast<double>(bins) - 1, 0.01)
@@ -104,20 +101,19 @@ TEST(LaserScan, InTheOrderOfTime) {
                   .order = scan_order::time,
                   .first_bin = 3},
                  message);
-  cdr_reader read(message);
-  EXPECT_EQ(read.number<std::int32_t>(), 5);
-  EXPECT_EQ(read.number<std::uint32_t>(), 0U);
-  EXPECT_EQ(read.text(), "laser");
+  const laser_scan read = read_laser_scan(message);
+  EXPECT_EQ(read.seconds, 5);
+  EXPECT_EQ(read.nanoseconds, 0U);
+  EXPECT_EQ(read.frame_id, "laser");
   // 270 degrees clockwise from behind is to the right, which is y with z down.
-  EXPECT_NEAR(read.number<float>(), 1.57079633, 1e-6);
-  EXPECT_NEAR(read.number<float>(), 1.57079633 * 4, 1e-6);
-  EXPECT_NEAR(read.number<float>(), 1.57079633, 1e-6);
-  EXPECT_NEAR(read.number<float>(), 0.05, 1e-8);
-  EXPECT_NEAR(read.number<float>(), 0.2, 1e-7);
-  EXPECT_EQ(read.number<float>(), 0.1F);
-  EXPECT_EQ(read.number<float>(), 16.38375F);
-  EXPECT_EQ(read.number<std::uint32_t>(), 4U);
-  for (const float range : {4.0F, 1.0F, 2.0F, 3.0F}) EXPECT_EQ(read.number<float>(), range);
+  EXPECT_NEAR(read.angle_min, 1.57079633, 1e-6);
+  EXPECT_NEAR(read.angle_max, 1.57079633 * 4, 1e-6);
+  EXPECT_NEAR(read.increment, 1.57079633, 1e-6);
+  EXPECT_NEAR(read.time_increment, 0.05, 1e-8);
+  EXPECT_NEAR(read.scan_time, 0.2, 1e-7);
+  EXPECT_EQ(read.range_min, 0.1F);
+  EXPECT_EQ(read.range_max, 16.38375F);
+  EXPECT_THAT(read.ranges, ElementsAreArray({4.0F, 1.0F, 2.0F, 3.0F}));
 }
 
 /// A revolution of 360 points, one each degree, whose returns are 7 degrees behind the level direction, as those of the
@@ -194,9 +190,9 @@ TEST(TimeGrid, OfNothingIsUnknown) {
 TEST(LaserScan, TimesBefore1970CountUpFromTheSecondBefore) {
   std::vector<std::uint8_t> message;
   put_laser_scan(std::array<float, 1>{1.0F}, {.stamp_ns = -1}, message);
-  cdr_reader read(message);
-  EXPECT_EQ(read.number<std::int32_t>(), -1);
-  EXPECT_EQ(read.number<std::uint32_t>(), 999'999'999U);
+  const laser_scan read = read_laser_scan(message);
+  EXPECT_EQ(read.seconds, -1);
+  EXPECT_EQ(read.nanoseconds, 999'999'999U);
 }
 
 TEST(PointCloud2, HoldsTheReturnsInTheRobotsFrame) {

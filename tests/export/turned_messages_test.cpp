@@ -25,6 +25,7 @@
 #include "g4lidar/export/text_points.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 #include "support/cdr_reader.hpp"
+#include "support/laser_scan.hpp"
 #include "support/written.hpp"
 
 namespace g4lidar::test {
@@ -42,36 +43,20 @@ const std::array<point, 2> points{{{.angle_deg = 0.0F, .range_mm = 2000.0F, .tim
 
 scan scan_of(const char* name) { return {.points = points, .model = model_named(name)}; }
 
-struct laser_scan {
-  float angle_min, angle_max, increment, time_increment, scan_time, range_min, range_max;
-  std::vector<float> ranges;
-
-  /// Whether a range is about there.
-  [[nodiscard]] bool has(double x, double y) const {
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      const auto angle = static_cast<double>(angle_min + static_cast<float>(i) * increment);
-      const auto range = static_cast<double>(ranges[i]);
-      if (std::hypot(range * std::cos(angle) - x, range * std::sin(angle) - y) < 1e-5) return true;
-    }
-    return false;
+/// Whether a range is about there.
+bool has(const laser_scan& read, double x, double y) {
+  for (std::size_t i = 0; i < read.ranges.size(); ++i) {
+    const auto angle = static_cast<double>(read.angle_min + static_cast<float>(i) * read.increment);
+    const auto range = static_cast<double>(read.ranges[i]);
+    if (std::hypot(range * std::cos(angle) - x, range * std::sin(angle) - y) < 1e-5) return true;
   }
-};
+  return false;
+}
 
 laser_scan read_scan(std::span<const float> ranges, const message_header& header) {
   std::vector<std::uint8_t> message;
   put_laser_scan(ranges, header, message);
-  cdr_reader read(message);
-  static_cast<void>(read.number<std::int32_t>());
-  static_cast<void>(read.number<std::uint32_t>());
-  static_cast<void>(read.text());
-  laser_scan made{};
-  for (float* each : {&made.angle_min, &made.angle_max, &made.increment, &made.time_increment,
-                      &made.scan_time, &made.range_min, &made.range_max}) {
-    *each = read.number<float>();
-  }
-  made.ranges.resize(read.number<std::uint32_t>());
-  for (float& each : made.ranges) each = read.number<float>();
-  return made;
+  return read_laser_scan(message);
 }
 
 TEST(TurnedMessages, LaserScan_HasTheLimitsOfTheModel) {
@@ -92,12 +77,12 @@ TEST(TurnedMessages, LaserScan_ByAngle) {
   fill_grid(scan_of("x4"), ranges);
   const laser_scan ahead = read_scan(ranges, {.model = model_named("x4")});
   EXPECT_NEAR(ahead.angle_min, -pi, 1e-6);
-  EXPECT_TRUE(ahead.has(2.0, 0.0));
-  EXPECT_TRUE(ahead.has(0.0, 1.0));
+  EXPECT_TRUE(has(ahead, 2.0, 0.0));
+  EXPECT_TRUE(has(ahead, 0.0, 1.0));
   fill_grid(scan_of("g4"), ranges);
   const laser_scan behind = read_scan(ranges, {});
-  EXPECT_TRUE(behind.has(-2.0, 0.0));
-  EXPECT_TRUE(behind.has(0.0, -1.0));
+  EXPECT_TRUE(has(behind, -2.0, 0.0));
+  EXPECT_TRUE(has(behind, 0.0, -1.0));
 }
 
 // In a frame with z down y is to the right.
@@ -111,11 +96,11 @@ TEST(TurnedMessages, LaserScan_ByTime) {
         read_scan(ranges, {.order = scan_order::time, .first_bin = first, .model = seen.model});
     EXPECT_GE(ahead.angle_min, -static_cast<float>(pi));
     EXPECT_LT(ahead.angle_min, static_cast<float>(pi));
-    EXPECT_TRUE(ahead.has(2.0, 0.0)) << first;
-    EXPECT_TRUE(ahead.has(0.0, -1.0)) << first;
+    EXPECT_TRUE(has(ahead, 2.0, 0.0)) << first;
+    EXPECT_TRUE(has(ahead, 0.0, -1.0)) << first;
     const laser_scan behind = read_scan(ranges, {.order = scan_order::time, .first_bin = first});
-    EXPECT_TRUE(behind.has(-2.0, 0.0)) << first;
-    EXPECT_TRUE(behind.has(0.0, 1.0)) << first;
+    EXPECT_TRUE(has(behind, -2.0, 0.0)) << first;
+    EXPECT_TRUE(has(behind, 0.0, 1.0)) << first;
   }
 }
 

@@ -28,31 +28,14 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 /// Packets of ten samples of a T-mini, after a zero packet with one, and their points.
-struct t_mini_stream {
-  std::vector<std::uint8_t> data;
-  std::vector<reference::family_point> points;
-
-  explicit t_mini_stream(unsigned revolutions) {
-    const reference::wire_format& how =
-        *std::ranges::find(reference::wire_formats, "t-mini", &reference::wire_format::model);
-    for (unsigned turn = 0; turn < revolutions; ++turn) {
-      for (unsigned packet = 0; packet < 37; ++packet) {
-        const unsigned count = packet == 0 ? 1 : 10;
-        const unsigned first = packet == 0 ? 0 : 64 * (10 * packet - 9) - 32;
-        std::vector<reference::wire_sample> samples;
-        for (unsigned i = 0; i < count; ++i) {
-          samples.push_back({(turn + 7 * packet + i) % 256, 4 * (500 + 10 * packet + i) + i % 4});
-        }
-        const auto made = reference::packet_of(how, packet == 0 ? 1 : 0, first,
-                                               first + 64 * (count - 1), samples);
-        data.insert(data.end(), made.begin(), made.end());
-        for (unsigned i = 0; i < count; ++i) {
-          points.push_back(reference::point_of(how, first / 64.0 + i, samples[i]));
-        }
-      }
-    }
-  }
-};
+reference::family_revolutions t_mini_revolutions(unsigned count) {
+  return reference::revolutions_of(reference::wire_format_of("t-mini"), count, 10, 1,
+                                   [](unsigned turn, unsigned packet, unsigned i) {
+                                     return reference::wire_sample{
+                                         (turn + 7 * packet + i) % 256,
+                                         4 * (500 + 10 * packet + i) + i % 4};
+                                   });
+}
 
 void expect_points(const std::vector<point>& found,
                    const std::vector<reference::family_point>& wanted) {
@@ -108,7 +91,7 @@ class ModelRecording : public ::testing::Test {
     return {all.begin(), all.end()};
   }
 
-  const t_mini_stream stream_{4};
+  const reference::family_revolutions stream_ = t_mini_revolutions(4);
   const model* const t_mini_ = model_named("t-mini-pro");
   std::filesystem::path directory_ =
       std::filesystem::temp_directory_path() / ("g4lidar-model-" + std::to_string(::getpid()));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "made_recording.hpp"
-#include "support/cdr_reader.hpp"
+#include "support/laser_scan.hpp"
 #include "support/mcap_messages.hpp"
 
 namespace g4lidar::test {
@@ -27,13 +27,7 @@ std::vector<float> recorded_ranges(const recording_options& how, const char* mod
   EXPECT_TRUE(writer.close());
   const auto file = bytes_of(path.text());
   const auto messages = mcap_messages(std::string(file.begin(), file.end()), "/scan");
-  cdr_reader read(messages.at(0));
-  static_cast<void>(read.number<std::uint64_t>());
-  static_cast<void>(read.text());
-  for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(read.number<float>());
-  std::vector<float> ranges(read.number<std::uint32_t>());
-  for (float& each : ranges) each = read.number<float>();
-  return ranges;
+  return read_laser_scan(messages.at(0)).ranges;
 }
 
 TEST(ScanRanges, TheModelOfAScan_DecidesTheTurnAndTheNumberOfRanges) {
@@ -72,14 +66,11 @@ TEST(ScanRanges, DirectionsWithoutReturn_BecomeWhatTheOptionsSet) {
     const auto file = bytes_of(path.text());
     const auto messages = mcap_messages(std::string(file.begin(), file.end()), "/scan");
     EXPECT_EQ(messages.size(), 2U);
-    cdr_reader last(messages.back());
-    for (int of_stamp = 0; of_stamp < 2; ++of_stamp)
-      static_cast<void>(last.number<std::uint32_t>());
-    EXPECT_EQ(last.text(), "laser");
-    for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(last.number<float>());
-    EXPECT_EQ(last.number<std::uint32_t>(), 4U);
+    const laser_scan last = read_laser_scan(messages.back());
+    EXPECT_EQ(last.frame_id, "laser");
+    EXPECT_EQ(last.ranges.size(), 4U);
     std::array<float, 4> ranges{};
-    for (float& each : ranges) each = last.number<float>();
+    std::ranges::copy(last.ranges, ranges.begin());
     return ranges;
   };
   // From behind, which is 0 degrees of the device, against its sense.

@@ -16,6 +16,7 @@
 #include "served.hpp"
 #include "support/cdr_reader.hpp"
 #include "support/cloud_rows.hpp"
+#include "support/laser_scan.hpp"
 #include "support/shaped_drive.hpp"
 #include "support/test_scale.hpp"
 
@@ -159,12 +160,7 @@ class Ranges : public Served {
             .code,
         0);
     play(path("near.bin"), false, options);
-    g4lidar::test::cdr_reader scan(last_);
-    for (int of_stamp = 0; of_stamp < 2; ++of_stamp) static_cast<void>(scan.number<std::int32_t>());
-    static_cast<void>(scan.text());
-    for (int skipped = 0; skipped < 7; ++skipped) static_cast<void>(scan.number<float>());
-    std::vector<float> ranges(scan.number<std::uint32_t>());
-    for (float& each : ranges) each = scan.number<float>();
+    const std::vector<float> ranges = g4lidar::test::read_laser_scan(last_).ranges;
     EXPECT_EQ(ranges.size(), 720U);
     return static_cast<std::size_t>(std::ranges::count(ranges, value));
   }

@@ -3,12 +3,14 @@
 // with the system's arctangent: without code of the library.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/reference_points.hpp"
@@ -103,6 +105,50 @@ struct family_point {
   if (how.low_meaning == wire_format::meaning::flags) made.flags = low;
   if (how.low_meaning == wire_format::meaning::upper_intensity) made.intensity += 256 * low;
   return made;
+}
+
+/// What a model sends.
+[[nodiscard]] inline const wire_format& wire_format_of(std::string_view model) {
+  return *std::ranges::find(wire_formats, model, &wire_format::model);
+}
+
+/// The bytes of revolutions, and their points.
+struct family_revolutions {
+  std::vector<std::uint8_t> data;
+  std::vector<family_point> points;
+};
+
+/// So many revolutions: each is a zero packet of one sample at 0 degrees, with the byte CT `zero_ct`, then packets of
+/// `in_packet` samples, a divisor of 360, from 0.5 degrees on in steps of a degree.
+/// `sample(turn, packet, i)` gives the samples; the zero packet is packet 0.
+template <class Sample>
+[[nodiscard]] family_revolutions revolutions_of(const wire_format& how, unsigned revolutions,
+                                                unsigned in_packet, unsigned zero_ct,
+                                                const Sample& sample) {
+  family_revolutions all;
+  for (unsigned turn = 0; turn < revolutions; ++turn) {
+    for (unsigned packet = 0; packet <= 360 / in_packet; ++packet) {
+      const unsigned count = packet == 0 ? 1 : in_packet;
+      const unsigned first = packet == 0 ? 0 : 64 * in_packet * (packet - 1) + 32;
+      std::vector<wire_sample> samples;
+      for (unsigned i = 0; i < count; ++i) samples.push_back(sample(turn, packet, i));
+      const auto made =
+          packet_of(how, packet == 0 ? zero_ct : 0, first, first + 64 * (count - 1), samples);
+      all.data.insert(all.data.end(), made.begin(), made.end());
+      for (unsigned i = 0; i < count; ++i) {
+        all.points.push_back(point_of(how, first / 64.0 + i, samples[i]));
+      }
+    }
+  }
+  return all;
+}
+
+/// Revolutions of a T-mini at 7 Hz, in packets of 30 samples: 2000 mm, flags 2, intensity 100 + packet.
+[[nodiscard]] inline std::vector<std::uint8_t> t_mini_stream(unsigned revolutions) {
+  const auto sample = [](unsigned, unsigned packet, unsigned) {
+    return wire_sample{100 + packet, 8002};
+  };
+  return revolutions_of(wire_format_of("t-mini"), revolutions, 30, 2 * 70 + 1, sample).data;
 }
 
 }  // namespace reference

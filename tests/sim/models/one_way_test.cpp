@@ -13,6 +13,7 @@
 
 #include "family_stream.hpp"
 #include "g4lidar/core/ct_check.hpp"
+#include "support/crc_reference.hpp"
 
 namespace g4lidar {
 namespace {
@@ -98,25 +99,13 @@ std::vector<revolution> revolutions_of(const byte_vector& bytes, const std::stri
   return all;
 }
 
-/// CRC-8/MAXIM, most significant bit of the mirrored byte first: another form than in the simulator.
-unsigned crc_of(const std::vector<std::uint8_t>& data) {
-  unsigned mirrored = 0;
-  for (const unsigned byte : data) {
-    for (unsigned bit = 0; bit < 8; ++bit) {
-      const unsigned in = byte >> bit & 1U;
-      const unsigned out = mirrored >> 7 & 1U;
-      mirrored = (mirrored << 1 & 0xFFU) ^ ((in ^ out) != 0 ? 0x31U : 0U);
-    }
-  }
-  unsigned crc = 0;
-  for (unsigned bit = 0; bit < 8; ++bit) crc |= (mirrored >> bit & 1U) << (7 - bit);
-  return crc;
-}
+using reference::crc_8_maxim;
 
 TEST(SimOneWay, TheReferenceOfTheCrc) {
   // The CT bytes of a revolution and their CRC, from the description of the family.
-  EXPECT_EQ(crc_of({0x7F, 0x48, 0x32, 0x02, 0x42, 0x0E, 0x00, 0x48, 0x00, 0x18, 0x30,
-                    0x78, 0xC0, 0x72, 0x56, 0x5C, 0xE8, 0x00, 0x00, 0x00, 0x00, 0x00}),
+  EXPECT_EQ(crc_8_maxim(std::vector<std::uint8_t>{0x7F, 0x48, 0x32, 0x02, 0x42, 0x0E, 0x00, 0x48,
+                                                  0x00, 0x18, 0x30, 0x78, 0xC0, 0x72, 0x56, 0x5C,
+                                                  0xE8, 0x00, 0x00, 0x00, 0x00, 0x00}),
             0x93U);
 }
 
@@ -128,7 +117,7 @@ TEST(SimModels, ACrcByteIsSentWhereItIsKnown) {
     std::size_t fitting = 0;
     std::size_t none = 0;
     for (const revolution& each : all) {
-      fitting += each.byte_behind == static_cast<int>(crc_of(each.ct)) ? 1U : 0U;
+      fitting += each.byte_behind == static_cast<int>(crc_8_maxim(each.ct)) ? 1U : 0U;
       none += each.byte_behind < 0 ? 1U : 0U;
     }
     if (fitting == all.size()) return std::string("crc");
