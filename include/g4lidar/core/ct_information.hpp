@@ -2,6 +2,7 @@
 // How one-way lidars identify themselves: by the CT bytes of a revolution.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -54,7 +55,8 @@ struct ct_information {
 
 /// Reads the information from the packets of a stream. *Single thread, never allocates.* A revolution
 /// is believed only if the CRC byte behind it fits, and if it names a model and a possible date: other
-/// models send zeros in the CT bytes, or other values.
+/// models send zeros in the CT bytes, or another value in all of them, and a random byte behind them,
+/// which fits in one of 256 revolutions.
 class ct_information_reader {
  public:
   /// Passes a packet, suspect or not. Returns whether a revolution ended with it whose information is
@@ -100,7 +102,9 @@ class ct_information_reader {
     const unsigned months = values_[month] >> 3U;
     const unsigned days = values_[day] >> 2U;
     const bool is_date = months >= 1 && months <= 12 && days >= 1 && days <= 31;
-    if (count_ < end || id_bits == 0 || !is_date) return false;
+    const bool is_constant = std::all_of(values_.begin() + 2, values_.end(),
+                                         [this](unsigned each) { return each == values_[1]; });
+    if (count_ < end || id_bits == 0 || !is_date || is_constant) return false;
     const unsigned number = (values_[year] & 3U) << 19U | (values_[month] & 7U) << 16U |
                             (values_[day] & 3U) << 14U | unsigned{values_[number_middle]} << 7U |
                             values_[number_low];
