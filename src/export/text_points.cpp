@@ -22,6 +22,12 @@ bool read_number(std::string_view text, Value& value) {
   return error == std::errc() && at == end;
 }
 
+/// The same; no text leaves `value` as it is.
+template <class Value>
+bool read_if_any(std::string_view text, Value& value) {
+  return text.empty() || read_number(text, value);
+}
+
 /// Passes the number of each field of a csv line, from 0 on, and the field.
 template <class Take>
 void for_each_field(std::string_view line, Take take) {
@@ -53,7 +59,11 @@ void point_lines::read_names(std::string_view line) {
     if (name == "range_mm" || name == "range_m") columns_.range = column;
     if (name == "range_m") mm_ = 1000.0F;
     if (name == "time_ns") columns_.time = column;
+    if (name == "intensity") columns_.intensity = column;
+    if (name == "sample_flags") columns_.sample_flags = column;
   });
+  has_intensity_ = columns_.intensity != no_column;
+  has_sample_flags_ = columns_.sample_flags != no_column;
   is_foreign_ = columns_.angle == no_column || columns_.range == no_column;
 }
 
@@ -64,6 +74,8 @@ point_lines::fields point_lines::csv_fields(std::string_view line) const {
     if (column == columns_.angle) found.angle = field;
     if (column == columns_.range) found.range = field;
     if (column == columns_.time) found.time = field;
+    if (column == columns_.intensity) found.intensity = field;
+    if (column == columns_.sample_flags) found.sample_flags = field;
   });
   return found;
 }
@@ -74,6 +86,10 @@ point_lines::fields point_lines::json_fields(std::string_view line) {
   found.angle = json_value(line, "\"angle_deg\":");
   found.range = json_value(line, "\"range_mm\":");
   found.time = json_value(line, "\"time_ns\":");
+  found.intensity = json_value(line, "\"intensity\":");
+  found.sample_flags = json_value(line, "\"sample_flags\":");
+  has_intensity_ = has_intensity_ || !found.intensity.empty();
+  has_sample_flags_ = has_sample_flags_ || !found.sample_flags.empty();
   mm_ = 1.0F;
   if (found.range.empty()) {
     found.range = json_value(line, "\"range_m\":");
@@ -82,15 +98,31 @@ point_lines::fields point_lines::json_fields(std::string_view line) {
   return found;
 }
 
-std::optional<point> point_lines::point_of(const fields& found) const {
+std::string_view point_lines::unexpected() const noexcept {
+  if (has_intensity_ && !g4lidar::has_intensity(*model_)) return "intensity";
+  const bool has_flags = g4lidar::has_sample_flags(model_->samples.layout);
+  return has_sample_flags_ && !has_flags ? "sample_flags" : "";
+}
+
+std::optional<point> point_lines::point_of(const fields& found) {
   point made;
   float angle_deg = 0.0F;
   float range = 0.0F;
-  const bool has_place = read_number(found.angle, angle_deg) && read_number(found.range, range);
-  const bool is_possible = std::abs(angle_deg) <= 360.0F && range >= 0.0F && range < 1e8F;
-  if (!has_place || !is_possible) return std::nullopt;
-  if (!found.scan.empty() && !read_number(found.scan, made.revolution)) return std::nullopt;
-  if (!found.time.empty() && !read_number(found.time, made.time_ns)) return std::nullopt;
+  const bool has_angle = read_number(found.angle, angle_deg) && std::abs(angle_deg) <= 360.0F;
+  const bool has_range = read_number(found.range, range) && range >= 0.0F && range < 1e8F;
+  constexpr std::uint8_t most_flags = 3;
+  const auto is_bad = [this](std::string_view column, bool bad) {
+    if (bad) bad_column_ = column;
+    return bad;
+  };
+  if (is_bad("angle_deg", !has_angle) || is_bad(mm_ > 1.0F ? "range_m" : "range_mm", !has_range) ||
+      is_bad("scan", !read_if_any(found.scan, made.revolution)) ||
+      is_bad("time_ns", !read_if_any(found.time, made.time_ns)) ||
+      is_bad("intensity", !read_if_any(found.intensity, made.intensity)) ||
+      is_bad("sample_flags", !read_if_any(found.sample_flags, made.sample_flags) ||
+                                 made.sample_flags > most_flags)) {
+    return std::nullopt;
+  }
   if (frame_ == frame::robot) angle_deg = static_cast<float>(model_->turn_deg) - angle_deg;
   if (angle_deg < 0.0F) angle_deg += 360.0F;
   made.angle_deg = angle_deg < 360.0F ? angle_deg : angle_deg - 360.0F;
@@ -133,7 +165,8 @@ void text_points::take(std::string_view text) {
       return;
     }
     if (is_too_long_) {
-      ++bad_lines_;
+      ++lines_read_;
+      count_bad_line({});
     } else if (rest_.empty()) {
       take_line(text.substr(0, end));
     } else {
@@ -147,12 +180,18 @@ void text_points::take(std::string_view text) {
 }
 
 void text_points::take_line(std::string_view line) {
+  ++lines_read_;
   if (line.ends_with('\r')) line.remove_suffix(1);
-  if (line.empty() || lines_.is_foreign()) return;
+  if (line.empty() || lines_.is_foreign() || !unexpected().empty()) return;
   const auto found = lines_.read(line);
+  if (!unexpected().empty()) return;
   if (found) return take_point(*found);
-  if (!is_header_due_) ++bad_lines_;
+  if (!is_header_due_) count_bad_line(lines_.bad_column());
   is_header_due_ = false;
+}
+
+void text_points::count_bad_line(std::string_view column) noexcept {
+  if (bad_lines_++ == 0) first_bad_ = {lines_read_, column};
 }
 
 void text_points::take_point(const read_point& read) {
@@ -196,7 +235,10 @@ void text_points::hand_over(bool cut) {
 }
 
 void text_points::finish() {
-  if (is_too_long_) ++bad_lines_;
+  if (is_too_long_) {
+    ++lines_read_;
+    count_bad_line({});
+  }
   if (!rest_.empty()) take_line(std::exchange(rest_, {}));
   hand_over(true);
 }

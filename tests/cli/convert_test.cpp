@@ -184,8 +184,9 @@ TEST_F(Convert, ColumnsAreFoundByTheirNames) {
   const outcome done = run({"convert", path("own.csv"), path("out.csv")});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(text("out.csv"),
-            "scan,angle_deg,range_mm,time_ns\n0,10.000000,1500.00,0\n0,12.000000,2000.00,0\n");
-  EXPECT_THAT(done.err, HasSubstr("2 points, 1 line without one"));
+            "scan,angle_deg,range_mm,time_ns,intensity\n0,10.000000,1500.00,0,7\n"
+            "0,12.000000,2000.00,0,7\n");
+  EXPECT_THAT(done.err, HasSubstr("2 points, 1 line without one: line 3 has no valid range_m\n"));
 }
 
 TEST_F(Convert, ToPointClouds) {

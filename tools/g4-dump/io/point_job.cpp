@@ -24,6 +24,7 @@
 #include "io/shape_files.hpp"
 #include "read_loop.hpp"
 #include "scan_file_writer.hpp"
+#include "text_input.hpp"
 
 namespace g4_tool {
 namespace {
@@ -73,6 +74,11 @@ class point_run {
     if (has_scan_files()) choose_files();
     if (!job_.text) common_.expected.model = model_of(common_, &recognised_);
     if (common_.expected.model == nullptr && !job_.text) open_pipe();
+    if (job_.text) {
+      open_input();
+      text_model_ = model_of_text(*input_, *job_.text, common_);
+      common_.expected.model = &text_model_;
+    }
     if (common_.expected.model == nullptr) common_.expected.model = &g4lidar::g4_model;
     use_model();
     const g4lidar::mask mask = load_mask(common_.mask);
@@ -234,16 +240,7 @@ class point_run {
       way.take({reinterpret_cast<const char*>(got.data()), got.size()});
     });
     if (!writer_->is_done()) way.finish();
-    if (way.points() == 0 && interrupt() == 0) {
-      throw failure(exit_code::bad_file,
-                    in.title() +
-                        (way.is_foreign() ? " has no columns angle_deg and range_mm or "
-                                            "range_m. "
-                                          : " holds no points. ") +
-                        "Give points as g4-dump writes them, one in each line.");
-    }
-    logger::info(fmt::format("{}, {} without one\n", counted(way.points(), "point"),
-                             counted(way.bad_lines(), "line")));
+    report_text(way, in.title(), text_model_);
     return way.points();
   }
 
@@ -324,6 +321,7 @@ class point_run {
   source_kind kind_;
   numbered_files files_;
   std::optional<input> input_;
+  g4lidar::model text_model_;                   // of points as text
   std::optional<recognised_model> recognised_;  // from raw bytes, if no model is named
   std::vector<stamped_pose> path_;
   std::unique_ptr<shaping_writer> writer_;

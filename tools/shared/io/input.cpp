@@ -116,6 +116,27 @@ recognised_model input::recognise(const common_options& options) {
   return head.found();
 }
 
+std::string input::first_line(const common_options& options) {
+  constexpr std::size_t most = 65'536;
+  constexpr std::size_t piece = 4096;
+  time_limits limits(options.duration, options.idle);
+  for (bool is_at_end = false;;) {
+    const std::string_view all(reinterpret_cast<const char*>(ahead_.data()), ahead_.size());
+    const std::size_t begin = std::min(all.find_first_not_of("\r\n"), all.size());
+    const std::size_t end = std::min(all.find_first_of("\r\n", begin), all.size());
+    if (end < all.size() || is_at_end) return std::string(all.substr(begin, end - begin));
+    is_at_end = all.size() >= most || limits.is_over() || interrupt() != 0 ||
+                (!id_ && wait_for_input(fd_, -1, limits.end()) != wake::input);
+    if (is_at_end) continue;
+    const std::size_t held = all.size();
+    ahead_.resize(held + piece);
+    const std::size_t count = read(std::span(ahead_).subspan(held));
+    ahead_.resize(held + count);
+    is_at_end = count == 0;
+    limits.restart_idle();
+  }
+}
+
 void input::pump(output& out, const byte_sink& sink, const common_options& options) {
   constexpr std::size_t first_piece = 16'384;
   progress_bar bar(size_, sink.with_bar && !out.is_terminal());

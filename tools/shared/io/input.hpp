@@ -42,6 +42,10 @@ class input {
   /// at most until -d or --idle ends.
   [[nodiscard]] g4lidar::recognised_model recognise(const common_options& options);
 
+  /// The first line of text that is not empty, without its end: reads ahead, at most 64 KiB, and of a
+  /// pipe at most until -d or --idle ends.
+  [[nodiscard]] std::string first_line(const common_options& options);
+
   /// Waits for bytes and reads them. Returns their number: 0 at the end or after a signal.
   [[nodiscard]] std::size_t read(std::span<std::uint8_t> into);
 
@@ -63,7 +67,7 @@ class input {
   std::string title_;
   std::optional<file_id> id_;
   std::uint64_t size_ = 0;
-  std::vector<std::uint8_t> ahead_;  // read by recognise()
+  std::vector<std::uint8_t> ahead_;  // read by recognise() or first_line()
 };
 
 /// Opens a recording; by default a signal cancels reading. Throws interrupted if opening was cancelled,

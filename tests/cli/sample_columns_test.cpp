@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+// The intensity and the flags of points as text: read, written in each format, and kept by filters.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program.hpp"
+#include "support/family_reference.hpp"
+#include "support/laser_scan.hpp"
+#include "support/mcap_messages.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::program;
+using cli::run;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// Ranges from 1 m to 1.36 m with every intensity and all flags, one of eight without return.
+const reference::family_revolutions& seen() {
+  static const auto made = reference::revolutions_of(
+      reference::wire_format_of("t-mini"), 4, 10, 2 * 70 + 1,
+      [](unsigned turn, unsigned packet, unsigned i) {
+        const unsigned range_mm = (packet + i) % 8 == 0 ? 0 : 1000 + 10 * packet + i;
+        return reference::wire_sample{(turn + 7 * packet + i) % 256,
+                                      4 * range_mm + (packet + i) % 4};
+      });
+  return made;
+}
+
+struct values {
+  unsigned intensity;
+  unsigned flags;
+  bool operator==(const values&) const = default;
+};
+
+class SampleColumns : public cli::scratch {
+ protected:
+  SampleColumns() {
+    cli::write_file(path("raw.bin"),
+                    {reinterpret_cast<const char*>(seen().data.data()), seen().data.size()});
+    convert("raw.bin", "a.csv", {"--model", "t-mini"});
+    convert("raw.bin", "a.jsonl", {"--model", "t-mini"});
+  }
+  std::string convert(const std::string& from, const std::string& to,
+                      const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"convert", path(from), path(to), "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 0) << from << " to " << to << ": " << done.err;
+    return done.err;
+  }
+  [[nodiscard]] std::string text(const std::string& name) const {
+    return cli::read_file(path(name));
+  }
+};
+
+/// The two last columns.
+std::vector<values> columns_of(const std::string& csv) {
+  std::vector<values> all;
+  const auto rows = cli::lines_of(csv);
+  EXPECT_EQ(rows.at(0), "scan,angle_deg,range_mm,time_ns,intensity,sample_flags");
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::size_t flags = rows[i].rfind(',');
+    const std::size_t intensity = rows[i].rfind(',', flags - 1);
+    all.push_back({static_cast<unsigned>(std::stoul(rows[i].substr(intensity + 1))),
+                   static_cast<unsigned>(std::stoul(rows[i].substr(flags + 1)))});
+  }
+  return all;
+}
+
+template <class Taken>
+std::vector<values> wanted(Taken taken) {
+  std::vector<values> all;
+  for (const reference::family_point& each : seen().points) {
+    if (taken(each)) all.push_back({each.intensity, each.flags});
+  }
+  return all;
+}
+std::vector<values> all_wanted() {
+  return wanted([](const reference::family_point&) { return true; });
+}
+
+TEST_F(SampleColumns, AreReadAndWrittenAsText) {
+  EXPECT_EQ(columns_of(text("a.csv")), all_wanted());
+  for (const std::vector<std::string>& model :
+       {std::vector<std::string>{"--model", "t-mini"}, std::vector<std::string>{}}) {
+    convert("a.csv", "b.csv", model);
+    EXPECT_TRUE(text("b.csv") == text("a.csv"));
+    for (const std::string from : {"a.csv", "a.jsonl"}) {
+      convert(from, "b.jsonl", model);
+      EXPECT_THAT(text("b.jsonl"), HasSubstr(",\"intensity\":7,\"sample_flags\":1,"));
+      convert("b.jsonl", "c.csv", model);
+      EXPECT_TRUE(text("c.csv") == text("a.csv")) << from;
+    }
+  }
+}
+
+TEST_F(SampleColumns, OfAPipe) {
+  program started({"convert", "-", path("b.csv"), "--from-format", "csv"});
+  const std::string all = text("a.csv");
+  started.feed(all.substr(0, 30));
+  started.feed(all.substr(30));
+  const outcome done = started.wait();
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(text("b.csv"), all);
+}
+
+template <class Number>
+Number number_at(const std::string& data, std::size_t at) {
+  Number made{};
+  std::memcpy(&made, data.substr(at, sizeof made).data(), sizeof made);
+  return made;
+}
+
+TEST_F(SampleColumns, AreWrittenToFilesOfPoints) {
+  const auto returns = wanted([](const reference::family_point& p) { return p.range_mm > 0.0; });
+  for (const std::string from : {"a.csv", "a.jsonl"}) {
+    convert(from, "b.npy");
+    const std::string npy = text("b.npy");
+    std::vector<values> found;
+    for (std::size_t at = 256; at < npy.size(); at += 24) {
+      found.push_back(
+          {number_at<std::uint16_t>(npy, at + 22), number_at<std::uint8_t>(npy, at + 21)});
+    }
+    EXPECT_EQ(found, all_wanted()) << from;
+    convert(from, "b.ply");
+    const std::string ply = text("b.ply");
+    const std::size_t begin = ply.find("end_header\n") + 11;
+    constexpr std::size_t vertex = 6 * 4 + 8 + 4;
+    ASSERT_EQ(ply.size() - begin, returns.size() * vertex);
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      ASSERT_EQ(number_at<float>(ply, begin + (i + 1) * vertex - 4),
+                static_cast<float>(returns[i].intensity));
+    }
+    convert(from, "b.pcd", {"--ascii"});
+    const std::string pcd = text("b.pcd");
+    EXPECT_THAT(pcd, HasSubstr("FIELDS x y z range_m angle_deg time_ns intensity\n"));
+    const auto rows = cli::lines_of(pcd.substr(pcd.find("DATA ascii\n") + 11));
+    ASSERT_EQ(rows.size(), returns.size() / 4) << "one of four revolutions";
+    // Whether the first one is whole, csv does not state.
+    const std::size_t first = from == "a.csv" ? rows.size() : 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      ASSERT_EQ(std::stoul(rows[i].substr(rows[i].rfind(' '))), returns[first + i].intensity);
+    }
+  }
+}
+
+TEST_F(SampleColumns, OfMessagesInARecording) {
+  convert("raw.bin", "b.mcap", {"--model", "t-mini", "--points"});
+  const auto scans = g4lidar::test::mcap_messages(text("b.mcap"), "/scan");
+  ASSERT_EQ(scans.size(), 3U) << "the last one has no end";
+  const auto first = g4lidar::test::read_laser_scan(scans.front());
+  ASSERT_EQ(first.intensities.size(), first.ranges.size());
+  // A range is that of one of the points, and so is the intensity; 0 where there is no point.
+  std::set<std::pair<float, float>> possible{{0.0F, 0.0F}};
+  for (const reference::family_point& each : seen().points) {
+    possible.emplace(static_cast<float>(each.range_mm), static_cast<float>(each.intensity));
+  }
+  std::size_t bright = 0;
+  for (std::size_t i = 0; i < first.ranges.size(); ++i) {
+    const float range_m = std::isfinite(first.ranges[i]) ? first.ranges[i] : 0.0F;
+    const float range_mm = std::round(range_m * 1000.0F);
+    if (range_mm > 0.0F) {
+      EXPECT_TRUE(possible.contains({range_mm, first.intensities[i]})) << i;
+    }
+    bright += first.intensities[i] > 0.0F ? 1U : 0U;
+  }
+  EXPECT_GT(bright, 200U);
+  const auto clouds = g4lidar::test::mcap_messages(text("b.mcap"), "/points");
+  ASSERT_EQ(clouds.size(), 3U);
+  const auto returns = wanted([](const reference::family_point& p) { return p.range_mm > 0.0; });
+  const std::string cloud(clouds.front().begin(), clouds.front().end() - 1);  // without is_dense
+  constexpr std::size_t row = 28;
+  const std::size_t count = returns.size() / 4;
+  ASSERT_GT(cloud.size(), count * row);
+  for (std::size_t i = 0; i < count; ++i) {
+    ASSERT_EQ(number_at<float>(cloud, cloud.size() - (count - i) * row + 24),
+              static_cast<float>(returns[i].intensity));
+  }
+}
+
+TEST_F(SampleColumns, AreKeptByFiltersAndDeskewing) {
+  convert("a.csv", "near.csv", {"--range", "1.1:1.2", "--model", "t-mini"});
+  EXPECT_EQ(columns_of(text("near.csv")), wanted([](const reference::family_point& p) {
+              return p.range_mm >= 1100.0 && p.range_mm <= 1200.0;
+            }));
+  cli::write_file(path("way.odo"), "0 0 0 0\n10000000000 5 0 0\n");
+  convert("a.csv", "moved.csv",
+          {"--deskew", "odometry", "--odometry", path("way.odo"), "--model", "t-mini"});
+  EXPECT_EQ(columns_of(text("moved.csv")), all_wanted());
+  EXPECT_FALSE(text("moved.csv") == text("a.csv"));
+}
+
+TEST_F(SampleColumns, OfALidarThatIsNotNamed_AreKeptAndReported) {
+  const std::string how = convert("a.csv", "b.csv");
+  EXPECT_THAT(
+      how,
+      HasSubstr(
+          "a.csv' has intensity, which a G4 does not measure; its directions are read as those "
+          "of a G4; --model names another\n"));
+  EXPECT_THAT(convert("a.csv", "b.csv", {"--model", "t-mini"}), Not(HasSubstr("measure")));
+  // An X4 has flags and no intensity; what is named is not reported again.
+  EXPECT_THAT(convert("a.csv", "b.csv", {"--model", "x4"}), Not(HasSubstr("measure")));
+  EXPECT_EQ(text("b.csv"), text("a.csv"));
+  cli::write_file(path("g4.csv"), "scan,angle_deg,range_mm,time_ns\n0,1,500,0\n");
+  EXPECT_THAT(convert("g4.csv", "b.csv"), Not(HasSubstr("measure")));
+  EXPECT_EQ(text("b.csv"), "scan,angle_deg,range_mm,time_ns\n0,1.000000,500.00,0\n");
+}
+
+TEST_F(SampleColumns, WithoutAValidValue_AreReported) {
+  for (const std::string wrong : {"65536,0", "-1,0", "1.5,0", "strong,0", "7,4", "7,-1", "7,0.5"}) {
+    cli::write_file(path("bad.csv"),
+                    "angle_deg,range_mm,intensity,sample_flags\n10,500," + wrong + "\n");
+    const outcome none = run({"convert", path("bad.csv"), path("b.csv"), "--force"});
+    EXPECT_EQ(none.code, 10) << wrong;
+    const std::string column = wrong.starts_with("7") ? "sample_flags" : "intensity";
+    EXPECT_THAT(none.err,
+                HasSubstr("holds no points. Its line 2 has no valid " + column + ". Give"));
+    cli::write_file(
+        path("bad.csv"),
+        "angle_deg,range_mm,intensity,sample_flags\n9,500,65535,3\n10,500," + wrong + "\n");
+    EXPECT_THAT(convert("bad.csv", "b.csv"),
+                HasSubstr("1 point, 1 line without one: line 3 has no valid " + column + "\n"));
+    EXPECT_EQ(
+        text("b.csv"),
+        "scan,angle_deg,range_mm,time_ns,intensity,sample_flags\n0,9.000000,500.00,0,65535,3\n");
+  }
+}
+
+TEST_F(SampleColumns, OfLaterLinesOnly_AreRefused) {
+  cli::write_file(
+      path("late.jsonl"),
+      "{\"angle_deg\":1,\"range_mm\":500}\n{\"angle_deg\":2,\"range_mm\":500,\"intensity\":7}\n");
+  const outcome done = run({"convert", path("late.jsonl"), path("b.csv")});
+  EXPECT_EQ(done.code, 10);
+  EXPECT_THAT(done.err,
+              HasSubstr("has intensity only in later lines, and a G4 does not measure it. Name the "
+                        "lidar that measured these points with --model."));
+  EXPECT_EQ(listing().find("b.csv"), std::string::npos);
+  EXPECT_EQ(run({"convert", path("late.jsonl"), path("b.csv"), "--model", "g2"}).code, 0);
+  EXPECT_THAT(text("b.csv"), HasSubstr("\n0,1.000000,500.00,0,0\n0,2.000000,500.00,0,7\n"));
+}
+
+}  // namespace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "text_input.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/exit_code.hpp"
+#include "cli/logger.hpp"
+#include "io/interrupt.hpp"
+
+namespace g4_tool {
+namespace {
+
+/// The layout of samples with the values of `now` and with those of `text`.
+sample_layout layout_with(sample_layout now, const point_lines& text) {
+  using enum sample_layout;
+  const bool has_flags = text.has_sample_flags() || has_sample_flags(now);
+  const bool has_intensity = text.has_intensity() || intensity_bits(now) > 0;
+  if (has_flags) return has_intensity ? intensity_8 : flagged_mm;
+  return longest_range_mm(now) > longest_range_mm(quarter_mm) ? intensity_16 : intensity_10;
+}
+
+}  // namespace
+
+g4lidar::model model_of_text(input& in, text_source form, const common_options& common) {
+  const g4lidar::model* const named = common.expected.model;
+  g4lidar::model made = named == nullptr ? g4_model : *named;
+  point_lines lines(form, g4lidar::frame::vendor, made);
+  static_cast<void>(lines.read(in.first_line(common)));
+  if (lines.unexpected().empty()) return made;
+  if (named == nullptr) {
+    logger::info(
+        fmt::format("{} has {}, which a {} does not measure; its directions are read as those of a "
+                    "{}; --model names another\n",
+                    in.title(), lines.unexpected(), made.name, made.name));
+  }
+  made.samples.layout = layout_with(made.samples.layout, lines);
+  return made;
+}
+
+void report_text(const text_points& text, const std::string& title, const g4lidar::model& which) {
+  if (!text.unexpected().empty()) {
+    throw failure(
+        exit_code::bad_file,
+        fmt::format("{} has {} only in later lines, and a {} does not measure it. Name the "
+                    "lidar that measured these points with --model.",
+                    title, text.unexpected(), which.name));
+  }
+  const auto& [line, column] = text.first_bad_line();
+  const std::string first_bad =
+      column.empty() ? "" : fmt::format("line {} has no valid {}", line, column);
+  if (text.points() == 0 && interrupt() == 0) {
+    throw failure(exit_code::bad_file,
+                  title +
+                      (text.is_foreign() ? " has no columns angle_deg and range_mm or range_m. "
+                                         : " holds no points. ") +
+                      (first_bad.empty() ? "" : "Its " + first_bad + ". ") +
+                      "Give points as g4-dump writes them, one in each line.");
+  }
+  logger::info(fmt::format("{}, {} without one{}\n", counted(text.points(), "point"),
+                           counted(text.bad_lines(), "line"),
+                           first_bad.empty() ? "" : ": " + first_bad));
+}
+
+}  // namespace g4_tool
