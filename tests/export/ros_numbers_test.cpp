@@ -19,6 +19,12 @@ TEST(LaserScan, NumbersForProgramsThatFillAMessageThemselves) {
   EXPECT_EQ(numbers_of({.first_bin = 3}, 4).first, 0U) << "by angle";
 }
 
+TEST(LaserScan, TheLongestRangeIsThatOfTheHeader_ElseOfTheModel) {
+  EXPECT_FLOAT_EQ(numbers_of({.model = model_named("x4")}, 4).range_max_m, 16.383F);
+  EXPECT_FLOAT_EQ(numbers_of({.model = model_named("x4"), .longest_mm = 65'535.0F}, 4).range_max_m,
+                  65.535F);
+}
+
 TEST(PointCloud2, FieldsForProgramsThatFillAMessageThemselves) {
   EXPECT_EQ(cloud_point_size(g4_model), 24U);
   EXPECT_EQ(cloud_fields(g4_model).back().name, "angle");

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -251,6 +252,49 @@ TEST_F(Robot, MergedLidars_AWallThatIsTooNearForOneIsNoFreeWay) {
   EXPECT_NEAR(static_cast<double>(ranges[540]), 1.2, 0.05);  // left
   EXPECT_NEAR(static_cast<double>(ranges[0]), 2.0, 0.05);    // behind
   EXPECT_EQ(ranges[180], infinity) << "nothing is there";
+  tool.send(SIGINT);
+}
+
+/// A G4 measures no intensity, and longer ranges than a T-mini Pro, which does.
+TEST_F(Robot, MergedLidars_HaveTheIntensitiesOfThoseThatMeasureThem) {
+  subscriber<scan_message> scans(domain_, "/scan", dds::laser_scan);
+  subscriber<cloud_message> clouds(domain_, "/points", dds::point_cloud2);
+  cli::program tool({"front=sim:", "rear=sim:?model=t-mini-pro", "--merge", "--mount",
+                     "front=0,0,0", "--mount", "rear=0,0,180"});
+  std::size_t with = 0;
+  std::size_t without = 0;
+  EXPECT_TRUE(comes_true([&] {
+    clouds.take([&](const cloud_message& cloud) {
+      if (cloud.fields._length != 7) return;  // the T-mini Pro has not begun
+      EXPECT_STREQ(cloud.fields._buffer[6].name, "intensity");
+      std::size_t bright = 0;
+      for (std::size_t at = 0; at < cloud.data._length; at += cloud.point_step) {
+        float intensity = 0.0F;
+        std::memcpy(&intensity, cloud.data._buffer + at + 24, sizeof intensity);
+        bright += intensity > 0.0F ? 1U : 0U;
+      }
+      with = bright;
+      without = cloud.width - bright;
+    });
+    return with > 300 && without > 900;  // of 571 and 1286 samples
+  })) << with
+      << " and " << without;
+  std::size_t bright = 0;
+  std::size_t dark = 0;
+  float range_max = 0.0F;
+  EXPECT_TRUE(comes_true([&] {
+    scans.take([&](const scan_message& scan) {
+      if (scan.intensities._length == 0) return;
+      EXPECT_EQ(scan.intensities._length, scan.ranges._length);
+      const std::span all(scan.intensities._buffer, scan.intensities._length);
+      dark = static_cast<std::size_t>(std::ranges::count(all, 0.0F));
+      bright = all.size() - dark;
+      range_max = scan.range_max;
+    });
+    return bright > 50 && dark > 50;
+  })) << bright
+      << " and " << dark;
+  EXPECT_EQ(range_max, 16.38375F) << "of the G4";
   tool.send(SIGINT);
 }
 

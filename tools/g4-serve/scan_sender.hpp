@@ -29,7 +29,7 @@ class scan_sender {
   [[nodiscard]] client_registry::demand wanted() const { return registry_.wanted(); }
   void send_page(const page_scan& what);
   /// A LaserScan of scan_shaper::for_grid().
-  void send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when);
+  void send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when, float longest_mm = 0.0F);
   /// A PointCloud2 of scan_shaper::kept().
   void send_points(const g4lidar::scan& kept, const scan_stamp& when);
   /// What a device sent, as a message of recordings.

@@ -41,6 +41,8 @@ struct message_header {
   const g4lidar::model* model = &g4_model;
   /// Of a LaserScan: as many as there are ranges, in the same order; empty: it has none.
   std::span<const float> intensities{};
+  /// range_max of a LaserScan, in millimetres; 0: the longest range of the model.
+  float longest_mm = 0.0F;
 };
 
 /// The name and the definition of a message, as recordings contain them. Valid forever.

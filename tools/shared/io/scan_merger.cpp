@@ -50,6 +50,7 @@ void scan_merger::add(std::size_t index, g4lidar::scan_shaper& scan, const scan_
                    .kept = {.points = {}, .model = &which},
                    .kept_of_each = {},
                    .when = {here.end_ns, when.duration_ns, when.ahead_ns},
+                   .longest_mm = longest_mm(),
                    .moved = motion_of_robot(here, scan, when)};
   const g4lidar::merged all = merged_points(&part::for_grid, here.end_ns, made.moved, for_grid_);
   ++scans_;
@@ -68,11 +69,19 @@ void scan_merger::add(std::size_t index, g4lidar::scan_shaper& scan, const scan_
   take(made);
 }
 
+float scan_merger::longest_mm() const {
+  float longest = 0.0F;
+  for (const part& each : parts_) {
+    longest = std::max(longest, g4lidar::longest_range_mm(each.model->samples.layout));
+  }
+  return longest;
+}
+
 g4lidar::model scan_merger::merged_model() const {
-  const auto longest_of = [](const part& each) {
-    return g4lidar::longest_range_mm(each.model->samples.layout);
+  const auto bits_of = [](const part& each) {
+    return g4lidar::intensity_bits(each.model->samples.layout);
   };
-  g4lidar::model made = *std::ranges::max_element(parts_, {}, longest_of)->model;
+  g4lidar::model made = *std::ranges::max_element(parts_, {}, bits_of)->model;
   made.turn_deg = g4lidar::g4_model.turn_deg;
   made.rates = std::ranges::max_element(parts_, {}, [](const part& each) {
                  return g4lidar::default_bins(*each.model);
