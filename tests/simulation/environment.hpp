@@ -36,7 +36,8 @@ struct environment {
   std::function<void()> on_call;    ///< Before each call: all that was read before is digested.
   std::int64_t wake_ns = never_ns;  ///< Then somebody wakes the driver, once.
   std::function<void()> wake;
-  bool watches = true;  ///< Whether the system reports when the device is plugged in.
+  std::uint32_t bridge_baud = 0;  ///< The rate that the host's side has; 0: what is asked for.
+  bool watches = true;            ///< Whether the system reports when the device is plugged in.
 };
 
 /// A transport that reports each call, and during which the driver may be woken.
@@ -68,7 +69,7 @@ class observed_transport final : public transport {
   void wake() noexcept override { port_->wake(); }
   [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override {
     environment_->on_call();
-    return port_->set_baud(baud);
+    return port_->set_baud(environment_->bridge_baud != 0 ? environment_->bridge_baud : baud);
   }
   [[nodiscard]] result<bool> set_dtr(bool high) noexcept override {
     environment_->on_call();
@@ -103,6 +104,11 @@ class observed_connector final : public connector {
     ++environment_->calls.connects;
     auto port = connector_.connect();
     if (!port) return port;
+    if (environment_->bridge_baud != 0) {
+      if (auto set = (*port)->set_baud(environment_->bridge_baud); !set) {
+        return tl::unexpected(std::move(set).error());
+      }
+    }
     return std::make_unique<observed_transport>(*environment_, std::move(*port));
   }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return connector_.now_ns(); }

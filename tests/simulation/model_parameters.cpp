@@ -5,13 +5,51 @@
 #include "parameters.hpp"
 
 namespace g4lidar::simulation {
+namespace {
+
+/// The rates of bridges are near the one that was asked for: a CP2102 makes 500000 of 512000, a CP2102N
+/// 127659 of 128000.
+std::uint32_t some_bridge_baud(dice& d, std::uint32_t baud) {
+  if (baud == 512'000 && d.chance(0.5)) return 500'000;
+  return d.chance(0.5) ? 0 : static_cast<std::uint32_t>(baud * d.real(0.985, 1.015));
+}
+
+/// What healthy devices of one model may differ in beside their packets.
+void draw_additions(dice& d, sim::device_options& device) {
+  device.ct_information = d.chance(0.5);
+  if (device.ct_information) device.scanner.ordinary_ct = 0;
+  // Nothing, a random byte or a CRC.
+  const auto leading = d.between(0, 2);
+  device.stray_before_zero = leading > 0;
+  device.stray_after_start = leading == 1;
+  device.ct_crc = leading == 2;
+  device.time_packet_ns = d.chance(0.5) ? d.between(50 * ms, second) : 0;
+  device.scanner.index_deg = d.chance(0.5) ? device.scanner.index_deg : d.real(0.0, 359.9);
+}
+
+/// Answers to D1 and 93. Without its answer the direction of zero is not known, so it is 0 where one may be lost.
+void draw_answers(dice& d, run_parameters& parameters) {
+  sim::device_options& device = parameters.device;
+  const model& which = *model_named(device.model);
+  if (which.zero_angle_divisor != 0) {
+    if (d.chance(0.3)) device.zero_angle_divisor = 0;
+    const bool is_known = device.zero_angle_divisor != 0 && parameters.healthy;
+    // In quarters of a degree, so that every divisor can state it.
+    if (is_known) device.zero_angle_cdeg = static_cast<std::int32_t>(25 * d.between(-700, 700));
+  }
+  if (which.rates.is_settable && d.chance(0.3)) device.answers_sample_rate = false;
+  parameters.unanswered =
+      (which.zero_angle_divisor != 0 && device.zero_angle_divisor == 0 ? 1 : 0) +
+      (which.rates.is_settable && !device.answers_sample_rate ? 1 : 0);
+}
+
+}  // namespace
 
 void become(dice& d, std::string_view word, run_parameters& parameters) {
   sim::device_options& v = parameters.device;
   static_cast<void>(sim::use_model(v, word));
   v.scanner.samples_per_packet = v.scanner.format.max_samples == max_samples ? 80 : 40;
   v.scanner.sample_rate_ratio = d.real(0.97, 1.0);  // an S2 has no room for more
-  if (v.ct_information) v.scanner.ordinary_ct = 0;
   v.initial = {};
   if (d.chance(0.5)) v.while_scanning = sim::disturbance::between;
   if (!v.one_way) v.dtr_starts_by = static_cast<sim::dtr_start>(d.between(0, 2));
@@ -19,7 +57,6 @@ void become(dice& d, std::string_view word, run_parameters& parameters) {
   // A device that answers has its supply from the USB bridge.
   if (v.one_way) v.dtr_cuts = d.chance(0.5) ? sim::dtr_cut::motor : sim::dtr_cut::supply;
   v.dtr_low_ns = d.between(0, 90 * ms);
-  if (d.chance(0.3)) v.time_packet_ns = d.between(50 * ms, second);
   lidar_options& o = parameters.options;
   o.model = model_named(word);
   o.sample_rate.reset();
@@ -33,6 +70,9 @@ void become(dice& d, std::string_view word, run_parameters& parameters) {
     o.frequency = scan_frequency{static_cast<std::uint16_t>(
         d.between(format.min_frequency_chz / 10, format.max_frequency_chz / 10) * 10)};
   }
+  draw_additions(d, v);
+  draw_answers(d, parameters);
+  parameters.bridge_baud = some_bridge_baud(d, v.baud);
 }
 
 }  // namespace g4lidar::simulation

@@ -255,8 +255,12 @@ run_parameters draw_run(std::uint64_t seed, std::string_view model) {
 std::int64_t own_time_ns(const run_parameters& parameters) {
   const std::int64_t turns_ns = 2 * 100 * second / slowest_chz(parameters);
   const sim::device_options& v = parameters.device;
+  // What has no answer is asked three times.
+  const std::int64_t unanswered_ns =
+      3 * parameters.unanswered *
+      std::chrono::nanoseconds(parameters.options.tuning.answer_time).count();
   return v.stop_ns + v.boot_ns + v.first_answer_ns + most_commands * v.reaction_ns + v.header_ns +
-         std::max(v.silence_ns, spin_up_ns(v)) + turns_ns;
+         std::max(v.silence_ns, spin_up_ns(v)) + turns_ns + unanswered_ns;
 }
 
 std::int64_t recovery_time_ns(const run_parameters& parameters) {

@@ -59,6 +59,8 @@ struct run_parameters {
   std::int64_t end_ns = 0;   ///< Then it closes.
   sim::device_options device;
   std::vector<sim::fault> faults;
+  std::uint32_t bridge_baud = 0;  ///< What the bridge makes of the rate of the device; 0: the same.
+  int unanswered = 0;             ///< So many questions of an opening have no answer.
   lidar_options options;
   application_behavior application;
 };
