@@ -113,6 +113,29 @@ TEST_P(LiveModel, AllocatesNothingWhileItStreams) {
   EXPECT_LT(static_cast<double>(on.clock.calls() - calls_before), 10.0 * 20.0 + scans_s * 60.0);
 }
 
+/// 20 kHz at 512000 baud, and 3 Hz: 500 packets and 45 kB a second. What the system keeps, 4095 bytes, is half full 22
+/// times a second.
+TEST(LiveFastest, IsReadAtScanPaceWithoutAHeapCall) {
+  bench on(*model_named("tg50"));
+  auto lidar = on.open({.frequency = scan_frequency{300}});
+  ASSERT_TRUE(lidar) << lidar.error().message();
+  ASSERT_TRUE(lidar->start());
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(lidar->wait_scan(2000ms));
+  const std::uint64_t calls_before = on.clock.calls();
+  const std::uint64_t lost_before = lidar->counts().samples_lost;
+  std::size_t points = 0;
+  constexpr int scans = 30;
+  const std::size_t allocations = test::allocations_in([&] {
+    for (int i = 0; i < scans; ++i) {
+      if (const auto scan = lidar->wait_scan(2000ms)) points += scan->points.size();
+    }
+  });
+  EXPECT_EQ(allocations, 0U);
+  EXPECT_NEAR(static_cast<double>(points), scans * 20'000.0 / 3.0, scans * 100.0);
+  EXPECT_EQ(lidar->counts().samples_lost, lost_before);
+  EXPECT_LE(on.clock.calls() - calls_before, scans * 40U);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, LiveModel, ::testing::ValuesIn(models), name_in_test);
 
 // ---- DTR ----------------------------------------------------------------------------------------
