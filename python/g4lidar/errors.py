@@ -66,7 +66,7 @@ class Garbage(Error):
 
 
 class OtherDevice(Error):
-    """The device that answers is not a G4."""
+    """The device that answers is not the model that was expected."""
 
 
 class DoesNotStop(Error):
@@ -90,7 +90,7 @@ class NotReached(Error):
 
 
 class BadSetting(Error, ValueError):
-    """No G4 can be set to this value."""
+    """This model of lidar cannot be set to this value."""
 
 
 class Scanning(Error):

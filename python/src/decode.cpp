@@ -21,12 +21,6 @@ namespace {
 
 using namespace nb::literals;
 
-/// The model of this word; None: a G4.
-const model& decoded_model(const std::optional<std::string>& word) {
-  const model* const found = model_of(word);
-  return found == nullptr ? g4_model : *found;
-}
-
 /// Python's class Decoder.
 class decoder {
  public:
@@ -49,7 +43,7 @@ class decoder {
     decoder& of_;
   };
 
-  explicit decoder(const std::optional<std::string>& model) : made_(decoded_model(model)) {}
+  explicit decoder(const std::optional<std::string>& model) : made_(model_or_g4(model)) {}
 
  private:
   bulk_decoder made_;
@@ -148,7 +142,7 @@ void bind_decode(nb::module_& module) {
       "decode",
       [](nb::handle data, const std::optional<std::string>& model) {
         const buffer from(data);
-        bulk_decoder decoder(decoded_model(model));
+        bulk_decoder decoder(model_or_g4(model));
         return make_array<point>(room_for(from.read().size(), 0), [&](std::span<point> out) {
           const without_gil free;
           bytes input = from.read();

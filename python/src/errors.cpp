@@ -47,6 +47,11 @@ const model* model_of(const std::optional<std::string>& word) {
   return found;
 }
 
+const model& model_or_g4(const std::optional<std::string>& word) {
+  const model* const found = model_of(word);
+  return found == nullptr ? g4_model : *found;
+}
+
 void raise_bad_option(const std::string& sentence) {
   const nb::object kind = nb::module_::import_("g4lidar.errors").attr("BadOption");
   const error like(task::opening, problem::bad_option, sentence);

@@ -23,6 +23,8 @@ namespace nb = nanobind;
 [[noreturn]] void raise_bad_option(const std::string& text);
 /// The model of this word; null for None. Raises BadOption.
 [[nodiscard]] const model* model_of(const std::optional<std::string>& word);
+/// The same; None: a G4, the model of points and bytes that do not state theirs.
+[[nodiscard]] const model& model_or_g4(const std::optional<std::string>& word);
 /// ValueError: "WHAT, not GIVEN": which values are possible, and the one that was given.
 template <class Value>
 [[noreturn]] void raise_impossible(const std::string& what, const Value& given) {

@@ -2,12 +2,14 @@
 // Shaping scans, and marking the points of an array.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -150,14 +152,18 @@ void bind_shaper(nb::module_& module) {
       .def(
           "shape",
           [](shaper& self, const array<point>& points,
-             const std::optional<array<stamped_pose>>& path) {
-            self.shape(scan(), points, path);
+             const std::optional<array<stamped_pose>>& path,
+             const std::optional<std::string>& model) {
+            scan whole;
+            whole.model = &model_or_g4(model);
+            self.shape(whole, points, path);
             return nb::find(self);
           },
-          "scan"_a, "path"_a = nb::none(),
+          "scan"_a, "path"_a = nb::none(), nb::kw_only(), "model"_a = nb::none(),
           nb::sig("def shape(self, scan: numpy.typing.NDArray[numpy.void], path: "
-                  "numpy.typing.NDArray[numpy.void] | None = None) -> ScanShaper"),
-          "The same with the points of a whole revolution of a G4.")
+                  "numpy.typing.NDArray[numpy.void] | None = None, *, model: str | None = None) -> "
+                  "ScanShaper"),
+          "The same with the points of a whole revolution. `model`: Scan.model; None: a G4.")
       .def_prop_ro(
           "kept", [](shaper& self) { return array_of(self.made().kept().points); },
           "The points that are kept, as a new array. The points and poses that were given must not "
@@ -200,18 +206,20 @@ void bind_filters(nb::module_& module) {
   module.def(
       "mark_isolated",
       [](const array<point>& points, std::size_t window, std::size_t count, float near_m,
-         float near_ratio, scan_ends ends) {
+         float near_ratio, scan_ends ends, const std::optional<std::string>& word) {
+        const model& which = model_or_g4(word);
         require_numbers({near_m, near_ratio});
         const speckle_limits limits{checked_window(window), count, near_m, near_ratio};
-        return marked(points, [&](std::span<point> all) { mark_isolated(all, limits, ends); });
+        return marked(points,
+                      [&](std::span<point> all) { mark_isolated(all, limits, ends, which); });
       },
       "points"_a, nb::kw_only(), "window"_a = speckle.window, "count"_a = speckle.count,
       "near_m"_a = speckle.near_m, "near_ratio"_a = speckle.near_ratio,
-      "ends"_a = scan_ends::joined,
+      "ends"_a = scan_ends::joined, "model"_a = nb::none(),
       "A copy in which returns with fewer than `count` near returns among `window` (1 to 16) "
       "samples on each side are "
       "flagged PointFlag.ISOLATED. Near is up to `near_m` metres, or `near_ratio` of the range if "
-      "that is more (negative: that of a G4, 0.05).");
+      "that is more (negative: that of `model`, Scan.model; None: a G4, 0.05).");
   const edge_limits edges;
   module.def(
       "mark_veiling",
@@ -229,13 +237,16 @@ void bind_filters(nb::module_& module) {
       "neighbours on both sides make less than `least_angle_deg` degrees with the beam.");
   module.def(
       "mark_bit_errors",
-      [](const array<point>& points) {
-        return marked(points, [](std::span<point> all) { mark_bit_errors(all); });
+      [](const array<point>& points, const std::optional<std::string>& word) {
+        const model& which = model_or_g4(word);
+        return marked(
+            points, [&](std::span<point> all) { mark_bit_errors(all, {}, which.samples.layout); });
       },
-      "points"_a,
+      "points"_a, nb::kw_only(), "model"_a = nb::none(),
       "A copy in which returns that differ in one bit of the raw sample from a smooth surface are "
       "flagged "
-      "PointFlag.UNLIKELY.");
+      "PointFlag.UNLIKELY. `model`: Scan.model; None: a G4, whose raw samples are quarters of a "
+      "millimetre.");
 }
 
 }  // namespace g4lidar::python

@@ -66,6 +66,7 @@ std::unique_ptr<connector> connect(const device_name& device, lidar_options& opt
   if (const auto* given = std::get_if<simulator*>(&device)) {
     how.refuse_for("a Simulator");
     simulator& simulated = **given;
+    if (options.model == nullptr) options.model = simulated.simulated();
     if (simulated.is_virtual()) {
       const auto& alive = simulated.in_virtual_time();
       on.simulation = alive;
@@ -283,7 +284,7 @@ void bind_opening(nb::module_& module) {
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
       "second (None: as the model). `model`: what sent the bytes of a file, 'x4'; None: what a "
-      "recording states, and raw bytes show. `record`: the "
+      "recording or a Simulator states, and raw bytes show. `record`: the "
       "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }

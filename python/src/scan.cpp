@@ -26,20 +26,14 @@ kept_scan::kept_scan(const scan& from, std::int64_t wall_minus_monotonic_ns)
   about.points = {};
 }
 
-std::uint16_t checked_turn(unsigned turn_deg) {
-  if (turn_deg != 0 && turn_deg != 180) raise_impossible("turn_deg: 0 or 180", turn_deg);
-  return static_cast<std::uint16_t>(turn_deg);
-}
-
-array<float> to_xy_array(const array<point>& points, frame to, unsigned turn_deg) {
-  const std::uint16_t turn = checked_turn(turn_deg);
+array<float> to_xy_array(const array<point>& points, frame to, std::uint16_t turn_deg) {
   const elements<point> from(points);
   const std::span<const point> all = from.span();
   array<float> made{new_array(element::single, all.size(), 2)};
   const buffer memory(made.object, true);
   const std::span<float> out = memory.as<float>();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const xy_point place = to_xy(all[i], to, turn);
+    const xy_point place = to_xy(all[i], to, turn_deg);
     out[2 * i] = place.x_m;
     out[2 * i + 1] = place.y_m;
   }

@@ -27,9 +27,8 @@ struct kept_scan {
 };
 
 /// Points in frame `to`, two columns; `turn_deg` is that of the model.
-[[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to, unsigned turn_deg);
-/// Raises ValueError if it is the turn of no model.
-[[nodiscard]] std::uint16_t checked_turn(unsigned turn_deg);
+[[nodiscard]] array<float> to_xy_array(const array<point>& points, frame to,
+                                       std::uint16_t turn_deg);
 /// One range for each bin, in metres. `intensities` is empty, or gets that of each bin.
 [[nodiscard]] array<float> to_ranges(const array<point>& points, std::size_t bins,
                                      const grid_options& how, std::span<float> intensities = {});

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Coordinates, grids, deskewing and merging of arrays of points.
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
@@ -10,6 +12,8 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <variant>
@@ -29,9 +33,25 @@ using namespace nb::literals;
 
 /// A constant twist, or poses with times.
 using motion = std::variant<twist_2d, array<stamped_pose>>;
-/// Points, how the lidar is mounted, and its turn.
+/// Points, how the lidar is mounted, and its turn or its model.
 using merged_lidar =
-    std::variant<std::pair<array<point>, mounting>, std::tuple<array<point>, mounting, unsigned>>;
+    std::variant<std::pair<array<point>, mounting>, std::tuple<array<point>, mounting, unsigned>,
+                 std::tuple<array<point>, mounting, std::string>>;
+
+/// The turn of a lidar whose points do not state it: `turn_deg`, else that of the model. Raises ValueError if
+/// it is the turn of no model, or not that of the given one.
+std::uint16_t turn_of(const std::optional<unsigned>& turn_deg, const model& which, bool is_named) {
+  if (!turn_deg) return which.turn_deg;
+  if (*turn_deg != 0 && *turn_deg != 180) raise_impossible("turn_deg: 0 or 180", *turn_deg);
+  if (is_named && *turn_deg != which.turn_deg) {
+    raise_impossible("turn_deg of the model: " + std::to_string(which.turn_deg), *turn_deg);
+  }
+  return static_cast<std::uint16_t>(*turn_deg);
+}
+std::uint16_t turn_of(const std::optional<unsigned>& turn_deg,
+                      const std::optional<std::string>& word) {
+  return turn_of(turn_deg, model_or_g4(word), word.has_value());
+}
 
 void require_finite(std::initializer_list<double> values) {
   for (const double value : values) {
@@ -54,8 +74,9 @@ auto with_motion(const motion& how, const Make& make) {
 
 std::tuple<array<point>, std::size_t> deskew_array(const array<point>& points, const motion& how,
                                                    std::int64_t reference_ns, const mounting& mount,
-                                                   unsigned turn_deg) {
-  const std::uint16_t turn = checked_turn(turn_deg);
+                                                   const std::optional<unsigned>& turn_deg,
+                                                   const std::optional<std::string>& model) {
+  const std::uint16_t turn = turn_of(turn_deg, model);
   const elements<point> from(points);
   std::size_t outside = 0;
   auto made = make_array<point>(from.span().size(), [&](std::span<point> out) {
@@ -74,13 +95,21 @@ std::tuple<array<point>, std::size_t, std::vector<bool>> merge_arrays(
   std::deque<elements<point>> kept;
   std::vector<mounted_scan> scans;
   std::size_t count = 0;
-  const auto take = [&](const array<point>& points, const mounting& mount,
-                        unsigned turn_deg = g4_model.turn_deg) {
-    scans.push_back({kept.emplace_back(points).span(), mount, checked_turn(turn_deg)});
+  const auto add = [&](const array<point>& points, const mounting& mount, std::uint16_t turn_deg) {
+    scans.push_back({kept.emplace_back(points).span(), mount, turn_deg});
     count += scans.back().points.size();
   };
   for (const merged_lidar& each : lidars) {
-    std::visit([&take](const auto& parts) { std::apply(take, parts); }, each);
+    if (const auto* with_turn = std::get_if<1>(&each)) {
+      const auto& [points, mount, turn_deg] = *with_turn;
+      add(points, mount, turn_of(turn_deg, std::nullopt));
+    } else if (const auto* with_model = std::get_if<2>(&each)) {
+      const auto& [points, mount, word] = *with_model;
+      add(points, mount, model_or_g4(word).turn_deg);
+    } else {
+      const auto& [points, mount] = std::get<0>(each);
+      add(points, mount, g4_model.turn_deg);
+    }
   }
   merged result;
   auto made = make_array<point>(count, [&](std::span<point> out) {
@@ -152,12 +181,16 @@ void bind_estimator(nb::module_& module) {
       .def(nb::init<>())
       .def(
           "add",
-          [](twist_estimator& estimator, const array<point>& points, unsigned turn_deg) {
-            return estimator.add(elements<point>(points).span(), checked_turn(turn_deg));
+          [](twist_estimator& estimator, const array<point>& points,
+             const std::optional<unsigned>& turn_deg, const std::optional<std::string>& model) {
+            return estimator.add(elements<point>(points).span(), turn_of(turn_deg, model),
+                                 model_or_g4(model).range.min_mm);
           },
-          "points"_a, "turn_deg"_a = g4_model.turn_deg,
+          "points"_a, "turn_deg"_a = nb::none(), nb::kw_only(), "model"_a = nb::none(),
           "The twist during the revolution before `points` and `points`, those of the next "
-          "revolution. `turn_deg`: Scan.turn_deg.")
+          "revolution. `model`: Scan.model; None: a G4, whose turn is 180 and whose shortest range "
+          "is 100 mm. "
+          "`turn_deg`: Scan.turn_deg, without `model`.")
       .def("reset", &twist_estimator::reset, "Forgets all scans.");
 }
 
@@ -174,39 +207,56 @@ void require_path(std::span<const stamped_pose> path) {
 void bind_shaping(nb::module_& module) {
   bind_motion(module);
   bind_estimator(module);
-  module.def("to_xy", &to_xy_array, "points"_a, "frame"_a = frame::robot,
-             "turn_deg"_a = g4_model.turn_deg,
-             "x and y of each point in metres: see Scan.xy(). `turn_deg`: Scan.turn_deg.");
+  module.def(
+      "to_xy",
+      [](const array<point>& points, frame to, const std::optional<unsigned>& turn_deg,
+         const std::optional<std::string>& model) {
+        return to_xy_array(points, to, turn_of(turn_deg, model));
+      },
+      "points"_a, "frame"_a = frame::robot, "turn_deg"_a = nb::none(), nb::kw_only(),
+      "model"_a = nb::none(),
+      "x and y of each point in metres: see Scan.xy(). `model`: Scan.model; None: a G4, whose turn "
+      "is 180. "
+      "`turn_deg`: Scan.turn_deg, without `model`.");
   module.def(
       "fill_grid",
-      [](const array<point>& points, std::size_t n, frame to, grid_pick pick, bool keep_too_near,
-         no_return_as no_return, bool near_is_minus_infinity, unsigned turn_deg, float longest_mm) {
-        return to_ranges(points, n,
-                         {to, pick, keep_too_near, no_return, near_is_minus_infinity,
-                          checked_turn(turn_deg), longest_mm});
+      [](const array<point>& points, std::optional<std::size_t> n, frame to, grid_pick pick,
+         bool keep_too_near, no_return_as no_return, bool near_is_minus_infinity,
+         const std::optional<unsigned>& turn_deg, std::optional<float> longest_mm,
+         const std::optional<std::string>& word) {
+        const model& which = model_or_g4(word);
+        return to_ranges(
+            points, n.value_or(default_bins(which)),
+            {to, pick, keep_too_near, no_return, near_is_minus_infinity, turn_of(turn_deg, word),
+             longest_mm.value_or(longest_range_mm(which.samples.layout))});
       },
-      "points"_a, "n"_a = 720, "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
+      "points"_a, "n"_a = nb::none(), "frame"_a = frame::robot, "pick"_a = grid_pick::nearest,
       "keep_too_near"_a = false, "no_return"_a = no_return_as::infinity,
-      "near_is_minus_infinity"_a = false, "turn_deg"_a = g4_model.turn_deg,
-      "longest_mm"_a = longest_range_mm(g4_layout),
-      "The points on a grid of `n` directions, in metres: see Scan.ranges(). `turn_deg`: "
-      "Scan.turn_deg. `longest_mm`: what 'max' is, in millimetres.");
-  module.def("deskew", &deskew_array, "points"_a, "motion"_a, "reference_ns"_a,
-             "mount"_a = mounting{}, "turn_deg"_a = g4_model.turn_deg,
-             "The points as seen from where the lidar was at `reference_ns` (nanoseconds of the "
-             "monotonic clock), while the "
-             "robot moved with a constant Twist, or along poses (an array with the dtype "
-             "POSE_DTYPE, times ascending). "
-             "Returns new points, and how many of them were left where they were and flagged "
-             "PointFlag.NOT_DESKEWED, because "
-             "their time or the motion is not known. `turn_deg`: Scan.turn_deg.");
-  module.def("merge_scans", &merge_arrays, "lidars"_a, "motion"_a, "reference_ns"_a,
-             "fresh"_a = static_cast<double>(fresh_scan_ns) * 1e-9,
-             "The points of up to 32 lidars, each with its Mounting, and its Scan.turn_deg if that "
-             "is not 180, as those of one G4 at the robot's origin, deskewed to "
-             "`reference_ns`. Returns the points; how many were not deskewed; and for each lidar "
-             "whether it is lost: without "
-             "points, or with a last point farther than `fresh` seconds from `reference_ns`.");
+      "near_is_minus_infinity"_a = false, "turn_deg"_a = nb::none(), "longest_mm"_a = nb::none(),
+      nb::kw_only(), "model"_a = nb::none(),
+      "The points on a grid of `n` directions, in metres: see Scan.ranges(). `model`: Scan.model; "
+      "None: a G4, with 720 directions, a turn of 180 and 16383.75 mm. `turn_deg`: Scan.turn_deg, "
+      "without "
+      "`model`. `longest_mm`: what 'max' is, in millimetres; None: by the model.");
+  module.def(
+      "deskew", &deskew_array, "points"_a, "motion"_a, "reference_ns"_a, "mount"_a = mounting{},
+      "turn_deg"_a = nb::none(), nb::kw_only(), "model"_a = nb::none(),
+      "The points as seen from where the lidar was at `reference_ns` (nanoseconds of the "
+      "monotonic clock), while the "
+      "robot moved with a constant Twist, or along poses (an array with the dtype "
+      "POSE_DTYPE, times ascending). "
+      "Returns new points, and how many of them were left where they were and flagged "
+      "PointFlag.NOT_DESKEWED, because "
+      "their time or the motion is not known. `model`: Scan.model; None: a G4, whose turn is "
+      "180. `turn_deg`: Scan.turn_deg, without `model`.");
+  module.def(
+      "merge_scans", &merge_arrays, "lidars"_a, "motion"_a, "reference_ns"_a,
+      "fresh"_a = static_cast<double>(fresh_scan_ns) * 1e-9,
+      "The points of up to 32 lidars, each with its Mounting, and its Scan.model or "
+      "Scan.turn_deg if it is not a G4, as those of one G4 at the robot's origin, deskewed to "
+      "`reference_ns`. Returns the points; how many were not deskewed; and for each lidar "
+      "whether it is lost: without "
+      "points, or with a last point farther than `fresh` seconds from `reference_ns`.");
 }
 
 }  // namespace g4lidar::python

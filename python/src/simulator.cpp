@@ -99,7 +99,8 @@ sim::setup read_setup(std::string_view source) {
   return std::get<sim::setup>(std::move(read));
 }
 
-simulator::simulator(const sim::setup& setup, bool virtual_time) {
+simulator::simulator(const sim::setup& setup, bool virtual_time)
+    : model_(model_named(setup.device.model)) {
   if (virtual_time) {
     virtual_ = std::make_shared<virtual_simulation>(make_device(setup));
   } else {

@@ -50,6 +50,8 @@ class simulator {
   [[nodiscard]] const std::shared_ptr<real_simulation>& in_real_time() const noexcept {
     return real_;
   }
+  /// The model that it simulates.
+  [[nodiscard]] const model* simulated() const noexcept { return model_; }
   /// The name for open(): a path. Raises RuntimeError in virtual time.
   [[nodiscard]] std::string path() const;
   /// Removes the port of a device in real time.
@@ -60,6 +62,7 @@ class simulator {
   auto with(const Look& look);
 
  private:
+  const model* model_;
   std::shared_ptr<virtual_simulation> virtual_;
   std::shared_ptr<real_simulation> real_ = std::make_shared<real_simulation>();
   std::shared_ptr<std::timed_mutex> mutex_ = std::make_shared<std::timed_mutex>();

@@ -39,6 +39,21 @@ int deskewed_by(const g4lidar_point* points, std::size_t count, const g4lidar_mo
   return G4LIDAR_OK;
 }
 
+int add_to(g4lidar_estimator* estimator, const g4lidar_point* points, std::size_t count,
+           std::uint16_t turn_deg, std::uint16_t shortest_mm,
+           g4lidar_twist_estimate* estimate) noexcept {
+  if (estimator == nullptr || estimate == nullptr || (count > 0 && points == nullptr)) {
+    return G4LIDAR_BAD_ARGUMENT;
+  }
+  const twist_estimate found = estimator->made.add(points_of(points, count), turn_deg, shortest_mm);
+  *estimate = {};
+  estimate->twist = {found.twist.x_m_per_s, found.twist.y_m_per_s, found.twist.yaw_rad_per_s};
+  std::copy(found.covariance.begin(), found.covariance.end(), estimate->covariance);
+  std::copy(found.known.begin(), found.known.end(), estimate->known);
+  estimate->status = static_cast<std::int32_t>(found.status);
+  return G4LIDAR_OK;
+}
+
 }  // namespace
 
 bool g4lidar::c::is_usable(const g4lidar_pose& given) noexcept {
@@ -92,18 +107,17 @@ int g4lidar_estimator_create(g4lidar_estimator** estimator, g4lidar_error* error
 
 int g4lidar_estimator_add(g4lidar_estimator* estimator, const g4lidar_point* points, size_t count,
                           unsigned turn_deg, g4lidar_twist_estimate* estimate) {
-  if (!is_turn(turn_deg) || estimator == nullptr || estimate == nullptr ||
-      (count > 0 && points == nullptr)) {
-    return G4LIDAR_BAD_ARGUMENT;
-  }
-  const twist_estimate found =
-      estimator->made.add(points_of(points, count), static_cast<std::uint16_t>(turn_deg));
-  *estimate = {};
-  estimate->twist = {found.twist.x_m_per_s, found.twist.y_m_per_s, found.twist.yaw_rad_per_s};
-  std::copy(found.covariance.begin(), found.covariance.end(), estimate->covariance);
-  std::copy(found.known.begin(), found.known.end(), estimate->known);
-  estimate->status = static_cast<std::int32_t>(found.status);
-  return G4LIDAR_OK;
+  if (!is_turn(turn_deg)) return G4LIDAR_BAD_ARGUMENT;
+  return add_to(estimator, points, count, static_cast<std::uint16_t>(turn_deg),
+                g4_model.range.min_mm, estimate);
+}
+
+int g4lidar_estimator_add_of_model(g4lidar_estimator* estimator, const g4lidar_point* points,
+                                   size_t count, const char* model,
+                                   g4lidar_twist_estimate* estimate) {
+  const g4lidar::model* of = &g4_model;
+  if (!take_model(model, of)) return G4LIDAR_BAD_ARGUMENT;
+  return add_to(estimator, points, count, of->turn_deg, of->range.min_mm, estimate);
 }
 
 void g4lidar_estimator_free(g4lidar_estimator* estimator) { delete estimator; }

@@ -167,6 +167,7 @@ int g4lidar_open_simulated(g4lidar_simulator* simulator, const g4lidar_options* 
         const int code = take_lidar_options(options, wanted, &device, error);
         if (code != G4LIDAR_OK) return code;
         wanted.simulated = simulator->made;
+        if (wanted.how.model == nullptr) wanted.how.model = simulator->made->simulated();
         wanted.how.device = simulator->path;
         return open_lidar(std::move(wanted), lidar, error);
       },

@@ -62,6 +62,20 @@ void g4lidar_grid_options_init(g4lidar_grid_options* options, size_t size) {
   set_defaults(options, size, grid_defaults);
 }
 
+int g4lidar_grid_options_set_model(g4lidar_grid_options* options, const char* model) {
+  const g4lidar::model* of = &g4_model;
+  g4lidar_grid_options taken = grid_defaults;
+  if (options == nullptr || !take_options(options, taken) || !take_model(model, of)) {
+    return G4LIDAR_BAD_ARGUMENT;
+  }
+  constexpr std::size_t end =
+      offsetof(g4lidar_grid_options, longest_range_mm) + sizeof options->longest_range_mm;
+  if (options->struct_size < end) return G4LIDAR_BAD_ARGUMENT;
+  options->turn_deg = of->turn_deg;
+  options->longest_range_mm = longest_range_mm(of->samples.layout);
+  return G4LIDAR_OK;
+}
+
 int g4lidar_fill_grid(const g4lidar_point* points, size_t count,
                       const g4lidar_grid_options* options, float* ranges_m, size_t bins) {
   g4lidar_grid_options taken = grid_defaults;
@@ -84,7 +98,7 @@ int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
                           const g4lidar_outlier_options* options, size_t* marked) {
   return marked_by(points, count, options, marked,
                    [](std::span<point> all, const outlier_limits& by) {
-                     return mark_isolated(all, by.speckle, by.ends);
+                     return mark_isolated(all, by.speckle, by.ends, *by.of);
                    });
 }
 

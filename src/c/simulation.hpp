@@ -35,6 +35,9 @@ class simulation {
   [[nodiscard]] sim::virtual_clock& clock() noexcept { return clock_; }
   /// In virtual time.
   [[nodiscard]] std::unique_ptr<connector> connect();
+  /// The model that it simulates.
+  [[nodiscard]] const model* simulated() const noexcept { return model_; }
+  void set_simulated(const model* which) noexcept { model_ = which; }
 
   /// Calls `look` with the device and its time.
   template <class Look>
@@ -48,6 +51,7 @@ class simulation {
  private:
   void follow_robot(const sim::world& scene, std::uint64_t seed);
 
+  const model* model_ = nullptr;
   std::shared_ptr<sim::background_pty> served_;
   std::optional<sim::device> device_;
   sim::virtual_clock clock_;

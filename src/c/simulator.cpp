@@ -86,6 +86,7 @@ int simulate(const g4lidar_simulator_options& options, std::shared_ptr<simulatio
   sim::device simulated(scene, wanted.device, wanted.faults);
   if (options.virtual_time) {
     made = std::make_shared<simulation>(scene, seed, std::move(simulated));
+    made->set_simulated(model_named(wanted.device.model));
     return succeed(error);
   }
   std::shared_ptr<sim::background_pty> served;
@@ -99,6 +100,7 @@ int simulate(const g4lidar_simulator_options& options, std::shared_ptr<simulatio
     served = std::make_shared<sim::background_pty>(*std::move(linked));
   }
   made = std::make_shared<simulation>(scene, seed, std::move(served));
+  made->set_simulated(model_named(wanted.device.model));
   return succeed(error);
 }
 

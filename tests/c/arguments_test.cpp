@@ -100,6 +100,9 @@ TEST(CArguments, NullIsAnErrorOfFunctionsWithoutErrorStruct) {
   EXPECT_EQ(g4lidar_deskew_by_path(nullptr, 0, nullptr, 2, 0, nullptr, 180, nullptr, nullptr),
             G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_estimator_add(nullptr, nullptr, 0, 180, nullptr), G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_estimator_add_of_model(nullptr, nullptr, 0, "g4", nullptr),
+            G4LIDAR_BAD_ARGUMENT);
+  EXPECT_EQ(g4lidar_grid_options_set_model(nullptr, "g4"), G4LIDAR_BAD_ARGUMENT);
   EXPECT_EQ(g4lidar_descriptor(nullptr), -1);
   EXPECT_EQ(g4lidar_poll_timeout_ms(nullptr), -1);
   EXPECT_EQ(g4lidar_deadline_ns(nullptr), INT64_MAX);

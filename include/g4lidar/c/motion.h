@@ -97,6 +97,13 @@ G4LIDAR_C_API int g4lidar_estimator_add(g4lidar_estimator* estimator, const g4li
                                         size_t count, unsigned turn_deg,
                                         g4lidar_twist_estimate* estimate);
 
+/** The same with the turn and the shortest range of a model: g4lidar_scan::model; NULL: a G4. The
+ *  function above uses returns from 100 mm on, the shortest range of a G4. */
+G4LIDAR_C_API int g4lidar_estimator_add_of_model(g4lidar_estimator* estimator,
+                                                 const g4lidar_point* points, size_t count,
+                                                 const char* model,
+                                                 g4lidar_twist_estimate* estimate);
+
 /** Releases an estimator. */
 G4LIDAR_C_API void g4lidar_estimator_free(g4lidar_estimator* estimator);
 

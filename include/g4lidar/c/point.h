@@ -137,8 +137,12 @@ typedef struct g4lidar_grid_options {
 /** Sets the defaults, those of a ROS LaserScan; `size` is sizeof(g4lidar_grid_options). */
 G4LIDAR_C_API void g4lidar_grid_options_init(g4lidar_grid_options* options, size_t size);
 
+/** Sets `turn_deg` and `longest_range_mm` to those of a model: g4lidar_scan::model; NULL: a G4. */
+G4LIDAR_C_API int g4lidar_grid_options_set_model(g4lidar_grid_options* options, const char* model);
+
 /** Fills `bins` ranges, at least 1, in metres: +infinity, or what the options set, where the lidar measured
- *  and nothing came back, which is not free space; NaN where nothing is known. At most 16,777,216 points. `options` may be NULL. */
+ *  and nothing came back, which is not free space; NaN where nothing is known. At most 16,777,216 points. `options` NULL: the
+ *  defaults, which are those of a G4. */
 G4LIDAR_C_API int g4lidar_fill_grid(const g4lidar_point* points, size_t count,
                                     const g4lidar_grid_options* options, float* ranges_m,
                                     size_t bins);

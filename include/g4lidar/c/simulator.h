@@ -40,7 +40,8 @@ G4LIDAR_C_API void g4lidar_simulator_free(g4lidar_simulator* simulator);
 
 /** The path of its port; empty in virtual time. Valid as long as the simulator. */
 G4LIDAR_C_API const char* g4lidar_simulator_path(const g4lidar_simulator* simulator);
-/** Opens it, in either time; `options` may be NULL, and their `device` is not used. In virtual time
+/** Opens it, in either time; `options` may be NULL, and their `device` is not used. `model` NULL: that of the
+ *  simulator. In virtual time
  *  the lidar and its simulator belong to one thread. */
 G4LIDAR_C_API int g4lidar_open_simulated(g4lidar_simulator* simulator,
                                          const g4lidar_options* options, g4lidar_lidar** lidar,
