@@ -202,9 +202,8 @@ laser_scan_numbers numbers_of(const message_header& header, std::size_t bins) no
   const float begin = is_by_time && header.model->turn_deg == 0 ? 0.0F : -pi;
   const float from_begin = begin + increment * static_cast<float>(first);
   const float least = from_begin < pi ? from_begin : from_begin - 2 * pi;
-  const float longest_mm = header.longest_mm > 0.0F
-                               ? header.longest_mm
-                               : longest_range_mm(header.model->samples.layout);
+  const float longest_mm =
+      header.longest_mm > 0.0F ? header.longest_mm : longest_range_mm(header.model->samples.layout);
   const float duration_s = static_cast<float>(header.duration_ns) * 1e-9F;
   return {.angle_min_rad = least,
           .angle_max_rad = least + increment * static_cast<float>(bins - 1),
