@@ -270,6 +270,7 @@ TEST(PageTexts, OfSeveralLidars_HaveEachOfThem) {
   EXPECT_EQ(status["recording"]["file"], "a.mcap");
   EXPECT_EQ(status["recording"]["last"], "b.mcap");
   EXPECT_EQ(status["recording"]["bytes"], 15);
+  EXPECT_EQ(json::parse(status_text(merged_status({rear, front})))["state"], "running");
   EXPECT_EQ(json::parse(status_text(merged_status({rear, rear})))["state"], "lost");
 }
 
