@@ -13,7 +13,7 @@ int main(int count, char** words) {
   g4lidar::lidar_options options;
   options.frequency = g4lidar::scan_frequency::hz(10);  // revolutions per second
   options.reconnect = true;                             // an unplug does not end the loop
-  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "", options);  // "": the only G4
+  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "", options);  // "": the only lidar
   if (!lidar) return report(lidar.error());
   if (auto started = lidar->start(); !started) return report(started.error());
   int scans_left = 5;

@@ -40,7 +40,7 @@ void use(const g4lidar::scan& scan, g4lidar::near_history& history) {
 int main(int count, char** words) {
   using namespace std::chrono_literals;
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { running = 0; });
-  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "");  // "": the only G4
+  auto lidar = g4lidar::lidar::open(count > 1 ? words[1] : "");  // "": the only lidar
   if (!lidar) return report(lidar.error());
   if (auto started = lidar->start(); !started) return report(started.error());
   g4lidar::near_history history;

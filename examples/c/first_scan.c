@@ -11,7 +11,7 @@ static int report(const g4lidar_error* why) {
 int main(int count, char** words) {
   g4lidar_error why;
   g4lidar_lidar* lidar;
-  const char* device = count > 1 ? words[1] : ""; /* "": the only G4; "sim:": a simulated one */
+  const char* device = count > 1 ? words[1] : ""; /* "": the only lidar; "sim:": a simulated one */
   int scans_left = 5;
   int code = 0;
   if (g4lidar_open(device, &lidar, &why)) return report(&why);

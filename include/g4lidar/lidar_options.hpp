@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "g4lidar/core/model.hpp"
@@ -45,7 +46,7 @@ struct lidar_tuning {
 /// device has it; one that is given is set at each start, after a reconnect, and when the device seems
 /// to have rebooted.
 struct lidar_options {
-  /// Which lidar, in the words of source.hpp: empty for the only G4; `/dev/ttyUSB0`; `sim:`; ...
+  /// Which lidar, in the words of source.hpp: empty for the only lidar; `/dev/ttyUSB0`; `sim:`; ...
   std::string device{};
   /// How long open() waits for a device that is not there yet: it tries again twice a second.
   /// milliseconds::max(): without limit.
@@ -84,6 +85,8 @@ struct lidar_options {
 
 /// The words of all models: "g4, g4-pro, ...". Allocates.
 [[nodiscard]] G4LIDAR_API std::string model_words();
+/// The words of these models: "x2, x2l". Allocates.
+[[nodiscard]] G4LIDAR_API std::string model_words(std::span<const g4lidar::model* const> which);
 
 /// What is wrong with `options`, as an error that names the option; nothing if all can be used. *Pure.*
 [[nodiscard]] G4LIDAR_API std::optional<error> problem_with(const lidar_options& options) noexcept;

@@ -3,11 +3,12 @@
 //
 // | name | lidar |
 // |---|---|
-// | empty | the only G4 that is attached |
+// | empty | the only lidar that is attached |
 // | `/dev/ttyUSB0` | the one at this port |
 // | `serial:2021101000070073` | the one with this serial number |
 // | `usb:1-1.4` | the one at this USB port |
 // | `tcp:HOST:PORT` | the one behind a raw network bridge |
+// | `/dev/ttyUSB0?model=x4` | any of these, of this model; without it, the model is searched when it is opened |
 // | `walk.mcap`, `file:PATH` | a recording, or the raw bytes of a port |
 // | `file:PATH?model=x4` | raw bytes of this model; `?` is a part of PATH if there is such a file |
 // | `-` | raw bytes from standard input |
@@ -43,10 +44,10 @@ enum class source_kind : std::uint8_t {
 /// `file:` raw bytes.
 [[nodiscard]] G4LIDAR_API source_kind kind_of_source(std::string_view name);
 /// The path of a name that is a file, without `file:`, and without `?model=` unless there is a file with
-/// it in its name.
+/// it in its name. Of a device: its name without `?model=`.
 [[nodiscard]] G4LIDAR_API std::string path_of_source(std::string_view name);
-/// The model of `file:PATH?model=x4`; null if the name has none. Fails with bad_option if there is no such
-/// model. Valid forever.
+/// The model of `file:PATH?model=x4`, or of a device, `/dev/ttyUSB0?model=x4`; null if the name has none.
+/// Fails with bad_option if there is no such model. Valid forever.
 [[nodiscard]] G4LIDAR_API result<const model*> model_in_source(std::string_view name);
 
 /// The connector for the source that `options.device` names, without options.wrap: for callers that
@@ -60,9 +61,10 @@ enum class source_kind : std::uint8_t {
 [[nodiscard]] G4LIDAR_API const sim::simulated_source* simulation_of(
     const connector& from) noexcept;
 
-/// What sent the bytes of the file that `name` names: what a recording states, and of raw bytes
-/// model_in_source(), else model_of_bytes(). The G4 for everything else. `is_cancelled` is that of reading_options. Fails like
-/// recording_reader::open(). Valid forever.
+/// What sends the bytes of `name`, as far as it is known before it is opened: what a recording or `sim:`
+/// states; of raw bytes model_in_source(), else model_of_bytes(); of a device model_in_source(), or null: it is
+/// searched when it is opened. `is_cancelled` is that of reading_options. Fails like recording_reader::open(). Valid
+/// forever.
 [[nodiscard]] G4LIDAR_API result<const model*> model_of_source(
     std::string_view name, const std::function<bool()>& is_cancelled = {});
 

@@ -3,7 +3,7 @@
 
     import g4lidar
 
-    with g4lidar.open("") as lidar:  # the only G4; or a path, "sim:", a recording
+    with g4lidar.open("") as lidar:  # the only lidar; or a path, "sim:", a recording
         lidar.start(frequency_hz=10)
         for scan in lidar.scans(timeout=0.5):
             print(len(scan), scan.points["range_mm"].max(), scan.xy().shape)

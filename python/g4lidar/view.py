@@ -26,5 +26,5 @@ def main(device: str = "", *, frames: int | None = None) -> None:
 
 if __name__ == "__main__":
     words = argparse.ArgumentParser("python -m g4lidar.view", description="A live polar plot of a lidar.")
-    words.add_argument("device", nargs="?", default="", help="as in g4lidar.open(): a port, sim:, ... (the only G4)")
+    words.add_argument("device", nargs="?", default="", help="as in g4lidar.open(): a port, sim:, ... (the only lidar)")
     main(words.parse_args().device)

@@ -52,6 +52,12 @@ const model& model_or_g4(const std::optional<std::string>& word) {
   return found == nullptr ? g4_model : *found;
 }
 
+std::vector<std::string_view> words_of(std::span<const model* const> which) {
+  std::vector<std::string_view> words;
+  for (const model* const each : which) words.push_back(each->word);
+  return words;
+}
+
 void raise_bad_option(const std::string& sentence) {
   const nb::object kind = nb::module_::import_("g4lidar.errors").attr("BadOption");
   const error like(task::opening, problem::bad_option, sentence);

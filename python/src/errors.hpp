@@ -6,9 +6,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
@@ -25,6 +28,8 @@ namespace nb = nanobind;
 [[nodiscard]] const model* model_of(const std::optional<std::string>& word);
 /// The same; None: a G4, the model of points and bytes that do not state theirs.
 [[nodiscard]] const model& model_or_g4(const std::optional<std::string>& word);
+/// The words of these models.
+[[nodiscard]] std::vector<std::string_view> words_of(std::span<const model* const> which);
 /// ValueError: "WHAT, not GIVEN": which values are possible, and the one that was given.
 template <class Value>
 [[noreturn]] void raise_impossible(const std::string& what, const Value& given) {

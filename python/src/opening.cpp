@@ -200,12 +200,7 @@ void bind_discovery(nb::module_& module) {
           "model", [](const recognised_lidar& of) { return of.model->word; },
           "The name of its model, 'x2': the most usual of `candidates`.")
       .def_prop_ro(
-          "candidates",
-          [](const recognised_lidar& of) {
-            std::vector<std::string_view> words;
-            for (const model* each : of.candidates) words.push_back(each->word);
-            return words;
-          },
+          "candidates", [](const recognised_lidar& of) { return words_of(of.candidates); },
           "All models that send such bytes, `model` first.")
       .def_ro("baud", &recognised_lidar::baud, "Bits per second.")
       .def_prop_ro(
@@ -263,7 +258,7 @@ void bind_opening(nb::module_& module) {
       "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = nb::none(),
       "model"_a = nb::none(), "record"_a = nb::none(), "overwrite"_a = false, "device_wait"_a = 0.0,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
-      "`device`: '' for the only G4; "
+      "`device`: '' for the only lidar; "
       "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
       "a recording; "
       "'file:PATH' (a recording, or raw bytes of a port); 'sim:?seed=7' (a simulated lidar in real "
@@ -283,8 +278,8 @@ void bind_opening(nb::module_& module) {
       "as it is read; "
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
-      "second (None: as the model). `model`: what sent the bytes of a file, 'x4'; None: what a "
-      "recording or a Simulator states, and raw bytes show. `record`: the "
+      "second (None: as the model). `model`: the model of the lidar, 'x4'; None: what a search at "
+      "the port finds, a recording or a Simulator states, or raw bytes show. `record`: the "
       "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }

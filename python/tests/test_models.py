@@ -71,3 +71,9 @@ def test_messages_have_the_intensity(tmp_path: Path) -> None:
     cloud = scan.point_cloud2()
     rows = np.frombuffer(cloud[-1 - 361 * 28 : -1], "<f4").reshape(361, 7)
     assert (rows[:, 6] == scan.points["intensity"]).all()
+
+
+def test_the_model_of_an_open_lidar_and_what_sends_the_same() -> None:
+    with g4lidar.open("sim:?model=x2") as lidar:  # sim: states its model, so nothing is searched
+        assert lidar.model == "x2"
+        assert lidar.candidates == ["x2"]

@@ -52,12 +52,6 @@ g4lidar_port view_of(const port_info& from) noexcept {
   return made;
 }
 
-std::string words_of(const std::vector<const model*>& all) {
-  std::string words;
-  for (const model* each : all) words.append(words.empty() ? "" : ", ").append(each->word);
-  return words;
-}
-
 /// Makes a list of what `find` finds. It gets the options, and returns a result of ports.
 template <class Find>
 int listed(const g4lidar_find_options* given, g4lidar_ports** ports, g4lidar_error* error,
@@ -76,7 +70,7 @@ int listed(const g4lidar_find_options* given, g4lidar_ports** ports, g4lidar_err
     if (taken.find_holders) find_holders(made->found);
     for (const port_info& each : made->found) made->shown.push_back(view_of(each));
     for (const recognised_lidar& each : lidars) {
-      made->candidates.push_back(words_of(each.candidates));
+      made->candidates.push_back(model_words(each.candidates));
     }
     for (std::size_t i = 0; i < lidars.size(); ++i) {
       g4lidar_port& shown = made->shown[i];

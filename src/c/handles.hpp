@@ -47,6 +47,7 @@ struct g4lidar_lidar {
   std::int64_t wall_ahead_ns = 0;           // of virtual time
   std::string name;
   g4lidar_identity identity{};
+  std::string candidates;
   g4lidar_scan scan{};
   g4lidar_counts counts{};
   g4lidar_recording_info info{};

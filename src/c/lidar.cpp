@@ -266,6 +266,10 @@ const g4lidar_identity* g4lidar_get_identity(const g4lidar_lidar* lidar) {
   return lidar == nullptr ? nullptr : &lidar->identity;
 }
 
+const char* g4lidar_get_candidates(const g4lidar_lidar* lidar) {
+  return lidar == nullptr ? nullptr : lidar->candidates.c_str();
+}
+
 const char* g4lidar_name(g4lidar_lidar* lidar) {
   const int code = guarded(
       nullptr,

@@ -40,16 +40,19 @@ constexpr std::array<words, problem_count> all_words{{
      "Name a serial port such as /dev/ttyUSB0; for a recording or a file of bytes, write "
      "file:PATH."},
     {problem::bad_baud_rate, "bad_baud_rate", "the port does not support this baud rate",
-     "A G4 uses 230400 baud: use an adapter that supports it (CP2102), or omit the option."},
+     "Use an adapter that supports it (CP2102; a G4 uses 230400 baud), or omit the option."},
     {problem::cannot_connect, "cannot_connect", "the network address does not answer",
      "Check that the bridge (for example ser2net) is running, that host and port are correct, and "
      "that no firewall blocks them."},
     {problem::silence, "silence", "no byte was received",
      "Check that the lidar has power (its own 5 V supply if necessary), that the cable carries "
-     "data, that this is the port of the lidar, and that the baud rate is 230400."},
+     "data, and that this is the port of the lidar. If a model or a baud rate was named, check it: "
+     "without, "
+     "all rates are tried."},
     {problem::garbage, "garbage", "bytes were received, but no valid data",
-     "The baud rate is probably wrong: a G4 uses 230400 baud. Otherwise check for a loose cable or "
-     "another kind of device."},
+     "If a model or a baud rate was named, it is probably wrong: without, all rates are tried. "
+     "Otherwise "
+     "check for a loose cable or another kind of device."},
     {problem::other_device, "other_device",
      "the device that answers is not the model that was expected",
      "Check the label of the device: name its model, or the port of the other one."},
@@ -116,7 +119,8 @@ constexpr std::array<detail_words, 11> all_details{{
      "lidar is back."},
     {"this port does not exist",
      "Name a port that exists, or connect the lidar with a data cable and check `dmesg` for a new "
-     "ttyUSB port; in a container, pass the device through. Without a name the only G4 is opened."},
+     "ttyUSB port; in a container, pass the device through. Without a name the only lidar is "
+     "opened."},
     {"there is no port and no file of this name",
      "Give the path of a port such as /dev/ttyUSB0, or of a recording that exists."},
     {"nothing that is attached has this number or USB path",
@@ -125,7 +129,7 @@ constexpr std::array<detail_words, 11> all_details{{
      "a data cable, and check that it has power."},
     {"this does not name a lidar",
      "A lidar is named by a path (/dev/ttyUSB0), serial:<its number of 16 digits>, usb:<USB path, "
-     "1-1.4>, tcp:<host>:<port>, file:<path>, or sim:. Without a name the only G4 is opened."},
+     "1-1.4>, tcp:<host>:<port>, file:<path>, or sim:. Without a name the only lidar is opened."},
     {"this describes no simulated lidar",
      "`sim:` alone is a healthy simulated G4; docs/sim.md lists what can follow it, and the format "
      "of "

@@ -9,16 +9,24 @@
 
 #include "driver/device_link.hpp"
 #include "g4lidar/core/request.hpp"
+#include "g4lidar/core/session_times.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/error.hpp"
 
 namespace g4lidar {
 
+/// How often a device is told to stop.
+enum class stop_attempts : std::uint8_t {
+  one,      ///< It may be one that has no commands.
+  several,  ///< Until packets end.
+};
+
 /// One query to a device that sends packets: it is stopped first.
 class inquiry {
  public:
   /// `samples` as the device sends them.
-  inquiry(transport& port, sample_format samples) noexcept : port_(port), parser_(samples) {}
+  inquiry(transport& port, sample_format samples, stop_attempts how) noexcept
+      : port_(port), parser_(samples), link_(parser_, times_for(how)) {}
 
   [[nodiscard]] result<device_information> ask(std::int64_t deadline_ns) {
     static_cast<void>(link_.talk().begin(requests::device_info(), port_.now_ns()));
@@ -32,6 +40,13 @@ class inquiry {
   }
 
  private:
+  /// A stop is repeated when the stream has not ended in the time for it.
+  [[nodiscard]] static session_times times_for(stop_attempts how) noexcept {
+    session_times times;
+    if (how == stop_attempts::one) times.drain_ns = times.request_ns;
+    return times;
+  }
+
   [[nodiscard]] result<void> receive(std::int64_t deadline_ns) {
     const std::int64_t due_ns = std::min(link_.talk().next_look_ns(), link_.cut_off_ns());
     const auto got = port_.read(buffer_, std::min(due_ns, deadline_ns));
@@ -70,7 +85,7 @@ class inquiry {
 
   transport& port_;
   stream_parser parser_;
-  device_link link_{parser_};
+  device_link link_;
   std::array<std::uint8_t, 4096> buffer_{};
   bool has_heard_ = false;
   bool has_packets_ = false;

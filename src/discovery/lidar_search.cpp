@@ -223,16 +223,20 @@ recognised_lidar lidar_search::made(std::vector<const model*> candidates,
 
 /// Packets arrive: at least three more of one size of samples than of the others.
 lidar_search::found lidar_search::judge_stream() {
+  const std::int64_t informed_ns = in_ns(information_ns);
+  const auto is_one_way = [](const model* row) { return row->link == link_kind::one_way; };
+  const bool is_doubtful = std::ranges::any_of(models_that_fit(signs()), is_one_way);
+  // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may tell it.
+  if (is_doubtful) {
+    const auto is_told = [this] { return !may_be_two_way(signs()); };
+    if (auto done = listen(informed_ns, is_told); !done) return tl::unexpected(done.error());
+  }
   lidar_signs known = signs();
-  std::vector<const model*> fitting = models_that_fit(known);
-  const auto is_two_way = [](const model* row) { return row->link == link_kind::two_way; };
-  const auto two_way = std::ranges::find_if(fitting, is_two_way);
-  const bool is_left =
-      left_running_ != nullptr && !fitting.empty() && fitting.front()->word == left_running_->word;
-  if (is_left) return made(std::move(fitting), known);
-  if (two_way != fitting.end()) {
+  if (may_be_two_way(known)) {
+    const auto fitting = models_that_fit(known);
+    const auto like = std::ranges::find_if_not(fitting, is_one_way);
     const std::optional<device_information> announced = std::exchange(heard_.device, std::nullopt);
-    auto device = stop_and_ask(**two_way);
+    auto device = stop_and_ask(**like, is_doubtful ? stop_attempts::one : stop_attempts::several);
     if (!device) return tl::unexpected(device.error());
     if (*device) {
       // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked before
@@ -252,14 +256,13 @@ lidar_search::found lidar_search::judge_stream() {
   };
   if (models_that_fit(known).empty()) return does_not_stop();
   const auto is_informed = [this] { return heard_.stream.information().has_value(); };
-  if (auto done = listen(in_ns(information_ns), is_informed); !done) {
-    return tl::unexpected(done.error());
-  }
+  const std::int64_t until_ns = is_doubtful ? informed_ns : in_ns(information_ns);
+  if (auto done = listen(until_ns, is_informed); !done) return tl::unexpected(done.error());
   known = signs();
   known.answers = presence::no;
-  fitting = models_that_fit(known);
-  if (fitting.empty()) return does_not_stop();
-  return made(std::move(fitting), known);
+  auto silent = models_that_fit(known);
+  if (silent.empty()) return does_not_stop();
+  return made(std::move(silent), known);
 }
 
 /// A device information has arrived after the question. A one-way lidar sends one after power-on, and
@@ -292,8 +295,9 @@ error lidar_search::unknown(std::uint8_t id) const {
 }
 
 /// What the device answers after a stop; nothing if it does not.
-result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like) {
-  auto answered = inquiry(port_, like.samples).ask(in_ns(stop_ns));
+result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like,
+                                                                     stop_attempts how) {
+  auto answered = inquiry(port_, like.samples, how).ask(in_ns(stop_ns));
   if (answered) return *answered;
   const problem why = answered.error().code();
   if (why == problem::silence || why == problem::garbage || why == problem::does_not_stop) {

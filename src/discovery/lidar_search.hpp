@@ -14,17 +14,16 @@
 
 namespace g4lidar {
 
+enum class stop_attempts : std::uint8_t;
+
 /// One search. *Single thread; allocates.*
 ///
 /// Two-way lidars are silent until they are asked; one-way lidars send always, and answer nothing. So it
 /// listens first, and asks only where it is silent: with `90`, two bytes that change nothing. Only a
-/// stream of packets that a two-way lidar may send is stopped.
+/// stream of packets that a two-way lidar may send is stopped, and once where a one-way lidar may send it, too.
 class lidar_search {
  public:
   lidar_search(transport& port, const search_options& options);
-
-  /// What may come from `which`, the model that the caller knows how to stop, is not stopped.
-  void leave_running(const model& which) noexcept { left_running_ = &which; }
 
   [[nodiscard]] result<recognised_lidar> run(std::int64_t deadline_ns);
 
@@ -54,7 +53,8 @@ class lidar_search {
 
   [[nodiscard]] found judge_stream();
   [[nodiscard]] found judge_reply();
-  [[nodiscard]] result<std::optional<device_information>> stop_and_ask(const model& like);
+  [[nodiscard]] result<std::optional<device_information>> stop_and_ask(const model& like,
+                                                                       stop_attempts how);
   [[nodiscard]] recognised_lidar made(std::vector<const model*> candidates,
                                       const lidar_signs& signs) const;
   [[nodiscard]] lidar_signs signs() const noexcept;
@@ -67,7 +67,6 @@ class lidar_search {
   std::vector<std::uint32_t> rates_;  // in the order of listening
   std::vector<std::uint32_t> tried_;
   std::int64_t deadline_ns_ = 0;
-  const model* left_running_ = nullptr;
   bool has_fixed_rate_ = false;
   std::size_t sending_ = 0;  // rates at which something sends
   hearing heard_;

@@ -35,6 +35,10 @@ std::uint32_t rate_difference(const model& row, std::uint32_t hz) noexcept {
   return least;
 }
 
+bool is_far(const model& row, std::uint32_t hz) noexcept { return rate_difference(row, hz) > 10; }
+
+bool is_two_way(const model* row) noexcept { return row->link == link_kind::two_way; }
+
 }  // namespace
 
 std::vector<const model*> models_that_fit(const lidar_signs& seen) {
@@ -54,23 +58,21 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     }
     return found;
   };
-  const auto is_far = [&seen](const model* row) {
-    return rate_difference(*row, seen.sample_rate_hz) > 10;
-  };
+  const auto is_far_off = [&seen](const model* row) { return is_far(*row, seen.sample_rate_hz); };
   std::vector<const model*> found = all_with(true, true);
   const bool is_stated = seen.id != 0 || seen.ct_id_low_bits != 0;
   const bool is_variant =
       std::ranges::none_of(models, [&seen](const model& row) { return has_rate(row, seen.baud); });
   if (found.empty() && (is_stated || is_variant || !seen.is_baud_certain)) {
     found = all_with(false, true);
-    std::erase_if(found, is_far);
+    std::erase_if(found, is_far_off);
   }
   if (found.empty()) found = all_with(true, false);
   // A sample rate decides between models with one each; within a tenth they are equal.
   // Not std::stable_partition, which uses a deprecated function, as clang reports.
   std::vector<const model*> far;
-  std::ranges::copy_if(found, std::back_inserter(far), is_far);
-  std::erase_if(found, is_far);
+  std::ranges::copy_if(found, std::back_inserter(far), is_far_off);
+  std::erase_if(found, is_far_off);
   const auto near_count = static_cast<std::ptrdiff_t>(found.size());
   found.insert(found.end(), far.begin(), far.end());
   const auto near_end = found.begin() + near_count;
@@ -79,6 +81,16 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
       std::find_if(found.begin(), end, [](const model* row) { return is_usual(*row); });
   if (usual != end) std::rotate(found.begin(), usual, usual + 1);
   return found;
+}
+
+bool may_be_two_way(const lidar_signs& seen) {
+  const std::vector<const model*> all = models_that_fit(seen);
+  const auto is_near = [&seen](const model* row) { return !is_far(*row, seen.sample_rate_hz); };
+  if (std::ranges::any_of(all, is_near)) {
+    return std::ranges::any_of(all,
+                               [&](const model* row) { return is_near(row) && is_two_way(row); });
+  }
+  return std::ranges::any_of(all, is_two_way);
 }
 
 }  // namespace g4lidar

@@ -32,6 +32,10 @@ struct lidar_signs {
 /// Empty if there is none. *Allocates.*
 [[nodiscard]] std::vector<const model*> models_that_fit(const lidar_signs& seen);
 
+/// Whether a two-way model may send such packets: one fits, and with the sample rate, unless only one-way
+/// models have that. *Allocates.*
+[[nodiscard]] bool may_be_two_way(const lidar_signs& seen);
+
 /// Another product of the same manufacturer that identifies itself with `id`, and that has another
 /// protocol; empty if none is known. Valid forever. *Pure.*
 [[nodiscard]] constexpr std::string_view other_product(std::uint8_t id) noexcept {

@@ -11,7 +11,6 @@
 
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
-#include "lidar_search.hpp"
 
 namespace g4lidar {
 namespace {
@@ -90,23 +89,26 @@ result<std::unique_ptr<connector>> system_connector::find(std::string_view devic
                                                           std::uint32_t baud) {
   std::unique_ptr<system_connector> made(
       new system_connector(device, baud != 0 ? baud : g4_model.bauds[0], nullptr));
-  if (auto done = made->search_first(baud); !done) return tl::unexpected(done.error());
+  made->is_searched_ = true;
+  made->searched_baud_ = baud;
+  if (auto done = made->search_first(); !done) return tl::unexpected(done.error());
   return made;
 }
 
-result<void> system_connector::search_first(std::uint32_t baud) {
+result<void> system_connector::search_first() {
   auto opened = connect();
   if (!opened) {
     searched_ = std::move(opened);
     return {};
   }
   transport& port = **opened;
-  lidar_search search(port, {.baud = baud, .may_pulse_dtr = names_path(device_)});
-  search.leave_running(g4_model);
   const auto longest = std::chrono::nanoseconds(find_options{}.probe_timeout);
-  const auto lidar = search.run(port.now_ns() + longest.count());
+  auto lidar = search(port, port.now_ns() + longest.count(),
+                      {.baud = searched_baud_, .may_pulse_dtr = names_path(device_)});
   if (lidar) {
     named_ = lidar->model;
+    candidates_ = std::move(lidar->candidates);
+    was_stopped_ = lidar->was_scanning && named_->link == link_kind::two_way;
     if (lidar->baud != 0) baud_ = lidar->baud;
     if (named_->link == link_kind::one_way) find_place();
   } else if (const error& why = lidar.error(); is_final(why)) {
@@ -142,7 +144,7 @@ result<std::unique_ptr<transport>> system_connector::open_transport() {
 
 result<std::unique_ptr<transport>> system_connector::first_connect() {
   find_options how;
-  how.baud = baud_;
+  how.baud = is_searched_ ? searched_baud_ : baud_;
   const auto port = select_port(device_, how);
   if (!port) return tl::unexpected(port.error());
   auto opened = serial_port::open(port->path, {.baud = baud_});
@@ -192,7 +194,7 @@ void system_connector::list_candidates() {
   paths_.emplace_back();
 }
 
-/// The USB bridge of a G4, or an adapter of the same model at the USB port that the user named.
+/// The usual USB bridge, or an adapter of the same model at the USB port that the user named.
 bool system_connector::may_be_ours(const port_info& port) const noexcept {
   const bool is_same = port.bus_path == first_.bus_path && port.vendor_id == first_.vendor_id &&
                        port.product_id == first_.product_id;

@@ -20,8 +20,8 @@ inline constexpr std::string_view serial_prefix = "serial:";
 inline constexpr std::string_view usb_prefix = "usb:";
 
 /// Opens the device that lidar_options::device names, repeatedly. It searches a lost lidar at its
-/// old path and at every USB bridge of a G4; the driver identifies it by its number. It opens a
-/// port only if the user named its path, or if a G4 may be attached to it: see may_be_ours().
+/// old path and at every usual USB bridge; the driver identifies it by its number. It opens a
+/// port only if the user named its path, or if a lidar may be attached to it: see may_be_ours().
 class system_connector final : public connector {
  public:
   /// `named` is the model that the user named, or null. Fails with bad_option if `device` has no known
@@ -44,7 +44,12 @@ class system_connector final : public connector {
   void refuse() noexcept override;
   [[nodiscard]] int watch() noexcept override;
   [[nodiscard]] bool may_be_back() noexcept override;
-  [[nodiscard]] connector_traits traits() const noexcept override { return {.model = named_}; }
+  [[nodiscard]] connector_traits traits() const noexcept override {
+    return {.model = named_,
+            .is_searched = is_searched_,
+            .candidates = candidates_,
+            .was_stopped = was_stopped_};
+  }
 
  private:
   /// A device node at the time when another lidar answered there. A replug creates the node again.
@@ -57,7 +62,7 @@ class system_connector final : public connector {
 
   system_connector(std::string_view device, std::uint32_t baud, const model* named);
 
-  [[nodiscard]] result<void> search_first(std::uint32_t baud);
+  [[nodiscard]] result<void> search_first();
   [[nodiscard]] result<std::unique_ptr<transport>> open_transport();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();
@@ -73,7 +78,11 @@ class system_connector final : public connector {
 
   std::string device_;
   std::uint32_t baud_;
+  std::uint32_t searched_baud_ = 0;  // 0: all that lidars have
+  bool is_searched_ = false;
+  bool was_stopped_ = false;
   const model* named_;                                          // or found
+  std::vector<const model*> candidates_;                        // found
   std::optional<result<std::unique_ptr<transport>>> searched_;  // for the first connect()
   port_info first_;                                             // the port of the first connection
   std::vector<std::string> paths_;                              // to be tried in this round

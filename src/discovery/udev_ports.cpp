@@ -119,7 +119,7 @@ void append_simulated_ports(std::vector<port_info>& ports) {
     port.path = each->path().native();
     port.bus_path = "sim-" + each->path().filename().native();
     port.driver = "sim";
-    port.vendor_id = 0x10c4;  // like the USB bridge of a G4, so that discovery finds it
+    port.vendor_id = 0x10c4;  // like the USB bridge of a lidar, so that discovery finds it
     port.product_id = 0xea60;
     ports.push_back(std::move(port));
   }

@@ -21,6 +21,11 @@ std::unique_ptr<scan_source> make_source(scan_source::parts& parts, const lidar_
   return std::make_unique<replay_player>(parts, options);
 }
 
+std::vector<const model*> candidates_behind(const connector_traits& behind, const model& used) {
+  if (behind.candidates.empty()) return {&used};
+  return {behind.candidates.begin(), behind.candidates.end()};
+}
+
 }  // namespace
 
 lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& options)
@@ -28,10 +33,18 @@ lidar::driver::driver(std::unique_ptr<connector> from, const lidar_options& opti
              point_pipeline(options.tuning.transport_delay.count(), options.partial_scans,
                             *options.model),
              {}},
+      candidates_(candidates_behind(parts_.link.from().traits(), *options.model)),
       source_(make_source(parts_, options)),
       points_(largest_scan(*options.model)) {}
 
 lidar::driver::~driver() { static_cast<void>(close()); }
+
+result<void> lidar::driver::open() {
+  if (parts_.link.from().traits().was_stopped) {
+    parts_.events.put({lidar_event::kind::found_scanning, problem::timeout, parts_.link.now_ns()});
+  }
+  return source_->open();
+}
 
 result<void> lidar::driver::close() {
   result<void> stopped;

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "g4lidar/lidar.hpp"
 #include "scan_source.hpp"
@@ -21,7 +23,7 @@ class G4LIDAR_HIDDEN lidar::driver {
   driver& operator=(const driver&) = delete;
   ~driver();
 
-  result<void> open() { return source_->open(); }
+  result<void> open();
   result<void> start() { return source_->start(); }
   result<void> stop() { return source_->stop(); }
   result<void> close();
@@ -57,6 +59,8 @@ class G4LIDAR_HIDDEN lidar::driver {
   [[nodiscard]] std::optional<device_information> module_information() const noexcept {
     return source_->module_information();
   }
+  /// See candidates_of().
+  [[nodiscard]] std::span<const model* const> candidates() const noexcept { return candidates_; }
   [[nodiscard]] std::string_view name() const noexcept { return parts_.link.name(); }
   [[nodiscard]] bool is_scanning() const noexcept { return source_->is_scanning(); }
   [[nodiscard]] lidar_counts counts() const noexcept;
@@ -77,6 +81,7 @@ class G4LIDAR_HIDDEN lidar::driver {
   }
 
   scan_source::parts parts_;
+  std::vector<const model*> candidates_;  // at least one
   std::unique_ptr<scan_source> source_;
   point_storage points_;
   bool hands_points_over_ = false;  // by next_points()

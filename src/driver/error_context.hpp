@@ -77,7 +77,7 @@ class error_context {
                                                                   ""};
   static_assert(request_words.size() == static_cast<std::size_t>(request_kind::stop) + 1);
 
-  std::array<char, 95> text_{};
+  std::array<char, 159> text_{};
   std::size_t size_ = 0;
 };
 

@@ -8,11 +8,12 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "driver.hpp"
-#include "error_context.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/source.hpp"
+#include "option_problems.hpp"
+#include "outcome_error.hpp"
 
 namespace g4lidar {
 namespace {
@@ -26,98 +27,19 @@ std::int64_t in_ns(milliseconds time) noexcept {
   return std::chrono::nanoseconds(std::clamp(time, milliseconds(0), longest)).count();
 }
 
-error bad(std::string_view what) noexcept { return {task::configuring, problem::bad_option, what}; }
-
-/// "OPTION: LEAST to MOST, not GIVEN UNIT".
-error bad(std::string_view what, std::int64_t given, std::string_view unit) noexcept {
-  error_context words(what);
-  words.add(given < 0 ? ", not -" : ", not ");
-  constexpr std::int64_t most = UINT32_MAX;
-  const std::int64_t size = std::clamp(given, -most, most);
-  return bad(words.add(static_cast<std::uint32_t>(size < 0 ? -size : size)).add(unit));
-}
-
-/// "sample_rate: 8000, 16000 or 18000 of a G6".
-error bad_rate(const model& which) noexcept {
-  error_context words("sample_rate: ");
-  const std::uint8_t count = rate_count(which);
-  for (std::uint8_t code = 0; code < count; ++code) {
-    const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
-    words.add(before).add(rate_hz_of_code(which, code));
-  }
-  return bad(words.add(" of a ").add(which.name));
-}
-
-/// "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300".
-error bad_frequency(const model& which, scan_frequency given) noexcept {
-  const auto [least_dhz, most_dhz, reply, ct] = which.frequency;
-  error_context words("frequency: ");
-  words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
-  words.add(" to ").add(most_dhz / 10U).add(" Hz of a ").add(which.name).add(")");
-  return bad(words, given.chz, "");
-}
-
-/// Of the settings that `options` give.
-std::optional<error> problem_with_settings(const lidar_options& options) noexcept {
-  const model& which = options.model != nullptr ? *options.model : g4_model;
-  const auto problem_of = [&](const auto& setting, std::string_view name,
-                              const error& bad_value) -> std::optional<error> {
-    if (!setting) return std::nullopt;
-    const request change = requests::set(*setting);
-    if (!has_request(which, change.what)) {
-      return error(task::configuring, problem::not_supported,
-                   error_context(name).add(", ").add(which.name));
-    }
-    return is_possible(change, which) ? std::nullopt : std::optional(bad_value);
-  };
-  std::optional<error> found = problem_of(options.sample_rate, "sample_rate", bad_rate(which));
-  if (!found && options.frequency) {
-    found = problem_of(options.frequency, "frequency", bad_frequency(which, *options.frequency));
-  }
-  if (!found) {
-    found = problem_of(options.direction, "direction",
-                       bad("direction: clockwise or counter_clockwise"));
-  }
-  if (!found) found = problem_of(options.constant, "constant", bad("constant: on or off"));
-  if (!found) found = problem_of(options.idle, "idle", bad("idle: on or off"));
-  if (!found) found = problem_of(options.protection, "protection", bad("protection: on or off"));
-  return found;
-}
-
 }  // namespace
 
-std::optional<error> problem_with(const lidar_options& options) noexcept {
-  const auto within = [](auto value, auto least, auto most) {
-    return value >= least && value <= most;
-  };
-  if (auto wrong = problem_with_settings(options)) return wrong;
-  if (options.tuning.pace > read_pace::revolutions)
-    return bad("pace: automatic, packets or revolutions");
-  const auto bad_time = [](std::string_view what, milliseconds given) {
-    return bad(what, given.count(), " ms");
-  };
-  if (!within(options.tuning.longest_backoff, 1ms, 1000ms))
-    return bad_time("longest_backoff: 1 ms to 1 s", options.tuning.longest_backoff);
-  if (!within(options.tuning.answer_time, 10ms, 10'000ms))
-    return bad_time("answer_time: 10 ms to 10 s", options.tuning.answer_time);
-  if (!within(options.tuning.stall_time, 100ms, 60'000ms))
-    return bad_time("stall_time: 100 ms to 1 min", options.tuning.stall_time);
-  if (!within(options.tuning.batch, 0ms, 100ms))
-    return bad_time("batch: 0 to 100 ms", options.tuning.batch);
-  if (!within(options.tuning.transport_delay, 0ns, 1'000'000'000ns)) {
-    return bad("transport_delay: 0 to 1 s", options.tuning.transport_delay.count(), " ns");
-  }
-  if (options.raw_sample_rate_hz && !within(*options.raw_sample_rate_hz, 1U, 1'000'000U)) {
-    return bad("raw_sample_rate_hz: 1 to 1000000", *options.raw_sample_rate_hz, "");
-  }
-  return std::nullopt;
+std::string model_words() {
+  std::vector<const model*> all;
+  for (const model& each : models) all.push_back(&each);
+  return model_words(all);
 }
 
-std::string model_words() {
+std::string model_words(std::span<const model* const> which) {
   std::string all;
-  for (const model& each : models) {
+  for (const model* const each : which) {
     if (!all.empty()) all += ", ";
-    all += each.word;
+    all += each->word;
   }
   return all;
 }
@@ -180,7 +102,8 @@ result<lidar> lidar::open(std::string_view device, const lidar_options& options)
 }
 
 result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& options) {
-  const model* const stated = from->traits().model;
+  const connector_traits behind = from->traits();
+  const model* const stated = behind.model;
   if (options.model != nullptr && stated != nullptr && options.model->word != stated->word) {
     return failure(task::opening, problem::bad_option,
                    "model: " + std::string(options.model->word) + ", and the source states " +
@@ -189,9 +112,15 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;
   if (used.model == nullptr) used.model = &g4_model;
-  if (const auto problem = problem_with(used)) return tl::unexpected(*problem);
+  // Where a search has found nothing, there is no model that could refuse a setting.
+  const bool is_missing = behind.is_searched && stated == nullptr;
+  if (const auto wrong = problem_with_use(used)) return tl::unexpected(*wrong);
+  if (const auto wrong = problem_with_settings(used); wrong && !is_missing) {
+    return tl::unexpected(with_candidates(*wrong, behind.candidates));
+  }
   auto made = std::make_unique<driver>(std::move(from), used);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
+  if (const auto wrong = problem_with_settings(used)) return tl::unexpected(*wrong);
   return lidar(std::move(made));
 }
 
@@ -208,6 +137,10 @@ view_result<scan> lidar::next_scan(milliseconds timeout) {
 view_result<scan> lidar::wait_scan(milliseconds timeout) {
   if (!driver_) return moved_from();
   return driver_->next_scan(in_ns(timeout), true);
+}
+std::span<const model* const> candidates_of(const lidar& of) noexcept {
+  static constexpr const model* none[] = {&g4_model};
+  return of.driver_ ? of.driver_->candidates() : none;
 }
 lidar_event_loop lidar::event_loop() & noexcept { return lidar_event_loop(*this); }
 milliseconds lidar_event_loop::scan_due_in() const noexcept {

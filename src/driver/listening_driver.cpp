@@ -154,8 +154,9 @@ result<answer> listening_driver::ask(const request& wanted, while_scanning /*how
   const auto condition = stream_.reported().condition();
   if (wanted.what == request_kind::device_info && information_.is_known()) return information_;
   if (wanted.what == request_kind::health && condition) return *condition;
-  return tl::unexpected(refusal_error(task::asking, refusal::not_supported, wanted, *options_.model,
-                                      connection_.name()));
+  const error refused = refusal_error(task::asking, refusal::not_supported, wanted, *options_.model,
+                                      connection_.name());
+  return tl::unexpected(with_candidates(refused, connection_.from().traits().candidates));
 }
 
 }  // namespace g4lidar

@@ -2,6 +2,7 @@
 // The error of a request that was not answered.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <variant>
 
@@ -48,6 +49,20 @@ namespace g4lidar {
     return {doing, problem::not_supported, about.add(", ").add(which.name)};
   }
   return {doing, why == refusal::bad_setting ? problem::bad_setting : problem::scanning, about};
+}
+
+/// `why`, which ends with the name of the model that was found, and the words of those between which the
+/// bytes do not decide: "/dev/ttyUSB0, X2 (or x2l, x3)". One of them may be what the user has.
+[[nodiscard]] inline error with_candidates(const error& why,
+                                           std::span<const model* const> candidates) noexcept {
+  if (candidates.size() < 2) return why;
+  error_context about(why.subject());
+  std::string_view before = " (or ";
+  for (const model* const each : candidates.subspan(1)) {
+    about.add(before).add(each->word);
+    before = ", ";
+  }
+  return {why.doing(), why.code(), about.add(")"), why.system_errno(), why.detail()};
 }
 
 /// Of a device that reports a model other than `which`.

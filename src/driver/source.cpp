@@ -10,6 +10,7 @@
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "option_problems.hpp"
 #if defined(G4LIDAR_HAS_SIM)
 #include <variant>
 
@@ -24,15 +25,16 @@ constexpr std::string_view file_prefix = "file:";
 constexpr std::string_view sim_prefix = "sim:";
 constexpr std::string_view model_suffix = "?model=";
 
-struct file_name {
+struct named_parts {
   std::string_view path;
   std::string_view model;  // empty: not given
 };
 
-/// The parts of `file:PATH?model=WORD`.
-file_name divided(std::string_view name) {
-  if (!name.starts_with(file_prefix)) return {name, {}};
-  const std::string_view whole = name.substr(file_prefix.size());
+/// The parts of `file:PATH?model=WORD`, or of a device; what follows `sim:` is none of this.
+named_parts divided(std::string_view name) {
+  if (name.starts_with(sim_prefix)) return {name, {}};
+  const bool is_file = name.starts_with(file_prefix);
+  const std::string_view whole = is_file ? name.substr(file_prefix.size()) : name;
   const std::size_t at = whole.rfind(model_suffix);
   struct stat found{};
   if (at == std::string_view::npos || ::stat(std::string(whole).c_str(), &found) == 0) {
@@ -135,27 +137,30 @@ result<const model*> model_of_source(std::string_view name,
     return named != nullptr ? named : &g4_model;
   }
 #endif
-  if (kind != source_kind::recording) return &g4_model;
+  if (kind != source_kind::recording) return *stated;
   return recording_reader::open(path, {.is_cancelled = is_cancelled})
       .map([](const recording_reader& of) { return &of.model(); });
 }
 
 result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
-  lidar_options known = options;
-  if (options.model == nullptr && kind_of_source(options.device) == source_kind::simulated) {
-    known.model = model_of_source(options.device).value_or(nullptr);
-  }
-  if (const auto problem = problem_with(known)) return tl::unexpected(*problem);
   const std::string path = path_of_source(options.device);
   const source_kind kind = kind_of_source(options.device);
   const auto named = model_in_source(options.device);
   if (!named) return tl::unexpected(named.error());
-  const model* const wanted = *named != nullptr ? *named : options.model;
-  if (wanted != options.model && options.model != nullptr) {
+  if (*named != nullptr && options.model != nullptr && (*named)->word != options.model->word) {
     return failure(task::opening, problem::bad_option,
                    "model: " + std::string(options.model->word) + ", and the name states " +
-                       std::string(wanted->word));
+                       std::string((*named)->word));
   }
+  const model* const wanted = *named != nullptr ? *named : options.model;
+  lidar_options known = options;
+  known.model = wanted;
+  if (wanted == nullptr && kind == source_kind::simulated) {
+    known.model = model_of_source(options.device).value_or(nullptr);
+  }
+  const bool is_searched = wanted == nullptr && kind == source_kind::device;
+  const auto wrong = is_searched ? problem_with_use(known) : problem_with(known);
+  if (wrong) return tl::unexpected(*wrong);
   switch (kind) {
     case source_kind::recording:
       return of_model(replay::open(path, options.playback, options.is_cancelled), *named);
@@ -167,8 +172,8 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
     case source_kind::device:
       break;
   }
-  if (options.model == nullptr) return system_connector::find(options.device, options.baud);
-  return system_connector::make(options.device, baud_of(options, *options.model), options.model);
+  if (is_searched) return system_connector::find(path, options.baud);
+  return system_connector::make(path, baud_of(options, *wanted), wanted);
 }
 
 const sim::simulated_source* simulation_of([[maybe_unused]] const connector& from) noexcept {

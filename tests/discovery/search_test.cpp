@@ -23,10 +23,9 @@ constexpr std::int64_t ms = 1'000'000;
 constexpr std::pair<std::string_view, std::string_view> shared_names[] = {
     {"x2l", "x2"},
     {"x3", "x2"},
-    {"x3-pro", "s2-pro"},  // 4 kHz at this rate
-    {"s2", "s2-pro"},
-    {"tx8", "s2-pro"},
-    {"tx20", "s2-pro"},
+    {"tx8", "x3-pro"},  // 4 kHz at this rate
+    {"tx20", "x3-pro"},
+    {"s2", "s2-pro"},  // 5 kHz
     {"s2-intensity", "s2-pro-intensity"},
     {"scl", "s2-pro-intensity"},
 };
@@ -53,6 +52,12 @@ std::string text_of(const std::vector<std::string>& notes) {
   std::string text;
   for (const std::string& each : notes) text.append(text.empty() ? "" : " ").append(each);
   return text;
+}
+
+/// How often the device was told to stop: `00 65`.
+std::ptrdiff_t stops_in(const std::vector<std::string>& notes) {
+  return std::ranges::count_if(notes,
+                               [](const std::string& each) { return each.starts_with("65@"); });
 }
 
 /// Only questions, and stops; a stop only before the question at the same rate, after packets.
@@ -92,8 +97,39 @@ TEST(Search, EveryModel_IsFoundInTime) {
       EXPECT_LE(done.took_ns, each.word == "g4" ? 100 * ms : longest_ns);
       EXPECT_EQ(lidar.was_scanning, scanning || each.link == link_kind::one_way);
       expect_harmless(done.notes, needs_pulse);
+      EXPECT_LE(stops_in(done.notes), each.link == link_kind::one_way ? 1 : 2);
     }
   }
+}
+
+// A two-way lidar with 2-byte samples has 4 kHz at 115200 baud, and at 128000 no information in its CT bytes.
+TEST(Search, OneWayLidarThatShowsWhatItIs_GetsNoByte) {
+  for (const std::string_view word :
+       {"x2", "x2l", "x3", "x4-pro", "s2", "s2-pro", "s2-intensity", "s2-pro-intensity", "scl"}) {
+    const searched done = search_at(options_of(word));
+    ASSERT_TRUE(done.lidar) << word << done.lidar.error().message();
+    EXPECT_EQ(done.notes, std::vector<std::string>{}) << word;
+  }
+}
+
+TEST(Search, OneWayLidarLikeATwoWayOne_IsToldToStopOnce) {
+  for (const std::string_view word : {"x3-pro", "tx8", "tx20"}) {
+    const searched done = search_at(options_of(word));
+    ASSERT_TRUE(done.lidar) << word << done.lidar.error().message();
+    EXPECT_EQ(done.notes, (std::vector<std::string>{"00@115200", "65@115200"})) << word;
+    EXPECT_EQ(done.lidar->model->word, "x3-pro");
+  }
+}
+
+// Without a reported frequency nothing tells it from an S4.
+TEST(Search, OneWayLidarWithoutAFrequency_IsToldToStopOnce) {
+  sim::device_options options = options_of("x2");
+  options.scanner.reports_frequency = false;
+  const searched done = search_at(options);
+  ASSERT_TRUE(done.lidar) << done.lidar.error().message();
+  EXPECT_EQ(done.notes, (std::vector<std::string>{"00@115200", "65@115200"}));
+  EXPECT_EQ(done.lidar->model->word, "x2");
+  EXPECT_LE(done.took_ns, longest_search_ns);
 }
 
 TEST(Search, NamedRate_IsNotSearchedFor) {

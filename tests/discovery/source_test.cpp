@@ -58,6 +58,24 @@ class Source : public testing::Test {
   fs::path directory_;
 };
 
+TEST_F(Source, NameOfADeviceMayNameItsModel) {
+  for (const std::string device : {"/dev/ttyUSB0", "usb:1-1.4", "tcp:host:4000", "serial:1"}) {
+    const std::string name = device + "?model=x4";
+    EXPECT_EQ(kind_of_source(name), source_kind::device);
+    EXPECT_EQ(path_of_source(name), device);
+    EXPECT_EQ(model_in_source(name).value()->word, "x4");
+    EXPECT_EQ(model_of_source(name).value()->word, "x4");
+    EXPECT_EQ(model_in_source(device).value(), nullptr);
+    EXPECT_EQ(model_of_source(device).value(), nullptr);
+  }
+  EXPECT_EQ(model_in_source("/dev/ttyUSB0?model=x9").error().code(), problem::bad_option);
+  EXPECT_EQ(path_of_source("sim:?model=x4"), "sim:?model=x4");
+  const auto both =
+      connector_for({.device = "/dev/ttyUSB0?model=x4", .model = model_named("x2")});
+  ASSERT_FALSE(both);
+  EXPECT_THAT(both.error().message(), HasSubstr("model: x2, and the name states x4"));
+}
+
 TEST_F(Source, Kind_IsThatOfTheFormOrOfWhatIsThere) {
   const std::string mcap = written("walk.mcap", "\x89MCAP0\r\n");
   const std::string raw = written("port.raw", "\xAA\x55");

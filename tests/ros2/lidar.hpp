@@ -30,6 +30,9 @@ namespace sim = g4lidar::sim;
 class served_lidar {
  public:
   served_lidar() : port_(sim::serve_alone(sim::device(sim::built_in_world())).value()) {}
+  /// Of another model, with these faults.
+  explicit served_lidar(const std::string& model, const std::vector<sim::fault>& faults = {})
+      : port_(sim::serve_alone(device_of(model, faults)).value()) {}
 
   [[nodiscard]] std::string path() const { return port_->path(); }
   [[nodiscard]] bool motor_turns() const {
@@ -64,6 +67,12 @@ class served_lidar {
   }
 
  private:
+  static sim::device device_of(const std::string& model, const std::vector<sim::fault>& faults) {
+    sim::device_options options;
+    EXPECT_TRUE(sim::use_model(options, model)) << model;
+    return sim::device(sim::built_in_world(), options, faults);
+  }
+
   std::shared_ptr<sim::background_pty> port_;
 };
 

@@ -6,7 +6,7 @@ namespace {
 
 constexpr const char* description =
     R"(g4-dump is the console tool for the YDLIDAR G4, a 360-degree scanning lidar on a serial port.
-Without a command it prints points, and without a source it takes the only G4 that is connected.
+Without a command it prints points, and without a source it takes the only lidar that is connected.
 On a terminal, without any word, it lists the attached lidars and the commands, and sends nothing.
 
 Data goes to standard output, messages go to standard error. Only the command acceptance asks

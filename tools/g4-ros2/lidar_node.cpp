@@ -29,11 +29,10 @@ common_options options_of(const ros2_options& options, const named_source& which
 
 namespace {
 
-/// The model that the options name, or that a file is of; else a G4.
-const model& expected_model(const ros2_options& options, const named_source& which) {
-  if (options.common.expected.model != nullptr) return *options.common.expected.model;
-  const auto found = model_of_source(which.source, [] { return interrupt() != 0; });
-  return found ? **found : g4_model;
+/// The model that the options or the source name, or that a file is of; null: it is searched.
+const model* expected_model(const ros2_options& options, const named_source& which) {
+  if (options.common.expected.model != nullptr) return options.common.expected.model;
+  return model_of_source(which.source, [] { return interrupt() != 0; }).value_or(nullptr);
 }
 
 }  // namespace
@@ -51,9 +50,8 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
                                 shaper_)) {
   const std::string frame_id = frame_of(options, which.name);
   parameters_.fix("frame_id", merger_ == nullptr ? frame_id : options.frames.robot);
-  parameters_.fix(
-      "grid", std::int64_t{options.bins.value_or(default_bins(expected_model(options, which)))});
-  parameters_.fix("model", std::string(expected_model(options, which).word));
+  if (options.bins) parameters_.fix("grid", std::int64_t{*options.bins});
+  if (const auto* const expected = expected_model(options, which)) show_model(*expected);
   parameters_.fix("order", options.order == scan_order::time ? "time" : "angle");
   if (merger_ == nullptr) {
     messages_ = std::make_unique<scan_messages>(on, options, name_space_, frame_id);
@@ -111,7 +109,13 @@ void lidar_node::change(std::vector<named_value> wanted, std::function<void(std:
       });
 }
 
+void lidar_node::show_model(const model& which) {
+  if (!options_.bins) parameters_.fix("grid", std::int64_t{default_bins(which)});
+  parameters_.fix("model", std::string(which.word));
+}
+
 void lidar_node::on_open(g4lidar::lidar& device) {
+  show_model(*candidates_of(device).front());
   if (is_played_) {
     feed_.follow(*device.player());
     now_ns_ = stamp_ns(device.player()->begin_ns());

@@ -67,6 +67,7 @@ class lidar_node final : public reader_listener {
   using clock = std::chrono::steady_clock;
 
   [[nodiscard]] bool is_wanted() const;
+  void show_model(const model& which);
   /// The stamp of a point::time_ns. Only in the thread of the reader.
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const {
     return device_->reader().wall_ns(time_ns);

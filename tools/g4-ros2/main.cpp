@@ -13,9 +13,9 @@ namespace g4_tool {
 namespace {
 
 constexpr const char* description =
-    R"(g4-ros2 publishes the scans of one or more YDLIDAR G4 lidars as ROS 2 topics. It needs no ROS
+    R"(g4-ros2 publishes the scans of one or more YDLIDAR lidars as ROS 2 topics. It needs no ROS
 installation: it speaks DDS itself. Every ROS 2 from Humble on sees its topics, with rviz2, Nav2 and
-slam_toolbox, if it uses a DDS middleware. Without a source it takes the only G4 that is connected,
+slam_toolbox, if it uses a DDS middleware. Without a source it takes the only lidar that is connected,
 waits for it if it is not there yet, and reconnects.)";
 
 constexpr const char* details =
@@ -53,10 +53,10 @@ verb make_verb() {
   return {.name = "g4-ros2",
           .summary = "Publish lidars as ROS 2 topics",
           .arguments = {named_source_arguments(
-              options->sources, "A lidar or a recording, or NAME=SOURCE (the only G4)")},
+              options->sources, "A lidar or a recording, or NAME=SOURCE (the only lidar)")},
           .options = ros2_rows(options),
           .details = details,
-          .examples = {{"g4-ros2", "Publish the only G4 on /scan and /points"},
+          .examples = {{"g4-ros2", "Publish the only lidar on /scan and /points"},
                        {"g4-ros2 --namespace robot1 --mount 0.2,0,0 --standby",
                         "On /robot1/scan, with its place, and at rest while nobody subscribes"},
                        {"g4-ros2 front=/dev/ttyUSB0 rear=/dev/ttyUSB1 --merge "
@@ -72,7 +72,7 @@ verb make_verb() {
 int main(int argc, char** argv) {
   using namespace g4_tool;
   const program g4_ros2{.name = "g4-ros2",
-                        .title = "YDLIDAR G4 lidars as ROS 2 topics",
+                        .title = "YDLIDAR lidars as ROS 2 topics",
                         .description = description,
                         .verbs = [] { return std::vector<verb>{make_verb()}; },
                         .default_verb = "g4-ros2",

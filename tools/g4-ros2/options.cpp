@@ -74,7 +74,8 @@ option_rows scan_rows(ros2_options& options) {
       {choice_row("--order", "Order of the ranges of a LaserScan; time: z is down (angle)",
                   options.order,
                   choices<scan_order>{{"angle", scan_order::angle}, {"time", scan_order::time}}),
-       number_row("--grid", "N", "Ranges of each LaserScan (G4: 720)", options.bins, 1U, 65536U),
+       number_row("--grid", "N", "Ranges of each LaserScan (by the model; G4: 720)", options.bins,
+                  1U, 65536U),
        merge_row(options.merges)});
 }
 

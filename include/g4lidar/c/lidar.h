@@ -52,7 +52,7 @@ enum g4lidar_pace {
  *  set at each start and after a reconnect. A time that is 0 has its default. */
 typedef struct g4lidar_options {
   size_t struct_size; /**< Set by g4lidar_options_init(). */
-  /** Which lidar: "" or NULL for the only G4; a path; `serial:2021101000070073`; `usb:1-1.4`;
+  /** Which lidar: "" or NULL for the only lidar; a path; `serial:2021101000070073`; `usb:1-1.4`;
    *  `tcp:host:port`; a recording, or the raw bytes of a port, as a path or `file:PATH`; `-`, raw bytes
    *  from standard input; `sim:` or `sim:?NAME=VALUE&...`, a simulated G4 in real time (docs/sim.md).
    *  Copied. */
@@ -76,7 +76,8 @@ typedef struct g4lidar_options {
   uint8_t reserved[6];        /**< 0. */
   /** How long to wait for a device that is not there yet; -1: without limit; 0. */
   int32_t device_wait_ms;
-  /** The model of the lidar: "x4"; NULL: what a recording or `sim:` states and raw bytes show, else "g4".
+  /** The model of the lidar: "x4"; NULL: what a recording or `sim:` states, raw bytes show, or a search at the
+   *  port finds.
    *  Copied. */
   const char* model;
 } g4lidar_options;
@@ -184,6 +185,10 @@ typedef struct g4lidar_identity {
 
 /** What the device reported when it was opened. Valid as long as the lidar. */
 G4LIDAR_C_API const g4lidar_identity* g4lidar_get_identity(const g4lidar_lidar* lidar);
+/** The models between which the bytes of the lidar do not decide, the one as which it is read first: "x2, x2l,
+ *  x3". One alone if it was named, or if the device answers. Name yours with g4lidar_options.model. Valid as long as
+ *  the lidar. */
+G4LIDAR_C_API const char* g4lidar_get_candidates(const g4lidar_lidar* lidar);
 /** The name of the connection, "/dev/ttyUSB0". */
 G4LIDAR_C_API const char* g4lidar_name(g4lidar_lidar* lidar);
 /** Whether a scan was started and not stopped; false while the device is lost. */

@@ -120,7 +120,7 @@ inline constexpr auto models = [] {
       {"x3",             "X3",             {4, 6},  {115200},         flagged_samples, one_way, dtr,
        fixed(3000),      not_set,      {100, 8000},  0,   0,   no,      unknown},
       {"x3-pro",         "X3 Pro",         {4, 6},  {115200},         flagged_samples, one_way, dtr,
-       x3_pro_rates,     not_set,      {100, 8000},  0,   0,   no,      unknown},
+       x3_pro_rates,     not_set,      {100, 8000},  0,   0,   no,      unknown, false, flagged_mm, {}, false, at_its_rate},
       {"s2",             "S2",             {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,
        s2_rates,         not_set,      {80, 12000},  0,   0,   no,      yes, false, intensity_8},
       {"s2-pro",         "S2 Pro",         {4, 12}, {115200, 128000}, flagged_samples, one_way, dtr,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
@@ -27,6 +28,13 @@ struct connector_traits {
   const g4lidar::model* model = nullptr;
   /// Whether this model was only recognised, and other models send such bytes, too.
   bool is_usual_model = false;
+  /// Whether the model was searched at the device; `model` is null if it was not found.
+  bool is_searched = false;
+  /// The models between which the bytes of such a device do not decide, `model` first. Valid as long as the
+  /// connector; empty if none was found.
+  std::span<const g4lidar::model* const> candidates{};
+  /// Whether a search has found the device scanning, and has stopped it.
+  bool was_stopped = false;
 };
 
 /// Opens the transport to a device, the first time and after each loss. *Single thread* except

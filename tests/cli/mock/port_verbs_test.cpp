@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The verbs list and watch, and the only G4 among several ports. Runs with umockdev preloaded.
+// The verbs list and watch, and the only lidar among several ports. Runs with umockdev preloaded.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -84,7 +84,7 @@ TEST_F(PortVerbs, List_NoBridgeOfAG4) {
   const outcome done = run({"list"});
   EXPECT_EQ(done.code, 3);
   EXPECT_EQ(lines_of(done.out).size(), 3U);
-  EXPECT_THAT(done.err, HasSubstr("no serial port has the USB bridge of a G4"));
+  EXPECT_THAT(done.err, HasSubstr("no serial port has the USB bridge of a lidar"));
   EXPECT_EQ(run({"list", "-q"}).err, "");
 }
 
@@ -203,7 +203,7 @@ TEST_F(PortVerbs, Probe_WritesToOtherPortsOnlyWhenAsked) {
 TEST_F(PortVerbs, Probe_DisturbsNoOtherProgram) {
   bed.plug(first);
   const auto lidar = serve(first, '1');
-  cli::program dump({"dump"});  // the only G4
+  cli::program dump({"dump"});  // the only lidar
   dump.read_until("\n");
   const outcome done = run({"list", "--probe"});
   EXPECT_EQ(done.code, 5) << done.err;

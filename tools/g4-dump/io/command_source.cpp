@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <variant>
 
 #include "cli/logger.hpp"
@@ -16,12 +17,12 @@
 namespace g4_tool {
 namespace {
 
-/// In this time the slowest G4 sends a packet.
+/// In this time the slowest lidar sends a packet.
 constexpr std::int64_t listen_ns = 60'000'000;
 
 /// Whether a packet arrives. Errors are left to the driver, which reports them.
-bool hears_packet(transport& port, std::int64_t deadline_ns) {
-  stream_parser parser;
+bool hears_packet(transport& port, sample_format samples, std::int64_t deadline_ns) {
+  stream_parser parser(samples);
   std::array<std::uint8_t, 1024> buffer;
   bool found = false;
   while (!found && port.now_ns() < deadline_ns) {
@@ -38,10 +39,14 @@ bool hears_packet(transport& port, std::int64_t deadline_ns) {
 /// it receives a whole packet before the device obeys its stop.
 lidar_options listening(bool& heard) {
   lidar_options how;
-  how.wrap = for_each_connection([&heard](std::unique_ptr<transport> port) {
-    if (hears_packet(*port, port->now_ns() + listen_ns)) heard = true;
-    return port;
-  });
+  how.wrap = [&heard](std::unique_ptr<connector> from) {
+    const g4lidar::model* const which = from->traits().model;
+    const sample_format samples = which != nullptr ? which->samples : g4_format;
+    return for_each_connection([&heard, samples](std::unique_ptr<transport> port) {
+      if (hears_packet(*port, samples, port->now_ns() + listen_ns)) heard = true;
+      return port;
+    })(std::move(from));
+  };
   return how;
 }
 
@@ -59,7 +64,7 @@ command_source::command_source(const common_options& options, task doing)
     was_scanning_ = was_scanning_ || event->what == lidar_event::kind::found_scanning;
   }
   // A one-way lidar always scans, and nothing stops it.
-  was_scanning_ = was_scanning_ && model_of(options)->link == g4lidar::link_kind::two_way;
+  was_scanning_ = was_scanning_ && source_.model().link == g4lidar::link_kind::two_way;
   if (was_scanning_)
     logger::info(fmt::format("{}: was scanning and has been stopped\n", lidar().name()));
 }

@@ -24,6 +24,10 @@ class command_source {
   command_source(const common_options& options, g4lidar::task doing);
 
   [[nodiscard]] g4lidar::lidar& lidar() noexcept { return source_.lidar(); }
+  /// The models between which the bytes of the device do not decide, that as which it is read first.
+  [[nodiscard]] std::span<const g4lidar::model* const> candidates() noexcept {
+    return candidates_of(lidar());
+  }
   /// Whether the device was scanning.
   [[nodiscard]] bool was_scanning() const noexcept { return was_scanning_; }
 

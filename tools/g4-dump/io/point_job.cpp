@@ -29,14 +29,12 @@
 namespace g4_tool {
 namespace {
 
-/// `shape`: of the revolutions.
+/// For any model. `shape`: of the revolutions.
 writing_options how_to_write(const point_job& job, const common_options& common, source_kind kind,
                              const shaping_options& shape) {
   const bool is_file = kind == source_kind::raw_bytes;
   writing_options made{.shape = shape};
   made.shape.filter.returns_only = job.returns_only;
-  made.model = common.expected.model;
-  made.for_grid = job.bins > 0;
   made.partial_scans = job.partial;
   if (common.count > 0) made.count = common.count;
   if (is_file) {
@@ -72,24 +70,23 @@ class point_run {
       : job_(job), common_(*job.common), kind_(kind_of_source(common_.source)) {
     if (job_.text) kind_ = source_kind::raw_bytes;
     if (has_scan_files()) choose_files();
-    if (!job_.text) common_.expected.model = model_of(common_, &recognised_);
-    if (common_.expected.model == nullptr && !job_.text) open_pipe();
+    const g4lidar::model* known = common_.expected.model;
+    if (!job_.text) known = model_of(common_, &recognised_);
+    if (known == nullptr && kind_ == source_kind::raw_bytes && !job_.text) known = open_pipe();
     if (job_.text) {
       open_input();
       text_model_ = model_of_text(*input_, *job_.text, common_);
-      common_.expected.model = &text_model_;
+      known = &text_model_;
     }
-    if (common_.expected.model == nullptr) common_.expected.model = &g4lidar::g4_model;
-    use_model();
-    const g4lidar::mask mask = load_mask(common_.mask);
-    writing_options how = how_to_write(job_, common_, kind_, shape_of(common_, mask));
-    load_path(how);
+    mask_ = load_mask(common_.mask);
+    how_ = how_to_write(job_, common_, kind_, shape_of(common_, mask_));
+    load_path(how_);
     job_.style.to = common_.frame;
     job_.style.unit = common_.unit;
     const bool has_long_times =
-        how.time == time_style::absolute || how.time == time_style::monotonic;
+        how_.time == time_style::absolute || how_.time == time_style::monotonic;
     if (has_long_times && kind_ != source_kind::raw_bytes) job_.style.time_width = 10;
-    writer_ = std::make_unique<shaping_writer>(make_writer(), how);
+    use_model(known != nullptr ? *known : g4_model);  // of a device: until it is opened
   }
 
   int run() {
@@ -107,19 +104,23 @@ class point_run {
                                "pipe them in.");
   }
   /// The model of a pipe is not known before its first bytes.
-  void open_pipe() {
+  const g4lidar::model* open_pipe() {
     open_input();
     recognised_ = input_->recognise(common_);
-    common_.expected.model = recognised_->which;
+    return recognised_->which;
   }
-  /// The columns and the turn of the model.
-  void use_model() {
-    const g4lidar::model& which = *common_.expected.model;
+  /// Makes the writer, with the columns and the turn of the model.
+  void use_model(const g4lidar::model& which) {
+    model_ = &which;
     // A G4 measures 1286 points at 7 Hz.
-    if (job_.log == slam_log::carmen && job_.bins == 0) job_.bins = 2 * default_bins(which);
+    bins_ = job_.log == slam_log::carmen && job_.bins == 0 ? 2 * default_bins(which) : job_.bins;
     job_.style.intensity = has_intensity(which);
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     job_.style.turn_deg = which.turn_deg;
+    how_.model = model_;
+    how_.for_grid = bins_ > 0;
+    point_file_ = nullptr;
+    writer_ = std::make_unique<shaping_writer>(make_writer(), how_);
   }
   void choose_files() {
     if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
@@ -156,8 +157,7 @@ class point_run {
 
   std::unique_ptr<point_writer> make_writer() {
     if (job_.point_file) {
-      auto writer =
-          make_point_file_writer(*job_.point_file, common_.frame, *common_.expected.model);
+      auto writer = make_point_file_writer(*job_.point_file, common_.frame, *model_);
       point_file_ = writer.get();
       return writer;
     }
@@ -165,9 +165,9 @@ class point_run {
       return std::make_unique<scan_file_writer>(job_.file, common_.frame, job_.data, files_);
     }
     if (job_.log == slam_log::carmen)
-      return make_carmen_writer(job_.bins, common_.mount.value_or(mounting{}));
+      return make_carmen_writer(bins_, common_.mount.value_or(mounting{}));
     if (job_.log == slam_log::tum) return make_tum_writer();
-    if (job_.bins > 0) return make_grid_writer(job_.style, job_.bins, common_.grid);
+    if (bins_ > 0) return make_grid_writer(job_.style, bins_, common_.grid);
     return make_point_writer(job_.style);
   }
 
@@ -211,9 +211,8 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
-    const g4lidar::model& which = *common_.expected.model;
-    byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(which)),
-                    which);
+    byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(*model_)),
+                    *model_);
     bool has_text = false;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       if (way.bytes() == 0) has_text = looks_like_text(got);
@@ -235,7 +234,7 @@ class point_run {
 
   std::uint64_t read_text(input& in, output& out) {
     if (!job_.text) return 0;
-    text_points way(*job_.text, job_.text_frame, *writer_, out, *common_.expected.model);
+    text_points way(*job_.text, job_.text_frame, *writer_, out, *model_);
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       way.take({reinterpret_cast<const char*>(got.data()), got.size()});
     });
@@ -251,6 +250,7 @@ class point_run {
     lidar_options how = job_.source;
     how.partial_scans = writer_->takes_scans();  // the writer leaves them out, and counts them
     opened_source source(common_, how);
+    use_model(source.model());
     try {
       run_lidar(source, out);
     } catch (const failure&) {  // what came before it is good
@@ -324,6 +324,10 @@ class point_run {
   g4lidar::model text_model_;                   // of points as text
   std::optional<recognised_model> recognised_;  // from raw bytes, if no model is named
   std::vector<stamped_pose> path_;
+  g4lidar::mask mask_;
+  writing_options how_;  // but for the model
+  const g4lidar::model* model_ = nullptr;
+  std::size_t bins_ = 0;  // 0: points and no grid
   std::unique_ptr<shaping_writer> writer_;
   point_file_writer* point_file_ = nullptr;  // behind writer_
 };

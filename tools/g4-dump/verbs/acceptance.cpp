@@ -139,6 +139,9 @@ std::optional<port_info> port_of(std::string_view name) {
 /// failure, or a bad_value if the bytes fit several models.
 acceptance_settings with_model(acceptance_settings options) {
   constexpr std::int64_t search_ns = 3'000'000'000;
+  if (options.expected.model == nullptr) {
+    options.expected.model = value_of(model_in_source(options.source));
+  }
   if (options.expected.model != nullptr) return options;
   acceptance_settings as_found = options;
   as_found.expected.model = &g4_model;  // opened at its rate, and not searched

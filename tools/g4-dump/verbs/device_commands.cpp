@@ -84,7 +84,7 @@ verb make_health_verb() {
            R"(Two lines: status (ok, warning, error) and error_code. The meaning of the bits of the code is
 not documented. The exit code is 8 if the status is error. A device that is scanning is stopped
 first; that is reported.)",
-       .examples = {{"g4-dump health", "Health of the only G4"},
+       .examples = {{"g4-dump health", "Health of the only lidar"},
                     {"g4-dump health 'sim:?fault=health=warning'",
                      "A simulated G4 with a warning"}}},
       health, true);
@@ -98,7 +98,7 @@ verb make_start_verb() {
            R"(The command ends when a whole revolution has arrived; the device continues to scan. With power-down
 protection the device stops 3 s later, because no program sends keep-alives. No setting is
 changed.)",
-       .examples = {{"g4-dump start", "Start the only G4"},
+       .examples = {{"g4-dump start", "Start the only lidar"},
                     {"g4-dump start /dev/ttyUSB0", "Start the one at this port"}}},
       start);
 }
@@ -108,7 +108,7 @@ verb make_stop_verb() {
                       .summary = "Stop scanning",
                       .details = "The command ends when the device is silent. It is no error if "
                                  "the device was not scanning.",
-                      .examples = {{"g4-dump stop", "Stop the only G4"}}},
+                      .examples = {{"g4-dump stop", "Stop the only lidar"}}},
                      stop);
 }
 
@@ -117,7 +117,7 @@ verb make_restart_verb() {
       {.name = "restart",
        .summary = "Restart the device and wait until it answers",
        .details = "It does not scan after the restart, and its settings may be lost.",
-       .examples = {{"g4-dump restart", "Restart the only G4"}}},
+       .examples = {{"g4-dump restart", "Restart the only lidar"}}},
       restart);
 }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/settings.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/lidar_options.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "io/command_source.hpp"
 #include "io/input.hpp"
@@ -27,8 +29,9 @@ struct device_facts {
   std::string source;
   std::optional<device_information> information{};
   std::vector<maybe_answer> settings{all_settings().size()};  ///< In the order of all_settings().
-  const g4lidar::model* model = nullptr;       ///< That a recording states, or that was named.
-  std::string_view why_unknown = "no answer";  ///< For settings that a G4 can be asked for.
+  /// The model, and the others that send the same bytes; empty: not known.
+  std::vector<const g4lidar::model*> candidates{};
+  std::string_view why_unknown = "no answer";  ///< For settings that a lidar can be asked for.
 };
 
 device_facts facts_of_recording(const std::string& source) {
@@ -58,13 +61,7 @@ device_facts facts_of_device(const common_options& options) {
   device_facts facts{.source = std::string(lidar.name())};
   if (!lidar.information().is_known()) listen(lidar);
   if (lidar.information().is_known()) facts.information = lidar.information();
-  const bool is_unnamed =
-      kind_of_source(options.source) == source_kind::device && options.expected.model == nullptr;
-  if (!is_unnamed) {
-    facts.model = model_of(options);
-  } else if (facts.information) {
-    facts.model = model_with_id(facts.information->model, link_kind::two_way);
-  }
+  facts.candidates.assign(source.candidates().begin(), source.candidates().end());
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     facts.settings[i] = read_setting(lidar, all_settings()[i]);
   }
@@ -74,7 +71,7 @@ device_facts facts_of_device(const common_options& options) {
 device_facts facts_of(const common_options& options) {
   if (kind_of_source(options.source) != source_kind::recording) return facts_of_device(options);
   device_facts facts = facts_of_recording(options.source);
-  facts.model = model_of(options);
+  if (const auto* const stated = model_of(options)) facts.candidates = {stated};
   return facts;
 }
 
@@ -83,18 +80,28 @@ std::string words_for(const device_facts& facts, std::size_t index) {
   std::string text = text_of(facts.settings[index]);
   if (facts.settings[index]) return text;
   const setting_info& which = all_settings()[index];
-  if (facts.model != nullptr && !has_request(*facts.model, which.change)) {
-    return fmt::format("{} ({} has no such setting)", text, facts.model->name);
+  const g4lidar::model* const of = facts.candidates.empty() ? nullptr : facts.candidates.front();
+  if (of != nullptr && !has_request(*of, which.change)) {
+    return fmt::format("{} ({} has no such setting)", text, of->name);
   }
-  const bool can_ask = which.query.has_value();
-  return fmt::format("{} ({})", text, can_ask ? facts.why_unknown : "a G4 cannot be asked for it");
+  if (which.query) return fmt::format("{} ({})", text, facts.why_unknown);
+  return fmt::format("{} ({} cannot be asked for it)", text,
+                     of != nullptr ? fmt::format("a {}", of->name) : "a lidar");
+}
+
+/// Its name, and which others it may be.
+std::string words_for(std::span<const g4lidar::model* const> candidates) {
+  std::string text(candidates.front()->name);
+  if (candidates.size() < 2) return text;
+  return fmt::format("{} (or {}: name yours with --model)", text,
+                     model_words(candidates.subspan(1)));
 }
 
 void write(const device_facts& facts, bool as_json, output& out) {
   ordered_json all{{"source", facts.source}};
   all.update(json_of(facts.information));
-  if (!as_json && facts.information && facts.information->model == model_g4) all["model"] = "G4";
-  if (!as_json && facts.model != nullptr) all["model"] = facts.model->name;
+  if (!as_json && !facts.candidates.empty()) all["model"] = words_for(facts.candidates);
+  if (as_json) all["lidar"] = json_of(facts.candidates);
   for (std::size_t i = 0; i < facts.settings.size(); ++i) {
     ordered_json& value = all[std::string(all_settings()[i].name)];
     value = as_json ? json_of(facts.settings[i]) : ordered_json(words_for(facts, i));
@@ -111,10 +118,12 @@ exit_code info(const common_options& options) {
 
 constexpr const char* info_details =
     R"(A line for each of: source, model, serial, firmware, hardware, and the settings by the names
-that set takes: sample_rate, frequency, direction, constant, idle, protection. A G4 cannot be asked
-for constant and protection, and old firmware does not answer for direction: these are unknown,
-with the reason.
-With --json, model is a number (a G4 is 5), sample_rate is in Hz, on is true, unknown is null.
+that set takes: sample_rate, frequency, direction, constant, idle, protection. What the model does not
+have, or cannot be asked for, is unknown, with the reason. Of a G4 these are constant and protection,
+and with old firmware direction.
+Some models send the same bytes: then model also names the others, and --model decides.
+With --json, model is a number (a G4 is 5), lidar has the word of the model and those of all candidates,
+sample_rate is in Hz, on is true, unknown is null.
 
 No setting is changed, but a device that is scanning is stopped first; that is reported.)";
 
@@ -129,7 +138,7 @@ verb make_info_verb() {
       {.name = "info",
        .summary = "Print device information and settings",
        .details = info_details,
-       .examples = {{"g4-dump info", "Information about the only G4"},
+       .examples = {{"g4-dump info", "Information about the only lidar"},
                     {"g4-dump info /dev/ttyUSB0 --json", "The same of one port, as JSON"}}},
       info, true);
 }

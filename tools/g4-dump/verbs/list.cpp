@@ -53,7 +53,7 @@ void probe(std::vector<listed_port>& ports, const list_options& options) {
   for (listed_port& each : ports) {
     if (!options.all && !is_g4_bridge(each.port)) continue;
     if (interrupt() != 0) throw interrupted();
-    const auto& answer = each.answer.emplace(ask_at(each.port, options.common.expected.rate()));
+    const auto& answer = each.answer.emplace(ask_at(each.port, options.common.expected.baud));
     if (!answer) logger::info(in_tool_words(answer.error().message()) + "\n");
   }
 }
@@ -106,9 +106,8 @@ nlohmann::ordered_json object_of(const listed_port& listed) {
   if (answer && *answer) {
     const recognised_lidar& lidar = **answer;
     if (lidar.device.model != 0) all["device"] = json_of(std::optional(lidar.device));
-    auto words = nlohmann::ordered_json::array();
-    for (const model* each : lidar.candidates) words.push_back(each->word);
-    all["lidar"] = {{"model", lidar.model->word}, {"baud", lidar.baud}, {"candidates", words}};
+    all["lidar"] = json_of(lidar.candidates);
+    all["lidar"]["baud"] = lidar.baud;
   }
   all["problem"] = nullptr;
   if (answer && !*answer) {
@@ -128,7 +127,7 @@ exit_code verdict_on(const std::vector<listed_port>& ports, bool probed) {
     if (is_g4_bridge(port) && answer) return exit_code_for(answer->error());
   }
   logger::info(ports.empty() ? "no serial port found\n"
-                             : "no serial port has the USB bridge of a G4\n");
+                             : "no serial port has the USB bridge of a lidar (10c4:ea60)\n");
   return exit_code::no_device;
 }
 
@@ -161,7 +160,7 @@ constexpr const char* list_details =
   PATH, USB  the port, and its place on the USB bus; as SOURCE: usb:1-1.4
   ID         USB vendor and product
   DRIVER     kernel driver
-  BRIDGE     g4: a CP2102, as in a G4 and in many other devices; other; -: not a USB device
+  BRIDGE     g4: a CP2102, as in a G4, an X4 and many other devices; other; -: not a USB device
   OPEN       whether this user may open it
   BY-ID      the link made by udev
   ANSWER     with --probe: the model (g4, x4, ...), or the problem (busy, silence, ...); -: not
@@ -176,7 +175,7 @@ With --json: an object for each port, with path, usb, id, driver, is_g4_bridge, 
 holder, manufacturer, product, usb_serial, device (model, serial, firmware, hardware), lidar
 (model, baud, candidates) and problem (name, message); unknown values are null.
 
---probe listens at each port with the bridge of a G4 that no process has open. Where it is silent,
+--probe listens at each port with such a bridge that no process has open. Where it is silent,
 it asks with two bytes, at each baud rate that lidars have; --baud: at this one only. It stops a
 lidar that is scanning, if that has commands. It takes at most 3 s a port. The exit code is 3 if
 no port has that bridge; with --probe, if no lidar was found, that of the problem at the first
@@ -195,9 +194,9 @@ int print_overview() {
   std::vector<listed_port> ports = ports_with_holders();
   std::erase_if(ports, [](const listed_port& each) { return !is_g4_bridge(each.port); });
   if (ports.empty()) {
-    out.write("No serial port has the USB bridge of a G4. A simulated one: g4-dump view sim:\n");
+    out.write("No serial port has the USB bridge of a lidar. A simulated one: g4-dump view sim:\n");
   } else {
-    out.write("Ports with the USB bridge of a G4 (g4-dump list --probe asks who answers):\n\n");
+    out.write("Ports with the USB bridge of a lidar (g4-dump list --probe asks who answers):\n\n");
     write_table(ports, false, out);
   }
   out.write("\nCommands (g4-dump COMMAND --help explains one, g4-dump --help the sources):\n\n");
@@ -210,18 +209,17 @@ int print_overview() {
 
 verb make_list_verb() {
   const auto options = std::make_shared<list_options>();
-  return {
-      .name = "list",
-      .summary = "List serial ports and the lidars attached to them",
-      .options = joined(
-          flag_row("--probe", "Search a lidar at each port with a bridge of a G4", options->probe),
-          flag_row("--all", "Query every port: sends commands to any device", options->all),
-          json_row(options->common), output_row(options->common), baud_row(options->common)),
-      .details = list_details,
-      .examples = {{"g4-dump list", "The serial ports"},
-                   {"g4-dump list --probe", "The lidars, their models and baud rates"}},
-      .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
-      .run = [options] { return list(*options); }};
+  return {.name = "list",
+          .summary = "List serial ports and the lidars attached to them",
+          .options = joined(
+              flag_row("--probe", "Search a lidar at each port with such a bridge", options->probe),
+              flag_row("--all", "Query every port: sends commands to any device", options->all),
+              json_row(options->common), output_row(options->common), baud_row(options->common)),
+          .details = list_details,
+          .examples = {{"g4-dump list", "The serial ports"},
+                       {"g4-dump list --probe", "The lidars, their models and baud rates"}},
+          .exits = {0, 2, 3, 4, 5, 6, 7, 8, 10, 11, 130},
+          .run = [options] { return list(*options); }};
 }
 
 }  // namespace g4_tool

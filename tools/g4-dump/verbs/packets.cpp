@@ -138,7 +138,16 @@ void list_lidar(const packets_options& options) {
   std::string lines;
   callback_sink kept([&](std::string_view text) { lines += text; });
   const time_style wanted = common.time.value_or(time_style::absolute);
-  protocol_log log(options.style, time_shift(wanted, wall_clock().ahead().count()), kept);
+  std::optional<protocol_log> log;
+  const g4lidar::model* logged = nullptr;
+  const auto begin = [&](const g4lidar::model& which) {
+    if (log && logged->word == which.word) return;
+    if (log) log->finish();
+    logged = &which;
+    log.emplace(style_for(options.style, which), time_shift(wanted, wall_clock().ahead().count()),
+                kept);
+  };
+  begin(g4_model);  // if nothing can be opened
   const auto write = [&] {
     kept.flush();
     out.write(lines);
@@ -147,20 +156,25 @@ void list_lidar(const packets_options& options) {
   read_sink sink;
   sink.points = [](std::span<const point>) {};
   sink.pulse = write;
-  sink.is_done = [&] { return log.is_done(); };
+  sink.is_done = [&] { return log->is_done(); };
   try {
     lidar_options how;
-    how.wrap = for_each_connection(
-        [&](auto port) { return std::make_unique<logged_transport>(std::move(port), log); });
+    how.wrap = [&](std::unique_ptr<connector> from) {
+      const g4lidar::model* const which = from->traits().model;
+      begin(which != nullptr ? *which : g4_model);
+      return for_each_connection([&](auto port) {
+        return std::make_unique<logged_transport>(std::move(port), *log);
+      })(std::move(from));
+    };
     opened_source source(common, how);
     read_source(source, common, sink, out);
   } catch (const failure&) {  // the received bytes may show the cause
     write();
-    log.bytes_from_device() > 0 ? end(log, out) : out.commit();
+    log->bytes_from_device() > 0 ? end(*log, out) : out.commit();
     throw;
   }
   write();
-  end(log, out);
+  end(*log, out);
 }
 
 int run(packets_options options) {
@@ -204,7 +218,7 @@ verb make_packets_verb() {
           flag_row("--errors", "Show only skipped bytes and suspect packets", style.errors),
           ending_rows(common), in_group("Output form", {time_row(common)}), device_rows(common)),
       .details = packets_details,
-      .examples = {{"g4-dump packets -n 20", "The first 20 lines of the only G4"},
+      .examples = {{"g4-dump packets -n 20", "The first 20 lines of the only lidar"},
                    {"g4-dump packets sim: --hex -d 1s", "All bytes of a simulated G4"},
                    {"g4-dump packets walk.bin --errors",
                     "The bytes of a file that cannot be read"}},

@@ -120,7 +120,7 @@ verb make_dump_verb() {
                             filter_rows(common), near_row(common.marks.near), shape_rows(common),
                             device_rows(common)),
           .details = fmt::format("{}\n\n{}\n\n{}", point_columns, shape_text, ending_text),
-          .examples = {{"g4-dump", "Print the points of the only G4"},
+          .examples = {{"g4-dump", "Print the points of the only lidar"},
                        {"g4-dump -n 1000 -f csv -o points.csv", "Write 1000 points to a csv file"},
                        {"g4-dump --frame robot --fov -90:90 --range 0.28:16 --unit m",
                         "Print the points in front of the lidar, in meters"},

@@ -129,7 +129,7 @@ verb make_record_verb() {
       .options = joined(file_rows(*options), scan_rows(*options), ending_rows(common),
                         device_rows(common)),
       .details = record_details,
-      .examples = {{"g4-dump record walk.mcap", "Record the only G4 until ^C"},
+      .examples = {{"g4-dump record walk.mcap", "Record the only lidar until ^C"},
                    {"g4-dump record /dev/ttyUSB0 -o walk.mcap -d 10min",
                     "Record one port for ten minutes"},
                    {"g4-dump record -o day.mcap --compress --rotate-time 1h --on-loss wait",

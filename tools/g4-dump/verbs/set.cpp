@@ -58,16 +58,12 @@ void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, b
 }
 
 /// Throws a bad_value if the lidar cannot have one of the values: then nothing is changed.
-void check(const set_options& options, const device_information& who) {
-  const g4lidar::model* const which = options.expected.model != nullptr
-                                          ? options.expected.model
-                                          : model_with_id(who.model, link_kind::two_way);
-  if (which == nullptr) return;
+void check(const set_options& options, const g4lidar::model& which) {
   for (const setting_change& each : options.changes) {
     const request wanted = change_to(each.value);
-    if (!has_request(*which, wanted.what) || is_possible(wanted, *which)) continue;
+    if (!has_request(which, wanted.what) || is_possible(wanted, which)) continue;
     throw bad_value(fmt::format("{}={}: a {} cannot have it", each.which->name, text_of(each.value),
-                                which->name));
+                                which.name));
   }
 }
 
@@ -87,7 +83,7 @@ int set(const set_options& options) {
     throw bad_value("nothing to set; give NAME=VALUE such as sample_rate=9k");
   output out("-");
   command_source source(options, task::configuring);
-  check(options, source.lidar().information());
+  check(options, *candidates_of(source.lidar()).front());
   if (!options.json) write_row(out, "NAME", "BEFORE", "AFTER");
   for (const setting_change& each : options.changes) {
     if (interrupt() != 0) return 128 + interrupt();
@@ -122,7 +118,7 @@ verb make_set_verb() {
     add_change(*set, word);
   };
   option_row source = source_argument(*options);
-  source.help = "The lidar (the only G4)";
+  source.help = "The lidar (the only lidar)";
   source.take = [take_change, as_source = source.take](const std::string& word) {
     is_change(word) ? take_change(word) : as_source(word);
   };

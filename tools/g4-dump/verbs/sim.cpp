@@ -140,7 +140,7 @@ With --link PATH the command serves a device that answers commands, on a pseudo-
 which the symbolic link PATH leads, until ^C. With --tcp PORT it serves a device for
 tcp:HOST:PORT, at 127.0.0.1 unless an ADDRESS such as 0.0.0.0 is given. With --register it serves
 a device in the directory that the environment variable G4LIDAR_SIM_DIR names. Programs that have
-the same variable discover it there as a G4: g4-dump list, serial:NUMBER, and a source that is
+the same variable discover it there: g4-dump list, serial:NUMBER, and a source that is
 left out.)";
 
 /// "NAME=VALUE", as in a source `sim:?NAME=VALUE`.
@@ -298,7 +298,7 @@ verb make_sim_verb() {
   const auto options = std::make_shared<sim_options>();
   return {
       .name = "sim",
-      .summary = "Simulate a G4: write its bytes, or serve a device",
+      .summary = "Simulate a lidar: write its bytes, or serve a device",
       .options = joined(file_rows(*options), scanner_rows(options->setup.device.scanner),
                         odometry_rows(*options), served_rows(*options)),
       .details = sim_details,

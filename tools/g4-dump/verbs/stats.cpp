@@ -195,7 +195,7 @@ verb make_stats_verb() {
           joined(duration_row("--watch", "Print a line each TIME: 1s", options->interval),
                  json_row(common), output_row(common), ending_rows(common), device_rows(common)),
       .details = stats_details,
-      .examples = {{"g4-dump stats", "The counts of 5 s of the only G4"},
+      .examples = {{"g4-dump stats", "The counts of 5 s of the only lidar"},
                    {"g4-dump stats --watch 1s", "A line each second"},
                    {"g4-dump stats sim: --watch 500ms -d 2s --json", "A simulated G4, as JSON"}},
       .run = [options] { return stats(*options); }};

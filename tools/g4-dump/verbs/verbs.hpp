@@ -35,7 +35,7 @@ namespace g4_tool {
 /// All of them, in the order of the help.
 [[nodiscard]] std::vector<verb> all_verbs();
 
-/// Prints the ports that may have a G4, without sending anything, and the commands. Returns the exit code.
+/// Prints the ports that may have a lidar, without sending anything, and the commands. Returns the exit code.
 [[nodiscard]] int print_overview();
 
 /// The table of list, of all ports, without asking a device.

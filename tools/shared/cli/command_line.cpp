@@ -258,7 +258,7 @@ std::string source_list() {
 std::string app_footer(const program& ours) {
   return fmt::format(
       "\nThe default command is {}. On a terminal, without any word, the attached lidars and the "
-      "commands\nare listed. The default SOURCE is the only G4. Other sources:\n{}Data goes to "
+      "commands\nare listed. The default SOURCE is the only lidar. Other sources:\n{}Data goes to "
       "standard output, messages go to standard error.\n{}\nHelp for a command: {} COMMAND --help, "
       "or man {}-COMMAND",
       ours.default_verb, source_list(), exit_code_list({}), ours.name, ours.name);
@@ -295,8 +295,8 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
                        "Print the version and exit");
   app.fallthrough();
   app.option_defaults()->disable_flag_override();
-  app.footer(is_single ? "\nThe default SOURCE is the only G4. Other sources:\n" + source_list() +
-                             "\n" + footer_of(verbs.front())
+  app.footer(is_single ? "\nThe default SOURCE is the only lidar. Other sources:\n" +
+                             source_list() + "\n" + footer_of(verbs.front())
                        : app_footer(ours));
   if (ours.has_config) {
     app.set_config("--config", "", "Read options from a TOML file")->type_name("FILE");

@@ -51,7 +51,7 @@ bool wants_color(int descriptor) noexcept {
 }
 
 option_row source_argument(common_options& options) {
-  return text_row("SOURCE", "", "The lidar, a recording, raw bytes, or sim: (the only G4)",
+  return text_row("SOURCE", "", "The lidar, a recording, raw bytes, or sim: (the only lidar)",
                   options.source, completion::source);
 }
 
@@ -230,14 +230,13 @@ option_row format_row(text_format& into, const char* help) {
 }
 
 option_rows baud_row(common_options& options) {
-  return in_group("Device",
-                  {number_row("--baud", "RATE", "Baud rate (by the model; of a G4 230400)",
-                              options.expected.baud, 1U, 10'000'000U)});
+  return in_group("Device", {number_row("--baud", "RATE", "Baud rate (searched, or by --model)",
+                                        options.expected.baud, 1U, 10'000'000U)});
 }
 
 option_row model_row(common_options& options) {
   return value_row(
-      "--model", "MODEL", "The model of lidar: g4, x4, x2 (g4, or as a file shows)",
+      "--model", "MODEL", "The model: x4, x2, ... (searched, or as a file shows)",
       options.expected.model, [](const std::string& word) {
         const g4lidar::model* const found = g4lidar::model_named(word);
         if (found != nullptr) return found;

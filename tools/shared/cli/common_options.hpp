@@ -55,8 +55,9 @@ enum class loss_rule : unsigned char {
 
 /// What is at the source.
 struct expected_device {
-  std::uint32_t baud = 0;                 ///< 0: the usual rate of the model.
-  const g4lidar::model* model = nullptr;  ///< What sends the bytes; null: as a file shows, a G4.
+  std::uint32_t baud = 0;  ///< 0: the usual rate of the model, or searched.
+  /// What sends the bytes; null: as a file shows, or searched.
+  const g4lidar::model* model = nullptr;
 
   [[nodiscard]] std::uint32_t rate() const noexcept {
     if (baud != 0) return baud;
@@ -65,7 +66,7 @@ struct expected_device {
 };
 
 struct common_options {
-  std::string source;        ///< Empty: the only G4.
+  std::string source;        ///< Empty: the only lidar.
   std::string output = "-";  ///< `-`: standard output.
   expected_device expected;
   std::uint64_t count = 0;               ///< The largest number of records; 0: no limit.

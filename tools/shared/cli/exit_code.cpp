@@ -53,7 +53,7 @@ exit_code exit_code_for(const g4lidar::error& why, bool was_running) noexcept {
 }
 
 std::span<const tool_word> tool_words() noexcept {
-  static constexpr std::array<tool_word, 13> words{{
+  static constexpr std::array<tool_word, 14> words{{
       {"plug it in and open it again",
        "plug it in and run the command again; --on-loss reconnect "
        "waits for it"},
@@ -67,10 +67,11 @@ std::span<const tool_word> tool_words() noexcept {
       {"Start the scan first", "Start the scan first: g4-dump start"},
       {"the program called wake()", "the command was interrupted"},
       {"open the lidar itself for that", "give the lidar as SOURCE"},
-      {"Without a name the only G4", "Without SOURCE the only G4"},
+      {"Without a name the only lidar", "Without SOURCE the only lidar"},
       {"the option cannot have this value", "SOURCE or an option cannot have this value"},
       {"Correct the value or omit the option; every option has a default",
        "Correct it, or leave it out"},
+      {"name it with the option model", "name it with --model"},
       {", or give lidar_options::answer_time a larger value", ""},
   }};
   return words;

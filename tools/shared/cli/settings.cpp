@@ -146,4 +146,11 @@ nlohmann::ordered_json json_of(const std::optional<device_information>& who) {
           {"hardware", who->hardware}};
 }
 
+nlohmann::ordered_json json_of(std::span<const g4lidar::model* const> candidates) {
+  if (candidates.empty()) return nullptr;
+  auto words = nlohmann::ordered_json::array();
+  for (const g4lidar::model* each : candidates) words.push_back(each->word);
+  return {{"model", candidates.front()->word}, {"candidates", words}};
+}
+
 }  // namespace g4_tool

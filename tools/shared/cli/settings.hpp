@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,5 +51,7 @@ struct setting_change {
 
 /// An object with model, serial, firmware and hardware, which are null where nothing is known.
 [[nodiscard]] nlohmann::ordered_json json_of(const std::optional<g4lidar::device_information>& who);
+/// The word of the first model, and those of all: they send the same bytes. Null if there is none.
+[[nodiscard]] nlohmann::ordered_json json_of(std::span<const g4lidar::model* const> candidates);
 
 }  // namespace g4_tool

@@ -176,6 +176,13 @@ void report_model(const g4lidar::model& found, bool is_usual) {
                   found.name, samples, others));
 }
 
+void report_candidates(std::span<const g4lidar::model* const> candidates) {
+  if (candidates.size() < 2) return;
+  logger::info(
+      fmt::format("read as {}: its bytes do not name their model; --model names another one: {}\n",
+                  candidates.front()->name, model_words(candidates.subspan(1))));
+}
+
 void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
 
 const g4lidar::model* model_of(const common_options& options,
@@ -195,6 +202,7 @@ const g4lidar::model* model_of(const common_options& options,
   const auto stated = model_of_source(options.source, [] { return interrupt() != 0; });
   if (interrupt() != 0) throw interrupted();
   const g4lidar::model* const found = value_of(stated);
+  if (found == nullptr) return nullptr;
   if (named != nullptr && named->word != found->word) {
     throw bad_value(fmt::format("--model: {}, and {} states {}", named->word,
                                 in_quotes(options.source), found->word));
@@ -211,10 +219,12 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
     how.device_wait = std::chrono::milliseconds::max();
   if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
-  if (how.model != nullptr || kind_of_source(options.source) != source_kind::raw_bytes) return how;
-  how.wrap = [inner = std::move(how.wrap)](std::unique_ptr<connector> from) {
+  if (how.model != nullptr) return how;
+  const bool is_raw = kind_of_source(options.source) == source_kind::raw_bytes;
+  how.wrap = [inner = std::move(how.wrap), is_raw](std::unique_ptr<connector> from) {
     const connector_traits behind = from->traits();
-    if (behind.model != nullptr) report_model(*behind.model, behind.is_usual_model);
+    report_candidates(behind.candidates);
+    if (is_raw && behind.model != nullptr) report_model(*behind.model, behind.is_usual_model);
     return inner ? inner(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
   };
   return how;

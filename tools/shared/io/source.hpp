@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "cli/common_options.hpp"
 #include "g4lidar/lidar.hpp"
@@ -33,15 +34,17 @@ for_each_connection(transport_tap tap);
 /// bytes show is logged when they are opened.
 [[nodiscard]] lidar_options options_for(const common_options& options, lidar_options how);
 /// What sends the bytes of the source: that of --model or of the name, or what a file shows. Raw bytes that
-/// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before the first bytes of a pipe are read, which
-/// input::recognise() does. Throws a failure, and a bad_value if a recording is of another model than that
-/// of --model.
+/// show it are reported by report_model(), or stored in `shown` and not reported. Null: not known before the first
+/// bytes of a pipe are read, which input::recognise() does, or before a device is opened, which searches it: then it is
+/// opened_source::model(). Throws a failure, and a bad_value if a recording is of another model than that of --model.
 [[nodiscard]] const g4lidar::model* model_of(const common_options& options,
                                              std::optional<recognised_model>* shown = nullptr);
 /// Logs what raw bytes were recognised as, in a line, unless it is a G4 for certain: which models also send
 /// such bytes, if the bytes do not name theirs (`is_usual`).
 void report_model(const g4lidar::model& found, bool is_usual);
 void report_model(const recognised_model& found);
+/// Logs between which models the bytes of a device do not decide, if there are several.
+void report_candidates(std::span<const g4lidar::model* const> candidates);
 /// The error of a lidar that was opened so, in the words of the tool.
 [[nodiscard]] failure failure_of(const common_options& options, const g4lidar::error& why);
 
@@ -61,6 +64,9 @@ class opened_source {
   [[nodiscard]] g4lidar::lidar& lidar() noexcept {
     return *lidar_;  // NOLINT(bugprone-unchecked-optional-access): made by the constructor
   }
+
+  /// The model as which the lidar is read.
+  [[nodiscard]] const g4lidar::model& model() noexcept { return *candidates_of(lidar()).front(); }
 
   /// The simulated lidar that is read, with the robot that carries it; null for every other source.
   [[nodiscard]] const sim::simulated_source* simulation() const noexcept { return simulation_; }

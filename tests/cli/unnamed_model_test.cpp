@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// The commands at ports of lidars of each kind, when nobody names the model.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "program.hpp"
+#include "simulator.hpp"
+
+namespace {
+
+using cli::outcome;
+using cli::run;
+using cli::simulator;
+using nlohmann::json;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// What is behind a port, by the manuals: not by the table of the library.
+struct kind {
+  std::string word;
+  std::string name;
+  bool is_scanning;         ///< A dead host has left it scanning.
+  std::string columns;      ///< After those of every model.
+  double revolution;        ///< Samples: kHz and Hz of the simulated device.
+  std::string others = {};  ///< Models that send the same.
+};
+
+const std::vector<kind>& kinds() {
+  static const std::vector<kind> all{
+      {"g4", "G4", false, "", 9000 / 7.0},
+      {"x4", "X4", false, ",sample_flags", 5000 / 7.0},
+      {"x2", "X2", false, ",sample_flags", 3000 / 7.0, "x2l, x3"},
+      {"t-mini-pro", "T-mini Pro", false, ",intensity,sample_flags", 4000 / 10.0},
+      {"tg15", "TG15", false, "", 20'000 / 7.0},
+      {"g2", "G2", true, ",intensity", 5000 / 7.0}};
+  return all;
+}
+
+class UnnamedModel : public cli::scratch, public testing::WithParamInterface<kind> {
+ protected:
+  void serve(const std::string& word, bool is_scanning = false) {
+    std::vector<std::string> options{"--model", word};
+    if (is_scanning) options.insert(options.end(), {"--fault", "scanning"});
+    served_ = std::make_unique<simulator>(port_, options);
+  }
+  void serve() { serve(GetParam().word, GetParam().is_scanning); }
+
+  const std::string port_ = path("lidar");
+  std::unique_ptr<simulator> served_;
+};
+
+TEST_P(UnnamedModel, InfoNamesItAndWhatSendsTheSame) {
+  serve();
+  const outcome done = run({"info", port_, "--json"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const json found = json::parse(done.out).at("lidar");
+  EXPECT_EQ(found.at("model"), GetParam().word);
+  EXPECT_EQ(found.at("candidates").front(), GetParam().word);
+  EXPECT_EQ(found.at("candidates").size() > 1, !GetParam().others.empty()) << found;
+  if (GetParam().is_scanning)
+    EXPECT_THAT(done.err, HasSubstr(": was scanning and has been stopped"));
+  const outcome text = run({"info", port_});
+  ASSERT_EQ(text.code, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("\nmodel       " + GetParam().name));
+  const std::string choice = " (or " + GetParam().others;
+  EXPECT_EQ(text.out.find(choice) != std::string::npos, !GetParam().others.empty()) << text.out;
+  EXPECT_EQ(text.err.find("--model names another one: " + GetParam().others) != std::string::npos,
+            !GetParam().others.empty())
+      << text.err;
+}
+
+TEST_P(UnnamedModel, PointsHaveItsColumnsAndRevolutionsItsLength) {
+  serve();
+  const outcome points = run({"dump", port_, "-n", "50", "-f", "csv"});
+  ASSERT_EQ(points.code, 0) << points.err;
+  EXPECT_THAT(points.out,
+              StartsWith("scan,angle_deg,range_mm,time_ns" + GetParam().columns + "\n"));
+  const outcome scans = run({"scan", port_, "-n", "2", "-f", "jsonl"});
+  ASSERT_EQ(scans.code, 0) << scans.err;
+  const json last = json::parse(scans.out.substr(scans.out.find('\n') + 1));
+  EXPECT_NEAR(last.at("points"), GetParam().revolution, 0.05 * GetParam().revolution);
+  EXPECT_FALSE(last.at("partial"));
+}
+
+TEST_P(UnnamedModel, EveryCommandReadsIt) {
+  serve();
+  const outcome picture = run({"view", port_, "--once"});
+  EXPECT_EQ(picture.code, 0) << picture.err;
+  const std::string file = path("walk.mcap");
+  const outcome recorded = run({"record", port_, file, "-n", "2"});
+  ASSERT_EQ(recorded.code, 0) << recorded.err;
+  const outcome info = run({"info", file, "--json"});
+  EXPECT_EQ(json::parse(info.out).at("lidar").at("model"), GetParam().word) << info.err;
+  const outcome packets = run({"packets", port_, "-n", "20"});
+  EXPECT_EQ(packets.code, 0) << packets.err;
+  EXPECT_THAT(packets.out, Not(HasSubstr("bad checksum")));
+  const outcome stats = run({"stats", port_, "-d", "1s"});
+  EXPECT_EQ(stats.code, 0) << stats.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, UnnamedModel, testing::ValuesIn(kinds()), [](const auto& of) {
+  std::string name = of.param.word;
+  std::erase(name, '-');
+  return name;
+});
+
+/// Limits and errors.
+class FoundModel : public UnnamedModel {};
+
+TEST_F(FoundModel, SettingsHaveItsLimits) {
+  serve("tg15");  // 3 to 16 Hz
+  const outcome slow = run({"set", port_, "frequency=4", "--json"});
+  ASSERT_EQ(slow.code, 0) << slow.err;
+  EXPECT_EQ(json::parse(slow.out).at("after"), 4.0);
+  served_.reset();
+  std::filesystem::remove(port_);
+  serve("t-mini-pro");  // 6 to 12 Hz
+  const outcome refused = run({"set", port_, "frequency=5"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("frequency=5: a T-mini Pro cannot have it"));
+}
+
+TEST_F(FoundModel, RefusedSettingNamesTheCandidatesAndHowToChoose) {
+  serve("x2");
+  const outcome refused = run({"set", port_, "frequency=7"});
+  EXPECT_EQ(refused.code, 8) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr(", scan frequency 7 Hz, X2 (or x2l, x3"));
+  EXPECT_THAT(refused.err, HasSubstr("If the lidar is another model, name it with"));
+  EXPECT_THAT(refused.err, HasSubstr("--model"));
+}
+
+TEST_F(FoundModel, NamedModelDecides) {
+  serve("x2");
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"info", port_, "--json", "--model", "x3"}, {"info", port_ + "?model=x3", "--json"}}) {
+    const outcome done = run(words);
+    ASSERT_EQ(done.code, 0) << done.err;
+    const json found = json::parse(done.out).at("lidar");
+    EXPECT_EQ(found, (json{{"model", "x3"}, {"candidates", {"x3"}}}));
+    EXPECT_THAT(done.err, Not(HasSubstr("read as")));
+  }
+}
+
+TEST_F(FoundModel, NamedModelThatTheDeviceContradicts_ErrorNamesBoth) {
+  serve("g2");
+  for (const char* const command : {"info", "dump", "scan", "view", "health", "stop", "start"}) {
+    const outcome done = run({command, port_, "--model", "g1"});
+    EXPECT_EQ(done.code, 5) << command << done.err;
+    EXPECT_THAT(done.err, HasSubstr("model 15 (G2), not G1")) << command;
+  }
+}
+
+TEST_F(FoundModel, CommandsStartAndStopAnX4) {
+  serve("x4");
+  const outcome started = run({"start", port_});
+  EXPECT_EQ(started.code, 0) << started.err;
+  const outcome stopped = run({"stop", port_});
+  EXPECT_EQ(stopped.code, 0) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr(": was scanning and has been stopped"));
+  const outcome again = run({"stop", port_});
+  EXPECT_THAT(again.err, HasSubstr(": stopped; it was not scanning"));
+  EXPECT_THAT(served_->log(), Not(HasSubstr("40")));
+}
+
+/// Several lidars at one computer.
+class SeveralModels : public cli::scratch {
+ protected:
+  SeveralModels() {
+    std::filesystem::create_directories(path("ports"));
+    ::setenv("G4LIDAR_SIM_DIR", path("ports").c_str(), 1);
+  }
+  ~SeveralModels() override { ::unsetenv("G4LIDAR_SIM_DIR"); }
+  void serve(const std::string& word) {
+    const std::string link = path("ports/" + word);
+    all_.push_back(std::make_unique<simulator>(link, std::vector<std::string>{"--model", word}));
+  }
+
+  std::vector<std::unique_ptr<simulator>> all_;
+};
+
+TEST_F(SeveralModels, ListNamesEach) {
+  for (const char* const word : {"g4", "x2", "t-mini-pro", "x4"}) serve(word);
+  const outcome done = run({"list", "--probe", "--json"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  std::vector<std::string> found;
+  std::string rest = done.out;
+  for (std::size_t end = 0; (end = rest.find('\n')) != std::string::npos; rest.erase(0, end + 1)) {
+    const json port = json::parse(rest.substr(0, end));
+    if (port.at("driver") != "sim") continue;
+    EXPECT_THAT(port.at("path").get<std::string>(),
+                EndsWith("/" + port.at("lidar").at("model").get<std::string>()));
+    found.push_back(port.at("lidar").at("model"));
+  }
+  EXPECT_THAT(found, ::testing::UnorderedElementsAre("g4", "x2", "t-mini-pro", "x4"));
+}
+
+TEST_F(SeveralModels, EachIsOpenedByItsUsbPlaceOrItsNumber) {
+  serve("x4");
+  serve("x2");
+  for (const char* const word : {"x4", "x2"}) {
+    const outcome done = run({"info", std::string("usb:sim-") + word, "--json"});
+    ASSERT_EQ(done.code, 0) << done.err;
+    EXPECT_EQ(json::parse(done.out).at("lidar").at("model"), word);
+  }
+  const json known = json::parse(run({"info", "usb:sim-x4", "--json"}).out);
+  const outcome numbered =
+      run({"info", "serial:" + known.at("serial").get<std::string>(), "--json"});
+  ASSERT_EQ(numbered.code, 0) << numbered.err;
+}
+
+TEST_F(SeveralModels, WithoutANameAllAreCounted) {
+  serve("x4");
+  const outcome only = run({"info", "--json"});
+  ASSERT_EQ(only.code, 0) << only.err;
+  EXPECT_EQ(json::parse(only.out).at("lidar").at("model"), "x4");
+  serve("x2");
+  const outcome both = run({"info"});
+  EXPECT_NE(both.code, 0);
+  EXPECT_THAT(both.err, HasSubstr("more than one lidar is connected"));
+  EXPECT_THAT(both.err, HasSubstr("/x4"));
+  EXPECT_THAT(both.err, HasSubstr("/x2"));
+}
+
+}  // namespace
