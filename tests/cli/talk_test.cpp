@@ -55,6 +55,7 @@ TEST_F(Talk, Info_AsJson) {
                                {"serial", "2021101000070073"},
                                {"firmware", "3.2"},
                                {"hardware", 3},
+                               {"lidar", {{"model", "g4"}, {"candidates", {"g4"}}}},
                                {"sample_rate", 9000},
                                {"frequency", 7.0},
                                {"direction", "cw"},
