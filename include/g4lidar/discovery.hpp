@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -103,6 +104,8 @@ struct search_options {
   /// Whether the user has named the port: if nothing arrives, DTR gets a pulse, because some models need
   /// it to turn. Takes 2 s more.
   bool may_pulse_dtr = false;
+  /// Called about every 50 ms while it listens, if it is set; true ends the search with cancelled.
+  std::function<bool()> is_cancelled{};
 };
 
 /// Finds out which lidar is attached to an open port, and at which rate it sends. Listens, and where it is

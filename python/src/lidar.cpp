@@ -268,20 +268,13 @@ void bind_reading(Class& made) {
           },
           "What the device reported about itself when it was opened.")
       .def_prop_ro(
-          "model",
-          [](live_lidar& on) {
-            return on.look([](lidar& device) { return candidates_of(device).front()->word; });
-          },
-          "The model as which it is read, 'x2': the first of `candidates`.")
-      .def_prop_ro(
           "candidates",
           [](live_lidar& on) {
             return on.look([](lidar& device) { return words_of(candidates_of(device)); });
           },
           nb::sig("def candidates(self) -> list[str]"),
-          "All models that send such bytes, `model` first. One alone if it was named, or if the "
-          "device answers. "
-          "If the first is not yours, name yours: open(model='x3').")
+          "All models that send such bytes; it is read as the first. One alone if it was named, or "
+          "if the device answers. If the first is not yours, name yours: open(model='x3').")
       .def_prop_ro(
           "name",
           [](live_lidar& on) {

@@ -25,6 +25,8 @@ constexpr std::int64_t announcement_ns = 40 * ms;
 constexpr std::int64_t information_ns = 600 * ms;
 /// Two attempts to stop a scan, or one and a slow answer.
 constexpr std::int64_t stop_ns = 700 * ms;
+/// Between two questions whether it is cancelled.
+constexpr std::int64_t look_ns = 50 * ms;
 constexpr std::int64_t pulse_ns = 100 * ms;
 constexpr std::int64_t after_pulse_ns = 2'000 * ms;
 constexpr std::int64_t write_ns = 100 * ms;
@@ -171,7 +173,10 @@ template <class Enough>
 result<void> lidar_search::listen(std::int64_t until_ns, Enough is_enough) {
   std::array<std::uint8_t, 1024> buffer{};
   while (!is_enough() && port_.now_ns() < until_ns) {
-    const auto got = port_.read(buffer, until_ns);
+    if (options_.is_cancelled && options_.is_cancelled()) {
+      return failure(task::asking, problem::cancelled, port_.name());
+    }
+    const auto got = port_.read(buffer, std::min(until_ns, port_.now_ns() + look_ns));
     if (!got) return tl::unexpected(got.error());
     take(bytes(buffer).first(got->count));
   }

@@ -85,17 +85,17 @@ result<std::unique_ptr<connector>> system_connector::make(std::string_view devic
   return std::unique_ptr<connector>(new system_connector(device, baud, named));
 }
 
-result<std::unique_ptr<connector>> system_connector::find(std::string_view device,
-                                                          std::uint32_t baud) {
+result<std::unique_ptr<connector>> system_connector::find(
+    std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled) {
   std::unique_ptr<system_connector> made(
       new system_connector(device, baud != 0 ? baud : g4_model.bauds[0], nullptr));
   made->is_searched_ = true;
   made->searched_baud_ = baud;
-  if (auto done = made->search_first(); !done) return tl::unexpected(done.error());
+  if (auto done = made->search_first(is_cancelled); !done) return tl::unexpected(done.error());
   return made;
 }
 
-result<void> system_connector::search_first() {
+result<void> system_connector::search_first(const std::function<bool()>& is_cancelled) {
   auto opened = connect();
   if (!opened) {
     searched_ = std::move(opened);
@@ -103,8 +103,9 @@ result<void> system_connector::search_first() {
   }
   transport& port = **opened;
   const auto longest = std::chrono::nanoseconds(find_options{}.probe_timeout);
-  auto lidar = search(port, port.now_ns() + longest.count(),
-                      {.baud = searched_baud_, .may_pulse_dtr = names_path(device_)});
+  auto lidar = search(
+      port, port.now_ns() + longest.count(),
+      {.baud = searched_baud_, .may_pulse_dtr = names_path(device_), .is_cancelled = is_cancelled});
   if (lidar) {
     named_ = lidar->model;
     candidates_ = std::move(lidar->candidates);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,8 +35,8 @@ class system_connector final : public connector {
   /// The open transport is kept for the first connect(), because each opening raises DTR. Where nothing
   /// answers or sends, it is taken for a G4, for which a driver waits longer. Fails with other_device,
   /// garbage, gone or cancelled.
-  [[nodiscard]] static result<std::unique_ptr<connector>> find(std::string_view device,
-                                                               std::uint32_t baud);
+  [[nodiscard]] static result<std::unique_ptr<connector>> find(
+      std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled);
 
   [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override;
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return steady_now_ns(); }
@@ -62,7 +63,7 @@ class system_connector final : public connector {
 
   system_connector(std::string_view device, std::uint32_t baud, const model* named);
 
-  [[nodiscard]] result<void> search_first();
+  [[nodiscard]] result<void> search_first(const std::function<bool()>& is_cancelled);
   [[nodiscard]] result<std::unique_ptr<transport>> open_transport();
   [[nodiscard]] result<std::unique_ptr<transport>> first_connect();
   [[nodiscard]] result<std::unique_ptr<transport>> connect_again();

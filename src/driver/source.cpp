@@ -172,7 +172,7 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
     case source_kind::device:
       break;
   }
-  if (is_searched) return system_connector::find(path, options.baud);
+  if (is_searched) return system_connector::find(path, options.baud, options.is_cancelled);
   return system_connector::make(path, baud_of(options, *wanted), wanted);
 }
 

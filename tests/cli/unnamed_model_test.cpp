@@ -135,7 +135,7 @@ TEST_F(FoundModel, SettingsHaveItsLimits) {
 TEST_F(FoundModel, RefusedSettingNamesTheCandidatesAndHowToChoose) {
   serve("x2");
   const outcome refused = run({"set", port_, "frequency=7"});
-  EXPECT_EQ(refused.code, 8) << refused.err;
+  EXPECT_EQ(refused.code, 2) << refused.err;
   EXPECT_THAT(refused.err, HasSubstr(", scan frequency 7 Hz, X2 (or x2l, x3"));
   EXPECT_THAT(refused.err, HasSubstr("If the lidar is another model, name it with"));
   EXPECT_THAT(refused.err, HasSubstr("--model"));
@@ -157,7 +157,7 @@ TEST_F(FoundModel, NamedModelThatTheDeviceContradicts_ErrorNamesBoth) {
   serve("g2");
   for (const char* const command : {"info", "dump", "scan", "view", "health", "stop", "start"}) {
     const outcome done = run({command, port_, "--model", "g1"});
-    EXPECT_EQ(done.code, 5) << command << done.err;
+    EXPECT_EQ(done.code, 7) << command << done.err;
     EXPECT_THAT(done.err, HasSubstr("model 15 (G2), not G1")) << command;
   }
 }

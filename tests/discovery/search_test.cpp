@@ -158,6 +158,15 @@ TEST(Search, NothingThere_IsSilenceAfterTheDeadline) {
   for (const std::string& each : done.notes) EXPECT_TRUE(each.starts_with("90@")) << each;
 }
 
+TEST(Search, Cancelled_EndsAtOnce) {
+  int asked = 0;
+  const searched done = search_at({}, {.is_cancelled = [&asked] { return ++asked > 3; }},
+                                  {sim::make_fault(fault_kind::deaf)});
+  ASSERT_FALSE(done.lidar);
+  EXPECT_EQ(done.lidar.error().code(), problem::cancelled);
+  EXPECT_LE(done.took_ns, 200 * ms);
+}
+
 // A port that the user has not named gets no pulse.
 TEST(Search, MotorThatWaitsForDtr_TurnsOnlyBehindANamedPort) {
   sim::device_options options = options_of("x2");

@@ -70,8 +70,7 @@ TEST_F(Source, NameOfADeviceMayNameItsModel) {
   }
   EXPECT_EQ(model_in_source("/dev/ttyUSB0?model=x9").error().code(), problem::bad_option);
   EXPECT_EQ(path_of_source("sim:?model=x4"), "sim:?model=x4");
-  const auto both =
-      connector_for({.device = "/dev/ttyUSB0?model=x4", .model = model_named("x2")});
+  const auto both = connector_for({.device = "/dev/ttyUSB0?model=x4", .model = model_named("x2")});
   ASSERT_FALSE(both);
   EXPECT_THAT(both.error().message(), HasSubstr("model: x2, and the name states x4"));
 }

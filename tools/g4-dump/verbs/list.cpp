@@ -46,14 +46,14 @@ result<recognised_lidar> ask_at(const port_info& port, std::uint32_t baud) {
   if (!opened) return tl::unexpected(opened.error());
   const auto longest = find_options{}.probe_timeout;
   return search(**opened, (*opened)->now_ns() + std::chrono::nanoseconds(longest).count(),
-                {.baud = baud});
+                {.baud = baud, .is_cancelled = [] { return interrupt() != 0; }});
 }
 
 void probe(std::vector<listed_port>& ports, const list_options& options) {
   for (listed_port& each : ports) {
     if (!options.all && !is_g4_bridge(each.port)) continue;
-    if (interrupt() != 0) throw interrupted();
     const auto& answer = each.answer.emplace(ask_at(each.port, options.common.expected.baud));
+    if (interrupt() != 0) throw interrupted();
     if (!answer) logger::info(in_tool_words(answer.error().message()) + "\n");
   }
 }
