@@ -69,8 +69,9 @@ TEST_P(UnnamedModel, InfoNamesItAndWhatSendsTheSame) {
   EXPECT_EQ(found.at("model"), GetParam().word);
   EXPECT_EQ(found.at("candidates").front(), GetParam().word);
   EXPECT_EQ(found.at("candidates").size() > 1, !GetParam().others.empty()) << found;
-  if (GetParam().is_scanning)
-    EXPECT_THAT(done.err, HasSubstr(": was scanning and has been stopped"));
+  EXPECT_EQ(done.err.find(": was scanning and has been stopped") != std::string::npos,
+            GetParam().is_scanning)
+      << done.err;
   const outcome text = run({"info", port_});
   ASSERT_EQ(text.code, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("\nmodel       " + GetParam().name));
