@@ -118,12 +118,12 @@ exit_code info(const common_options& options) {
 
 constexpr const char* info_details =
     R"(A line for each of: source, model, serial, firmware, hardware, and the settings by the names
-that set takes: sample_rate, frequency, direction, constant, idle, protection. What the model does not
-have, or cannot be asked for, is unknown, with the reason. Of a G4 these are constant and protection,
-and with old firmware direction.
+that set takes: sample_rate, frequency, direction, constant, idle, protection. What the model does
+not have, or cannot be asked for, is unknown, with the reason. Of a G4 these are constant and
+protection, and with old firmware direction.
 Some models send the same bytes: then model also names the others, and --model decides.
-With --json, model is a number (a G4 is 5), lidar has the word of the model and those of all candidates,
-sample_rate is in Hz, on is true, unknown is null.
+With --json, model is a number (a G4 is 5), lidar has the word of the model and those of all
+candidates, sample_rate is in Hz, on is true, unknown is null.
 
 No setting is changed, but a device that is scanning is stopped first; that is reported.)";
 
