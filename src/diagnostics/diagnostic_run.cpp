@@ -167,6 +167,7 @@ std::vector<stage_report> diagnose(std::string_view source, const diagnostic_opt
   std::unique_ptr<connector> simulated;  // outlives the run
   switch (kind_of_source(source)) {
     case source_kind::device:
+      device = path_of_source(source);
       break;
     case source_kind::simulated: {
       auto made = connector_for({.device = device});

@@ -206,8 +206,9 @@ class file_run {
 void examine_file(const std::string& source, stage_log& log) {
   const model* which = log.options().model;
   if (which == nullptr) {
-    which = model_of_source(source, log.options().is_cancelled).value_or(&g4_model);
+    which = model_of_source(source, log.options().is_cancelled).value_or(nullptr);
   }
+  if (which == nullptr) which = &g4_model;  // the file has gone, or cannot be read
   file_run(log, *which).run(path_of_source(source));
 }
 

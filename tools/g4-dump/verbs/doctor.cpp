@@ -150,8 +150,7 @@ int examine(const doctor_options& options) {
   diagnostic_options how;
   how.baud = options.expected.baud;
   const source_kind kind = kind_of_source(options.source);
-  const bool is_file = kind == source_kind::raw_bytes || kind == source_kind::recording;
-  how.model = is_file ? model_of(options) : options.expected.model;
+  how.model = kind != source_kind::simulated ? model_of(options) : options.expected.model;
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
