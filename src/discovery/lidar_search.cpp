@@ -23,8 +23,9 @@ constexpr std::int64_t late_answer_ns = 400 * ms;
 constexpr std::int64_t announcement_ns = 40 * ms;
 /// Two revolutions at 4 Hz: the CT bytes of one of them are complete.
 constexpr std::int64_t information_ns = 600 * ms;
-/// Two attempts to stop a scan, or one and a slow answer.
-constexpr std::int64_t stop_ns = 700 * ms;
+/// One attempt to stop a scan, and a slow answer; or several.
+constexpr std::int64_t one_stop_ns = 700 * ms;
+constexpr std::int64_t stops_ns = 2'000 * ms;
 /// Between two questions whether it is cancelled.
 constexpr std::int64_t look_ns = 50 * ms;
 constexpr std::int64_t pulse_ns = 100 * ms;
@@ -302,7 +303,8 @@ error lidar_search::unknown(std::uint8_t id) const {
 /// What the device answers after a stop; nothing if it does not.
 result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like,
                                                                      stop_attempts how) {
-  auto answered = inquiry(port_, like.samples, how).ask(in_ns(stop_ns));
+  auto answered = inquiry(port_, like.samples, how)
+                      .ask(in_ns(how == stop_attempts::one ? one_stop_ns : stops_ns));
   if (answered) return *answered;
   const problem why = answered.error().code();
   if (why == problem::silence || why == problem::garbage || why == problem::does_not_stop) {

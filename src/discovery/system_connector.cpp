@@ -112,7 +112,8 @@ result<void> system_connector::search_first(const std::function<bool()>& is_canc
     was_stopped_ = lidar->was_scanning && named_->link == link_kind::two_way;
     if (lidar->baud != 0) baud_ = lidar->baud;
     if (named_->link == link_kind::one_way) find_place();
-  } else if (const error& why = lidar.error(); is_final(why)) {
+  } else if (const error& why = lidar.error();
+             is_final(why) || (why == problem::does_not_stop && port.baud() != baud_)) {
     return failure(task::opening, why.code(), why.subject(), why.system_errno(), why.detail());
   } else if (const auto set = port.set_baud(baud_); !set) {
     return tl::unexpected(set.error());
