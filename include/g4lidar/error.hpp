@@ -30,8 +30,8 @@ enum class task : std::uint8_t {
 /// Every problem. A closed set: `docs/errors.md` has a paragraph for each.
 enum class problem : std::uint8_t {
   bad_option,      ///< A value that is invalid for an option.
-  no_port,         ///< No serial port, or none to which a G4 may be attached.
-  several_ports,   ///< More than one G4, and the caller did not name one.
+  no_port,         ///< No serial port, or none to which a lidar may be attached.
+  several_ports,   ///< More than one lidar, and the caller did not name one.
   permission,      ///< This user may not open it.
   busy,            ///< Another program has it open, exclusively.
   not_serial,      ///< The path is no serial port.

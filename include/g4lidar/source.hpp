@@ -12,7 +12,7 @@
 // | `walk.mcap`, `file:PATH` | a recording, or the raw bytes of a port |
 // | `file:PATH?model=x4` | raw bytes of this model; `?` is a part of PATH if there is such a file |
 // | `-` | raw bytes from standard input |
-// | `sim:`, `sim:?seed=7&fault=unplug@5s` | a simulated G4 in real time: docs/sim.md |
+// | `sim:`, `sim:?seed=7&fault=unplug@5s` | a simulated lidar in real time: docs/sim.md |
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""SDK for the YDLIDAR G4: revolutions of corrected points as NumPy arrays.
+"""SDK for the YDLIDAR G4 and its family: revolutions of corrected points as NumPy arrays.
 
     import g4lidar
 

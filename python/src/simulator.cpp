@@ -136,7 +136,7 @@ void bind_simulator(nb::module_& module) {
     };
   };
   nb::class_<simulator>(module, "Simulator",
-                        "A simulated G4, for tests: open() takes it. In virtual time waiting takes "
+                        "A simulated lidar, for tests: open() takes it. In virtual time waiting takes "
                         "no real time, and the same seed gives "
                         "the same points. In real time it has a thread and a pseudo-terminal, so "
                         "any program can open its `path`.")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The purposes of the random streams of a simulated G4. The numbers are part of the golden digests.
+// The purposes of the random streams of a simulated lidar. The numbers are part of the golden digests.
 #pragma once
 
 #include <cstdint>

@@ -59,8 +59,8 @@ enum g4lidar_result {
   G4LIDAR_NOTHING = -3,      /**< No error: there is nothing to return now. */
   G4LIDAR_INTERNAL = -4,     /**< An error of the library: please report it. */
   G4LIDAR_BAD_OPTION = 1,    /**< A value that is invalid for an option. */
-  G4LIDAR_NO_PORT = 2,       /**< No serial port, or none to which a G4 may be attached. */
-  G4LIDAR_SEVERAL_PORTS = 3, /**< More than one G4, and the caller did not name one. */
+  G4LIDAR_NO_PORT = 2,       /**< No serial port, or none to which a lidar may be attached. */
+  G4LIDAR_SEVERAL_PORTS = 3, /**< More than one lidar, and the caller did not name one. */
   G4LIDAR_PERMISSION = 4,    /**< This user may not open it. */
   G4LIDAR_BUSY = 5,          /**< Another program has it open, exclusively. */
   G4LIDAR_NOT_SERIAL = 6,    /**< The path is no serial port. */

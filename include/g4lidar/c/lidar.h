@@ -54,7 +54,7 @@ typedef struct g4lidar_options {
   size_t struct_size; /**< Set by g4lidar_options_init(). */
   /** Which lidar: "" or NULL for the only lidar; a path; `serial:2021101000070073`; `usb:1-1.4`;
    *  `tcp:host:port`; a recording, or the raw bytes of a port, as a path or `file:PATH`; `-`, raw bytes
-   *  from standard input; `sim:` or `sim:?NAME=VALUE&...`, a simulated G4 in real time (docs/sim.md).
+   *  from standard input; `sim:` or `sim:?NAME=VALUE&...`, a simulated lidar in real time (docs/sim.md).
    *  Copied. */
   const char* device;
   g4lidar_recorder* recorder; /**< Records everything; see recording.h. NULL: nothing. */

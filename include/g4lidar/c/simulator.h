@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * @file
- * A simulated G4: on a pseudo-terminal in real time, for any program that opens serial ports; or in
+ * A simulated lidar: on a pseudo-terminal in real time, for any program that opens serial ports; or in
  * virtual time, for tests in which waiting costs no time. docs/sim.md describes worlds and faults.
  */
 #ifndef G4LIDAR_C_SIMULATOR_H

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A complete simulated G4 in virtual time: bytes of a host in, bytes for the host out.
+// A complete simulated lidar in virtual time: bytes of a host in, bytes for the host out.
 #pragma once
 
 #include <cstddef>

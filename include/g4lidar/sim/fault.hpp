@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The faults of a simulated G4 and their times.
+// The faults of a simulated lidar and their times.
 #pragma once
 
 #include <cstdint>

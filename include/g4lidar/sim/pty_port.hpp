@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A simulated G4 on a pseudo-terminal or behind a network bridge, in real time: for any program
+// A simulated lidar on a pseudo-terminal or behind a network bridge, in real time: for any program
 // that opens serial ports, or connects to tcp:HOST:PORT.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A transport to a simulated G4 in the same program, in virtual time: waiting takes no real time.
+// A transport to a simulated lidar in the same program, in virtual time: waiting takes no real time.
 #pragma once
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The motor of a simulated G4: it needs time to reach its speed, and varies around it.
+// The motor of a simulated lidar: it needs time to reach its speed, and varies around it.
 #pragma once
 
 #include <cstdint>

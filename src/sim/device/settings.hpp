@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The effect of commands on the memory of a simulated G4, and the bytes of its answers.
+// The effect of commands on the memory of a simulated lidar, and the bytes of its answers.
 #pragma once
 
 #include <array>
