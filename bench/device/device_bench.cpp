@@ -258,7 +258,7 @@ memory_run read_memory(int scans, int burst, bool is_judged = false,
   revolutions.data = bench::recoded(revolutions.data, which);
   running_diagnosis judge;
   std::unique_ptr<connector> from = std::make_unique<bench::memory_connector>(
-      revolutions, static_cast<std::size_t>(scans), static_cast<std::size_t>(burst));
+      revolutions, static_cast<std::size_t>(scans), static_cast<std::size_t>(burst), which);
   if (is_judged) from = judge.observe(std::move(from));
   lidar_options options;
   options.model = &which;

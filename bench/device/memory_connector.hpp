@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <span>
@@ -10,7 +12,9 @@
 #include <utility>
 
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/sim/device.hpp"
+#include "g4lidar/sim/device_options.hpp"
 #include "g4lidar/transport/connector.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "pty_writer.hpp"
@@ -22,8 +26,14 @@ namespace g4lidar::bench {
 class memory_transport final : public transport {
  public:
   memory_transport(const bench::recording& from, std::size_t scans, std::size_t burst,
-                   std::int64_t& now)
-      : from_(from), left_(scans / 20), burst_(burst), now_(now) {}
+                   const model& which, std::int64_t& now)
+      : from_(from),
+        left_(scans / 20),
+        burst_(burst),
+        baud_(which.bauds.front()),
+        now_(now),
+        scanning_(which.link == link_kind::one_way),
+        device_(sim::built_in_world(), device_of(which)) {}
 
   result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
     if (!scanning_) {
@@ -37,7 +47,8 @@ class memory_transport final : public transport {
       if (--left_ == 0) return failure(task::reading, problem::end_of_input);
     }
     const std::size_t count = std::min(burst_, from_.data.size() - place_);
-    const std::int64_t there_ns = last_ns_ + static_cast<std::int64_t>(count) * 43'402;
+    const std::int64_t there_ns =
+        last_ns_ + static_cast<std::int64_t>(count * 10'000'000'000U / baud_);
     now_ = std::max(now_, std::min(there_ns, deadline_ns));
     if (now_ < there_ns) return received{};
     std::memcpy(out.data(), from_.data.data() + place_, count);
@@ -59,23 +70,31 @@ class memory_transport final : public transport {
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
   void wake() noexcept override {}
   [[nodiscard]] std::string_view name() const noexcept override { return "memory"; }
-  [[nodiscard]] std::uint32_t baud() const noexcept override { return 230'400; }
+  [[nodiscard]] std::uint32_t baud() const noexcept override { return baud_; }
 
  private:
+  static sim::device_options device_of(const model& which) {
+    sim::device_options options;
+    if (!sim::use_model(options, which.word)) std::abort();
+    return options;
+  }
+
   const bench::recording& from_;
   std::size_t left_;
   std::size_t burst_;
+  std::uint32_t baud_;
   std::size_t place_ = 0;
   std::int64_t last_ns_ = 0;  // the time of the last burst
   std::int64_t& now_;
-  bool scanning_ = false;
-  sim::device device_{sim::built_in_world()};
+  bool scanning_;
+  sim::device device_;
 };
 
 class memory_connector final : public connector {
  public:
-  memory_connector(const bench::recording& from, std::size_t scans, std::size_t burst)
-      : next_(std::make_unique<memory_transport>(from, scans, burst, now_)) {}
+  memory_connector(const bench::recording& from, std::size_t scans, std::size_t burst,
+                   const model& which)
+      : next_(std::make_unique<memory_transport>(from, scans, burst, which, now_)) {}
   result<std::unique_ptr<transport>> connect() noexcept override { return std::move(next_); }
   [[nodiscard]] std::int64_t now_ns() const noexcept override { return now_; }
   bool pause(std::int64_t /*deadline_ns*/) noexcept override { return true; }
