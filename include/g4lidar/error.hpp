@@ -78,6 +78,7 @@ enum class error_detail : std::uint8_t {
   motor_line,     ///< brown_out: a motor that the line DTR drives has never turned.
   unknown_model,  ///< bad_file: a recording of a model, or in a version, that is not known.
   unsupported_product,  ///< other_device: a product of the manufacturer with another protocol.
+  answered_before,  ///< silence, garbage: the lidar had identified itself, so its model and its baud rate are right.
 };
 
 /// One error. Trivially copyable, never allocates.

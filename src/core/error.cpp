@@ -40,19 +40,24 @@ constexpr std::array<words, problem_count> all_words{{
      "Name a serial port such as /dev/ttyUSB0; for a recording or a file of bytes, write "
      "file:PATH."},
     {problem::bad_baud_rate, "bad_baud_rate", "the port does not support this baud rate",
-     "Use an adapter that supports it (CP2102; a G4 uses 230400 baud), or omit the option."},
+     "Use an adapter that supports the baud rate of the lidar (CP2102), or omit the option baud, "
+     "so "
+     "that the rate of the model is used."},
     {problem::cannot_connect, "cannot_connect", "the network address does not answer",
      "Check that the bridge (for example ser2net) is running, that host and port are correct, and "
      "that no firewall blocks them."},
     {problem::silence, "silence", "no byte was received",
-     "Check that the lidar has power (its own 5 V supply if necessary), that the cable carries "
-     "data, and that this is the port of the lidar. If a model or a baud rate was named, check it: "
-     "without, "
-     "all rates are tried."},
+     "Check that the lidar has power (its own supply if necessary), that the cable carries data, "
+     "and "
+     "that this is its port. If a model or a baud rate was named, check it, or omit it: then all "
+     "rates "
+     "are tried (--model and --baud; in a program the options model and baud)."},
     {problem::garbage, "garbage", "bytes were received, but no valid data",
-     "If a model or a baud rate was named, it is probably wrong: without, all rates are tried. "
-     "Otherwise "
-     "check for a loose cable or another kind of device."},
+     "If a model or a baud rate was named, it is probably wrong: correct it, or omit it, and all "
+     "rates "
+     "are tried (--model and --baud; in a program the options model and baud). Otherwise check for "
+     "a "
+     "loose cable or another kind of device."},
     {problem::other_device, "other_device",
      "the device that answers is not the model that was expected",
      "Check the label of the device: name its model, or the port of the other one."},
@@ -70,8 +75,8 @@ constexpr std::array<words, problem_count> all_words{{
     {problem::not_reached, "not_reached", "the lidar does not accept this value",
      "Choose a value that the lidar supports; it keeps the nearest value that it accepted."},
     {problem::bad_setting, "bad_setting", "this model of lidar cannot be set to this value",
-     "Choose a scan frequency of 5 to 12 Hz for a G4, and for other settings one of the named "
-     "values."},
+     "Choose a scan frequency within the limits of the model, and for other settings one of the "
+     "named values."},
     {problem::scanning, "scanning", "refused, because it would disturb the running scan",
      "Stop the scan first, or allow it to be interrupted."},
     {problem::not_scanning, "not_scanning", "no scan is running", "Start the scan first."},
@@ -105,12 +110,13 @@ constexpr std::array<words, problem_count> all_words{{
      "model."},
 }};
 
-// Of the details other than the usual one, in the order of their enumeration.
+// Of the details other than the usual one, in the order of their enumeration. Without a cause it is that of
+// the problem.
 struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 11> all_details{{
+constexpr std::array<detail_words, 12> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -146,8 +152,12 @@ constexpr std::array<detail_words, 11> all_details{{
      "Read it with the libg4lidar that made it, or a newer one."},
     {"a product with another protocol, which this library does not read",
      "Use its manufacturer's software. docs/models.md lists the models that this library reads."},
+    {"",  // that of the problem
+     "The lidar answered before, so its model and its baud rate are right. Check its power supply, "
+     "the "
+     "cable and the adapter, and that no other program uses the port."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::unsupported_product));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::answered_before));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {
@@ -160,8 +170,10 @@ static_assert(in_order());
 const words& words_of(problem what) noexcept { return all_words[static_cast<std::size_t>(what)]; }
 
 detail_words words_of(problem what, error_detail detail) noexcept {
-  if (detail != error_detail::usual) return all_details[static_cast<std::size_t>(detail) - 1];
-  return {words_of(what).cause, words_of(what).advice};
+  if (detail == error_detail::usual) return {words_of(what).cause, words_of(what).advice};
+  detail_words found = all_details[static_cast<std::size_t>(detail) - 1];
+  if (found.cause.empty()) found.cause = words_of(what).cause;
+  return found;
 }
 
 constexpr std::array<std::string_view, 8> task_names{

@@ -74,7 +74,7 @@ result<scan> lidar::driver::next_scan(std::int64_t timeout_ns, bool in_loop) {
   bool last = false;
   while (!pipeline.has_scan()) {
     if (last) return timed_out();
-    const auto done = source_->step(deadline_ns());
+    const auto done = source_->step(source_->step_until_ns(deadline_ns()));
     if (!done && !(in_loop && done.error() == problem::reconnecting)) {
       return tl::unexpected(done.error());
     }
@@ -96,7 +96,8 @@ result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_n
     if (auto able = source_->can_read(); !able) return tl::unexpected(able.error());
     if (last) return timed_out();
     parts_.pipeline.drop_scan();
-    if (auto done = source_->step(deadline_ns); !done) return tl::unexpected(done.error());
+    if (auto done = source_->step(source_->step_until_ns(deadline_ns)); !done)
+      return tl::unexpected(done.error());
     last = is_over(deadline_ns);
   }
 }

@@ -37,7 +37,7 @@ class G4LIDAR_HIDDEN lidar::driver {
   [[nodiscard]] std::int64_t scan_due_in_ns() const noexcept {
     const std::int64_t due_ns = source_->expects().not_due_before_ns;
     if (due_ns == never_ns) return never_ns;
-    return std::max<std::int64_t>(due_ns - parts_.link.now_ns(), 0);
+    return std::max<std::int64_t>(due_ns - source_->caller_ns(), 0);
   }
   result<std::span<const point>> next_points(std::int64_t timeout_ns);
   result<void> process();
@@ -76,8 +76,9 @@ class G4LIDAR_HIDDEN lidar::driver {
     return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
                    now.why);
   }
+  /// Whether a call ends after its last step: at its end by source_->caller_ns().
   [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
-    return (parts_.link.now_ns() >= deadline_ns || source_->stands()) && parts_.pipeline.is_empty();
+    return (source_->caller_ns() >= deadline_ns || source_->stands()) && parts_.pipeline.is_empty();
   }
 
   scan_source::parts parts_;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "g4lidar/core/model.hpp"
 #include "g4lidar/core/request.hpp"
 
 namespace g4lidar {
@@ -50,6 +51,24 @@ class error_context {
       return add(" ").add(std::uint32_t{wanted.value}).add(" Hz");
     }
     return *this;
+  }
+
+  /// "8000, 16000 or 18000 of a G6".
+  error_context& add_rates(const model& which) noexcept {
+    const std::uint8_t count = rate_count(which);
+    for (std::uint8_t code = 0; code < count; ++code) {
+      const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
+      add(before).add(rate_hz_of_code(which, code));
+    }
+    return add(" of a ").add(which.name);
+  }
+  /// "5 Hz to 12 Hz of a G4".
+  error_context& add_frequencies(const model& which) noexcept {
+    const auto hz = [](std::uint16_t dhz) {
+      return scan_frequency{static_cast<std::uint16_t>(10 * dhz)};
+    };
+    add(hz(which.frequency.min_dhz)).add(" to ").add(hz(which.frequency.max_dhz));
+    return add(" of a ").add(which.name);
   }
 
   // NOLINTNEXTLINE(google-explicit-constructor): it is a text.

@@ -51,6 +51,9 @@ class event_reader {
 
   [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
 
+  /// See stream_parser::set_layout().
+  void set_layout(sample_layout layout) noexcept { parser_.set_layout(layout); }
+
   // ---- the place ----
   [[nodiscard]] bytes unparsed() const noexcept { return input_; }
   /// The events of the last read that have been handled.

@@ -29,7 +29,7 @@ result<void> listening_driver::round(std::int64_t deadline_ns) {
   stream_.follow_delivery();
   if (stream_.parse()) return {};
   if (auto looked = look(); !looked || stage_ == live_stage::idle) return looked;
-  if (auto got = stream_.receive(std::min(deadline_ns, next_deadline_ns())); !got) return got;
+  if (auto got = stream_.receive(std::min(deadline_ns, due_ns())); !got) return got;
   if (stream_.parse()) return {};
   return look();
 }
@@ -60,8 +60,8 @@ result<void> listening_driver::look() {
   const bool may_help = !is_stalled || options_.model->motor == motor_kind::dtr;
   if (pulse_ != pulse::done && may_help) return try_pulse(is_silent);
   if (is_stalled) return failure(task::reading, problem::stalled, connection_.name());
-  const error_context about = error_context(connection_.name()).add(", ").add(options_.model->name);
-  return failure(task::opening, is_silent ? problem::silence : problem::garbage, about);
+  return failure(task::opening, is_silent ? problem::silence : problem::garbage,
+                 opened_as(connection_, *options_.model));
 }
 
 /// Some boards start the motor, or the lidar, at an edge of DTR only.
@@ -128,7 +128,6 @@ result<void> listening_driver::start() {
     const auto broken = break_off(dropped.error());
     return broken ? dropped : broken;
   }
-  pipeline_.begin_scans();
   stage_ = live_stage::scanning;
   packets_ = 0;  // some have come: look() sets the time of the next ones
   stream_.follow_delivery();

@@ -30,12 +30,6 @@ lidar_event::kind event_of(notice what) noexcept {
 
 // ---- one round ----------------------------------------------------------------------------------
 
-result<void> live_driver::advance(std::int64_t deadline_ns) {
-  if (auto done = live_source::advance(deadline_ns); !done) return done;
-  if (const auto why = std::exchange(refused_, std::nullopt)) return tl::unexpected(*why);
-  return {};
-}
-
 result<void> live_driver::round(std::int64_t deadline_ns) {
   stream_.follow_delivery();
   if (auto looked = stream_.look_if_due(); !looked) return looked;
@@ -43,7 +37,7 @@ result<void> live_driver::round(std::int64_t deadline_ns) {
   if (!has_outcome) return tl::unexpected(has_outcome.error());
   if (stream_.parse()) return {};
   // A caller that waits for an outcome gets it first.
-  const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, next_deadline_ns());
+  const std::int64_t until = *has_outcome ? now_ns() : std::min(deadline_ns, due_ns());
   if (auto got = stream_.receive(until); !got) return got;
   if (stream_.parse()) return {};
   if (stream_.reported().take_news()) {
@@ -75,7 +69,8 @@ result<bool> live_driver::serve() {
 
 /// Of a device that has ended a scan and does not continue.
 error live_driver::silence_error() const {
-  if (pipeline_.has_begun()) return {task::reading, problem::stalled, connection_.name()};
+  if (pipeline_.scans() > scans_at_begin_)
+    return {task::reading, problem::stalled, connection_.name()};
   const bool is_by_line = options_.model->motor == motor_kind::dtr;
   const auto why = is_by_line ? error_detail::motor_line : error_detail::usual;
   return {task::starting, problem::brown_out, connection_.name(), 0, why};
@@ -170,7 +165,8 @@ result<answer> live_driver::ask(const request& wanted, while_scanning how) {
   if (!found || (!done && !is_woken)) return tl::unexpected(done.error());
   if (is_woken) connection_.wake_next_call();  // this call has its answer
   if (found->how != verdict::answered) {
-    return tl::unexpected(stream_.error_after(error_of(*found, stage_, connection_.name())));
+    return tl::unexpected(
+        stream_.error_after(error_of(*found, stage_, connection_, *options_.model)));
   }
   if (!setup_.is_done()) {  // after a restart
     const auto ready = settle();

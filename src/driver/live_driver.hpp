@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "live_source.hpp"
 #include "open_question.hpp"
@@ -21,7 +20,6 @@ class live_driver final : public live_source {
   [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
 
  private:
-  [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
   [[nodiscard]] result<void> connected() override;
   [[nodiscard]] result<void> round(std::int64_t deadline_ns) override;
   [[nodiscard]] std::int64_t due_ns() const noexcept override;
@@ -42,7 +40,7 @@ class live_driver final : public live_source {
 
   setup_sequence setup_;
   open_question question_;
-  std::optional<error> refused_;  // why a setup ended, although the connection works; see advance()
+  std::uint64_t scans_at_begin_ = 0;  // whole revolutions before the start
 };
 
 }  // namespace g4lidar

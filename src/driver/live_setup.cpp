@@ -57,7 +57,7 @@ result<bool> live_driver::go_on_with_setup() {
       if (stream_.motor_ready_ns() > now_ns()) return has_outcome;
       if (auto raised = stream_.set_motor(true); !raised) return tl::unexpected(raised.error());
       stream_.begin_points();
-      if (!setup_.is_again()) pipeline_.begin_scans();
+      if (!setup_.is_again()) scans_at_begin_ = pipeline_.scans();
     }
     const request next = request_of(setup_.next(), options_);
     const auto refused = talk.begin(next, now_ns());
@@ -98,9 +98,9 @@ result<void> live_driver::finish_step(const outcome& done) {
     if (auto lowered = stream_.set_motor(false); !lowered) return lowered;
   }
   if (done.how != verdict::answered) {
-    // A device that does not answer a command that every G4 knows is lost.
+    // A device that does not answer a command that every two-way lidar knows is lost.
     if (!is_needed(finished, options_) && !done.heard_nothing()) return {};
-    return give_up(stream_.error_after(error_of(done, stage_, connection_.name())));
+    return give_up(stream_.error_after(error_of(done, stage_, connection_, *options_.model)));
   }
   if (const auto* reply = std::get_if<health>(&done.value)) {
     if (reply->status == health_status::error) {
@@ -138,6 +138,8 @@ result<void> live_driver::give_up(const error& why) {
 
 result<void> live_driver::answered(const device_information& who) {
   if (auto known = identified(who); !known) return known;
+  const model& like = with_firmware(*options_.model, who);
+  if (&like != options_.model) stream_.talk().reset(&like);
   is_recognised_ = true;
   stage_ = live_stage::idle;
   if (wants_scan_) {

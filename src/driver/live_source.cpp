@@ -2,6 +2,7 @@
 #include "live_source.hpp"
 
 #include <chrono>
+#include <utility>
 
 #include "outcome_error.hpp"
 
@@ -25,14 +26,13 @@ result<void> live_source::connect() {
 }
 
 result<void> live_source::advance(std::int64_t deadline_ns) {
-  result<void> done;
   switch (stage_) {
     case live_stage::closed:
       return tl::unexpected(reconnection_.why());
     case live_stage::lost:
       if (!reconnection_.wait(connection_, deadline_ns)) return {};
-      done = connect();
-      break;
+      if (auto opened = connect(); !opened) return break_off(opened.error());
+      return {};
     case live_stage::breaking:
       if (stream_.parse()) return {};
       pipeline_.end();
@@ -42,9 +42,12 @@ result<void> live_source::advance(std::int64_t deadline_ns) {
       if (pipeline_.has_scan()) return {};
       return hang_up();
     default:
-      done = round(deadline_ns);
+      break;
   }
-  return done ? done : break_off(done.error());
+  if (auto done = round(deadline_ns); !done) return break_off(done.error());
+  if (!refused_) return {};
+  const error why = *std::exchange(refused_, std::nullopt);
+  return tl::unexpected(why);
 }
 
 result<void> live_source::break_off(const error& broken) {
@@ -100,8 +103,8 @@ result<void> live_source::settle() {
 }
 
 result<void> live_source::identified(const device_information& who) {
-  if (!may_be(*options_.model, who)) {
-    return tl::unexpected(other_device_error(who, *options_.model, connection_.name()));
+  if (const auto other = other_device_error(who, *options_.model, connection_.name())) {
+    return tl::unexpected(*other);
   }
   if (information_.is_known() && who.serial_digits != information_.serial_digits) {
     connection_.from().refuse();  // the wanted lidar may be behind another port
@@ -123,7 +126,7 @@ result<void> live_source::can_read() const noexcept {
 scan_expectation live_source::expects() const noexcept {
   if (stage_ == live_stage::closed || !wants_scan_) return {};
   if (stream_.is_scanning()) {
-    if (!spins_up()) return {};
+    if (!spin_up_.lasts(pipeline_.scans())) return {};
     return {spin_up_.ends_ns(), error_detail::spinning_up};
   }
   const bool is_set_up = stage_ == live_stage::preparing || stage_ == live_stage::scanning;

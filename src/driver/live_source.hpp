@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "live_stage.hpp"
 #include "live_stream.hpp"
@@ -38,7 +39,6 @@ class live_source : public scan_source {
   }
 
  protected:
-  [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
   /// The connection has broken, or is of no use. The bytes received so far are still processed.
   [[nodiscard]] result<void> break_off(const error& broken);
   /// Waits until the driver has nothing to do any more, or it fails. If the caller calls repeatedly
@@ -65,10 +65,12 @@ class live_source : public scan_source {
   live_stage stage_ = live_stage::closed;
   live_stream stream_;
   reconnection reconnection_;
-  bool wants_scan_ = false;     // the caller does, also while the lidar is lost
-  bool is_recognised_ = false;  // it was, at least once
+  std::optional<error> refused_;  // why a request ended, although the connection works
+  bool wants_scan_ = false;       // the caller does, also while the lidar is lost
+  bool is_recognised_ = false;    // it was, at least once
 
  private:
+  [[nodiscard]] result<void> advance(std::int64_t deadline_ns) final;
   [[nodiscard]] result<void> connect();
   [[nodiscard]] result<void> hang_up();
 };

@@ -28,13 +28,7 @@ error bad(std::string_view what, std::int64_t given, std::string_view unit) noex
 
 /// "sample_rate: 8000, 16000 or 18000 of a G6".
 error bad_rate(const model& which) noexcept {
-  error_context words("sample_rate: ");
-  const std::uint8_t count = rate_count(which);
-  for (std::uint8_t code = 0; code < count; ++code) {
-    const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
-    words.add(before).add(rate_hz_of_code(which, code));
-  }
-  return bad(words.add(" of a ").add(which.name));
+  return bad(error_context("sample_rate: ").add_rates(which));
 }
 
 /// "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300".

@@ -2,10 +2,12 @@
 // The error of a request that was not answered.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 #include <variant>
 
+#include "connection.hpp"
 #include "error_context.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/error.hpp"
@@ -22,12 +24,24 @@ namespace g4lidar {
   return asked.what == request_kind::health ? task::starting : task::configuring;
 }
 
-/// `device` is the name of the transport.
-[[nodiscard]] inline error error_of(const outcome& done, live_stage stage,
-                                    std::string_view device) noexcept {
+/// "/dev/ttyUSB0, S2 (115200 or 128000 baud)", and " at 9600 baud" if it is read at another rate.
+[[nodiscard]] inline error_context opened_as(const connection& on, const model& which) noexcept {
+  error_context about = error_context(on.name()).add(", ").add(which.name);
+  about.add(" (").add(which.bauds[0]);
+  if (which.bauds[1] != 0) about.add(" or ").add(which.bauds[1]);
+  about.add(" baud)");
+  const std::uint32_t used = on.is_open() ? on.on().baud() : 0;
+  if (used == 0 || used == which.bauds[0] || used == which.bauds[1]) return about;
+  return about.add(" at ").add(used).add(" baud");
+}
+
+/// `which` is the model as which the device was opened.
+[[nodiscard]] inline error error_of(const outcome& done, live_stage stage, const connection& on,
+                                    const model& which) noexcept {
   const task doing = task_of(done.asked, stage);
-  error_context about(device);
-  if (stage != live_stage::identifying) about.add(done.asked);
+  const bool is_known = stage != live_stage::identifying;
+  const auto why = is_known ? error_detail::answered_before : error_detail::usual;
+  error_context about = is_known ? error_context(on.name()).add(done.asked) : opened_as(on, which);
   if (done.how == verdict::not_reached) {
     if (const auto* reached = std::get_if<scan_frequency>(&done.value)) {
       about.add(" (reached ").add(*reached).add(")");
@@ -35,9 +49,9 @@ namespace g4lidar {
     return {doing, problem::not_reached, about};
   }
   if (done.how == verdict::still_scanning) return {doing, problem::does_not_stop, about};
-  const bool is_setting_up = stage == live_stage::identifying || stage == live_stage::preparing;
-  if (done.heard_nothing() && is_setting_up) return {doing, problem::silence, about};
-  if (done.heard_noise_only()) return {doing, problem::garbage, about};
+  const bool is_setting_up = !is_known || stage == live_stage::preparing;
+  if (done.heard_nothing() && is_setting_up) return {doing, problem::silence, about, 0, why};
+  if (done.heard_noise_only()) return {doing, problem::garbage, about, 0, why};
   return {doing, done.wrong_answers > 0 ? problem::wrong_answer : problem::timeout, about};
 }
 
@@ -48,7 +62,13 @@ namespace g4lidar {
   if (why == refusal::not_supported) {
     return {doing, problem::not_supported, about.add(", ").add(which.name)};
   }
-  return {doing, why == refusal::bad_setting ? problem::bad_setting : problem::scanning, about};
+  if (why != refusal::bad_setting) return {doing, problem::scanning, about};
+  if (wanted.what == request_kind::set_scan_frequency) {
+    about.add(" (").add_frequencies(which).add(")");
+  } else if (wanted.what == request_kind::set_sample_rate) {
+    about.add(" (").add_rates(which).add(")");
+  }
+  return {doing, problem::bad_setting, about};
 }
 
 /// `why`, which ends with the name of the model that was found, and the words of those between which the
@@ -65,19 +85,19 @@ namespace g4lidar {
   return {why.doing(), why.code(), about.add(")"), why.system_errno(), why.detail()};
 }
 
-/// Of a device that reports a model other than `which`.
-[[nodiscard]] inline error other_device_error(const device_information& who, const model& which,
-                                              std::string_view device) noexcept {
+/// The error of a device that reports a model other than `which`; nothing if it may be `which`. The answer
+/// of a two-way lidar is one of the numbers of its model. What a one-way lidar reports may be another one.
+[[nodiscard]] inline std::optional<error> other_device_error(const device_information& who,
+                                                             const model& which,
+                                                             std::string_view device) noexcept {
+  const bool answers = which.link == link_kind::two_way;
+  const bool has_id = who.model == which.ids[0] || who.model == which.ids[1];
+  const model* const found =
+      answers ? model_with_id(who.model, which.link) : one_way_other_than(which, who.model);
+  if (has_id || (!answers && found == nullptr)) return std::nullopt;
   error_context about = error_context(device).add(", model ").add(std::uint32_t{who.model});
-  if (const model* const found = model_with_id(who.model, which.link)) {
-    about.add(" (").add(found->name).add(")");
-  }
-  return {task::opening, problem::other_device, about.add(", not ").add(which.name)};
-}
-
-/// Whether a device of the model may report this number.
-[[nodiscard]] constexpr bool may_be(const model& which, const device_information& who) noexcept {
-  return who.model == which.ids[0] || who.model == which.ids[1];
+  if (found != nullptr) about.add(" (").add(found->name).add(")");
+  return error(task::opening, problem::other_device, about.add(", not ").add(which.name));
 }
 
 }  // namespace g4lidar

@@ -10,11 +10,24 @@ const event* point_pipeline::next() noexcept {
   const event* const found = input_.next();
   if (found != nullptr) {
     stream_counts_.add(*found);
-    if (const auto zero = zero_.take(*found)) decoder_.set_zero(*zero);
+    if (const auto* const heard = std::get_if<response_view>(found)) learn(*heard);
   } else if (has_bytes && delivers_) {
     decoder_.seen(input_.held(), input_.arrival_ns());
   }
   return found;
+}
+
+void point_pipeline::learn(const response_view& heard) noexcept {
+  if (const auto who = replies_.who(heard)) identified(*who);
+  if (const auto zero = replies_.zero(heard, decoder_.like())) decoder_.set_zero(*zero);
+}
+
+void point_pipeline::identified(const device_information& who) noexcept {
+  const model& now = with_firmware(*which_, who);
+  if (&now == &decoder_.like()) return;
+  input_.set_layout(now.samples.layout);
+  decoder_.become(now);
+  assembler_.become(now);
 }
 
 bool point_pipeline::find_scan() noexcept {

@@ -20,8 +20,8 @@
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/lidar.hpp"
+#include "reply_watch.hpp"
 #include "timed_decoder.hpp"
-#include "zero_angle_watch.hpp"
 
 namespace g4lidar {
 
@@ -99,10 +99,10 @@ class ring_on_demand {
 class point_pipeline {
  public:
   point_pipeline(std::int64_t transport_delay_ns, bool partial_scans, const model& which = g4_model)
-      : partial_scans_(partial_scans),
+      : which_(&which),
+        partial_scans_(partial_scans),
         input_(which.samples),
         decoder_(transport_delay_ns, which),
-        zero_(which),
         ring_(which),
         storage_(largest_scan(which)),
         assembler_(storage_.all(), which) {}
@@ -134,8 +134,10 @@ class point_pipeline {
     decoder_.follow(baud);
   }
 
-  /// A command was sent: the answer to 93 is added to all angles behind it.
-  void sent(bytes command) noexcept { zero_.sent(command); }
+  /// A command was sent: the answer to 93 is added to all angles behind it, and that to 90 has the firmware.
+  void sent(bytes command) noexcept { replies_.sent(command); }
+  /// Packets are read as the firmware of this device sends them.
+  void identified(const device_information& who) noexcept;
 
   // ---- scans ----
 
@@ -154,12 +156,8 @@ class point_pipeline {
     scan_.reset();
   }
 
-  /// The scan begins that has_begun() is about.
-  void begin_scans() noexcept { scans_at_begin_ = counts_.scans; }
   /// How many whole revolutions were complete.
   [[nodiscard]] std::uint64_t scans() const noexcept { return counts_.scans; }
-  /// Whether a whole revolution was complete since begin_scans().
-  [[nodiscard]] bool has_begun() const noexcept { return counts_.scans > scans_at_begin_; }
   /// Of the packets. Its next_sample_ns() is that of the last event.
   [[nodiscard]] const timed_decoder& decoder() const noexcept { return decoder_; }
 
@@ -187,15 +185,17 @@ class point_pipeline {
   [[nodiscard]] lidar_counts counts() const noexcept;
 
  private:
+  void learn(const response_view& heard) noexcept;
   void add(packet_view packet) noexcept;
   void keep(const scan& found) noexcept;
 
+  const model* which_;  // as given, whatever the firmware
   bool partial_scans_;
   bool delivers_ = false;
   bool is_open_ = false;  // the last packet may complete more scans
   event_reader input_;
   timed_decoder decoder_;
-  zero_angle_watch zero_;
+  reply_watch replies_;
   ring_on_demand ring_;
   point_storage storage_;
   scan_assembler assembler_;
@@ -205,7 +205,6 @@ class point_pipeline {
   lidar_counts counts_;
   std::uint64_t points_ = 0;  // decoded
   stream_counter stream_counts_;
-  std::uint64_t scans_at_begin_ = 0;
 };
 
 }  // namespace g4lidar

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "core/saturating.hpp"
 #include "error_context.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
 
@@ -24,6 +23,7 @@ result<void> replay_player::open() {
   stage_ = stage::idle;
   if (source_ == nullptr) return {};
   information_ = source_->device().information;
+  pipeline_.identified(information_);
   if (const auto rate = source_->device().sample_rate) {
     sample_rate_hz_ = to_hz(*rate);
   }
@@ -74,7 +74,7 @@ result<void> replay_player::can_read() const noexcept {
 scan_expectation replay_player::expects() const noexcept {
   if (!is_scanning()) return {};
   if (!delivers_ || stands()) return {.not_due_before_ns = never_ns};
-  return {.not_due_before_ns = spins_up() ? spin_up_.ends_ns() : 0};
+  return {.not_due_before_ns = spin_up_.lasts(pipeline_.scans()) ? spin_up_.ends_ns() : 0};
 }
 
 result<void> replay_player::advance(std::int64_t deadline_ns) {
@@ -111,6 +111,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   may_have_more_ = got->count > 0;
   if (got->count == 0) return check();
   is_pause_reported_ = false;
+  if (const auto command = std::exchange(next_.sent, std::nullopt)) pipeline_.sent(*command);
   pipeline_.input().feed(receiver_.buffer(got->count), got->arrival_ns);
   static_cast<void>(parse_bytes());
   return check();
@@ -229,19 +230,18 @@ void replay_player::play(const recorded_event& what) {
     case recorded_event::kind::gap:
       return pipeline_.begin(sample_rate_hz_);
     case recorded_event::kind::state:
-      return play_state(what);
+      break;
     case recorded_event::kind::sent:
-      return pipeline_.sent(what.data);
+      // It is answered in the reads behind it; what is left of the last one answers the command before.
+      if (what.data.size() == 2) next_.sent = {what.data[0], what.data[1]};
+      return;
     case recorded_event::kind::cut:
     case recorded_event::kind::odometry:
     case recorded_event::kind::dtr_low:
     case recorded_event::kind::dtr_high:
       return;
   }
-}
-
-/// Repeated regularly in a recording: usually nothing changes.
-void replay_player::play_state(const recorded_event& what) {
+  // The state, which is repeated regularly in a recording: usually nothing changes.
   pipeline_.follow(what.baud);
   delivers_ = what.delivers;
   const std::uint32_t rate = what.sample_rate_hz;
@@ -256,12 +256,6 @@ std::int64_t replay_player::next_deadline_ns() const noexcept {
   // What was read of a pipe while it was opened makes its descriptor not readable.
   const bool has_more = source_ == nullptr && stage_ == stage::playing && may_have_more_;
   return has_more || stage_ >= stage::ending || !pipeline_.is_empty() ? 0 : never_ns;
-}
-
-/// The caller's time, converted with the playback speed.
-std::int64_t replay_player::deadline_after_ns(std::int64_t timeout_ns) const noexcept {
-  if (source_ != nullptr) return source_->deadline_after_ns(timeout_ns);
-  return saturating_add(now_ns(), timeout_ns);
 }
 
 player* replay_player::controls() noexcept {

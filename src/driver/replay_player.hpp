@@ -2,6 +2,7 @@
 // Plays sources that do not answer: a recording, or a file of bytes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -31,7 +32,16 @@ class replay_player final : public scan_source {
   [[nodiscard]] bool has_motor_on() const noexcept override { return false; }
   [[nodiscard]] bool is_scanning() const noexcept override { return stage_ == stage::playing; }
   [[nodiscard]] std::int64_t next_deadline_ns() const noexcept override;
-  [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override;
+  [[nodiscard]] std::int64_t caller_ns() const noexcept override {
+    return source_ != nullptr ? source_->caller_ns() : now_ns();
+  }
+  [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override {
+    return source_ != nullptr ? source_->deadline_after_ns(timeout_ns)
+                              : saturating_add(now_ns(), timeout_ns);
+  }
+  [[nodiscard]] std::int64_t step_until_ns(std::int64_t deadline_ns) const noexcept override {
+    return source_ != nullptr ? source_->recorded_ns(deadline_ns) : deadline_ns;
+  }
   void add_to(lidar_counts& counts) const noexcept override { counts.reconnects = reconnects_; }
 
  private:
@@ -46,7 +56,8 @@ class replay_player final : public scan_source {
   /// The next event, whose place has not been reached yet.
   struct awaited_event {
     std::optional<recorded_event> event{};
-    bool is_cut = false;  ///< For this event; the rest of it follows.
+    bool is_cut = false;                                ///< For this event; the rest of it follows.
+    std::optional<std::array<std::uint8_t, 2>> sent{};  ///< The command since the last read.
   };
 
   [[nodiscard]] result<void> advance(std::int64_t deadline_ns) override;
@@ -58,7 +69,6 @@ class replay_player final : public scan_source {
   [[nodiscard]] bool play_events(bool all);
   [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
-  void play_state(const recorded_event& what);
 
   played_file* file_ = nullptr;              // null: a pipe
   recorded_event_source* source_ = nullptr;  // of a file

@@ -22,8 +22,8 @@ namespace g4lidar {
 
 /// What a caller that waits for a scan can expect.
 struct scan_expectation {
-  /// The time before which no scan need come, so that a loop over scans waits until then at least;
-  /// 0 if one is due.
+  /// The time, by caller_ns(), before which no scan need come, so that a loop over scans waits until then
+  /// at least; 0 if one is due.
   std::int64_t not_due_before_ns = 0;
   error_detail why = error_detail::usual;  ///< Of the error of a call that ends without a scan.
   std::string_view lost{};                 ///< What is looked for; valid until it is found.
@@ -78,9 +78,15 @@ class scan_source {
   [[nodiscard]] virtual std::int64_t next_deadline_ns() const noexcept = 0;
   /// The time until which bytes need not be read; may be in the past.
   [[nodiscard]] virtual std::int64_t rest_until_ns() const noexcept { return 0; }
-  /// The end of a call that waits for this time.
+  /// The clock of the timeouts of calls: not that of a file that is played.
+  [[nodiscard]] virtual std::int64_t caller_ns() const noexcept { return now_ns(); }
+  /// The end of a call that waits for this time, by caller_ns().
   [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept {
     return saturating_add(now_ns(), timeout_ns);
+  }
+  /// Such an end by the clock of step(), as it goes now.
+  [[nodiscard]] virtual std::int64_t step_until_ns(std::int64_t deadline_ns) const noexcept {
+    return deadline_ns;
   }
   [[nodiscard]] const device_information& information() const noexcept { return information_; }
   /// Of the turning part, if it has reported another one.
@@ -106,7 +112,6 @@ class scan_source {
   void begin_spin_up() noexcept {
     spin_up_.begin(deadline_after_ns(spin_up::longest_ns), pipeline_.scans());
   }
-  [[nodiscard]] bool spins_up() const noexcept { return spin_up_.lasts(pipeline_.scans()); }
 
   connection& connection_;
   point_pipeline& pipeline_;

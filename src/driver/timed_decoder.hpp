@@ -21,10 +21,19 @@ namespace g4lidar {
 class timed_decoder {
  public:
   explicit timed_decoder(std::int64_t transport_delay_ns, const model& which = g4_model) noexcept
-      : transport_delay_ns_(transport_delay_ns),
-        which_(&which),
-        shortest_mm_(which.range.min_mm),
-        to_points_(bulk::kernels_of(best_instruction_set(), which.samples).to_points) {}
+      : transport_delay_ns_(transport_delay_ns) {
+    become(which);
+  }
+
+  /// The following packets are of a lidar like `which`.
+  void become(const model& which) noexcept {
+    which_ = &which;
+    shortest_mm_ = which.range.min_mm;
+    to_points_ = bulk::kernels_of(best_instruction_set(), which.samples).to_points;
+  }
+
+  /// See become().
+  [[nodiscard]] const model& like() const noexcept { return *which_; }
 
   /// The following bytes are from another transport; see transport::baud(). Before begin().
   void follow(std::uint32_t baud) noexcept {
@@ -37,7 +46,8 @@ class timed_decoder {
   }
   /// The following bytes may be earlier ones. Before follow().
   void forget() noexcept { baud_.reset(); }
-  /// What is added to each angle.
+  /// What is added to each angle, as the manufacturer's program does. That this is the sign, and that a
+  /// device has not added it already, is an assumption: no device was at hand.
   void set_zero(zero_angle offset) noexcept {
     zero_deg_ = offset.is_calibrated() ? static_cast<float>(offset.deg()) : 0.0F;
   }
@@ -112,9 +122,9 @@ class timed_decoder {
   }
 
   std::int64_t transport_delay_ns_;
-  const model* which_;
-  std::uint16_t shortest_mm_;
-  decltype(bulk::kernels::to_points) to_points_;
+  const model* which_ = nullptr;
+  std::uint16_t shortest_mm_ = 0;
+  decltype(bulk::kernels::to_points) to_points_ = nullptr;
   std::optional<std::uint32_t> baud_;  // of its transport
   std::int64_t byte_ns_ = 0;           // the time of a byte
   float zero_deg_ = 0.0F;              // see set_zero()

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "core/saturating.hpp"
@@ -30,10 +31,19 @@ class playback_clock {
     const auto left = static_cast<double>(saturating_sub(at_ns, begin_ns_)) / speed_;
     return saturating_add(begun_ns_, saturating_ns(std::max(left, 0.0)));
   }
-  /// The end of a wait for `time_ns` of the steady clock: the time of this clock then, if it does not stand.
-  [[nodiscard]] std::int64_t after_ns(std::int64_t time_ns) const noexcept {
-    if (is_paused_ || speed_ == 0) return saturating_add(now_ns_, time_ns);
-    return saturating_add(now_ns(), saturating_ns(static_cast<double>(time_ns) * speed_));
+  /// The time that has passed for a caller, at all speeds: by the steady clock, and at speed 0 by this clock.
+  [[nodiscard]] std::int64_t caller_ns() const noexcept {
+    const std::int64_t since_ns =
+        is_free() ? saturating_sub(now_ns_, begin_ns_) : steady_now_ns() - begun_ns_;
+    return saturating_add(passed_ns_, since_ns);
+  }
+  /// The time of this clock when caller_ns() is `at_ns`, if neither changes; while it stands, after a wait
+  /// of as long.
+  [[nodiscard]] std::int64_t at_caller_ns(std::int64_t at_ns) const noexcept {
+    const std::int64_t left_ns = saturating_sub(at_ns, caller_ns());
+    if (is_paused_ || speed_ == 0) return saturating_add(now_ns_, left_ns);
+    const double time = std::ceil(static_cast<double>(left_ns) * speed_);
+    return saturating_add(now_ns(), saturating_ns(time));
   }
 
   /// It never goes back.
@@ -47,6 +57,7 @@ class playback_clock {
     is_paused_ = pauses;
   }
   void seek(std::int64_t at_ns) noexcept {
+    passed_ns_ = caller_ns();
     begin_ns_ = now_ns_ = at_ns;
     begun_ns_ = steady_now_ns();
   }
@@ -56,7 +67,8 @@ class playback_clock {
   bool is_paused_ = false;
   std::int64_t begin_ns_ = 0;
   std::int64_t now_ns_ = 0;
-  std::int64_t begun_ns_ = 0;
+  std::int64_t begun_ns_ = steady_now_ns();
+  std::int64_t passed_ns_ = 0;  // for a caller, until then
 };
 
 }  // namespace g4lidar

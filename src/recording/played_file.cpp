@@ -177,7 +177,7 @@ std::optional<recorded_event> played_file::next_event() noexcept {
 /// The time of raw bytes that are read as fast as possible passes by reading alone.
 std::int64_t played_file::deadline_after_ns(std::int64_t timeout_ns) const noexcept {
   const bool is_counted = clock_.is_free() && items_.source().recording() == nullptr;
-  return is_counted && timeout_ns > 0 ? never_ns : clock_.after_ns(timeout_ns);
+  return is_counted && timeout_ns > 0 ? never_ns : saturating_add(caller_ns(), timeout_ns);
 }
 
 std::int64_t played_file::wait_for_next_ns() noexcept {

@@ -144,7 +144,11 @@ class played_file final : public recorded_event_source {
 
   [[nodiscard]] std::optional<recorded_event> next_event() noexcept override;
   [[nodiscard]] const recorded_device& device() const noexcept override { return device_; }
+  [[nodiscard]] std::int64_t caller_ns() const noexcept override { return clock_.caller_ns(); }
   [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override;
+  [[nodiscard]] std::int64_t recorded_ns(std::int64_t deadline_ns) const noexcept override {
+    return deadline_ns == never_ns ? never_ns : clock_.at_caller_ns(deadline_ns);
+  }
   [[nodiscard]] std::int64_t wait_for_next_ns() noexcept override;
   [[nodiscard]] bool take_cancelled() noexcept override { return items_.take_cancelled(); }
 

@@ -123,8 +123,12 @@ class recorded_connector final : public forwarding_connector,
   [[nodiscard]] const recorded_device& device() const noexcept override {
     return played_->device();
   }
+  [[nodiscard]] std::int64_t caller_ns() const noexcept override { return played_->caller_ns(); }
   [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override {
     return played_->deadline_after_ns(timeout_ns);
+  }
+  [[nodiscard]] std::int64_t recorded_ns(std::int64_t deadline_ns) const noexcept override {
+    return played_->recorded_ns(deadline_ns);
   }
   [[nodiscard]] std::int64_t wait_for_next_ns() noexcept override {
     return played_->wait_for_next_ns();

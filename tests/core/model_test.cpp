@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace g4lidar {
@@ -221,6 +222,43 @@ TEST(Model, OldFirmwareDiffersWhereItDoes) {
       EXPECT_EQ(old.last_version, 0) << word;
     }
   }
+}
+
+device_information reporting(std::uint8_t id, int major, int minor) {
+  return {id, static_cast<std::uint8_t>(major), static_cast<std::uint8_t>(minor), 1, {}};
+}
+
+TEST(Model, AnOldFirmwareHasARecordOfItsOwn) {
+  const model& tg15 = *model_named("tg15");
+  for (const auto& [major, minor] : {std::pair{0, 9}, {1, 0}, {1, 2}}) {
+    const model& old = with_firmware(tg15, reporting(100, major, minor));
+    EXPECT_EQ(old.word, "tg15");
+    EXPECT_EQ(old.samples.layout, sample_layout::half_mm) << major << "." << minor;
+    EXPECT_EQ(true_frequency_dhz(old, 70), 70);
+    EXPECT_EQ(old.frequency.reply_offset_chz, -40) << "as the new one";
+    EXPECT_EQ(&with_firmware(old, reporting(100, 3, 2)), &old) << "only of the table";
+  }
+  for (const auto& [major, minor] : {std::pair{1, 3}, {2, 0}, {3, 2}}) {
+    EXPECT_EQ(&with_firmware(tg15, reporting(100, major, minor)), &tg15) << major << "." << minor;
+  }
+  EXPECT_EQ(&with_firmware(tg15, reporting(101, 1, 2)), &tg15) << "another model";
+  EXPECT_EQ(&with_firmware(tg15, {}), &tg15) << "nothing is known";
+  const model& r2 = *model_named("r2");
+  EXPECT_EQ(with_firmware(r2, reporting(9, 1, 7)).zero_angle_divisor, 4);
+  EXPECT_EQ(with_firmware(r2, reporting(9, 1, 8)).zero_angle_divisor, 100);
+  EXPECT_EQ(&with_firmware(g4_model, reporting(5, 0, 1)), &g4_model);
+}
+
+// Of a TG code 3 means 20 kHz and code 4 10 kHz, beside the places of the rates.
+TEST(Model, CodesOfSampleRates) {
+  for (const model& each : models) {
+    const bool is_tg = each.word.starts_with("tg");
+    EXPECT_EQ(rate_hz_of_code(each, 3), is_tg ? 20'000U : 0U) << each.word;
+    EXPECT_EQ(rate_hz_of_code(each, 4), is_tg ? 10'000U : 0U) << each.word;
+    EXPECT_EQ(rate_hz_of_code(each, 5), 0U) << each.word;
+    EXPECT_EQ(rate_hz_of_code(each, 255), 0U) << each.word;
+  }
+  EXPECT_EQ(rate_hz_of_code(*model_named("tg50"), 1), 18'000U);
 }
 
 TEST(Model, TheRateOfADeviceThatAnswersIsTrueWithinFourPercent) {

@@ -199,6 +199,7 @@ TEST(Response, ByteContent_Is0To2) {
   for (unsigned value = 0; value < 256; ++value) {
     const auto data = response_bytes(1, 0, 4, {static_cast<std::uint8_t>(value)});
     EXPECT_EQ(check_response(data), value <= 2 ? valid(8) : bad_header(8)) << value;
+    EXPECT_EQ(check_response(data, false, 4), value <= 4 ? valid(8) : bad_header(8)) << value;
     if (value <= 2) {
       EXPECT_EQ(response_view::from(data)->as_byte(), value);
     }

@@ -113,11 +113,27 @@ TEST(Text, OfANumberOrUsbPath_StatesThatNothingHasIt_AndWhichPortsExist) {
   }
 }
 
+TEST(Text, OfSilenceAndGarbage_NamesTheModelWhileItIsNotKnown) {
+  for (const char* name :
+       {"MuteDevice", "WrongBaudRateOfAnIdleDevice", "WrongBaudRateOfAScanningDevice"}) {
+    const std::string text = message_of(name);
+    EXPECT_TRUE(has(text, "virtual:g4, G4 (230400 baud): ")) << text;
+    EXPECT_TRUE(has(text, "--model") && has(text, "option")) << text;
+  }
+  const std::string known = message_of("DiesBeforeStart");
+  EXPECT_TRUE(has(known, "no byte was received. The lidar answered before")) << known;
+  EXPECT_FALSE(has(known, "--model") || has(known, "baud)")) << known;
+}
+
+TEST(Text, OfAValueThatTheModelDoesNotHave_NamesTheModelAndItsValues) {
+  EXPECT_TRUE(has(message_of("FrequencyOutOfRange"), "15 Hz (5 Hz to 12 Hz of a G4): "));
+}
+
 /// A message of the C interface has 255 characters for the cause and for the advice.
 TEST(Text, OfEachDetail_FitsIntoTheCInterface) {
-  for (auto detail = error_detail::usual; detail <= error_detail::unsupported_product;
+  for (auto detail = error_detail::usual; detail <= error_detail::answered_before;
        detail = static_cast<error_detail>(static_cast<int>(detail) + 1)) {
-    const error longest(task::configuring, problem::no_port, std::string(95, 'x'), 0, detail);
+    const error longest(task::configuring, problem::no_port, std::string(127, 'x'), 0, detail);
     EXPECT_LT(longest.advice().size(), 256U);
     EXPECT_LT(longest.message().size() - longest.advice().size(), 256U);
   }

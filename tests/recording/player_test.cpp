@@ -8,11 +8,14 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "g4lidar/recording/raw_bytes.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 #include "made_recording.hpp"
 #include "recorded_run.hpp"
 #include "support/packet_maker.hpp"
@@ -139,6 +142,74 @@ TEST_F(Player, Speed_ChangesFromNowOn) {
     EXPECT_EQ(refused.error(), problem::bad_option);
   }
   EXPECT_EQ(on.speed(), 0.0);
+}
+
+/// Changes the speed in the first read of a call.
+struct speed_change {
+  player* of = nullptr;
+  double to = 0;
+};
+
+class changing_transport final : public forwarding_transport {
+ public:
+  changing_transport(std::unique_ptr<transport> inner, speed_change& by)
+      : forwarding_transport(std::move(inner)), by_(by) {}
+  result<received> read(std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
+    player* const now = std::exchange(by_.of, nullptr);
+    if (now != nullptr && !now->set_speed(by_.to)) ADD_FAILURE() << "the speed is not set";
+    return inner().read(out, deadline_ns);
+  }
+
+ private:
+  speed_change& by_;
+};
+
+class changing_connector final : public forwarding_connector {
+ public:
+  changing_connector(std::unique_ptr<connector> inner, speed_change& by)
+      : forwarding_connector(std::move(inner)), by_(by) {}
+  result<std::unique_ptr<transport>> connect() noexcept override {
+    auto made = inner().connect();
+    if (!made) return made;
+    return std::make_unique<changing_transport>(std::move(*made), by_);
+  }
+
+ private:
+  speed_change& by_;
+};
+
+/// The end of a call is by the clock of the caller, also if the speed changes during the call.
+TEST_F(Player, Speed_ChangesDuringACall_ItsEndStaysThatOfTheCaller) {
+  for (const bool in_loop : {false, true}) {
+    speed_change change;
+    lidar device = started(std::make_unique<changing_connector>(
+        std::move(*replay::open(path_.text(), {.speed = 1e-6})), change));
+    change = {device.player(), 1000};
+    // At the speed of its begin the call would end 60 microseconds later in the recording.
+    const auto found = in_loop ? device.wait_scan(patience) : device.next_scan(patience);
+    EXPECT_TRUE(found) << found.error().message();
+  }
+  speed_change change;
+  lidar device = started(std::make_unique<changing_connector>(
+      std::move(*replay::open(path_.text(), {.speed = 1e-3})), change));
+  change = {device.player(), 1e-6};
+  // At the speed of its begin it would end 200 microseconds later in the recording, which are now 200 s.
+  const auto begun = clock::now();
+  EXPECT_EQ(device.next_scan(200ms).error(), problem::timeout);
+  EXPECT_GE(clock::now() - begun, 200ms);
+  EXPECT_LT(clock::now() - begun, patience);
+}
+
+/// So is the time that a loop gives the motor to spin up.
+TEST_F(Player, Speed_ChangesWhileTheMotorSpinsUp_TheLoopWaitsByTheClockOfTheCaller) {
+  lidar device = play({.speed = 1e-6});
+  ASSERT_TRUE(device.player()->seek(3 * second));  // the motor turns there, but no scan has come
+  const auto left = [&] { return device.event_loop().scan_due_in(); };
+  EXPECT_LE(left(), 10'000ms);
+  EXPECT_GT(left(), 5'000ms);
+  ASSERT_TRUE(device.player()->set_speed(1000));
+  EXPECT_LE(left(), 10'000ms);
+  EXPECT_GT(left(), 5'000ms);
 }
 
 TEST_F(Player, Loop_BeginsAgainAtLaterTimes) {

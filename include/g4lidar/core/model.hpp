@@ -2,12 +2,14 @@
 // The table of the models of lidars, and the search in it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 #include "g4lidar/core/model_record.hpp"
+#include "g4lidar/device_information.hpp"
 
 namespace g4lidar {
 
@@ -57,7 +59,7 @@ inline constexpr auto models = [] {
   constexpr sample_format tof_8{intensity_8, correction_kind::none};
   constexpr sample_format tof_16{intensity_16, correction_kind::none, 40, true};
   constexpr sample_format tof_mm{whole_mm, correction_kind::none};
-  constexpr sample_format tg_samples{whole_mm, correction_kind::none, 40, true};
+  constexpr sample_format tg_samples{whole_mm, correction_kind::none, 40, true, all_rate_codes - 1};
 
   constexpr auto fixed = [](std::uint32_t hz, std::uint16_t shortest_mm = 0) {
     return sample_rate_list{{{{hz, shortest_mm}}}, hz, false};
@@ -66,7 +68,7 @@ inline constexpr auto models = [] {
   constexpr sample_rate_list g6_rates{{{{8000, 100}, {16000, 260}, {18000, 280}}}, 18000, true};
   constexpr sample_rate_list x3_pro_rates{{{{3000}, {4000}}}};
   constexpr sample_rate_list s2_rates{{{{3000}, {4000}, {5000}}}};
-  constexpr sample_rate_list tg_rates{{{{10000}, {18000}, {20000}}}};
+  constexpr sample_rate_list tg_rates{{{{10000}, {18000}, {20000}}}, 0, false, {20000, 10000}};
 
   constexpr frequency_properties not_set{};
   constexpr frequency_properties set_5_to_12{50, 120};
@@ -198,6 +200,10 @@ namespace detail {
     last = rate.hz;
     has_nominal = has_nominal || rate.hz == row.rates.nominal_hz;
   }
+  for (const std::uint32_t hz : row.rates.further_codes_hz) {
+    const bool is_read = row.samples.largest_byte_reply == all_rate_codes - 1;
+    if (hz != 0 && (!is_read || code_of_rate(row, hz) == rate_count(row))) return false;
+  }
   return last != 0 && has_nominal;
 }
 
@@ -216,11 +222,15 @@ namespace detail {
                          row.ids[0] != 0 && row.ids[0] != row.ids[1];
   const bool has_memory = row.samples.max_samples > 0 && has_room_for(row, row.samples.layout) &&
                           has_room_for(row, row.other_layout);
+  const firmware_difference& old = row.old_firmware;
+  const bool is_parsed =
+      old.last_version == 0 || (sample_size(old.layout) == sample_size(row.samples.layout) &&
+                                (old.zero_angle_divisor != 0) == (row.zero_angle_divisor != 0));
   const bool takes_commands = row.motor == motor_kind::command || row.rates.is_settable ||
                               max_dhz != 0 || row.zero_angle_divisor != 0 || row.has_pitch ||
                               row.has_motor_settings || row.protection != presence::no;
   const bool has_angles = row.zero_angle_divisor != 0 || row.has_pitch;
-  return has_names && has_limits && has_memory && has_consistent_rates(row) &&
+  return has_names && has_limits && has_memory && is_parsed && has_consistent_rates(row) &&
          has_angles == row.samples.has_angle_replies &&
          (row.link == link_kind::two_way || !takes_commands) &&
          (row.turn_deg == 0 || row.turn_deg == 180);
@@ -237,5 +247,75 @@ namespace detail {
 }  // namespace detail
 
 static_assert(detail::are_consistent());
+
+namespace detail {
+
+/// The models whose old firmware differs, with that firmware.
+inline constexpr auto old_models = [] {
+  constexpr auto has_other = [](const model& row) { return row.old_firmware.last_version != 0; };
+  constexpr auto count = std::count_if(models.begin(), models.end(), has_other);
+  std::array<model, count> found{};
+  auto end = std::copy_if(models.begin(), models.end(), found.begin(), has_other);
+  for (auto each = found.begin(); each != end; ++each) {
+    const firmware_difference old = each->old_firmware;
+    each->samples.layout = each->other_layout = old.layout;
+    each->frequency.ct_offset_dhz = old.ct_offset_dhz;
+    each->zero_angle_divisor = old.zero_angle_divisor;
+    each->old_firmware = {};
+  }
+  return found;
+}();
+
+/// Whether a device of the model `row` may identify itself with `number`. CT bytes have only the lower
+/// four bits of it. *Pure.*
+[[nodiscard]] constexpr bool may_report(const model& row, std::uint8_t number) noexcept {
+  constexpr std::uint8_t in_ct = 15;
+  const auto is_it = [&](std::uint8_t id) {
+    return id != 0 && (id == number || (number <= in_ct && (id & in_ct) == number));
+  };
+  return is_it(row.ids[0]) || is_it(row.ids[1]);
+}
+
+/// Whether the packets of a device of the model `row` can be valid where `which` is read. *Pure.*
+[[nodiscard]] constexpr bool is_read_as(const model& row, const model& which) noexcept {
+  const bool has_baud = std::any_of(row.bauds.begin(), row.bauds.end(), [&](std::uint32_t baud) {
+    return baud != 0 && (baud == which.bauds[0] || baud == which.bauds[1]);
+  });
+  return has_baud && sample_size(row.samples.layout) == sample_size(which.samples.layout);
+}
+
+}  // namespace detail
+
+/// The model `which` of the table, as a device of it is that has reported `who`: with old firmware another
+/// record, of the same name. Valid forever; `which` itself if nothing differs. *Pure.*
+[[nodiscard]] constexpr const model& with_firmware(const model& which,
+                                                   const device_information& who) noexcept {
+  const unsigned version = who.firmware_major * 256U + who.firmware_minor;
+  const bool is_it = who.model != 0 && (who.model == which.ids[0] || who.model == which.ids[1]);
+  if (!is_it || version > which.old_firmware.last_version) return which;
+  for (const model& each : detail::old_models) {
+    if (each.word == which.word) return each;
+  }
+  return which;
+}
+
+/// The model to which a one-way lidar that identifies itself with `number` belongs instead of `which`; null
+/// if it may be `which`. Several models report 4 and 6, so these numbers contradict no one-way model. Valid
+/// forever. *Pure.*
+[[nodiscard]] constexpr const model* one_way_other_than(const model& which,
+                                                        std::uint8_t number) noexcept {
+  if (detail::may_report(which, number)) return nullptr;
+  const model* found = nullptr;
+  for (const model& each : models) {
+    if (each.link != link_kind::one_way || !detail::may_report(each, number)) continue;
+    if (found != nullptr && found->ids != each.ids) return nullptr;
+    if (found == nullptr) found = &each;
+  }
+  if (found != nullptr) return found;
+  for (const model& each : models) {
+    if (detail::may_report(each, number) && detail::is_read_as(each, which)) return &each;
+  }
+  return nullptr;
+}
 
 }  // namespace g4lidar

@@ -81,6 +81,7 @@ struct sample_format {
   std::uint8_t max_samples = 40;  ///< The largest LSN of a packet.
   /// Whether replies contain angles, too: to the commands 93 and 98.
   bool has_angle_replies = false;
+  std::uint8_t largest_byte_reply = 2;  ///< The largest content of a reply of one byte.
 };
 
 /// A sample rate that a model can have.
@@ -90,6 +91,9 @@ struct sample_rate_entry {
   std::uint16_t shortest_mm = 0;
 };
 
+/// How many codes of sample rates there are in replies to D1, of all models.
+inline constexpr std::uint8_t all_rate_codes = 5;
+
 /// The sample rates of a model.
 struct sample_rate_list {
   /// All that are known, unused entries at the end. Where D0 sets the rate, the place of an entry is
@@ -97,6 +101,8 @@ struct sample_rate_list {
   std::array<sample_rate_entry, 3> entries{};
   std::uint32_t nominal_hz = 0;  ///< Of a device as delivered; 0 if it is not known in advance.
   bool is_settable = false;      ///< Has the commands D0 and D1.
+  /// The rates in Hz that further codes in replies to D1 mean, from the number of `entries` on, 3; 0: none.
+  std::array<std::uint32_t, all_rate_codes - 3> further_codes_hz{};
 };
 
 /// The scan frequency of a model.
@@ -114,11 +120,11 @@ struct range_limits {
   std::uint16_t max_mm = 0;  ///< By the manufacturer; a sample can contain more.
 };
 
-/// How devices with old firmware differ from their model.
+/// How devices with old firmware differ from their model. See with_firmware().
 struct firmware_difference {
   std::uint16_t last_version = 0;  ///< 256 * major + minor; 0 if there is no difference.
-  sample_layout layout = sample_layout::quarter_mm;
-  std::int8_t ct_offset_dhz = 0;  ///< As in frequency_properties.
+  sample_layout layout = sample_layout::quarter_mm;  ///< Of the same size.
+  std::int8_t ct_offset_dhz = 0;                     ///< As in frequency_properties.
   std::uint8_t zero_angle_divisor = 0;
 };
 
@@ -174,7 +180,10 @@ struct model {
 /// The sample rate in Hz that `code` means in the replies to D0 and D1; 0 if it means none. *Pure.*
 [[nodiscard]] constexpr std::uint32_t rate_hz_of_code(const model& which,
                                                       std::uint8_t code) noexcept {
-  return code < which.rates.entries.size() ? which.rates.entries[code].hz : 0;
+  const sample_rate_list& rates = which.rates;
+  if (code < rates.entries.size()) return rates.entries[code].hz;
+  const std::size_t further = code - rates.entries.size();
+  return further < rates.further_codes_hz.size() ? rates.further_codes_hz[further] : 0;
 }
 
 /// How many sample rates of `which` are known: 1 to 3. *Pure.*

@@ -31,7 +31,7 @@ enum class response_kind : std::uint8_t {
   scan_started,  ///< The header before the endless packets; without content.
   device_info,   ///< 20 bytes.
   health,        ///< 3 bytes.
-  byte,          ///< One byte, 0 to 2.
+  byte,          ///< One byte, 0 to 2; of some models 0 to 4.
   frequency,     ///< Four bytes: Hz x 100; to command 93 an angle.
   pitch,         ///< Four bytes: an angle.
 };
@@ -56,10 +56,10 @@ inline constexpr std::array<response_layout, 6> response_layouts{{
 /// The highest frequency that a response can contain, in 0.01 Hz.
 inline constexpr std::uint32_t max_frequency_chz = 2000;
 
-/// Whether byte `at` of a content of this kind is possible, given the bytes before it. *Pure.*
-/// (protocol: Commands, a reply is believed only if ...)
-[[nodiscard]] constexpr bool is_possible(response_kind kind, bytes content,
-                                         std::size_t at) noexcept {
+/// Whether byte `at` of a content of this kind is possible, given the bytes before it; `largest_byte` is the
+/// largest content of one byte. *Pure.* (protocol: Commands, a reply is believed only if ...)
+[[nodiscard]] constexpr bool is_possible(response_kind kind, bytes content, std::size_t at,
+                                         std::uint8_t largest_byte = 2) noexcept {
   const std::uint8_t value = content[at];
   switch (kind) {
     case response_kind::scan_started:
@@ -69,7 +69,7 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
     case response_kind::health:
       return at > 0 || value <= 2;
     case response_kind::byte:
-      return value <= 2;
+      return value <= largest_byte;
     case response_kind::frequency:
       if (at == 0) return true;
       if (at == 1) return load_u16(content, 0) <= max_frequency_chz;
@@ -90,8 +90,9 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
 
 /// Whether `data` begins with a response: one of the headers above and a possible content. Each
 /// byte is checked as soon as it is available. Only a model that `has_angles` answers with angles: of
-/// four bytes, which are then not checked. *Pure.*
-[[nodiscard]] constexpr wire_check check_response(bytes data, bool has_angles = false) noexcept {
+/// four bytes, which are then not checked. `largest_byte` is the largest content of one byte. *Pure.*
+[[nodiscard]] constexpr wire_check check_response(bytes data, bool has_angles = false,
+                                                  std::uint8_t largest_byte = 2) noexcept {
   const std::size_t have = data.size();
   const auto refused_at = [](std::size_t at) { return wire_check{wire_state::bad_header, at + 1}; };
   if (have > 0 && data[0] != response_start[0]) return refused_at(0);
@@ -108,7 +109,7 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
   const std::size_t size = response_header_size + layout.content;
   for (std::size_t at = response_header_size; at < size && at < have && !is_angle; ++at) {
     const std::size_t in_content = at - response_header_size;
-    if (!is_possible(layout.kind, data.subspan(response_header_size), in_content)) {
+    if (!is_possible(layout.kind, data.subspan(response_header_size), in_content, largest_byte)) {
       return refused_at(at);
     }
   }

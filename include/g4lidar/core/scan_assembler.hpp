@@ -50,6 +50,9 @@ class scan_assembler {
     scan_.model = &which;
   }
 
+  /// The next scans are of a lidar like `which`, which is valid as long as they are.
+  constexpr void become(const model& which) noexcept { scan_.model = &which; }
+
   /// The nominal sample rate of the next packets, for the scans.
   constexpr void set_sample_rate(std::uint32_t hz) noexcept { sample_rate_hz_ = hz; }
 

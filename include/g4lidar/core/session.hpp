@@ -164,11 +164,11 @@ class session {
   [[nodiscard]] constexpr std::uint64_t retries() const noexcept { return request_.retries(); }
 
   /// The connection was opened again: nothing is known about the device, and no request is in
-  /// progress.
-  constexpr void reset() noexcept {
+  /// progress. `which`, if it is not null, is what it is like from now on; valid as long as the session.
+  constexpr void reset(const model* which = nullptr) noexcept {
     request_course request = request_;
     request.reset();
-    *this = session(channel_.times(), *which_);
+    *this = session(channel_.times(), which != nullptr ? *which : *which_);
     request_ = request;
   }
 

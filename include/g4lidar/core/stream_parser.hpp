@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -81,8 +82,9 @@ namespace detail {
                                                    sample_format format = g4_format) noexcept {
   const bool maybe_packet = data[0] == packet_start[0];
   if (maybe_packet || data[0] == response_start[0]) {
-    const wire_check check = maybe_packet ? detail::check_aa(data, format)
-                                          : check_response(data, format.has_angle_replies);
+    const wire_check check =
+        maybe_packet ? detail::check_aa(data, format)
+                     : check_response(data, format.has_angle_replies, format.largest_byte_reply);
     switch (check.state) {
       case wire_state::valid:
         return {detail::kind_of_front(data), skip_reason::noise, check.size, check.size};
@@ -108,6 +110,12 @@ class stream_parser {
  public:
   /// For packets of this format; packets of another one are skipped and counted.
   explicit constexpr stream_parser(sample_format format = g4_format) noexcept : format_(format) {}
+
+  /// Packets are of this layout from now on. Its samples have the size of those before.
+  constexpr void set_layout(sample_layout layout) noexcept {
+    assert(sample_size(layout) == sample_size(format_.layout));
+    format_.layout = layout;
+  }
 
   /// The next event in `input`. Removes the taken bytes from the front of `input`. Returns nothing
   /// when all of it is taken; then at most one unfinished packet or response is held for the next call. The

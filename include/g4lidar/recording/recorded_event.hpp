@@ -66,9 +66,13 @@ class G4LIDAR_API recorded_event_source {
   [[nodiscard]] virtual std::optional<recorded_event> next_event() noexcept = 0;
   /// What is known about the recorded lidar. Valid as long as this.
   [[nodiscard]] virtual const recorded_device& device() const noexcept = 0;
-  /// The end, by the clock of the recording, of a call that waits this long by the clock of the
-  /// caller.
+  /// The clock of the timeouts of calls: that of the caller. While the file is read as fast as possible,
+  /// the times of the recording pass instead. Continues whatever the player does.
+  [[nodiscard]] virtual std::int64_t caller_ns() const noexcept = 0;
+  /// The end of a call that waits this long, by caller_ns().
   [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept = 0;
+  /// Such an end by the clock of the recording, at its speed of now.
+  [[nodiscard]] virtual std::int64_t recorded_ns(std::int64_t deadline_ns) const noexcept = 0;
   /// How long the caller has to wait for the next read, by its own clock. 0 if it has arrived, or
   /// if there is none.
   [[nodiscard]] virtual std::int64_t wait_for_next_ns() noexcept = 0;

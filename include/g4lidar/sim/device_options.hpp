@@ -134,6 +134,7 @@ struct device_options {
   bool settings_outlive_restart = false;
   bool answers_direction = true;    ///< To command 08.
   bool answers_sample_rate = true;  ///< To command D1.
+  bool other_rate_codes = false;    ///< With the other codes of the format: a TG with 3 and 4.
   bool answers_health_91 = true;
   bool answers_health_92 = true;
   bool obeys_forced_stop = true;  ///< Command 00.

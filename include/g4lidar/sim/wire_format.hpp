@@ -54,6 +54,8 @@ struct wire_format {
   beam_shape beam = triangle_beam;
   /// Samples per second, in the order of their codes; 0: no further one.
   std::array<std::uint32_t, 3> rates_hz{4000, 8000, 9000};
+  /// The codes that some devices answer for these instead.
+  std::array<std::uint8_t, 3> other_rate_codes{0, 1, 2};
   std::uint16_t min_frequency_chz = 500;    ///< Revolutions per 100 s, at least.
   std::uint16_t max_frequency_chz = 1200;   ///< The same, at most.
   std::uint8_t max_samples = most_samples;  ///< In a packet.

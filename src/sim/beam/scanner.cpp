@@ -83,7 +83,7 @@ std::string_view problem_with(const scanner_options& options) noexcept {
   }
   if (options.scan_frequency_chz < format.min_frequency_chz ||
       options.scan_frequency_chz > format.max_frequency_chz) {
-    return "the scan frequency must be possible for the model: 5 to 12 Hz for a G4";
+    return "the scan frequency must be possible for the model";
   }
   if (options.samples_per_packet < 1 || options.samples_per_packet > format.max_samples) {
     return "a packet must hold 1 to 80 samples, or 40, by the model";
@@ -98,8 +98,7 @@ std::string_view problem_with(const scanner_options& options) noexcept {
   const double unit_mm = 1.0 / format.code.units_per_mm;
   if (!(options.min_range_mm >= unit_mm && options.max_range_mm >= options.min_range_mm &&
         options.max_range_mm <= format.code.largest() * unit_mm)) {
-    return "the ranges must be such as samples can contain: 0.25 to 16383.75 mm of a G4, the least "
-           "first";
+    return "the ranges must be such as samples of the model can contain, the least first";
   }
   if (!(options.noise_mm >= 0.0 && options.noise_mm <= 1e6 && options.noise_ratio >= 0.0 &&
         options.noise_ratio <= 1.0)) {

@@ -41,9 +41,7 @@ std::string_view problem_with(const device_options& options) noexcept {
   }
   if (options.highest_frequency_chz < options.scanner.scan_frequency_chz ||
       options.highest_frequency_chz > options.scanner.format.max_frequency_chz) {
-    return "the highest scan frequency must be from the device's own to that of the model, 12 Hz "
-           "of "
-           "a G4";
+    return "the highest scan frequency must be from the device's own to that of the model";
   }
   if (options.motor_drift_ppm > 100'000 || options.free_motor_drift_ppm > 100'000) {
     return "the motor must drift by at most a tenth";

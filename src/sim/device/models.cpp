@@ -107,6 +107,7 @@ bool use_model(device_options& options, std::string_view word, bool other_layout
   format.beam = of.beam;
   for (std::size_t i = 0; i < format.rates_hz.size(); ++i) {
     format.rates_hz[i] = of.rates.rows[i].hz;
+    format.other_rate_codes[i] = of.rates.other_codes[i];
   }
   format.min_frequency_chz = static_cast<std::uint16_t>(of.frequency.slowest_dhz * 10);
   format.max_frequency_chz = static_cast<std::uint16_t>(of.frequency.fastest_dhz * 10);

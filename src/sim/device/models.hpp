@@ -40,6 +40,8 @@ struct rate_table {
   std::array<rate_row, 3> rows{};
   std::uint32_t usual_hz = 0;  ///< Of these, as delivered; 0: not known.
   bool are_stepped = false;    ///< By D0.
+  /// What some devices answer to D1 for these rows.
+  std::array<std::uint8_t, 3> other_codes{0, 1, 2};
 };
 
 /// The scan frequency, in 0.1 Hz.
@@ -284,6 +286,7 @@ inline constexpr auto time_of_flight_models = [] {
   simulated_model tg = with_baud(with_zero_angle(straight, 4), 512'000);
   tg.code = mm_code;
   tg.rates = {{{{10'000}, {18'000}, {20'000}}}};
+  tg.rates.other_codes = {4, 1, 3};
   tg.frequency.slowest_dhz = 30;
   tg.frequency.fastest_dhz = 160;
   tg.index_deg = 108;

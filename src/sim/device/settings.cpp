@@ -77,8 +77,12 @@ sample_rate next_of(sample_rate now, const wire_format& format) noexcept {
   return static_cast<sample_rate>(format.rates_hz[is_there ? next : 0]);
 }
 
-answer_bytes answer_with_rate(sample_rate now, const wire_format& format) noexcept {
-  return answer_with_byte(static_cast<std::uint8_t>(code_of(now, format)));
+answer_bytes answer_with_rate(sample_rate now, const device_options& options) noexcept {
+  const wire_format& format = options.scanner.format;
+  const std::size_t code = code_of(now, format);
+  const bool is_other = options.other_rate_codes && code < format.other_rate_codes.size();
+  return answer_with_byte(is_other ? format.other_rate_codes[code]
+                                   : static_cast<std::uint8_t>(code));
 }
 
 power_down_protection other_than(power_down_protection now) noexcept {
@@ -155,10 +159,10 @@ std::optional<answer_bytes> apply(command code, device_settings& now,
       return set(now.constancy, constant_frequency::off);
     case command::sample_rate_next:
       now.sample_rate = next_of(now.sample_rate, options.scanner.format);
-      return answer_with_rate(now.sample_rate, options.scanner.format);
+      return answer_with_rate(now.sample_rate, options);
     case command::sample_rate_query:
       if (!options.answers_sample_rate) return std::nullopt;
-      return answer_with_rate(now.sample_rate, options.scanner.format);
+      return answer_with_rate(now.sample_rate, options);
     case command::protection_toggle:
       return set(now.protection, other_than(now.protection));
     default:

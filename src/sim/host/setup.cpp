@@ -36,7 +36,7 @@ using member =
                  disturbance options::*, drive options::*, dtr_start options::*, dtr_cut options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
                  power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 53> members{{
+constexpr std::array<std::pair<std::string_view, member>, 54> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -74,6 +74,7 @@ constexpr std::array<std::pair<std::string_view, member>, 53> members{{
     {"settings_outlive_restart", &options::settings_outlive_restart},
     {"answers_direction", &options::answers_direction},
     {"answers_sample_rate", &options::answers_sample_rate},
+    {"other_rate_codes", &options::other_rate_codes},
     {"zero_angle_cdeg", &options::zero_angle_cdeg},
     {"pitch_cdeg", &options::pitch_cdeg},
     {"answers_health_91", &options::answers_health_91},

@@ -154,6 +154,17 @@ TEST(SimModelCommands, WhetherATgAnswersD1_IsAnOption) {
   EXPECT_THAT(other.ask(0xD1), ElementsAreArray({0xA5, 0x5A, 0x01, 0, 0, 0, 0x04, 0x02}));
 }
 
+// The manufacturer's program knows 3 for 20 kHz and 4 for 10 kHz.
+TEST(SimModelCommands, OtherCodesOfTheRatesOfATg) {
+  for (const auto& [hz, code] : {std::pair{20'000, 3}, {18'000, 1}, {10'000, 4}}) {
+    sim::device_options options = test::options_of("tg30");
+    options.answers_sample_rate = options.other_rate_codes = true;
+    options.scanner.sample_rate = static_cast<sample_rate>(hz);
+    test::host_side host(options);
+    EXPECT_THAT(host.ask(0xD1), ElementsAreArray({0xA5, 0x5A, 0x01, 0, 0, 0, 0x04, code})) << hz;
+  }
+}
+
 // 180.5 degrees in quarters, and of an R2 from firmware 1.8 on in hundredths.
 TEST(SimModelCommands, TheZeroAngleIsInPartsOfADegree) {
   const auto answer = [](const std::string& word, int major, int minor, std::int32_t cdeg) {

@@ -99,6 +99,10 @@ TEST(SimModelTables, AgreeInEachField) {
       same("shortest range by rate", ours.rates.entries[i].shortest_mm,
            its.rates.rows[i].nearest_mm);
     }
+    for (std::uint8_t i = 0; i < 3; ++i) {
+      same("rate of another code", rate_hz_of_code(ours, its.rates.other_codes[i]),
+           its.rates.rows[i].hz);
+    }
     same("nominal rate", ours.rates.nominal_hz, its.rates.usual_hz);
     same("is_settable", ours.rates.is_settable, its.rates.are_stepped);
     same("whether the frequency can be set", ours.frequency.max_dhz != 0, its.frequency.is_stepped);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/core/model_record.hpp"
 #include "g4lidar/core/response.hpp"
 
 namespace g4lidar {
@@ -29,7 +30,7 @@ namespace g4lidar {
   return reply::none;
 }
 
-/// Whether `heard` can be a true answer to `code`. *Pure.* (protocol: Commands)
+/// Whether `heard` can be a true answer to `code` of a lidar of any model. *Pure.* (protocol: Commands)
 [[nodiscard]] constexpr bool can_answer(command code, const response_view& heard) noexcept {
   const auto traits = traits_of(code);
   if (!traits || traits->answered_by != as_reply(heard.kind())) return false;
@@ -37,8 +38,8 @@ namespace g4lidar {
   const bool is_frequency = traits->answered_by == reply::frequency && code != command::zero_angle;
   if (!byte) return !is_frequency || heard.as_frequency_chz();
   if (traits->fixed_answer) return *byte == *traits->fixed_answer;
-  const bool has_three = code == command::sample_rate_next || code == command::sample_rate_query;
-  return *byte < (has_three ? 3 : 2);
+  if (code == command::sample_rate_query) return *byte < all_rate_codes;
+  return *byte < (code == command::sample_rate_next ? 3 : 2);
 }
 
 /// The state of a pending command.

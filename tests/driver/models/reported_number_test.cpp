@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// The numbers that lidars report of their model, and errors of those that report none.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/sim/virtual_port.hpp"
+#include "g4lidar/sim/world.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+
+sim::device_options options_of(const model& which) {
+  sim::device_options options;
+  EXPECT_TRUE(sim::use_model(options, which.word)) << which.word;
+  return options;
+}
+
+/// A simulated device and a lidar of it.
+struct bench {
+  bench(const model& of, const sim::device_options& options,
+        const std::vector<sim::fault>& faults = {})
+      : which(of), device(sim::built_in_world(), options, faults) {}
+
+  [[nodiscard]] result<lidar> open(lidar_options how = {}) {
+    how.model = &which;
+    return lidar::open(std::make_unique<sim::virtual_connector>(device, clock), how);
+  }
+
+  const model& which;
+  sim::virtual_clock clock;
+  sim::device device;
+};
+
+/// What a one-way lidar reports, and as what it is taken.
+struct reported_id {
+  const char* word;  ///< Of the model that is named.
+  std::uint8_t sent;
+  std::uint8_t known;      ///< By information(); 0: it is refused.
+  const char* other = "";  ///< In the error, as what.
+};
+
+// CT has four bits: 22 of an SCL is 6 there, and 100 of a TX is 4. X2, X3, S2, S4 and X4 Pro say 4, by the
+// table of the manufacturer most of them 6. Only an S2 says 12; an F4 and a G4C have the baud rate of an X2.
+TEST(ReportedNumber, NumberOfAOneWayLidar_IsRefusedOnlyIfItIsSurelyAnotherModel) {
+  for (const auto& [word, sent, known, other] : std::to_array<reported_id>({
+           {"x2", 4, 4},
+           {"x2", 6, 6},
+           {"x3", 4, 4},
+           {"x3-pro", 6, 6},
+           {"s2", 4, 4},
+           {"s2", 12, 12},
+           {"s2", 6, 6},
+           {"s2-intensity", 6, 6},
+           {"x4-pro", 4, 4},
+           {"x4-pro", 6, 6},
+           {"scl", 22, 22},
+           {"scl", 4, 4},
+           {"tx8", 100, 100},
+           {"tx8", 6, 6},
+           {"x2", 10, 10},
+           {"x4-pro", 1, 1},
+           {"x2", 12, 0, "model 12 (S2), not X2"},
+           {"x4-pro", 12, 0, "model 12 (S2), not X4 Pro"},
+           {"x2", 1, 0, "model 1 (F4), not X2"},
+           {"x3", 2, 0, "model 2 (G4C), not X3"},
+       })) {
+    sim::device_options options = options_of(*model_named(word));
+    options.info.model = sent;
+    options.ct_information = options.ct_crc = options.stray_before_zero = true;
+    options.scanner.samples_per_packet = 20;  // room for the information in a revolution
+    bench on(*model_named(word), options);
+    auto lidar = on.open();
+    ASSERT_TRUE(lidar) << word << lidar.error().message();
+    ASSERT_TRUE(lidar->start());
+    auto scan = lidar->wait_scan(2000ms);
+    for (int i = 0; i < 5 && scan; ++i) scan = lidar->wait_scan(2000ms);
+    EXPECT_EQ(lidar->information().model, known) << word << " " << int{sent};
+    EXPECT_EQ(scan.has_value(), known != 0) << word << " " << int{sent};
+    if (scan) continue;
+    EXPECT_EQ(scan.error().code(), problem::other_device);
+    EXPECT_NE(scan.error().message().find(other), std::string::npos) << scan.error().message();
+  }
+}
+
+/// The information that it sends after power-on has the whole number.
+TEST(ReportedNumber, NumberOfAOneWayLidarAfterPowerOn_IsAWholeOne) {
+  for (const auto& [sent, other] :
+       {std::pair{4, ""}, {100, "model 100 (TX8), not X2"}, {22, "model 22 (SCL), not X2"}}) {
+    sim::device_options options = options_of(*model_named("x2"));
+    options.info.model = static_cast<std::uint8_t>(sent);
+    options.boots_at_start = true;
+    bench on(*model_named("x2"), options);
+    const auto lidar = on.open();
+    ASSERT_EQ(lidar.has_value(), sent == 4) << sent;
+    if (lidar) continue;
+    EXPECT_EQ(lidar.error().code(), problem::other_device);
+    EXPECT_NE(lidar.error().message().find(other), std::string::npos) << lidar.error().message();
+  }
+}
+
+// ---- the texts of errors -------------------------------------------------------------------------
+
+TEST(ReportedNumber, OfALidarThatDoesNotIdentifyItself_NamesTheModelAndItsRates) {
+  const auto text_of = [](std::string_view word, const std::vector<sim::fault_kind>& faults) {
+    std::vector<sim::fault> made;
+    for (const sim::fault_kind each : faults) made.push_back(sim::make_fault(each));
+    bench on(*model_named(word), options_of(*model_named(word)), made);
+    const auto opened = on.open();
+    return opened ? std::string() : opened.error().message();
+  };
+  const std::string x4 = text_of("x4", {sim::fault_kind::mute});
+  EXPECT_NE(x4.find(", X4 (128000 baud): no byte was received"), std::string::npos) << x4;
+  EXPECT_NE(x4.find("--model"), std::string::npos) << x4;
+  EXPECT_EQ(x4.find("G4"), std::string::npos) << x4;
+  EXPECT_EQ(x4.find("230400"), std::string::npos) << x4;
+  const std::string s2 = text_of("s2", {sim::fault_kind::stall});
+  EXPECT_NE(s2.find(", S2 (115200 or 128000 baud): no byte"), std::string::npos) << s2;
+  const std::string g6 = text_of("g6", {sim::fault_kind::scanning, sim::fault_kind::baud});
+  EXPECT_NE(g6.find(", G6 (512000 baud): bytes were received, but no valid data"),
+            std::string::npos)
+      << g6;
+  EXPECT_NE(g6.find("--model"), std::string::npos) << g6;
+}
+
+}  // namespace
+}  // namespace g4lidar
