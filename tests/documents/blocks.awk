@@ -17,7 +17,7 @@ function is_known(language, mark) {
   if (language == "cpp" && mark == "until ^C") return 1
   if (language == "python") return mark == ""
   if (language == "c" || language == "cpp" || language == "cmake") return mark ~ /^(|in [a-z_]+)$/
-  if (language == "sh") return mark ~ /^(|until \^C|the only G4|three of four|exit [0-9]+)$/
+  if (language == "sh") return mark ~ /^(|until \^C|the only lidar|three of four|exit [0-9]+)$/
   if (language == "text") return mark ~ /^output(, but for numbers)?$/
   return 0
 }

@@ -108,7 +108,7 @@ run_line() {
   local at=$1 mark=$2 words=$3 code=0 wanted=0
   words=${words//\/tmp\//$scratch/}
   words=${words//\/dev\/ttyUSB0/$g4}
-  if [[ $mark == "the only G4" ]]; then words=$(sed -E "s@[[:space:]]*([#|]|\$)@ $g4 \1@" <<<"$words"); fi
+  if [[ $mark == "the only lidar" ]]; then words=$(sed -E "s@[[:space:]]*([#|]|\$)@ $g4 \1@" <<<"$words"); fi
   if [[ $words == *"$g4"* ]]; then need_g4; fi
   if [[ $mark == "until ^C" ]]; then
     interrupted 1 bash -c "$words" </dev/null || code=$?
