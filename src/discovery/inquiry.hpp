@@ -15,7 +15,7 @@
 
 namespace g4lidar {
 
-/// How often a device is told to stop.
+/// How often a device gets the commands of a stop.
 enum class stop_attempts : std::uint8_t {
   one,      ///< It may be one that has no commands.
   several,  ///< Until packets end.

@@ -232,10 +232,10 @@ lidar_search::found lidar_search::judge_stream() {
   const std::int64_t informed_ns = in_ns(information_ns);
   const auto is_one_way = [](const model* row) { return row->link == link_kind::one_way; };
   const bool is_doubtful = std::ranges::any_of(models_that_fit(signs()), is_one_way);
-  // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may tell it.
+  // A one-way lidar is not to be disturbed: its CT bytes or its sample rate may be sufficient.
   if (is_doubtful) {
-    const auto is_told = [this] { return !may_be_two_way(signs()); };
-    if (auto done = listen(informed_ns, is_told); !done) return tl::unexpected(done.error());
+    const auto is_certain = [this] { return !may_be_two_way(signs()); };
+    if (auto done = listen(informed_ns, is_certain); !done) return tl::unexpected(done.error());
   }
   lidar_signs known = signs();
   if (may_be_two_way(known)) {

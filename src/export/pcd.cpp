@@ -29,9 +29,12 @@ void write_binary(const point& p, frame to, const model& which, text_sink& out) 
 
 void write_ascii(const point& p, frame to, const model& which, text_sink& out) {
   const cloud_point shown = in_cloud(p, to, which.turn_deg);
-  out.write(shortest(shown.x_m) + " " + shortest(shown.y_m) + " 0 " + shortest(shown.range_m) +
-            " " + shortest(shown.angle_deg) + " " + std::to_string(p.time_ns) +
-            (has_intensity(which) ? " " + std::to_string(p.intensity) : "") + "\n");
+  std::string line =
+      shortest(shown.x_m);  // appended to: g++ 12 warns of other forms without a reason
+  line.append(" ").append(shortest(shown.y_m)).append(" 0 ").append(shortest(shown.range_m));
+  line.append(" ").append(shortest(shown.angle_deg)).append(" ").append(std::to_string(p.time_ns));
+  if (has_intensity(which)) line.append(" ").append(std::to_string(p.intensity));
+  out.write(line.append("\n"));
 }
 
 }  // namespace

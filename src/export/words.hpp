@@ -35,7 +35,8 @@ namespace g4lidar {
 /// A word for an error message.
 [[nodiscard]] inline std::string quoted(std::string_view word) {
   constexpr std::size_t enough = 24;
-  return "'" + printable(word.substr(0, enough)) + (word.size() > enough ? "...'" : "'");
+  std::string text = "'";  // appended to: g++ 12 warns of other forms without a reason
+  return text.append(printable(word.substr(0, enough))).append(word.size() > enough ? "...'" : "'");
 }
 
 /// A finite number that is the whole word; it may have a plus sign.

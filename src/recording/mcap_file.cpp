@@ -76,7 +76,8 @@ result<mcap_file> mcap_file::create(const std::string& path, const channel_set& 
 result<void> mcap_file::begin(const channel_set& channels) {
   channels_ = channels;
   text_.clear();
-  text_.put(bytes(magic));
+  for (const std::uint8_t each : magic)
+    text_.put(each);  // g++ 12 warns of the range, without a reason
   const std::size_t header = text_.begin(opcode::header);
   text_.put("ros2");
   text_.put(std::string_view(library_name()));

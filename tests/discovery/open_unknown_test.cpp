@@ -80,7 +80,7 @@ TEST_F(OpenWithSettings, SettingThatTheFoundModelHasNot_ErrorListsTheCandidates)
       << opened.error().message();
 }
 
-// Nothing can be said about a limit of a lidar that is not there.
+// The limits of a lidar that is not there are unknown.
 TEST_F(OpenWithSettings, NoDevice_IsTheErrorWhateverTheSettings) {
   lidar_options how;
   how.frequency = scan_frequency{300};

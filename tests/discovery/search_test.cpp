@@ -54,7 +54,7 @@ std::string text_of(const std::vector<std::string>& notes) {
   return text;
 }
 
-/// How often the device was told to stop: `00 65`.
+/// How often the device got the commands of a stop: `00 65`.
 std::ptrdiff_t stops_in(const std::vector<std::string>& notes) {
   return std::ranges::count_if(notes,
                                [](const std::string& each) { return each.starts_with("65@"); });
@@ -112,7 +112,7 @@ TEST(Search, OneWayLidarThatShowsWhatItIs_GetsNoByte) {
   }
 }
 
-TEST(Search, OneWayLidarLikeATwoWayOne_IsToldToStopOnce) {
+TEST(Search, OneWayLidarLikeATwoWayOne_GetsOneStop) {
   for (const std::string_view word : {"x3-pro", "tx8", "tx20"}) {
     const searched done = search_at(options_of(word));
     ASSERT_TRUE(done.lidar) << word << done.lidar.error().message();
@@ -121,8 +121,8 @@ TEST(Search, OneWayLidarLikeATwoWayOne_IsToldToStopOnce) {
   }
 }
 
-// Without a reported frequency nothing tells it from an S4.
-TEST(Search, OneWayLidarWithoutAFrequency_IsToldToStopOnce) {
+// Without a reported frequency it cannot be distinguished from an S4.
+TEST(Search, OneWayLidarWithoutAFrequency_GetsOneStop) {
   sim::device_options options = options_of("x2");
   options.scanner.reports_frequency = false;
   const searched done = search_at(options);

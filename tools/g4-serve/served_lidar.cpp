@@ -21,12 +21,6 @@ nlohmann::ordered_json unknown_settings() {
   return all;
 }
 
-/// The model of a lidar before its first scan; null if that is not certain.
-const g4lidar::model* model_of(const common_options& options, const device_information& who) {
-  if (options.expected.model != nullptr) return options.expected.model;
-  return who.is_known() ? model_with_id(who.model, link_kind::two_way) : nullptr;
-}
-
 }  // namespace
 
 served_lidar::served_lidar(const serve_options& options, const named_source& which,
@@ -78,7 +72,7 @@ void served_lidar::on_open(g4lidar::lidar& device) {
   {
     const std::lock_guard lock(mutex_);
     settings_ = std::move(settings);
-    model_ = model_of(options_, device.information());
+    model_ = candidates_of(device).front();
   }
   listener_.on_lidar_change(true);
 }

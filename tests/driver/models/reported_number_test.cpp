@@ -51,8 +51,8 @@ struct reported_id {
   const char* other = "";  ///< In the error, as what.
 };
 
-// CT has four bits: 22 of an SCL is 6 there, and 100 of a TX is 4. X2, X3, S2, S4 and X4 Pro say 4, by the
-// table of the manufacturer most of them 6. Only an S2 says 12; an F4 and a G4C have the baud rate of an X2.
+// CT has four bits: 22 of an SCL is 6 there, and 100 of a TX is 4. X2, X3, S2, S4 and X4 Pro report 4, by the
+// table of the manufacturer most of them 6. Only an S2 reports 12; an F4 and a G4C have the baud rate of an X2.
 TEST(ReportedNumber, NumberOfAOneWayLidar_IsRefusedOnlyIfItIsSurelyAnotherModel) {
   for (const auto& [word, sent, known, other] : std::to_array<reported_id>({
            {"x2", 4, 4},

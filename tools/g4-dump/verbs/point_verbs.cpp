@@ -177,7 +177,7 @@ verb make_decode_verb() {
   job->common->source = "-";
   common_options& common = *job->common;
   const auto as_file = [](const std::string& word) {
-    return kind_of_source(word) == source_kind::device ? "file:" + word : word;
+    return kind_of_source(word) == source_kind::device ? std::string("file:").append(word) : word;
   };
   option_row file = value_row("FILE", "", "Raw bytes or a recording; - for standard input (-)",
                               common.source, as_file);
