@@ -48,6 +48,8 @@ run_quietly() {
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
 export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros,include_file_mtime,include_file_ctime}
 export CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
+# Clones of the project share them, too; but for the tests, whose precompiled header names its directory.
+export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD}
 
 # configure <build directory> <cmake argument>...: with Ninja, or with make if Ninja is not
 # installed. A build directory keeps its generator.
