@@ -4,6 +4,7 @@
 
 #include <array>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,19 +15,38 @@
 namespace g4lidar::test {
 namespace {
 
+/// The cells of a row of a table.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream words(line.substr(1));
+  for (std::string cell; std::getline(words, cell, '|');) {
+    if (cell.size() > 2) cells.push_back(cell.substr(1, cell.size() - 2));
+  }
+  return cells;
+}
+
 /// The cells of the row of the page that begins with this cell.
 std::vector<std::string> row_of(const std::string& first) {
   std::ifstream page(std::string(G4LIDAR_SOURCE_DIR) + "/docs/models.md");
   for (std::string line; std::getline(page, line);) {
-    if (!line.starts_with("| " + first + " |")) continue;
-    std::vector<std::string> cells;
-    std::istringstream words(line.substr(1));
-    for (std::string cell; std::getline(words, cell, '|');) {
-      if (cell.size() > 2) cells.push_back(cell.substr(1, cell.size() - 2));
-    }
-    return cells;
+    if (line.starts_with("| " + first + " |")) return cells_of(line);
   }
   return {};
+}
+
+/// The names in the first table of the README, each with the last cell of its row.
+std::map<std::string, std::string> evidence_in_readme() {
+  std::map<std::string, std::string> all;
+  std::ifstream page(std::string(G4LIDAR_SOURCE_DIR) + "/README.md");
+  std::string line;
+  while (std::getline(page, line) && !line.starts_with("| lidar ")) continue;
+  while (std::getline(page, line) && line.starts_with("|")) {
+    const auto cells = cells_of(line);
+    if (cells.size() != 3 || line.starts_with("|-")) continue;
+    std::istringstream names(cells[0]);
+    for (std::string name; std::getline(names >> std::ws, name, ',');) all[name] = cells[2];
+  }
+  return all;
 }
 
 std::string baud_words(const model& of) {
@@ -51,6 +71,16 @@ TEST(ModelsPage, HasEachModelWithItsEvidence) {
     EXPECT_NE(std::ranges::find(words, row[5]), words.end()) << each.word;
     const bool is_word = std::ranges::find(words, row[6]) != words.end();
     EXPECT_EQ(is_word && is_two_way, is_two_way) << each.word;
+  }
+}
+
+TEST(ModelsPage, TheReadmeHasTheSameEvidence) {
+  const auto readme = evidence_in_readme();
+  EXPECT_EQ(readme.size(), std::size(models));
+  for (const model& each : models) {
+    const auto found = readme.find(std::string(each.name));
+    ASSERT_NE(found, readme.end()) << each.name;
+    EXPECT_EQ(found->second, row_of("`" + std::string(each.word) + "`").at(5)) << each.name;
   }
 }
 
