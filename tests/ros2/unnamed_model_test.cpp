@@ -57,6 +57,8 @@ INSTANTIATE_TEST_SUITE_P(Models, UnnamedModel,
                                          kind{"x2", false, false, 0.1F, 16.383F},
                                          kind{"t-mini-pro", false, true, 0.02F, 16.383F},
                                          kind{"tg15", false, false, 0.05F, 65.535F},
+                                         kind{"g6", false, false, 0.1F, 32.7675F},
+                                         kind{"t-mini-plus-sh", false, true, 0.05F, 65.535F},
                                          kind{"g2", true, true, 0.1F, 16.383F}),
                          [](const auto& of) {
                            std::string name = of.param.word;

@@ -64,7 +64,7 @@ std::vector<std::pair<float, float>> replayed(const std::string& path) {
 }
 
 TEST(RecordedModel, GivesTheSamePoints) {
-  for (const std::string_view word : {"x2", "x4", "x4-pro", "tg15", "s2-intensity", "t-mini-pro"}) {
+  for (const std::string_view word : sim::model_words()) {
     sim::device_options options;
     ASSERT_TRUE(sim::use_model(options, word)) << word;
     const temporary_path path;
