@@ -135,11 +135,12 @@ void bind_simulator(nb::module_& module) {
       return of.with([&](sim::device& device, std::int64_t) { return (device.*ask)(); });
     };
   };
-  nb::class_<simulator>(module, "Simulator",
-                        "A simulated lidar, for tests: open() takes it. In virtual time waiting takes "
-                        "no real time, and the same seed gives "
-                        "the same points. In real time it has a thread and a pseudo-terminal, so "
-                        "any program can open its `path`.")
+  nb::class_<simulator>(
+      module, "Simulator",
+      "A simulated lidar, for tests: open() takes it. In virtual time waiting takes "
+      "no real time, and the same seed gives "
+      "the same points. In real time it has a thread and a pseudo-terminal, so "
+      "any program can open its `path`.")
       .def("__init__", &make_simulator, nb::kw_only(), "faults"_a = std::vector<std::string>{},
            "virtual_time"_a = true, "options"_a,
            nb::sig("def __init__(self, *, faults: collections.abc.Sequence[str] = [], "

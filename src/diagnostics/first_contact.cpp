@@ -18,8 +18,8 @@ constexpr std::int64_t unasked_ns = 300 * ms;
 constexpr std::int64_t unasked_one_way_ns = 1'500 * ms;
 /// The wait for the first reply, for each attempt: a device may be booting, and a reply may be
 /// late. Then attempts if the bytes contained no packets or responses: they may have been noise.
-constexpr std::array<std::int64_t, 8> patience_ns{800 * ms, 800 * ms, 3'000 * ms, 300 * ms,
-                                                  300 * ms, 300 * ms, 300 * ms,   300 * ms};
+constexpr std::array<std::int64_t, 8> patiences_ns{800 * ms, 800 * ms, 3'000 * ms, 300 * ms,
+                                                   300 * ms, 300 * ms, 300 * ms,   300 * ms};
 constexpr std::size_t attempts = 3;
 /// Packets arrive more often.
 constexpr std::int64_t silent_ns = 200 * ms;
@@ -45,7 +45,7 @@ first_contact::state first_contact::make(stage_report& baud) {
   }
   if (lidar.is_deaf) return state::made;
   if (!lidar.is_one_way()) {
-    const std::size_t end = is_noise || garbage_ > 0 ? patience_ns.size() : attempts;
+    const std::size_t end = is_noise || garbage_ > 0 ? patiences_ns.size() : attempts;
     if (ask(is_noise ? 0 : 1, end) || lidar.was_scanning) return state::made;
     const bool is_there = found == state::made || garbage_ == 0;
     if (is_there && !link.is_over() && scans_when_started()) {
@@ -108,7 +108,7 @@ void first_contact::report_scanning() {
 bool first_contact::ask(std::size_t from, std::size_t to) {
   of_.log.begin(diagnostic_activity::asking);
   for (std::size_t i = from; i < to && !of_.link.is_over(); ++i) {
-    exchange made = of_.link.ask(command::device_info, patience_ns.at(i));
+    exchange made = of_.link.ask(command::device_info, patiences_ns.at(i));
     if (asked_ns_ < 0) asked_ns_ = made.asked_ns;
     if (made.is_answered() || made.wrong > 0) {
       ask_the_rest(std::move(made));

@@ -288,6 +288,7 @@ inline constexpr auto old_models = [] {
 
 /// The model `which` of the table, as a device of it is that has reported `who`: with old firmware another
 /// record, of the same name. Valid forever; `which` itself if nothing differs. *Pure.*
+// NOLINTBEGIN(bugprone-return-const-ref-from-parameter): models are those of the table
 [[nodiscard]] constexpr const model& with_firmware(const model& which,
                                                    const device_information& who) noexcept {
   const unsigned version = who.firmware_major * 256U + who.firmware_minor;
@@ -298,6 +299,7 @@ inline constexpr auto old_models = [] {
   }
   return which;
 }
+// NOLINTEND(bugprone-return-const-ref-from-parameter)
 
 /// The model to which a one-way lidar that identifies itself with `number` belongs instead of `which`; null
 /// if it may be `which`. Several models report 4 and 6, so these numbers contradict no one-way model. Valid

@@ -111,12 +111,13 @@ class G4LIDAR_API text_points {
   [[nodiscard]] std::uint64_t points() const noexcept { return points_; }
   /// Lines without a point, except the header line of csv and empty lines.
   [[nodiscard]] std::uint64_t bad_lines() const noexcept { return bad_lines_; }
-  /// The first one of them, the first line of the text being 1, and point_lines::bad_column() of it,
-  /// empty if it is too long; 0 if there is none.
+  /// A line without a point: its number, the first line of the text being 1, and point_lines::bad_column() of it,
+  /// empty if it is too long.
   struct bad_line {
     std::uint64_t number = 0;
     std::string_view column{};
   };
+  /// The first one; with the number 0 if there is none. Valid as long as this reader.
   [[nodiscard]] const bad_line& first_bad_line() const noexcept { return first_bad_; }
   /// See point_lines.
   [[nodiscard]] bool is_foreign() const noexcept { return lines_.is_foreign(); }
