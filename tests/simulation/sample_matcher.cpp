@@ -43,7 +43,8 @@ void sample_matcher::add(std::span<const sim::sent_sample> samples) {
       ++counts_.damaged;
     }
     into.samples[s.position] = {static_cast<std::int64_t>(s.truth.index), s.truth.time_ns,
-                                corrected_deg(s.truth), s.truth.raw};
+                                corrected_deg(s.truth), s.truth.raw, s.truth.intensity,
+                                s.truth.flags};
     ++into.known;
   }
 }
@@ -55,6 +56,7 @@ bool sample_matcher::fits(const packet& sent, std::size_t at) const {
     const sample& truth = sent.samples[i];
     const auto units = static_cast<float>(format_.code.units_per_mm);
     if (static_cast<float>(truth.raw) / units != seen.range_mm) return false;
+    if (truth.intensity != seen.intensity || truth.flags != seen.sample_flags) return false;
     if (seen.is_revolution_start() != (sent.zero && i == 0)) return false;
     if (apart_deg(truth.angle_deg, static_cast<double>(seen.angle_deg)) > angle_slack_deg)
       return false;

@@ -63,6 +63,8 @@ class sample_matcher {
     std::int64_t time_ns;
     double angle_deg;
     std::uint16_t raw;
+    std::uint16_t intensity;
+    std::uint8_t flags;
   };
   struct packet {
     std::array<sample, max_samples> samples;

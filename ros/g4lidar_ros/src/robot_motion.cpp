@@ -64,11 +64,13 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
                                    {place.x, place.y, place.z, turn.x, turn.y, turn.z, turn.w},
                                    {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z});
       const std::lock_guard lock(mutex_);
-      if (made && subscribed_.size() < 1000) subscribed_.push_back(*made);
+      if (!made) return;
+      if (subscribed_.size() == 1000) subscribed_.erase(subscribed_.begin());  // while the motor rests
+      subscribed_.push_back(*made);
     };
     rclcpp::SubscriptionOptions how;
     how.qos_overriding_options = rclcpp::QosOverridingOptions::with_default_policies();
-    // Whoever publishes: with best effort every quality of service is accepted.
+    // With best effort every quality of service of a publisher is accepted.
     subscription_ = node.create_subscription<nav_msgs::msg::Odometry>(
         "odom", rclcpp::QoS(100).best_effort(), take, how);
   }

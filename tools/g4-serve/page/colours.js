@@ -14,7 +14,7 @@ const opaque = 255;
 /** Anchors of the colours from small to large values: readable on a light and on a dark background. */
 const on_light = [[130, 10, 20], [200, 35, 75], [160, 50, 180], [60, 90, 225], [10, 110, 130]];
 const on_dark = [[255, 240, 150], [255, 175, 70], [245, 100, 120], [190, 110, 230], [105, 150, 255]];
-/** Of lidars: they differ for colour-blind people, too (tests/browser/colours_test.py). More lidars begin again. */
+/** Of lidars: they differ for colour-blind people, too (tests/browser/lidars_test.py). More lidars begin again. */
 export const lidars_on_light = [[0, 94, 168], [213, 94, 0], [0, 0, 0], [0, 158, 115], [204, 121, 167]];
 export const lidars_on_dark = [[86, 180, 233], [230, 140, 0], [255, 255, 255], [0, 158, 115], [204, 121, 167]];
 

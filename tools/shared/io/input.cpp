@@ -38,8 +38,7 @@ void refuse_recording(std::span<const std::uint8_t> begin, const std::string& ti
 }
 
 std::string baud_question() {
-  return fmt::format("Was the port read at a wrong baud rate (a G4 needs {})?",
-                     diagnostic_options{}.baud);
+  return "Was the port read at a wrong baud rate, or are they of another model (--model)?";
 }
 
 }  // namespace
