@@ -68,10 +68,7 @@ parameter parameter_of(const setting_info& which) {
 /// A multiple of the step of a decimal.
 std::variant<answer, std::string> decimal_of(const setting_info& of, double number) {
   const std::string text = text_of_number(number);
-  // Other models may have values beyond the limits of a G4.
-  const bool is_of_another = number >= 0.0 && number <= 1000.0 &&
-                             value_of(of, static_cast<std::int32_t>(std::lround(number * 100.0)));
-  if (!is_of_another && !(number >= of.least / 100.0 && number <= of.most / 100.0))
+  if (!(number >= of.least / 100.0 && number <= of.most / 100.0))
     return not_in_range(text, of.least / 100.0, of.most / 100.0);
   const double steps = number * 100.0 / of.step;
   const auto made = value_of(of, static_cast<std::int32_t>(std::lround(steps)) * of.step);

@@ -130,7 +130,7 @@ TEST_F(FoundModel, SettingsHaveItsLimits) {
   serve("t-mini-pro");  // 6 to 12 Hz
   const outcome refused = run({"set", port_, "frequency=5"});
   EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("frequency=5.0: a T-mini Pro cannot have it"));
+  EXPECT_THAT(refused.err, HasSubstr("frequency=5.0: a T-mini Pro has 6 to 12 Hz"));
 }
 
 TEST_F(FoundModel, RefusedSettingNamesTheCandidatesAndHowToChoose) {
@@ -161,6 +161,20 @@ TEST_F(FoundModel, NamedModelThatTheDeviceContradicts_ErrorNamesBoth) {
     EXPECT_EQ(done.code, 7) << command << done.err;
     EXPECT_THAT(done.err, HasSubstr("model 15 (G2), not G1")) << command;
   }
+}
+
+TEST_F(FoundModel, ValuesOfNoModelAreRefusedWithTheLimitsOfAll) {
+  const outcome refused = run({"set", port_, "frequency=17"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("'17' is not in the range 3 to 16"));
+}
+
+TEST_F(FoundModel, StopOfALidarWithoutCommands_DoesNotClaimIt) {
+  serve("x2");
+  const outcome done = run({"stop", port_});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr(": this model has no commands: its scan cannot be stopped"));
+  EXPECT_THAT(done.err, Not(HasSubstr("it was not scanning")));
 }
 
 TEST_F(FoundModel, CommandsStartAndStopAnX4) {

@@ -214,7 +214,7 @@ TEST_F(Services, ParametersAreThoseOfTheDevice) {
   EXPECT_THAT(set(setter, {named("frequency", number(20)), named("frequency", text("fast")),
                            named("grid", whole(100)), named("nothing", whole(1)),
                            named("sample_rate", whole(8001)), named("frequency", whole(6))}),
-              ElementsAre("frequency: '20' is not in the range 5 to 12", HasSubstr("a double"),
+              ElementsAre("frequency: '20' is not in the range 3 to 16", HasSubstr("a double"),
                           HasSubstr("cannot change"), HasSubstr("no such parameter"),
                           HasSubstr("'8001' is not one of 4k, 8k, 9k"), ""));
   EXPECT_EQ(lidar.settings().scan_frequency_chz, 600);

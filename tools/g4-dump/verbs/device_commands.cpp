@@ -58,7 +58,10 @@ exit_code start(const common_options& options) {
 
 exit_code stop(const common_options& options) {
   command_source source(options, task::stopping);  // its constructor stops the device
-  if (!source.was_scanning()) {
+  if (source.candidates().front()->link == g4lidar::link_kind::one_way) {
+    logger::info(fmt::format("{}: this model has no commands: its scan cannot be stopped\n",
+                             source.lidar().name()));
+  } else if (!source.was_scanning()) {
     logger::info(fmt::format("{}: stopped; it was not scanning\n", source.lidar().name()));
   }
   return exit_code::ok;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The verb set: changes settings, and prints each before and after.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,13 +59,27 @@ void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, b
   if (!given) throw failure(given.error());
 }
 
+/// "has 5 to 12 Hz": what the model can have.
+std::string possible_values(const g4lidar::model& which, request_kind of) {
+  if (of == request_kind::set_scan_frequency) {
+    const auto& [least_dhz, most_dhz, reply, ct] = which.frequency;
+    return fmt::format("has {} to {} Hz", least_dhz / 10.0, most_dhz / 10.0);
+  }
+  if (of != request_kind::set_sample_rate) return "cannot have it";
+  std::vector<std::uint32_t> rates;
+  for (std::uint8_t code = 0; code < rate_count(which); ++code) {
+    rates.push_back(rate_hz_of_code(which, code));
+  }
+  return fmt::format("has {} samples per second", fmt::join(rates, ", "));
+}
+
 /// Throws a bad_value if the lidar cannot have one of the values: then nothing is changed.
 void check(const set_options& options, const g4lidar::model& which) {
   for (const setting_change& each : options.changes) {
     const request wanted = change_to(each.value);
     if (!has_request(which, wanted.what) || is_possible(wanted, which)) continue;
-    throw bad_value(fmt::format("{}={}: a {} cannot have it", each.which->name, text_of(each.value),
-                                which.name));
+    throw bad_value(fmt::format("{}={}: a {} {}", each.which->name, text_of(each.value), which.name,
+                                possible_values(which, wanted.what)));
   }
 }
 

@@ -35,13 +35,9 @@ std::optional<answer> rate_of_another(const setting_info& which, std::string_vie
   return value_of(which, is_thousands ? hz * 1000 : hz);
 }
 
-/// A multiple of the step of a decimal. Other models may have values beyond the limits of a G4.
+/// A multiple of the step of a decimal.
 answer decimal_of(const setting_info& which, const std::string& word) {
-  const double far = number_of(word, 0.0, 1000.0);
-  const bool is_of_another =
-      value_of(which, static_cast<std::int32_t>(std::lround(far * 100.0))).has_value();
-  const double number =
-      is_of_another ? far : number_of(word, which.least / 100.0, which.most / 100.0);
+  const double number = number_of(word, which.least / 100.0, which.most / 100.0);
   const double steps = number * 100.0 / which.step;
   if (std::abs(steps - std::round(steps)) > 1e-6) {
     throw bad_value(

@@ -26,7 +26,7 @@ struct setting_change {
 /// "sample_rate=4k", "frequency=5": examples for completion.
 [[nodiscard]] std::vector<std::string> example_changes();
 
-/// "4k|8k|9k", "5..12": what is possible, for a help.
+/// "4k|8k|9k", "3..16": what is possible, for a help.
 [[nodiscard]] std::string values_of(const g4lidar::setting_info& which);
 
 /// Whether `word` has the form NAME=VALUE: only letters, `-` and `_` before the first `=`. A source
