@@ -291,7 +291,7 @@ TEST_F(Services, SeveralLidarsHaveTheirNamesBeforeADot) {
     EXPECT_THAT(frequency.description, HasSubstr("Hz"));
     EXPECT_FALSE(frequency.read_only);
     ASSERT_EQ(frequency.floating_point_range._length, 1U);
-    EXPECT_EQ(frequency.floating_point_range._buffer[0].to_value, 12.0);
+    EXPECT_EQ(frequency.floating_point_range._buffer[0].to_value, 16.0);
     EXPECT_TRUE(reply.descriptors._buffer[1].read_only);
   });
   types.call({0, 0, sequence_of<dds_sequence_string>(wanted)}, [](const auto& reply) {
