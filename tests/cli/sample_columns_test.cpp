@@ -252,4 +252,17 @@ TEST_F(SampleColumns, OfLaterLinesOnly_AreRefused) {
   EXPECT_THAT(text("b.csv"), HasSubstr("\n0,1.000000,500.00,0,0\n0,2.000000,500.00,0,7\n"));
 }
 
+TEST_F(SampleColumns, PointsThatNameNoLidar_AreTurnedWithAWord) {
+  cli::write_file(path("g4.csv"), "angle_deg,range_mm,time_ns\n10.0,1000.0,1\n20.0,1000.0,2\n");
+  const std::string words = "its points are turned as those of a G4; --model names another";
+  const outcome turned = run({"convert", path("g4.csv"), path("robot.csv"), "--frame", "robot"});
+  ASSERT_EQ(turned.code, 0) << turned.err;
+  EXPECT_THAT(turned.err, HasSubstr(words));
+  const outcome native = run({"convert", path("g4.csv"), path("native.csv")});
+  EXPECT_THAT(native.err, Not(HasSubstr(words)));
+  const outcome named =
+      run({"convert", path("g4.csv"), path("x4.csv"), "--frame", "robot", "--model", "x4"});
+  EXPECT_THAT(named.err, Not(HasSubstr(words)));
+}
+
 }  // namespace

@@ -42,8 +42,11 @@ void sample_matcher::add(std::span<const sim::sent_sample> samples) {
       into.whole = false;
       ++counts_.damaged;
     }
-    into.samples[s.position] = {static_cast<std::int64_t>(s.truth.index), s.truth.time_ns,
-                                corrected_deg(s.truth), s.truth.raw, s.truth.intensity,
+    into.samples[s.position] = {static_cast<std::int64_t>(s.truth.index),
+                                s.truth.time_ns,
+                                corrected_deg(s.truth),
+                                s.truth.raw,
+                                s.truth.intensity,
                                 s.truth.flags};
     ++into.known;
   }

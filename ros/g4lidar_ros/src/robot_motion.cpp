@@ -65,7 +65,8 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
                                    {linear.x, linear.y, linear.z, angular.x, angular.y, angular.z});
       const std::lock_guard lock(mutex_);
       if (!made) return;
-      if (subscribed_.size() == 1000) subscribed_.erase(subscribed_.begin());  // while the motor rests
+      if (subscribed_.size() == 1000)
+        subscribed_.erase(subscribed_.begin());  // while the motor rests
       subscribed_.push_back(*made);
     };
     rclcpp::SubscriptionOptions how;

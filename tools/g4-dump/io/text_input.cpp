@@ -26,7 +26,15 @@ g4lidar::model model_of_text(input& in, text_source form, const common_options& 
   g4lidar::model made = named == nullptr ? g4_model : *named;
   point_lines lines(form, g4lidar::frame::vendor, made);
   static_cast<void>(lines.read(in.first_line(common)));
-  if (lines.unexpected().empty()) return made;
+  if (lines.unexpected().empty()) {
+    if (named == nullptr && common.frame == g4lidar::frame::robot) {
+      logger::info(
+          fmt::format("{} does not name a lidar: its points are turned as those of a {}; --model "
+                      "names another\n",
+                      in.title(), made.name));
+    }
+    return made;
+  }
   if (named == nullptr) {
     logger::info(
         fmt::format("{} has {}, which a {} does not measure; its directions are read as those of a "
