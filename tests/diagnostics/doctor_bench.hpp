@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <ostream>
 #include <span>
@@ -96,7 +95,7 @@ std::string diagnoses_of_faults();
 std::string diagnoses_of_beliefs();
 
 /// Faults in the format of g4-dump.
-inline std::vector<sim::fault> faults_of(std::initializer_list<std::string_view> texts) {
+inline std::vector<sim::fault> faults_of(const std::vector<std::string_view>& texts) {
   std::vector<sim::fault> faults;
   for (const std::string_view text : texts) {
     const auto read = sim::parse_fault(text);

@@ -31,7 +31,7 @@ sim::device_options device_of(std::string_view word) {
 
 /// At a port of which nothing is known but, perhaps, the model.
 examined examine_as(const sim::device_options& options, std::string_view named,
-                    std::uint32_t baud = 0, std::initializer_list<std::string_view> faults = {}) {
+                    std::uint32_t baud = 0, const std::vector<std::string_view>& faults = {}) {
   diagnostic_options how;
   how.model = named.empty() ? nullptr : model_named(named);
   how.baud = baud;
@@ -157,7 +157,7 @@ struct belief {
   std::uint32_t baud;
   std::string_view diagnoses;
   std::vector<std::string_view> words;  ///< In the remarks.
-  std::initializer_list<std::string_view> faults = {};
+  std::vector<std::string_view> faults = {};
 };
 
 void PrintTo(const belief& one, std::ostream* out) { *out << one.name; }
