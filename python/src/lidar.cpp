@@ -31,27 +31,6 @@ std::optional<live_lidar::milliseconds> optional_timeout(std::optional<double> s
   return in_milliseconds(*seconds);
 }
 
-/// Sends each setting that is given.
-void set(live_lidar& on, const wanted_settings& wanted, bool interrupt) {
-  const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
-  for (const answer& value : wanted.values()) {
-    on.run([&](lidar& device) { return device.ask(change_to(value), how); });
-  }
-}
-
-nb::dict settings(live_lidar& on, bool interrupt) {
-  const auto how = interrupt ? while_scanning::stop_and_resume : while_scanning::refuse;
-  const auto ask = [&](const auto& request) {
-    return on.run([&](lidar& device) { return device.ask(request, how); });
-  };
-  nb::dict all;
-  all["frequency_hz"] = ask(requests::get_scan_frequency()).hz();
-  all["sample_rate_hz"] = to_hz(ask(requests::get_sample_rate()));
-  all["direction"] = ask(requests::get_direction());
-  all["idle"] = ask(requests::get_low_power()) == low_power::on;
-  return all;
-}
-
 nb::dict counts(live_lidar& on) {
   nb::dict all = dict_of(on.look([](lidar& device) { return device.counts(); }));
   all["scans_dropped"] = on.dropped();
@@ -144,17 +123,20 @@ void bind_control(Class& made) {
           nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
           "direction"_a = nb::none(), "constant"_a = nb::none(), "idle"_a = nb::none(),
           "protection"_a = nb::none(), "interrupt"_a = false,
-          "Sets the scan frequency (5 to 12 Hz), the measurements per second (4000, 8000 or 9000), "
-          "the direction of the "
-          "head, whether the lidar regulates its frequency, whether the motor stops when idle, "
-          "whether the lidar stops "
-          "when the host sends nothing for 3 s. They are set again at each start and after a "
-          "reconnect. During a scan "
-          "Scanning is raised, unless `interrupt` allows to stop and start again.")
-      .def("settings", &settings, nb::kw_only(), "interrupt"_a = false,
-           nb::sig("def settings(self, *, interrupt: bool = False) -> dict[str, typing.Any]"),
-           "The settings that can be queried: 'frequency_hz', 'sample_rate_hz', 'direction', "
-           "'idle'.")
+          "Sets the scan frequency (of a G4 5 to 12 Hz), the measurements per second (of a G4 "
+          "4000, 8000 or 9000), the direction of the head, whether the lidar regulates its "
+          "frequency, whether the motor stops when idle, whether the lidar stops when the host "
+          "sends nothing for 3 s. They are set again at each start and after a reconnect. During a "
+          "scan Scanning is raised, unless `interrupt` allows to stop and start again. Raises "
+          "BadSetting for a value, and NotSupported for a setting, that the model does not have: "
+          "then nothing is set.")
+      .def(
+          "settings", &settings, nb::kw_only(), "interrupt"_a = false,
+          nb::sig("def settings(self, *, interrupt: bool = False) -> dict[str, float | bool | str "
+                  "| None]"),
+          "The settings that can be queried: 'frequency_hz', 'sample_rate_hz', 'direction', "
+          "'idle'. None: the model does not have this setting, or is a TG that does not answer for "
+          "its sample rate.")
       .def(
           "health",
           [](live_lidar& on, bool interrupt) {

@@ -4,12 +4,14 @@
 
 #include <nanobind/stl/optional.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "errors.hpp"
 #include "g4lidar/setting_table.hpp"
+#include "live_lidar.hpp"
 #include "words.hpp"
 
 namespace g4lidar::python {
@@ -23,18 +25,19 @@ struct wanted_settings {
   std::optional<bool> idle;
   std::optional<bool> protection;
 
-  /// The values, in the order of the table. Raises BadOption for one that a G4 does not have.
+  /// The values, in the order of the table. Raises BadOption for one that its type cannot hold: the lidar refuses what
+  /// its model does not have.
   [[nodiscard]] std::vector<answer> values() const {
     std::vector<answer> all;
     if (sample_rate_hz) {
-      const auto rate = value_of(all_settings()[0], *sample_rate_hz);
-      if (!rate) refuse("sample_rate_hz: 4000, 8000 or 9000, not ", nb::cast(*sample_rate_hz));
-      all.push_back(*rate);
+      const int hz = *sample_rate_hz;
+      if (hz < 0 || hz > UINT16_MAX) refuse("sample_rate_hz: 0 to 65535, not ", nb::cast(hz));
+      all.emplace_back(sample_rate{static_cast<std::uint16_t>(hz)});
     }
     if (frequency_hz) {
-      const auto wanted = scan_frequency::hz(*frequency_hz);
-      if (!is_valid(wanted)) refuse("frequency_hz: 5 to 12, not ", nb::cast(*frequency_hz));
-      all.emplace_back(wanted);
+      const double hz = *frequency_hz;
+      if (!(hz >= 0.0 && hz <= 655.0)) refuse("frequency_hz: 0 to 655, not ", nb::cast(hz));
+      all.emplace_back(scan_frequency::hz(hz));
     }
     if (direction) all.emplace_back(*direction);
     if (constant) all.emplace_back(*constant ? constant_frequency::on : constant_frequency::off);
@@ -53,5 +56,10 @@ struct wanted_settings {
         error(task::configuring, problem::bad_option, std::string(what) + nb::repr(given).c_str()));
   }
 };
+
+/// Sends each setting that is given; nothing if the lidar refuses one of them.
+void set(live_lidar& on, const wanted_settings& wanted, bool interrupt);
+/// The settings that can be queried; None where the model does not have one.
+[[nodiscard]] nb::dict settings(live_lidar& on, bool interrupt);
 
 }  // namespace g4lidar::python

@@ -286,7 +286,7 @@ def test_doctor_takes_the_model(g4_simulator: Make) -> None:
 
     assert found(None) == found("x4") == []
     assert found("x2") == ["other_device"]
-    with pytest.raises(g4lidar.BadOption):
+    with pytest.raises(g4lidar.errors.BadOption):
         g4lidar.doctor(g4_simulator(), model="x44")
 
 

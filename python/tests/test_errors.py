@@ -50,8 +50,10 @@ def test_each_class_is_also_that_of_python() -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"frequency_hz": 13}, "5 to 12, not 13"),
-        ({"sample_rate_hz": 5000}, "4000, 8000 or 9000, not 5000"),
+        ({"frequency_hz": 13}, r"frequency: 500 to 1200 \(5 to 12 Hz of a G4\), not 1300"),
+        ({"frequency_hz": float("nan")}, "frequency_hz: 0 to 655, not nan"),
+        ({"sample_rate_hz": 5000}, "sample_rate: 4000, 8000 or 9000 of a G4"),
+        ({"sample_rate_hz": 65536 + 4000}, "sample_rate_hz: 0 to 65535, not 69536"),
         ({"stall_time": 0.0}, "stall_time: 100 ms to 1 min, not 0 ms"),
     ],
 )

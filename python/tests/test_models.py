@@ -9,6 +9,8 @@ import pytest
 import g4lidar
 from g4lidar import errors
 
+Make = Callable[..., g4lidar.Simulator]
+
 
 def t_mini_stream(revolutions: int) -> bytes:
     """Packets of 30 samples of 3 bytes, each 30 degrees: 2000 mm, flags 2, intensity 100 + packet."""
@@ -76,3 +78,75 @@ def test_messages_have_the_intensity(tmp_path: Path) -> None:
 def test_the_model_of_an_open_lidar_and_what_sends_the_same() -> None:
     with g4lidar.open("sim:?model=x2") as lidar:  # sim: states its model, so nothing is searched
         assert lidar.candidates == ["x2"]
+
+
+@pytest.mark.parametrize(
+    ("model", "name", "least", "most"),
+    [("g4", "G4", 5, 12), ("t-mini-pro", "T-mini Pro", 6, 12), ("tg30", "TG30", 3, 16)],
+)
+def test_the_scan_frequency_has_the_limits_of_the_model(
+    g4_simulator: Make, model: str, name: str, least: int, most: int
+) -> None:
+    with g4lidar.open(g4_simulator(model=model), frequency_hz=most) as lidar:
+        lidar.start()
+        lidar.stop()
+        assert lidar.settings()["frequency_hz"] == pytest.approx(most, abs=0.05)
+        for hz in (least, least + 1, most - 0.5, most):
+            lidar.set(frequency_hz=hz)
+            assert lidar.settings()["frequency_hz"] == pytest.approx(hz, abs=0.05)
+        for hz in (least - 0.1, most + 0.1):
+            with pytest.raises(errors.BadSetting, match=rf"\({least} Hz to {most} Hz of a {name}\)"):
+                lidar.set(frequency_hz=hz)
+            with pytest.raises(errors.BadOption, match=rf"\({least} to {most} Hz of a {name}\), not {hz * 100:.0f}"):
+                g4lidar.open(g4_simulator(model=model), frequency_hz=hz)
+        assert lidar.settings()["frequency_hz"] == pytest.approx(most, abs=0.05)
+
+
+def test_a_sample_rate_of_another_model(g4_simulator: Make) -> None:
+    with g4lidar.open(g4_simulator(model="g6"), sample_rate_hz=16_000) as lidar:
+        lidar.start()
+        lidar.stop()
+        assert lidar.settings()["sample_rate_hz"] == 16_000
+        with pytest.raises(errors.BadSetting, match="8000, 16000 or 18000 of a G6"):
+            lidar.set(sample_rate_hz=9000)
+
+
+@pytest.mark.parametrize(
+    ("options", "known"),
+    [
+        ({"model": "g4"}, {"frequency_hz", "sample_rate_hz", "direction", "idle"}),
+        ({"model": "t-mini-pro"}, {"frequency_hz"}),
+        ({"model": "tg30"}, {"frequency_hz"}),
+        ({"model": "tg30", "answers_sample_rate": True}, {"frequency_hz", "sample_rate_hz"}),
+        ({"model": "x2"}, set()),
+        ({"model": "x4"}, set()),
+    ],
+)
+def test_a_setting_that_the_model_does_not_have_is_none(
+    g4_simulator: Make, options: dict[str, object], known: set[str]
+) -> None:
+    with g4lidar.open(g4_simulator(**options)) as lidar:
+        settings = lidar.settings()
+        assert list(settings) == ["frequency_hz", "sample_rate_hz", "direction", "idle"]
+        assert {name for name, value in settings.items() if value is not None} == known
+        if "direction" not in known:
+            with pytest.raises(errors.NotSupported, match="direction"):
+                lidar.set(direction="clockwise")
+
+
+@pytest.mark.g4(answers_sample_rate=False)
+def test_a_setting_that_the_model_has_is_not_none(g4_lidar: g4lidar.Lidar) -> None:
+    with pytest.raises(errors.Timeout, match="sample rate"):
+        g4_lidar.settings()
+
+
+def test_nothing_is_sent_if_one_setting_is_refused(g4_simulator: Make) -> None:
+    g4, t_mini = g4_simulator(), g4_simulator(model="t-mini-pro")
+    with g4lidar.open(g4) as lidar, g4lidar.open(t_mini) as other:
+        lidar.settings(), other.settings()
+        sent = len(g4.commands()), len(t_mini.commands())
+        with pytest.raises(errors.BadSetting):
+            lidar.set(sample_rate_hz=4000, frequency_hz=13)
+        with pytest.raises(errors.NotSupported):
+            other.set(frequency_hz=8, direction="clockwise")
+        assert (len(g4.commands()), len(t_mini.commands())) == sent
