@@ -110,6 +110,7 @@ std::optional<answer> value_of(const setting_info& of, std::int32_t number) noex
   return scan_frequency{static_cast<std::uint16_t>(number)};
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): a variant of numbers always has a value
 const setting_value* find_value(const answer& value) noexcept {
   const setting_info* const of = setting_of(value);
   if (of == nullptr) return nullptr;
@@ -126,6 +127,7 @@ std::optional<std::int32_t> number_of(const answer& value) noexcept {
   return found == nullptr ? std::nullopt : std::optional(found->number);
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): the same
 request change_to(const answer& value) noexcept {
   return std::visit(
       [](const auto& wanted) -> request {
