@@ -67,6 +67,7 @@ std::string possible_values(const g4lidar::model& which, request_kind of) {
   }
   if (of != request_kind::set_sample_rate) return "cannot have it";
   std::vector<std::uint32_t> rates;
+  rates.reserve(rate_count(which));
   for (std::uint8_t code = 0; code < rate_count(which); ++code) {
     rates.push_back(rate_hz_of_code(which, code));
   }
