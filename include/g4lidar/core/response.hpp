@@ -2,6 +2,7 @@
 // A response on the wire: its header, the possible contents, and their meaning.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -107,10 +108,13 @@ inline constexpr std::uint32_t max_frequency_chz = 2000;
     if (data[at] != layout.header[at] && !is_pitch) return refused_at(at);
   }
   const std::size_t size = response_header_size + layout.content;
-  for (std::size_t at = response_header_size; at < size && at < have && !is_angle; ++at) {
-    const std::size_t in_content = at - response_header_size;
-    if (!is_possible(layout.kind, data.subspan(response_header_size), in_content, largest_byte)) {
-      return refused_at(at);
+  if (have > response_header_size && !is_angle) {
+    const bytes content =
+        data.subspan(response_header_size, std::min(have, size) - response_header_size);
+    for (std::size_t at = 0; at < content.size(); ++at) {
+      if (!is_possible(layout.kind, content, at, largest_byte)) {
+        return refused_at(response_header_size + at);
+      }
     }
   }
   if (have < size) return {wire_state::incomplete, have + 1};
