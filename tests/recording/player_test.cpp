@@ -272,8 +272,8 @@ TEST_F(Player, RawBytes_ArePlayedByTheirSamples) {
   EXPECT_EQ(device.counts().stream.packets, 51U) << "the first ends at 0.5 s";
   EXPECT_EQ(on.position_ns(), second);
   ASSERT_TRUE(on.seek(second - 100 * ms));
+  const auto begun = clock::now();  // first: a busy machine may stop this test behind the next line
   ASSERT_TRUE(on.set_speed(1));
-  const auto begun = clock::now();
   EXPECT_FALSE(rest_of(device).empty());
   EXPECT_GE(clock::now() - begun, 99ms);
   EXPECT_EQ(device.counts().stream.packets, 62U);
