@@ -39,11 +39,13 @@ std::optional<answer> rate_of_another(const setting_info& which, std::string_vie
 answer decimal_of(const setting_info& which, const std::string& word) {
   const double number = number_of(word, which.least / 100.0, which.most / 100.0);
   const double steps = number * 100.0 / which.step;
-  if (std::abs(steps - std::round(steps)) > 1e-6) {
+  const bool is_whole = std::abs(steps - std::round(steps)) <= 1e-6;
+  const auto made = value_of(which, static_cast<std::int32_t>(std::lround(steps)) * which.step);
+  if (!is_whole || !made) {
     throw bad_value(
         fmt::format("'{}' is not a multiple of {}, such as 7.5", word, which.step / 100.0));
   }
-  return *value_of(which, static_cast<std::int32_t>(std::lround(steps)) * which.step);
+  return *made;
 }
 
 }  // namespace
