@@ -34,15 +34,15 @@ struct speckle_limits {
   std::size_t window = 2;  ///< How many samples on each side are neighbours: 1 to max_window.
   std::size_t count = 1;   ///< With fewer near neighbours than this a return is isolated.
   float near_m = 0.05F;    ///< Neighbours up to this distance are near; or up to
-  /// this share of the range, if that is more. Negative: by the model, 0.05 for a G4, and more where the
-  /// samples of a revolution are farther apart, in proportion: 0.15 for an X2.
+  /// this share of the range, if that is more. Negative: 0.05 where the samples are up to 0.28 degrees
+  /// apart, as those of a G4 at 9 kHz and 7 Hz, and in proportion where they are farther apart: 0.15
+  /// for an X2 at 7 Hz.
   float near_ratio = -1.0F;
 
-  /// `near_ratio`, or that of the model. *Pure.*
-  [[nodiscard]] constexpr float near_ratio_of(const model& which) const noexcept {
-    if (near_ratio >= 0.0F) return near_ratio;
-    const auto rate_hz = static_cast<float>(first_rate_hz(which));
-    return 0.05F * std::max(1.0F, static_cast<float>(first_rate_hz(g4_model)) / rate_hz);
+  /// `near_ratio`, or that of samples which are so many degrees apart. *Pure.*
+  [[nodiscard]] constexpr float near_ratio_at(float step_deg) const noexcept {
+    constexpr float usual_deg = 0.28F;
+    return near_ratio >= 0.0F ? near_ratio : 0.05F * std::max(1.0F, step_deg / usual_deg);
   }
 };
 
@@ -115,17 +115,61 @@ constexpr std::span<point> copy_points(std::span<const point> points,
   return out.first(points.size());
 }
 
+/// The mean angle between two samples in a row, in degrees; 0 if it is not known. Gaps do not count.
+constexpr float mean_step_deg(std::span<const point> points) noexcept {
+  constexpr float longest_deg = 10.0F;
+  float sum_deg = 0.0F;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    float step_deg = points[i].angle_deg - points[i - 1].angle_deg;
+    if (step_deg < -180.0F) step_deg += 360.0F;
+    if (step_deg > 180.0F) step_deg -= 360.0F;
+    if (step_deg < -longest_deg || step_deg > longest_deg) continue;
+    sum_deg += step_deg;
+    ++count;
+  }
+  return count > 0 ? sum_deg / static_cast<float>(count) : 0.0F;
+}
+
 }  // namespace detail
+
+/// The angle between the samples of a stream: that of its last whole revolution, however the stream is
+/// divided. *Never allocates.*
+class sample_spacing {
+ public:
+  /// Until a revolution has passed it is that of the model at 7 revolutions per second.
+  explicit constexpr sample_spacing(const model& which) noexcept
+      : step_deg_(7.0F * 360.0F / static_cast<float>(first_rate_hz(which))) {}
+
+  /// The next points of the stream, in the order of measurement.
+  constexpr void add(std::span<const point> points) noexcept {
+    for (const point& p : points) {
+      if (p.revolution != revolution_) {
+        if (is_whole_) step_deg_ = 360.0F / static_cast<float>(count_);
+        is_whole_ = count_ > 0 && p.revolution == revolution_ + 1;
+        revolution_ = p.revolution;
+        count_ = 0;
+      }
+      ++count_;
+    }
+  }
+  [[nodiscard]] constexpr float step_deg() const noexcept { return step_deg_; }
+
+ private:
+  float step_deg_;
+  std::uint32_t revolution_ = 0;
+  std::uint32_t count_ = 0;  // of the points of the revolution
+  bool is_whole_ = false;    // whether its first point has been seen
+};
 
 /// Flags the returns that `limits` define as point_flags::isolated, clears that flag on all other
 /// points, and returns the number of flagged ones. Linear in the number of points times the window.
 /// It looks at places only, so other marks do not change the result. With at most twice the window
 /// of points the ends are open. *Pure, never allocates.* To leave the flagged points out:
-/// point_filter::excluded. The lidar is like `which`.
+/// point_filter::excluded.
 constexpr std::size_t mark_isolated(std::span<point> points, const speckle_limits& limits = {},
-                                    scan_ends ends = scan_ends::joined,
-                                    const model& which = g4_model) noexcept {
-  const float near_ratio = limits.near_ratio_of(which);
+                                    scan_ends ends = scan_ends::joined) noexcept {
+  const float near_ratio = limits.near_ratio_at(detail::mean_step_deg(points));
   const auto judge = [&limits, near_ratio](std::span<const xy_point> before, const xy_point& here,
                                            std::span<const xy_point> after, float range_mm) {
     const float near_m = std::max(limits.near_m, near_ratio * 0.001F * range_mm);
@@ -145,9 +189,8 @@ constexpr std::size_t mark_isolated(std::span<point> points, const speckle_limit
 /// The same on a copy of all `points` at the front of `out`, which is at least as long.
 constexpr std::size_t mark_isolated(std::span<const point> points, std::span<point> out,
                                     const speckle_limits& limits,
-                                    scan_ends ends = scan_ends::joined,
-                                    const model& which = g4_model) noexcept {
-  return mark_isolated(detail::copy_points(points, out), limits, ends, which);
+                                    scan_ends ends = scan_ends::joined) noexcept {
+  return mark_isolated(detail::copy_points(points, out), limits, ends);
 }
 
 /// The same for veiling points and point_flags::veiling.

@@ -39,10 +39,9 @@ struct mark_limits {
   [[nodiscard]] constexpr std::size_t window() const noexcept {
     return std::max(speckle ? speckle->window : 0, edges ? edges->window : 0);
   }
-  /// Marks by neighbours: all that is given but `near`. The lidar is like `which`. *Never allocates.*
-  constexpr void mark_by_neighbours(std::span<point> points, scan_ends ends,
-                                    const model& which) const noexcept {
-    if (speckle) mark_isolated(points, *speckle, ends, which);
+  /// Marks by neighbours: all that is given but `near`. *Never allocates.*
+  constexpr void mark_by_neighbours(std::span<point> points, scan_ends ends) const noexcept {
+    if (speckle) mark_isolated(points, *speckle, ends);
     if (edges) mark_veiling(points, *edges, ends);
   }
 };

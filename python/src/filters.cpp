@@ -206,20 +206,18 @@ void bind_filters(nb::module_& module) {
   module.def(
       "mark_isolated",
       [](const array<point>& points, std::size_t window, std::size_t count, float near_m,
-         float near_ratio, scan_ends ends, const std::optional<std::string>& word) {
-        const model& which = model_or_g4(word);
+         float near_ratio, scan_ends ends) {
         require_numbers({near_m, near_ratio});
         const speckle_limits limits{checked_window(window), count, near_m, near_ratio};
-        return marked(points,
-                      [&](std::span<point> all) { mark_isolated(all, limits, ends, which); });
+        return marked(points, [&](std::span<point> all) { mark_isolated(all, limits, ends); });
       },
       "points"_a, nb::kw_only(), "window"_a = speckle.window, "count"_a = speckle.count,
       "near_m"_a = speckle.near_m, "near_ratio"_a = speckle.near_ratio,
-      "ends"_a = scan_ends::joined, "model"_a = nb::none(),
+      "ends"_a = scan_ends::joined,
       "A copy in which returns with fewer than `count` near returns among `window` (1 to 16) "
       "samples on each side are "
       "flagged PointFlag.ISOLATED. Near is up to `near_m` metres, or `near_ratio` of the range if "
-      "that is more (negative: that of `model`, Scan.model; None: a G4, 0.05).");
+      "that is more (negative: 0.05, and more if the samples are more than 0.28 degrees apart).");
   const edge_limits edges;
   module.def(
       "mark_veiling",

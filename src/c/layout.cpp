@@ -83,7 +83,6 @@ static_assert(first_size<g4lidar_near_options> == word + 16);
 static_assert(offsetof(g4lidar_filter_options, field_of_view) == aligned(5 * word));
 static_assert(first_size<g4lidar_filter_options> == aligned(5 * word) + 40);
 static_assert(first_size<g4lidar_outlier_options> == word + 32);
-static_assert(offsetof(g4lidar_outlier_options, model) == word + 32);
 static_assert(first_size<g4lidar_find_options> == word + 16);
 static_assert(offsetof(g4lidar_port, vendor_id) == 8 * word);
 static_assert(offsetof(g4lidar_port, lidar) == 8 * word + 7);

@@ -98,7 +98,7 @@ int g4lidar_mark_isolated(g4lidar_point* points, size_t count,
                           const g4lidar_outlier_options* options, size_t* marked) {
   return marked_by(points, count, options, marked,
                    [](std::span<point> all, const outlier_limits& by) {
-                     return mark_isolated(all, by.speckle, by.ends, *by.of);
+                     return mark_isolated(all, by.speckle, by.ends);
                    });
 }
 

@@ -27,7 +27,7 @@ inline constexpr g4lidar_grid_options grid_defaults{sizeof(g4lidar_grid_options)
                                                     g4_model.turn_deg,
                                                     longest_range_mm(g4_layout)};
 inline constexpr g4lidar_outlier_options outlier_defaults{
-    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, -1.0F, 1, 5.0F, false, {}, nullptr};
+    sizeof(g4lidar_outlier_options), 2, 1, 0.05F, -1.0F, 1, 5.0F, false, {}};
 inline constexpr g4lidar_near_options near_defaults{sizeof(g4lidar_near_options), 0.0F, 3, {}};
 
 [[nodiscard]] constexpr bool is_frame(int value) noexcept {
@@ -73,24 +73,20 @@ struct outlier_limits {
   speckle_limits speckle;
   edge_limits edges;
   scan_ends ends;
-  const model* of;
 };
 /// The same.
 [[nodiscard]] inline std::optional<outlier_limits> outliers_of(
     const g4lidar_outlier_options* given) noexcept {
   g4lidar_outlier_options taken = outlier_defaults;
-  const model* of = &g4_model;
   const auto is_window = [](std::uint32_t value) { return value >= 1 && value <= max_window; };
   if (!take_options(given, taken) || !is_window(taken.window) || !is_window(taken.edge_window) ||
       !(taken.least_angle_deg > 0.0F && taken.least_angle_deg <= 45.0F) ||
-      !(taken.near_m >= 0.0F) || !(taken.near_ratio >= 0.0F || taken.near_ratio == -1.0F) ||
-      !take_model(taken.model, of)) {
+      !(taken.near_m >= 0.0F) || !(taken.near_ratio >= 0.0F || taken.near_ratio == -1.0F)) {
     return std::nullopt;
   }
   return outlier_limits{{taken.window, taken.near_count, taken.near_m, taken.near_ratio},
                         {taken.edge_window, taken.least_angle_deg},
-                        taken.is_piece ? scan_ends::open : scan_ends::joined,
-                        of};
+                        taken.is_piece ? scan_ends::open : scan_ends::joined};
 }
 
 }  // namespace g4lidar::c

@@ -22,6 +22,7 @@ shaping_writer::shaping_writer(std::unique_ptr<point_writer> inner, const writin
     : inner_(std::move(inner)),
       options_(options),
       shaper_(shape_of(options)),
+      spacing_(*options.model),
       times_(options.time, options.wall_ahead_ns),
       scan_times_(options.time, options.wall_ahead_ns) {
   options_.shape.filter = {};  // the shaper has it, with a copy of what it views
@@ -55,7 +56,7 @@ std::span<const point> shaping_writer::in_range(std::span<const point> points) {
 }
 
 std::span<const point> shaping_writer::marked_stream(std::span<const point> points, bool is_end) {
-  const mark_limits& marks = options_.shape.marks;
+  mark_limits marks = options_.shape.marks;
   const std::size_t window = marks.window();
   if (window == 0 && !marks.near) return points;
   const std::size_t old = passed_on_ - std::min(passed_on_, window);
@@ -64,7 +65,9 @@ std::span<const point> shaping_writer::marked_stream(std::span<const point> poin
   if (marks.near) {
     mark_near(std::span(stream_).last(points.size()), near_, *marks.near, *options_.model);
   }
-  marks.mark_by_neighbours(stream_, scan_ends::open, *options_.model);
+  spacing_.add(points);
+  if (marks.speckle) marks.speckle->near_ratio = marks.speckle->near_ratio_at(spacing_.step_deg());
+  marks.mark_by_neighbours(stream_, scan_ends::open);
   const std::size_t from = passed_on_ - old;
   const std::size_t waiting = is_end ? 0 : window;
   passed_on_ = std::max(from, stream_.size() - std::min(stream_.size(), waiting));

@@ -72,8 +72,8 @@ std::span<const point> scan_shaper::points_of(product& what, filtering* filtered
   if (what.points) return *what.points;
   if (needs_marks_) {
     if (!options_.marks.near) marked_.assign(source_.begin(), source_.end());
-    options_.marks.mark_by_neighbours(
-        marked_, source_.is_piece() ? scan_ends::open : scan_ends::joined, *source_.model);
+    options_.marks.mark_by_neighbours(marked_,
+                                      source_.is_piece() ? scan_ends::open : scan_ends::joined);
     source_.points = marked_;
     needs_marks_ = false;
   }

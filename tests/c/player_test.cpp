@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Files that are played in C, and lidars that are read in a thread.
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <thread>
 
 #include "c_handles.hpp"
 
@@ -49,11 +51,18 @@ background read(const lidar& from, bool newest_only) {
   return background(made);
 }
 
+/// Waits until it is true. The pause lets the reader's thread run under valgrind, which runs one thread at a time.
+template <class Condition>
+void wait_until(Condition is_true) {
+  const std::int64_t until_ns = g4lidar_now_ns() + patience_ms * 1'000'000LL;
+  while (!is_true() && g4lidar_now_ns() < until_ns) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 /// Waits for the state.
 void expect_state(const background& of, int state) {
-  const std::int64_t until_ns = g4lidar_now_ns() + patience_ms * 1'000'000LL;
-  while (g4lidar_background_get_state(of.get()) != state && g4lidar_now_ns() < until_ns) {
-  }
+  wait_until([&] { return g4lidar_background_get_state(of.get()) == state; });
   EXPECT_EQ(g4lidar_background_get_state(of.get()), state);
 }
 
@@ -159,10 +168,8 @@ TEST(CBackground, ReadsALidarThatTheProgramNeedNotCall) {
   ASSERT_NE(it, nullptr);
   EXPECT_EQ(g4lidar_start(given.get(), nullptr), G4LIDAR_GONE);
   EXPECT_EQ(g4lidar_playback_info(given.get()), nullptr);
-  const std::int64_t until_ns = g4lidar_now_ns() + patience_ms * 1'000'000LL;
   // Nothing is taken, so that only the newest one is kept.
-  while (g4lidar_background_get_counts(it.get())->scans_missed < 3 && g4lidar_now_ns() < until_ns) {
-  }
+  wait_until([&] { return g4lidar_background_get_counts(it.get())->scans_missed >= 3; });
   const g4lidar_scan* scan = nullptr;
   ASSERT_EQ(g4lidar_background_next_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_OK);
   EXPECT_GE(scan->revolution, 3U);
@@ -185,10 +192,10 @@ TEST(CBackground, ReportsALossAndTheReturn) {
   ASSERT_NE(it, nullptr);
   g4lidar_event event{};
   const auto wait_for = [&](int kind) {
-    const std::int64_t until_ns = g4lidar_now_ns() + patience_ms * 1'000'000LL;
-    while (event.kind != kind && g4lidar_now_ns() < until_ns) {
+    wait_until([&] {
       static_cast<void>(g4lidar_background_next_event(it.get(), &event));
-    }
+      return event.kind == kind;
+    });
     EXPECT_EQ(event.kind, kind);
   };
   ASSERT_EQ(g4lidar_simulator_unplug(device.get()), G4LIDAR_OK);

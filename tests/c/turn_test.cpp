@@ -136,21 +136,18 @@ TEST(CTurn, NearReturnsAreThoseOfTheModel) {
   EXPECT_FALSE(has_returns("x4"));
 }
 
-TEST(CTurn, IsolatedReturnsAreThoseOfTheModel) {
-  // 10.5 cm apart: 5.2 % of their range, and an X2 measures a third of the points of a G4.
+TEST(CTurn, IsolatedReturnsAreJudgedByTheAngleBetweenSamples) {
+  // 10.5 cm apart: 5.2 % of their range.
   std::vector<g4lidar_point> points;
   for (int i = 0; i < 60; ++i) points.push_back(at(static_cast<float>(i) * 3.0F, 2000.0F));
   g4lidar_outlier_options options;
   g4lidar_outlier_options_init(&options, sizeof options);
-  std::size_t marked = 0;
-  ASSERT_EQ(g4lidar_mark_isolated(points.data(), points.size(), &options, &marked), G4LIDAR_OK);
-  EXPECT_EQ(marked, points.size());
-  options.model = "x2";
+  std::size_t marked = 1;
   ASSERT_EQ(g4lidar_mark_isolated(points.data(), points.size(), &options, &marked), G4LIDAR_OK);
   EXPECT_EQ(marked, 0U);
-  options.model = "x44";
-  EXPECT_EQ(g4lidar_mark_isolated(points.data(), points.size(), &options, &marked),
-            G4LIDAR_BAD_ARGUMENT);
+  options.near_ratio = 0.05F;
+  ASSERT_EQ(g4lidar_mark_isolated(points.data(), points.size(), &options, &marked), G4LIDAR_OK);
+  EXPECT_EQ(marked, points.size());
 }
 
 }  // namespace

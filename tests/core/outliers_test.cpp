@@ -13,6 +13,8 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "../support/test_scale.hpp"
@@ -79,23 +81,58 @@ std::vector<point> row_of(const std::vector<double>& ranges_mm, double apart_deg
 
 // ---- isolated returns ------------------------------------------------------------------------
 
-// A wall at 10 degrees to the beam. An X2 measures every 0.84 degrees at 7 Hz, a G4 every 0.28: the points
-// of an X2 on it are three times as far apart.
-TEST(Isolated, AWallAtAnAngle_IsKeptWithTheLimitsOfTheModel) {
-  const auto count_of = [](const char* model, int samples) {
+// A wall at 10 degrees to the beam. An X2 measures every 0.84 degrees at 7 Hz, a T-mini every 0.9 at 10 Hz, a G4 every
+// 0.28 at 7 Hz: the points of an X2 on it are three times as far apart.
+TEST(Isolated, AWallAtAnAngle_IsKeptHoweverFarTheSamplesAreApart) {
+  const auto count_of = [](int samples, float near_ratio = -1.0F) {
     std::vector<point> points;
     for (int i = 0; i < samples / 12; ++i) {  // 30 degrees of it
       const double turned = i * 360.0 / samples;
       const double range_mm = 2000.0 * std::sin(10.0 * degree) / std::sin((10.0 + turned) * degree);
       points.push_back(at(turned, range_mm));
     }
-    return mark_isolated(points, {}, scan_ends::open, *model_named(model));
+    return mark_isolated(points, {.near_ratio = near_ratio}, scan_ends::open);
   };
-  EXPECT_EQ(count_of("g4", 1286), 0U);
-  EXPECT_EQ(count_of("x2", 428), 0U);
-  EXPECT_GT(count_of("g4", 428), 0U) << "samples of an X2 with the limits of a G4";
-  EXPECT_FLOAT_EQ(speckle_limits{}.near_ratio_of(*model_named("x2")), 0.15F);
-  EXPECT_FLOAT_EQ(speckle_limits{}.near_ratio_of(*model_named("tg30")), 0.05F);
+  for (const int samples : {1286, 750, 571, 428, 400, 333})
+    EXPECT_EQ(count_of(samples), 0U) << samples;
+  EXPECT_GT(count_of(428, 0.05F), 0U) << "samples of an X2 with the ratio of a G4";
+  EXPECT_FLOAT_EQ(speckle_limits{}.near_ratio_at(0.84F), 0.15F);
+  EXPECT_FLOAT_EQ(speckle_limits{}.near_ratio_at(0.18F), 0.05F) << "a TG30 at 10 Hz";
+  EXPECT_FLOAT_EQ(speckle_limits{.near_ratio = 0.01F}.near_ratio_at(0.9F), 0.01F);
+}
+
+// The angle between samples is that between neighbours, in whichever direction a revolution begins; a gap, in which
+// packets were lost, is none.
+TEST(Isolated, TheAngleBetweenSamples_DoesNotChangeByAGap) {
+  std::vector<point> points;
+  for (int i = 0; i < 400; ++i) {
+    if (i < 100 || i >= 180) points.push_back(at(200.0 + i * 0.9, 5000.0));
+  }
+  EXPECT_NEAR(detail::mean_step_deg(points), 0.9F, 1e-3);
+  EXPECT_EQ(detail::mean_step_deg(std::span(points).first(1)), 0.0F);
+}
+
+TEST(Isolated, TheAngleBetweenSamplesOfAStream_IsThatOfItsLastWholeRevolution) {
+  std::vector<point> points;
+  for (const auto& [revolution, samples] :
+       {std::pair{3U, 100}, {4U, 400}, {5U, 500}, {7U, 90}, {8U, 1}}) {
+    for (int i = 0; i < samples; ++i) points.push_back({.revolution = revolution});
+  }
+  for (const std::size_t piece : {1U, 7U, 450U, 2000U}) {
+    sample_spacing spacing(*model_named("x2"));
+    std::vector<float> passed{spacing.step_deg()};
+    for (std::size_t i = 0; i < points.size(); i += piece) {
+      const std::span<const point> rest = std::span(points).subspan(i);
+      spacing.add(rest.first(std::min(piece, rest.size())));
+      if (passed.back() != spacing.step_deg()) passed.push_back(spacing.step_deg());
+    }
+    EXPECT_FLOAT_EQ(passed.front(), 0.84F);
+    EXPECT_FLOAT_EQ(passed.back(), 0.72F)
+        << "revolution 6 is missing, and 7 is not known to be whole";
+    if (piece < 100) {
+      EXPECT_FLOAT_EQ(passed.at(1), 0.9F);
+    }
+  }
 }
 
 TEST(Isolated, OneReturnAlone_IsMarked_TwoInARowAreNot) {

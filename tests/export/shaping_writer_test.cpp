@@ -189,7 +189,7 @@ TEST(ShapingWriterSpeckle, OfARevolution) {
   callback_sink sink([](std::string_view) {});
   std::vector<std::size_t> sizes;
   shaping_writer writer(std::make_unique<counter>(sizes),
-                        {.shape = {.marks = {.speckle = speckle_limits{}}}});
+                        {.shape = {.marks = {.speckle = speckle_limits{.near_ratio = 0.05F}}}});
   scan_record record;
   record.scan.points = points;
   writer.write_scan(record, sink);

@@ -58,16 +58,14 @@ typedef struct g4lidar_outlier_options {
   uint32_t window;      /**< How many samples on each side are neighbours, 1 to 16; 2. */
   uint32_t near_count;  /**< Isolated: fewer near neighbours than this; 1. */
   float near_m;         /**< Near: up to this distance in metres, or up to; 0.05. */
-  float near_ratio;     /**< this share of the range, if that is more; -1: by the
-                             model, 0.05 for a G4. */
+  float near_ratio;     /**< this share of the range, if that is more; -1: by the angle
+                             between samples, 0.05 up to 0.28 degrees. */
   uint32_t edge_window; /**< Veiling: how many samples on each side are neighbours; 1. */
   float
       least_angle_deg; /**< Veiling: below this angle to the beam a neighbour is across a jump of the
                             range; above 0, at most 45; 5. */
   bool is_piece;       /**< Whether the points are a piece of a revolution: the ends do not join. */
   uint8_t reserved[7]; /**< 0. */
-  /** The model of the lidar: g4lidar_scan::model; NULL: a G4. A shaper uses its own instead. */
-  const char* model;
 } g4lidar_outlier_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_outlier_options). */

@@ -116,6 +116,9 @@ TEST(SimModelTables, AgreeInEachField) {
     same("max_mm", ours.range.max_mm, its.range.farthest_mm);
     same("turn_deg", int{ours.turn_deg}, its.is_turned ? 180 : 0);
     same("zero_angle_divisor", ours.zero_angle_divisor, its.commands.zero_divisor);
+    same("has_motor_settings", ours.has_motor_settings, its.commands.motor);
+    same("idle power", ours.has_motor_settings, its.commands.idle);
+    same("has_pitch", ours.has_pitch, its.commands.pitch);
     same("protection", text_of(ours.protection), text_of(its.commands.protection));
     same("ct_information", text_of(ours.ct_information), text_of(its.information));
     same("last old firmware", ours.old_firmware.last_version, its.old.last);

@@ -21,8 +21,8 @@ constexpr const char* shape_text =
                    whatever --frame is; # begins a comment.
   --speckle[=LIMITS]  A return is left out if fewer than count of the samples up to window before
                    and after it are returns near it: within near meters, or within ratio times its
-                   range. The default is window=2,count=1,near=0.05, and a ratio by the model,
-                   0.05 for a G4.
+                   range. The default is window=2,count=1,near=0.05, and a ratio of 0.05, or more if
+                   the samples are more than 0.28 degrees apart.
   --edges[=LIMITS]  A return is left out if, up to window samples away, a nearer one is on one side
                    and a farther one on the other, and the lines to both make an angle below angle
                    degrees with the beam. The default is window=1,angle=5.
