@@ -151,12 +151,18 @@ std::optional<g4lidar::error> lidar_session::failure() const {
   return now.why;
 }
 
-std::int64_t lidar_session::stamp_ns(std::int64_t time_ns) const {
-  const std::int64_t wall_ns = reader_.wall_ns(time_ns);
+std::optional<std::int64_t> lidar_session::ahead_ns() const {
+  const std::int64_t wall_ahead_ns = reader_.wall_ns(0);
   const rclcpp::Clock::SharedPtr clock = node_.get_clock();
-  if (is_file_ || !clock->ros_time_is_active()) return wall_ns;
-  // Without /clock the time is 0.
-  return std::max<std::int64_t>(0, clock->now().nanoseconds() - (wall_now_ns() - wall_ns));
+  if (is_file_ || !clock->ros_time_is_active()) return wall_ahead_ns;
+  const std::int64_t now_ns = clock->now().nanoseconds();
+  if (now_ns == 0) return std::nullopt;  // there is no /clock yet
+  return wall_ahead_ns + now_ns - wall_now_ns();
+}
+
+std::int64_t lidar_session::stamp_ns(std::int64_t time_ns) const {
+  const auto ahead = ahead_ns();
+  return ahead ? stamp_of(time_ns, *ahead) : 0;
 }
 
 void lidar_session::on_open(g4lidar::lidar& device) {
@@ -173,7 +179,7 @@ void lidar_session::on_open(g4lidar::lidar& device) {
 
 void lidar_session::on_points(std::span<const g4lidar::point> points) {
   guard([&] {
-    motion_.follow(points, stamp_ns(0));
+    motion_.follow(points, ahead_ns());
     publish_clock(stamp_ns(points.back().time_ns));
   });
 }
@@ -193,7 +199,7 @@ void lidar_session::on_scan(const g4lidar::scan& whole) {
 }
 
 void lidar_session::publish(const g4lidar::scan& whole) {
-  shaper_.shape(whole, motion_.path_of(whole, stamp_ns(0)));
+  shaper_.shape(whole, motion_.path_of(whole, ahead_ns()));
   not_deskewed_ = shaper_.points_not_deskewed();
   g4lidar::message_header header{.stamp_ns = stamp_ns(whole.time_ns()),
                                  .frame_id = options_.frame_id,

@@ -86,7 +86,10 @@ class lidar_session final : private g4lidar::reader_listener {
   void guard(Call call) noexcept;
   void publish(const g4lidar::scan& whole);
   void publish_clock(std::int64_t now_ns);
-  /// The stamp of a point::time_ns. Only in the thread of the reader.
+  /// The time of stamps minus point::time_ns, which is negative where the time of /clock is less than that since the
+  /// machine was started. Nothing before the first /clock, if it is used. Only in the thread of the reader.
+  [[nodiscard]] std::optional<std::int64_t> ahead_ns() const;
+  /// The stamp of a point::time_ns; 0 before the first /clock. Only in the thread of the reader.
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const;
 
   rclcpp_lifecycle::LifecycleNode& node_;

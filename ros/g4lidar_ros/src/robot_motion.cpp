@@ -13,6 +13,8 @@ namespace {
 
 /// Poses are looked up in tf so far apart.
 constexpr std::int64_t tf_step_ns = 20'000'000;
+/// The messages on /clock are at most so far apart, or a simulation is too slow for its motion.
+constexpr std::int64_t largest_clock_step_ns = 100'000'000;
 
 void set(geometry_msgs::msg::Quaternion& turn, double yaw_rad, bool is_turned) {
   const auto [sine, cosine] = g4lidar::rotation_by(g4lidar::wrap_rad(yaw_rad) / 2.0);
@@ -92,13 +94,15 @@ void robot_motion::follow(g4lidar::lidar& device,
   carried_.follow(device, simulation);
 }
 
-void robot_motion::follow(std::span<const g4lidar::point> points, std::int64_t ahead_ns) {
-  carried_.follow(points, [&](const g4lidar::stamped_odometry& at) { publish(at, ahead_ns); });
+void robot_motion::follow(std::span<const g4lidar::point> points,
+                          std::optional<std::int64_t> ahead_ns) {
+  carried_.follow(points, [&](const g4lidar::stamped_odometry& at) {
+    publish(at, ahead_ns ? stamp_of(at.time_ns, *ahead_ns) : 0);
+  });
 }
 
-void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t ahead_ns) {
+void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns) {
   path_.add(at);
-  const std::int64_t stamp_ns = at.time_ns + ahead_ns;
   if (odometry_->is_wanted()) {
     auto made = std::make_unique<nav_msgs::msg::Odometry>();
     made->header.stamp = rclcpp::Time(stamp_ns);
@@ -117,17 +121,22 @@ void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t ahe
 }
 
 std::span<const g4lidar::stamped_pose> robot_motion::path_of(const g4lidar::scan& whole,
-                                                             std::int64_t ahead_ns) {
-  if (subscription_) take_subscribed(ahead_ns);
-  if (buffer_) take_transforms(whole, ahead_ns);
+                                                             std::optional<std::int64_t> ahead_ns) {
+  if (subscription_ && ahead_ns) take_subscribed(*ahead_ns);
+  if (buffer_ && ahead_ns) take_transforms(whole, *ahead_ns);
   return path_.until(whole.end_ns());
 }
 
 void robot_motion::take_subscribed(std::int64_t ahead_ns) {
   const std::lock_guard lock(mutex_);
-  for (g4lidar::stamped_odometry& each : subscribed_) {
+  for (g4lidar::stamped_odometry each : subscribed_) {
+    const bool is_later = each.time_ns > std::exchange(taken_ns_, each.time_ns);
     each.time_ns -= ahead_ns;
-    path_.add(each);
+    const auto newest = path_.newest();
+    // The time of /clock goes in steps, and with it the offset: this is no way back of the robot.
+    const bool is_by_step = is_later && newest && each.time_ns <= newest->time_ns &&
+                            each.time_ns > newest->time_ns - largest_clock_step_ns;
+    if (!is_by_step) path_.add(each);
   }
   subscribed_.clear();
 }
@@ -137,6 +146,8 @@ void robot_motion::take_transforms(const g4lidar::scan& whole, std::int64_t ahea
   std::int64_t time_ns = whole.time_ns() - tf_step_ns;
   if (newest) time_ns = std::max(time_ns, newest->time_ns + tf_step_ns);
   for (; time_ns < whole.end_ns() + tf_step_ns; time_ns += tf_step_ns) {
+    if (time_ns + ahead_ns <= 0)
+      continue;  // before the first stamp; 0 would be the newest transform
     const tf2::TimePoint stamp{std::chrono::nanoseconds(time_ns + ahead_ns)};
     std::string why;  // without it, each failure is printed
     if (!buffer_->BufferCore::canTransform(options_.odometry_frame, options_.base_frame, stamp,

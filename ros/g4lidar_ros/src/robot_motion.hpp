@@ -2,6 +2,7 @@
 // The motion of the robot: from a recording or a simulated robot, which is published; from odometry, or from tf.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -23,6 +24,11 @@
 #include "topics.hpp"
 
 namespace g4lidar_ros {
+
+/// The stamp of a time that `ahead_ns` are added to: a stamp of ROS is not negative.
+[[nodiscard]] inline std::int64_t stamp_of(std::int64_t time_ns, std::int64_t ahead_ns) noexcept {
+  return std::max<std::int64_t>(0, time_ns + ahead_ns);
+}
 
 /// From where the motion is known by which points are deskewed.
 enum class motion_source : unsigned char { none, scans, odometry, tf };
@@ -46,14 +52,15 @@ class robot_motion {
   [[nodiscard]] bool has_odometry() const noexcept { return carried_.is_known(); }
   /// The lidar is open. `simulation`: null unless it is simulated.
   void follow(g4lidar::lidar& device, const g4lidar::sim::simulated_source* simulation);
-  /// Publishes the odometry until the last of these points. `ahead_ns`: their stamps minus their times.
-  void follow(std::span<const g4lidar::point> points, std::int64_t ahead_ns);
+  /// Publishes the odometry until the last of these points. `ahead_ns`: the time of stamps minus theirs; nothing: not
+  /// known, and stamps are 0.
+  void follow(std::span<const g4lidar::point> points, std::optional<std::int64_t> ahead_ns);
   /// The poses of the robot until the end of a scan, by the clock of its points.
-  [[nodiscard]] std::span<const g4lidar::stamped_pose> path_of(const g4lidar::scan& whole,
-                                                               std::int64_t ahead_ns);
+  [[nodiscard]] std::span<const g4lidar::stamped_pose> path_of(
+      const g4lidar::scan& whole, std::optional<std::int64_t> ahead_ns);
 
  private:
-  void publish(const g4lidar::stamped_odometry& at, std::int64_t ahead_ns);
+  void publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns);
   void take_subscribed(std::int64_t ahead_ns);
   void take_transforms(const g4lidar::scan& whole, std::int64_t ahead_ns);
 
@@ -66,6 +73,7 @@ class robot_motion {
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> place_;
   std::mutex mutex_;                                   // protects the next one
   std::vector<g4lidar::stamped_odometry> subscribed_;  // by the clock of the stamps
+  std::int64_t taken_ns_ = 0;                          // the last stamp that was taken of them
   rclcpp::SubscriptionBase::SharedPtr subscription_;
   std::unique_ptr<tf2_ros::Buffer> buffer_;
   std::unique_ptr<tf2_ros::TransformListener> listener_;

@@ -22,19 +22,6 @@ def program(name, variable):
     return os.environ.get(variable) or shutil.which(name)
 
 
-# A robot that drives and turns in a room of 4 by 3 m.
-ROOM = """wall -2 -1.5   2 -1.5
-wall  2 -1.5   2  1.5
-wall  2  1.5  -2  1.5
-wall -2  1.5  -2 -1.5
-lidar 0 0 0
-"""
-WAY = """drive forward 0.4 0.5
-drive turn 170 90
-drive forward 0.4 0.5
-"""
-
-
 def recordings(seconds=6, seed=7, world=None, way="drive forward 0.4 0.3\ndrive turn 180 60\ndrive forward 0.4 0.3\n"):
     """Two recordings of a lidar on a robot that drives: with its odometry, and without; None without g4-dump."""
     g4_dump = program("g4-dump", "G4_DUMP")

@@ -2,10 +2,8 @@
 """Deskewing by a subscribed odometry and by tf: each point of a robot that turns is on a wall of the room, which this
 file computes from the true poses. Also a recording that is played twice, and the time of /clock."""
 
-import bisect
 import math
 import os
-import struct
 import sys
 import unittest
 
@@ -22,12 +20,11 @@ from sensor_msgs.msg import LaserScan, PointCloud2
 from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.dirname(__file__))
+import room  # noqa: E402
 import support  # noqa: E402
 
-MOUNT = (0.2, -0.1, 90.0)
-MOUNT_TEXT = "{},{},{}".format(*MOUNT)
-WITH_ODOMETRY, BARE = support.recordings(seconds=5, seed=3, world=support.ROOM + f"mount {MOUNT_TEXT}\n",
-                                         way=support.WAY)
+MOUNT_TEXT = "{},{},{}".format(*room.MOUNT)
+WITH_ODOMETRY, BARE = support.recordings(seconds=5, seed=3, world=room.WORLD, way=room.WAY)
 
 # The nodes by their namespaces.
 NODES = {
@@ -39,68 +36,15 @@ NODES = {
 }
 
 
-def moving_source():
-    """A simulated robot that moves for ten minutes."""
-    if not BARE:
-        return "sim:"
-    way = os.path.join(os.path.dirname(BARE), "long.txt")
-    with open(way, "w") as file:
-        file.write("drive turn 3600 60\n" * 10)
-    world = os.path.join(os.path.dirname(BARE), "world.txt")
-    return f"sim:?world={world}&path={way}&seed=5"
-
-
 def generate_test_description():
     if not BARE:
         return launch.LaunchDescription([launch_testing.actions.ReadyToTest()])
-    NODES["robot"]["source"] = moving_source()
+    NODES["robot"]["source"] = room.moving_source(os.path.dirname(BARE))
     nodes = [Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace=name, output="screen",
                   remappings=[("/tf", "tf")],
                   parameters=[{key: ParameterValue(value, value_type=type(value)) for key, value in values.items()}])
              for name, values in NODES.items()]
     return launch.LaunchDescription([*nodes, launch_testing.actions.ReadyToTest()])
-
-
-def pose_of(message):
-    turn = message.pose.pose.orientation
-    return (message.pose.pose.position.x, message.pose.pose.position.y, 2.0 * math.atan2(turn.z, turn.w))
-
-
-class Way:
-    """The true poses of the robot."""
-
-    def __init__(self, messages):
-        self.messages = sorted(messages, key=support.stamp_of)
-        self.times = [support.stamp_of(each) for each in self.messages]
-
-    def at(self, time_ns):
-        after = min(max(bisect.bisect(self.times, time_ns), 1), len(self.times) - 1)
-        first, last = self.times[after - 1], self.times[after]
-        part = (time_ns - first) / (last - first)
-        a, b = pose_of(self.messages[after - 1]), pose_of(self.messages[after])
-        turn = math.remainder(b[2] - a[2], math.tau)
-        return (a[0] + part * (b[0] - a[0]), a[1] + part * (b[1] - a[1]), a[2] + part * turn)
-
-    def turns_at(self, time_ns):
-        """Whether the robot turns by more than 45 degrees a second in the next 0.15 s."""
-        return abs(math.remainder(self.at(time_ns + 150_000_000)[2] - self.at(time_ns)[2], math.tau)) > 0.12
-
-
-def moved(pose, point):
-    x, y, yaw = pose
-    cosine, sine = math.cos(yaw), math.sin(yaw)
-    return x + cosine * point[0] - sine * point[1], y + sine * point[0] + cosine * point[1]
-
-
-def errors_m(cloud, way):
-    """How far each point of a cloud is from the nearest wall, if the robot was where it was at the stamp."""
-    pose = way.at(support.stamp_of(cloud))
-    place = (MOUNT[0], MOUNT[1], math.radians(MOUNT[2]))
-    found = []
-    for i in range(cloud.width):
-        x, y = moved(pose, moved(place, struct.unpack_from("<ff", cloud.data, i * cloud.point_step)))
-        found.append(min(abs(abs(x) - 2.0), abs(abs(y) - 1.5)))
-    return sorted(found)
 
 
 @unittest.skipUnless(BARE, "SKIPPED: g4-dump is not installed")
@@ -127,7 +71,7 @@ class TestMotion(unittest.TestCase):
         way, clouds = self.play("told")
         self.assertGreater(len(way), 200)
         self.assertGreater(len(clouds), 25)
-        return Way(way), clouds
+        return room.Way(way), clouds
 
     def check_deskewed(self, name, publish, count_of_subscribers):
         """`publish` is called with each true pose, a little before the lidar gets there."""
@@ -149,14 +93,14 @@ class TestMotion(unittest.TestCase):
         turning = [each for each in clouds if way.turns_at(support.stamp_of(each))]
         self.assertGreater(len(turning), 5)
         for cloud in turning:
-            errors = errors_m(cloud, way)
+            errors = room.errors_m(cloud, way.at(support.stamp_of(cloud)))
             self.assertGreater(len(errors), 1000)
-            self.assertLess(errors[len(errors) * 95 // 100], 0.01)
+            self.assertLess(room.part(errors, 0.95), 0.01)
         # Without deskewing they are not there: the check can fail.
         for cloud in skewed:
             if way.turns_at(support.stamp_of(cloud)):
-                errors = errors_m(cloud, way)
-                self.assertGreater(errors[len(errors) * 95 // 100], 0.05)
+                errors = room.errors_m(cloud, way.at(support.stamp_of(cloud)))
+                self.assertGreater(room.part(errors, 0.95), 0.05)
 
     def test_by_subscribed_odometry(self):
         publisher = self.watcher.node.create_publisher(Odometry, "/by_odometry/odom", 1000)
@@ -203,12 +147,12 @@ class TestMotion(unittest.TestCase):
         self.assertEqual(moving[-1].transforms[0].child_frame_id, "base_link")
         # On a busy machine bytes may be late, and with them the times of their points: only some clouds must fit. One
         # whose odometry is late by a tenth of a second, or that is not deskewed, never does.
-        self.assertTrue(support.wait_for(lambda: self.count_of_exact(list(clouds)[-5:], Way(list(way))) >= 3))
+        self.assertTrue(support.wait_for(lambda: self.count_of_exact(list(clouds)[-5:], room.Way(list(way))) >= 3))
 
     def count_of_exact(self, clouds, way):
         known = [each for each in clouds if way.times[0] < support.stamp_of(each) < way.times[-1]]
-        errors = [errors_m(each, way) for each in known]
-        return sum(each[len(each) * 95 // 100] < 0.02 for each in errors)
+        errors = [room.errors_m(each, way.at(support.stamp_of(each))) for each in known]
+        return sum(room.part(each, 0.95) < 0.02 for each in errors)
 
 
 @launch_testing.post_shutdown_test()
