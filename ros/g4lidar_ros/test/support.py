@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What the launch tests share: programs of the library, recordings, and a node that waits for things."""
 
+import glob
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
 import threading
@@ -47,6 +49,36 @@ def recordings(seconds=6, seed=7, world=None, way="drive forward 0.4 0.3\ndrive 
 def stamp_of(message):
     """In nanoseconds since 1970."""
     return message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+
+
+def waited_for_processor(pid):
+    """How long the threads of a process that exist have waited for a processor, seconds."""
+    waited_ns = 0
+    for path in glob.glob(f"/proc/{pid}/task/*/schedstat"):
+        try:
+            with open(path) as file:
+                waited_ns += int(file.read().split()[1])
+        except (OSError, IndexError):  # the thread has ended
+            pass
+    return waited_ns * 1e-9
+
+
+def interrupted(process):
+    """Sends SIGINT to a process. Returns how long it took to end, seconds, and whether other programs delayed it, or this
+    test: then the time does not describe the process."""
+    late = 0.0
+    before = waited = waited_for_processor(process.pid)
+    begin = awake = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    while process.poll() is None:
+        if awake - begin > PATIENCE:
+            process.kill()
+        waited = max(waited, waited_for_processor(process.pid))
+        time.sleep(0.005)
+        now = time.monotonic()
+        late += max(0.0, now - awake - 0.02)
+        awake = now
+    return awake - begin, late > 0.02 or waited - before > 0.1
 
 
 class Watcher:

@@ -2,14 +2,17 @@
 """The node with simulated lidars: transitions, parameters, services, unplug, an error that it cannot recover from."""
 
 import os
+import re
+import signal
+import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import launch
 import launch_testing.actions
 import launch_testing.asserts
-from diagnostic_msgs.msg import DiagnosticArray
 from launch_ros.actions import Node
 from lifecycle_msgs.msg import State, Transition, TransitionEvent
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -26,6 +29,10 @@ import support  # noqa: E402
 DIRECTORY = tempfile.mkdtemp(prefix="g4lidar-ros-")
 ABSENT = os.path.join(DIRECTORY, "lidar")
 
+# A device that writes which commands it gets.
+G4_DUMP = support.program("g4-dump", "G4_DUMP")
+IDLE_PORT = os.path.join(DIRECTORY, "idle")
+
 UNPLUGS = "&".join(f"fault=unplug@{at}s+3s" for at in range(4, 200, 12))
 
 # The nodes by their namespaces.
@@ -36,7 +43,7 @@ NODES = {
     "never": {"source": ABSENT, "connect_timeout": 0.0},
     "quality": {"source": "sim:?seed=11", "autostart": True, "qos_overrides./quality/scan.publisher.depth": 3,
                 "qos_overrides./quality/scan.publisher.reliability": "best_effort"},
-    "idle": {"source": "sim:?seed=10", "autostart": True, "standby": True},
+    "idle": {"source": IDLE_PORT, "autostart": True, "standby": True, "connect_timeout": 0.0},
     "missing": {"source": "/dev/g4lidar-absent", "connect_timeout": 0.5},
 }
 
@@ -156,19 +163,38 @@ class TestMotor(NodeTest):
         count = len(best)
         self.assertTrue(support.wait_for(lambda: len(best) > count))
 
-    def test_standby_turns_for_a_subscriber(self):
+    @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
+    def test_standby_turns_for_subscribers_only(self):
+        path = os.path.join(DIRECTORY, "commands.txt")
+        with open(path, "w") as log:
+            device = subprocess.Popen([G4_DUMP, "sim", "-q", "--link", IDLE_PORT, "--log"], stderr=log)
+        self.addCleanup(device.wait, support.PATIENCE)
+        self.addCleanup(device.send_signal, signal.SIGINT)
+
+        def commands():
+            """The bytes of each command, in order."""
+            with open(path) as log:
+                return re.findall(r" A5 ([0-9A-F]{2}) ", log.read())
+
+        def turns():
+            """60 starts the scan, with the motor; 65 stops it."""
+            scanning = [each for each in commands() if each in ("60", "65")]
+            return scanning[-1:] == ["60"]
         self.wait_for_state("idle", State.PRIMARY_STATE_ACTIVE)
-        found = self.watcher.collect(DiagnosticArray, "/diagnostics")
-
-        def sent():
-            values = [value for array in list(found) for status in array.status
-                      if status.name == "/idle/g4lidar: topics" for value in status.values
-                      if value.key == "/idle/scan sent"]
-            return int(values[-1].value) if values else -1
-        self.assertTrue(support.wait_for(lambda: sent() == 0))
-        scans = self.scans("idle")
-        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
-
+        # 90 asks for the device information: the lidar is open.
+        self.assertTrue(support.wait_for(lambda: "90" in commands()))
+        time.sleep(2.0)  # in which nothing happens
+        self.assertNotIn("60", commands())
+        for _ in range(2):
+            scans = []
+            subscription = self.watcher.node.create_subscription(LaserScan, "/idle/scan", scans.append, 10)
+            self.assertTrue(support.wait_for(lambda: len(scans) > 2))
+            self.assertTrue(turns())
+            left = time.monotonic()
+            self.watcher.node.destroy_subscription(subscription)
+            self.assertTrue(support.wait_for(lambda: not turns()))
+            # 3 s after the last subscriber has left, which is noticed 10 times a second.
+            self.assertGreater(time.monotonic() - left, 2.8)
 
 class TestQuality(NodeTest):
     def test_overrides(self):

@@ -60,38 +60,44 @@ class TestProcess(unittest.TestCase):
     def tearDown(self):
         self.watcher.close()
 
+    def ends_within_2_s(self, start, check=lambda: None):
+        """`start` starts a node, which Ctrl-C ends within 2 s (an idle machine needs 0.2 s). Where it takes longer while
+        other programs delay it, it is repeated."""
+        for _ in range(3):
+            node = start()
+            took, was_delayed = support.interrupted(node)
+            print(f"ended after {took:.2f} s" + (", delayed by other programs" if was_delayed else ""))
+            self.assertEqual(node.returncode, 0)
+            check()
+            if took < 2.0:
+                return
+            self.assertTrue(was_delayed, took)
+        self.skipTest("SKIPPED: other programs delay the node")
+
     @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
     def test_ends_with_the_motor_at_rest(self):
         link = os.path.join(tempfile.mkdtemp(prefix="g4lidar-ros-"), "g4")
         device = subprocess.Popen([G4_DUMP, "sim", "-q", "--link", link])
+        self.addCleanup(device.wait, support.PATIENCE)
+        self.addCleanup(device.send_signal, signal.SIGINT)
         self.assertTrue(support.wait_for(lambda: os.path.exists(link)))
-        node = run_node(link)
         scans = self.watcher.collect(LaserScan, "/scan")
-        self.assertTrue(support.wait_for(lambda: len(scans) > 2))
-        begin = time.monotonic()
-        node.send_signal(signal.SIGINT)
-        code = node.wait(support.PATIENCE)
-        took = time.monotonic() - begin
-        self.assertEqual(code, 0)
-        print(f"ended after {took:.2f} s")
-        if os.getloadavg()[0] < (os.cpu_count() or 1):
-            self.assertLess(took, 2.0)
-        self.assertEqual(bytes_within(link, 1.0), 0, "it still scans")
-        device.send_signal(signal.SIGINT)
-        device.wait(support.PATIENCE)
+
+        def start():
+            node = run_node(link)
+            count = len(scans)
+            self.assertTrue(support.wait_for(lambda: len(scans) > count + 2))
+            return node
+        self.ends_within_2_s(start, lambda: self.assertEqual(bytes_within(link, 1.0), 0, "it still scans"))
 
     def test_ends_while_it_waits_for_a_lidar(self):
-        node = run_node("/dev/g4lidar-absent", "-p", "connect_timeout:=3600.0")
-        # The service of a lifecycle node is there; the node then waits in configure.
-        self.assertTrue(support.wait_for(lambda: "g4lidar" in self.watcher.node.get_node_names()))
-        time.sleep(2.0)
-        begin = time.monotonic()
-        node.send_signal(signal.SIGINT)
-        self.assertEqual(node.wait(support.PATIENCE), 0)
-        took = time.monotonic() - begin
-        print(f"ended after {took:.2f} s")
-        if os.getloadavg()[0] < (os.cpu_count() or 1):
-            self.assertLess(took, 2.0)
+        def start():
+            node = subprocess.Popen([NODE, "--ros-args", "-p", "source:=/dev/g4lidar-absent", "-p", "autostart:=true",
+                                     "-p", "connect_timeout:=3600.0"], stderr=subprocess.PIPE, text=True)
+            self.addCleanup(node.stderr.close)
+            self.assertTrue(any("opening: " in line for line in node.stderr))  # in configure
+            return node
+        self.ends_within_2_s(start)
 
     def fails(self, arguments, words):
         """The node ends with exit code 1, and its last words contain these."""
