@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "file_writer.hpp"
+#include "g4lidar/recording/recording_switch.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "played_file.hpp"
 
@@ -157,6 +158,64 @@ result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
     if (auto taken = into.made_->take_model(*stated); !taken) return tl::unexpected(taken.error());
   }
   return std::make_unique<recorded_connector<writer>>(std::move(from), *into.made_);
+}
+
+/// What is recorded goes to the writer, if it is on. The state of the connection is known always.
+class recording_switch::observer {
+ public:
+  void put_bytes(direction way, bytes data, std::int64_t time_ns) noexcept {
+    latest_ns_ = time_ns;
+    if (to_ == nullptr) return;
+    way == direction::from_device ? to_->from_device(data, time_ns) : to_->to_device(data, time_ns);
+  }
+  void event(const recorded_event& what) noexcept {
+    latest_ns_ = what.time_ns;
+    state_.take(what);
+    if (to_ != nullptr) to_->event(what);
+  }
+  void device(const recorded_device& known) noexcept {
+    if (to_ != nullptr) to_->device(known);
+  }
+  void set_wall_clock(std::int64_t ahead_ns) noexcept {
+    wall_ahead_ns_ = ahead_ns;
+    if (to_ != nullptr) to_->set_wall_clock(ahead_ns);
+  }
+
+  [[nodiscard]] bool on(recording_writer& to) noexcept {
+    if (!state_.is_open) return false;
+    to_ = &to;
+    if (wall_ahead_ns_) to.set_wall_clock(*wall_ahead_ns_);
+    to.event(state_.as_event(latest_ns_));
+    return true;
+  }
+  void off() noexcept { to_ = nullptr; }
+
+  [[nodiscard]] std::optional<std::int64_t> latest_ns() const noexcept {
+    return state_.is_open ? std::optional(latest_ns_) : std::nullopt;
+  }
+
+ private:
+  mcap::transport_state state_;
+  std::int64_t latest_ns_ = 0;
+  std::optional<std::int64_t> wall_ahead_ns_;
+  recording_writer* to_ = nullptr;  // null: off
+};
+
+recording_switch::recording_switch() : observer_(std::make_unique<observer>()) {}
+
+recording_switch::~recording_switch() = default;
+
+std::unique_ptr<connector> recording_switch::observe(std::unique_ptr<connector> from) {
+  if (file_of(*from) != nullptr) return from;
+  return std::make_unique<recorded_connector<observer>>(std::move(from), *observer_);
+}
+
+bool recording_switch::on(recording_writer& to) noexcept { return observer_->on(to); }
+
+void recording_switch::off() noexcept { observer_->off(); }
+
+std::optional<std::int64_t> recording_switch::latest_ns() const noexcept {
+  return observer_->latest_ns();
 }
 
 }  // namespace g4lidar

@@ -122,6 +122,9 @@ class Merged : public Server {
     while (!status.is_null() && !is_wanted(status)) status = next(client, "status");
     return status;
   }
+  [[nodiscard]] std::ptrdiff_t files_in(const char* directory) const {
+    return std::distance(std::filesystem::directory_iterator(path(directory)), {});
+  }
   static json answer_to(raw_client& client, const char* request, const char* op) {
     client.send_text(request);
     return next(client, op);
@@ -297,6 +300,20 @@ TEST_F(Merged, OnARobotThatMoves_TheWallsStay) {
   // The rear lidar's robot is another one, which has started at nearly the same time.
   EXPECT_LT(distances[distances.size() / 2], 0.03);
   EXPECT_LT(distances[distances.size() * 9 / 10], 0.12);
+}
+
+TEST_F(Merged, NoneIsRecorded_IfOneIsNotConnected) {
+  std::filesystem::create_directory(path("made"));
+  begin_both({"--allow-record", path("made")}, "&fault=unplug@2s");
+  const auto client = open_page();
+  next_status(*client, [](const json& now) { return now["lidars"][0]["state"] == "lost"; });
+  const json refused = answer_to(*client, R"({"op":"record","on":true})", "error");
+  EXPECT_EQ(refused["of"], "record");
+  EXPECT_EQ(refused["message"], "front: the lidar is not connected");
+  const json ended =
+      next_status(*client, [](const json& now) { return now["recording"]["file"].is_null(); });
+  EXPECT_TRUE(ended["recording"]["last"].is_null());
+  EXPECT_EQ(files_in("made"), 0);
 }
 
 TEST_F(Merged, WhatCannotBeMerged_IsAnErrorAtTheStart) {

@@ -14,13 +14,10 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/transport/forwarding.hpp"
 #include "io/output.hpp"
 
 namespace g4_tool {
 namespace {
-
-using g4lidar::recorded_event;
 
 /// Less is no recording.
 constexpr std::uint64_t least_bytes = std::uint64_t{1} << 20U;
@@ -46,77 +43,6 @@ std::string reason_of(const g4lidar::error& why, const std::string& name) {
 
 }  // namespace
 
-/// The bytes both ways.
-class page_recorder::tapped_transport final : public g4lidar::forwarding_transport {
- public:
-  tapped_transport(std::unique_ptr<g4lidar::transport> inner, page_recorder& to)
-      : forwarding_transport(std::move(inner)), to_(to) {
-    to_.port_ = this;
-    if (to_.writer_) to_.writer_->event(opened());
-  }
-  tapped_transport(const tapped_transport&) = delete;
-  tapped_transport& operator=(const tapped_transport&) = delete;
-  ~tapped_transport() override {
-    if (to_.writer_) {
-      to_.writer_->event(
-          {.what = recorded_event::kind::closed, .reason = reason_, .time_ns = now_ns()});
-    }
-    to_.port_ = nullptr;
-    to_.stream_.delivers = false;
-  }
-
-  [[nodiscard]] g4lidar::result<g4lidar::received> read(
-      std::span<std::uint8_t> out, std::int64_t deadline_ns) noexcept override {
-    auto got = inner().read(out, deadline_ns);
-    if (!got && got.error() != problem::cancelled && got.error() != problem::timeout)
-      reason_ = got.error().code();
-    if (got && got->count > 0 && to_.writer_)
-      to_.writer_->from_device(out.first(got->count), got->arrival_ns);
-    return got;
-  }
-  [[nodiscard]] g4lidar::result<void> write(g4lidar::bytes data,
-                                            std::int64_t deadline_ns) noexcept override {
-    const std::int64_t begun_ns = now_ns();
-    auto sent = inner().write(data, deadline_ns);
-    if (sent && to_.writer_) to_.writer_->to_device(data, begun_ns);
-    return sent;
-  }
-
- private:
-  [[nodiscard]] recorded_event opened() const noexcept {
-    recorded_event made{.what = recorded_event::kind::opened, .time_ns = now_ns()};
-    made.baud = baud();
-    made.name = name();
-    return made;
-  }
-
-  page_recorder& to_;
-  problem reason_ = problem::cancelled;
-};
-
-/// The events of the driver, without which a recording gives other points.
-class page_recorder::tap final : public g4lidar::forwarding_connector,
-                                 public g4lidar::recording_hook {
- public:
-  tap(std::unique_ptr<g4lidar::connector> inner, page_recorder& to)
-      : forwarding_connector(std::move(inner)), to_(to) {}
-
-  [[nodiscard]] g4lidar::result<std::unique_ptr<g4lidar::transport>> connect() noexcept override {
-    auto port = inner().connect();
-    if (port) *port = std::make_unique<tapped_transport>(std::move(*port), to_);
-    return port;
-  }
-  void event(const recorded_event& what) noexcept override {
-    to_.stream_.delivers = what.delivers;
-    to_.stream_.sample_rate_hz = what.sample_rate_hz;
-    to_.stream_.baud = what.baud;
-    if (to_.writer_) to_.writer_->event(what);
-  }
-
- private:
-  page_recorder& to_;
-};
-
 page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes,
                              const recorded_lidar& which)
     : directory_(std::move(directory)), most_bytes_(most_bytes), which_(which) {
@@ -136,8 +62,7 @@ page_recorder::~page_recorder() { end(); }
 
 std::unique_ptr<g4lidar::connector> page_recorder::observe(
     std::unique_ptr<g4lidar::connector> from) {
-  if (!is_allowed()) return from;
-  return std::make_unique<tap>(std::move(from), *this);
+  return is_allowed() ? switch_.observe(std::move(from)) : std::move(from);
 }
 
 void page_recorder::opened(g4lidar::lidar& device) {
@@ -184,7 +109,7 @@ std::string page_recorder::set(bool is_on) {
     return {};
   }
   if (writer_) return fmt::format("{} is being recorded already", shown_.file);
-  if (port_ == nullptr) return "the lidar is not connected";
+  if (!switch_.latest_ns()) return "the lidar is not connected";
   if (model_ == nullptr) return "no scan has come yet";
   return begin();
 }
@@ -198,15 +123,8 @@ std::string page_recorder::begin() {
     if (!made) return reason_of(made.error(), name);
     writer_.emplace(std::move(*made));
     writer_->device(known_);
-    recorded_event now{.what = recorded_event::kind::opened, .time_ns = port_->now_ns()};
-    now.baud = port_->baud();
-    now.name = port_->name();
-    writer_->event(now);
-    if (stream_.delivers) {
-      stream_.time_ns = now.time_ns;
-      writer_->event(stream_);
-    }
-    begin_ns_ = now.time_ns;
+    if (!switch_.on(*writer_)) return "the lidar is not connected";
+    begin_ns_ = switch_.latest_ns().value_or(0);
     const std::lock_guard lock(mutex_);
     shown_ = {.file = name};
     logger::info(fmt::format("recording {}/{}\n", directory_, name));
@@ -235,11 +153,13 @@ void page_recorder::check() {
   }
   const std::lock_guard lock(mutex_);
   shown_.bytes = counts.file_bytes;
-  if (port_ != nullptr) shown_.seconds = static_cast<double>(port_->now_ns() - begin_ns_) * 1e-9;
+  if (const auto now_ns = switch_.latest_ns())
+    shown_.seconds = static_cast<double>(*now_ns - begin_ns_) * 1e-9;
 }
 
 void page_recorder::end(const std::string& why) {
   if (!writer_) return;
+  switch_.off();
   const auto closed = writer_->close();
   auto failed = writer_->take_error();
   if (!failed && !closed) failed = closed.error();
@@ -254,6 +174,15 @@ void page_recorder::end(const std::string& why) {
     shown_.why = "it was removed while it was written";
   logger::info(fmt::format("recorded {}/{}: {} bytes{}{}\n", directory_, shown_.last, bytes,
                            shown_.why.empty() ? "" : "; ", shown_.why));
+}
+
+void page_recorder::discard() {
+  if (!writer_) return;
+  end();
+  std::error_code unimportant;
+  std::filesystem::remove(directory_ + '/' + shown_.last, unimportant);
+  const std::lock_guard lock(mutex_);
+  shown_ = {};
 }
 
 std::optional<page_recording> page_recorder::status() const {

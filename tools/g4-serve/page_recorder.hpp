@@ -12,7 +12,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
-#include "g4lidar/recording/recorded_event.hpp"
+#include "g4lidar/recording/recording_switch.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/scan.hpp"
 #include "g4lidar/transport/connector.hpp"
@@ -52,6 +52,8 @@ class page_recorder {
   [[nodiscard]] std::string set(bool is_on);
   /// Ends the recording, if there is one.
   void end(const std::string& why = {});
+  /// Ends it, and removes the file.
+  void discard();
   void add(const g4lidar::scan& found);
   void add(const g4lidar::stamped_odometry& at);
 
@@ -59,8 +61,6 @@ class page_recorder {
   [[nodiscard]] std::optional<page_recording> status() const;
 
  private:
-  class tap;
-  class tapped_transport;
   [[nodiscard]] static recorded_lidar only_lidar() { return {}; }
 
   [[nodiscard]] std::string begin();
@@ -74,9 +74,8 @@ class page_recorder {
   const recorded_lidar which_;
   std::uint64_t free_bytes_ = 0;  // of this recording
   g4lidar::recorded_device known_;
-  const g4lidar::transport* port_ = nullptr;  // null: not connected
-  const g4lidar::model* model_ = nullptr;     // of the last scan
-  g4lidar::recorded_event stream_{.what = g4lidar::recorded_event::kind::begun, .delivers = false};
+  const g4lidar::model* model_ = nullptr;  // of the last scan
+  g4lidar::recording_switch switch_;
   std::optional<g4lidar::recording_writer> writer_;
   std::int64_t begin_ns_ = 0;
   mutable std::mutex mutex_;  // protects the next member

@@ -26,19 +26,26 @@ std::int64_t wall_now_ns() {
   return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Collects the errors of several lidars, and passes them on when all have answered.
+/// Collects the answers of several lidars about a recording, and passes their errors on when all have answered. Either
+/// all of them are recorded or none: if one cannot be, what was begun is discarded.
 class common_answer {
  public:
   common_answer(std::size_t count, std::function<void(const std::string&)> done)
       : left_(count), done_(std::move(done)) {}
 
-  void add(const std::string& name, const std::string& error) {
+  void add(served_lidar& from, bool has_begun, const std::string& error) {
     {
       const std::lock_guard lock(mutex_);
+      const std::string& name = from.name();
       if (!error.empty()) {
         errors_ += (errors_.empty() ? "" : "; ") + (name.empty() ? "" : name + ": ") + error;
+      } else if (has_begun) {
+        begun_.push_back(&from);
       }
       if (--left_ > 0) return;
+    }
+    if (!errors_.empty()) {
+      for (served_lidar* const each : begun_) each->discard_recording();
     }
     done_(errors_);
   }
@@ -47,6 +54,7 @@ class common_answer {
   std::mutex mutex_;
   std::size_t left_;
   std::string errors_;
+  std::vector<served_lidar*> begun_;
   std::function<void(const std::string&)> done_;
 };
 
@@ -153,9 +161,8 @@ void scan_publisher::record(const record_request& wanted,
   }
   const auto answer = std::make_shared<common_answer>(lidars_.size(), std::move(done));
   for (const auto& each : lidars_) {
-    each->record(wanted.is_on, [answer, &name = each->name()](const std::string& error) {
-      answer->add(name, error);
-    });
+    each->record(wanted.is_on, [answer, &from = *each, begins = wanted.is_on](
+                                   const std::string& error) { answer->add(from, begins, error); });
   }
 }
 

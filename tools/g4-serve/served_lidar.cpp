@@ -155,4 +155,8 @@ void served_lidar::record(bool is_on, answer_function done) {
   });
 }
 
+void served_lidar::discard_recording() {
+  reader().ask([this](g4lidar::lidar* /*lidar*/) { recorder_.discard(); });
+}
+
 }  // namespace g4_tool

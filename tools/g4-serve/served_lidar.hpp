@@ -63,6 +63,8 @@ class served_lidar final : public reader_listener {
   /// Changes the setting of `word`, "frequency=7".
   void set(const std::string& word, answer_function done);
   void record(bool is_on, answer_function done);
+  /// Ends the recording, soon, and removes its file.
+  void discard_recording();
   /// The state now. Call it twice a second, in one thread.
   [[nodiscard]] page_status status();
 
