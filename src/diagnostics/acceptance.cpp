@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The names of the steps, the open questions, and the way through the steps.
+// The names of the steps, and the way through the steps.
 #include "g4lidar/diagnostics/acceptance.hpp"
 
 #include <algorithm>
@@ -13,35 +13,6 @@
 namespace g4lidar {
 namespace {
 
-using enum acceptance_step;
-
-constexpr std::array questions{
-    open_question{"Which USB bridge is used, and which baud rate does it really set?", bridge},
-    open_question{"Which models send before they are asked, and what?", listening},
-    open_question{"With which number does the device identify itself?", identity},
-    open_question{"Does a one-way lidar answer any query?", queries},
-    open_question{"Are the rate (D1), the direction (08) and low power (05) answered?", queries},
-    open_question{"What does the offset of zero (93) contain?", queries},
-    open_question{"Which error codes does the health contain?", queries},
-    open_question{"Is there power-down protection (D9)?", protection},
-    open_question{"What is answered at the limits of the scan frequency?", frequency},
-    open_question{"Which sample rate is behind each code?", sample_rate},
-    open_question{"How long are the packets at each sample rate?", sample_rate},
-    open_question{"Does the command 00 alone stop the scan?", start_and_stop},
-    open_question{"How long does the motor spin up?", start_and_stop},
-    open_question{"Does an edge of DTR start the motor, or its level?", dtr},
-    open_question{"Does DTR switch the motor, or the supply of the whole lidar?", dtr},
-    open_question{"Do zero packets report the frequency, and with which offset?", stream},
-    open_question{"Do all packets have the layout of the table?", stream},
-    open_question{"Are the two lower bits of a sample flags, intensity or range?", sample_bits},
-    open_question{"Do the CT bytes contain information, and does a CRC byte follow?",
-                  acceptance_step::ct_information},
-    open_question{"Are there time packets?", acceptance_step::time_packets},
-    open_question{"Where is zero, and is the offset of 93 already applied?", near_target},
-    open_question{"Is the unit of the range that of the table?", far_target},
-    open_question{"Do the settings outlive a loss of power?", unplug},
-};
-
 constexpr std::array<std::string_view, acceptance_step_count> step_names{
     "bridge",       "listening",      "identity",   "queries", "protection",  "frequency",
     "sample_rate",  "start_and_stop", "dtr",        "stream",  "sample_bits", "ct_information",
@@ -50,8 +21,6 @@ constexpr std::array<std::string_view, 4> verdict_names{"agrees", "observed", "n
                                                         "differs"};
 
 }  // namespace
-
-std::span<const open_question> open_questions() noexcept { return questions; }
 
 std::string_view name_of(acceptance_step step) noexcept {
   return step_names.at(static_cast<std::size_t>(step));
@@ -76,15 +45,12 @@ std::vector<acceptance_result> acceptance_run::run() {
   for (std::size_t i = 0; i < acceptance_step_count; ++i) {
     const auto step = static_cast<acceptance_step>(i);
     acceptance_result into{.step = step};
-    std::string why_not;
     if (!is_open || !link_ || link_->monitor().is_over()) {
       const bool is_cancelled = link_ && link_->monitor().is_cancelled();
       std::string why = why_closed_.empty() ? "Not reached." : why_closed_;
       if (link_ && link_->monitor().failure()) why = link_->monitor().failure()->message();
       into.add_finding(acceptance_verdict::not_done, is_cancelled ? "Interrupted." : why);
-    } else if (!is_possible(step, why_not)) {
-      into.add_finding(acceptance_verdict::not_done, why_not);
-    } else {
+    } else if (is_possible(into)) {
       if (options_.on_step) options_.on_step(step);
       take(into);
     }
@@ -104,7 +70,8 @@ bool acceptance_run::open() {
     why_closed_ = opened.error().message();
     return false;
   }
-  if (options_.model == nullptr && !recognise(**opened)) return false;
+  const bool is_searched = options_.model == nullptr && found_baud_ == 0;
+  if (is_searched && !recognise(**opened)) return false;
   const auto rate = (*opened)->set_baud(baud());
   if (!rate) {
     why_closed_ = rate.error().message();
@@ -112,6 +79,18 @@ bool acceptance_run::open() {
   }
   link_.emplace(*std::move(opened), options_.is_cancelled, *which_);
   return true;
+}
+
+bool acceptance_run::reopen(std::int64_t wait_ns) {
+  constexpr std::int64_t retry_ns = 200 * ms;
+  link_.reset();
+  const std::int64_t until_ns = from_.now_ns() + wait_ns;
+  do {
+    static_cast<void>(from_.pause(from_.now_ns() + retry_ns));
+    if (options_.is_cancelled && options_.is_cancelled()) return false;
+    if (open()) return true;
+  } while (from_.now_ns() < until_ns);
+  return false;
 }
 
 bool acceptance_run::recognise(transport& port) {
@@ -132,21 +111,35 @@ bool acceptance_run::recognise(transport& port) {
   return true;
 }
 
-bool acceptance_run::is_possible(acceptance_step step, std::string& why_not) const {
-  const auto needs = [&why_not](bool has, std::string_view why) {
-    if (!has) why_not = why;
+/// Whether the step can be done; else `into` has the reason.
+bool acceptance_run::is_possible(acceptance_result& into) const {
+  const auto needs = [&into](bool has, std::string_view why) {
+    if (!has) into.add_finding(acceptance_verdict::not_done, why);
     return has;
   };
-  switch (step) {
+  // What the model does not have: its questions do not arise.
+  const auto model_needs = [&](bool has, std::string_view why) {
+    for (const open_question& each : open_questions()) {
+      if (!has && each.step == into.step) {
+        into.add_answer(each.which, answer_state::not_applicable, why);
+      }
+    }
+    return needs(has, why);
+  };
+  switch (into.step) {
     case acceptance_step::protection:
-      return needs(is_two_way() && which_->protection != presence::no,
-                   "The model does not have it.");
+      return model_needs(is_two_way() && which_->protection != presence::no,
+                         "The model does not have it.");
     case acceptance_step::frequency:
-      return needs(which_->frequency.max_dhz != 0, "The model has no command for it.");
+      return model_needs(which_->frequency.max_dhz != 0, "The model has no command for it.");
     case acceptance_step::sample_rate:
-      return needs(which_->rates.is_settable,
-                   "The model has one sample rate, or no command for it.");
+      return model_needs(which_->rates.is_settable,
+                         "The model has one sample rate, or no command for it.");
     case acceptance_step::start_and_stop:
+      if (!is_two_way()) {
+        into.add_answer(acceptance_question::forced_stop, answer_state::not_applicable,
+                        "The model takes no commands.");
+      }
       return needs(is_two_way(), "The model takes no commands.");
     case acceptance_step::sample_bits:
     case acceptance_step::ct_information:

@@ -2,6 +2,7 @@
 // What the steps of an acceptance run are made of: commands, raw replies, waits.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "acceptance_link.hpp"
 #include "g4lidar/core/response.hpp"
@@ -21,6 +22,11 @@ std::int64_t response_in(bytes data) noexcept {
 }
 
 }  // namespace
+
+std::string spin_up_words(std::int64_t first_ns, double steady_ms) {
+  return "First packet after " + std::to_string(std::lround(in_ms(first_ns))) +
+         " ms, steady after " + std::to_string(std::lround(steady_ms)) + " ms.";
+}
 
 bytes raw_reply::content() const noexcept {
   if (begin < 0) return {};
@@ -87,6 +93,17 @@ std::int64_t acceptance_link::wait_for_silence(std::int64_t patience_ns) {
   monitor_.listen_for_quiet(quiet_ns, begin_ns + patience_ns);
   const bool is_silent = monitor_.now_ns() >= monitor_.heard_ns() + quiet_ns;
   return is_silent ? std::max<std::int64_t>(monitor_.heard_ns() - begin_ns, 0) : -1;
+}
+
+double acceptance_link::wait_until_steady() {
+  constexpr int most = 24;
+  double last_hz = 0.0;
+  for (int i = 0; i < most; ++i) {
+    const double now_hz = survey(500 * ms).frequency_hz();
+    if (last_hz > 0.0 && std::abs(now_hz / last_hz - 1.0) < 0.03) return now_hz;
+    last_hz = now_hz;
+  }
+  return 0.0;
 }
 
 bool acceptance_link::set_dtr(bool high) {

@@ -17,6 +17,16 @@
 
 namespace g4lidar {
 
+/// After this time of a scan the motor turns steadily.
+inline constexpr std::int64_t spun_up_ns = 3'000 * ms;
+
+[[nodiscard]] constexpr double in_ms(std::int64_t ns) noexcept {
+  return static_cast<double>(ns) / 1e6;
+}
+
+/// "First packet after 9 ms, steady after 1009 ms."
+[[nodiscard]] std::string spin_up_words(std::int64_t first_ns, double steady_ms);
+
 /// The bytes that came after a command.
 struct raw_reply {
   std::vector<std::uint8_t> data{};
@@ -50,6 +60,9 @@ class acceptance_link {
   [[nodiscard]] std::int64_t wait_for_packet(std::int64_t patience_ns);
   /// Waits until nothing has arrived for 150 ms; when the last byte came after now, or -1.
   [[nodiscard]] std::int64_t wait_for_silence(std::int64_t patience_ns);
+  /// Waits until two measurements of half a second agree within 3 %, at most 12 s. Returns the scan frequency
+  /// in Hz, or 0.
+  [[nodiscard]] double wait_until_steady();
   /// Starts the motor, in the way of the model. How long the first packet took, or -1.
   std::int64_t start();
   void stop();

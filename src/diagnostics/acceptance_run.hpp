@@ -25,9 +25,11 @@ class acceptance_run {
 
  private:
   [[nodiscard]] bool open();
+  /// Closes the connection, and opens it again, with attempts for so long.
+  [[nodiscard]] bool reopen(std::int64_t wait_ns);
   [[nodiscard]] bool recognise(transport& port);
   void take(acceptance_result& into);
-  [[nodiscard]] bool is_possible(acceptance_step step, std::string& why_not) const;
+  [[nodiscard]] bool is_possible(acceptance_result& into) const;
 
   // The steps.
   void bridge(acceptance_result& into);
@@ -39,6 +41,7 @@ class acceptance_run {
   void sample_rate(acceptance_result& into);
   void start_and_stop(acceptance_result& into);
   void dtr(acceptance_result& into);
+  void dtr_start(acceptance_result& into);
   void stream(acceptance_result& into);
   void sample_bits(acceptance_result& into) const;
   void ct_information(acceptance_result& into) const;
@@ -61,7 +64,11 @@ class acceptance_run {
   std::vector<acceptance_result> results_;
   std::optional<stream_survey> surveyed_;
   std::optional<std::size_t> target_degree_;
-  std::vector<std::uint8_t> identified_;  // the content of the answer to 90
+  std::vector<std::uint8_t> identified_;   // the content of the answer to 90
+  std::optional<double> zero_offset_deg_;  // of the answer to 93
+  std::optional<double> near_ratio_;       // measured range to placed distance
+  bool dtr_drives_ = false;                // a low DTR stopped it
+  bool boots_after_dtr_ = false;           // and when it rose, it booted
 };
 
 }  // namespace g4lidar

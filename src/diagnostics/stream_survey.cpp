@@ -2,9 +2,18 @@
 #include "stream_survey.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <variant>
 
 namespace g4lidar {
+namespace {
+
+/// The byte of intensity of a sample of three bytes.
+int low_intensity(packet_view packet, std::size_t i) noexcept {
+  return packet.intensity_word(i) & 0xFF;
+}
+
+}  // namespace
 
 void direction_survey::take(packet_view packet) {
   std::array<point, max_samples> memory;
@@ -73,6 +82,21 @@ void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
                        : range_mm < 2000 ? below_2_m
                                          : beyond;
     ++bits_.at(where).at(word & 3U);
+  }
+  if (sample_size(which_.samples.layout) == 3) compare_intensities(packet);
+}
+
+void stream_survey::compare_intensities(packet_view packet) {
+  constexpr int near = 16;  // of an intensity that goes on
+  for (std::size_t i = 1; i < packet.sample_count(); ++i) {
+    const std::uint16_t last = packet.sample(i - 1);
+    const std::uint16_t now = packet.sample(i);
+    const int step = static_cast<int>(now & 3U) - static_cast<int>(last & 3U);
+    if (last >> 2U == 0 || now >> 2U == 0 || (step != 1 && step != -1)) continue;
+    const int change = low_intensity(packet, i) - low_intensity(packet, i - 1);
+    const bool is_smooth = std::abs(change) <= near;
+    const bool overflows = std::abs(change + 256 * step) <= near;
+    if (is_smooth != overflows) ++changes_.at(overflows ? 1 : 0);
   }
 }
 

@@ -47,6 +47,13 @@ class stream_survey {
   [[nodiscard]] std::uint64_t zero_packets() const noexcept { return zero_packets_; }
   [[nodiscard]] std::uint64_t bad_checksums() const noexcept { return bad_checksums_; }
   [[nodiscard]] std::size_t most_samples() const noexcept { return most_samples_; }
+  [[nodiscard]] std::uint64_t samples() const noexcept {
+    std::uint64_t all = 0;
+    for (const auto& where : bits_) {
+      for (const std::uint64_t count : where) all += count;
+    }
+    return all;
+  }
   /// Measured from the first zero packet to the last; 0 with fewer than two.
   [[nodiscard]] double frequency_hz() const noexcept;
   [[nodiscard]] double sample_rate_hz() const noexcept;
@@ -56,6 +63,11 @@ class stream_survey {
   [[nodiscard]] std::uint64_t bits(zone where, unsigned value) const noexcept {
     return bits_.at(where).at(value);
   }
+  /// Neighbours with a return whose two lower bits differ by 1 and whose byte of intensity shows what these
+  /// bits are: it goes on where they are flags; it overflows where they are its upper bits.
+  [[nodiscard]] std::uint64_t smooth_changes() const noexcept { return changes_[0]; }
+  /// See smooth_changes().
+  [[nodiscard]] std::uint64_t overflows() const noexcept { return changes_[1]; }
   /// Revolutions whose CRC byte fits, and does not.
   [[nodiscard]] std::uint64_t crc_fits() const noexcept { return crc_[1]; }
   [[nodiscard]] std::uint64_t crc_misfits() const noexcept { return crc_[0]; }
@@ -69,6 +81,7 @@ class stream_survey {
 
  private:
   void take(packet_view packet, std::int64_t arrival_ns);
+  void compare_intensities(packet_view packet);
 
   const model& which_;
   std::uint64_t packets_ = 0;
@@ -84,6 +97,7 @@ class stream_survey {
   std::uint64_t samples_at_zero_ = 0;  // before the last one
   std::uint64_t reported_dhz_ = 0;     // the sum
   std::array<std::array<std::uint64_t, 4>, zones> bits_{};
+  std::array<std::uint64_t, 2> changes_{};
   std::array<std::uint64_t, 2> crc_{};
   ct_revolution revolution_;
   ct_information_reader reader_;

@@ -1,93 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The acceptance run with simulated lidars, in virtual time: what it reports of a healthy one, and
 // that it notices each planted difference.
-#include "g4lidar/diagnostics/acceptance.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "g4lidar/sim/device_options.hpp"
-#include "g4lidar/sim/virtual_port.hpp"
-#include "g4lidar/sim/world.hpp"
+#include "acceptance_bench.hpp"
 
 namespace g4lidar::test {
 namespace {
 
 using enum acceptance_verdict;
 
-/// One simulated lidar, the model that is expected, and the user who serves the run.
-struct bench {
-  sim::device_options options;
-  std::string_view expected = "g4";
-  double placed_mm = 800.0;
-  bool declines = false;
-  bool cancels = false;
-
-  explicit bench(std::string_view word) : expected(word) {
-    EXPECT_TRUE(sim::use_model(options, word));
-  }
-
-  [[nodiscard]] std::vector<acceptance_result> run() {
-    // A room with a wall 0.8 m ahead of the lidar, whose cable points to +x; the others are 4 m away.
-    const sim::world room{{{4, -4, 4, 4}, {4, 4, -0.8, 4}, {-0.8, 4, -0.8, -4}, {-0.8, -4, 4, -4}},
-                          {0.0, 0.0, 0.0}};
-    sim::device simulated(room, options);
-    sim::virtual_clock clock;
-    sim::virtual_connector from(simulated, clock);
-    acceptance_options how;
-    how.model = expected.empty() ? nullptr : model_named(expected);
-    how.stream_time = std::chrono::seconds(10);
-    how.ask = [&](acceptance_action what) -> std::optional<double> {
-      if (declines) return std::nullopt;
-      if (what == acceptance_action::unplug) simulated.unplug(clock.now_ns() + 1);
-      if (what == acceptance_action::plug_in) simulated.replug(clock.now_ns() + 1);
-      return placed_mm;
-    };
-    how.is_cancelled = [this] { return cancels; };
-    auto all = run_acceptance(from, how);
-    static_cast<void>(simulated.is_plugged(clock.now_ns() + 1'000'000'000));
-    motor_turns = simulated.motor_turns();
-    settings = simulated.settings();
-    return all;
-  }
-
-  bool motor_turns = true;
-  sim::device_settings settings;
-};
-
-const acceptance_result& at(const std::vector<acceptance_result>& all, acceptance_step step) {
-  return all.at(static_cast<std::size_t>(step));
-}
-
-double number_of(const acceptance_result& of, std::string_view name) {
-  const auto found = std::ranges::find(of.measurements, name, &evidence::name);
-  if (found == of.measurements.end()) return -1.0;
-  if (const auto* whole = std::get_if<std::int64_t>(&found->value)) {
-    return static_cast<double>(*whole);
-  }
-  const auto* const number = std::get_if<double>(&found->value);
-  return number == nullptr ? -1.0 : *number;
-}
-
-std::string all_of(const std::vector<acceptance_result>& results) {
-  std::string text;
-  for (const acceptance_result& each : results) {
-    text += std::string(name_of(each.step)) + " " + std::string(name_of(each.outcome)) + ": " +
-            each.text;
-    for (const evidence& one : each.measurements) text += " " + one.name + "=" + one.text();
-    text += '\n';
-  }
-  return text;
-}
-
+using bench = acceptance_bench;
 using enum acceptance_step;
 
 class AcceptanceOf : public testing::TestWithParam<std::string_view> {};

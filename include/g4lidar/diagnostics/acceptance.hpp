@@ -50,12 +50,59 @@ enum class acceptance_verdict : std::uint8_t {
   differs,   ///< Not as in the table.
 };
 
+/// The open questions about the family, in the order of open_questions().
+enum class acceptance_question : std::uint8_t {
+  bridge_and_baud,
+  unasked_bytes,
+  number,
+  one_way_answers,
+  optional_queries,
+  zero_offset,
+  health_codes,
+  protection,
+  frequency_limits,
+  rate_codes,
+  packet_lengths,
+  forced_stop,
+  spin_up,
+  dtr_start,
+  dtr_cut,
+  reported_frequency,
+  layout,
+  lower_bits,
+  flag_meaning,
+  ct_bytes,
+  time_packets,
+  zero_direction,
+  range_unit,
+  kept_settings,
+};
+/// The number of open questions.
+inline constexpr std::size_t acceptance_question_count =
+    static_cast<std::size_t>(acceptance_question::kept_settings) + 1;
+
+/// What a run shows about an open question, the best last.
+enum class answer_state : std::uint8_t {
+  not_decided,     ///< The measurements fit several answers, or there are none.
+  not_applicable,  ///< The question does not arise with this model.
+  answered,        ///< The measurements fit one answer.
+};
+
+/// An open question, as a run answers it.
+struct question_answer {
+  acceptance_question question = acceptance_question::bridge_and_baud;
+  answer_state state = answer_state::not_decided;
+  std::string text{};  ///< The answer, or the reason why there is none, in sentences.
+};
+
 /// The result of one step.
 struct acceptance_result {
   acceptance_step step = acceptance_step::bridge;
   acceptance_verdict outcome = acceptance_verdict::agrees;
   std::vector<evidence> measurements{};
   std::string text{};  ///< What was found, in sentences.
+  /// What the step shows about questions; several steps may show something about one. See answers_of().
+  std::vector<question_answer> answers{};
 
   /// Adds a sentence, and makes the outcome at least this one.
   G4LIDAR_API void add_finding(acceptance_verdict how, std::string_view sentence);
@@ -63,20 +110,26 @@ struct acceptance_result {
   void add(std::string name, auto value) {
     measurements.push_back(make_evidence(std::move(name), std::move(value)));
   }
+  /// Adds what the step shows about a question.
+  void add_answer(acceptance_question about, answer_state state, std::string_view sentence) {
+    answers.push_back({about, state, std::string(sentence)});
+  }
 };
 
 /// What the user is asked to do.
 enum class acceptance_action : std::uint8_t {
-  place_near,  ///< To place a target 0.3 m to 1 m away, and to measure its distance.
-  place_far,   ///< To place one 2 m to 5 m away in the same direction, and to measure its distance.
-  unplug,      ///< To unplug the USB cable.
-  plug_in,     ///< To plug it in again.
+  /// To place a target straight ahead, 0.3 m to 1 m away, and to measure its distance.
+  place_near,
+  place_far,  ///< To place one 2 m to 5 m away in the same direction, and to measure its distance.
+  unplug,     ///< To unplug the USB cable.
+  plug_in,    ///< To plug it in again.
 };
 
 /// A question about the family that only a real device answers, and the step that answers it.
 struct open_question {
   std::string_view text;
   acceptance_step step;
+  acceptance_question which;
 };
 
 /// How an acceptance run is done. Functions that are not set are not called.
@@ -103,7 +156,7 @@ struct acceptance_options {
 
 /// Does all steps with the lidar behind `from`, and returns their results. Sends every query and
 /// command that changes a setting, which is set back; what a model does not have is skipped. Stops the
-/// motor at the end. Takes about 15 minutes with a real device, most of it for its user. Without a
+/// motor at the end. Takes about 20 minutes with a real device, most of it for its user. Without a
 /// connection, or when it breaks for another reason than the unplug, the remaining steps are skipped.
 /// *Allocates. Single thread.*
 [[nodiscard]] G4LIDAR_API std::vector<acceptance_result> run_acceptance(
@@ -111,9 +164,16 @@ struct acceptance_options {
 
 /// The open questions. Valid forever.
 [[nodiscard]] G4LIDAR_API std::span<const open_question> open_questions() noexcept;
+/// What these results show about each open question, in the order of open_questions(): where several steps
+/// show something, the best state, and of these the last. A question about which no step shows anything is not
+/// decided, and its text is the reason.
+[[nodiscard]] G4LIDAR_API std::vector<question_answer> answers_of(
+    std::span<const acceptance_result> results);
 /// "start_and_stop". The names do not change.
 [[nodiscard]] G4LIDAR_API std::string_view name_of(acceptance_step step) noexcept;
 /// "agrees", "observed", "not_done", "differs".
 [[nodiscard]] G4LIDAR_API std::string_view name_of(acceptance_verdict how) noexcept;
+/// "not_decided", "not_applicable", "answered".
+[[nodiscard]] G4LIDAR_API std::string_view name_of(answer_state state) noexcept;
 
 }  // namespace g4lidar

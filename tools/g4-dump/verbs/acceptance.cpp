@@ -31,6 +31,11 @@ namespace g4_tool {
 namespace {
 
 constexpr std::size_t indent = 16;
+constexpr std::size_t answer_indent = 7;
+
+std::string_view words_of(acceptance_question question) noexcept {
+  return open_questions()[static_cast<std::size_t>(question)].text;
+}
 
 struct acceptance_settings : common_options {
   /// Beside those of the source.
@@ -95,9 +100,15 @@ nlohmann::ordered_json json_of_step(const acceptance_result& of) {
   nlohmann::ordered_json line{{"step", name_of(of.step)},
                               {"verdict", name_of(of.outcome)},
                               {"evidence", nlohmann::ordered_json::object()},
-                              {"text", of.text}};
+                              {"text", of.text},
+                              {"answers", nlohmann::ordered_json::array()}};
   for (const evidence& each : of.measurements) {
     std::visit([&](const auto& value) { line["evidence"][each.name] = value; }, each.value);
+  }
+  for (const question_answer& each : of.answers) {
+    line["answers"].push_back({{"question", words_of(each.question)},
+                               {"state", name_of(each.state)},
+                               {"text", each.text}});
   }
   return line;
 }
@@ -116,13 +127,16 @@ std::string text_of_step(const acceptance_result& of) {
   return text;
 }
 
-/// The open questions that this run has answered.
-std::string answered_questions(const std::vector<acceptance_result>& all) {
-  std::string text = "\nQuestions that this answers:\n";
-  for (const open_question& each : open_questions()) {
-    const auto done = std::ranges::find(all, each.step, &acceptance_result::step);
-    const bool is_answered = done != all.end() && done->outcome != acceptance_verdict::not_done;
-    text += fmt::format("  {} {}\n", is_answered ? "yes" : "no ", each.text);
+/// Each open question with its answer, or with the reason why it has none.
+std::string questions_of(const std::vector<acceptance_result>& all) {
+  constexpr std::array<std::string_view, 3> marks{"open", "-", "yes"};
+  std::string text =
+      "\nOpen questions (yes: answered; -: does not arise with this model; open: not decided):\n";
+  for (const question_answer& each : answers_of(all)) {
+    text += fmt::format("  {:<5}", marks.at(static_cast<std::size_t>(each.state)));
+    text += wrapped(fmt::format("{} {}", words_of(each.question), printable(each.text)),
+                    answer_indent, answer_indent) +
+            "\n";
   }
   return text;
 }
@@ -204,7 +218,7 @@ int accept(const acceptance_settings& given) {
   }
   file->metadata("g4lidar.acceptance", words);
   if (auto closed = file->close(); !closed) throw failure(closed.error());
-  if (!options.json) out.write(answered_questions(all));
+  if (!options.json) out.write(questions_of(all));
   out.commit();
   logger::info(fmt::format("{} has all bytes and these results. Attach it to a report: {}\n",
                            in_quotes(options.run.file), G4LIDAR_ISSUES));
@@ -216,7 +230,7 @@ int accept(const acceptance_settings& given) {
 
 constexpr const char* acceptance_details =
     R"(It compares a lidar with the model of --model in the table of models, or with the one that
-its bytes show; if they fit several models, name it. It takes about 15 minutes: identity, each
+its bytes show; if they fit several models, name it. It takes about 20 minutes: identity, each
 command with its answer and time, frequencies and sample rates, start and stop, DTR, a minute of
 the scan with its CT bytes, lower bits and time packets. It asks its user for a target that is
 near, one that is far, and an unplug; s skips such a step, and --alone all of them. Settings are
@@ -224,7 +238,8 @@ changed and set back, and the motor is stopped at the end. docs/models.md lists 
 such a run most: nobody has tried them with a real device.
 
 The output is a page of text: for each step agrees, observed (not in the table), not_done or
-differs, and what was measured. The file contains all bytes in both directions and these results;
+differs, and what was measured. Then it lists the questions that only a real device can answer: yes
+with the answer, - where the model does not raise it, and open with the reason. The file contains all bytes in both directions and these results;
 it is a recording, which every other command reads. A step that differs makes the exit code 8.)";
 
 }  // namespace
