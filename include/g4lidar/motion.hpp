@@ -59,6 +59,11 @@ struct mounting {
   pose_2d pose;
   /// Whether the lidar hangs with its top down: its angles grow the other way, seen from above.
   bool upside_down = false;
+
+  /// `of` the lidar's own frame, as the twist of a frame at the same place with z up. *Pure.*
+  [[nodiscard]] constexpr twist_2d upright(const twist_2d& of) const noexcept {
+    return upside_down ? twist_2d{of.x_m_per_s, -of.y_m_per_s, -of.yaw_rad_per_s} : of;
+  }
 };
 
 /// Sine and cosine in double precision.

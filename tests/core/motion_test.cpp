@@ -114,6 +114,13 @@ pose_2d in_steps(const twist_2d& twist, double seconds) {
   return at;
 }
 
+// The x axis stays; the y axis, and with it the sense of rotation, points to the other side.
+TEST(Mounting, UpsideDown_LeftIsRight) {
+  constexpr twist_2d of{1.0, 0.5, -0.25};
+  static_assert(mounting{}.upright(of) == of);
+  static_assert(mounting{.pose = {}, .upside_down = true}.upright(of) == twist_2d{1.0, -0.5, 0.25});
+}
+
 TEST(MovedBy, IsMotionInManySmallSteps) {
   // A step of 1/20000 of the way misses the arc by a part of about a^2 / 24 / 20000^2.
   for (const twist_2d& twist :

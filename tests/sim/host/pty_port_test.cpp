@@ -279,20 +279,20 @@ TEST_F(SimPty, IsResetForEachProgram) {
 }
 
 TEST_F(SimPty, Idle_DoesNotSpin) {
-  std::array<int, 2> bell{};
-  ASSERT_EQ(::pipe2(bell.data(), O_CLOEXEC), 0);
+  std::array<int, 2> wake_pipe{};
+  ASSERT_EQ(::pipe2(wake_pipe.data(), O_CLOEXEC), 0);
   std::vector<sim::pty_port> ports;
   for (int i = 0; i < 2; ++i) ports.push_back(std::move(*sim::pty_port::open(simulated())));
   int steps = 0;
   std::thread stopper([&] {
     std::this_thread::sleep_for(500ms);
-    EXPECT_EQ(::write(bell[1], "x", 1), 1);
+    EXPECT_EQ(::write(wake_pipe[1], "x", 1), 1);
   });
-  EXPECT_TRUE(sim::serve(ports, bell[0], [&] { ++steps; }));
+  EXPECT_TRUE(sim::serve(ports, wake_pipe[0], [&] { ++steps; }));
   stopper.join();
   EXPECT_LE(steps, 3) << "idle devices need no looking at";
-  ::close(bell[0]);
-  ::close(bell[1]);
+  ::close(wake_pipe[0]);
+  ::close(wake_pipe[1]);
 }
 
 }  // namespace

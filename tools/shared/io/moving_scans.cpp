@@ -54,9 +54,7 @@ void moving_scans::add(const scan& source, const odometry_feed::taker& take) {
   }
   if (deskew_ == deskewing::by_scans) {
     std::optional<twist_2d> twist = shaper_.twist();
-    if (twist && mount_.upside_down) {
-      twist = twist_2d{twist->x_m_per_s, -twist->y_m_per_s, -twist->yaw_rad_per_s};
-    }
+    if (twist) twist = mount_.upright(*twist);
     place_ = tracker_.by_twist(twist, source.time_ns());
   }
 }

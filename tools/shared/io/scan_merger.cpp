@@ -108,10 +108,7 @@ robot_motion scan_merger::motion_of_robot(const part& leader, const g4lidar::sca
             .path = path_.until(std::ranges::max_element(parts_, {}, &part::end_ns)->end_ns)};
   }
   if (!scan.twist()) return {};
-  twist_2d twist = *scan.twist();
-  if (leader.place.upside_down) {  // its y axis points to the other side
-    twist = {twist.x_m_per_s, -twist.y_m_per_s, -twist.yaw_rad_per_s};
-  }
+  const twist_2d twist = leader.place.upright(*scan.twist());
   return {.twist = seen_from(inverse(leader.place.pose), twist), .path = {}};
 }
 
