@@ -79,6 +79,7 @@ enum class error_detail : std::uint8_t {
   unknown_model,  ///< bad_file: a recording of a model, or in a version, that is not known.
   unsupported_product,  ///< other_device: a product of the manufacturer with another protocol.
   answered_before,  ///< silence, garbage: the lidar had identified itself, so its model and its baud rate are right.
+  searched,  ///< silence: no model was named, and no lidar answered or sent at any rate that was tried.
 };
 
 /// One error. Trivially copyable, never allocates.

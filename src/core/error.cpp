@@ -116,7 +116,7 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 12> all_details{{
+constexpr std::array<detail_words, 13> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
@@ -156,8 +156,14 @@ constexpr std::array<detail_words, 12> all_details{{
      "The lidar answered before, so its model and its baud rate are right. Check its power supply, "
      "the "
      "cable and the adapter, and that no other program uses the port."},
+    {"",
+     "Check the plugs, the power supply (an X4 has a second plug) and that this is its port. A "
+     "lidar "
+     "without commands, such as an X2, sends only while its motor turns. Or name the model or its "
+     "baud "
+     "rate (options model and baud, --model and --baud)."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::answered_before));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::searched));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {

@@ -77,7 +77,7 @@ void live_run::run() {
 
 bool live_run::end() {
   link_.ignore_cancel();
-  const bool is_stopped = lidar_.is_one_way() || link_.stop();
+  const bool is_stopped = lidar_.is_one_way() || !lidar_.takes_commands() || link_.stop();
   if (lidar_.is_driven_by_dtr()) static_cast<void>(link_.port().set_dtr(false));
   return is_stopped;
 }
@@ -110,6 +110,12 @@ bool live_run::find_device() {
     baud.outcome = stage_verdict::skipped;
     baud.remark = "Nothing arrived to judge it by.";
     answer_.find(diagnosis::silent);
+    if (!lidar_.is_named) {
+      answer_.remark =
+          "No model was named: only the question for the device information was sent. If the model "
+          "is "
+          "named, a start is tried, too.";
+    }
   }
   log_.report(std::move(baud));
   if (!goes_on && !answer_.diagnoses.empty()) log_.report(std::move(answer_));

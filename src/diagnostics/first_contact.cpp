@@ -48,7 +48,7 @@ first_contact::state first_contact::make(stage_report& baud) {
     const std::size_t end = is_noise || garbage_ > 0 ? patiences_ns.size() : attempts;
     if (ask(is_noise ? 0 : 1, end) || lidar.was_scanning) return state::made;
     const bool is_there = found == state::made || garbage_ == 0;
-    if (is_there && !link.is_over() && scans_when_started()) {
+    if (is_there && lidar.takes_commands() && !link.is_over() && scans_when_started()) {
       of_.answers.find(diagnosis::answers_missing);
       return state::made;
     }
@@ -77,19 +77,34 @@ bool first_contact::hear_stream() {
   return size == sample_size(of_.lidar.which->samples.layout);
 }
 
+/// Whether the packets that were recognised cannot be those of a one-way lidar.
+bool first_contact::is_of_two_way() const {
+  const layout_recogniser& seen = of_.link.layout();
+  const auto fitting = models_that_fit({.baud = of_.link.port().baud(),
+                                        .is_baud_certain = of_.lidar.has_baud,
+                                        .sample_bytes = seen.sample_bytes(),
+                                        .sample_rate_hz = seen.rate_hz()});
+  return seen.sample_bytes() != 0 && std::ranges::none_of(fitting, [](const model* row) {
+           return row->link == link_kind::one_way;
+         });
+}
+
 bool first_contact::make_quiet() {
   link_monitor& link = of_.link;
   of_.log.begin(diagnostic_activity::listening);
   link.listen_for(unasked_ns);
+  if (link.counts().packets > 0 && link.layout().sample_bytes() == 0) link.listen_for(unasked_ns);
   const bool is_recognised = link.layout().sample_bytes() != 0;
   const bool has_packets = is_recognised || link.counts().packets > 0;
   const std::uint64_t skipped = link.counts().skipped_bytes();
+  of_.lidar.is_met = of_.lidar.is_met || is_of_two_way();
   if (!of_.lidar.is_named && is_recognised) link.read_as(link.layout().most_likely());
   const std::uint64_t unasked = link.counts().packets;
   if (!has_packets && link.boots() == 0 && skipped > 0 && !of_.lidar.is_named) {
     garbage_ += skipped;
     return false;  // nothing is sent to what may be another device
   }
+  if (!of_.lidar.takes_commands()) return !has_packets;
   const bool is_quiet = !link.is_over() && link.stop();
   const stream_counts& now = link.counts();
   if (has_packets || now.packets > 0) of_.lidar.was_scanning = true;
@@ -111,6 +126,7 @@ bool first_contact::ask(std::size_t from, std::size_t to) {
     exchange made = of_.link.ask(command::device_info, patiences_ns.at(i));
     if (asked_ns_ < 0) asked_ns_ = made.asked_ns;
     if (made.is_answered() || made.wrong > 0) {
+      of_.lidar.is_met = true;
       ask_the_rest(std::move(made));
       return true;
     }
@@ -213,6 +229,7 @@ first_contact::state first_contact::search(stage_report& baud) {
     return state::refused;
   }
   if (link.port().baud() != before) asked_ns_ = -1;  // that query did not reach it
+  lidar.is_met = true;
   lidar.is_deaf = false;
   lidar.was_scanning = lidar.was_scanning || found->was_scanning;
   link.read_as(*lidar.which);

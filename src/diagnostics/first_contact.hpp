@@ -22,8 +22,11 @@ struct examined_lidar {
   bool was_scanning = false;               ///< Before the run; of a two-way lidar.
   bool is_deaf = false;                    ///< It scans and ignores commands.
   bool has_baud = false;                   ///< The connection has a rate.
+  bool is_met = false;                     ///< It has answered, or sends packets.
 
   [[nodiscard]] bool is_one_way() const noexcept { return which->link == link_kind::one_way; }
+  /// Whether a stop or a start may be sent: what is attached may be any device else.
+  [[nodiscard]] bool takes_commands() const noexcept { return is_named || is_met; }
   [[nodiscard]] bool is_driven_by_dtr() const noexcept { return which->motor == motor_kind::dtr; }
 };
 
@@ -50,13 +53,15 @@ class first_contact {
   /// Listens, asks, and searches all baud rates if nothing comes. All queries are asked if the first is
   /// answered. `baud` is the stage baud_rate.
   [[nodiscard]] state make(stage_report& baud);
-  /// Observes bytes without a query, and stops a scan. False if it does not stop.
+  /// Observes bytes without a query, and stops a scan. False if it does not stop, or may be none of a
+  /// two-way lidar.
   bool make_quiet();
   /// Adds to the stage answers that it was scanning, or does not listen.
   void report_scanning();
 
  private:
   [[nodiscard]] bool hear_stream();
+  [[nodiscard]] bool is_of_two_way() const;
   [[nodiscard]] bool ask(std::size_t from, std::size_t to);
   void ask_the_rest(exchange last);
   [[nodiscard]] bool recognise(const exchange& first);

@@ -71,6 +71,8 @@ result<recognised_lidar> lidar_search::run(std::int64_t deadline_ns) {
   deadline_ns_ = deadline_ns;
   for (bool is_first = true; port_.now_ns() < deadline_ns_; is_first = false) {
     auto done = round(is_first);
+    const bool has_time = port_.now_ns() + one_stop_ns + information_ns < deadline_ns_;
+    if (!done && done.error() == problem::does_not_stop && has_time) continue;
     if (done && !*done && options_.may_pulse_dtr && sending_ == 0) done = pulse();
     if (!done) return tl::unexpected(done.error());
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked by the caller
@@ -138,6 +140,7 @@ lidar_search::found lidar_search::visit(std::uint32_t baud, std::int64_t listen_
 }
 
 lidar_search::found lidar_search::question(std::uint32_t baud, std::int64_t wait_ns) {
+  if (port_.now_ns() >= deadline_ns_) return std::nullopt;
   const auto tuned = tune(baud);
   if (!tuned) return tl::unexpected(tuned.error());
   if (!*tuned) return std::nullopt;
@@ -303,8 +306,11 @@ error lidar_search::unknown(std::uint8_t id) const {
 /// What the device answers after a stop; nothing if it does not.
 result<std::optional<device_information>> lidar_search::stop_and_ask(const model& like,
                                                                      stop_attempts how) {
+  // If it does not stop, the rest of the time shows what else it may be.
+  const std::int64_t one_ns = in_ns(one_stop_ns);
+  const std::int64_t several_ns = std::min(in_ns(stops_ns), deadline_ns_ - information_ns);
   auto answered = inquiry(port_, like.samples, how)
-                      .ask(in_ns(how == stop_attempts::one ? one_stop_ns : stops_ns));
+                      .ask(how == stop_attempts::one ? one_ns : std::max(one_ns, several_ns));
   if (answered) return *answered;
   const problem why = answered.error().code();
   if (why == problem::silence || why == problem::garbage || why == problem::does_not_stop) {
@@ -314,9 +320,8 @@ result<std::optional<device_information>> lidar_search::stop_and_ask(const model
 }
 
 tl::unexpected<error> lidar_search::not_found() const {
-  if (sending_ == 0) return failure(task::asking, problem::silence, port_.name());
   std::string subject(port_.name());
-  if (tried_.size() > 1) {
+  if (tried_.size() > 1 || options_.baud != 0) {
     std::string_view before = " at ";
     for (const std::uint32_t baud : tried_) {
       subject.append(before).append(std::to_string(baud));
@@ -324,7 +329,9 @@ tl::unexpected<error> lidar_search::not_found() const {
     }
     subject.append(" baud");
   }
-  return failure(task::asking, problem::garbage, subject);
+  if (sending_ > 0) return failure(task::asking, problem::garbage, subject);
+  const auto why = options_.model == nullptr ? error_detail::searched : error_detail::usual;
+  return failure(task::asking, problem::silence, subject, 0, why);
 }
 
 result<recognised_lidar> search(transport& port, std::int64_t deadline_ns,

@@ -5,17 +5,19 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <new>
 #include <utility>
 
 #include "g4lidar/transport/serial_port.hpp"
 #include "g4lidar/transport/tcp_port.hpp"
+#include "transport/port_holder.hpp"
 
 namespace g4lidar {
 namespace {
 
 constexpr std::string_view tcp_prefix = "tcp:";
+/// A lidar that was just plugged in boots, or its motor spins up.
+constexpr std::int64_t opening_search_ns = 5'000'000'000;
 
 /// Whether the user named a serial port by its path: the library may write to that port, whatever
 /// is attached to it.
@@ -69,12 +71,6 @@ error explained(const error& why, const std::string& device) {
           error_detail::missing_port};
 }
 
-/// Whether a driver would find nothing else. It waits longer for a device that boots, or stops late.
-bool is_final(const error& why) noexcept {
-  using enum problem;
-  return why == other_device || why == garbage || why == gone || why == cancelled;
-}
-
 }  // namespace
 
 system_connector::system_connector(std::string_view device, std::uint32_t baud, const model* named)
@@ -102,22 +98,18 @@ result<void> system_connector::search_first(const std::function<bool()>& is_canc
     return {};
   }
   transport& port = **opened;
-  const auto longest = std::chrono::nanoseconds(find_options{}.probe_timeout);
   auto lidar = search(
-      port, port.now_ns() + longest.count(),
+      port, port.now_ns() + opening_search_ns,
       {.baud = searched_baud_, .may_pulse_dtr = names_path(device_), .is_cancelled = is_cancelled});
-  if (lidar) {
-    named_ = lidar->model;
-    candidates_ = std::move(lidar->candidates);
-    was_stopped_ = lidar->was_scanning && named_->link == link_kind::two_way;
-    if (lidar->baud != 0) baud_ = lidar->baud;
-    if (named_->link == link_kind::one_way) find_place();
-  } else if (const error& why = lidar.error();
-             is_final(why) || (why == problem::does_not_stop && port.baud() != baud_)) {
+  if (!lidar) {
+    const error why = with_port_conflict(lidar.error(), port);
     return failure(task::opening, why.code(), why.subject(), why.system_errno(), why.detail());
-  } else if (const auto set = port.set_baud(baud_); !set) {
-    return tl::unexpected(set.error());
   }
+  named_ = lidar->model;
+  candidates_ = std::move(lidar->candidates);
+  was_stopped_ = lidar->was_scanning && named_->link == link_kind::two_way;
+  if (lidar->baud != 0) baud_ = lidar->baud;
+  if (named_->link == link_kind::one_way) find_place();
   searched_ = std::move(opened);
   return {};
 }

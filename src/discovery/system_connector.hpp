@@ -32,9 +32,9 @@ class system_connector final : public connector {
                                                                const model* named = nullptr);
 
   /// The same, for a lidar of an unknown model: searches it now, at `baud`, or at all rates if that is 0.
-  /// The open transport is kept for the first connect(), because each opening raises DTR. Where nothing
-  /// answers or sends, it is taken for a G4, for which a driver waits longer. Fails with other_device,
-  /// garbage, gone or cancelled.
+  /// The open transport is kept for the first connect(), because each opening raises DTR. Takes up to 5 s
+  /// where nothing answers or sends. Fails like search(). If the port cannot be opened, the first
+  /// connect() fails.
   [[nodiscard]] static result<std::unique_ptr<connector>> find(
       std::string_view device, std::uint32_t baud, const std::function<bool()>& is_cancelled);
 

@@ -112,7 +112,7 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;
   if (used.model == nullptr) used.model = &g4_model;
-  // Where a search has found nothing, there is no model that could refuse a setting.
+  // Where the port could not be opened, there is no model that could refuse a setting.
   const bool is_missing = behind.is_searched && stated == nullptr;
   if (const auto wrong = problem_with_use(used)) return tl::unexpected(*wrong);
   if (const auto wrong = problem_with_settings(used); wrong && !is_missing) {
@@ -120,7 +120,6 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   }
   auto made = std::make_unique<driver>(std::move(from), used);
   if (auto opened = made->open(); !opened) return tl::unexpected(opened.error());
-  if (const auto wrong = problem_with_settings(used)) return tl::unexpected(*wrong);
   return lidar(std::move(made));
 }
 

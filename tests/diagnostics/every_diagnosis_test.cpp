@@ -130,7 +130,7 @@ const std::vector<scenario> scenarios{
      [] {
        return examine(with([](auto& options) {
          options.motor_drift_ppm = 100'000;
-         options.motor_drift_period_ns = 700'000'000;
+         options.motor_drift_period_ns = 500'000'000;
        }));
      }},
     {"protection_on", "protection_on",

@@ -21,7 +21,8 @@ struct expectation {
   std::vector<std::string_view> faults;
   std::string_view diagnoses;
   bool fails;
-  bool stands = true;  // the motor is stopped at the end
+  bool stands = true;     // the motor is stopped at the end
+  bool is_named = false;  // the model, by the user
 };
 
 void PrintTo(const expectation& one, std::ostream* out) { *out << one.name; }
@@ -45,7 +46,8 @@ TEST_P(Fault, GetsItsOwnDiagnosis) {
     const auto seed = static_cast<std::uint64_t>(each);
     sim::device_options options;
     options.scanner.seed = seed;
-    const examined done = examine(options, faults);
+    const examined done =
+        examine(options, faults, {.model = expected.is_named ? &g4_model : nullptr});
     ASSERT_EQ(done.diagnoses(), expected.diagnoses) << "seed " << seed << done;
     ASSERT_EQ(done.fails(), expected.fails) << done;
     ASSERT_EQ(!done.motor_turns, expected.stands) << done;
@@ -81,7 +83,8 @@ const std::vector<expectation> expectations{
     {"wrong_at_times", {"wrong*0.3"}, "answers_wrong", true},
     {"twice", {"twice"}, "answers_twice", false},
     {"twice_at_times", {"twice*0.3"}, "answers_twice", false},
-    {"mute", {"mute"}, "answers_missing", true},
+    {"mute", {"mute"}, "silent", true},
+    {"mute_and_named", {"mute"}, "answers_missing", true, true, true},
     {"mute_at_times", {"mute*0.3"}, "answers_missing", true},
     {"deaf_and_scanning", {"deaf", "scanning"}, "was_scanning deaf", true, false},
     {"deaf_later", {"deaf@3s"}, "deaf", true, false},

@@ -30,17 +30,21 @@ class noting_port final : public forwarding_transport {
     for (const std::uint8_t byte : data) {
       if (byte != 0xA5) text.append({digits[byte >> 4U], digits[byte & 15U]});
     }
-    notes_.push_back(text + "@" + std::to_string(baud()));
+    notes_->push_back(text + "@" + std::to_string(baud()));
     return forwarding_transport::write(data, deadline_ns);
   }
   result<bool> set_dtr(bool high) noexcept override {
-    notes_.push_back(high ? "dtr=1" : "dtr=0");
+    notes_->push_back(high ? "dtr=1" : "dtr=0");
     return forwarding_transport::set_dtr(high);
   }
-  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return *notes_; }
+  /// The same, which may outlive this.
+  [[nodiscard]] std::shared_ptr<const std::vector<std::string>> shared_notes() const noexcept {
+    return notes_;
+  }
 
  private:
-  std::vector<std::string> notes_;
+  std::shared_ptr<std::vector<std::string>> notes_ = std::make_shared<std::vector<std::string>>();
 };
 
 /// What a search has found, how long it took, and what it wrote.

@@ -49,8 +49,9 @@ struct diagnostic_options {
 ///
 /// Takes about 3 s plus `measuring_time` with a healthy lidar, 8 s if it has to be searched, and at most
 /// 45 s plus `measuring_time` with one fault, if answers are at most 4 s late. Sends queries, one start,
-/// and stops, and to a model without commands none but two bytes while it is searched; changes no
-/// setting; the motor is stopped at the end, if it can be. *Allocates. Single thread.*
+/// and stops; as long as nothing has answered and no model is named, only the question for the device
+/// information. To a model without commands none but two bytes while it is searched. Changes no setting;
+/// the motor is stopped at the end, if it can be. *Allocates. Single thread.*
 [[nodiscard]] G4LIDAR_API std::vector<stage_report> diagnose(
     std::string_view source, const diagnostic_options& options = {});
 

@@ -28,7 +28,7 @@ struct connector_traits {
   const g4lidar::model* model = nullptr;
   /// Whether this model was only recognised, and other models send such bytes, too.
   bool is_usual_model = false;
-  /// Whether the model was searched at the device; `model` is null if it was not found.
+  /// Whether the model was searched at the device; `model` is null if its port could not be opened.
   bool is_searched = false;
   /// The models between which the bytes of such a device do not decide, `model` first. Valid as long as the
   /// connector; empty if none was found.
