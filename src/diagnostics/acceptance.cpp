@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -77,7 +78,7 @@ bool acceptance_run::open() {
     why_closed_ = rate.error().message();
     return false;
   }
-  link_.emplace(*std::move(opened), options_.is_cancelled, *which_);
+  link_ = std::make_unique<acceptance_link>(*std::move(opened), options_.is_cancelled, *which_);
   return true;
 }
 

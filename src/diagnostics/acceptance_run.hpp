@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,9 +59,9 @@ class acceptance_run {
   connector& from_;
   const acceptance_options& options_;
   const model* which_;
-  std::optional<acceptance_link> link_;
-  std::string why_closed_{};      // why there is no link
-  std::uint32_t found_baud_ = 0;  // by the search
+  std::unique_ptr<acceptance_link> link_;  // null: there is no connection
+  std::string why_closed_{};               // why there is no link
+  std::uint32_t found_baud_ = 0;           // by the search
   std::vector<acceptance_result> results_;
   std::optional<stream_survey> surveyed_;
   std::optional<std::size_t> target_degree_;
