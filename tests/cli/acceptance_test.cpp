@@ -43,7 +43,7 @@ TEST_F(AcceptanceVerb, AsksItsUser_AndWritesAFileThatReplays) {
   asked.feed("far\n800\ns\ns\n");
   asked.close_input();
   const outcome done = asked.wait();
-  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(done.code, 0) << done.err << done.out;
   std::vector<json> steps;
   for (const std::string& line : lines_of(done.out)) steps.push_back(json::parse(line));
   ASSERT_EQ(steps.size(), g4lidar::acceptance_step_count);
