@@ -141,13 +141,17 @@ TEST_F(Releases, EachPublicationHasTheHashOfItsType) {
   published all(domain_);
   cli::write_file(path("path.txt"), "0 0 0 0\n10 1 0 0\n");
   cli::program tool({"sim:?path=" + path("path.txt"), "--mount", "0,0,0", "--announce", "iron"});
-  ASSERT_TRUE(comes_true([&] { return all.data().contains("ros_discovery_info"); }));
+  ASSERT_TRUE(comes_true([&] {
+    const auto& now = all.data();
+    return now.contains("ros_discovery_info") && now.contains("rt/scan") &&
+           now.contains("g4lidar_type_sensor_msgs__msg__dds___LaserScan_");
+  }));
+  auto found = all.data();
   tool.send(SIGINT);
-  EXPECT_TRUE(all.data().contains("g4lidar_type_sensor_msgs__msg__dds___LaserScan_"));
-  for (const auto& [topic, words] : all.data()) {
+  for (const auto& [topic, words] : found) {
     EXPECT_THAT(words, HasSubstr("typehash=RIHS01_")) << topic;
   }
-  EXPECT_EQ(all.data()["g4lidar_type_sensor_msgs__msg__dds___LaserScan_"], all.data()["rt/scan"]);
+  EXPECT_EQ(found["g4lidar_type_sensor_msgs__msg__dds___LaserScan_"], found["rt/scan"]);
 }
 
 TEST_F(Releases, WithoutServicesThereIsNoneThatHangs) {
