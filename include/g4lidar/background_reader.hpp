@@ -88,8 +88,8 @@ class G4LIDAR_API reader_listener {
 ///     }
 ///
 /// One that opens the lidar itself can open it again. It ends at a failure that another attempt does not undo,
-/// and at all others when lidar_options::device_wait has passed without a success; it tries again twice a
-/// second. lidar_options::reconnect is that of the lidar.
+/// and at all others when lidar_options::device_wait has passed without a success: points, or a motor at rest. It
+/// tries again twice a second. lidar_options::reconnect is that of the lidar.
 class G4LIDAR_API background_reader {
  public:
   /// Starts the scan, then the thread. Blocks at most as long as lidar::start(); if it fails, the

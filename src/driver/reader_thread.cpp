@@ -184,6 +184,7 @@ void background_reader::thread::rest() {
   give_events(false);
   if (state() != reader_state::lost) set_state(reader_state::resting);
   look();
+  if (state() == reader_state::resting) failing_since_.reset();
 }
 
 void background_reader::thread::look() {
@@ -204,7 +205,6 @@ std::optional<error> background_reader::thread::take(lidar::milliseconds longest
   const auto scan = device_->next_scan(longest);
   if (!scan) return scan.error();
   listener_.on_scan(*scan);
-  failing_since_.reset();
   if (std::exchange(playback_.shows_one, false)) follow_playback();
   return std::nullopt;
 }
@@ -238,11 +238,11 @@ void background_reader::thread::give_events(bool is_over) {
 
 void background_reader::thread::fail(const error& why) {
   if (is_given_ || !may_pass(why)) return end(why);
+  publish();
   const auto now = clock::now();
   if (!failing_since_) failing_since_ = now;
   const auto since = std::chrono::duration_cast<lidar::milliseconds>(now - *failing_since_);
   if (since >= options_.device_wait) return end(why);
-  publish();
   device_.reset();
   retry_at_ = now + retry_interval;
   set_state(reader_state::opening, why);
@@ -290,6 +290,7 @@ void background_reader::thread::publish() {
     where = {file->length_ns(), file->position_ns(), playback_.speed, playback_.is_paused};
   }
   const lidar_counts counts = device_->counts();
+  if (counts.stream.points > 0) failing_since_.reset();
   view.change([&](reader_status& now, lidar_counts& all) {
     now.playback = where;
     all = counts;

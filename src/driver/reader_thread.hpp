@@ -80,7 +80,7 @@ class G4LIDAR_HIDDEN background_reader::thread {
   bool rests_ = false;
   playback playback_;
   clock::time_point retry_at_{};
-  std::optional<clock::time_point> failing_since_;
+  std::optional<clock::time_point> failing_since_;  // until points come, or the motor rests
   wall_clock wall_;
   clock::time_point wall_due_{};
   std::mutex stop_mutex_;  // for stop() by several threads at once

@@ -18,6 +18,7 @@
 #include "g4lidar/sim/pty_port.hpp"
 #include "g4lidar/sim/world.hpp"
 #include "g4lidar/transport/connector.hpp"
+#include "listening_reader.hpp"
 #include "reader_record.hpp"
 #include "recording/recorded_run.hpp"
 #include "support/packet_maker.hpp"
@@ -29,60 +30,7 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 
-constexpr std::int64_t second = 1'000'000'000;
-constexpr std::int64_t recorded_ahead_ns = 1'700'000'000 * second;
 const lidar_options waiting{.device_wait = lidar::milliseconds::max()};
-
-class ReaderListener : public ::testing::Test {
- protected:
-  background_reader& begin(const std::string& device, lidar_options options = {},
-                           const reader_options& how = {}) {
-    options.device = device;
-    made_ = std::make_unique<background_reader>(options, how, &heard);
-    heard.of = made_.get();
-    EXPECT_TRUE(made_->start());
-    return *made_;
-  }
-  /// A simulated G4 at `port()`.
-  sim::background_pty plug_in() {
-    return *sim::background_pty::open(sim::device(sim::built_in_world()), port());
-  }
-  [[nodiscard]] const std::string& port() const { return port_.text(); }
-  /// So many seconds, after 1 s of the simulation, of which the head speeds up in the first one: 7 revolutions a second.
-  const std::string& recording(int seconds) {
-    auto writer = recording_writer::create(file_.text());
-    EXPECT_TRUE(writer);
-    writer->set_wall_clock(recorded_ahead_ns);
-    record_device(*writer, (seconds + 1) * second);
-    return file_.text();
-  }
-  static bool is_scanning(sim::background_pty& port) {
-    bool is = false;
-    port.with([&](sim::device& device, std::int64_t now_ns) {
-      static_cast<void>(device.available(now_ns));
-      is = device.is_scanning();
-    });
-    return is;
-  }
-  /// What ask() gives.
-  bool is_null(background_reader& of) {
-    int given = -1;
-    of.ask([&](lidar* device) {
-      const std::lock_guard lock(heard.mutex);
-      given = device == nullptr ? 1 : 0;
-      heard.changed.notify_all();
-    });
-    EXPECT_TRUE(heard.wait([&] { return given >= 0; }));
-    return given == 1;
-  }
-
-  reader_record heard;
-
- private:
-  temporary_path file_;
-  temporary_path port_{"port"};
-  std::unique_ptr<background_reader> made_;
-};
 
 TEST_F(ReaderListener, GetsScansUntilTheReaderIsStopped) {
   background_reader& made = begin("sim:?serial=1111222233334444");
@@ -172,15 +120,6 @@ TEST_F(ReaderListener, DeviceWait_OpensALidarThatComesLater) {
   const auto device = plug_in();
   EXPECT_TRUE(heard.wait_for_scans(1));
   EXPECT_FALSE(made.status().why);
-}
-
-TEST_F(ReaderListener, DeviceWait_Ends) {
-  const auto begun = std::chrono::steady_clock::now();
-  const background_reader& made = begin(port(), {.device_wait = 1200ms});
-  ASSERT_TRUE(heard.wait_for_state("ended"));
-  EXPECT_GE(std::chrono::steady_clock::now() - begun, 1200ms);
-  ASSERT_TRUE(made.failed());
-  EXPECT_EQ(*made.failed(), problem::no_port);
 }
 
 TEST_F(ReaderListener, Reconnect_GoesOnAfterAnUnplug) {
