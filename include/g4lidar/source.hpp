@@ -24,6 +24,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "g4lidar/motion.hpp"
 #include "g4lidar/transport/connector.hpp"
 
 namespace g4lidar {
@@ -60,6 +61,14 @@ enum class source_kind : std::uint8_t {
 /// as long as the connector, or the lidar that owns it.
 [[nodiscard]] G4LIDAR_API const sim::simulated_source* simulation_of(
     const connector& from) noexcept;
+
+/// Whether `name` is a simulated lidar on a robot that moves. What cannot be read is an error when it is opened; false
+/// without the simulator.
+[[nodiscard]] G4LIDAR_API bool has_simulated_robot(std::string_view name);
+/// The robot of a simulated lidar: each call gives its next odometry, without errors, by the clock of the points. Empty
+/// if it does not move. Independent of `of`.
+[[nodiscard]] G4LIDAR_API std::function<stamped_odometry()> robot_of(
+    const sim::simulated_source& of);
 
 /// What sends the bytes of `name`, as far as it is known before it is opened: what a recording or `sim:`
 /// states; of raw bytes model_in_source(), else model_of_bytes(); of a device model_in_source(), or null: it is

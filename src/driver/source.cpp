@@ -185,4 +185,33 @@ const sim::simulated_source* simulation_of([[maybe_unused]] const connector& fro
 #endif
 }
 
+bool has_simulated_robot([[maybe_unused]] std::string_view name) {
+#if defined(G4LIDAR_HAS_SIM)
+  if (!sim::is_simulated(name)) return false;
+  const auto read = sim::parse_setup(name);
+  const auto* const setup = std::get_if<sim::setup>(&read);
+  if (setup == nullptr) return false;
+  if (!setup->path_file.empty()) return true;
+  const auto scene = sim::load_world(setup->world_file);
+  const auto* const world = std::get_if<sim::world>(&scene);
+  return world != nullptr && !world->path.empty();
+#else
+  return false;
+#endif
+}
+
+std::function<stamped_odometry()> robot_of([[maybe_unused]] const sim::simulated_source& of) {
+#if defined(G4LIDAR_HAS_SIM)
+  if (!of.robot) return {};
+  return [robot = *of.robot, begin_ns = of.begin_ns]() mutable {
+    const sim::odometry_sample at = robot.next();
+    return stamped_odometry{at.time_ns + begin_ns,
+                            {at.x_m, at.y_m, at.yaw_rad},
+                            {at.forward_m_per_s, at.left_m_per_s, at.yaw_rad_per_s}};
+  };
+#else
+  return {};
+#endif
+}
+
 }  // namespace g4lidar

@@ -6,12 +6,10 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
 #include "cdr.hpp"
 #include "g4lidar/cartesian.hpp"
-#include "g4lidar/grid.hpp"
 #include "schema_text.hpp"
 
 namespace g4lidar {
@@ -114,12 +112,10 @@ void put_all(cdr_writer& message, std::span<const double> values) {
   for (const double value : values) message.put(value);
 }
 
-/// The vector or point, and the quaternion of a turn about z, with the top down after half a turn about x.
-void put_place(cdr_writer& message, const pose_2d& place, bool upside_down) {
-  const auto [sine, cosine] = rotation_by(wrap_rad(place.yaw_rad) / 2.0);
-  put_all(message, std::array{place.x_m, place.y_m, 0.0});
-  put_all(message,
-          upside_down ? std::array{cosine, sine, 0.0, 0.0} : std::array{0.0, 0.0, sine, cosine});
+/// The vector or point, and the quaternion.
+void put_place(cdr_writer& message, const mounting& place) {
+  put_all(message, std::array{place.pose.x_m, place.pose.y_m, 0.0});
+  put_all(message, quaternion_of(place));
 }
 
 /// The codes are those of sensor_msgs/PointField.
@@ -159,80 +155,6 @@ message_schema tf_message_schema() noexcept {
   using namespace schema;
   return {"tf2_msgs/msg/TFMessage",
           text<transforms, transform_stamped, header, time, transform, vector3, quaternion>};
-}
-
-std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_ns,
-                           std::span<float> ranges_m, grid_options how,
-                           std::span<float> intensities) noexcept {
-  // The direction at the beginning, seen from each return: the corrections differ by some degrees.
-  const std::int64_t begin_ns = points.empty() ? 0 : points.front().time_ns;
-  const auto part_of = [&](std::int64_t time_ns) {
-    return duration_ns <= 0 ? 0.0F : static_cast<float>(time_ns) / static_cast<float>(duration_ns);
-  };
-  std::optional<angle> first;
-  float sum_deg = 0.0F;
-  float count = 0.0F;
-  for (const point& p : points) {
-    if (p.is_no_return()) continue;
-    const angle begun = angle::from_degrees(p.angle_deg - 360.0F * part_of(p.time_ns - begin_ns));
-    if (!first) first = begun;
-    sum_deg += (begun - *first).signed_degrees();
-    ++count;
-  }
-  const float begin_deg =
-      first ? angle::from_degrees(first->degrees() + sum_deg / count).degrees() : 0.0F;
-  const std::size_t bins = ranges_m.size();
-  const std::size_t first_bin = place_in_grid(begin_deg, frame::vendor, bins).bin;
-  const auto is_in_time = [&](const point& p, std::size_t bin) {
-    const float part =
-        static_cast<float>((bin + bins - first_bin) % bins) / static_cast<float>(bins);
-    return duration_ns <= 0 || std::abs(part - part_of(p.time_ns - begin_ns)) < 0.5F;
-  };
-  how.to = frame::vendor;
-  fill_grid(points, ranges_m, how, is_in_time, intensities);
-  return first_bin;
-}
-
-laser_scan_numbers numbers_of(const message_header& header, std::size_t bins) noexcept {
-  constexpr float pi = std::numbers::pi_v<float>;
-  const bool is_by_time = header.order == scan_order::time;
-  const std::size_t first = is_by_time ? header.first_bin % bins : 0;
-  const float increment = 2 * pi / static_cast<float>(bins);
-  // Of bin 0: by angle it is behind; by time it is 0 degrees of the device, mirrored like the frame.
-  const float begin = is_by_time && header.model->turn_deg == 0 ? 0.0F : -pi;
-  const float from_begin = begin + increment * static_cast<float>(first);
-  const float least = from_begin < pi ? from_begin : from_begin - 2 * pi;
-  const float longest_mm =
-      header.longest_mm > 0.0F ? header.longest_mm : longest_range_mm(header.model->samples.layout);
-  const float duration_s = static_cast<float>(header.duration_ns) * 1e-9F;
-  return {.angle_min_rad = least,
-          .angle_max_rad = least + increment * static_cast<float>(bins - 1),
-          .angle_increment_rad = increment,
-          .time_increment_s = is_by_time ? duration_s / static_cast<float>(bins) : 0.0F,
-          .scan_time_s = duration_s,
-          .range_min_m = static_cast<float>(header.model->range.min_mm) * 0.001F,
-          .range_max_m = longest_mm * 0.001F,
-          .first = first};
-}
-
-void put_laser_scan(std::span<const float> ranges_m, const message_header& header,
-                    std::vector<std::uint8_t>& out) {
-  const laser_scan_numbers numbers = numbers_of(header, ranges_m.size());
-  cdr_writer message(out);
-  put_header(message, header.stamp_ns, header.frame_id);
-  message.put(numbers.angle_min_rad);
-  message.put(numbers.angle_max_rad);
-  message.put(numbers.angle_increment_rad);
-  message.put(numbers.time_increment_s);
-  message.put(numbers.scan_time_s);
-  message.put(numbers.range_min_m);
-  message.put(numbers.range_max_m);
-  for (const std::span<const float> values : {ranges_m, header.intensities}) {
-    message.put(static_cast<std::uint32_t>(values.size()));
-    const std::size_t from = std::min(numbers.first, values.size());
-    for (const float value : values.subspan(from)) message.put(value);
-    for (const float value : values.first(from)) message.put(value);
-  }
 }
 
 std::span<const cloud_field> cloud_fields(const model& of) noexcept {
@@ -289,12 +211,18 @@ void put_point_cloud2(std::span<const point> points, const message_header& heade
   message.put(std::uint8_t{1});
 }
 
+std::array<double, 4> quaternion_of(const mounting& place) noexcept {
+  const auto [sine, cosine] = rotation_by(wrap_rad(place.pose.yaw_rad) / 2.0);
+  return place.upside_down ? std::array{cosine, sine, 0.0, 0.0}
+                           : std::array{0.0, 0.0, sine, cosine};
+}
+
 void put_odometry(const odometry_message& message, std::vector<std::uint8_t>& out) {
   const auto& [forward, leftward, turn] = message.twist;
   cdr_writer text(out);
   put_header(text, message.stamp_ns, message.frame_id);
   text.put(message.child_frame_id);
-  put_place(text, message.pose, false);
+  put_place(text, {message.pose, false});
   put_all(text, message.pose_covariance);
   put_all(text, std::array{forward, leftward, 0.0, 0.0, 0.0, turn});
   put_all(text, message.twist_covariance);
@@ -317,7 +245,7 @@ void put_tf_message(const transform_message& message, std::vector<std::uint8_t>&
   text.put(std::uint32_t{1});
   put_header(text, message.stamp_ns, message.frame_id);
   text.put(message.child_frame_id);
-  put_place(text, message.place.pose, message.place.upside_down);
+  put_place(text, message.place);
 }
 
 void put_clock(std::int64_t now_ns, std::vector<std::uint8_t>& out) {

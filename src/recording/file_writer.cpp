@@ -134,8 +134,7 @@ void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexce
   };
   if (options_.scans) {
     ++counts_.scans;
-    header.first_bin = ranges_.fill(revolution, options_);
-    header.intensities = ranges_.intensities();
+    ranges_.fill(revolution, options_, header);
     put_stamped(topic::scan, 2 * ranges_.ranges_m().size_bytes(),
                 [&](auto& out) { put_laser_scan(ranges_.ranges_m(), header, out); });
   }

@@ -27,11 +27,9 @@ class scan_ranges {
     intensities_.reserve(most);
   }
 
-  /// Fills them, and returns message_header::first_bin.
-  std::size_t fill(scan revolution, const recording_options& options) noexcept {
+  /// Fills them, and sets message_header::first_bin and intensities.
+  void fill(scan revolution, const recording_options& options, message_header& header) noexcept {
     const std::size_t bins = options.scan_bins.value_or(default_bins(*revolution.model));
-    ranges_.resize(std::clamp<std::size_t>(bins, 1, ranges_.capacity()));
-    intensities_.resize(has_intensity(*revolution.model) ? ranges_.size() : 0);
     const std::span<const point> whole = revolution.points;
     try {
       shaper_.shape(revolution);
@@ -39,17 +37,10 @@ class scan_ranges {
     } catch (const std::bad_alloc&) {
       revolution.points = whole;  // without the flags
     }
-    if (options.order == scan_order::time) {
-      return fill_time_grid(revolution, ranges_, options.grid, intensities_);
-    }
-    grid_options how = options.grid;
-    how.to = frame::robot;
-    fill_grid(revolution, ranges_, how, intensities_);
-    return 0;
+    fill_laser_scan(revolution, header, std::clamp<std::size_t>(bins, 1, ranges_.capacity()),
+                    options.grid, ranges_, intensities_);
   }
   [[nodiscard]] std::span<const float> ranges_m() const noexcept { return ranges_; }
-  /// Of the same revolution; empty if its model has none.
-  [[nodiscard]] std::span<const float> intensities() const noexcept { return intensities_; }
 
  private:
   std::vector<float> ranges_;

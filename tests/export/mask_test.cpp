@@ -10,6 +10,7 @@
 #include <clocale>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <random>
 #include <string>
 #include <string_view>
@@ -21,8 +22,11 @@
 namespace g4lidar::test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 mask read(std::string_view text) {
   auto made = parse_mask(text);
@@ -121,6 +125,36 @@ TEST(Mask, IsIndependentOfTheLocale) {
   EXPECT_THAT(read("polygon 0.5 0 1 0 1 1").polygons()[0],
               ElementsAre(corner{0.5F, 0}, corner{1, 0}, corner{1, 1}));
   std::setlocale(LC_ALL, before.c_str());
+}
+
+/// Why there is no mask at this path.
+std::string why_not(const std::string& path) {
+  const auto made = load_mask(path);
+  const auto* const wrong = std::get_if<std::string>(&made);
+  return wrong == nullptr ? "" : *wrong;
+}
+
+TEST(MaskFile, IsRead_AndAnErrorNamesTheFileTheLineAndWhatToDo) {
+  const std::string advice = ". Give a file with lines 'polygon x1 y1 x2 y2 x3 y3 ...'.";
+  const std::string directory = testing::TempDir();
+  const std::string path = directory + "mask_test.txt";
+  const std::string title = "mask: '" + path + "'";
+  std::ofstream(path) << "# poles\npolygon 0 0 1 0 1 1\n";
+  const auto made = load_mask(path);
+  ASSERT_TRUE(std::holds_alternative<mask>(made)) << why_not(path);
+  ASSERT_EQ(std::get<mask>(made).polygons().size(), 1U);
+  EXPECT_TRUE(std::holds_alternative<mask>(load_mask(""))) << "no mask is wanted";
+
+  std::ofstream(path) << "# poles\ncircle 0 0 1\n";
+  EXPECT_EQ(why_not(path),
+            title + ", line 2: 'circle' is unknown; a line begins with 'polygon' or '#'" + advice);
+  std::ofstream(path) << "\n";
+  EXPECT_THAT(why_not(path), AllOf(StartsWith(title + ": "), EndsWith(advice)));
+  EXPECT_EQ(why_not(directory), "mask: '" + directory + "' is a directory" + advice);
+  EXPECT_EQ(why_not("/nonexistent/mask"),
+            "mask: '/nonexistent/mask' cannot be read: No such file or directory" + advice);
+  std::ofstream(path) << std::string((std::size_t{16} << 20U) + 1, ' ');
+  EXPECT_EQ(why_not(path), title + " is longer than 16 MB" + advice);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 #include "dds/bus.hpp"
 #include "diagnosis.hpp"
 #include "g4lidar/merge.hpp"
-#include "io/odometry_feed.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "lidar.hpp"
 #include "merger.hpp"
 #include "subscriber.hpp"

@@ -171,6 +171,22 @@ TEST_F(Publish, AnotherModelEndsItWithTheReason) {
   EXPECT_NE(end.err.find("model 4, not G4"), std::string::npos) << end.err;
 }
 
+TEST_F(Publish, SettingsOfARecordingWithOdometryAreRefusedWithTheReason) {
+  const std::string file = path("walk.mcap");
+  cli::write_file(path("way.txt"), "drive forward 0.5 0.5\n");
+  make_recording(file, 1, "--path " + path("way.txt") + " --odometry " + path("way.odo"),
+                 "--odometry " + path("way.odo"));
+  const cli::outcome end = cli::program({file, "--set", "frequency=10"}).wait();
+  EXPECT_NE(end.err.find("a file cannot be asked or set"), std::string::npos) << end.err;
+}
+
+TEST_F(Publish, AMaskThatIsADirectoryIsExplained) {
+  const cli::outcome end = cli::program({"sim:", "--mask", path("")}).wait();
+  EXPECT_EQ(end.code, 10);
+  EXPECT_NE(end.err.find("mask: '" + path("") + "' is a directory. Give a file"), std::string::npos)
+      << end.err;
+}
+
 TEST_F(Publish, AMissingFileIsReportedOnce) {
   cli::program tool({path("nofile.mcap")});
   const cli::outcome end = tool.wait();

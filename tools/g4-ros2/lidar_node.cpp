@@ -8,15 +8,11 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "io/interrupt.hpp"
+#include "io/shape_files.hpp"
 #include "merger.hpp"
 
 namespace g4_tool {
 namespace {
-
-using namespace std::chrono_literals;
-
-/// How long the motor runs after the last subscriber has left, so that one that returns need not wait.
-constexpr auto rest_delay = 3s;
 
 common_options options_of(const ros2_options& options, const named_source& which) {
   common_options made = options.common;
@@ -63,10 +59,10 @@ lidar_node::lidar_node(dds::bus& on, const ros2_options& options, const named_so
   }
   const bool is_by_path = options.common.deskew == deskewing::by_path && merger_ == nullptr;
   is_played_ = kind_of_source(which.source) == source_kind::recording;
-  if (is_played_) feed_.load_recording(path_of_source(which.source));
+  if (is_played_) feed_.set(odometry_of_recording(path_of_source(which.source)));
   // Merged lidars have one robot, which belongs to the first lidar.
   if (merger_ == nullptr || index == 0) {
-    const bool is_known = feed_.is_known() || has_simulated_path(which.source);
+    const bool is_known = feed_.is_known() || has_simulated_robot(which.source);
     robot_.emplace(on, options, merger_ == nullptr ? name_space_ : options.name_space,
                    robot_knowledge{is_known, index == 0 && is_played_});
   }
@@ -94,9 +90,8 @@ bool lidar_node::is_wanted() const {
 }
 
 void lidar_node::update() {
-  const auto now = clock::now();
-  if (!options_.is_standby || is_wanted()) wanted_ = now;
-  device_->reader().rest(!is_allowed_ || now - wanted_ > rest_delay);
+  const bool rests = standby_.rests(!options_.is_standby || is_wanted(), clock::now());
+  device_->reader().rest(rests || !is_allowed_);
   const std::chrono::nanoseconds wall = std::chrono::system_clock::now().time_since_epoch();
   diagnostics_.update(*device_, messages_ ? *messages_ : merger_->messages(),
                       is_played_ ? now_ns_.load() : wall.count());
@@ -119,9 +114,9 @@ void lidar_node::on_open(g4lidar::lidar& device) {
   if (is_played_) {
     feed_.follow(*device.player());
     now_ns_ = stamp_ns(device.player()->begin_ns());
+  } else {
+    feed_.follow(device_->simulation());
   }
-  if (feed_.is_known() && device_->simulation() == nullptr) return;
-  feed_.follow(device_->simulation());
   for (const setting_change& each : options_.settings) {
     const auto done = device.ask(change_to(each.value));
     if (!done) logger::info(in_tool_words(done.error().message()) + "\n");

@@ -17,9 +17,10 @@
 #include "dds/bus.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/scan_shaper.hpp"
+#include "g4lidar/standby.hpp"
 #include "io/deskew_report.hpp"
-#include "io/odometry_feed.hpp"
 #include "io/source_reader.hpp"
 #include "lidar_diagnostics.hpp"
 #include "options.hpp"
@@ -91,7 +92,7 @@ class lidar_node final : public reader_listener {
   std::unique_ptr<deskew_report> report_;  // null if it does not deskew
   lidar_parameters parameters_;
   std::atomic<bool> is_allowed_ = true;
-  clock::time_point wanted_{};             // when it last had subscribers
+  standby standby_;
   std::unique_ptr<source_reader> device_;  // destroyed first
 };
 

@@ -12,7 +12,7 @@ lidar_parameters parameters_of(const common_options& how,
   shape.for_merging = merges;
   shape.restamps = true;  // nobody is to deskew the points of a message again
   const filter_settings start{shape.filter, how.ignored, how.marks, how.grid};
-  return {shape, start, load_mask(how.mask), words, shaper};
+  return {shape, start, mask_in(how.mask), words, shaper};
 }
 
 }  // namespace g4_tool

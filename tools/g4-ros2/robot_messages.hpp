@@ -11,7 +11,7 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/motion.hpp"
-#include "io/odometry_feed.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "options.hpp"
 
 namespace g4_tool {

@@ -37,16 +37,8 @@ void scan_messages::publish_scan(const scan& for_grid, const grid_options& grid,
                                  const scan_times& when, float longest_mm) {
   message_header header = header_of(*for_grid.model, when);
   header.longest_mm = longest_mm;
-  ranges_.resize(options_.bins.value_or(default_bins(*for_grid.model)));
-  intensities_.resize(has_intensity(*for_grid.model) ? ranges_.size() : 0);
-  header.intensities = intensities_;
-  if (options_.order == scan_order::time) {
-    header.first_bin = fill_time_grid(for_grid, ranges_, grid, intensities_);
-  } else {
-    grid_options how = grid.with(*for_grid.model);
-    if (longest_mm > 0.0F) how.longest_mm = longest_mm;
-    fill_grid(for_grid.points, ranges_, how, intensities_);
-  }
+  fill_laser_scan(for_grid, header, options_.bins.value_or(default_bins(*for_grid.model)), grid,
+                  ranges_, intensities_);
   message_.clear();
   put_laser_scan(ranges_, header, message_);
   scan_->publish(message_);

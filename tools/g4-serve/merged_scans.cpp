@@ -4,7 +4,7 @@
 #include <deque>
 #include <utility>
 
-#include "io/odometry_feed.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "io/place_tracker.hpp"
 #include "io/scan_merger.hpp"
 #include "io/shape_files.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 /// How the motion is known: by the options, else by the path of a simulated robot.
 deskewing deskewing_of(const serve_options& options, const std::vector<named_source>& lidars) {
-  const bool is_known = has_simulated_path(lidars.front().source);
+  const bool is_known = has_simulated_robot(lidars.front().source);
   const deskewing wanted = options.common.deskew;
   return wanted == deskewing::none && is_known ? deskewing::by_path : wanted;
 }
@@ -26,7 +26,7 @@ class merged_scans final : public scan_maker {
                scan_sender& to)
       : sender_(to),
         deskew_(deskewing_of(options, lidars)),
-        mask_(load_mask(options.common.mask)),
+        mask_(mask_in(options.common.mask)),
         shapers_(lidars.size()),
         merger_(deskew_, lidars, "of the first lidar") {
     shaping_options shape = shape_of(options.common, mask_);

@@ -24,20 +24,15 @@ void scan_sender::send_page(const page_scan& what) {
 void scan_sender::send_ranges(const g4lidar::scan& for_grid, const scan_stamp& when,
                               float longest_mm) {
   const g4lidar::model& model = *for_grid.model;
-  ranges_m_.resize(bins_.value_or(default_bins(model)));
-  intensities_.resize(has_intensity(model) ? ranges_m_.size() : 0);
-  grid_options how = grid_.with(model);
-  if (longest_mm > 0.0F) how.longest_mm = longest_mm;
-  fill_grid(for_grid.points, ranges_m_, how, intensities_);
+  message_header header{.stamp_ns = when.stamp_ns,
+                        .frame_id = frame_id_,
+                        .duration_ns = when.duration_ns,
+                        .model = &model,
+                        .longest_mm = longest_mm};
+  fill_laser_scan(for_grid, header, bins_.value_or(default_bins(model)), grid_, ranges_m_,
+                  intensities_);
   std::vector<std::uint8_t> message;
-  put_laser_scan(ranges_m_,
-                 {.stamp_ns = when.stamp_ns,
-                  .frame_id = frame_id_,
-                  .duration_ns = when.duration_ns,
-                  .model = &model,
-                  .intensities = intensities_,
-                  .longest_mm = longest_mm},
-                 message);
+  put_laser_scan(ranges_m_, header, message);
   registry_.publish(channel::scan, when.stamp_ns, std::move(message));
 }
 

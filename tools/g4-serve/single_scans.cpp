@@ -9,7 +9,7 @@ namespace g4_tool {
 single_scans::single_scans(const serve_options& options, scan_sender& to)
     : sender_(to),
       scans_(options.common, true) {  // nobody is to deskew the points of a message again
-  const g4lidar::mask mask = load_mask(options.common.mask);
+  const g4lidar::mask mask = mask_in(options.common.mask);
   const shaping_options shape = shape_of(options.common, mask);
   if (shape.deskew == deskewing::none) unmoved_.set_options(shape);
   if (shape.deskew != deskewing::none) report_.emplace(shape.deskew, "in the source");

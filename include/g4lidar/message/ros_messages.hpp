@@ -73,6 +73,14 @@ struct message_schema {
                         intensities);
 }
 
+/// Fills `ranges_m` and `intensities` for a LaserScan of `source` in header.order: with `bins` ranges, at least one, as
+/// fill_grid() or fill_time_grid() does, and with as many intensities if the model has them. Sets header.first_bin and
+/// header.intensities, which views `intensities`. header.longest_mm, if it is set, has precedence over the model's.
+/// Allocates beyond the capacities.
+G4LIDAR_API void fill_laser_scan(const scan& source, message_header& header, std::size_t bins,
+                                 const grid_options& how, std::vector<float>& ranges_m,
+                                 std::vector<float>& intensities);
+
 /// The numbers of a LaserScan beside its ranges and intensities, for programs that fill a message of ROS themselves.
 struct laser_scan_numbers {
   float angle_min_rad = 0.0F;
@@ -121,6 +129,9 @@ struct cloud_field {
 /// Appends the `data` of put_point_cloud2() to `out`. Allocates beyond the capacity of `out`.
 G4LIDAR_API void put_cloud_points(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);
+
+/// The quaternion x, y, z, w of a frame that is turned so: about z, with the top down after half a turn about x. *Pure.*
+[[nodiscard]] G4LIDAR_API std::array<double, 4> quaternion_of(const mounting& place) noexcept;
 
 /// A message of odometry. Covariances are those of x, y, z, and of the rotations about x, y, z, row
 /// by row; 0: not known.

@@ -16,12 +16,12 @@ constexpr std::int64_t tf_step_ns = 20'000'000;
 /// The messages on /clock are at most so far apart, or a simulation is too slow for its motion.
 constexpr std::int64_t largest_clock_step_ns = 100'000'000;
 
-void set(geometry_msgs::msg::Quaternion& turn, double yaw_rad, bool is_turned) {
-  const auto [sine, cosine] = g4lidar::rotation_by(g4lidar::wrap_rad(yaw_rad) / 2.0);
-  turn.x = is_turned ? cosine : 0.0;
-  turn.y = is_turned ? sine : 0.0;
-  turn.z = is_turned ? 0.0 : sine;
-  turn.w = is_turned ? 0.0 : cosine;
+void set(geometry_msgs::msg::Quaternion& turn, const g4lidar::mounting& place) {
+  const auto [x, y, z, w] = g4lidar::quaternion_of(place);
+  turn.x = x;
+  turn.y = y;
+  turn.z = z;
+  turn.w = w;
 }
 
 geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const std::string& from,
@@ -33,7 +33,7 @@ geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const s
   made.child_frame_id = to;
   made.transform.translation.x = place.pose.x_m;
   made.transform.translation.y = place.pose.y_m;
-  set(made.transform.rotation, place.pose.yaw_rad, place.upside_down);
+  set(made.transform.rotation, place);
   return made;
 }
 
@@ -41,8 +41,12 @@ geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const s
 
 robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_options& options,
                            const std::string& frame_id, const std::string& source)
-    : node_(node), options_(options), carried_(source) {
-  if (carried_.is_known()) {
+    : node_(node), options_(options) {
+  // What cannot be read is reported when the source is opened as a lidar.
+  if (g4lidar::kind_of_source(source) == g4lidar::source_kind::recording)
+    static_cast<void>(feed_.load_recording(g4lidar::path_of_source(source)));
+  has_odometry_ = feed_.is_known() || g4lidar::has_simulated_robot(source);
+  if (has_odometry_) {
     odometry_ = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
         node, "odom", rclcpp::QoS(5).reliable());
     tf_ = std::make_unique<tf2_ros::TransformBroadcaster>(node);
@@ -57,7 +61,7 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
     place_->sendTransform(
         transform_of(0, options.base_frame, frame_id, {options.mount->pose, is_down}));
   }
-  if (options.from == motion_source::odometry && !carried_.is_known()) {
+  if (options.from == motion_source::odometry && !has_odometry_) {
     const auto take = [this](const nav_msgs::msg::Odometry& from) {
       const auto& [place, turn] = std::pair(from.pose.pose.position, from.pose.pose.orientation);
       const auto& [linear, angular] = std::pair(from.twist.twist.linear, from.twist.twist.angular);
@@ -91,12 +95,15 @@ robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_o
 
 void robot_motion::follow(g4lidar::lidar& device,
                           const g4lidar::sim::simulated_source* simulation) {
-  carried_.follow(device, simulation);
+  if (g4lidar::player* const played = device.player())
+    feed_.follow(*played);
+  else
+    feed_.follow(simulation);
 }
 
 void robot_motion::follow(std::span<const g4lidar::point> points,
                           std::optional<std::int64_t> ahead_ns) {
-  carried_.follow(points, [&](const g4lidar::stamped_odometry& at) {
+  feed_.follow(points, [&](const g4lidar::stamped_odometry& at) {
     publish(at, ahead_ns ? stamp_of(at.time_ns, *ahead_ns) : 0);
   });
 }
@@ -110,7 +117,7 @@ void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t sta
     made->child_frame_id = options_.base_frame;
     made->pose.pose.position.x = at.pose.x_m;
     made->pose.pose.position.y = at.pose.y_m;
-    set(made->pose.pose.orientation, at.pose.yaw_rad, false);
+    set(made->pose.pose.orientation, {at.pose, false});
     made->twist.twist.linear.x = at.twist.x_m_per_s;
     made->twist.twist.linear.y = at.twist.y_m_per_s;
     made->twist.twist.angular.z = at.twist.yaw_rad_per_s;

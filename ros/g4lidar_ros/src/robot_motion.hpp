@@ -19,7 +19,8 @@
 #include <nav_msgs/msg/odometry.hpp>
 #include <rclcpp_lifecycle/lifecycle_node.hpp>
 
-#include "carried_odometry.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/odometry_path.hpp"
 #include "topics.hpp"
 
@@ -49,7 +50,7 @@ class robot_motion {
                const std::string& frame_id, const std::string& source);
 
   /// Whether the source carries odometry, which needs its points as they come.
-  [[nodiscard]] bool has_odometry() const noexcept { return carried_.is_known(); }
+  [[nodiscard]] bool has_odometry() const noexcept { return has_odometry_; }
   /// The lidar is open. `simulation`: null unless it is simulated.
   void follow(g4lidar::lidar& device, const g4lidar::sim::simulated_source* simulation);
   /// Publishes the odometry until the last of these points. `ahead_ns`: the time of stamps minus theirs; nothing: not
@@ -66,7 +67,8 @@ class robot_motion {
 
   rclcpp_lifecycle::LifecycleNode& node_;
   motion_options options_;
-  carried_odometry carried_;
+  g4lidar::odometry_feed feed_;
+  bool has_odometry_ = false;
   g4lidar::odometry_path path_;
   std::unique_ptr<counted_publisher<nav_msgs::msg::Odometry>> odometry_;
   std::unique_ptr<tf2_ros::TransformBroadcaster> tf_;

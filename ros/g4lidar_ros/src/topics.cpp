@@ -20,13 +20,7 @@ std::unique_ptr<sensor_msgs::msg::LaserScan> laser_scan_of(const g4lidar::scan& 
                                                            const g4lidar::grid_options& grid,
                                                            std::size_t bins) {
   auto made = std::make_unique<sensor_msgs::msg::LaserScan>();
-  made->ranges.resize(bins);
-  made->intensities.resize(g4lidar::has_intensity(*for_grid.model) ? bins : 0);
-  if (header.order == g4lidar::scan_order::time) {
-    header.first_bin = g4lidar::fill_time_grid(for_grid, made->ranges, grid, made->intensities);
-  } else {
-    g4lidar::fill_grid(for_grid, made->ranges, grid, made->intensities);
-  }
+  g4lidar::fill_laser_scan(for_grid, header, bins, grid, made->ranges, made->intensities);
   const g4lidar::laser_scan_numbers numbers = g4lidar::numbers_of(header, bins);
   for (auto* values : {&made->ranges, &made->intensities}) {
     const auto first = std::min(numbers.first, values->size());

@@ -78,7 +78,7 @@ class point_run {
       text_model_ = model_of_text(*input_, *job_.text, common_);
       known = &text_model_;
     }
-    mask_ = load_mask(common_.mask);
+    mask_ = mask_in(common_.mask);
     how_ = how_to_write(job_, common_, kind_, shape_of(common_, mask_));
     load_path(how_);
     job_.style.to = common_.frame;
@@ -142,7 +142,7 @@ class point_run {
     if (!common_.odometry.empty()) {
       path_ = load_odometry(common_.odometry);
     } else if (is_needed && kind_ == source_kind::recording) {
-      for (const stamped_odometry& each : recorded_odometry(path_of_source(common_.source))) {
+      for (const stamped_odometry& each : odometry_of_recording(path_of_source(common_.source))) {
         path_.push_back({each.time_ns, each.pose});
       }
     }

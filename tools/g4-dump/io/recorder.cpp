@@ -15,8 +15,8 @@
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/recording/reader.hpp"
-#include "io/odometry_feed.hpp"
 #include "io/output.hpp"
 #include "io/service_watch.hpp"
 #include "read_loop.hpp"
@@ -65,7 +65,7 @@ class recorder {
     recording_options made = job_.made;
     made.mount = job_.common.mount;
     if (!job_.common.odometry.empty()) {
-      odometry_.load(job_.common.odometry);
+      odometry_.set(load_moving_odometry(job_.common.odometry));
       made.keep_odometry = false;
     }
     lidar_options how = job_.source;

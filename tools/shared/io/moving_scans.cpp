@@ -9,10 +9,10 @@
 namespace g4_tool {
 
 moving_scans::moving_scans(const common_options& options, bool restamps)
-    : options_(options), mask_(load_mask(options.mask)), restamps_(restamps) {
+    : options_(options), mask_(mask_in(options.mask)), restamps_(restamps) {
   const bool uses_odometry = options.deskew == deskewing::by_path || options.mount;
   if (uses_odometry && kind_of_source(options.source) == source_kind::recording) {
-    feed_.load_recording(path_of_source(options.source));
+    feed_.set(odometry_of_recording(path_of_source(options.source)));
   }
   choose({});
 }

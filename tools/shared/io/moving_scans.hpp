@@ -8,11 +8,11 @@
 #include "g4lidar/export/mask.hpp"
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/odometry_path.hpp"
 #include "g4lidar/scan.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/sim/simulated_source.hpp"
-#include "odometry_feed.hpp"
 #include "place_tracker.hpp"
 
 namespace g4_tool {

@@ -12,8 +12,8 @@
 
 namespace g4_tool {
 
-/// The mask in the file of that name; none without a name. Throws a failure that names the file and the line.
-[[nodiscard]] g4lidar::mask load_mask(const std::string& path);
+/// g4lidar::load_mask(); - is standard input. Throws a failure that names the file and the line.
+[[nodiscard]] g4lidar::mask mask_in(const std::string& path);
 
 /// The options of `how` for filters, marks and deskewing, with the mask of its file. Views both.
 [[nodiscard]] g4lidar::shaping_options shape_of(const common_options& how,
@@ -22,7 +22,10 @@ namespace g4_tool {
 /// The poses in the file of that name, times ascending. Throws a failure that names the file and the line.
 [[nodiscard]] std::vector<g4lidar::stamped_pose> load_odometry(const std::string& path);
 
-/// The odometry of a recording, times ascending, each once. Throws a failure.
-[[nodiscard]] std::vector<g4lidar::stamped_odometry> recorded_odometry(const std::string& path);
+/// The same with the velocities between them.
+[[nodiscard]] std::vector<g4lidar::stamped_odometry> load_moving_odometry(const std::string& path);
+
+/// g4lidar::recorded_odometry(). Throws a failure, or interrupted.
+[[nodiscard]] std::vector<g4lidar::stamped_odometry> odometry_of_recording(const std::string& path);
 
 }  // namespace g4_tool

@@ -245,17 +245,6 @@ failure failure_of(const common_options& options, const g4lidar::error& why) {
       name_of(why.code()));
 }
 
-bool has_simulated_path(const std::string& source) {
-  if (!sim::is_simulated(source)) return false;
-  const auto read = sim::parse_setup(source);
-  const auto* const setup = std::get_if<sim::setup>(&read);
-  if (setup == nullptr) return false;
-  if (!setup->path_file.empty()) return true;
-  const auto scene = sim::load_world(setup->world_file);
-  const auto* const world = std::get_if<sim::world>(&scene);
-  return world != nullptr && !world->path.empty();
-}
-
 opened_source::opened_source(const common_options& options, lidar_options how) {
   how = options_for(options, std::move(how));
   how.wrap = [this, wrap = std::move(how.wrap)](std::unique_ptr<connector> from) {

@@ -48,9 +48,6 @@ void report_candidates(std::span<const g4lidar::model* const> candidates);
 /// The error of a lidar that was opened so, in the words of the tool.
 [[nodiscard]] failure failure_of(const common_options& options, const g4lidar::error& why);
 
-/// Whether it is a simulated lidar that moves. What cannot be read is an error when it is opened.
-[[nodiscard]] bool has_simulated_path(const std::string& source);
-
 /// The lidar behind the word SOURCE, and what else is there.
 class opened_source {
  public:
