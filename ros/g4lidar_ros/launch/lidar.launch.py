@@ -13,7 +13,7 @@ import os
 
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument, EmitEvent, OpaqueFunction, RegisterEventHandler
+from launch.actions import DeclareLaunchArgument, EmitEvent, OpaqueFunction, RegisterEventHandler, TimerAction
 from launch.conditions import IfCondition
 from launch.events import matches_action
 from launch.substitutions import LaunchConfiguration
@@ -24,6 +24,8 @@ from launch_ros.events.lifecycle import ChangeState
 from launch_ros.parameter_descriptions import ParameterValue
 from lifecycle_msgs.msg import Transition
 
+# How long after a failure configure is tried again.
+RETRY_SECONDS = 2.0
 SHARE = get_package_share_directory("g4lidar_ros")
 
 # The parameters that are also arguments, with their types. An argument that is not given stays as in the file.
@@ -77,7 +79,7 @@ def given_parameters(context):
 
 
 def driven(node):
-    """The actions that configure a lifecycle node when it runs, and then activate it."""
+    """The actions that configure a lifecycle node, again until there is a lidar, and then activate it."""
 
     def change(transition):
         return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=transition))
@@ -89,6 +91,15 @@ def driven(node):
                 start_state="configuring",
                 goal_state="inactive",
                 entities=[change(Transition.TRANSITION_ACTIVATE)],
+            )
+        ),
+        # There is no lidar: it may be plugged in later. Wrong parameters lead to unconfigured by way of errorprocessing.
+        RegisterEventHandler(
+            OnStateTransition(
+                target_lifecycle_node=node,
+                start_state="configuring",
+                goal_state="unconfigured",
+                entities=[TimerAction(period=RETRY_SECONDS, actions=[change(Transition.TRANSITION_CONFIGURE)])],
             )
         ),
         change(Transition.TRANSITION_CONFIGURE),

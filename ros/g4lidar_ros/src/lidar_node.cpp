@@ -21,8 +21,8 @@ using lifecycle_msgs::msg::State;
 
 /// So long deactivate waits until the motor rests.
 constexpr auto rest_time = 2s;
-/// How long the motor runs after the last subscriber has left, so that one that returns need not wait.
-constexpr auto rest_delay = 3s;
+/// So long after a failure configure is tried again, if the node starts itself.
+constexpr auto retry_time = 2s;
 
 }  // namespace
 
@@ -69,15 +69,16 @@ LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State&
   } catch (const std::exception& wrong) {
     RCLCPP_ERROR(get_logger(), "%s", wrong.what());
     session_.reset();
-    return CallbackReturn::FAILURE;
+    return CallbackReturn::ERROR;
   }
   const auto longest = parameters_->connect_timeout();
   if (longest > 0ns && !session_->wait_until_open(longest)) {
-    const auto why = session_->status().why;
+    const auto [state, why, information, name, playback] = session_->status();
     RCLCPP_ERROR(get_logger(), "not configured: %s",
                  why ? why->message().c_str() : "the lidar did not open in time");
     session_.reset();
-    return CallbackReturn::FAILURE;
+    const bool may_come = state != g4lidar::reader_state::ended;
+    return may_come ? CallbackReturn::FAILURE : CallbackReturn::ERROR;
   }
   diagnostics_->follow(session_);
   parameters_->follow(session_);
@@ -88,7 +89,7 @@ LidarNode::CallbackReturn LidarNode::on_activate(const rclcpp_lifecycle::State& 
   session_->restart_file();
   if (session_->failure()) return CallbackReturn::ERROR;
   is_allowed_ = true;
-  wanted_ = {};
+  standby_ = {};
   const CallbackReturn done = LifecycleNode::on_activate(previous);  // activates the publishers
   if (!parameters_->is_standby()) session_->rest(false);
   return done;
@@ -115,11 +116,18 @@ LidarNode::CallbackReturn LidarNode::on_error(const rclcpp_lifecycle::State& pre
   return on_cleanup(previous);
 }
 
+void LidarNode::start_itself() {
+  if (std::chrono::steady_clock::now() < start_at_) return;
+  CallbackReturn done = CallbackReturn::ERROR;
+  const bool is_open = configure(done).id() == State::PRIMARY_STATE_INACTIVE;
+  if (is_open) activate();
+  // Without a lidar it is tried again; what is wrong with a parameter stays so.
+  starts_itself_ = done == CallbackReturn::FAILURE;
+  start_at_ = std::chrono::steady_clock::now() + retry_time;
+}
+
 void LidarNode::update() {
-  if (std::exchange(starts_itself_, false)) {
-    if (configure().id() == State::PRIMARY_STATE_INACTIVE) activate();
-    return;
-  }
+  if (starts_itself_) return start_itself();
   parameters_->update();
   if (!session_ || get_current_state().id() != State::PRIMARY_STATE_ACTIVE) return;
   if (const auto why = session_->failure()) {
@@ -132,9 +140,9 @@ void LidarNode::update() {
     deactivate();
     return;
   }
-  const auto now = std::chrono::steady_clock::now();
-  if (!parameters_->is_standby() || session_->is_wanted()) wanted_ = now;
-  session_->rest(!is_allowed_ || now - wanted_ > rest_delay);
+  const bool is_needed = !parameters_->is_standby() || session_->is_wanted();
+  const bool rests = standby_.rests(is_needed, std::chrono::steady_clock::now());
+  session_->rest(rests || !is_allowed_);
 }
 
 void LidarNode::allow(bool runs, trigger::Response& answer) {

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <future>
-#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
+#include "g4lidar/export/mask.hpp"
 #include "g4lidar/source.hpp"
 
 namespace g4lidar_ros {
@@ -34,16 +33,10 @@ std::int64_t wall_now_ns() {
 /// So long a change of settings may take; the lidar stops and starts for it.
 constexpr auto change_time = 10s;
 
-g4lidar::mask load_mask(const std::string& path) {
-  if (path.empty()) return {};
-  std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file) throw std::invalid_argument("mask: '" + path + "' cannot be read");
-  auto made = g4lidar::parse_mask(text);
-  if (const auto* wrong = std::get_if<g4lidar::mask_error>(&made)) {
-    throw std::invalid_argument("mask: '" + path + "', line " + std::to_string(wrong->line) + ": " +
-                                wrong->message);
-  }
+/// The mask in this file. Throws std::invalid_argument.
+g4lidar::mask mask_in(const std::string& path) {
+  auto made = g4lidar::load_mask(path);
+  if (const auto* wrong = std::get_if<std::string>(&made)) throw std::invalid_argument(*wrong);
   return std::get<g4lidar::mask>(std::move(made));
 }
 
@@ -63,7 +56,7 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const sessio
       scans_(node, "scan", scan_quality()),
       clouds_(node, "points", scan_quality()),
       motion_(node, options.motion, options.frame_id, options.lidar.device),
-      parameters_(options.shaping, first_filters(), load_mask(options.mask), {}, shaper_),
+      parameters_(options.shaping, first_filters(), mask_in(options.mask), {}, shaper_),
       reader_(
           [this] {
             g4lidar::lidar_options made = options_.lidar;
@@ -122,26 +115,49 @@ void lidar_session::rest(bool rests, std::chrono::nanoseconds longest) {
                     [this] { return reader_.status().state != reader_state::running; });
 }
 
-std::string lidar_session::change(std::vector<g4lidar::named_value> wanted) {
-  const auto reply = std::make_shared<std::promise<std::string>>();
-  auto answered = reply->get_future();
-  reader_.ask([this, reply, what = std::move(wanted)](g4lidar::lidar* lidar) {
+std::optional<std::string> lidar_session::change(const std::vector<g4lidar::named_value>& wanted) {
+  struct request {
+    std::atomic_flag is_taken;  // by the one who answers it: the reader, or this function
+    std::promise<std::string> reply;
+  };
+  const auto made = std::make_shared<request>();
+  auto answered = made->reply.get_future();
+  reader_.ask([this, made, wanted](g4lidar::lidar* lidar) {
+    if (made->is_taken.test_and_set()) return;
     std::string reason;
     guard([&] {
       reason = "it could not be set";
-      reason = parameters_.change(lidar, what);
+      reason = parameters_.change(lidar, wanted);
     });
-    reply->set_value(reason);
+    made->reply.set_value(reason);
   });
   const auto end = std::chrono::steady_clock::now() + change_time;
   while (!is_ending_ && std::chrono::steady_clock::now() < end) {
     if (answered.wait_for(20ms) == std::future_status::ready) return answered.get();
+    // The reader searches the lidar, and may do so for long.
+    const bool is_searched = reader_.status().state == reader_state::opening;
+    if (is_searched && !made->is_taken.test_and_set()) return std::nullopt;
   }
   return "the lidar did not answer in time; it may be set later";
 }
 
+void lidar_session::change_later(std::vector<g4lidar::named_value> filters) {
+  reader_.ask([this, what = std::move(filters)](g4lidar::lidar* lidar) {
+    guard([&] {
+      if (const std::string wrong = parameters_.change(lidar, what); !wrong.empty())
+        RCLCPP_ERROR(node_.get_logger(), "%s", wrong.c_str());
+    });
+  });
+}
+
 void lidar_session::restart_file() {
-  if (is_file_ && reader_.status().state == reader_state::ended) reader_.seek(0);
+  if (!is_file_ || reader_.status().state != reader_state::ended) return;
+  reader_.seek(0);
+  // Until then it is still at the end, at which the node deactivates itself.
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, change_time, [this] {
+    return is_ending_ || failure() || reader_.status().state != reader_state::ended;
+  });
 }
 
 std::optional<g4lidar::error> lidar_session::failure() const {

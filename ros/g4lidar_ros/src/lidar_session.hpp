@@ -51,13 +51,16 @@ class lidar_session final : private g4lidar::reader_listener {
   [[nodiscard]] bool wait_until_open(std::chrono::nanoseconds longest);
   /// Whether the motor is to stand; waits at most `longest` until it does.
   void rest(bool rests, std::chrono::nanoseconds longest = {});
-  /// Sets parameters of the lidar, all or none: why not, or empty. Blocks until the lidar has answered.
-  [[nodiscard]] std::string change(std::vector<g4lidar::named_value> wanted);
+  /// Sets parameters of the lidar, all or none: why not, or empty. Blocks until the lidar has answered. Nothing if it is
+  /// searched: then it is not asked.
+  [[nodiscard]] std::optional<std::string> change(const std::vector<g4lidar::named_value>& wanted);
+  /// Sets filters when the search is over.
+  void change_later(std::vector<g4lidar::named_value> filters);
   /// The parameters of the lidar, if they became known since the last call.
   [[nodiscard]] const g4lidar::lidar_parameters* news() noexcept {
     return is_news_.exchange(false) ? &parameters_ : nullptr;
   }
-  /// A file that is at its end begins again.
+  /// A file that is at its end begins again. Blocks until it does.
   void restart_file();
 
   [[nodiscard]] g4lidar::reader_status status() const { return reader_.status(); }

@@ -34,6 +34,11 @@ class node_parameters {
   using changes = std::vector<rclcpp::Parameter>;
   void warn_about_unknown_ones() const;
   void take_motion(session_options& into) const;
+  /// The filters now.
+  [[nodiscard]] std::vector<g4lidar::named_value> filters() const;
+  /// Why these cannot be set, or empty: what is wrong with them, or that there is no lidar for a setting.
+  [[nodiscard]] std::string refuse_while_searching(
+      const std::vector<g4lidar::named_value>& wanted) const;
   [[nodiscard]] std::string refuse(const changes& wanted);
 
   rclcpp_lifecycle::LifecycleNode& node_;

@@ -162,7 +162,7 @@ class TestClock(unittest.TestCase):
 
 @launch_testing.post_shutdown_test()
 class TestExit(unittest.TestCase):
-    def test_all_end_well(self, proc_info):
+    def test_exit_codes(self, proc_info):
         for name in proc_info.process_names():
             if "lidar_node" in name:
                 self.assertEqual(proc_info[name].returncode, 0, name)

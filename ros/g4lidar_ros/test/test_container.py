@@ -56,5 +56,5 @@ class TestContainer(unittest.TestCase):
 
 @launch_testing.post_shutdown_test()
 class TestExit(unittest.TestCase):
-    def test_all_end_well(self, proc_info):
+    def test_exit_codes(self, proc_info):
         launch_testing.asserts.assertExitCodes(proc_info)

@@ -3,6 +3,8 @@
 those of the family: docs/models.md."""
 
 import os
+import signal
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -13,6 +15,8 @@ import launch_testing.asserts
 from ament_index_python.packages import get_package_share_directory
 from launch.actions import ExecuteProcess, GroupAction, IncludeLaunchDescription
 from launch.launch_description_sources import AnyLaunchDescriptionSource
+from launch_ros.actions import Node
+from lifecycle_msgs.msg import State, TransitionEvent
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 from sensor_msgs.msg import LaserScan, PointCloud2
@@ -21,7 +25,10 @@ sys.path.insert(0, os.path.dirname(__file__))
 import support  # noqa: E402
 
 G4_DUMP = support.program("g4-dump", "G4_DUMP")
-PORT = os.path.join(tempfile.mkdtemp(prefix="g4lidar-ros-"), "lidar")
+DIRECTORY = tempfile.mkdtemp(prefix="g4lidar-ros-")
+PORT = os.path.join(DIRECTORY, "lidar")
+# Where lidars are plugged in later: the launch file configures one node, the other one itself.
+LATE_PORTS = {name: os.path.join(DIRECTORY, name) for name in ("late", "late_itself")}
 
 
 def lidar(file, **arguments):
@@ -34,6 +41,14 @@ def generate_test_description():
     actions = [
         lidar("lidar.launch.py", namespace="x2", source="sim:?model=x2&seed=1", model="x2"),
         lidar("lidar.launch.xml", namespace="mini", source="sim:?model=t-mini&seed=2", model="t-mini"),
+    ]
+    late = {"connect_timeout": 0.5, "model": "g4"}
+    actions += [
+        lidar("lidar.launch.py", namespace="late", source=LATE_PORTS["late"], connect_timeout="0.5", model="g4"),
+        Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace="late_itself",
+             parameters=[{**late, "source": LATE_PORTS["late_itself"], "autostart": True}]),
+        # An error that does not pass is not tried again.
+        lidar("lidar.launch.py", namespace="wrong", sim="true", order="size"),
     ]
     if G4_DUMP:
         actions += [ExecuteProcess(cmd=[G4_DUMP, "sim", "-q", "--model", "t-mini", "--link", PORT]),
@@ -112,10 +127,27 @@ class TestModels(unittest.TestCase):
         found = self.watcher.call(GetParameters, "/found/g4lidar/get_parameters", request).values[0]
         self.assertAlmostEqual(found.double_value, 10.0)
 
+    @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
+    def test_a_lidar_that_is_plugged_in_later_is_used(self):
+        wrong = self.watcher.collect(TransitionEvent, "/wrong/g4lidar/transition_event")
+        failed = {name: self.watcher.collect(TransitionEvent, f"/{name}/g4lidar/transition_event") for name in LATE_PORTS}
+
+        def failures(name):
+            return sum((each.start_state.label, each.goal_state.label) == ("configuring", "unconfigured")
+                       for each in list(failed[name]))
+        for name, port in LATE_PORTS.items():
+            self.assertTrue(support.wait_for(lambda: failures(name) >= 2), name)
+            device = subprocess.Popen([G4_DUMP, "sim", "-q", "--link", port])
+            self.addCleanup(device.wait, support.PATIENCE)
+            self.addCleanup(device.send_signal, signal.SIGINT)
+            self.scan(name)
+        self.assertEqual(self.watcher.state("/wrong/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
+        self.assertLessEqual(sum(each.goal_state.label == "configuring" for each in list(wrong)), 1)
+
 
 @launch_testing.post_shutdown_test()
 class TestExit(unittest.TestCase):
-    def test_all_end_well(self, proc_info):
+    def test_exit_codes(self, proc_info):
         for name in proc_info.process_names():
             if "lidar_node" in name:
                 self.assertEqual(proc_info[name].returncode, 0, name)

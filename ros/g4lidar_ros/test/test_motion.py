@@ -28,7 +28,7 @@ WITH_ODOMETRY, BARE = support.recordings(seconds=5, seed=3, world=room.WORLD, wa
 
 # The nodes by their namespaces.
 NODES = {
-    "told": {"source": WITH_ODOMETRY},
+    "known": {"source": WITH_ODOMETRY},
     "by_odometry": {"source": BARE, "deskew": "odometry", "mount": MOUNT_TEXT},
     "by_tf": {"source": BARE, "deskew": "tf", "mount": MOUNT_TEXT},
     "live": {"source": "sim:?seed=4", "use_sim_time": True, "autostart": True},
@@ -66,9 +66,9 @@ class TestMotion(unittest.TestCase):
         return list(way), list(clouds)
 
     def truth(self):
-        if self.watcher.state("/told/g4lidar") == State.PRIMARY_STATE_UNCONFIGURED:
-            self.assertTrue(self.watcher.change_state("/told/g4lidar", Transition.TRANSITION_CONFIGURE))
-        way, clouds = self.play("told")
+        if self.watcher.state("/known/g4lidar") == State.PRIMARY_STATE_UNCONFIGURED:
+            self.assertTrue(self.watcher.change_state("/known/g4lidar", Transition.TRANSITION_CONFIGURE))
+        way, clouds = self.play("known")
         self.assertGreater(len(way), 200)
         self.assertGreater(len(clouds), 25)
         return room.Way(way), clouds
@@ -157,5 +157,5 @@ class TestMotion(unittest.TestCase):
 
 @launch_testing.post_shutdown_test()
 class TestExit(unittest.TestCase):
-    def test_all_end_well(self, proc_info):
+    def test_exit_codes(self, proc_info):
         launch_testing.asserts.assertExitCodes(proc_info)

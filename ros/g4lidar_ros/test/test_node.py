@@ -2,6 +2,7 @@
 """The node with simulated lidars: transitions, parameters, services, unplug, an error that it cannot recover from."""
 
 import os
+import pty
 import re
 import signal
 import subprocess
@@ -33,6 +34,11 @@ ABSENT = os.path.join(DIRECTORY, "lidar")
 G4_DUMP = support.program("g4-dump", "G4_DUMP")
 IDLE_PORT = os.path.join(DIRECTORY, "idle")
 
+# A port at which something is that does not answer: the lidar is searched there for long.
+SEARCHED_PORT = os.path.join(DIRECTORY, "searched")
+SILENT, SILENT_END = pty.openpty()
+os.symlink(os.ttyname(SILENT_END), SEARCHED_PORT)
+
 UNPLUGS = "&".join(f"fault=unplug@{at}s+3s" for at in range(4, 200, 12))
 
 # The nodes by their namespaces.
@@ -44,6 +50,7 @@ NODES = {
     "quality": {"source": "sim:?seed=11", "autostart": True, "qos_overrides./quality/scan.publisher.depth": 3,
                 "qos_overrides./quality/scan.publisher.reliability": "best_effort"},
     "idle": {"source": IDLE_PORT, "autostart": True, "standby": True, "connect_timeout": 0.0},
+    "searched": {"source": SEARCHED_PORT, "autostart": True, "connect_timeout": 0.0},
     "missing": {"source": "/dev/g4lidar-absent", "connect_timeout": 0.5},
 }
 
@@ -266,6 +273,36 @@ class TestParameters(NodeTest):
         self.assertEqual((self.get("range_min").double_value, self.get("frequency").double_value), (0.5, 9.0))
         self.assertTrue(self.set_together(frequency=double(7.0), range_min=double(0.0)).successful)
 
+    @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
+    def test_while_the_lidar_is_searched(self):
+        self.wait_for_state("searched", State.PRIMARY_STATE_ACTIVE)
+        changes = (("fov", text("-90:90"), ""), ("fov", text("north"), "north"),
+                   ("frequency", double(9.0), "not connected"), ("range_min", double(0.5), ""))
+        longest = 0.0
+        begin = time.monotonic()
+        # An attempt takes 5 s, and the next one begins 0.5 s later: one begins and ends in this time.
+        while time.monotonic() - begin < 7.0:
+            for name, value, reason in changes:
+                request = SetParameters.Request(parameters=[Parameter(name=name, value=value)])
+                asked = time.monotonic()
+                result = self.watcher.call(SetParameters, "/searched/g4lidar/set_parameters", request).results[0]
+                longest = max(longest, time.monotonic() - asked)
+                self.assertEqual(result.successful, not reason, name)
+                self.assertIn(reason, result.reason)
+        # An idle machine needs less than 0.1 s.
+        self.assertLess(longest, 3.0)
+        # When the lidar is there, the filters are those that were set.
+        os.unlink(SEARCHED_PORT)
+        os.close(SILENT)
+        device = subprocess.Popen([G4_DUMP, "sim", "-q", "--link", SEARCHED_PORT])
+        self.addCleanup(device.wait, support.PATIENCE)
+        self.addCleanup(device.send_signal, signal.SIGINT)
+        scans = self.scans("searched")
+        self.assertTrue(support.wait_for(lambda: scans))
+        quarter = 178
+        self.assertTrue(all(each != each for each in [*scans[0].ranges[:quarter], *scans[0].ranges[-quarter:]]))
+        self.assertGreater(min(each for each in scans[0].ranges if each == each), 0.5)
+
     def test_each_has_a_description(self):
         service = "/values/g4lidar/"
         names = self.watcher.call(ListParameters, service + "list_parameters", ListParameters.Request()).result.names
@@ -281,5 +318,5 @@ class TestParameters(NodeTest):
 
 @launch_testing.post_shutdown_test()
 class TestExit(unittest.TestCase):
-    def test_all_end_well(self, proc_info):
+    def test_exit_codes(self, proc_info):
         launch_testing.asserts.assertExitCodes(proc_info)

@@ -133,22 +133,22 @@ class TestProcess(unittest.TestCase):
         with self.subTest(arguments=arguments), subprocess.Popen(
                 [NODE, "--ros-args", "-p", "autostart:=true", "-r", "__ns:=/bad", *arguments],
                 stderr=subprocess.PIPE, text=True) as node:
-            said = []
+            output = []
             watchdog = threading.Timer(support.PATIENCE, node.kill)
             watchdog.start()
             for line in node.stderr:
-                said.append(line)
+                output.append(line)
                 if "[ERROR]" in line:
                     break
             watchdog.cancel()
             state = self.watcher.state("/bad/g4lidar") if node.poll() is None else None
             node.send_signal(signal.SIGINT)
             node.communicate(timeout=support.PATIENCE)
-            self.assertEqual(node.returncode, 0, said)
+            self.assertEqual(node.returncode, 0, output)
             self.assertEqual(state, State.PRIMARY_STATE_UNCONFIGURED)
             for word in words:
-                self.assertIn(word, said[-1])
-        return "".join(said)
+                self.assertIn(word, output[-1])
+        return "".join(output)
 
     def test_values_that_cannot_be_used_are_errors_of_configure(self):
         sim = ["-p", "source:='sim:'"]
@@ -159,6 +159,7 @@ class TestProcess(unittest.TestCase):
         self.not_configured([*sim, "-p", "mount:='1,2'"], ["mount"])
         self.not_configured([*sim, "-p", "mount:='nan,0,0'"], ["mount"])
         self.not_configured([*sim, "-p", "mask:=/nonexistent.mask"], ["mask", "/nonexistent.mask"])
+        self.not_configured([*sim, "-p", "mask:=/tmp"], ["mask: '/tmp' is a directory. Give a file with lines 'polygon"])
         self.not_configured([*sim, "-p", "fov:=north"], ["fov", "north"])
         self.not_configured([*sim, "-p", "direction:=up"], ["direction", "up"])
         self.not_configured([*sim, "-p", "range_min:=.nan"], ["range"])
@@ -171,8 +172,8 @@ class TestProcess(unittest.TestCase):
         self.not_configured(["-p", f"source:={broken}"], [broken])
         self.not_configured([*sim, "-p", "playback_speed:=.nan"], ["playback_speed"])
         self.not_configured([*sim, "-p", "connect_timeout:=.nan"], ["connect_timeout"])
-        said = self.not_configured([*sim, "-p", "frequncy:=7.0", "-p", "model:=g99"], ["g99"])
-        self.assertIn("'frequncy' is ignored", said)
+        output = self.not_configured([*sim, "-p", "frequncy:=7.0", "-p", "model:=g99"], ["g99"])
+        self.assertIn("'frequncy' is ignored", output)
 
     def test_does_not_grow(self):
         node = run_node("sim:?seed=3")

@@ -12,6 +12,8 @@
 #include <std_msgs/msg/bool.hpp>
 #include <std_srvs/srv/trigger.hpp>
 
+#include <g4lidar/standby.hpp>
+
 namespace g4lidar_ros {
 
 class lidar_session;
@@ -20,9 +22,11 @@ class node_parameters;
 
 /// configure opens the lidar, activate turns its motor and publishes, deactivate rests it, cleanup closes it. An unplug
 /// is a warning, after which it reconnects. An error that it cannot recover from deactivates it, and on_deactivate()
-/// returns ERROR. A thread of its own reads the lidar; everything else is in the default callback group.
-class LidarNode : public rclcpp_lifecycle::LifecycleNode {
+/// returns ERROR. on_configure() returns FAILURE if there is no lidar, which may come later, else ERROR. A thread of its own reads the lidar; everything else is in the default callback group.
+// Components of ROS are named so.
+class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readability-identifier-naming)
  public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the name of ROS
   using CallbackReturn = rclcpp_lifecycle::node_interfaces::LifecycleNodeInterface::CallbackReturn;
 
   explicit LidarNode(const rclcpp::NodeOptions& options);
@@ -39,6 +43,8 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {
  private:
   using trigger = std_srvs::srv::Trigger;
 
+  /// Configures and activates itself.
+  void start_itself();
   /// Rests or turns the motor, and notices the end of the lidar. Called several times a second.
   void update();
   void allow(bool runs, trigger::Response& answer);
@@ -49,9 +55,10 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
   rclcpp::SubscriptionBase::SharedPtr running_;
   rclcpp::TimerBase::SharedPtr timer_;
-  std::chrono::steady_clock::time_point wanted_{};  // when it last had subscribers
-  bool is_allowed_ = true;                          // by ~/start, ~/stop and ~/run
+  g4lidar::standby standby_;
+  bool is_allowed_ = true;  // by ~/start, ~/stop and ~/run
   bool starts_itself_ = false;
+  std::chrono::steady_clock::time_point start_at_{};
 };
 
 }  // namespace g4lidar_ros
