@@ -64,7 +64,7 @@ while IFS=: read -r document path; do
     echo "$document names $path, which is not there" >&2
     missing=1
   fi
-done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|examples|cmake|fuzz|packaging|python|\.ci)(/[A-Za-z0-9_./-]+)?`' \
+done < <(grep -oE '`(scripts|tests|bench|docs|include|src|tools|ros|examples|cmake|fuzz|packaging|python|\.ci)(/[A-Za-z0-9_./-]+)?`' \
   "${documents[@]}" | sort --unique)
 
 # Every option that a document names is one of a program. Those of other programs: apt, ros2 bag, ros2 topic.
@@ -99,10 +99,10 @@ done
 while read -r path; do
   if [[ ! -e $path ]]; then
     echo "$path is not there, and is named by:" >&2
-    grep -rlF "$path" include src tools >&2
+    grep -rlF "$path" include src tools ros >&2
     missing=1
   fi
-done < <(grep -rhoE 'docs/[A-Za-z0-9_./-]+\.md' include src tools | sort --unique)
+done < <(grep -rhoE 'docs/[A-Za-z0-9_./-]+\.md' include src tools ros | sort --unique)
 
 # Lines of documents have at most 120 characters; rows of tables cannot be wrapped.
 if awk 'length($0) > 120 && !/^\|/ { print FILENAME ":" FNR ": " $0; found = 1 } END { exit !found }' \
@@ -115,7 +115,7 @@ fi
 # words, as parts of names between underscores, and as parts of names that begin with a capital letter.
 figures='tells?|telling|told|says?|said|lives|twins?|ear|exam|rivals?|errands?|manners|portrait|noted|meanwhile|rote|pours?|poured|amid|strangers?|spoilt|forgives?|hurry|greets?|in.vain|wish|wishes|feeders?|whoever'
 capitals=$(sed -E 's/(^|\|)(.)/\1\u\2/g' <<<"$figures")
-searched=("${documents[@]}" include src tools examples tests scripts bench fuzz cmake packaging python .ci CMakeLists.txt)
+searched=("${documents[@]}" include src tools ros examples tests scripts bench fuzz cmake packaging python .ci CMakeLists.txt)
 if { grep -rniE "(^|[^[:alpha:]])($figures)([^[:alpha:]]|$)|[a-z]_well\>|\<all (is|was) well" "${searched[@]}" || true
   grep -rnE "[[:lower:][:digit:]]($capitals)([^[:lower:]]|$)" "${searched[@]}" || true; } | grep -v "^$here/check_words.sh:" >&2; then
   echo "These lines contain figures of speech: write the term of the field" >&2

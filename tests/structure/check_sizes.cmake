@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # cmake -DROOT=<project> -DAWK=<awk> [-DMOST_MEMBERS=<number>] [-DMOST_FUNCTIONS=<number>] [-DMOST_LINES=<number>] -P check_sizes.cmake
 #
-# Fails if a class of include, src, tools or python/src has more than 20 data members, those of its base classes
+# Fails if a class of include, src, tools, ros or python/src has more than 20 data members, those of its base classes
 # included, or more than 25 functions besides constructors, or if a source file has more than 350 lines.
 
 cmake_minimum_required(VERSION 3.22)
@@ -45,8 +45,8 @@ function(awk_lines variable) # <argument of awk>...
   set(${variable} "${lines}" PARENT_SCOPE)
 endfunction()
 
-sources(library include src tools python/src)
-sources(all include src tools python tests bench examples)
+sources(library include src tools ros python/src)
+sources(all include src tools ros python tests bench examples)
 awk_lines(faults -v most=${MOST_MEMBERS} -v most_functions=${MOST_FUNCTIONS} -f "${CMAKE_CURRENT_LIST_DIR}/count_members.awk" ${library})
 list(POP_BACK faults classes)
 foreach(name IN LISTS larger)
