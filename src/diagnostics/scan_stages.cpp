@@ -30,8 +30,6 @@ constexpr std::int64_t signs_ns = 2'500 * ms;
 constexpr std::int64_t protection_from_ns = 2'600 * ms;
 constexpr std::int64_t protection_to_ns = 3'400 * ms;
 constexpr unsigned most_restarts = 2;
-/// The line DTR is low for this time before it starts the motor.
-constexpr std::int64_t dtr_low_ns = 120 * ms;
 
 }  // namespace
 

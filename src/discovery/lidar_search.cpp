@@ -68,6 +68,13 @@ std::int64_t lidar_search::in_ns(std::int64_t time_ns) const noexcept {
 }
 
 result<recognised_lidar> lidar_search::run(std::int64_t deadline_ns) {
+  auto done = find(deadline_ns);
+  // A line that was raised stays high when the port is closed.
+  if (!done && has_pulsed_) static_cast<void>(port_.set_dtr(false));
+  return done;
+}
+
+result<recognised_lidar> lidar_search::find(std::int64_t deadline_ns) {
   deadline_ns_ = deadline_ns;
   for (bool is_first = true; port_.now_ns() < deadline_ns_; is_first = false) {
     auto done = round(is_first);
@@ -162,6 +169,7 @@ lidar_search::found lidar_search::pulse() {
     return tl::unexpected(done.error());
   }
   if (auto raised = port_.set_dtr(true); !raised) return tl::unexpected(raised.error());
+  has_pulsed_ = true;
   const std::int64_t until_ns = port_.now_ns() + after_pulse_ns;
   deadline_ns_ = std::max(deadline_ns_, until_ns);
   while (port_.now_ns() < until_ns) {

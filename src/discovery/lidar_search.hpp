@@ -41,6 +41,7 @@ class lidar_search {
     unsigned run = 0;      // equal start bytes in a row
   };
 
+  [[nodiscard]] result<recognised_lidar> find(std::int64_t deadline_ns);
   [[nodiscard]] found round(bool is_first);
   [[nodiscard]] found visit(std::uint32_t baud, std::int64_t listen_ns);
   [[nodiscard]] found question(std::uint32_t baud, std::int64_t wait_ns);
@@ -68,6 +69,7 @@ class lidar_search {
   std::vector<std::uint32_t> tried_;
   std::int64_t deadline_ns_ = 0;
   bool has_fixed_rate_ = false;
+  bool has_pulsed_ = false;
   std::size_t sending_ = 0;  // rates at which something sends
   hearing heard_;
 };

@@ -52,12 +52,17 @@ result<void> lidar::driver::close() {
     stopped = stop();
     if (stopped || stopped.error() != problem::cancelled) break;
   }
-  release();
+  source_->release(true);
+  drop_points();
   return stopped;
 }
 
 void lidar::driver::release() noexcept {
-  source_->release();
+  source_->release(false);
+  drop_points();
+}
+
+void lidar::driver::drop_points() noexcept {
   const std::uint64_t dropped = parts_.pipeline.drop_points();
   if (hands_points_over_) points_missed_ += dropped;
 }

@@ -76,6 +76,8 @@ class G4LIDAR_HIDDEN lidar::driver {
     return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
                    now.why);
   }
+  /// The connection was released: no points come any more.
+  void drop_points() noexcept;
   /// Whether a call ends after its last step: at its end by source_->caller_ns().
   [[nodiscard]] bool is_over(std::int64_t deadline_ns) const noexcept {
     return (source_->caller_ns() >= deadline_ns || source_->stands()) && parts_.pipeline.is_empty();

@@ -53,6 +53,7 @@ result<void> live_source::advance(std::int64_t deadline_ns) {
 result<void> live_source::break_off(const error& broken) {
   reconnection_.lost(stream_.error_after(broken));
   leave();
+  static_cast<void>(stream_.set_motor(false));
   if (stage_ <= live_stage::identifying) return hang_up();
   stream_.cut();
   stage_ = live_stage::breaking;
@@ -79,7 +80,8 @@ result<void> live_source::hang_up() {
   return {};
 }
 
-void live_source::release() noexcept {
+void live_source::release(bool rests) noexcept {
+  if (rests) static_cast<void>(stream_.set_motor(false));
   stream_.flush();
   pipeline_.drop_scan();
   connection_.close();

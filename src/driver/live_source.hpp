@@ -19,7 +19,7 @@ class live_source : public scan_source {
   live_source(parts& of, const lidar_options& options);
 
   [[nodiscard]] result<void> open() override;
-  void release() noexcept override;
+  void release(bool rests) noexcept override;
 
   [[nodiscard]] result<void> can_read() const noexcept override;
   [[nodiscard]] scan_expectation expects() const noexcept override;

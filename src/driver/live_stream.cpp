@@ -37,6 +37,7 @@ void live_stream::begin() {
   of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
   of_.pipeline.follow(on.baud());
   of_.motor.forget();
+  is_line_high_ = true;  // the system raises it
   record(recorded_event::kind::held);
 }
 
@@ -141,10 +142,11 @@ void live_stream::begin_points() {
 
 result<void> live_stream::set_motor(bool on) {
   constexpr std::int64_t low_ns = 100'000'000;
-  if (motor_ != motor_kind::dtr) return {};
+  if (motor_ != motor_kind::dtr || !of_.on.is_open() || (!on && !is_line_high_)) return {};
   const auto set = of_.on.on().set_dtr(on);
   if (!set) return tl::unexpected(set.error());
   if (!*set) return {};  // no such line: the motor turns by other means
+  is_line_high_ = on;
   if (!on) motor_ready_ns_ = now_ns() + low_ns;
   record(on ? recorded_event::kind::dtr_high : recorded_event::kind::dtr_low);
   return {};

@@ -55,7 +55,7 @@ result<answer> replay_player::ask(const request& /*wanted*/, while_scanning /*ho
   return failure(task::asking, problem::read_only, connection_.name());
 }
 
-void replay_player::release() noexcept {
+void replay_player::release(bool /*rests*/) noexcept {
   if (stage_ != stage::closed) static_cast<void>(stop());
   pipeline_.drop_scan();
   connection_.close();

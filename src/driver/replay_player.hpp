@@ -21,7 +21,7 @@ class replay_player final : public scan_source {
   [[nodiscard]] result<void> start() override;
   [[nodiscard]] result<void> stop() override;
   [[nodiscard]] result<answer> ask(const request& wanted, while_scanning how) override;
-  void release() noexcept override;
+  void release(bool rests) noexcept override;
 
   [[nodiscard]] result<void> can_read() const noexcept override;
   [[nodiscard]] scan_expectation expects() const noexcept override;

@@ -54,8 +54,9 @@ class scan_source {
   [[nodiscard]] virtual result<answer> ask(const request& wanted, while_scanning how) = 0;
   /// From now on each packet is wanted when it is complete, not only whole scans. *Any thread.*
   void take_points() noexcept { takes_points_.store(true, std::memory_order_relaxed); }
-  /// Releases the connection, and leaves the device as it is.
-  virtual void release() noexcept = 0;
+  /// Releases the connection, and leaves the device as it is; `rests`: except a motor that the host's port
+  /// drives, which stops.
+  virtual void release(bool rests) noexcept = 0;
 
   /// Does everything that is due, and waits for bytes until the deadline at most once. Stops at a
   /// scan. A woken call has made progress, so that calls that are woken repeatedly complete. If

@@ -161,6 +161,7 @@ class serial_transport final : public fd_port {
   bool is_changed_ = false;
   bool is_exclusive_ = false;
   bool is_hastened_ = false;
+  bool stays_high_ = false;  // DTR: set_dtr() has raised it, and nobody has lowered it
 };
 
 tl::unexpected<error> serial_transport::refused(int system_errno) const noexcept {
@@ -212,7 +213,7 @@ tl::unexpected<error> serial_transport::refused_baud(std::uint32_t baud,
 result<void> serial_transport::configure() {
   wanted_ = found_;
   cfmakeraw(&wanted_);
-  wanted_.c_cflag |= CLOCAL | CREAD;
+  wanted_.c_cflag |= CLOCAL | CREAD | HUPCL;  // a killed program leaves no motor on that DTR drives
   wanted_.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
   wanted_.c_iflag &= ~static_cast<tcflag_t>(IXOFF | INPCK);
   wanted_.c_cc[VMIN] =
@@ -255,9 +256,10 @@ result<bool> serial_transport::set_baud(std::uint32_t baud) noexcept {
 
 result<bool> serial_transport::set_dtr(bool high) noexcept {
   int line = TIOCM_DTR;
-  if (control(high ? TIOCMBIS : TIOCMBIC, &line) == 0) return true;
-  if (errno == ENOTTY || errno == EINVAL) return false;
-  return failed(task::configuring, errno);
+  const bool is_set = control(high ? TIOCMBIS : TIOCMBIC, &line) == 0;
+  if (!is_set && errno != ENOTTY && errno != EINVAL) return failed(task::configuring, errno);
+  stays_high_ = is_set && high;
+  return is_set;
 }
 
 void serial_transport::hasten() noexcept {
@@ -296,6 +298,7 @@ int serial_transport::send_or_discard() noexcept {
 
 void serial_transport::restore() noexcept {
   if (is_changed_) {
+    if (stays_high_) found_.c_cflag &= ~static_cast<tcflag_t>(HUPCL);
     static_cast<void>(set(send_or_discard(), found_));
     if (found_custom_baud_ != 0) {
       static_cast<void>(set_custom_baud(calls().ioctl, fd(), found_custom_baud_));

@@ -145,6 +145,7 @@ class Bridge : public testing::Test {
   result<std::unique_ptr<transport>> open(std::uint32_t baud) {
     return open_serial_transport(device_.path(), {.baud = baud}, calls_);
   }
+  [[nodiscard]] const pty& device() const noexcept { return device_; }
 
  private:
   system_calls calls_;
@@ -210,6 +211,66 @@ TEST_F(Bridge, Dtr_IsSetAndCleared) {
   lines.clear();
   EXPECT_EQ((*port)->set_dtr(false), true);
   EXPECT_EQ(lines, std::vector<unsigned long>{TIOCMBIC});
+}
+
+// ---- HUPCL: whether the system lowers DTR after the last close --------------------------------------
+
+bool drops_dtr(const pty& device) {
+  termios now{};
+  EXPECT_EQ(::tcgetattr(device.keep(), &now), 0);
+  return (now.c_cflag & HUPCL) != 0;
+}
+
+void set_dropping(const pty& device, bool wanted) {
+  termios now{};
+  ASSERT_EQ(::tcgetattr(device.keep(), &now), 0);
+  now.c_cflag = wanted ? now.c_cflag | HUPCL : now.c_cflag & ~static_cast<tcflag_t>(HUPCL);
+  ASSERT_EQ(::tcsetattr(device.keep(), TCSANOW, &now), 0);
+}
+
+TEST_F(Bridge, DtrThatWasRaised_StaysHighAfterTheClose) {
+  set_dropping(device(), true);
+  {
+    const auto port = open(230'400);
+    ASSERT_TRUE(port);
+    EXPECT_EQ((*port)->set_dtr(true), true);
+    EXPECT_TRUE(drops_dtr(device())) << "if the program is killed";
+  }
+  EXPECT_FALSE(drops_dtr(device()));
+}
+
+TEST_F(Bridge, DtrThatWasLoweredAgain_IsLeftToTheSystem) {
+  for (const bool is_dropped : {true, false}) {
+    set_dropping(device(), is_dropped);
+    {
+      const auto port = open(230'400);
+      ASSERT_TRUE(port);
+      EXPECT_EQ((*port)->set_dtr(true), true);
+      EXPECT_EQ((*port)->set_dtr(false), true);
+    }
+    EXPECT_EQ(drops_dtr(device()), is_dropped);
+  }
+}
+
+TEST_F(Bridge, OpenPort_LosesItsDtrWithTheProgram) {
+  set_dropping(device(), false);
+  {
+    const auto port = open(230'400);
+    ASSERT_TRUE(port);
+    EXPECT_TRUE(drops_dtr(device()));
+  }
+  EXPECT_FALSE(drops_dtr(device())) << "as it was";
+}
+
+TEST_F(Bridge, PortWithoutDtr_IsLeftAsItWas) {
+  set_dropping(device(), true);
+  line_errno = ENOTTY;
+  {
+    const auto port = open(230'400);
+    ASSERT_TRUE(port);
+    EXPECT_EQ((*port)->set_dtr(true), false);
+  }
+  EXPECT_TRUE(drops_dtr(device()));
 }
 
 TEST_F(Bridge, DtrThatIsMissing_IsNoError) {

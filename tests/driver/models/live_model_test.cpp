@@ -11,40 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/core/model.hpp"
-#include "g4lidar/lidar.hpp"
-#include "g4lidar/sim/virtual_port.hpp"
-#include "g4lidar/sim/world.hpp"
+#include "model_bench.hpp"
 #include "support/allocation_count.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr std::int64_t ms = 1'000'000;
-
-sim::device_options options_of(const model& which) {
-  sim::device_options options;
-  EXPECT_TRUE(sim::use_model(options, which.word)) << which.word;
-  return options;
-}
-
-/// A simulated device and a lidar of it.
-struct bench {
-  explicit bench(const model& of) : bench(of, options_of(of)) {}
-  bench(const model& of, const sim::device_options& options)
-      : which(of), device(sim::built_in_world(), options) {}
-
-  [[nodiscard]] result<lidar> open(lidar_options how = {}) {
-    how.model = &which;
-    return lidar::open(std::make_unique<sim::virtual_connector>(device, clock), how);
-  }
-
-  const model& which;
-  sim::virtual_clock clock;
-  sim::device device;
-};
+using test::bench;
+using test::ms;
+using test::options_of;
 
 class LiveModel : public ::testing::TestWithParam<model> {};
 
@@ -139,55 +115,6 @@ TEST(LiveFastest, IsReadAtScanPaceWithoutAHeapCall) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LiveModel, ::testing::ValuesIn(models), name_in_test);
-
-// ---- DTR ----------------------------------------------------------------------------------------
-
-TEST(LiveDtr, MotorOfAnX4_TurnsFromStartToStop) {
-  bench on(*model_named("x4"));
-  auto lidar = on.open();
-  ASSERT_TRUE(lidar) << lidar.error().message();
-  EXPECT_FALSE(on.device.motor_turns());
-  ASSERT_TRUE(lidar->start());
-  ASSERT_TRUE(lidar->wait_scan(2000ms));
-  EXPECT_TRUE(on.device.motor_turns());
-  ASSERT_TRUE(lidar->stop());
-  EXPECT_FALSE(on.device.motor_turns());
-}
-
-TEST(LiveDtr, MotorWithoutPower_IsAnErrorThatNamesThePlug) {
-  const model& x4 = *model_named("x4");
-  sim::device_options options = options_of(x4);
-  options.motor_has_power = false;
-  bench on(x4, options);
-  auto lidar = on.open();
-  ASSERT_TRUE(lidar) << lidar.error().message();
-  ASSERT_TRUE(lidar->start());
-  auto why = lidar->wait_scan(500ms);
-  for (int i = 0; i < 100 && !why && !why.error().is_fatal(); ++i) why = lidar->wait_scan(500ms);
-  ASSERT_FALSE(why);
-  EXPECT_EQ(why.error().code(), problem::brown_out);
-  EXPECT_NE(why.error().message().find("second (power) plug"), std::string::npos)
-      << why.error().message();
-  EXPECT_NE(why.error().message().find("DTR"), std::string::npos);
-}
-
-TEST(LiveDtr, SilentOneWayLidar_GetsAPulse) {
-  const model& x2 = *model_named("x2");
-  for (const sim::dtr_start by :
-       {sim::dtr_start::level, sim::dtr_start::edge, sim::dtr_start::pulse}) {
-    for (const sim::dtr_cut cut : {sim::dtr_cut::motor, sim::dtr_cut::supply}) {
-      sim::device_options options = options_of(x2);
-      options.dtr_starts_by = by;
-      options.dtr_cuts = cut;
-      bench on(x2, options);
-      auto lidar = on.open();
-      ASSERT_TRUE(lidar) << static_cast<int>(by) << lidar.error().message();
-      ASSERT_TRUE(lidar->start());
-      const auto scan = lidar->wait_scan(2000ms);
-      EXPECT_TRUE(scan) << static_cast<int>(by) << static_cast<int>(cut) << scan.error().message();
-    }
-  }
-}
 
 // ---- identity -----------------------------------------------------------------------------------
 

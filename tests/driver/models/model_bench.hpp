@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// A simulated lidar of a model, in virtual time, for the driver.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/lidar.hpp"
+#include "g4lidar/sim/virtual_port.hpp"
+#include "g4lidar/sim/world.hpp"
+
+namespace g4lidar::test {
+
+inline constexpr std::int64_t ms = 1'000'000;
+
+inline sim::device_options options_of(const model& which) {
+  sim::device_options options;
+  EXPECT_TRUE(sim::use_model(options, which.word)) << which.word;
+  return options;
+}
+
+/// A simulated device and a lidar of it.
+struct bench {
+  explicit bench(const model& of) : bench(of, options_of(of)) {}
+  bench(const model& of, const sim::device_options& options)
+      : which(of), device(sim::built_in_world(), options) {}
+
+  [[nodiscard]] result<lidar> open(lidar_options how = {}) {
+    how.model = &which;
+    return lidar::open(std::make_unique<sim::virtual_connector>(device, clock), how);
+  }
+
+  const model& which;
+  sim::virtual_clock clock;
+  sim::device device;
+};
+
+}  // namespace g4lidar::test

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Motors that the line DTR drives: when the driver raises it, and when it lowers it.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "g4lidar/transport/forwarding.hpp"
+#include "model_bench.hpp"
+
+namespace g4lidar {
+namespace {
+
+using namespace std::chrono_literals;
+using test::bench;
+using test::options_of;
+
+TEST(LiveDtr, MotorOfAnX4_TurnsFromStartToStop) {
+  bench on(*model_named("x4"));
+  auto lidar = on.open();
+  ASSERT_TRUE(lidar) << lidar.error().message();
+  EXPECT_FALSE(on.device.motor_turns());
+  ASSERT_TRUE(lidar->start());
+  ASSERT_TRUE(lidar->wait_scan(2000ms));
+  EXPECT_TRUE(on.device.motor_turns());
+  ASSERT_TRUE(lidar->stop());
+  EXPECT_FALSE(on.device.motor_turns());
+}
+
+/// Records what is done to the line DTR of its ports.
+class line_connector final : public forwarding_connector {
+ public:
+  line_connector(std::unique_ptr<connector> inner, std::string& done)
+      : forwarding_connector(std::move(inner)), done_(done) {}
+
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
+    auto port = inner().connect();
+    if (!port) return port;
+    return std::make_unique<line_port>(*std::move(port), done_);
+  }
+
+ private:
+  class line_port final : public forwarding_transport {
+   public:
+    line_port(std::unique_ptr<transport> inner, std::string& done)
+        : forwarding_transport(std::move(inner)), done_(done) {}
+    [[nodiscard]] result<bool> set_dtr(bool high) noexcept override {
+      done_ += high ? "high " : "low ";
+      return forwarding_transport::set_dtr(high);
+    }
+
+   private:
+    std::string& done_;
+  };
+
+  std::string& done_;
+};
+
+// A line that is high stays so when a serial port is closed: see DtrThatWasRaised_StaysHighAfterTheClose.
+TEST(LiveDtr, ReleasedWhileItScans_TheLineStaysHigh) {
+  struct expectation {
+    std::string_view word;
+    std::string_view released;
+    std::string_view closed;
+  };
+  constexpr expectation all[] = {{"x4", "low high ", "low high low "},
+                                 {"s4b", "low high ", "low high low "},
+                                 {"x2", "high ", "high low "},
+                                 {"g4", "", ""},
+                                 {"x4-pro", "", ""}};
+  for (const auto& [word, released, closed] : all) {
+    for (const bool is_released : {true, false}) {
+      bench on(*model_named(word));
+      std::string done;
+      auto lidar =
+          lidar::open(std::make_unique<line_connector>(
+                          std::make_unique<sim::virtual_connector>(on.device, on.clock), done),
+                      {.model = &on.which});
+      ASSERT_TRUE(lidar) << lidar.error().message();
+      ASSERT_TRUE(lidar->start());
+      ASSERT_TRUE(lidar->wait_scan(2000ms)) << word;
+      if (is_released) {
+        lidar->release();
+      } else {
+        ASSERT_TRUE(lidar->close());
+      }
+      EXPECT_EQ(done, is_released ? released : closed) << word;
+    }
+  }
+}
+
+TEST(LiveDtr, LidarThatIsGivenUp_TheLineIsLowered) {
+  const model& x4 = *model_named("x4");
+  sim::device_options options = options_of(x4);
+  options.motor_has_power = false;
+  bench on(x4, options);
+  std::string done;
+  auto lidar = lidar::open(std::make_unique<line_connector>(
+                               std::make_unique<sim::virtual_connector>(on.device, on.clock), done),
+                           {.model = &on.which});
+  ASSERT_TRUE(lidar) << lidar.error().message();
+  ASSERT_TRUE(lidar->start());
+  auto why = lidar->wait_scan(500ms);
+  for (int i = 0; i < 100 && !why && !why.error().is_fatal(); ++i) why = lidar->wait_scan(500ms);
+  ASSERT_FALSE(why);
+  EXPECT_EQ(why.error().code(), problem::brown_out);
+  EXPECT_TRUE(done.ends_with("high low ")) << done;
+}
+
+TEST(LiveDtr, MotorWithoutPower_IsAnErrorThatNamesThePlug) {
+  const model& x4 = *model_named("x4");
+  sim::device_options options = options_of(x4);
+  options.motor_has_power = false;
+  bench on(x4, options);
+  auto lidar = on.open();
+  ASSERT_TRUE(lidar) << lidar.error().message();
+  ASSERT_TRUE(lidar->start());
+  auto why = lidar->wait_scan(500ms);
+  for (int i = 0; i < 100 && !why && !why.error().is_fatal(); ++i) why = lidar->wait_scan(500ms);
+  ASSERT_FALSE(why);
+  EXPECT_EQ(why.error().code(), problem::brown_out);
+  EXPECT_NE(why.error().message().find("second (power) plug"), std::string::npos)
+      << why.error().message();
+  EXPECT_NE(why.error().message().find("DTR"), std::string::npos);
+}
+
+TEST(LiveDtr, SilentOneWayLidar_GetsAPulse) {
+  const model& x2 = *model_named("x2");
+  for (const sim::dtr_start by :
+       {sim::dtr_start::level, sim::dtr_start::edge, sim::dtr_start::pulse}) {
+    for (const sim::dtr_cut cut : {sim::dtr_cut::motor, sim::dtr_cut::supply}) {
+      sim::device_options options = options_of(x2);
+      options.dtr_starts_by = by;
+      options.dtr_cuts = cut;
+      bench on(x2, options);
+      auto lidar = on.open();
+      ASSERT_TRUE(lidar) << static_cast<int>(by) << lidar.error().message();
+      ASSERT_TRUE(lidar->start());
+      const auto scan = lidar->wait_scan(2000ms);
+      EXPECT_TRUE(scan) << static_cast<int>(by) << static_cast<int>(cut) << scan.error().message();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace g4lidar
