@@ -23,9 +23,11 @@ struct lidar_event {
     restarted,            ///< The scan had ended by itself; the device is set and started again.
     health_warning,       ///< The device reports a warning when it is started.
     other_lidar,  ///< While the lidar was lost, another one answered; it received no further commands.
-    long_pause,     ///< The next data of a recording follows in more than a minute.
-    overflow,       ///< Earlier events were dropped, because next_event() was not called.
-    still_turning,  ///< stop() has ended the scans, but nothing can stop the motor of this model.
+    long_pause,  ///< The next data of a recording follows in more than a minute.
+    overflow,    ///< Earlier events were dropped, because next_event() was not called.
+    /// stop() has ended the scans, but the motor turns. Where the line DTR drives it, close() stops it; else
+    /// nothing does.
+    still_turning,
   };
   kind what;
   problem reason;        ///< Of `lost`; else problem::timeout, without a meaning.

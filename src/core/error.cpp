@@ -63,7 +63,7 @@ constexpr std::array<words, problem_count> all_words{{
      "Check the label of the device: name its model, or the port of the other one."},
     {problem::does_not_stop, "does_not_stop", "it continues to scan and cannot be stopped",
      "Commands do not reach it: check the wire of the host's transmit pin, or unplug the lidar and "
-     "plug it in again."},
+     "plug it in again. A one-way lidar takes no commands: name its model."},
     {problem::unhealthy, "unhealthy", "the lidar reports that it is defective",
      "Unplug it and plug it in again. If it reports the error again, have it repaired; the "
      "manufacturer knows the error code."},

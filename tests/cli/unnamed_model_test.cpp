@@ -173,8 +173,68 @@ TEST_F(FoundModel, StopOfALidarWithoutCommands_DoesNotClaimIt) {
   serve("x2");
   const outcome done = run({"stop", port_});
   EXPECT_EQ(done.code, 0) << done.err;
-  EXPECT_THAT(done.err, HasSubstr(": this model has no commands: its scan cannot be stopped"));
+  EXPECT_THAT(done.err, HasSubstr(": this model has no commands: it rests while no program has"));
   EXPECT_THAT(done.err, Not(HasSubstr("it was not scanning")));
+}
+
+TEST_F(FoundModel, StopOfALidarThatTurnsWithItsSupply_DoesNotClaimIt) {
+  serve("x4-pro");
+  const outcome done = run({"stop", port_, "--model", "x4-pro"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.err, HasSubstr(": this model has no commands: its scan cannot be stopped"));
+}
+
+// An X4 and an X4 Pro send the same at the same rate; one answers.
+TEST_F(FoundModel, OneWayLidarThatIsOpenedAsATwoWayOne_TheErrorNamesThisCause) {
+  serve("x4-pro");
+  const outcome done = run({"health", port_, "--model", "x4"});
+  EXPECT_NE(done.code, 0);
+  EXPECT_THAT(done.err, HasSubstr("it continues to scan and cannot be stopped"));
+  EXPECT_THAT(done.err, HasSubstr("A one-way lidar takes no commands: name its model."));
+}
+
+TEST_F(FoundModel, ATgThatDoesNotAnswerItsRate_HasThisSetting) {
+  serve("tg30");
+  const outcome done = run({"info", port_});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("sample_rate unknown (no answer)\n"));
+  EXPECT_THAT(done.out, HasSubstr("idle        unknown (TG30 has no such setting)\n"));
+}
+
+TEST_F(FoundModel, ATgThatAnswersItsRate_TheRateIsPrinted) {
+  served_ = std::make_unique<simulator>(
+      port_, std::vector<std::string>{"--model", "tg30", "--device", "answers_sample_rate=true"});
+  const outcome done = run({"info", port_});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_THAT(done.out, HasSubstr("sample_rate 20k\n"));
+}
+
+TEST_F(FoundModel, HealthOfAOneWayLidar_IsThatOfItsCtBytes) {
+  struct expectation {
+    std::vector<std::string> device;
+    int code;
+    std::string_view out;
+  };
+  const std::vector<expectation> all{
+      {{"ct_crc=true"}, 0, "status      ok\nerror_code  0\n"},
+      {{"health=error"}, 8, "status      error\nerror_code  1\n"},
+      {{"ct_crc=false", "health=error"}, 0, "status      unknown\nerror_code  unknown\n"},
+      {{"ct_information=false"}, 0, "status      unknown\nerror_code  unknown\n"}};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<std::string> options{"--model", "x4-pro"};
+    for (const std::string& each : all[i].device) {
+      options.insert(options.end(), {"--device", each});
+    }
+    const std::string link = path("pro" + std::to_string(i));
+    const simulator served(link, options);
+    const outcome done = run({"health", link, "--model", "x4-pro"});
+    EXPECT_EQ(done.code, all[i].code) << i << done.err;
+    EXPECT_EQ(done.out, all[i].out) << i;
+  }
+  serve("x4-pro");
+  const outcome as_json = run({"health", port_, "--model", "x4-pro", "--json"});
+  EXPECT_EQ(json::parse(as_json.out).at("status"), "ok") << as_json.err;
+  EXPECT_EQ(json::parse(as_json.out).at("error_code"), 0);
 }
 
 TEST_F(FoundModel, CommandsStartAndStopAnX4) {

@@ -207,7 +207,7 @@ enum g4lidar_event_kind {
   G4LIDAR_EVENT_OTHER_LIDAR = 9,         /**< While the lidar was lost, another one answered. */
   G4LIDAR_EVENT_LONG_PAUSE = 10,         /**< The next data of a recording is far away. */
   G4LIDAR_EVENT_OVERFLOW = 11,           /**< Earlier events were dropped. */
-  G4LIDAR_EVENT_STILL_TURNING = 12 /**< The scans have ended, but nothing can stop the motor. */
+  G4LIDAR_EVENT_STILL_TURNING = 12 /**< The scans have ended, but the motor turns. */
 };
 
 /** An event. */

@@ -35,8 +35,8 @@ using member =
                  std::int32_t options::*, bool options::*, turning options::*, at_limit options::*,
                  disturbance options::*, drive options::*, dtr_start options::*, dtr_cut options::*,
                  low_power stored::*, motor_direction stored::*, constant_frequency stored::*,
-                 power_down_protection stored::*>;
-constexpr std::array<std::pair<std::string_view, member>, 54> members{{
+                 power_down_protection stored::*, health_status health::*>;
+constexpr std::array<std::pair<std::string_view, member>, 55> members{{
     {"baud", &options::baud},
     {"batch_min_ns", &options::batch_min_ns},
     {"batch_max_ns", &options::batch_max_ns},
@@ -77,6 +77,7 @@ constexpr std::array<std::pair<std::string_view, member>, 54> members{{
     {"other_rate_codes", &options::other_rate_codes},
     {"zero_angle_cdeg", &options::zero_angle_cdeg},
     {"pitch_cdeg", &options::pitch_cdeg},
+    {"health", &health::status},
     {"answers_health_91", &options::answers_health_91},
     {"answers_health_92", &options::answers_health_92},
     {"obeys_forced_stop", &options::obeys_forced_stop},
@@ -98,6 +99,10 @@ Value& at(options& device, Value options::* place) noexcept {
   return device.*place;
 }
 template <class Value>
+Value& at(options& device, Value health::* place) noexcept {
+  return device.condition.*place;
+}
+template <class Value>
 Value& at(options& device, Value stored::* place) noexcept {
   return device.initial.*place;
 }
@@ -105,6 +110,7 @@ Value& at(options& device, Value stored::* place) noexcept {
 // The words of an enumeration, in its order.
 using namespace std::string_view_literals;
 constexpr auto words_of(turning) { return std::array{"clockwise"sv, "mirrored"sv, "falling"sv}; }
+constexpr auto words_of(health_status) { return std::array{"ok"sv, "warning"sv, "error"sv}; }
 constexpr auto words_of(at_limit) { return std::array{"clamp"sv, "refuse"sv}; }
 constexpr auto words_of(disturbance) {
   return std::array{"mid_packet"sv, "between"sv, "drops"sv, "ignored"sv};

@@ -81,7 +81,7 @@ std::string words_for(const device_facts& facts, std::size_t index) {
   if (facts.settings[index]) return text;
   const setting_info& which = all_settings()[index];
   const g4lidar::model* const of = facts.candidates.empty() ? nullptr : facts.candidates.front();
-  if (of != nullptr && !has_request(*of, which.change)) {
+  if (of != nullptr && !has_request(*of, which.query ? which.query->what : which.change)) {
     return fmt::format("{} ({} has no such setting)", text, of->name);
   }
   if (which.query) return fmt::format("{} ({})", text, facts.why_unknown);
