@@ -6,7 +6,8 @@ pylidar3-family.py points MODEL BYTES TRUTH
 pylidar3-family.py port MODEL PATH
     lds2d reads the model at a serial port; it stands in a square room whose walls are 1 m away.
 pylidar3-family.py x4 PATH
-    The same for the class YdLidarX4 of PyLidar3, which sets DTR: needs pylidar3-dtr.c, preloaded.
+    The class YdLidarX4 of PyLidar3 reads an X4, with ranges by angle; its room has four different walls. It sets
+    DTR: needs pylidar3-dtr.c, preloaded.
 """
 import csv
 import itertools
@@ -84,6 +85,38 @@ def port(model, path):
     room(f"{model} and lds2d", [p.dist_mm for scan in scans for p in scan if p.dist_mm > 0], 1000)
 
 
+# What is in front of, to the left of, behind and to the right of the X4, in mm.
+WALLS = (1000.0, 1300.0, 1600.0, 1900.0)
+# PyLidar3 rounds down to whole degrees, corrects the first and the last angle of a packet only, and spreads the
+# others over one sample too many.
+BELOW_DEG, ABOVE_DEG, BESIDE_MM = -1.5, 2.5, 20.0
+
+
+def wall_mm(clockwise_deg):
+    """The range in this direction, clockwise from straight ahead."""
+    ahead = math.cos(math.radians(clockwise_deg))
+    right = math.sin(math.radians(clockwise_deg))
+    front, left, back, side = WALLS
+    return min(
+        front / ahead if ahead > 1e-9 else math.inf,
+        -back / ahead if ahead < -1e-9 else math.inf,
+        side / right if right > 1e-9 else math.inf,
+        -left / right if right < -1e-9 else math.inf,
+    )
+
+
+def angles(scan):
+    """Compares ranges by whole degrees with the walls; returns how many there are."""
+    returns = [(degree, found) for degree, found in scan.items() if found > 0]
+    for degree, found in returns:
+        near = [wall_mm(degree + BELOW_DEG + step / 4) for step in range(int(4 * (ABOVE_DEG - BELOW_DEG)) + 1)]
+        need(
+            min(near) - BESIDE_MM < found < max(near) + BESIDE_MM,
+            f"{found} mm at {degree} degrees, where the wall is {min(near):.0f} to {max(near):.0f} mm away",
+        )
+    return len(returns)
+
+
 def x4(path):
     import PyLidar3
 
@@ -93,13 +126,12 @@ def x4(path):
     need(info["model_number"] == "6", f"model {info}")
     need(info["firmware_version"] == "1.10", f"firmware {info}")
     scans = lidar.StartScanning()
-    ranges = []
-    for number in range(4):
-        seen = next(scans)
-        ranges += [each for each in seen.values() if each > 0 and number > 0]
+    next(scans)  # while the motor spins up
+    found = sum(angles(next(scans)) for _ in range(3))
     lidar.StopScanning()
     lidar.Disconnect()
-    room("x4 and PyLidar3", ranges, 3 * 300)
+    need(found > 3 * 300, f"x4 and PyLidar3: only {found} ranges")
+    print(f"x4 and PyLidar3: {found} ranges by angle at its port")
 
 
 {"points": points, "port": port, "x4": x4}[sys.argv[1]](*sys.argv[2:])
