@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <variant>
 
 namespace g4lidar {
@@ -36,9 +37,12 @@ std::optional<double> direction_survey::range_mm(std::size_t degree) const {
 
 std::optional<std::size_t> direction_survey::nearest() const {
   std::optional<std::size_t> best;
+  double least_mm = std::numeric_limits<double>::infinity();
   for (std::size_t degree = 0; degree < ranges_.size(); ++degree) {
-    const auto here = range_mm(degree);
-    if (here && (!best || *here < *range_mm(*best))) best = degree;
+    const double here_mm = range_mm(degree).value_or(least_mm);
+    if (here_mm >= least_mm) continue;
+    least_mm = here_mm;
+    best = degree;
   }
   return best;
 }

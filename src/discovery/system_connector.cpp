@@ -117,7 +117,7 @@ result<void> system_connector::search_first(const std::function<bool()>& is_canc
 /// A reconnect must not end the program if there is no memory.
 result<std::unique_ptr<transport>> system_connector::connect() noexcept {
   try {
-    if (searched_) return *std::exchange(searched_, std::nullopt);
+    if (auto found = std::exchange(searched_, std::nullopt)) return *std::move(found);
     auto opened = open_transport();
     if (!opened && first_.path.empty()) return tl::unexpected(explained(opened.error(), device_));
     return opened;

@@ -31,6 +31,7 @@ std::int64_t in_ns(milliseconds time) noexcept {
 
 std::string model_words() {
   std::vector<const model*> all;
+  all.reserve(models.size());
   for (const model& each : models) all.push_back(&each);
   return model_words(all);
 }

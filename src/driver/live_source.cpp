@@ -45,9 +45,8 @@ result<void> live_source::advance(std::int64_t deadline_ns) {
       break;
   }
   if (auto done = round(deadline_ns); !done) return break_off(done.error());
-  if (!refused_) return {};
-  const error why = *std::exchange(refused_, std::nullopt);
-  return tl::unexpected(why);
+  if (const auto why = std::exchange(refused_, std::nullopt)) return tl::unexpected(*why);
+  return {};
 }
 
 result<void> live_source::break_off(const error& broken) {

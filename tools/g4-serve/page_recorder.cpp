@@ -135,8 +135,7 @@ std::string page_recorder::begin() {
 
 void page_recorder::add(const g4lidar::scan& found) {
   model_ = found.model;
-  if (!writer_) return;
-  if (!found.is_piece()) writer_->scan(found);
+  if (writer_ && !found.is_piece()) writer_->scan(found);
   check();
 }
 
@@ -145,6 +144,7 @@ void page_recorder::add(const g4lidar::stamped_odometry& at) {
 }
 
 void page_recorder::check() {
+  if (!writer_) return;
   if (const auto why = writer_->take_error()) return end(reason_of(*why, shown_.file));
   const auto counts = writer_->counts();
   if (counts.file_bytes >= free_bytes_) {

@@ -85,6 +85,7 @@ void scan_publisher::on_lidar_scan(served_lidar& from, const g4lidar::scan& scan
 
 std::vector<page_lidar> scan_publisher::known() const {
   std::vector<page_lidar> all;
+  all.reserve(lidars_.size());
   for (const auto& each : lidars_) all.push_back(each->known());
   return all;
 }
@@ -115,6 +116,7 @@ void scan_publisher::on_lidar_settings() { registry_.settings(settings_text(know
 
 page_status scan_publisher::tick() {
   std::vector<page_status> all;
+  all.reserve(lidars_.size());
   for (const auto& each : lidars_) all.push_back(each->status());
   page_status status = options_.merges ? merged_status(std::move(all)) : std::move(all.front());
   registry_.status(status_text(status));

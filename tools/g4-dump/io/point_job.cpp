@@ -74,8 +74,7 @@ class point_run {
     if (!job_.text) known = model_of(common_, &recognised_);
     if (known == nullptr && kind_ == source_kind::raw_bytes && !job_.text) known = open_pipe();
     if (job_.text) {
-      open_input();
-      text_model_ = model_of_text(*input_, *job_.text, common_);
+      text_model_ = model_of_text(open_input(), *job_.text, common_);
       known = &text_model_;
     }
     mask_ = mask_in(common_.mask);
@@ -97,23 +96,22 @@ class point_run {
 
  private:
   [[nodiscard]] bool has_scan_files() const { return job_.file != scan_file::none; }
-  void open_input() {
-    input_.emplace(path_of_source(common_.source),
-                   job_.text ? "Give csv or jsonl as g4-dump writes it."
-                             : "Give a file of raw bytes from the lidar's port, or "
-                               "pipe them in.");
+  input& open_input() {
+    return input_.emplace(path_of_source(common_.source),
+                          job_.text ? "Give csv or jsonl as g4-dump writes it."
+                                    : "Give a file of raw bytes from the lidar's port, or "
+                                      "pipe them in.");
   }
   /// The model of a pipe is not known before its first bytes.
   const g4lidar::model* open_pipe() {
-    open_input();
-    recognised_ = input_->recognise(common_);
-    return recognised_->which;
+    return recognised_.emplace(open_input().recognise(common_)).which;
   }
   /// Makes the writer, with the columns and the turn of the model.
   void use_model(const g4lidar::model& which) {
     model_ = &which;
     // A G4 measures 1286 points at 7 Hz.
-    bins_ = job_.log == slam_log::carmen && job_.bins == 0 ? 2 * default_bins(which) : job_.bins;
+    bins_ = job_.log == slam_log::carmen && job_.bins == 0 ? std::size_t{2} * default_bins(which)
+                                                           : job_.bins;
     job_.style.intensity = has_intensity(which);
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     job_.style.turn_deg = which.turn_deg;
@@ -201,8 +199,7 @@ class point_run {
   }
 
   void read_file() {
-    if (!input_) open_input();
-    input& in = *input_;
+    input& in = input_ ? *input_ : open_input();
     output out(output_name(), when_it_appears(in.id().has_value()));
     refuse_same_file(in.id(), out);
     const std::uint64_t found = job_.text ? read_text(in, out) : read_bytes(in, out);

@@ -138,14 +138,14 @@ void list_lidar(const packets_options& options) {
   std::string lines;
   callback_sink kept([&](std::string_view text) { lines += text; });
   const time_style wanted = common.time.value_or(time_style::absolute);
-  std::optional<protocol_log> log;
+  std::unique_ptr<protocol_log> log;
   const g4lidar::model* logged = nullptr;
   const auto begin = [&](const g4lidar::model& which) {
     if (log && logged->word == which.word) return;
     if (log) log->finish();
     logged = &which;
-    log.emplace(style_for(options.style, which), time_shift(wanted, wall_clock().ahead().count()),
-                kept);
+    log = std::make_unique<protocol_log>(style_for(options.style, which),
+                                         time_shift(wanted, wall_clock().ahead().count()), kept);
   };
   begin(g4_model);  // if nothing can be opened
   const auto write = [&] {
