@@ -90,7 +90,7 @@ void acceptance_run::sample_rate(acceptance_result& into) {
     if (!code || *code < 0 || *code > 9) return into.add_finding(differs, "D0 is not answered.");
     static_cast<void>(link_->start());
     static_cast<void>(link_->survey(measured_ns));  // while the motor spins up
-    const stream_survey heard = link_->survey(measured_ns);
+    const stream_survey heard = link_->steady_survey(measured_ns);
     link_->stop();
     const std::string name = "code_" + std::to_string(*code);
     into.add(name + "_hz", heard.sample_rate_hz());

@@ -135,6 +135,17 @@ stream_survey acceptance_link::survey(std::int64_t time_ns) {
   return made;
 }
 
+stream_survey acceptance_link::steady_survey(std::int64_t time_ns) {
+  constexpr int most = 3;
+  constexpr std::int64_t short_ns = 5'000 * ms;
+  constexpr std::int64_t least_gaps = 20;  // of the longest length, that fit into the time
+  for (int i = 1;; ++i) {
+    const stream_survey made = survey(time_ns);
+    const bool is_steady = made.longest_gap_ns() * least_gaps < time_ns;
+    if (is_steady || i == most || time_ns > short_ns || monitor_.is_over()) return made;
+  }
+}
+
 std::optional<std::int32_t> acceptance_link::go_to_limit(std::uint8_t code) {
   constexpr int most_steps = 20;  // of 1 Hz
   std::optional<std::int32_t> last;

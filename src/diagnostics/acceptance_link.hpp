@@ -71,6 +71,8 @@ class acceptance_link {
   bool set_dtr(bool high);
   /// A scan of this length.
   [[nodiscard]] stream_survey survey(std::int64_t time_ns);
+  /// The same for its rates: a short one in which the stream pauses, as where the host is busy, is repeated.
+  [[nodiscard]] stream_survey steady_survey(std::int64_t time_ns);
   /// Changes the frequency by `code` until it does not change any more; the last reply.
   [[nodiscard]] std::optional<std::int32_t> go_to_limit(std::uint8_t code);
 

@@ -92,7 +92,7 @@ void acceptance_run::stream(acceptance_result& into) {
   }
   static_cast<void>(link_->survey(spun_up_ns));
   const std::uint64_t skipped_before = link_->monitor().counts().skipped_bytes();
-  surveyed_.emplace(link_->survey(std::chrono::nanoseconds(options_.stream_time).count()));
+  surveyed_.emplace(link_->steady_survey(std::chrono::nanoseconds(options_.stream_time).count()));
   const stream_survey& heard = *surveyed_;
   link_->stop();
   into.add("packets", heard.packets());

@@ -62,6 +62,8 @@ void stream_survey::take(const event& found, std::int64_t arrival_ns) {
 }
 
 void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
+  if (packets_ > 0) longest_gap_ns_ = std::max(longest_gap_ns_, arrival_ns - last_packet_ns_);
+  last_packet_ns_ = arrival_ns;
   ++packets_;
   if (const auto fits = revolution_.add(packet)) ++crc_.at(*fits ? 1 : 0);
   static_cast<void>(reader_.add(packet));

@@ -45,6 +45,8 @@ class stream_survey {
 
   [[nodiscard]] std::uint64_t packets() const noexcept { return packets_; }
   [[nodiscard]] std::uint64_t zero_packets() const noexcept { return zero_packets_; }
+  /// The longest time between two packets.
+  [[nodiscard]] std::int64_t longest_gap_ns() const noexcept { return longest_gap_ns_; }
   [[nodiscard]] std::uint64_t bad_checksums() const noexcept { return bad_checksums_; }
   [[nodiscard]] std::size_t most_samples() const noexcept { return most_samples_; }
   [[nodiscard]] std::uint64_t samples() const noexcept {
@@ -93,6 +95,8 @@ class stream_survey {
   std::size_t most_samples_ = 0;
   std::int64_t first_zero_ns_ = 0;
   std::int64_t last_zero_ns_ = 0;
+  std::int64_t last_packet_ns_ = 0;
+  std::int64_t longest_gap_ns_ = 0;
   std::uint64_t samples_ = 0;          // since the first zero packet
   std::uint64_t samples_at_zero_ = 0;  // before the last one
   std::uint64_t reported_dhz_ = 0;     // the sum

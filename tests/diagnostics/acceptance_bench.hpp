@@ -72,6 +72,7 @@ struct acceptance_bench {
   std::optional<sim::device_options> returns_as{};  ///< Another lidar is plugged in.
   std::uint32_t set_baud = 0;                       ///< What the system sets; 0: the wanted rate.
   const port_info* port = nullptr;
+  std::vector<sim::fault> faults{};
   std::chrono::milliseconds stream_time = std::chrono::seconds(10);
 
   explicit acceptance_bench(std::string_view word) : expected(word) {
@@ -82,7 +83,7 @@ struct acceptance_bench {
     // A room with a wall 0.8 m ahead of the lidar, whose cable points to +x; the others are 4 m away.
     const sim::world room{{{4, -4, 4, 4}, {4, 4, -0.8, 4}, {-0.8, 4, -0.8, -4}, {-0.8, -4, 4, -4}},
                           {0.0, 0.0, -ahead_deg}};
-    sim::device simulated(room, options);
+    sim::device simulated(room, options, faults);
     sim::device other(room, returns_as.value_or(options));
     sim::virtual_clock clock;
     if (scans) {
@@ -104,6 +105,9 @@ struct acceptance_bench {
       }
       return placed_mm;
     };
+    how.on_step = [&](acceptance_step step) {
+      if (step == acceptance_step::stream) stream_began_ns = clock.now_ns();
+    };
     how.is_cancelled = [this] { return cancels; };
     auto all = run_acceptance(from, how);
     static_cast<void>(simulated.is_plugged(clock.now_ns() + 1'000'000'000));
@@ -116,6 +120,7 @@ struct acceptance_bench {
   bool motor_turns = true;
   sim::device_settings settings;
   double seconds = 0.0;
+  std::int64_t stream_began_ns = 0;
 };
 
 inline const acceptance_result& at(const std::vector<acceptance_result>& all,

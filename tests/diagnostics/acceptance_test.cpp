@@ -101,6 +101,21 @@ TEST(Acceptance, AUserWhoDeclines_OnlyHisStepsAreLeftOut) {
   }
 }
 
+// As on a computer that is busy: a short scan with a pause has no rate.
+TEST(Acceptance, APauseInAShortScan_IsNoDifference) {
+  bench first("g4");
+  first.stream_time = std::chrono::seconds(2);
+  static_cast<void>(first.run());
+  constexpr std::int64_t after_ns = 3'500'000'000;  // when the motor has spun up
+  bench of("g4");
+  of.stream_time = first.stream_time;
+  of.faults = {
+      sim::make_fault(sim::fault_kind::stall, first.stream_began_ns + after_ns, 1'000'000'000)};
+  const auto all = of.run();
+  EXPECT_EQ(at(all, stream).outcome, agrees) << all_of(all);
+  EXPECT_NEAR(number_of(at(all, stream), "sample_rate_hz"), 9000.0, 90.0) << all_of(all);
+}
+
 TEST(Acceptance, Cancelled_TheLidarIsStopped) {
   bench of("g4");
   of.cancels = true;
