@@ -19,6 +19,7 @@
 #include "g4lidar/recording/reader.hpp"
 #include "io/output.hpp"
 #include "io/service_watch.hpp"
+#include "io/shape_files.hpp"
 #include "read_loop.hpp"
 
 namespace g4_tool {
