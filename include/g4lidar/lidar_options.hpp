@@ -59,9 +59,10 @@ struct lidar_options {
   /// Bits per second, of a serial port and of the one behind `tcp:`; 0: the usual rate of the model.
   std::uint32_t baud = 0;
 
-  std::optional<g4lidar::sample_rate> sample_rate{};  ///< Measurements per second.
-  std::optional<scan_frequency> frequency{};          ///< Revolutions per second, 5 to 12 Hz.
-  std::optional<motor_direction> direction{};         ///< In which direction the head turns.
+  std::optional<g4lidar::sample_rate>
+      sample_rate{};  ///< Measurements per second: one of those of the model.
+  std::optional<scan_frequency> frequency{};     ///< Revolutions per second; a G4 has 5 to 12 Hz.
+  std::optional<motor_direction> direction{};    ///< In which direction the head turns.
   std::optional<constant_frequency> constant{};  ///< Whether the lidar regulates its frequency.
   std::optional<low_power> idle{};               ///< Whether the motor stops when idle.
   std::optional<power_down_protection>

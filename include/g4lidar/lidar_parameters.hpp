@@ -50,6 +50,9 @@ struct parameter {
 [[nodiscard]] G4LIDAR_API std::span<const parameter> all_parameters();
 /// Null if there is none.
 [[nodiscard]] G4LIDAR_API const parameter* find_parameter(std::string_view name);
+/// The row for a lidar of this model: its values or limits instead of those of all models. `constraints` states
+/// where the model does not have the setting.
+[[nodiscard]] G4LIDAR_API parameter limited_to(const model& which, const parameter& of);
 /// The value of a setting as the device gave it; nothing for an answer that is of none.
 [[nodiscard]] G4LIDAR_API parameter_value value_of(const answer& given);
 /// The value that a setting is to have; else why not.
@@ -75,6 +78,8 @@ class G4LIDAR_API lidar_parameters {
   [[nodiscard]] std::string change(lidar* device, std::span<const named_value> wanted);
   /// *Any thread.*
   [[nodiscard]] parameter_value value(const parameter& of) const;
+  /// The row of this lidar: limited_to() its model, as soon as that is known. *Any thread.*
+  [[nodiscard]] parameter row(const parameter& of) const;
 
  private:
   using device_change = std::pair<const parameter*, answer>;

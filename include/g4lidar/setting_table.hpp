@@ -44,7 +44,7 @@ struct setting_info {
   std::int32_t step = 10;  ///< Of the values as they are written; others are possible.
 };
 
-/// All settings, with the sample rates of a G4, and the limits of all models together. *Pure.*
+/// All settings, with the values and the limits of all models together. *Pure.*
 [[nodiscard]] G4LIDAR_API std::span<const setting_info> all_settings() noexcept;
 /// The setting that an answer is of; null if it is of none. *Pure.*
 [[nodiscard]] G4LIDAR_API const setting_info* setting_of(const answer& value) noexcept;

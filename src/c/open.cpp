@@ -31,8 +31,9 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
     const char* error;
   };
   const std::array<row, 6> settings{{
-      {given.sample_rate_hz, "sample_rate_hz: 4000, 8000, 9000 or 0"},
-      {given.frequency_chz, "frequency_chz: 500 to 1200, or 0"},
+      {given.sample_rate_hz,
+       "sample_rate_hz: 4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000 or 0"},
+      {given.frequency_chz, "frequency_chz: 300 to 1600, or 0"},
       {given.direction, "direction: a g4lidar_direction or 0"},
       {given.constant_frequency, "constant_frequency: a g4lidar_switch or 0"},
       {given.low_power, "low_power: a g4lidar_switch or 0"},

@@ -245,7 +245,7 @@ void first_contact::contradict(stage_report& baud, const recognised_lidar& found
   if (is_silent_one) {
     of_.answers.find(diagnosis::one_way_lidar);
     of_.answers.remark = "This lidar answers nothing" + where +
-                         ". Its bytes are those of these models: " + words + ". " +
+                         ". Its bytes are those of these models: " + words + ". But " +
                          one_of(*lidar.which) + " answers.";
   } else {
     baud.find(diagnosis::other_device);

@@ -66,7 +66,7 @@ void find_other_speed(stage_report& rate, double samples_per_s, double samples_p
   rate.find(diagnosis::other_device);
   rate.outcome = std::min(rate.outcome, stage_verdict::warn);
   rate.remark = one_of(wanted) + " measures " + list_of(rates) + " samples per second";
-  rate.remark.front() = 'A';
+  rate.remark.front() = 'A';  // "An X4"
   if (most_hz > 0.0) {
     rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
                    std::to_string(std::lround(most_hz)) + " Hz";
@@ -127,9 +127,7 @@ constexpr std::array<std::pair<diagnosis, diagnostic_stage>, 13> last_of_stages{
 }  // namespace
 
 std::string one_of(const model& which) {
-  const bool is_spoken_with_vowel =
-      std::string_view("FRSX").find(which.name.front()) != std::string_view::npos;
-  return (is_spoken_with_vowel ? "an " : "a ") + std::string(which.name);
+  return std::string(article_of(which)).append(" ").append(which.name);
 }
 
 diagnostic_stage stage_of(diagnosis what) noexcept {

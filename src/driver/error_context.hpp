@@ -60,7 +60,7 @@ class error_context {
       const std::string_view before = code == 0 ? "" : code + 1 == count ? " or " : ", ";
       add(before).add(rate_hz_of_code(which, code));
     }
-    return add(" of a ").add(which.name);
+    return add(" of ").add(article_of(which)).add(" ").add(which.name);
   }
   /// "5 Hz to 12 Hz of a G4".
   error_context& add_frequencies(const model& which) noexcept {
@@ -68,7 +68,7 @@ class error_context {
       return scan_frequency{static_cast<std::uint16_t>(10 * dhz)};
     };
     add(hz(which.frequency.min_dhz)).add(" to ").add(hz(which.frequency.max_dhz));
-    return add(" of a ").add(which.name);
+    return add(" of ").add(article_of(which)).add(" ").add(which.name);
   }
 
   // NOLINTNEXTLINE(google-explicit-constructor): it is a text.

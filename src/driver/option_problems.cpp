@@ -36,7 +36,8 @@ error bad_frequency(const model& which, scan_frequency given) noexcept {
   const auto [least_dhz, most_dhz, reply, ct] = which.frequency;
   error_context words("frequency: ");
   words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
-  words.add(" to ").add(most_dhz / 10U).add(" Hz of a ").add(which.name).add(")");
+  words.add(" to ").add(most_dhz / 10U).add(" Hz of ").add(article_of(which));
+  words.add(" ").add(which.name).add(")");
   return bad(words, given.chz, "");
 }
 

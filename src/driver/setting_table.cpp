@@ -6,23 +6,25 @@
 #include <limits>
 #include <variant>
 
+#include "g4lidar/core/session/model_requests.hpp"
+
 namespace g4lidar {
 namespace {
 
-constexpr std::array<setting_value, 3> sample_rates{{{"4k", 4000, sample_rate::khz_4},
-                                                     {"8k", 8000, sample_rate::khz_8},
-                                                     {"9k", 9000, sample_rate::khz_9}}};
 constexpr setting_value rate_of(std::string_view word, std::uint16_t hz) {
   return {word, hz, sample_rate{hz}};
 }
-/// Of models other than the G4.
-constexpr std::array other_rates{rate_of("6k", 6000), rate_of("10k", 10'000),
-                                 rate_of("16k", 16'000), rate_of("18k", 18'000),
-                                 rate_of("20k", 20'000)};
-constexpr const setting_value* other_rate(std::int32_t hz) noexcept {
-  const auto* const at = std::ranges::find(other_rates, hz, &setting_value::number);
-  return at == other_rates.end() ? nullptr : &*at;
-}
+/// Of all models whose rate can be set.
+constexpr std::array sample_rates{
+    rate_of("4k", 4000),    rate_of("6k", 6000),    rate_of("8k", 8000),    rate_of("9k", 9000),
+    rate_of("10k", 10'000), rate_of("16k", 16'000), rate_of("18k", 18'000), rate_of("20k", 20'000)};
+static_assert(std::ranges::all_of(models, [](const model& each) {
+  return std::ranges::all_of(each.rates.entries, [&](const sample_rate_entry& rate) {
+    const auto hz = static_cast<std::int32_t>(rate.hz);
+    return !has_request(each, request_kind::set_sample_rate) || hz == 0 ||
+           std::ranges::find(sample_rates, hz, &setting_value::number) != sample_rates.end();
+  });
+}));
 /// The limits of the scan frequency of all models, in 0.01 Hz.
 constexpr std::int32_t least_of_all_chz = 300;
 constexpr std::int32_t most_of_all_chz = 1600;
@@ -100,10 +102,6 @@ const setting_info* setting_of(const answer& value) noexcept {
 std::optional<answer> value_of(const setting_info& of, std::int32_t number) noexcept {
   const auto at = std::ranges::find(of.values, number, &setting_value::number);
   if (at != of.values.end()) return at->value;
-  if (of.change == request_kind::set_sample_rate) {
-    const setting_value* const found = other_rate(number);
-    return found == nullptr ? std::nullopt : std::optional(found->value);
-  }
   if (!of.values.empty() || number < least_of_all_chz || number > most_of_all_chz) {
     return std::nullopt;
   }
@@ -114,9 +112,6 @@ std::optional<answer> value_of(const setting_info& of, std::int32_t number) noex
 const setting_value* find_value(const answer& value) noexcept {
   const setting_info* const of = setting_of(value);
   if (of == nullptr) return nullptr;
-  const auto* const rate = std::get_if<sample_rate>(&value);
-  const auto hz = rate == nullptr ? 0 : static_cast<std::int32_t>(to_hz(*rate));
-  if (const setting_value* const found = other_rate(hz)) return found;
   const auto at = std::ranges::find(of->values, value, &setting_value::value);
   return at == of->values.end() ? nullptr : &*at;
 }

@@ -206,8 +206,11 @@ std::string protocol_log::meaning_of(response_view response) const {
       return "scan started";
     case response_kind::device_info:
       if (const auto info = response.as_device_info()) {
+        const model* const two_way = model_with_id(info->model, link_kind::two_way);
+        const model* const known =
+            two_way != nullptr ? two_way : model_with_id(info->model, link_kind::one_way);
         return "device information: model " + std::to_string(info->model) +
-               (info->model == model_g4 ? " (G4)" : "") + ", firmware " +
+               (known != nullptr ? " (" + std::string(known->name) + ")" : "") + ", firmware " +
                std::to_string(info->firmware_major) + "." + std::to_string(info->firmware_minor) +
                ", hardware " + std::to_string(info->hardware) + ", serial " +
                std::string(info->serial_number());

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "g4lidar/core/session/model_requests.hpp"
 #include "number_text.hpp"
 
 namespace g4lidar {
@@ -81,6 +82,24 @@ std::variant<answer, std::string> decimal_of(const setting_info& of, double numb
 
 }  // namespace
 
+parameter limited_to(const model& which, const parameter& of) {
+  parameter made = of;
+  if (of.setting == nullptr) return made;
+  if (!has_request(which, of.setting->change)) {
+    made.constraints = "this model does not have it";
+    made.range = {};
+  } else if (of.setting->type == setting_type::decimal) {
+    made.range = {which.frequency.min_dhz / 10.0, which.frequency.max_dhz / 10.0, of.range[2]};
+  } else if (of.setting->type == setting_type::whole) {
+    made.constraints.clear();
+    for (const sample_rate_entry& each : which.rates.entries) {
+      if (each.hz == 0) continue;
+      made.constraints.append(made.constraints.empty() ? "" : ", ").append(std::to_string(each.hz));
+    }
+  }
+  return made;
+}
+
 parameter_value value_of(const answer& given) {
   const setting_info* const of = setting_of(given);
   const auto number = number_of(given);
@@ -105,11 +124,6 @@ std::variant<answer, std::string> answer_of(const setting_info& of, const parame
     const bool is_number = of.type == setting_type::whole && word == std::to_string(each.number);
     if (is_number || word == each.word) return each.value;
     known.append(known.empty() ? "" : ", ").append(each.word);
-  }
-  // A sample rate that a G4 does not have.
-  const auto* const number = std::get_if<std::int64_t>(&wanted);
-  if (of.type == setting_type::whole && number != nullptr && *number > 0 && *number <= 1'000'000) {
-    if (const auto made = value_of(of, static_cast<std::int32_t>(*number))) return *made;
   }
   return in_quotes(word) + " is not one of " + known;
 }
@@ -182,6 +196,13 @@ parameter_value lidar_parameters::value(const parameter& of) const {
   const std::lock_guard lock(mutex_);
   const auto at = values_.find(of.name);
   return at == values_.end() ? parameter_value() : at->second;
+}
+
+parameter lidar_parameters::row(const parameter& of) const {
+  const parameter_value known = value(*find_parameter("model"));
+  const auto* const word = std::get_if<std::string>(&known);
+  const model* const which = word != nullptr ? model_named(*word) : nullptr;
+  return which != nullptr ? limited_to(*which, of) : of;
 }
 
 void lidar_parameters::read_device(lidar& device) {

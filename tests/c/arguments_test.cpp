@@ -218,7 +218,8 @@ TEST(CArguments, ImpossibleOptionsAreNamed) {
   };
   EXPECT_TRUE(names(refused([](auto& o) { o.frequency_chz = 70000; }), "frequency_chz"));
   EXPECT_TRUE(names(refused([](auto& o) { o.frequency_chz = 100; }), "frequency"));
-  EXPECT_TRUE(names(refused([](auto& o) { o.sample_rate_hz = 5000; }), "sample_rate_hz"));
+  EXPECT_TRUE(names(refused([](auto& o) { o.sample_rate_hz = 5000; }),
+                    "sample_rate_hz: 4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000 or 0"));
   EXPECT_TRUE(names(refused([](auto& o) { o.direction = 3; }), "direction"));
   EXPECT_TRUE(names(refused([](auto& o) { o.low_power = -1; }), "low_power"));
   EXPECT_TRUE(names(refused([](auto& o) { o.constant_frequency = 3; }), "constant_frequency"));

@@ -97,8 +97,10 @@ TEST_P(EveryModel, RecordingIsReadByEachCommand) {
   ASSERT_EQ(scans.code, 0) << scans.err;
   EXPECT_GT(std::ranges::count(scans.out, '\n'), 8);
   EXPECT_EQ(run({"view", file_, "--once"}).code, 0);
-  const outcome doctor = run({"doctor", file_});
+  const outcome doctor = run({"doctor", file_, "--json"});
   EXPECT_EQ(doctor.code, 0) << doctor.out;
+  EXPECT_THAT(doctor.out, HasSubstr("\"diagnoses\":[]"));
+  EXPECT_THAT(doctor.out, testing::Not(HasSubstr("\"diagnoses\":[{")));  // a warning, too
   const outcome again = run({"replay", file_, "--verify"});
   EXPECT_EQ(again.code, 0) << again.err;
   const outcome packets = run({"packets", file_, "-n", "20"});

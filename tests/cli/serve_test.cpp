@@ -131,7 +131,7 @@ TEST_F(Serve, DeviceOptions_AreApplied) {
       EXPECT_THAT(done.err, HasSubstr(why));
     }
   };
-  expect_refused("colour=red", "'colour' is not one of baud, ");
+  expect_refused("colour=red", "'colour' is not one of fault, ");
   expect_refused("header_ns=2parsecs", "'2parsecs' is not a time");
   expect_refused("header_ns=2min", "must take 0 to 60 s");
   expect_refused("boot_text=1", "'1' is not one of false, true");

@@ -167,6 +167,18 @@ TEST_F(FoundModel, ValuesOfNoModelAreRefusedWithTheLimitsOfAll) {
   const outcome refused = run({"set", port_, "frequency=17"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_THAT(refused.err, HasSubstr("'17' is not in the range 3 to 16"));
+  const outcome rate = run({"set", port_, "sample_rate=7k"});
+  EXPECT_EQ(rate.code, 2);
+  EXPECT_THAT(rate.err, HasSubstr("'7k' is not one of 4k, 6k, 8k, 9k, 10k, 16k, 18k, 20k"));
+}
+
+TEST_F(FoundModel, RatesOfAnotherModelAreRefusedWithThoseOfItsOwn) {
+  serve("f4-pro");
+  const outcome refused = run({"set", port_, "sample_rate=9k"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err,
+              HasSubstr("sample_rate=9k: an F4 Pro has 4000, 6000 samples per second"));
+  EXPECT_EQ(run({"set", port_, "sample_rate=6000"}).code, 0);
 }
 
 TEST_F(FoundModel, StopOfALidarWithoutCommands_DoesNotClaimIt) {

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -160,6 +162,15 @@ TEST(Model, EachRowHasTheKnownValues) {
 TEST(Model, WithoutANameItIsAG4) {
   EXPECT_EQ(g4_model.word, "g4");
   EXPECT_EQ(g4_model.name, "G4");
+}
+
+TEST(Model, ArticleIsThatOfTheSpokenName) {
+  const std::set<std::string_view> with_an{
+      "f4",     "f4-pro", "r2", "x2",  "x2l", "x3",     "x3-pro",       "x4",
+      "x4-pro", "s2",     "s4", "s4b", "scl", "s2-pro", "s2-intensity", "s2-pro-intensity"};
+  for (const model& each : models) {
+    EXPECT_EQ(article_of(each), with_an.contains(each.word) ? "an" : "a") << each.name;
+  }
 }
 
 TEST(Model, OtherWordsNameNone) {

@@ -111,6 +111,14 @@ if awk 'length($0) > 120 && !/^\|/ { print FILENAME ":" FNR ": " $0; found = 1 }
   missing=1
 fi
 
+# What describes the project or a program means every lidar of the family, not the G4 alone.
+described=(CMakeLists.txt debian/control package.xml pyproject.toml packaging/*.pc.in docs/reference/*Doxyfile
+  python/g4lidar/__init__.py tools/*/main.cpp ros/*/package.xml)
+if grep -nE '(^|[^-])YDLIDAR G4([^-]|$)' "${described[@]}" | grep -vF 'G4 and its family' >&2; then
+  echo "These lines name the G4 where any lidar of its family is meant" >&2
+  missing=1
+fi
+
 # Figures of speech, in documents, names, comments and messages alike (CONTRIBUTING.md, Style): as
 # words, as parts of names between underscores, and as parts of names that begin with a capital letter.
 figures='tells?|telling|told|says?|said|lives|twins?|ear|exam|rivals?|errands?|manners|portrait|noted|meanwhile|rote|pours?|poured|amid|strangers?|spoilt|forgives?|hurry|greets?|in.vain|wish|wishes|feeders?|whoever'

@@ -8,8 +8,12 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "cli/program.hpp"
+#include "g4lidar/sim/pty_port.hpp"
+#include "g4lidar/sim/setup.hpp"
+#include "g4lidar/sim/world.hpp"
 #include "subscriber.hpp"
 
 namespace ros2 {
@@ -81,6 +85,33 @@ TEST(Diagnostics, NoTwoLidarsInADomainHaveAStatusOfTheSameName) {
     EXPECT_THAT(names[serial], Contains(prefix + "counts"));
   }
   for (cli::program* const each : {&one, &two, &pair}) each->send(SIGINT);
+}
+
+// An X2 and an X3 send the same bytes.
+TEST(Diagnostics, StateListsTheModelsThatTheBytesFit) {
+  g4lidar::sim::device_options options;
+  ASSERT_TRUE(g4lidar::sim::use_model(options, "x2"));
+  auto served = g4lidar::sim::background_pty::open(
+      g4lidar::sim::device(g4lidar::sim::built_in_world(), options));
+  ASSERT_TRUE(served);
+  const test_domain domain;
+  subscriber<diagnostic_message> diagnostics(domain, "/diagnostics", dds::diagnostic_array);
+  cli::program tool({served->path()});
+  std::string found;
+  EXPECT_TRUE(comes_true([&] {
+    diagnostics.take([&](const diagnostic_message& message) {
+      for (std::uint32_t i = 0; i < message.status._length; ++i) {
+        const auto& status = message.status._buffer[i];
+        for (std::uint32_t k = 0; k < status.values._length; ++k) {
+          const auto& pair = status.values._buffer[k];
+          if (std::string_view(pair.key) == "candidates") found = pair.value;
+        }
+      }
+    });
+    return !found.empty();
+  }));
+  EXPECT_THAT(found, ::testing::StartsWith("x2, x2l, x3"));
+  tool.send(SIGINT);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <set>
@@ -18,6 +19,21 @@ namespace ros2 {
 namespace {
 
 using ::testing::HasSubstr;
+
+TEST(LimitedRow, HasTheValuesOfTheModel) {
+  const auto row = [](const char* name, const char* word) {
+    return limited_to(*g4lidar::model_named(word), *g4lidar::find_parameter(name));
+  };
+  const g4lidar::parameter& all = *g4lidar::find_parameter("sample_rate");
+  EXPECT_EQ(all.constraints, "4000, 6000, 8000, 9000, 10000, 16000, 18000, 20000");
+  EXPECT_EQ(row("sample_rate", "f4-pro").constraints, "4000, 6000");
+  EXPECT_EQ(row("sample_rate", "g6").constraints, "8000, 16000, 18000");
+  EXPECT_EQ(row("frequency", "tg15").range, (std::array{3.0, 16.0, 0.1}));
+  EXPECT_EQ(row("frequency", "t-mini-pro").range, (std::array{6.0, 12.0, 0.1}));
+  EXPECT_EQ(row("frequency", "x4").range, (std::array{0.0, 0.0, 0.0}));
+  EXPECT_EQ(row("frequency", "x4").constraints, "this model does not have it");
+  EXPECT_EQ(row("range_max", "x4").range, (std::array{0.0, 100.0, 0.0}));
+}
 
 /// A lidar with these options: walls in 2 m and, from 300 degrees on, in 4 m; a speck before the wall at 200 degrees,
 /// and a veiling point between the walls at 299.

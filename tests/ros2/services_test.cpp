@@ -211,12 +211,13 @@ TEST_F(Services, ParametersAreThoseOfTheDevice) {
   EXPECT_TRUE(comes_true([&] { return scans.take() > 0; })) << "the scan goes on";
 
   // Refused, and nothing changes; a whole number is a double, too.
-  EXPECT_THAT(set(setter, {named("frequency", number(20)), named("frequency", text("fast")),
-                           named("grid", whole(100)), named("nothing", whole(1)),
-                           named("sample_rate", whole(8001)), named("frequency", whole(6))}),
-              ElementsAre("frequency: '20' is not in the range 3 to 16", HasSubstr("a double"),
-                          HasSubstr("cannot change"), HasSubstr("no such parameter"),
-                          HasSubstr("'8001' is not one of 4k, 8k, 9k"), ""));
+  EXPECT_THAT(
+      set(setter, {named("frequency", number(20)), named("frequency", text("fast")),
+                   named("grid", whole(100)), named("nothing", whole(1)),
+                   named("sample_rate", whole(8001)), named("frequency", whole(6))}),
+      ElementsAre("frequency: '20' is not in the range 3 to 16", HasSubstr("a double"),
+                  HasSubstr("cannot change"), HasSubstr("no such parameter"),
+                  HasSubstr("'8001' is not one of 4k, 6k, 8k, 9k, 10k, 16k, 18k, 20k"), ""));
   EXPECT_EQ(lidar.settings().scan_frequency_chz, 600);
   tool.send(SIGINT);
   EXPECT_EQ(tool.wait().code, 130);
@@ -280,23 +281,29 @@ TEST_F(Services, SeveralLidarsHaveTheirNamesBeforeADot) {
 
   describe_client describer(domain_, "robot1/g4lidar/describe_parameters");
   types_client types(domain_, "robot1/g4lidar/get_parameter_types");
+  get_client getter(domain_, "robot1/g4lidar/get_parameters");
+  ASSERT_TRUE(
+      comes_true([&] { return get(getter, {"front.model"}) == std::vector<std::string>{"4 g4"}; }));
   char one[] = "front.frequency";
   char other[] = "front.serial_number";
-  std::vector<char*> wanted{one, other};
+  char third[] = "front.sample_rate";
+  std::vector<char*> wanted{one, other, third};
   describer.call({0, 0, sequence_of<dds_sequence_string>(wanted)}, [](const auto& reply) {
-    ASSERT_EQ(reply.descriptors._length, 2U);
+    ASSERT_EQ(reply.descriptors._length, 3U);
     const auto& frequency = reply.descriptors._buffer[0];
     EXPECT_STREQ(frequency.name, "front.frequency");
     EXPECT_EQ(frequency.type, 3);
     EXPECT_THAT(frequency.description, HasSubstr("Hz"));
     EXPECT_FALSE(frequency.read_only);
     ASSERT_EQ(frequency.floating_point_range._length, 1U);
-    EXPECT_EQ(frequency.floating_point_range._buffer[0].to_value, 16.0);
+    EXPECT_EQ(frequency.floating_point_range._buffer[0].from_value, 5.0);
+    EXPECT_EQ(frequency.floating_point_range._buffer[0].to_value, 12.0);
+    EXPECT_STREQ(reply.descriptors._buffer[2].additional_constraints, "4000, 8000, 9000");
     EXPECT_TRUE(reply.descriptors._buffer[1].read_only);
   });
   types.call({0, 0, sequence_of<dds_sequence_string>(wanted)}, [](const auto& reply) {
     EXPECT_THAT(std::vector(reply.types._buffer, reply.types._buffer + reply.types._length),
-                ElementsAre(3, 4));
+                ElementsAre(3, 4, 2));
   });
   tool.send(SIGINT);
 }

@@ -5,7 +5,7 @@
 namespace {
 
 constexpr const char* description =
-    R"(g4-dump is the console tool for the YDLIDAR G4, a 360-degree scanning lidar on a serial port.
+    R"(g4-dump is the console tool for the YDLIDAR G4 and its family, 360-degree lidars on a serial port.
 Without a command it prints points, and without a source it takes the only lidar that is connected.
 On a terminal, without any word, it lists the attached lidars and the commands, and sends nothing.
 
@@ -34,7 +34,7 @@ std::vector<verb> all_verbs() {
 
 int main(int argc, char** argv) {
   const g4_tool::program g4_dump{.name = "g4-dump",
-                                 .title = "The console tool for the YDLIDAR G4",
+                                 .title = "The console tool for the YDLIDAR G4 and its family",
                                  .description = description,
                                  .verbs = g4_tool::all_verbs,
                                  .default_verb = "dump",

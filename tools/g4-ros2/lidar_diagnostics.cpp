@@ -54,6 +54,11 @@ lidar_diagnostics::lidar_diagnostics(dds::bus& on, const ros2_options& options,
   if (!name.empty()) prefix_.append(name).append(" ");
 }
 
+void lidar_diagnostics::name_models(std::span<const model* const> candidates) {
+  const std::lock_guard lock(mutex_);
+  models_ = g4lidar::model_words(candidates);
+}
+
 void lidar_diagnostics::update(const source_reader& device, const scan_messages& messages,
                                std::int64_t stamp_ns) {
   const auto now = clock::now();
@@ -63,7 +68,12 @@ void lidar_diagnostics::update(const source_reader& device, const scan_messages&
   const reader_status state = device.reader().status();
   const std::string serial(state.information ? state.information->serial_number() : "");
   auto statuses = statuses_of(device.stages(), device.reader().counts(), serial);
-  statuses.insert(statuses.begin(), status_of_state(state, device.why()));
+  diagnostic_status first = status_of_state(state, device.why());
+  {
+    const std::lock_guard lock(mutex_);
+    if (!models_.empty()) first.values.emplace_back("candidates", models_);
+  }
+  statuses.insert(statuses.begin(), std::move(first));
   statuses.push_back(topics_.status(messages.counts()));
   for (const auto& each : more_) statuses.push_back(each());
   for (diagnostic_status& each : statuses) {

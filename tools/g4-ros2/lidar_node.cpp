@@ -111,6 +111,7 @@ void lidar_node::show_model(const model& which) {
 
 void lidar_node::on_open(g4lidar::lidar& device) {
   show_model(*candidates_of(device).front());
+  diagnostics_.name_models(candidates_of(device));
   if (is_played_) {
     feed_.follow(*device.player());
     now_ns_ = stamp_ns(device.player()->begin_ns());

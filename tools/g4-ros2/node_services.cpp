@@ -212,11 +212,13 @@ bool node_services::describe(dds::service& via, const void* request, const dds::
         rcl_interfaces_msg_dds__ParameterDescriptor_ made{};
         made.name = held.text(name);
         made.description = held.text(known == nullptr ? "" : known->what->description);
-        made.additional_constraints = held.text(known == nullptr ? "" : known->what->constraints);
+        made.additional_constraints = held.text("");
         if (known == nullptr) return made;
-        made.type = known->what->type;
-        made.read_only = known->what->kind == parameter_kind::read_only;
-        if (const auto [least, most, step] = known->what->range; least < most) {
+        const parameter row = known->lidar->parameters().row(*known->what);
+        made.additional_constraints = held.text(row.constraints);
+        made.type = row.type;
+        made.read_only = row.kind == parameter_kind::read_only;
+        if (const auto [least, most, step] = row.range; least < most) {
           made.floating_point_range._buffer = &held.ranges.emplace_back(least, most, step);
           made.floating_point_range._length = made.floating_point_range._maximum = 1;
         }

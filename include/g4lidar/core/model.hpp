@@ -168,6 +168,11 @@ inline constexpr auto models = [] {
   return nullptr;
 }
 
+/// "an" before the names that are spoken with a vowel, as X4 and SCL; else "a". *Pure.*
+[[nodiscard]] constexpr std::string_view article_of(const model& which) noexcept {
+  return std::string_view("FRSX").find(which.name.front()) != std::string_view::npos ? "an" : "a";
+}
+
 /// The model whose devices, and no other model's with a connection of this kind, identify themselves
 /// with `id`; else null. Valid forever. *Pure.* A reply comes from a two-way lidar; an announcement
 /// after power-on may come from a one-way lidar.

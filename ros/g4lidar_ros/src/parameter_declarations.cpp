@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "parameter_declarations.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/core/session/model_requests.hpp"
 #include "g4lidar/lidar_parameters.hpp"
-#include "g4lidar/setting_table.hpp"
 
 namespace g4lidar_ros {
 namespace {
@@ -53,48 +50,17 @@ rclcpp::ParameterValue first_value(const g4lidar::parameter& of) {
       of.kind == g4lidar::parameter_kind::filter && of.name != "ignore" ? "off" : "");
 }
 
-/// What a setting of the device can be. `model`: null if none is named, so that any may be found.
-void limit(descriptor& made, const g4lidar::parameter& of, const g4lidar::model* model) {
-  if (model != nullptr && !g4lidar::has_request(*model, of.setting->change)) {
-    made.additional_constraints = "this model does not have it";
-    return;
-  }
-  if (of.setting->type == g4lidar::setting_type::decimal) {
-    std::uint16_t least_dhz = UINT16_MAX;
-    std::uint16_t most_dhz = 0;
-    for (const g4lidar::model& each : g4lidar::models) {
-      const bool is_set = each.frequency.max_dhz != 0;
-      if (!is_set || (model != nullptr && model != &each)) continue;
-      least_dhz = std::min(least_dhz, each.frequency.min_dhz);
-      most_dhz = std::max(most_dhz, each.frequency.max_dhz);
-    }
-    made.floating_point_range.resize(1);
-    made.floating_point_range[0].from_value = least_dhz / 10.0;
-    made.floating_point_range[0].to_value = most_dhz / 10.0;
-    made.floating_point_range[0].step = of.range[2];
-  } else if (of.setting->type == g4lidar::setting_type::whole && model != nullptr) {
-    made.additional_constraints.clear();
-    for (const g4lidar::sample_rate_entry& each : model->rates.entries) {
-      if (each.hz == 0) break;
-      if (!made.additional_constraints.empty()) made.additional_constraints += ", ";
-      made.additional_constraints += std::to_string(each.hz);
-    }
-  } else if (of.setting->type == g4lidar::setting_type::whole) {
-    made.additional_constraints += " of a G4; those of the model";
-  }
-}
-
 /// A parameter of the lidar. Its type is that of the table, but 10 is also taken for 10.0, and true for "on".
-void declare(rclcpp_lifecycle::LifecycleNode& node, const g4lidar::parameter& of,
+/// `model`: null if none is named, so that any may be found.
+void declare(rclcpp_lifecycle::LifecycleNode& node, const g4lidar::parameter& row,
              const g4lidar::model* model) {
+  const g4lidar::parameter of = model != nullptr ? g4lidar::limited_to(*model, row) : row;
   descriptor made;
   made.description = of.description;
   made.additional_constraints = of.constraints;
   made.dynamic_typing = true;
   if (of.kind == g4lidar::parameter_kind::read_only) made.additional_constraints = "read-only";
-  if (of.setting != nullptr) {
-    limit(made, of, model);
-  } else if (const auto [least, most, step] = of.range; least < most) {
+  if (const auto [least, most, step] = of.range; least < most) {
     made.floating_point_range.resize(1);
     made.floating_point_range[0].from_value = least;
     made.floating_point_range[0].to_value = most;

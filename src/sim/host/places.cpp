@@ -27,7 +27,7 @@ result<std::shared_ptr<background_pty>> serve_alone(device simulated) {
   if (none || ::mkdtemp(directory.data()) == nullptr) {
     return failure(task::opening, problem::system, directory, none ? none.value() : errno);
   }
-  result<background_pty> port = background_pty::open(std::move(simulated), directory + "/g4");
+  result<background_pty> port = background_pty::open(std::move(simulated), directory + "/lidar");
   if (!port) {
     fs::remove(directory, none);
     return tl::unexpected<error>(port.error());

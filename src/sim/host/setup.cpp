@@ -176,17 +176,16 @@ std::string named(std::string_view name, const std::string& wrong) {
 }
 
 std::string set_member(device_options& device, std::string_view name, std::string_view value) {
-  std::string known;
   for (const auto& [each, place] : members) {
     if (each == name) {
       return named(
           name, std::visit([&](auto found) { return read_into(at(device, found), value); }, place));
     }
-    known.append(each).append(", ");
   }
-  return refused(name,
-                 "is not one of " + known +
-                     "fault, firmware, model, model_id, other_layout, path, seed, serial, world");
+  return refused(
+      name,
+      "is not one of fault, firmware, model, model_id, other_layout, path, seed, serial, "
+      "world, or of those in docs/sim_device.md");
 }
 
 // "3.2"

@@ -29,17 +29,17 @@ g4lidar::model model_of_text(input& in, text_source form, const common_options& 
   if (lines.unexpected().empty()) {
     if (named == nullptr && common.frame == g4lidar::frame::robot) {
       logger::info(
-          fmt::format("{} does not name a lidar: its points are turned as those of a {}; --model "
-                      "names another\n",
-                      in.title(), made.name));
+          fmt::format("{} does not name a lidar: its points are turned as those of {} {}; "
+                      "--model names another\n",
+                      in.title(), article_of(made), made.name));
     }
     return made;
   }
   if (named == nullptr) {
-    logger::info(
-        fmt::format("{} has {}, which a {} does not measure; its directions are read as those of a "
-                    "{}; --model names another\n",
-                    in.title(), lines.unexpected(), made.name, made.name));
+    logger::info(fmt::format(
+        "{} has {}, which {} {} does not measure; its directions are read as those of "
+        "{} {}; --model names another\n",
+        in.title(), lines.unexpected(), article_of(made), made.name, article_of(made), made.name));
   }
   made.samples.layout = layout_with(made.samples.layout, lines);
   return made;
@@ -49,9 +49,9 @@ void report_text(const text_points& text, const std::string& title, const g4lida
   if (!text.unexpected().empty()) {
     throw failure(
         exit_code::bad_file,
-        fmt::format("{} has {} only in later lines, and a {} does not measure it. Name the "
+        fmt::format("{} has {} only in later lines, and {} {} does not measure it. Name the "
                     "lidar that measured these points with --model.",
-                    title, text.unexpected(), which.name));
+                    title, text.unexpected(), article_of(which), which.name));
   }
   const auto& [line, column] = text.first_bad_line();
   const std::string first_bad =

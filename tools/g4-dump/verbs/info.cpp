@@ -86,7 +86,7 @@ std::string words_for(const device_facts& facts, std::size_t index) {
   }
   if (which.query) return fmt::format("{} ({})", text, facts.why_unknown);
   return fmt::format("{} ({} cannot be asked for it)", text,
-                     of != nullptr ? fmt::format("a {}", of->name) : "a lidar");
+                     of != nullptr ? fmt::format("{} {}", article_of(*of), of->name) : "a lidar");
 }
 
 /// Its name, and which others it may be.

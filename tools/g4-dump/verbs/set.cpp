@@ -79,7 +79,8 @@ void check(const set_options& options, const g4lidar::model& which) {
   for (const setting_change& each : options.changes) {
     const request wanted = change_to(each.value);
     if (!has_request(which, wanted.what) || is_possible(wanted, which)) continue;
-    throw bad_value(fmt::format("{}={}: a {} {}", each.which->name, text_of(each.value), which.name,
+    throw bad_value(fmt::format("{}={}: {} {} {}", each.which->name, text_of(each.value),
+                                article_of(which), which.name,
                                 possible_values(which, wanted.what)));
   }
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -22,17 +21,6 @@ choices<answer> choices_of(const setting_info& which) {
   choices<answer> all;
   for (const setting_value& each : which.values) all.emplace_back(each.word, each.value);
   return all;
-}
-
-/// A sample rate that a G4 does not have: "18k", "18000".
-std::optional<answer> rate_of_another(const setting_info& which, std::string_view word) {
-  if (which.type != setting_type::whole) return std::nullopt;
-  const bool is_thousands = word.ends_with('k');
-  if (is_thousands) word.remove_suffix(1);
-  std::int32_t hz = 0;
-  const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), hz);
-  if (wrong != std::errc() || end != word.data() + word.size() || hz > 1'000'000) return {};
-  return value_of(which, is_thousands ? hz * 1000 : hz);
 }
 
 /// A multiple of the step of a decimal.
@@ -86,7 +74,6 @@ setting_change change_of(const std::string& word) {
       return {&which, each.value};
     }
   }
-  if (const auto other = rate_of_another(which, wanted)) return {&which, *other};
   try {
     return {&which, which.values.empty() ? decimal_of(which, wanted)
                                          : choice_of(wanted, choices_of(which))};

@@ -128,7 +128,7 @@ inline constexpr std::array<source_form, 7> source_forms{{
     {"tcp:HOST:PORT", "a network bridge that forwards raw bytes"},
     {"FILE, -", "a recording, or raw bytes; - is standard input"},
     {"file:FILE", "the same, whatever its name"},
-    {"sim:", "a simulated G4; sim:?world=FILE&seed=N&fault=FAULT"},
+    {"sim:", "a simulated lidar; sim:?model=MODEL&world=FILE&fault=FAULT"},
 }};
 
 /// main() of every program: runs the verb of the command line and reports errors. Returns the exit code.
