@@ -18,6 +18,7 @@
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/odometry_feed.hpp"
+#include "g4lidar/odometry_path.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/standby.hpp"
 #include "io/deskew_report.hpp"
