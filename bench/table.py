@@ -75,7 +75,8 @@ def main():
     for model, layout in LAYOUTS.items():
         ratio = found[f"points_in_bulk/{model}/20480"] / found["points_in_bulk/g4/20480"]
         print(f"| {layout} | {ratio:.2f} | {LAYOUT_RATIO} |")
-        held(layout, ratio, LAYOUT_RATIO)
+        if ratio < LAYOUT_RATIO:  # of one run: no allowance
+            missed.append(f"{layout}: {ratio:.2f} of a G4, promised {LAYOUT_RATIO}")
     print()
     for name, mine, size, least in LIMITS:
         value = found[f"{mine}/{size}"]

@@ -246,7 +246,7 @@ void bind_recording(nb::module_& module) {
           "Creates the file. `packing` 'zstd' compresses it. `topic` is that of the LaserScan "
           "messages, `points_topic` "
           "that of PointCloud2 messages ('': none). `no_return`: what ranges without return are; "
-          "`mark_near`: whether directions are flagged as mark_near() does. `model`: what sends "
+          "`mark_near`: whether directions are flagged as by ScanShaper. `model`: what sends "
           "the "
           "bytes, 'x4'; None: what the lidar that is recorded states, else 'g4'.")
       .def(

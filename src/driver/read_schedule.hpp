@@ -56,15 +56,15 @@ class read_schedule {
     if (unpaced_ > 0) {
       --unpaced_;
     } else {
-      vain_ = 0;
+      next_unpaced_ = 0;
     }
   }
 
   /// No packet was complete at next_ns(): the bytes were held back. Waits are tried again after
   /// some reads, less often after each failure.
   void nothing_complete() noexcept {
-    vain_ = std::min(2 * vain_ + 1, most_unpaced);
-    unpaced_ = vain_;
+    next_unpaced_ = std::min(2 * next_unpaced_ + 1, most_unpaced);
+    unpaced_ = next_unpaced_;
   }
 
   /// A packet was complete, with `behind` bytes behind it in the last read. Its last sample was
@@ -149,7 +149,7 @@ class read_schedule {
   std::int64_t due_ns_ = 0;    // when the next packet is expected to be complete; 0: at any time
   std::size_t readings_ = 0;   // since the last packet
   revolution_forecast forecast_;
-  int vain_ = 0;
+  int next_unpaced_ = 0;
   int unpaced_ = 0;  // the number of reads without a wait
 };
 

@@ -246,7 +246,7 @@ void protocol_log::write_line(char mark, std::string_view words, bytes data, std
   ++lines_;
   std::string line;
   if (style_.has_times) {
-    times_.come(time_ns);
+    times_.arrived(time_ns);
     std::array<char, 20 + digits::slack> seconds;
     line.append(seconds.data(), put_seconds(seconds.data(), times_.of(time_ns)));
   } else {

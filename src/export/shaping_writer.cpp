@@ -90,7 +90,7 @@ void shaping_writer::write_stream(std::span<const point> points, text_sink& out)
   if (points.empty()) return;
   begin(out);
   follow_wall_clock();
-  times_.come(points.front().time_ns);
+  times_.arrived(points.front().time_ns);
   if (!shaper_.filter().keeps_everything()) {
     shaped_.resize(points.size());
     points = filter_points(points, shaper_.filter(), shaped_);
@@ -128,8 +128,8 @@ void shaping_writer::write_scan(const scan_record& record, text_sink& out) {
     ++off_path_;
     return;
   }
-  times_.come(record.time_ns);
-  scan_times_.come(record.time_ns);
+  times_.arrived(record.time_ns);
+  scan_times_.arrived(record.time_ns);
   shaper_.shape(record.scan, options_.path);
   const scan shaped = options_.for_grid ? shaper_.for_grid() : shaper_.kept();
   if (shaper_.outside() > 0) {

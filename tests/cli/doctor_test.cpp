@@ -140,6 +140,8 @@ TEST_F(Doctor, ExaminesRawBytes) {
   EXPECT_EQ(stages_of(one).at(3).at("evidence").at("packets"), 1);
   EXPECT_THAT(run({"doctor", path("one.bin")}).out,
               HasSubstr("no fault found, but these bytes do not name their model\n"));
+  EXPECT_THAT(run({"doctor", "--model", "g5", path("one.bin")}).out,
+              HasSubstr("no fault found; the bytes were read as G5\n"));
   cli::write_file(path("a_file"), "no bytes of a lidar");
   const outcome other = examine(path("a_file"));
   EXPECT_EQ(other.code, 6);

@@ -245,9 +245,13 @@ TEST(LayoutRecogniser, StatesWhatTheModelFollowsFrom) {
   EXPECT_EQ(basis_of(flagged.of(4)), recognised_by::flags);
   room informed("x4");
   informed.stated = {4, 70};
-  EXPECT_EQ(basis_of(informed.of(2)), recognised_by::number);
-  informed.stated.has_crc = false;
-  EXPECT_EQ(basis_of(informed.of(2)), recognised_by::size);
+  EXPECT_EQ(basis_of(informed.of(2)), recognised_by::size) << "X2, X3, S2, X4 Pro and others";
+  room single("s4b");
+  single.stated = {11, 53};
+  EXPECT_EQ(recognised(single.of(2)).word, "s4b");
+  EXPECT_EQ(basis_of(single.of(2)), recognised_by::number) << "no other model has it";
+  single.stated.has_crc = false;
+  EXPECT_EQ(basis_of(single.of(2)), recognised_by::size);
 }
 
 TEST(LayoutRecogniser, ThreeBytesOfAnS2) {

@@ -17,7 +17,7 @@ constexpr std::int64_t second_of(time_style style, std::int64_t first_ns, std::i
                                  std::int64_t wall_ahead_ns = 0) {
   time_shift shift(style, 0);
   shift.set_wall_ahead(wall_ahead_ns);
-  shift.come(first_ns);
+  shift.arrived(first_ns);
   static_cast<void>(shift.of(first_ns));
   return shift.of(second_ns);
 }
@@ -45,10 +45,10 @@ TEST(TimeShift, WallClockThatIsSetFarAway_DoesNotOverflow) {
 TEST(TimeShift, ChangesNothing_WhereEachTimeStays) {
   time_shift zero(time_style::zero, 5);
   EXPECT_FALSE(zero.changes_nothing()) << "the first time is not known";
-  zero.come(0);
+  zero.arrived(0);
   EXPECT_TRUE(zero.changes_nothing());
   time_shift later(time_style::zero, 0);
-  later.come(3);
+  later.arrived(3);
   EXPECT_FALSE(later.changes_nothing());
   EXPECT_FALSE(time_shift(time_style::delta, 0).changes_nothing());
   EXPECT_TRUE(time_shift(time_style::monotonic, 7).changes_nothing());

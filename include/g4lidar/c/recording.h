@@ -33,7 +33,7 @@ typedef struct g4lidar_recorder_options {
   uint8_t reserved[1]; /**< 0. */
   int32_t no_return; /**< Of a LaserScan: a g4lidar_no_return_as; G4LIDAR_NO_RETURN_AS_INFINITY. */
   int32_t near_is_minus_infinity; /**< As in g4lidar_grid_options; 0. */
-  /** Whether g4lidar_mark_near() flags the points of a LaserScan first; NULL: it does not. */
+  /** Whether the points of a LaserScan are flagged as a shaper with `near` does; NULL: they are not. */
   const g4lidar_near_options* near_options;
   /** The model that sends the bytes: "x4"; NULL: that of the first lidar that is recorded, else "g4". */
   const char* model;

@@ -187,24 +187,23 @@ class layout_recogniser {
     if (sent == nullptr) return {&g4_model, recognised_by::nothing};
     const std::size_t size = sample_bytes();
     const auto fits = [size](const model& row) { return sample_size(row.samples.layout) == size; };
+    const bool has_flags = size == 2 && sent->has_flags_alone();
+    const recognised_by without_number = has_flags ? recognised_by::flags : recognised_by::size;
     if (sent->id() != 0) {
       const model* const named = model_with_id(sent->id(), link_kind::two_way);
       if (named != nullptr && fits(*named)) return {named, recognised_by::number};
-      if (const model* const near = nearest(*sent, sent->id(), 0xFF, fits)) {
-        return {near, recognised_by::number};
-      }
+      const auto near = nearest(*sent, sent->id(), 0xFF, fits, without_number);
+      if (near.which != nullptr) return near;
     }
     const auto informs = [&](const model& row) {
-      const bool has_flags = has_sample_flags(row.samples.layout) && sent->has_rare_upper_flag();
-      return fits(row) && row.ct_information != presence::no && (size != 2 || has_flags);
+      const bool has_rare = has_sample_flags(row.samples.layout) && sent->has_rare_upper_flag();
+      return fits(row) && row.ct_information != presence::no && (size != 2 || has_rare);
     };
     if (const auto& stated = sent->information()) {
-      if (const model* const near = nearest(*sent, stated->id_low_bits, 0x0F, informs)) {
-        return {near, recognised_by::number};
-      }
+      const auto near = nearest(*sent, stated->id_low_bits, 0x0F, informs, without_number);
+      if (near.which != nullptr) return near;
     }
-    const bool has_flags = size == 2 && sent->has_flags_alone();
-    return {&usual(size, has_flags), has_flags ? recognised_by::flags : recognised_by::size};
+    return {&usual(size, has_flags), without_number};
   }
 
   /// The model that is taken where the bytes name none.
@@ -230,11 +229,11 @@ class layout_recogniser {
   }
 
   /// The first of the models with this number, in these bits, whose sample rate is nearest; null if
-  /// `may_be` is true for none.
+  /// `may_be` is true for none. If it is not the only one, it follows from `otherwise`.
   template <class MayBe>
-  [[nodiscard]] static constexpr const model* nearest(const detail::layout_candidate& to,
-                                                      std::uint8_t id, std::uint8_t bits,
-                                                      MayBe may_be) noexcept {
+  [[nodiscard]] static constexpr finding nearest(const detail::layout_candidate& to,
+                                                 std::uint8_t id, std::uint8_t bits, MayBe may_be,
+                                                 recognised_by otherwise) noexcept {
     constexpr std::uint32_t usual_hz = 3000;
     const std::uint32_t hz = to.rate_hz() != 0 ? to.rate_hz() : usual_hz;
     const auto distance = [hz](const model& row) {
@@ -242,10 +241,11 @@ class layout_recogniser {
       return first_hz > hz ? first_hz - hz : hz - first_hz;
     };
     const auto has_id = [&](std::uint8_t of) { return of != 0 && (of & bits) == id; };
-    const model* best = nullptr;
+    finding best{nullptr, recognised_by::number};
     for (const model& row : models) {
       if (!may_be(row) || (!has_id(row.ids[0]) && !has_id(row.ids[1]))) continue;
-      if (best == nullptr || distance(row) < distance(*best)) best = &row;
+      if (best.which != nullptr) best.by = otherwise;
+      if (best.which == nullptr || distance(row) < distance(*best.which)) best.which = &row;
     }
     return best;
   }

@@ -33,7 +33,7 @@ class time_shift {
 
   /// Data with this time has arrived, written or not; time_style::zero and the first delta count
   /// from the first such time.
-  constexpr void come(std::int64_t time_ns) noexcept {
+  constexpr void arrived(std::int64_t time_ns) noexcept {
     if (begun_) return;
     begun_ = true;
     before_ns_ = time_ns;

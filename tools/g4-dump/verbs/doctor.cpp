@@ -128,8 +128,8 @@ exit_code exit_code_of(std::span<const stage_report> stages) noexcept {
   return exit_code::ok;
 }
 
-/// The last line of the text output.
-std::string summary_of(std::span<const stage_report> stages) {
+/// The last line of the text output. `named`: as which the bytes were read, if that was stated or follows from them.
+std::string summary_of(std::span<const stage_report> stages, const g4lidar::model* named) {
   std::vector<diagnosis> found;
   for (const stage_report& each : stages) {
     found.insert(found.end(), each.diagnoses.begin(), each.diagnoses.end());
@@ -138,8 +138,9 @@ std::string summary_of(std::span<const stage_report> stages) {
   const bool is_known = std::ranges::any_of(stages, [](const stage_report& each) {
     return each.stage == diagnostic_stage::identity && each.outcome == stage_verdict::ok;
   });
-  return is_known ? "healthy: nothing is wrong\n"
-                  : "no fault found, but these bytes do not name their model\n";
+  if (is_known) return "healthy: nothing is wrong\n";
+  if (named == nullptr) return "no fault found, but these bytes do not name their model\n";
+  return fmt::format("no fault found; the bytes were read as {}\n", named->name);
 }
 
 int examine(const doctor_options& options) {
@@ -150,7 +151,9 @@ int examine(const doctor_options& options) {
   diagnostic_options how;
   how.baud = options.expected.baud;
   const source_kind kind = kind_of_source(options.source);
-  how.model = kind != source_kind::simulated ? model_of(options) : options.expected.model;
+  std::optional<recognised_model> seen;
+  how.model = kind != source_kind::simulated ? model_of(options, &seen) : options.expected.model;
+  if (seen) report_model(*seen->which, seen->is_usual());
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
@@ -170,7 +173,9 @@ int examine(const doctor_options& options) {
     out.flush();
   };
   const std::vector<stage_report> stages = diagnose(options.source, how);
-  const std::string summary = interrupt() == 0 ? summary_of(stages) : "interrupted\n";
+  const bool is_guess = seen && seen->basis != g4lidar::recognised_by::number;
+  const std::string summary =
+      interrupt() == 0 ? summary_of(stages, is_guess ? nullptr : how.model) : "interrupted\n";
   if (!options.json && interrupt() == 0) out.write(summary);
   out.commit();
   if (report) {
