@@ -18,6 +18,7 @@
 #include "g4lidar/bulk_decoder.hpp"
 #include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/core/response.hpp"
 #include "g4lidar/core/stream_parser.hpp"
 #include "support/reference_points.hpp"
 
@@ -154,6 +155,57 @@ TEST(FamilyInformation, TheRevolutionIdentifiesItsLidar) {
   EXPECT_EQ(reader.last()->id_low_bits, 4);
   const auto& digits = reader.last()->serial_digits;
   EXPECT_EQ(std::string(digits.begin(), digits.end()), "2023031500012345");
+}
+
+// The replies of devices, with what stands beside them in the file.
+TEST(FamilyReplies, AreReadAsTheyAreDescribed) {
+  std::ifstream file(family / "replies.txt");
+  if (!file) GTEST_SKIP() << "There is no directory shared/family beside the project.";
+  int lines = 0;
+  for (std::string text; std::getline(file, text);) {
+    if (text.starts_with('#')) continue;
+    SCOPED_TRACE(text);
+    ++lines;
+    std::vector<std::uint8_t> data;
+    const std::size_t hex = text.find(" | ");
+    const std::string words = text.substr(hex, text.rfind(" | ") - hex);
+    for (std::size_t i = 0; i + 1 < hex; i += 2) {
+      data.push_back(static_cast<std::uint8_t>(std::stoul(text.substr(i, 2), nullptr, 16)));
+    }
+    const bool is_angle = words.find("reply to 93") != std::string::npos;
+    const auto reply = response_view::from(data, is_angle);
+    ASSERT_TRUE(reply);
+    unsigned id = 0;
+    unsigned major = 0;
+    unsigned minor = 0;
+    unsigned hardware = 0;
+    std::string serial(17, ' ');
+    const std::size_t known = words.find(": id ");
+    if (known != std::string::npos) {
+      ASSERT_EQ(std::sscanf(words.c_str() + known, ": id %u, %u.%u, %u, %16[0-9]", &id, &major,
+                            &minor, &hardware, serial.data()),
+                5);
+      const auto info = reply->as_device_info();
+      ASSERT_TRUE(info);
+      EXPECT_EQ(info->model, id);
+      EXPECT_EQ(info->firmware_major, major);
+      EXPECT_EQ(info->firmware_minor, minor);
+      EXPECT_EQ(info->hardware, hardware);
+      EXPECT_EQ(info->serial_number(), serial.substr(0, 16));
+    } else if (words.find("health good") != std::string::npos) {
+      EXPECT_EQ(reply->as_health(), (health{health_status::ok, 0}));
+    } else if (words.find("scan header") != std::string::npos) {
+      EXPECT_EQ(reply->kind(), response_kind::scan_started);
+    } else if (words.find("1-byte") != std::string::npos) {
+      EXPECT_EQ(reply->as_byte(), 0);
+    } else if (is_angle) {
+      EXPECT_EQ(reply->as_angle(), 722);
+    } else {
+      EXPECT_NE(words.find("10.00 Hz"), std::string::npos);
+      EXPECT_EQ(reply->as_frequency_chz(), 1000);
+    }
+  }
+  EXPECT_EQ(lines, 11);
 }
 
 INSTANTIATE_TEST_SUITE_P(
