@@ -27,6 +27,7 @@ namespace g4lidar {
 /// simulated robot. *Single thread.* Throws only what std::vector and the callers' functions throw.
 class G4LIDAR_API odometry_feed {
  public:
+  /// Takes each pose when its time has come.
   using taker = std::function<void(const stamped_odometry&)>;
 
   /// All that there is, times ascending, by the clock of the points.

@@ -115,20 +115,33 @@ constexpr std::span<point> copy_points(std::span<const point> points,
   return out.first(points.size());
 }
 
-/// The mean angle between two samples in a row, in degrees; 0 if it is not known. Gaps do not count.
-constexpr float mean_step_deg(std::span<const point> points) noexcept {
-  constexpr float longest_deg = 10.0F;
-  float sum_deg = 0.0F;
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    float step_deg = points[i].angle_deg - points[i - 1].angle_deg;
+/// The mean angle between two samples in a row. Gaps, where packets were lost, do not count.
+class mean_step {
+ public:
+  constexpr void add(const point& from, const point& to) noexcept {
+    constexpr float longest_deg = 10.0F;
+    float step_deg = to.angle_deg - from.angle_deg;
     if (step_deg < -180.0F) step_deg += 360.0F;
     if (step_deg > 180.0F) step_deg -= 360.0F;
-    if (step_deg < -longest_deg || step_deg > longest_deg) continue;
-    sum_deg += step_deg;
-    ++count;
+    if (step_deg < -longest_deg || step_deg > longest_deg) return;
+    sum_deg_ += step_deg;
+    ++count_;
   }
-  return count > 0 ? sum_deg / static_cast<float>(count) : 0.0F;
+  /// In degrees; 0 if it is not known.
+  [[nodiscard]] constexpr float value() const noexcept {
+    return count_ > 0 ? sum_deg_ / static_cast<float>(count_) : 0.0F;
+  }
+
+ private:
+  float sum_deg_ = 0.0F;
+  std::uint32_t count_ = 0;
+};
+
+/// That of `points`, in degrees.
+constexpr float mean_step_deg(std::span<const point> points) noexcept {
+  mean_step all;
+  for (std::size_t i = 1; i < points.size(); ++i) all.add(points[i - 1], points[i]);
+  return all.value();
 }
 
 }  // namespace detail
@@ -144,22 +157,26 @@ class sample_spacing {
   /// The next points of the stream, in the order of measurement.
   constexpr void add(std::span<const point> points) noexcept {
     for (const point& p : points) {
-      if (p.revolution != revolution_) {
-        if (is_whole_) step_deg_ = 360.0F / static_cast<float>(count_);
-        is_whole_ = count_ > 0 && p.revolution == revolution_ + 1;
-        revolution_ = p.revolution;
-        count_ = 0;
+      if (p.revolution == last_.revolution) {
+        now_.add(last_, p);
+      } else {
+        if (is_whole_ && now_.value() > 0.0F) step_deg_ = now_.value();
+        is_whole_ = has_last_ && p.revolution == last_.revolution + 1;
+        now_ = {};
       }
-      ++count_;
+      last_ = p;
+      has_last_ = true;
     }
   }
+  /// In degrees.
   [[nodiscard]] constexpr float step_deg() const noexcept { return step_deg_; }
 
  private:
   float step_deg_;
-  std::uint32_t revolution_ = 0;
-  std::uint32_t count_ = 0;  // of the points of the revolution
-  bool is_whole_ = false;    // whether its first point has been seen
+  point last_;
+  bool has_last_ = false;
+  bool is_whole_ = false;  // whether the first point of the revolution has been seen
+  detail::mean_step now_;  // of the revolution
 };
 
 /// Flags the returns that `limits` define as point_flags::isolated, clears that flag on all other

@@ -5,12 +5,15 @@
 #include <chrono>
 #include <optional>
 
+#include "g4lidar/detail/cpp20.hpp"
+
 namespace g4lidar {
 
 /// For programs whose clients come and go: whether the motor is to rest, as background_reader::rest() takes it.
 /// *Single thread. Never allocates.*
 class standby {
  public:
+  /// When something was.
   using time_point = std::chrono::steady_clock::time_point;
   /// How long the motor runs after the last need, so that a client that returns need not wait.
   static constexpr std::chrono::seconds delay{3};

@@ -47,8 +47,9 @@ bool measure_spin_up(acceptance_link& link, acceptance_result& into) {
   return true;
 }
 
-/// What a low line takes from the lidar. The line is low. Returns whether it boots when the line rises.
-bool find_cut(acceptance_link& link, acceptance_result& into) {
+/// What a low line takes from the lidar. The line is low. `has_answered`: to 90, while it was high. Returns whether it
+/// boots when the line rises.
+bool find_cut(acceptance_link& link, bool has_answered, acceptance_result& into) {
   bool answers = false;
   if (link.is_two_way()) {
     static_cast<void>(link.monitor().stop());  // some answer nothing while they scan
@@ -69,7 +70,8 @@ bool find_cut(acceptance_link& link, acceptance_result& into) {
   if (link.is_two_way()) resumes = starts(link);
   into.add("boots_again", yes_or_no(boots_again));
   into.add("high_resumes", yes_or_no(resumes));
-  const bool is_supply = boots_again || (link.is_two_way() && !answers);
+  const bool is_silent = link.is_two_way() && !answers && has_answered;
+  const bool is_supply = boots_again || is_silent;
   if (is_supply) {
     into.add_answer(q::dtr_cut, answered, "The supply.");
     into.add_finding(observed, "DTR switches the supply of the lidar.");
@@ -107,7 +109,7 @@ void acceptance_run::dtr(acceptance_result& into) {
                    dtr_drives_ ? "DTR stops it." : "DTR does not stop it.");
   if (dtr_drives_) {
     into.add("silent_after_ms", in_ms(silent_ns));
-    boots_after_dtr_ = find_cut(*link_, into);
+    boots_after_dtr_ = find_cut(*link_, !identified_.empty(), into);
     dtr_start(into);
   } else {
     for (const q each : {q::dtr_start, q::dtr_cut}) {

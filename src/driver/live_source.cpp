@@ -81,6 +81,7 @@ result<void> live_source::hang_up() {
 
 void live_source::release(bool rests) noexcept {
   if (rests) static_cast<void>(stream_.set_motor(false));
+  if (!rests && connection_.is_open()) connection_.on().keep_dtr();
   stream_.flush();
   pipeline_.drop_scan();
   connection_.close();

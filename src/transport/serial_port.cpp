@@ -135,6 +135,7 @@ class serial_transport final : public fd_port {
 
   [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override;
   [[nodiscard]] result<bool> set_dtr(bool high) noexcept override;
+  void keep_dtr() noexcept override { is_kept_ = true; }
 
  private:
   [[nodiscard]] ssize_t write_some(bytes data) noexcept override {
@@ -161,7 +162,8 @@ class serial_transport final : public fd_port {
   bool is_changed_ = false;
   bool is_exclusive_ = false;
   bool is_hastened_ = false;
-  bool stays_high_ = false;  // DTR: set_dtr() has raised it, and nobody has lowered it
+  std::optional<bool> dtr_;  // as set_dtr() has set it
+  bool is_kept_ = false;     // by keep_dtr()
 };
 
 tl::unexpected<error> serial_transport::refused(int system_errno) const noexcept {
@@ -258,7 +260,7 @@ result<bool> serial_transport::set_dtr(bool high) noexcept {
   int line = TIOCM_DTR;
   const bool is_set = control(high ? TIOCMBIS : TIOCMBIC, &line) == 0;
   if (!is_set && errno != ENOTTY && errno != EINVAL) return failed(task::configuring, errno);
-  stays_high_ = is_set && high;
+  if (is_set) dtr_ = high;
   return is_set;
 }
 
@@ -298,7 +300,10 @@ int serial_transport::send_or_discard() noexcept {
 
 void serial_transport::restore() noexcept {
   if (is_changed_) {
-    if (stays_high_) found_.c_cflag &= ~static_cast<tcflag_t>(HUPCL);
+    constexpr tcflag_t lowers =
+        HUPCL;  // after the last close; an earlier program may have kept the line
+    if (dtr_ == true && is_kept_) found_.c_cflag &= ~lowers;
+    if (dtr_ == false) found_.c_cflag |= lowers;
     static_cast<void>(set(send_or_discard(), found_));
     if (found_custom_baud_ != 0) {
       static_cast<void>(set_custom_baud(calls().ioctl, fd(), found_custom_baud_));

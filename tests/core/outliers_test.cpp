@@ -116,7 +116,11 @@ TEST(Isolated, TheAngleBetweenSamplesOfAStream_IsThatOfItsLastWholeRevolution) {
   std::vector<point> points;
   for (const auto& [revolution, samples] :
        {std::pair{3U, 100}, {4U, 400}, {5U, 500}, {7U, 90}, {8U, 1}}) {
-    for (int i = 0; i < samples; ++i) points.push_back({.revolution = revolution});
+    for (int i = 0; i < samples; ++i) {
+      if (revolution == 5 && i >= 100 && i < 350) continue;  // they are lost
+      points.push_back(at(i * 360.0 / samples, 4000.0));
+      points.back().revolution = revolution;
+    }
   }
   for (const std::size_t piece : {1U, 7U, 450U, 2000U}) {
     sample_spacing spacing(*model_named("x2"));
@@ -127,10 +131,10 @@ TEST(Isolated, TheAngleBetweenSamplesOfAStream_IsThatOfItsLastWholeRevolution) {
       if (passed.back() != spacing.step_deg()) passed.push_back(spacing.step_deg());
     }
     EXPECT_FLOAT_EQ(passed.front(), 0.84F);
-    EXPECT_FLOAT_EQ(passed.back(), 0.72F)
+    EXPECT_NEAR(passed.back(), 0.72F, 1e-4)
         << "revolution 6 is missing, and 7 is not known to be whole";
     if (piece < 100) {
-      EXPECT_FLOAT_EQ(passed.at(1), 0.9F);
+      EXPECT_NEAR(passed.at(1), 0.9F, 1e-4);
     }
   }
 }

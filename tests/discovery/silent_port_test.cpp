@@ -111,7 +111,7 @@ TEST(SilentPort, OpenedAtANamedRate_ErrorNamesTheRate) {
 TEST(SilentPort, LidarThatBootsSlowly_IsOpened) {
   sim::device_options slow;
   slow.boots_at_start = true;
-  slow.boot_ns = 3500 * second / 1000;
+  slow.boot_ns = 2 * second;
   auto served = sim::background_pty::open(sim::device(sim::built_in_world(), slow));
   ASSERT_TRUE(served);
   const auto opened = lidar::open(served->path());

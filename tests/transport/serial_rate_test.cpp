@@ -228,18 +228,22 @@ void set_dropping(const pty& device, bool wanted) {
   ASSERT_EQ(::tcsetattr(device.keep(), TCSANOW, &now), 0);
 }
 
-TEST_F(Bridge, DtrThatWasRaised_StaysHighAfterTheClose) {
-  set_dropping(device(), true);
-  {
-    const auto port = open(230'400);
-    ASSERT_TRUE(port);
-    EXPECT_EQ((*port)->set_dtr(true), true);
-    EXPECT_TRUE(drops_dtr(device())) << "if the program is killed";
+TEST_F(Bridge, DtrThatWasRaised_StaysHighAfterTheClose_OnlyIfItIsKept) {
+  for (const bool is_kept : {true, false}) {
+    set_dropping(device(), true);
+    {
+      const auto port = open(230'400);
+      ASSERT_TRUE(port);
+      EXPECT_EQ((*port)->set_dtr(true), true);
+      if (is_kept) (*port)->keep_dtr();
+      EXPECT_TRUE(drops_dtr(device())) << "if the program is killed";
+    }
+    EXPECT_EQ(drops_dtr(device()), !is_kept);
   }
-  EXPECT_FALSE(drops_dtr(device()));
 }
 
-TEST_F(Bridge, DtrThatWasLoweredAgain_IsLeftToTheSystem) {
+// An earlier program has kept the line, so the system would no longer lower it.
+TEST_F(Bridge, DtrThatWasLoweredAgain_IsLoweredByTheSystem) {
   for (const bool is_dropped : {true, false}) {
     set_dropping(device(), is_dropped);
     {
@@ -247,8 +251,9 @@ TEST_F(Bridge, DtrThatWasLoweredAgain_IsLeftToTheSystem) {
       ASSERT_TRUE(port);
       EXPECT_EQ((*port)->set_dtr(true), true);
       EXPECT_EQ((*port)->set_dtr(false), true);
+      (*port)->keep_dtr();
     }
-    EXPECT_EQ(drops_dtr(device()), is_dropped);
+    EXPECT_TRUE(drops_dtr(device()));
   }
 }
 
@@ -269,6 +274,7 @@ TEST_F(Bridge, PortWithoutDtr_IsLeftAsItWas) {
     const auto port = open(230'400);
     ASSERT_TRUE(port);
     EXPECT_EQ((*port)->set_dtr(true), false);
+    (*port)->keep_dtr();
   }
   EXPECT_TRUE(drops_dtr(device()));
 }

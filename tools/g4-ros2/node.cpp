@@ -65,7 +65,7 @@ class node {
       bus_.clear();
       if (const auto now = clock::now(); now >= network_due_) {
         bus_.update();
-        announcement_->update();
+        if (announcement_) announcement_->update();
         network_due_ = now + network_interval;
       }
       services_->update();

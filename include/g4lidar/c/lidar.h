@@ -14,8 +14,10 @@ extern "C" {
 
 /** The settings of a lidar, with the unit of their values. */
 enum g4lidar_setting {
-  G4LIDAR_SAMPLE_RATE = 1,        /**< Measurements: Hz, a rate of the model; of a G4 4000, 8000 or 9000. */
-  G4LIDAR_SCAN_FREQUENCY = 2,     /**< Revolutions: 0.01 Hz, within the limits of the model; of a G4 500 to 1200. */
+  G4LIDAR_SAMPLE_RATE =
+      1, /**< Measurements: Hz, a rate of the model; of a G4 4000, 8000 or 9000. */
+  G4LIDAR_SCAN_FREQUENCY =
+      2, /**< Revolutions: 0.01 Hz, within the limits of the model; of a G4 500 to 1200. */
   G4LIDAR_MOTOR_DIRECTION = 3,    /**< A g4lidar_direction. */
   G4LIDAR_CONSTANT_FREQUENCY = 4, /**< Whether it regulates its frequency: a g4lidar_switch. */
   G4LIDAR_LOW_POWER = 5,          /**< Whether the motor stops when idle: a g4lidar_switch. */
@@ -207,7 +209,7 @@ enum g4lidar_event_kind {
   G4LIDAR_EVENT_OTHER_LIDAR = 9,         /**< While the lidar was lost, another one answered. */
   G4LIDAR_EVENT_LONG_PAUSE = 10,         /**< The next data of a recording is far away. */
   G4LIDAR_EVENT_OVERFLOW = 11,           /**< Earlier events were dropped. */
-  G4LIDAR_EVENT_STILL_TURNING = 12 /**< The scans have ended, but the motor turns. */
+  G4LIDAR_EVENT_STILL_TURNING = 12       /**< The scans have ended, but the motor turns. */
 };
 
 /** An event. */

@@ -87,7 +87,7 @@ class G4LIDAR_API shaping_writer final : public point_writer {
   std::unique_ptr<point_writer> inner_;
   writing_options options_;
   scan_shaper shaper_;
-  near_history near_;          // of the stream, as what follows
+  near_history near_;  // of the stream, as what follows
   sample_spacing spacing_;
   std::vector<point> stream_;  // marked, with the neighbours of what comes next
   std::size_t passed_on_ = 0;  // of `stream_`

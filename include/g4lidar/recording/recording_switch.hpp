@@ -29,6 +29,7 @@ class G4LIDAR_API recording_switch {
 
   /// Records into `to`, which must outlive it, until off(). False, and nothing is recorded, without a connection.
   [[nodiscard]] bool on(recording_writer& to) noexcept;
+  /// Ends it; the writer is not closed.
   void off() noexcept;
 
   /// The time of the latest bytes or event of the connection; nothing without a connection.

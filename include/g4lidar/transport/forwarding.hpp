@@ -40,6 +40,7 @@ class forwarding_transport : public transport {
     return inner_->set_baud(baud);
   }
   [[nodiscard]] result<bool> set_dtr(bool high) noexcept override { return inner_->set_dtr(high); }
+  void keep_dtr() noexcept override { inner_->keep_dtr(); }
   [[nodiscard]] std::size_t kept_bytes() const noexcept override { return inner_->kept_bytes(); }
 
  protected:

@@ -68,9 +68,11 @@ class G4LIDAR_API transport {
   [[nodiscard]] virtual result<bool> set_baud(std::uint32_t /*baud*/) noexcept { return false; }
 
   /// Sets the line DTR, which drives the motor of some lidars. Returns whether the connection has this
-  /// line: a pseudo-terminal and a network bridge have none, and nothing happens. A line that was raised
-  /// stays high when a serial port is closed: lower it first, if a motor is to stop. Fails like read().
+  /// line: a pseudo-terminal and a network bridge have none, and nothing happens. Fails like read().
   [[nodiscard]] virtual result<bool> set_dtr(bool /*high*/) noexcept { return false; }
+  /// A line that set_dtr() has raised stays high when the port is closed: a motor continues to turn. Otherwise
+  /// the system lowers it after the last program, and opening a port raises it again.
+  virtual void keep_dtr() noexcept {}
 
   /// How many bytes the system keeps at least while nobody reads; 0 where nobody knows. A driver that
   /// delivers whole scans sleeps while at most half of them can come.

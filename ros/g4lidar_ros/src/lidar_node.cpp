@@ -21,8 +21,6 @@ using lifecycle_msgs::msg::State;
 
 /// So long deactivate waits until the motor rests.
 constexpr auto rest_time = 2s;
-/// So long after a failure configure is tried again, if the node starts itself.
-constexpr auto retry_time = 2s;
 
 }  // namespace
 
@@ -61,14 +59,19 @@ LidarNode::~LidarNode() {
   session_.reset();
 }
 
+void LidarNode::open() {
+  if (session_) return;
+  const auto made = std::make_shared<lidar_session>(*this, parameters_->for_session());
+  if (const auto started = made->start(); !started)
+    throw std::runtime_error(started.error().message());
+  session_ = made;
+}
+
 LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State& /*previous*/) {
   try {
-    session_ = std::make_shared<lidar_session>(*this, parameters_->for_session());
-    if (const auto started = session_->start(); !started)
-      throw std::runtime_error(started.error().message());
+    open();
   } catch (const std::exception& wrong) {
     RCLCPP_ERROR(get_logger(), "%s", wrong.what());
-    session_.reset();
     return CallbackReturn::ERROR;
   }
   const auto longest = parameters_->connect_timeout();
@@ -76,7 +79,7 @@ LidarNode::CallbackReturn LidarNode::on_configure(const rclcpp_lifecycle::State&
     const auto [state, why, information, name, playback] = session_->status();
     RCLCPP_ERROR(get_logger(), "not configured: %s",
                  why ? why->message().c_str() : "the lidar did not open in time");
-    session_.reset();
+    on_cleanup(get_current_state());
     const bool may_come = state != g4lidar::reader_state::ended;
     return may_come ? CallbackReturn::FAILURE : CallbackReturn::ERROR;
   }
@@ -116,14 +119,24 @@ LidarNode::CallbackReturn LidarNode::on_error(const rclcpp_lifecycle::State& pre
   return on_cleanup(previous);
 }
 
+bool LidarNode::is_opening() {
+  if (!session_) {
+    try {
+      open();
+    } catch (const std::exception&) {
+      return false;  // configure() reports it
+    }
+    diagnostics_->follow(session_);
+    parameters_->follow(session_);
+  }
+  return session_->status().state == g4lidar::reader_state::opening;
+}
+
 void LidarNode::start_itself() {
-  if (std::chrono::steady_clock::now() < start_at_) return;
-  CallbackReturn done = CallbackReturn::ERROR;
-  const bool is_open = configure(done).id() == State::PRIMARY_STATE_INACTIVE;
-  if (is_open) activate();
-  // Without a lidar it is tried again; what is wrong with a parameter stays so.
-  starts_itself_ = done == CallbackReturn::FAILURE;
-  start_at_ = std::chrono::steady_clock::now() + retry_time;
+  // A lidar may be plugged in later. Waiting for it in configure would keep other nodes of the process from running.
+  if (parameters_->connect_timeout() > 0ns && is_opening()) return;
+  starts_itself_ = false;  // what is wrong with a parameter stays so
+  if (configure().id() == State::PRIMARY_STATE_INACTIVE) activate();
 }
 
 void LidarNode::update() {

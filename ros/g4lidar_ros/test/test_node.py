@@ -200,8 +200,8 @@ class TestMotor(NodeTest):
             left = time.monotonic()
             self.watcher.node.destroy_subscription(subscription)
             self.assertTrue(support.wait_for(lambda: not turns()))
-            # 3 s after the last subscriber has left, which is noticed 10 times a second.
-            self.assertGreater(time.monotonic() - left, 2.8)
+            # 3 s after the node has last seen the subscriber, which may have been before on a busy machine.
+            self.assertGreater(time.monotonic() - left, 2.0)
 
 class TestQuality(NodeTest):
     def test_overrides(self):

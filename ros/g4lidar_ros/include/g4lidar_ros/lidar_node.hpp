@@ -2,7 +2,6 @@
 // A lidar as a lifecycle node and component of ROS 2.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,14 +42,18 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
  private:
   using trigger = std_srvs::srv::Trigger;
 
-  /// Configures and activates itself.
+  /// Makes the session that opens the lidar, if there is none. Throws if a parameter is wrong.
+  void open();
+  /// Whether the lidar is being opened; begins it.
+  bool is_opening();
+  /// Configures and activates itself, when the lidar is open.
   void start_itself();
   /// Rests or turns the motor, and notices the end of the lidar. Called several times a second.
   void update();
   void allow(bool runs, trigger::Response& answer);
 
   std::unique_ptr<node_parameters> parameters_;
-  std::shared_ptr<lidar_session> session_;  // null unless it is configured
+  std::shared_ptr<lidar_session> session_;  // null unless it is configured, or starts itself
   std::unique_ptr<node_diagnostics> diagnostics_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
   rclcpp::SubscriptionBase::SharedPtr running_;
@@ -58,7 +61,6 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
   g4lidar::standby standby_;
   bool is_allowed_ = true;  // by ~/start, ~/stop and ~/run
   bool starts_itself_ = false;
-  std::chrono::steady_clock::time_point start_at_{};
 };
 
 }  // namespace g4lidar_ros
