@@ -49,7 +49,8 @@ std::vector<acceptance_result> acceptance_run::run() {
     if (!is_open || !link_ || link_->monitor().is_over()) {
       const bool is_cancelled = link_ && link_->monitor().is_cancelled();
       std::string why = why_closed_.empty() ? "Not reached." : why_closed_;
-      if (link_ && link_->monitor().failure()) why = link_->monitor().failure()->message();
+      const auto failure = link_ ? link_->monitor().failure() : std::nullopt;
+      if (failure) why = failure->message();
       into.add_finding(acceptance_verdict::not_done, is_cancelled ? "Interrupted." : why);
     } else if (is_possible(into)) {
       if (options_.on_step) options_.on_step(step);

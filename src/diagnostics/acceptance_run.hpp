@@ -63,7 +63,7 @@ class acceptance_run {
   std::string why_closed_{};               // why there is no link
   std::uint32_t found_baud_ = 0;           // by the search
   std::vector<acceptance_result> results_;
-  std::optional<stream_survey> surveyed_;
+  std::unique_ptr<stream_survey> surveyed_;  // null: there was no stream
   std::optional<std::size_t> target_degree_;
   std::vector<std::uint8_t> identified_;   // the content of the answer to 90
   std::optional<double> zero_offset_deg_;  // of the answer to 93

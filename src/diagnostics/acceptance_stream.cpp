@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "acceptance_run.hpp"
@@ -92,7 +93,8 @@ void acceptance_run::stream(acceptance_result& into) {
   }
   static_cast<void>(link_->survey(spun_up_ns));
   const std::uint64_t skipped_before = link_->monitor().counts().skipped_bytes();
-  surveyed_.emplace(link_->steady_survey(std::chrono::nanoseconds(options_.stream_time).count()));
+  surveyed_ = std::make_unique<stream_survey>(
+      link_->steady_survey(std::chrono::nanoseconds(options_.stream_time).count()));
   const stream_survey& heard = *surveyed_;
   link_->stop();
   into.add("packets", heard.packets());

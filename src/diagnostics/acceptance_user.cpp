@@ -150,13 +150,14 @@ void acceptance_run::unplug(acceptance_result& into) {
   const std::int64_t begin_ns = link_->monitor().now_ns();
   while (!link_->monitor().is_over() && link_->monitor().now_ns() < begin_ns + wait_ns)
     link_->monitor().listen_for(look_ns);
-  if (!link_->monitor().failure()) {
+  const auto failure = link_->monitor().failure();
+  if (!failure) {
     set_back();
     const bool is_cancelled = options_.is_cancelled && options_.is_cancelled();
     return is_cancelled ? into.add_finding(not_done, "Interrupted.")
                         : into.add_finding(differs, "The connection was not lost.");
   }
-  into.add("lost_as", std::string(name_of(link_->monitor().failure()->code())));
+  into.add("lost_as", std::string(name_of(failure->code())));
   if (!options_.ask(acceptance_action::plug_in)) {
     return into.add_finding(not_done, "The user declined.");
   }
