@@ -135,7 +135,9 @@ class serial_transport final : public fd_port {
 
   [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override;
   [[nodiscard]] result<bool> set_dtr(bool high) noexcept override;
-  void keep_dtr() noexcept override { is_kept_ = true; }
+  void keep_dtr() noexcept override {
+    if (is_raised_) found_.c_cflag &= ~static_cast<tcflag_t>(HUPCL);
+  }
 
  private:
   [[nodiscard]] ssize_t write_some(bytes data) noexcept override {
@@ -162,8 +164,7 @@ class serial_transport final : public fd_port {
   bool is_changed_ = false;
   bool is_exclusive_ = false;
   bool is_hastened_ = false;
-  std::optional<bool> dtr_;  // as set_dtr() has set it
-  bool is_kept_ = false;     // by keep_dtr()
+  bool is_raised_ = false;  // DTR, by set_dtr()
 };
 
 tl::unexpected<error> serial_transport::refused(int system_errno) const noexcept {
@@ -187,8 +188,7 @@ result<void> serial_transport::look() noexcept {
   return {};
 }
 
-// flock() is the guarantee, because the system releases it however its holder ends. TIOCEXCL also
-// excludes programs that do not use locks.
+// flock() is the guarantee: the system releases it however its holder ends. TIOCEXCL excludes other programs, too.
 result<void> serial_transport::hold() {
   if (uninterrupted([&] { return calls().flock(fd(), LOCK_EX | LOCK_NB); }) != 0) {
     if (errno == EWOULDBLOCK) return busy(std::string(name()));
@@ -224,8 +224,7 @@ result<void> serial_transport::configure() {
   return apply(baud(), TCSANOW);
 }
 
-/// Sets wanted_ with this rate, and makes baud() the rate that the driver has really set: it writes it
-/// into the settings.
+/// Sets wanted_ with this rate; baud() becomes the rate that the driver has really set, by the settings.
 result<void> serial_transport::apply(std::uint32_t baud, int when) noexcept {
   const auto speed = speed_of(baud);
   cfsetspeed(&wanted_, speed.value_or(B38400));
@@ -260,8 +259,10 @@ result<bool> serial_transport::set_dtr(bool high) noexcept {
   int line = TIOCM_DTR;
   const bool is_set = control(high ? TIOCMBIS : TIOCMBIC, &line) == 0;
   if (!is_set && errno != ENOTTY && errno != EINVAL) return failed(task::configuring, errno);
-  if (is_set) dtr_ = high;
-  return is_set;
+  if (!is_set) return false;
+  is_raised_ = high;
+  if (!high) found_.c_cflag |= HUPCL;  // an earlier program may have kept the line
+  return true;
 }
 
 void serial_transport::hasten() noexcept {
@@ -300,10 +301,6 @@ int serial_transport::send_or_discard() noexcept {
 
 void serial_transport::restore() noexcept {
   if (is_changed_) {
-    constexpr tcflag_t lowers =
-        HUPCL;  // after the last close; an earlier program may have kept the line
-    if (dtr_ == true && is_kept_) found_.c_cflag &= ~lowers;
-    if (dtr_ == false) found_.c_cflag |= lowers;
     static_cast<void>(set(send_or_discard(), found_));
     if (found_custom_baud_ != 0) {
       static_cast<void>(set_custom_baud(calls().ioctl, fd(), found_custom_baud_));
