@@ -128,8 +128,16 @@ bool LidarNode::is_opening() {
     }
     diagnostics_->follow(session_);
     parameters_->follow(session_);
+    late_at_ = std::chrono::steady_clock::now() + parameters_->connect_timeout();
   }
-  return session_->status().state == g4lidar::reader_state::opening;
+  const auto now = session_->status();
+  const bool is_opening = now.state == g4lidar::reader_state::opening;
+  if (is_opening && late_at_ && std::chrono::steady_clock::now() >= *late_at_) {
+    late_at_.reset();  // once
+    RCLCPP_ERROR(get_logger(), "not configured before there is a lidar: %s",
+                 now.why ? now.why->message().c_str() : "it did not open in time");
+  }
+  return is_opening;
 }
 
 void LidarNode::start_itself() {

@@ -2,7 +2,9 @@
 // A lidar as a lifecycle node and component of ROS 2.
 #pragma once
 
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +63,8 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
   g4lidar::standby standby_;
   bool is_allowed_ = true;  // by ~/start, ~/stop and ~/run
   bool starts_itself_ = false;
+  std::optional<std::chrono::steady_clock::time_point>
+      late_at_;  // when a lidar that is missing is an error
 };
 
 }  // namespace g4lidar_ros
