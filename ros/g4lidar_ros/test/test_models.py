@@ -136,7 +136,7 @@ class TestModels(unittest.TestCase):
             return sum((each.start_state.label, each.goal_state.label) == ("configuring", "unconfigured")
                        for each in list(failed[name]))
         for name, port in LATE_PORTS.items():
-            if name == "late_itself":  # it waits without configure, and answers meanwhile
+            if name == "late_itself":  # it opens the lidar without configure, and has its services
                 self.assertEqual(self.watcher.state("/late_itself/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
                 self.assertEqual(failures(name), 0)
             else:
