@@ -112,11 +112,12 @@ struct search_options {
 /// silent asks for the device information: two bytes that change nothing. Only a stream of packets that a
 /// two-way lidar may send is stopped. Leaves a two-way lidar idle, and the port at the rate that was
 /// found. Takes about 0.1 s with an idle G4, and at most 3 s with another lidar; where nothing answers or
-/// sends, as long as the deadline allows. Returns by the deadline, in the clock of the transport's now_ns(). *Allocates.*
+/// sends, as long as the deadline allows. Returns by the deadline, in the clock of the transport's now_ns().
+/// *Allocates.*
 ///
-/// Fails with silence (the subject lists the rates), garbage (bytes arrived, but no packet and no answer; the subject lists the rates),
-/// other_device (a product that is not supported; the subject names it), does_not_stop, or like the
-/// transport.
+/// Fails with silence, garbage (bytes arrived, but no packet and no answer), other_device (a product that is
+/// not supported; the subject names it), does_not_stop, or like the transport. The subject of silence and
+/// garbage lists the rates.
 [[nodiscard]] G4LIDAR_API result<recognised_lidar> search(transport& port, std::int64_t deadline_ns,
                                                           const search_options& options = {});
 

@@ -134,6 +134,7 @@ void acceptance_run::unplug(acceptance_result& into) {
   if (which_->frequency.max_dhz == 0) {
     into.add_answer(q::kept_settings, not_applicable, "The model has no setting that is known.");
   }
+  if (!options_.ask) return into.add_finding(not_done, why_declined(options_));
   // Only a setting that is not the usual one shows whether it is kept.
   const auto before = frequency();
   const auto middle = (which_->frequency.min_dhz + which_->frequency.max_dhz) * 5;
@@ -143,7 +144,7 @@ void acceptance_run::unplug(acceptance_result& into) {
     link_->monitor().ignore_cancel();
     if (changed && changed != before) static_cast<void>(step_frequency(!is_up));
   };
-  if (!options_.ask || !options_.ask(acceptance_action::unplug)) {
+  if (!options_.ask(acceptance_action::unplug)) {
     set_back();
     return into.add_finding(not_done, why_declined(options_));
   }

@@ -113,8 +113,7 @@ bool live_run::find_device() {
     if (!lidar_.is_named) {
       answer_.remark =
           "No model was named: only the question for the device information was sent. If the model "
-          "is "
-          "named, a start is tried, too.";
+          "is named, a start is tried, too.";
     }
   }
   log_.report(std::move(baud));

@@ -69,7 +69,7 @@ std::int64_t lidar_search::in_ns(std::int64_t time_ns) const noexcept {
 
 result<recognised_lidar> lidar_search::run(std::int64_t deadline_ns) {
   auto done = find(deadline_ns);
-  // A line that was raised stays high when the port is closed.
+  // Also where an earlier program has kept the line, so that the system would not lower it.
   if (!done && has_pulsed_) static_cast<void>(port_.set_dtr(false));
   return done;
 }

@@ -63,8 +63,8 @@ class live_stream {
   /// Uses the sample rate, if it is the answer.
   void learn(const answer& heard);
 
-  /// Sets the line DTR where it drives the motor, which starts at an edge to high. A line that was raised stays
-  /// high when the port is closed. Without a connection nothing happens.
+  /// Sets the line DTR where it drives the motor, which starts at an edge to high. Without a connection nothing
+  /// happens.
   [[nodiscard]] result<void> set_motor(bool on);
   /// When the line has been low for long enough, so that the motor may be started.
   [[nodiscard]] std::int64_t motor_ready_ns() const noexcept { return motor_ready_ns_; }

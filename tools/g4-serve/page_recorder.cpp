@@ -123,7 +123,7 @@ std::string page_recorder::begin() {
     if (!made) return reason_of(made.error(), name);
     writer_.emplace(std::move(*made));
     writer_->device(known_);
-    if (!switch_.on(*writer_)) return "the lidar is not connected";
+    static_cast<void>(switch_.on(*writer_));  // set() has looked for the connection
     begin_ns_ = switch_.latest_ns().value_or(0);
     const std::lock_guard lock(mutex_);
     shown_ = {.file = name};

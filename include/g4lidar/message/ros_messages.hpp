@@ -130,7 +130,7 @@ struct cloud_field {
 G4LIDAR_API void put_cloud_points(std::span<const point> points, const message_header& header,
                                   std::vector<std::uint8_t>& out);
 
-/// The quaternion x, y, z, w of a frame that is turned so: about z, with the top down after half a turn about x. *Pure.*
+/// The quaternion x, y, z, w of a frame that is turned so: about z, and upside down after half a turn about x. *Pure.*
 [[nodiscard]] G4LIDAR_API std::array<double, 4> quaternion_of(const mounting& place) noexcept;
 
 /// A message of odometry. Covariances are those of x, y, z, and of the rotations about x, y, z, row

@@ -48,8 +48,8 @@ class G4LIDAR_API host_end {
   [[nodiscard]] std::uint32_t baud() const noexcept;
   /// A program opens the port: the system raises DTR, if it is the first one.
   void open(std::int64_t now_ns) noexcept;
-  /// A program closes the port: after the last one the system lowers DTR.
-  void close(std::int64_t now_ns) noexcept;
+  /// A program closes the port: after the last one the system lowers DTR, unless that keeps it.
+  void close(std::int64_t now_ns, bool keeps_dtr = false) noexcept;
   /// Sets the line DTR. It has no effect on most models; for the others see device_options.
   void set_dtr(bool high, std::int64_t now_ns) noexcept;
   /// The connection has no line DTR: from now on the motor is enabled.

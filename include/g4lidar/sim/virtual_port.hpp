@@ -65,6 +65,7 @@ class G4LIDAR_API virtual_port final : public transport {
   [[nodiscard]] std::uint32_t baud() const noexcept override { return device_->host().baud(); }
   [[nodiscard]] result<bool> set_baud(std::uint32_t baud) noexcept override;
   [[nodiscard]] result<bool> set_dtr(bool high) noexcept override;
+  void keep_dtr() noexcept override { is_kept_ = is_raised_; }
   /// As a tty.
   [[nodiscard]] std::size_t kept_bytes() const noexcept override { return 4095; }
 
@@ -75,6 +76,8 @@ class G4LIDAR_API virtual_port final : public transport {
   virtual_clock* clock_;
   std::string_view name_;
   std::uint64_t replugs_;
+  bool is_raised_ = false;  // DTR, by set_dtr()
+  bool is_kept_ = false;    // when the port is closed
   std::atomic<bool> woken_{false};
 };
 

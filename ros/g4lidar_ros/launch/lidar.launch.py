@@ -93,7 +93,7 @@ def driven(node):
                 entities=[change(Transition.TRANSITION_ACTIVATE)],
             )
         ),
-        # There is no lidar: it may be plugged in later. Wrong parameters lead to unconfigured by way of errorprocessing.
+        # There is no lidar: it may be plugged in later. After wrong parameters the state before is errorprocessing.
         RegisterEventHandler(
             OnStateTransition(
                 target_lifecycle_node=node,

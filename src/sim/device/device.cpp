@@ -39,9 +39,9 @@ void host_end::open(std::int64_t now_ns) noexcept {
   device_->machine_->update_supply();
 }
 
-void host_end::close(std::int64_t now_ns) noexcept {
+void host_end::close(std::int64_t now_ns, bool keeps_dtr) noexcept {
   device_->machine_->advance(now_ns);
-  device_->machine_->host.close(now_ns);
+  device_->machine_->host.close(now_ns, keeps_dtr);
   device_->machine_->update_supply();
 }
 

@@ -20,14 +20,15 @@ class host_port {
   void set_baud(std::uint32_t baud) noexcept { baud_ = baud == 0 ? own_baud_ : baud; }
   [[nodiscard]] std::uint32_t baud() const noexcept { return baud_; }
 
-  /// The system raises DTR for the first program that opens the port, and lowers it after the last one.
+  /// The system raises DTR for the first program that opens the port, and lowers it after the last one, unless that
+  /// has asked to keep it.
   void open(std::int64_t now_ns) noexcept {
-    if (openings_++ > 0) return;
+    if (openings_++ > 0 || is_high_) return;
     is_enabled_ = is_enabled_ && start_ == dtr_start::level;
     raise(now_ns, true);
   }
-  void close(std::int64_t now_ns) noexcept {
-    if (openings_ > 0 && --openings_ == 0) lower(now_ns);
+  void close(std::int64_t now_ns, bool keeps_dtr) noexcept {
+    if (openings_ > 0 && --openings_ == 0 && !keeps_dtr) lower(now_ns);
   }
   void set_dtr(bool high, std::int64_t now_ns) noexcept {
     if (high) {

@@ -16,7 +16,8 @@ virtual_port::virtual_port(device& simulated, virtual_clock& clock, std::string_
 
 virtual_port::~virtual_port() {
   const std::int64_t now = clock_->now_ns();
-  if (device_->is_plugged(now) && device_->replugs() == replugs_) device_->host().close(now);
+  if (device_->is_plugged(now) && device_->replugs() == replugs_)
+    device_->host().close(now, is_kept_);
 }
 
 // Whether the port still exists, and no wake() ended the call.
@@ -71,6 +72,8 @@ result<bool> virtual_port::set_dtr(bool high) noexcept {
   clock_->tick();
   if (const result<void> seen = look(task::configuring); !seen) return tl::unexpected(seen.error());
   device_->host().set_dtr(high, clock_->now_ns());
+  is_raised_ = high;
+  is_kept_ = is_kept_ && high;
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/lidar.hpp"
@@ -26,8 +27,9 @@ inline sim::device_options options_of(const model& which) {
 /// A simulated device and a lidar of it.
 struct bench {
   explicit bench(const model& of) : bench(of, options_of(of)) {}
-  bench(const model& of, const sim::device_options& options)
-      : which(of), device(sim::built_in_world(), options) {}
+  bench(const model& of, const sim::device_options& options,
+        const std::vector<sim::fault>& faults = {})
+      : which(of), device(sim::built_in_world(), options, faults) {}
 
   [[nodiscard]] result<lidar> open(lidar_options how = {}) {
     how.model = &which;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -51,7 +52,10 @@ class line_connector final : public forwarding_connector {
       done_ += high ? "high " : "low ";
       return forwarding_transport::set_dtr(high);
     }
-    void keep_dtr() noexcept override { done_ += "kept "; }
+    void keep_dtr() noexcept override {
+      done_ += "kept ";
+      forwarding_transport::keep_dtr();
+    }
 
    private:
     std::string& done_;
@@ -89,43 +93,53 @@ TEST(LiveDtr, ReleasedWhileItScans_TheLineStaysHigh) {
         ASSERT_TRUE(lidar->close());
       }
       EXPECT_EQ(done, is_released ? released : closed) << word;
+      if (on.which.motor != motor_kind::dtr) continue;
+      EXPECT_EQ(on.device.motor_turns(), is_released) << word;
+      if (!is_released) continue;
+      auto next = on.open();  // the line is high already, and falls with this program
+      ASSERT_TRUE(next) << next.error().message();
+      EXPECT_TRUE(next->close());
+      EXPECT_FALSE(on.device.motor_turns()) << word;
     }
   }
 }
 
+/// The error with which a lidar ends that starts and never turns; nothing if it does turn.
+std::optional<error> fatal_error_of(lidar& device) {
+  EXPECT_TRUE(device.start());
+  auto why = device.wait_scan(500ms);
+  for (int i = 0; i < 100 && !why && !why.error().is_fatal(); ++i) why = device.wait_scan(500ms);
+  return why ? std::nullopt : std::optional(why.error());
+}
+
+sim::device_options without_power(const model& which) {
+  sim::device_options options = options_of(which);
+  options.motor_has_power = false;
+  return options;
+}
+
 TEST(LiveDtr, LidarThatIsGivenUp_TheLineIsLowered) {
   const model& x4 = *model_named("x4");
-  sim::device_options options = options_of(x4);
-  options.motor_has_power = false;
-  bench on(x4, options);
+  bench on(x4, without_power(x4));
   std::string done;
   auto lidar = lidar::open(std::make_unique<line_connector>(
                                std::make_unique<sim::virtual_connector>(on.device, on.clock), done),
                            {.model = &on.which});
   ASSERT_TRUE(lidar) << lidar.error().message();
-  ASSERT_TRUE(lidar->start());
-  auto why = lidar->wait_scan(500ms);
-  for (int i = 0; i < 100 && !why && !why.error().is_fatal(); ++i) why = lidar->wait_scan(500ms);
-  ASSERT_FALSE(why);
-  EXPECT_EQ(why.error().code(), problem::brown_out);
+  EXPECT_EQ(fatal_error_of(*lidar), problem::brown_out);
   EXPECT_TRUE(done.ends_with("high low ")) << done;
 }
 
 TEST(LiveDtr, MotorWithoutPower_IsAnErrorThatNamesThePlug) {
   const model& x4 = *model_named("x4");
-  sim::device_options options = options_of(x4);
-  options.motor_has_power = false;
-  bench on(x4, options);
+  bench on(x4, without_power(x4));
   auto lidar = on.open();
   ASSERT_TRUE(lidar) << lidar.error().message();
-  ASSERT_TRUE(lidar->start());
-  auto why = lidar->wait_scan(500ms);
-  for (int i = 0; i < 100 && !why && !why.error().is_fatal(); ++i) why = lidar->wait_scan(500ms);
-  ASSERT_FALSE(why);
-  EXPECT_EQ(why.error().code(), problem::brown_out);
-  EXPECT_NE(why.error().message().find("second (power) plug"), std::string::npos)
-      << why.error().message();
-  EXPECT_NE(why.error().message().find("DTR"), std::string::npos);
+  const auto why = fatal_error_of(*lidar);
+  ASSERT_TRUE(why);
+  EXPECT_EQ(why->code(), problem::brown_out);
+  EXPECT_NE(why->message().find("second (power) plug"), std::string::npos) << why->message();
+  EXPECT_NE(why->message().find("DTR"), std::string::npos);
 }
 
 TEST(LiveDtr, SilentOneWayLidar_GetsAPulse) {

@@ -11,37 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "g4lidar/core/model.hpp"
-#include "g4lidar/lidar.hpp"
-#include "g4lidar/sim/virtual_port.hpp"
-#include "g4lidar/sim/world.hpp"
+#include "model_bench.hpp"
 
 namespace g4lidar {
 namespace {
 
 using namespace std::chrono_literals;
-
-sim::device_options options_of(const model& which) {
-  sim::device_options options;
-  EXPECT_TRUE(sim::use_model(options, which.word)) << which.word;
-  return options;
-}
-
-/// A simulated device and a lidar of it.
-struct bench {
-  bench(const model& of, const sim::device_options& options,
-        const std::vector<sim::fault>& faults = {})
-      : which(of), device(sim::built_in_world(), options, faults) {}
-
-  [[nodiscard]] result<lidar> open(lidar_options how = {}) {
-    how.model = &which;
-    return lidar::open(std::make_unique<sim::virtual_connector>(device, clock), how);
-  }
-
-  const model& which;
-  sim::virtual_clock clock;
-  sim::device device;
-};
+using test::bench;
+using test::options_of;
 
 /// What a one-way lidar reports, and as what it is taken.
 struct reported_id {

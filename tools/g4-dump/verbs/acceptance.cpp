@@ -239,8 +239,9 @@ such a run most: nobody has tried them with a real device.
 
 The output is a page of text: for each step agrees, observed (not in the table), not_done or
 differs, and what was measured. Then it lists the questions that only a real device can answer: yes
-with the answer, - where the model does not raise it, and open with the reason. The file contains all bytes in both directions and these results;
-it is a recording, which every other command reads. A step that differs makes the exit code 8.)";
+with the answer, - where it does not arise with this model, and open with the reason. The file
+contains all bytes in both directions and these results; it is a recording, which every other
+command reads. A step that differs makes the exit code 8.)";
 
 }  // namespace
 

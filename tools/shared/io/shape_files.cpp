@@ -21,6 +21,7 @@ namespace g4_tool {
 g4lidar::mask mask_in(const std::string& path) {
   auto made = g4lidar::load_mask(path == "-" ? "/dev/stdin" : path);
   if (auto* const good = std::get_if<g4lidar::mask>(&made)) return std::move(*good);
+  if (interrupt() != 0) throw interrupted();
   throw failure(exit_code::bad_file, std::get<std::string>(made));
 }
 

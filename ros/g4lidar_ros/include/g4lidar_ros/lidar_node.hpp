@@ -23,7 +23,8 @@ class node_parameters;
 
 /// configure opens the lidar, activate turns its motor and publishes, deactivate rests it, cleanup closes it. An unplug
 /// is a warning, after which it reconnects. An error that it cannot recover from deactivates it, and on_deactivate()
-/// returns ERROR. on_configure() returns FAILURE if there is no lidar, which may come later, else ERROR. A thread of its own reads the lidar; everything else is in the default callback group.
+/// returns ERROR. on_configure() returns FAILURE if there is no lidar, which may come later, else ERROR. A thread of its
+/// own reads the lidar; everything else is in the default callback group.
 // Components of ROS are named so.
 class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readability-identifier-naming)
  public:
@@ -63,8 +64,8 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
   g4lidar::standby standby_;
   bool is_allowed_ = true;  // by ~/start, ~/stop and ~/run
   bool starts_itself_ = false;
-  std::optional<std::chrono::steady_clock::time_point>
-      late_at_;  // when a lidar that is missing is an error
+  /// When a lidar that is missing is reported as an error.
+  std::optional<std::chrono::steady_clock::time_point> late_at_;
 };
 
 }  // namespace g4lidar_ros
