@@ -28,7 +28,9 @@ class host_port {
     raise(now_ns, true);
   }
   void close(std::int64_t now_ns, bool keeps_dtr) noexcept {
-    if (openings_ > 0 && --openings_ == 0 && !keeps_dtr) lower(now_ns);
+    if (openings_ == 0) return;
+    --openings_;
+    if (openings_ == 0 && !keeps_dtr) lower(now_ns);
   }
   void set_dtr(bool high, std::int64_t now_ns) noexcept {
     if (high) {
