@@ -2,36 +2,15 @@
 #include "g4lidar/export/mask.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 
+#include "transport/text_file.hpp"
 #include "words.hpp"
 
 namespace g4lidar {
 namespace {
-
-constexpr std::size_t most_bytes = std::size_t{16} << 20U;
-
-/// The contents of a file, or why they cannot be read.
-std::variant<std::string, std::errc> text_in(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"),
-                                                             std::fclose);
-  if (!file) return std::errc{errno};
-  std::string text;
-  std::array<char, 16'384> part;
-  while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
-    text.append(part.data(), count);
-    if (text.size() > most_bytes) return std::errc::file_too_large;
-  }
-  if (std::ferror(file.get()) != 0) return std::errc{errno};
-  return text;
-}
 
 // Whether all corners are on one line: then nothing is inside.
 bool has_no_area(const std::vector<corner>& corners) noexcept {
@@ -96,15 +75,10 @@ std::variant<mask, std::string> load_mask(const std::string& path) {
   if (path.empty()) return mask();
   const std::string title = "mask: '" + printable(path) + "'";
   const std::string advice = ". Give a file with lines 'polygon x1 y1 x2 y2 x3 y3 ...'.";
-  const auto text = text_in(path);
-  if (const auto* wrong = std::get_if<std::errc>(&text)) {
-    const std::string why = *wrong == std::errc::is_a_directory ? " is a directory"
-                            : *wrong == std::errc::file_too_large
-                                ? " is longer than 16 MB"
-                                : " cannot be read: " + std::make_error_code(*wrong).message();
-    return title + why + advice;
-  }
-  auto made = parse_mask(std::get<std::string>(text));
+  std::string text;
+  if (const std::string why = read_text_file(path, text); !why.empty())
+    return std::string(title).append(" ").append(why).append(advice);
+  auto made = parse_mask(text);
   if (auto* const good = std::get_if<mask>(&made)) return std::move(*good);
   const mask_error& wrong = std::get<mask_error>(made);
   const std::string line = wrong.line > 0 ? ", line " + std::to_string(wrong.line) : "";

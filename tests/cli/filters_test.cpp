@@ -86,6 +86,18 @@ TEST_F(Filters, Mask) {
   EXPECT_EQ(ranges_with({"--mask", "all.txt"}), std::vector<double>{});
 }
 
+TEST_F(Filters, AMaskFromStandardInput) {
+  write_file("walls.bin", two_walls());
+  const std::vector<std::string> arguments{"dump", "walls.bin", "-f", "csv", "-q", "--mask", "-"};
+  write_file("mask.txt", "polygon 0 0.9  0.3 0.9  0.3 1.1  -0.3 1.1 -0.3 0.9\n");
+  const outcome done = run(arguments, read_file("mask.txt"));
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(done.out, run({"dump", "walls.bin", "-f", "csv", "-q", "--mask", "mask.txt"}).out);
+  const outcome wrong = run(arguments, "\npolygon 1 2 3\n");
+  EXPECT_EQ(wrong.code, 10);
+  EXPECT_THAT(wrong.err, HasSubstr("mask: standard input, line 2: expected 'polygon x1 y1"));
+}
+
 /// The number of ranges of the grid that are numbers, and that are "inf".
 std::pair<std::size_t, std::size_t> grid_with(std::vector<std::string> options) {
   options.insert(options.begin(), {"scan", "-", "--partial", "--grid", "3600", "-f", "csv", "-q"});

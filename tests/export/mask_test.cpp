@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -155,6 +157,17 @@ TEST(MaskFile, IsRead_AndAnErrorNamesTheFileTheLineAndWhatToDo) {
             "mask: '/nonexistent/mask' cannot be read: No such file or directory" + advice);
   std::ofstream(path) << std::string((std::size_t{16} << 20U) + 1, ' ');
   EXPECT_EQ(why_not(path), title + " is longer than 16 MB" + advice);
+}
+
+TEST(MaskFile, APipeOrADeviceIsRefusedWithoutAWait) {
+  const std::string path = testing::TempDir() + "mask_test.fifo";
+  ::unlink(path.c_str());
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const std::string end =
+      " is a pipe or a device, not a file. Give a file with lines 'polygon x1 y1 x2 y2 x3 y3 ...'.";
+  EXPECT_EQ(why_not(path), "mask: '" + path + "'" + end);
+  EXPECT_EQ(why_not("/dev/null"), "mask: '/dev/null'" + end);
+  ::unlink(path.c_str());
 }
 
 }  // namespace

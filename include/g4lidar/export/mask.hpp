@@ -60,7 +60,8 @@ inline constexpr double max_mask_coordinate_m = 100.0;
 [[nodiscard]] G4LIDAR_API std::variant<mask, mask_error> parse_mask(std::string_view text);
 
 /// The mask in the file at `path`; without a path, one without polygons. Else why there is none, and what to do, for
-/// people: "mask: '/tmp' is a directory. Give a file ...". A file has at most 16 MiB. Throws only std::bad_alloc.
+/// people: "mask: '/tmp' is a directory. Give a file ...". Never waits: a pipe or a device is refused. A file has at most
+/// 16 MiB. Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::variant<mask, std::string> load_mask(const std::string& path);
 
 }  // namespace g4lidar

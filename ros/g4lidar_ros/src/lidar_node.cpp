@@ -61,7 +61,9 @@ LidarNode::~LidarNode() {
 
 void LidarNode::open() {
   if (session_) return;
-  const auto made = std::make_shared<lidar_session>(*this, parameters_->for_session());
+  const session_options how = parameters_->for_session();
+  if (!topics_) topics_ = std::make_unique<lidar_topics>(*this);
+  const auto made = std::make_shared<lidar_session>(*this, *topics_, how);
   if (const auto started = made->start(); !started)
     throw std::runtime_error(started.error().message());
   session_ = made;

@@ -18,9 +18,6 @@ namespace {
 using namespace std::chrono_literals;
 using g4lidar::reader_state;
 
-/// A reliable publisher serves reliable and best-effort subscribers.
-rclcpp::QoS scan_quality() { return rclcpp::QoS(5).reliable().durability_volatile(); }
-
 bool is_file_name(const std::string& source) {
   const g4lidar::source_kind kind = g4lidar::kind_of_source(source);
   return kind == g4lidar::source_kind::recording || kind == g4lidar::source_kind::raw_bytes;
@@ -49,13 +46,13 @@ g4lidar::filter_settings first_filters() {
 
 }  // namespace
 
-lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const session_options& options)
+lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
+                             const session_options& options)
     : node_(node),
+      topics_(topics),
       options_(options),
       is_file_(is_file_name(options.lidar.device)),
-      scans_(node, "scan", scan_quality()),
-      clouds_(node, "points", scan_quality()),
-      motion_(node, options.motion, options.frame_id, options.lidar.device),
+      motion_(node, topics, options.motion, options.frame_id, options.lidar.device),
       parameters_(options.shaping, first_filters(), mask_in(options.mask), {}, shaper_),
       reader_(
           [this] {
@@ -68,8 +65,9 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, const sessio
             return made;
           }(),
           {.wants_points = is_file_ || motion_.has_odometry(), .starts_rested = true}, this) {
-  if (g4lidar::kind_of_source(options.lidar.device) == g4lidar::source_kind::recording) {
-    clock_ = std::make_unique<counted_publisher<rosgraph_msgs::msg::Clock>>(
+  if (!topics.clock &&
+      g4lidar::kind_of_source(options.lidar.device) == g4lidar::source_kind::recording) {
+    topics.clock = std::make_unique<counted_publisher<rosgraph_msgs::msg::Clock>>(
         node, "/clock", rclcpp::QoS(10).reliable());
   }
   if (const std::string wrong = parameters_.change(nullptr, options.filters); !wrong.empty())
@@ -202,11 +200,12 @@ void lidar_session::on_points(std::span<const g4lidar::point> points) {
 
 void lidar_session::publish_clock(std::int64_t now_ns) {
   constexpr std::int64_t clock_step_ns = 10'000'000;
-  if (!clock_ || !clock_->is_wanted() || std::abs(now_ns - clock_ns_) < clock_step_ns) return;
+  if (!topics_.clock || !topics_.clock->is_wanted() || std::abs(now_ns - clock_ns_) < clock_step_ns)
+    return;
   clock_ns_ = now_ns;
   auto made = std::make_unique<rosgraph_msgs::msg::Clock>();
   made->clock = rclcpp::Time(now_ns);
-  clock_->publish(std::move(made));
+  topics_.clock->publish(std::move(made));
 }
 
 void lidar_session::on_scan(const g4lidar::scan& whole) {
@@ -222,14 +221,15 @@ void lidar_session::publish(const g4lidar::scan& whole) {
                                  .duration_ns = whole.duration_ns,
                                  .order = options_.order,
                                  .model = whole.model};
-  if (scans_.is_wanted()) {
+  if (topics_.scans.is_wanted()) {
     const std::size_t bins = options_.bins.value_or(g4lidar::default_bins(*whole.model));
-    scans_.publish(laser_scan_of(shaper_.for_grid(), header, parameters_.filters().grid, bins));
+    topics_.scans.publish(
+        laser_scan_of(shaper_.for_grid(), header, parameters_.filters().grid, bins));
   }
-  if (!clouds_.is_wanted()) return;
+  if (!topics_.clouds.is_wanted()) return;
   const g4lidar::scan kept = shaper_.kept();
   if (!kept.empty()) header.stamp_ns = stamp_ns(kept.time_ns());
-  clouds_.publish(cloud_of(kept, header));
+  topics_.clouds.publish(cloud_of(kept, header));
 }
 
 void lidar_session::on_event(const g4lidar::lidar_event& what) {

@@ -39,9 +39,10 @@ struct session_options {
 /// Publishes in the thread of the reader while the publishers are active. *Any thread* may call its functions.
 class lidar_session final : private g4lidar::reader_listener {
  public:
-  /// Makes the publishers. `node` outlives it. Throws what rclcpp throws, and std::invalid_argument for a filter or a
-  /// mask.
-  lidar_session(rclcpp_lifecycle::LifecycleNode& node, const session_options& options);
+  /// Adds the topics of its source. `node` and `topics` outlive it. Throws what rclcpp throws, and std::invalid_argument
+  /// for a filter or a mask.
+  lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
+                const session_options& options);
   /// Stops the motor and closes the lidar.
   ~lidar_session() override;
 
@@ -67,17 +68,14 @@ class lidar_session final : private g4lidar::reader_listener {
   /// Why it has ended, if that is an error; not at the end of a file.
   [[nodiscard]] std::optional<g4lidar::error> failure() const;
   /// Whether somebody subscribes to scans or clouds.
-  [[nodiscard]] bool is_wanted() const { return scans_.is_wanted() || clouds_.is_wanted(); }
+  [[nodiscard]] bool is_wanted() const {
+    return topics_.scans.is_wanted() || topics_.clouds.is_wanted();
+  }
   [[nodiscard]] const g4lidar::running_diagnosis& diagnosis() const noexcept { return diagnosis_; }
   [[nodiscard]] g4lidar::lidar_counts counts() const { return reader_.counts(); }
   /// How many points were not deskewed, because their motion is not known.
   [[nodiscard]] std::uint64_t points_not_deskewed() const noexcept { return not_deskewed_; }
-  [[nodiscard]] const counted_publisher<sensor_msgs::msg::LaserScan>& scans() const noexcept {
-    return scans_;
-  }
-  [[nodiscard]] const counted_publisher<sensor_msgs::msg::PointCloud2>& clouds() const noexcept {
-    return clouds_;
-  }
+  [[nodiscard]] const lidar_topics& topics() const noexcept { return topics_; }
 
  private:
   void on_open(g4lidar::lidar& device) override;
@@ -96,12 +94,10 @@ class lidar_session final : private g4lidar::reader_listener {
   [[nodiscard]] std::int64_t stamp_ns(std::int64_t time_ns) const;
 
   rclcpp_lifecycle::LifecycleNode& node_;
+  lidar_topics& topics_;
   session_options options_;
   bool is_file_;
-  counted_publisher<sensor_msgs::msg::LaserScan> scans_;
-  counted_publisher<sensor_msgs::msg::PointCloud2> clouds_;
-  std::unique_ptr<counted_publisher<rosgraph_msgs::msg::Clock>> clock_;  // of a recording
-  std::int64_t clock_ns_ = 0;                                            // as published
+  std::int64_t clock_ns_ = 0;  // as published
   robot_motion motion_;
   g4lidar::scan_shaper shaper_;
   std::atomic<std::uint64_t> not_deskewed_ = 0;

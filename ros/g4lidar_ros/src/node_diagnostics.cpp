@@ -79,8 +79,8 @@ void node_diagnostics::report_topics(wrapper& status) {
     status.add(name + " refused", topic.counts().refused.load());
     refused += topic.counts().refused;
   };
-  add(session_->scans());
-  add(session_->clouds());
+  add(session_->topics().scans);
+  add(session_->topics().clouds);
   const bool is_new = refused > std::exchange(refused_, refused);
   if (is_new)
     status.summary(wrapper::WARN, "a subscriber wants a quality of service that is not offered");

@@ -39,16 +39,18 @@ geometry_msgs::msg::TransformStamped transform_of(std::int64_t stamp_ns, const s
 
 }  // namespace
 
-robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_options& options,
-                           const std::string& frame_id, const std::string& source)
-    : node_(node), options_(options) {
+robot_motion::robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
+                           const motion_options& options, const std::string& frame_id,
+                           const std::string& source)
+    : node_(node), topics_(topics), options_(options) {
   // What cannot be read is reported when the source is opened as a lidar.
   if (g4lidar::kind_of_source(source) == g4lidar::source_kind::recording)
     static_cast<void>(feed_.load_recording(g4lidar::path_of_source(source)));
   has_odometry_ = feed_.is_known() || g4lidar::has_simulated_robot(source);
   if (has_odometry_) {
-    odometry_ = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
-        node, "odom", rclcpp::QoS(5).reliable());
+    if (!topics.odometry)
+      topics.odometry = std::make_unique<counted_publisher<nav_msgs::msg::Odometry>>(
+          node, "odom", rclcpp::QoS(5).reliable());
     tf_ = std::make_unique<tf2_ros::TransformBroadcaster>(node);
   }
   if (options.mount) {
@@ -110,7 +112,7 @@ void robot_motion::follow(std::span<const g4lidar::point> points,
 
 void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t stamp_ns) {
   path_.add(at);
-  if (odometry_->is_wanted()) {
+  if (topics_.odometry->is_wanted()) {
     auto made = std::make_unique<nav_msgs::msg::Odometry>();
     made->header.stamp = rclcpp::Time(stamp_ns);
     made->header.frame_id = options_.odometry_frame;
@@ -121,7 +123,7 @@ void robot_motion::publish(const g4lidar::stamped_odometry& at, std::int64_t sta
     made->twist.twist.linear.x = at.twist.x_m_per_s;
     made->twist.twist.linear.y = at.twist.y_m_per_s;
     made->twist.twist.angular.z = at.twist.yaw_rad_per_s;
-    odometry_->publish(std::move(made));
+    topics_.odometry->publish(std::move(made));
   }
   tf_->sendTransform(
       transform_of(stamp_ns, options_.odometry_frame, options_.base_frame, {at.pose, false}));

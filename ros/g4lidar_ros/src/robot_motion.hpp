@@ -45,9 +45,10 @@ struct motion_options {
 /// *Single thread*: that of the reader, except construction.
 class robot_motion {
  public:
-  /// Of a lidar whose frame is `frame_id`, and whose source is `source`.
-  robot_motion(rclcpp_lifecycle::LifecycleNode& node, const motion_options& options,
-               const std::string& frame_id, const std::string& source);
+  /// Of a lidar whose frame is `frame_id`, and whose source is `source`; adds the topic of its odometry.
+  robot_motion(rclcpp_lifecycle::LifecycleNode& node, lidar_topics& topics,
+               const motion_options& options, const std::string& frame_id,
+               const std::string& source);
 
   /// Whether the source carries odometry, which needs its points as they come.
   [[nodiscard]] bool has_odometry() const noexcept { return has_odometry_; }
@@ -66,11 +67,11 @@ class robot_motion {
   void take_transforms(const g4lidar::scan& whole, std::int64_t ahead_ns);
 
   rclcpp_lifecycle::LifecycleNode& node_;
+  lidar_topics& topics_;
   motion_options options_;
   g4lidar::odometry_feed feed_;
   bool has_odometry_ = false;
   g4lidar::odometry_path path_;
-  std::unique_ptr<counted_publisher<nav_msgs::msg::Odometry>> odometry_;
   std::unique_ptr<tf2_ros::TransformBroadcaster> tf_;
   std::unique_ptr<tf2_ros::StaticTransformBroadcaster> place_;
   std::mutex mutex_;                                   // protects the next one

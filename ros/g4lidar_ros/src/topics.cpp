@@ -7,6 +7,15 @@
 #include <rclcpp/time.hpp>
 
 namespace g4lidar_ros {
+namespace {
+
+/// A reliable publisher serves reliable and best-effort subscribers.
+rclcpp::QoS scan_quality() { return rclcpp::QoS(5).reliable().durability_volatile(); }
+
+}  // namespace
+
+lidar_topics::lidar_topics(rclcpp_lifecycle::LifecycleNode& node)
+    : scans(node, "scan", scan_quality()), clouds(node, "points", scan_quality()) {}
 
 std_msgs::msg::Header header_of(const g4lidar::message_header& from) {
   std_msgs::msg::Header made;

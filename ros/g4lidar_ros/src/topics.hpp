@@ -65,6 +65,18 @@ class counted_publisher {
   typename rclcpp_lifecycle::LifecyclePublisher<Message>::SharedPtr publisher_;
 };
 
+/// The topics of a lidar. A node keeps memory of each lifecycle publisher that it ever had, so they are made once.
+struct lidar_topics {
+  explicit lidar_topics(rclcpp_lifecycle::LifecycleNode& node);
+
+  counted_publisher<sensor_msgs::msg::LaserScan> scans;
+  counted_publisher<sensor_msgs::msg::PointCloud2> clouds;
+  /// Null until a source with odometry.
+  std::unique_ptr<counted_publisher<nav_msgs::msg::Odometry>> odometry;
+  /// Null until a recording.
+  std::unique_ptr<counted_publisher<rosgraph_msgs::msg::Clock>> clock;
+};
+
 /// The header of a message.
 [[nodiscard]] std_msgs::msg::Header header_of(const g4lidar::message_header& from);
 /// A revolution as put_laser_scan() writes it, with `bins` ranges; `header.duration_ns` is that of the revolution.

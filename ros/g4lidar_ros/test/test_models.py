@@ -135,6 +135,13 @@ class TestModels(unittest.TestCase):
         def failures(name):
             return sum((each.start_state.label, each.goal_state.label) == ("configuring", "unconfigured")
                        for each in list(failed[name]))
+
+        def publishers():
+            topics = [f"/{name}/{topic}" for name in LATE_PORTS for topic in ("scan", "points")]
+            return {topic: [bytes(each.endpoint_gid) for each in self.watcher.node.get_publishers_info_by_topic(topic)]
+                    for topic in topics}
+        self.assertTrue(support.wait_for(lambda: all(len(each) == 1 for each in publishers().values())), publishers())
+        made = publishers()
         for name, port in LATE_PORTS.items():
             if name == "late_itself":  # it opens the lidar without configure, and has its services
                 self.assertEqual(self.watcher.state("/late_itself/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
@@ -145,6 +152,8 @@ class TestModels(unittest.TestCase):
             self.addCleanup(device.wait, support.PATIENCE)
             self.addCleanup(device.send_signal, signal.SIGINT)
             self.scan(name)
+        # Publishers are made once, as a node never forgets one.
+        self.assertEqual(publishers(), made)
         self.assertEqual(self.watcher.state("/wrong/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
         self.assertLessEqual(sum(each.goal_state.label == "configuring" for each in list(wrong)), 1)
 

@@ -2,12 +2,8 @@
 // The names in the text of a setup in one table, and the files that it names.
 #include "g4lidar/sim/setup.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <filesystem>
 #include <limits>
@@ -18,7 +14,7 @@
 #include <utility>
 
 #include "sim/read_time.hpp"
-#include "transport/owned_fd.hpp"
+#include "transport/text_file.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -232,21 +228,9 @@ std::string decoded(std::string_view coded) {
 }
 
 std::optional<world_error> read_text(const std::string& file, std::string& text) {
-  constexpr std::size_t longest = std::size_t{16} * 1024 * 1024;
-  std::error_code none;
-  if (fs::is_directory(file, none)) return world_error{0, "it is a directory"};
-  const owned_fd in(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  std::array<char, 16'384> part;
-  ssize_t count = in ? 1 : -1;
-  while (count > 0 && text.size() <= longest) {
-    count = ::read(in.get(), part.data(), part.size());
-    if (count > 0) text.append(part.data(), static_cast<std::size_t>(count));
-  }
-  if (count < 0) {
-    return world_error{0, "it cannot be read: " + std::generic_category().message(errno)};
-  }
-  if (text.size() > longest) return world_error{0, "it is longer than 16 MB"};
-  return std::nullopt;
+  const std::string why = read_text_file(file, text);
+  if (why.empty()) return std::nullopt;
+  return world_error{0, "it " + why};
 }
 
 }  // namespace

@@ -18,10 +18,45 @@
 
 namespace g4_tool {
 
-g4lidar::mask mask_in(const std::string& path) {
-  auto made = g4lidar::load_mask(path == "-" ? "/dev/stdin" : path);
-  if (auto* const good = std::get_if<g4lidar::mask>(&made)) return std::move(*good);
+namespace {
+
+/// What `in` contains, at most so much. Throws a failure, or interrupted.
+std::string text_of(input& in, std::size_t most_megabytes, const std::string& what_to_give) {
+  std::string text;
+  std::array<std::uint8_t, 16'384> part;
+  while (const std::size_t count = in.read(part)) {
+    text.append(reinterpret_cast<const char*>(part.data()), count);
+    if (text.size() >> 20U >= most_megabytes) {
+      throw failure(exit_code::bad_file, fmt::format("{} is longer than {} MB. {}", in.title(),
+                                                     most_megabytes, what_to_give));
+    }
+  }
   if (interrupt() != 0) throw interrupted();
+  return text;
+}
+
+/// The value of what was parsed. Throws a failure that names the file and the line.
+template <class Value, class Error>
+Value parsed(std::variant<Value, Error> made, const std::string& title,
+             const std::string& what_to_give) {
+  if (auto* const good = std::get_if<Value>(&made)) return std::move(*good);
+  const Error& wrong = std::get<Error>(made);
+  const std::string line = wrong.line > 0 ? fmt::format(", line {}", wrong.line) : "";
+  throw failure(exit_code::bad_file,
+                fmt::format("{}{}: {}. {}", title, line, wrong.message, what_to_give));
+}
+
+}  // namespace
+
+g4lidar::mask mask_in(const std::string& path) {
+  if (path == "-") {
+    const std::string what_to_give = "Give lines 'polygon x1 y1 x2 y2 x3 y3 ...'.";
+    input in(path, what_to_give);
+    return parsed(g4lidar::parse_mask(text_of(in, 16, what_to_give)), "mask: " + in.title(),
+                  what_to_give);
+  }
+  auto made = g4lidar::load_mask(path);
+  if (auto* const good = std::get_if<g4lidar::mask>(&made)) return std::move(*good);
   throw failure(exit_code::bad_file, std::get<std::string>(made));
 }
 
@@ -37,24 +72,9 @@ shaping_options shape_of(const common_options& how, const g4lidar::mask& loaded)
 }
 
 std::vector<stamped_pose> load_odometry(const std::string& path) {
-  constexpr std::size_t most_megabytes = 1024;
   const std::string what_to_give = "Give a file with lines 'time_ns x y yaw_rad'.";
   input in(path, what_to_give);
-  std::string text;
-  std::array<std::uint8_t, 16'384> part;
-  while (const std::size_t count = in.read(part)) {
-    text.append(reinterpret_cast<const char*>(part.data()), count);
-    if (text.size() >> 20U >= most_megabytes) {
-      throw failure(exit_code::bad_file, fmt::format("{} is longer than {} MB. {}", in.title(),
-                                                     most_megabytes, what_to_give));
-    }
-  }
-  auto made = g4lidar::parse_odometry(text);
-  if (auto* const good = std::get_if<std::vector<stamped_pose>>(&made)) return std::move(*good);
-  const auto& wrong = std::get<1>(made);
-  const std::string line = wrong.line > 0 ? fmt::format(", line {}", wrong.line) : "";
-  throw failure(exit_code::bad_file,
-                fmt::format("{}{}: {}. {}", in.title(), line, wrong.message, what_to_give));
+  return parsed(g4lidar::parse_odometry(text_of(in, 1024, what_to_give)), in.title(), what_to_give);
 }
 
 std::vector<stamped_odometry> load_moving_odometry(const std::string& path) {

@@ -20,6 +20,7 @@ namespace g4lidar_ros {
 class lidar_session;
 class node_diagnostics;
 class node_parameters;
+struct lidar_topics;
 
 /// configure opens the lidar, activate turns its motor and publishes, deactivate rests it, cleanup closes it. An unplug
 /// is a warning, after which it reconnects. An error that it cannot recover from deactivates it, and on_deactivate()
@@ -56,6 +57,7 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
   void allow(bool runs, trigger::Response& answer);
 
   std::unique_ptr<node_parameters> parameters_;
+  std::unique_ptr<lidar_topics> topics_;    // since the first configure
   std::shared_ptr<lidar_session> session_;  // null unless it is configured, or starts itself
   std::unique_ptr<node_diagnostics> diagnostics_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
