@@ -56,7 +56,7 @@ for seconds in 5 10; do
   "$g4_dump" convert -q "$scratch/$seconds.bin" "$scratch/$seconds.mcap"
 done
 heading
-row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 61 "61"
+row "instructions per sample, bursts of 256 bytes" "$(per_sample 256)" "" 60 "60"
 row "the same, bursts of 64 bytes" "$(per_sample 64)" ""
 row "bursts of 256 bytes, with a running diagnosis" "$(per_sample 256 judged)" "" 110 "110"
 # A model for each layout of samples; see core/model.hpp.
@@ -64,7 +64,7 @@ for model in x4 g6 tg30 g2 s4b scl t-mini t-mini-plus-sh; do
   row "the same, samples of a $model" "$(per_sample 256 "$model")" "" 78 "78"
 done
 row "instructions per point, convert of raw bytes to csv" "$(per_point bin)" "" 320 "320"
-row "the same of a recording with scans" "$(per_point mcap)" "" 410 "410"
+row "the same of a recording with scans" "$(per_point mcap)" "" 400 "400"
 row "system calls per second, only scans taken" "$(calls scans)" "" 100 "100"
 row "the same with batches of 20 ms" "$(calls 20)" "" 110 "110"
 row "heap calls while streaming" "$(value heap_calls "$scratch/stream")" "" 0 0

@@ -17,7 +17,8 @@ int report(const g4lidar::error& why) {
 void use(const g4lidar::scan& scan, g4lidar::near_history& history) {
   std::vector<g4lidar::point> points(scan.begin(), scan.end());
   const auto too_near =  // what stays too near stays flagged
-      mark_near(points, history, {.revolutions = g4lidar::near_limits::until_return}, *scan.model);
+      mark_near(points, history, {.revolutions = g4lidar::near_limits::until_return}, *scan.model,
+                scan.sample_rate_hz);
   const g4lidar::point* nearest = nullptr;
   for (const g4lidar::point& p : scan) {
     if (p.is_no_return() || p.is_too_near()) continue;  // not reliable

@@ -38,8 +38,10 @@ bool point_pipeline::find_scan() noexcept {
       if (found) keep(*found);
     } else if (const event* const found = input_.current()) {
       const auto* const packet = std::get_if<packet_view>(found);
-      if (delivers_ && packet != nullptr) add(*packet);
-      if (const auto* const gone = std::get_if<skipped>(found); delivers_ && gone != nullptr) {
+      const auto* const gone = std::get_if<skipped>(found);
+      if (delivers_ && packet != nullptr) {
+        add(*packet);
+      } else if (delivers_ && gone != nullptr) {
         assembler_.add(*gone);
         decoder_.gone(*gone);
       }

@@ -63,7 +63,8 @@ std::span<const point> shaping_writer::marked_stream(std::span<const point> poin
   stream_.erase(stream_.begin(), stream_.begin() + static_cast<std::ptrdiff_t>(old));
   stream_.insert(stream_.end(), points.begin(), points.end());
   if (marks.near) {
-    mark_near(std::span(stream_).last(points.size()), near_, *marks.near, *options_.model);
+    mark_near(std::span(stream_).last(points.size()), near_, *marks.near, *options_.model,
+              options_.sample_rate_hz);
   }
   spacing_.add(points);
   if (marks.speckle) marks.speckle->near_ratio = marks.speckle->near_ratio_at(spacing_.step_deg());

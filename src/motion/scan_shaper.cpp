@@ -48,7 +48,7 @@ void scan_shaper::shape(const scan& source, std::span<const stamped_pose> path) 
   not_deskewed_ += outside_;
   if (!options_.marks.near) return;
   marked_.assign(source_.begin(), source_.end());
-  mark_near(marked_, near_, *options_.marks.near, *source.model);
+  mark_near(marked_, near_, *options_.marks.near, *source.model, source.sample_rate_hz);
   source_.points = marked_;
 }
 

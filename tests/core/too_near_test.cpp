@@ -114,7 +114,25 @@ TEST(MarkNear, TheShortestRangeIsThatOfTheModel) {
   EXPECT_FALSE(is_near("t-mini", 101.0F));
   EXPECT_EQ(near_limits{}.shortest_mm_of(g4_model), 280.0F);
   EXPECT_EQ(near_limits{}.shortest_mm_of(*model_named("x4")), 120.0F);
+  EXPECT_EQ(near_limits{}.shortest_mm_of(*model_named("x4"), 5000), 120.0F);
   EXPECT_EQ(near_limits{.shortest_mm = 300.0F}.shortest_mm_of(*model_named("x4")), 300.0F);
+}
+
+// The data sheet of the G4: 280 mm at 9 kHz, 260 mm at 8 kHz, 100 mm at 4 kHz.
+TEST(MarkNear, TheShortestRangeIsThatAtTheSampleRate) {
+  EXPECT_EQ(near_limits{}.shortest_mm_of(g4_model, 9000), 280.0F);
+  EXPECT_EQ(near_limits{}.shortest_mm_of(g4_model, 8000), 260.0F);
+  EXPECT_EQ(near_limits{}.shortest_mm_of(g4_model, 4000), 100.0F);
+  EXPECT_EQ(near_limits{}.shortest_mm_of(g4_model, 5000), 280.0F) << "it does not have this rate";
+  EXPECT_EQ(near_limits{.shortest_mm = 300.0F}.shortest_mm_of(g4_model, 4000), 300.0F);
+  const auto count_of = [](double range_mm, std::uint32_t rate_hz) {
+    std::vector<point> points{on_beam(50.5, range_mm, 0), on_beam(50.5, 0, 1)};
+    near_history history;
+    return mark_near(points, history, {}, g4_model, rate_hz);
+  };
+  EXPECT_EQ(count_of(210, 9000), 1U);
+  EXPECT_EQ(count_of(210, 4000), 0U) << "a target is seen up to 100 mm";
+  EXPECT_EQ(count_of(190, 4000), 1U);
 }
 
 // None is at a whole degree, where rounding decides between two places.

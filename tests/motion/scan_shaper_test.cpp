@@ -270,6 +270,24 @@ TEST_F(ScanShaper, WhatWasNearBefore_IsKnownAlthoughNobodyTookIt) {
   EXPECT_FALSE(shaper.kept()[0].may_be_too_near());
 }
 
+// A G4 at 4 kHz has returns from 100 mm on: what is at 400 mm is not near.
+TEST_F(ScanShaper, WhatIsNear_FollowsTheSampleRateOfTheScan) {
+  for (const std::uint32_t rate_hz : {9000U, 4000U}) {
+    scan_shaper shaper({.marks = {.near = near_limits{}}});
+    point near = at(100.0F, 400.0F, 1);
+    near.revolution = 0;
+    point nothing = at(96.9F, 0.0F, 2);
+    nothing.revolution = 1;
+    for (point* each : {&near, &nothing}) {
+      scan given = scan_of({each, 1});
+      given.sample_rate_hz = rate_hz;
+      shaper.shape(given);
+    }
+    ASSERT_EQ(shaper.kept().size(), 1U);
+    EXPECT_EQ(shaper.kept()[0].may_be_too_near(), rate_hz == 9000) << rate_hz;
+  }
+}
+
 TEST_F(ScanShaper, AllocatesForTheFirstScansOnly) {
   driven_lidar lidar(office(), {.twist = {0.3, 0.0, 0.4}}, 1);
   scan_shaper shaper(

@@ -86,7 +86,7 @@ G4LIDAR_C_API int g4lidar_mark_veiling(g4lidar_point* points, size_t count,
 typedef struct g4lidar_near_options {
   size_t struct_size; /**< Set by g4lidar_near_options_init(). */
   float
-      shortest_mm; /**< A nearer target gives no return; 0: that of the model of the scans, 280 for a G4. */
+      shortest_mm; /**< A nearer target gives no return; 0: that of the model of a scan at its rate, 280 for a G4 at 9 kHz. */
   uint32_t
       revolutions; /**< For how many revolutions after a near return; 0: until a return comes; 3. */
   uint8_t reserved[8]; /**< 0. */

@@ -159,10 +159,15 @@ class scan_assembler {
     return before(to) - before(from);
   }
 
+  /// An angle below two turns within the turn.
+  [[nodiscard]] static constexpr std::int32_t within_turn(std::int32_t angle_64ths) noexcept {
+    return angle_64ths >= turn ? angle_64ths - turn : angle_64ths;
+  }
+
   /// Advances within a packet.
   constexpr void advance(std::int32_t way_64ths) noexcept {
     turned_ += way_64ths;
-    at_ = (at_ + way_64ths) % turn;
+    at_ = within_turn(at_ + way_64ths);
   }
   /// Advances from packet to packet. A step back by up to an eighth of a turn is a movement of the
   /// motor; a longer one is a step ahead over lost packets, plus whole turns if the times show
@@ -184,19 +189,23 @@ class scan_assembler {
   /// known, or less than half a turn.
   [[nodiscard]] constexpr std::int32_t way_by_time(const point& next) const noexcept {
     if (turn_ns_ == 0 || used_ == 0 || storage_[used_ - 1].time_ns == 0) return 0;
-    const std::int64_t taken = std::min(next.time_ns - storage_[used_ - 1].time_ns, 99 * turn_ns_);
-    return taken > turn_ns_ / 2 ? static_cast<std::int32_t>(taken * turn / turn_ns_) : 0;
+    const std::int64_t taken = next.time_ns - storage_[used_ - 1].time_ns;
+    if (taken <= turn_ns_ / 2) return 0;
+    return static_cast<std::int32_t>(std::min(taken, 99 * turn_ns_) * turn / turn_ns_);
   }
 
   [[nodiscard]] constexpr std::optional<scan> fill(decoded& packet) noexcept {
     if (packet.points.empty()) return std::nullopt;
     const std::size_t first = packet.sample_count - packet.points.size();  // not taken yet
-    move_to((packet.first_angle_64ths + way(packet, 0, first)) % turn, packet.points);
+    move_to(within_turn(packet.first_angle_64ths + way(packet, 0, first)), packet.points);
     take_loss();
     if (used_ == 0) first_turned_ = turned_;
     std::size_t count = std::min(packet.points.size(), storage_.size() - used_);
-    while (count > 0 && turned_ + way(packet, first, first + count - 1) > longest) --count;
-    find_turn(packet, first, count);
+    std::int32_t last = way(packet, first, first + count - 1);  // of the samples that are taken
+    if (turned_ + last >= turn) {
+      while (count > 0 && turned_ + last > longest) last = way(packet, first, first + --count - 1);
+      find_turn(packet, first, count);
+    }
     const auto place = storage_.begin() + static_cast<std::ptrdiff_t>(used_);
     // g++ 11: a constant expression cannot compare pointers into two arrays.
     if (std::is_constant_evaluated() || packet.points.data() != storage_.data() + used_) {
@@ -205,12 +214,12 @@ class scan_assembler {
     used_ += count;
     packet.points = packet.points.subspan(count);
     const bool all = packet.points.empty();
-    advance(way(packet, first, all ? first + count - 1 : first + count));
+    advance(all ? last : way(packet, first, first + count));
     if (all) return std::nullopt;
     return cut(packet.points);
   }
 
-  /// Stores which of the next `count` samples is the first one beyond the turn.
+  /// Stores which of the next `count` samples is the first one beyond the turn, if one is.
   constexpr void find_turn(const decoded& packet, std::size_t first, std::size_t count) noexcept {
     if (is_beyond() || count == 0) return;
     const auto turned_at = [&](std::size_t i) { return turned_ + way(packet, first, first + i); };

@@ -28,6 +28,8 @@ struct writing_options {
   shaping_options shape{};
   /// The model of the lidar, for a stream of points; revolutions have that of their scan. Not null.
   const g4lidar::model* model = &g4_model;
+  /// The sample rate of the lidar, in the same way, for mark_limits::near. 0: the usual one of the model.
+  std::uint32_t sample_rate_hz = 0;
   /// The poses of the robot by its odometry, times ascending, of the same clock as those of the points. Also
   /// for scan_record::robot. A view of the caller's memory, which outlives the writer.
   std::span<const stamped_pose> path{};

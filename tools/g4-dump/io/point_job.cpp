@@ -116,6 +116,7 @@ class point_run {
     job_.style.sample_flags = has_sample_flags(which.samples.layout);
     job_.style.turn_deg = which.turn_deg;
     how_.model = model_;
+    how_.sample_rate_hz = job_.source.raw_sample_rate_hz.value_or(0);
     how_.for_grid = bins_ > 0;
     point_file_ = nullptr;
     writer_ = std::make_unique<shaping_writer>(make_writer(), how_);

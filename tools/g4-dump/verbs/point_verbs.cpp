@@ -29,7 +29,8 @@ constexpr const char* shape_text =
   --near[=LIMITS]  A direction without return is flagged may_be_too_near if in the last revolutions
                    a return came from there from less than twice the shortest range of the lidar,
                    and none that is farther since. The default is revolutions=3, and the
-                   shortest range of the model, 0.28 for a G4;
+                   shortest range of the model, 0.28 for a G4 (of revolutions that at their sample
+                   rate, of single points that at the usual one);
                    revolutions=0: until a return comes from there.
   --frame vendor   Angles grow clockwise seen from above, 0 at the cable, in [0, 360).
   --frame robot    Angles grow counter-clockwise, 0 ahead (opposite the cable), in [-180, 180).

@@ -30,8 +30,9 @@ class sample_counter {
     if (packet.suspect || !following_) {
       gap.known = !hinted;
     } else {
-      gap = gap_before(packet, hinted, late_samples);
-      if (gap.lost == 0 && gap.known) learn(packet);
+      const double way = way_to(packet);
+      gap = gap_before(packet, way, hinted, late_samples);
+      if (gap.lost == 0 && gap.known) learn(packet, way);
     }
     follow(packet);
     return gap;
@@ -66,7 +67,8 @@ class sample_counter {
     return way;
   }
 
-  [[nodiscard]] constexpr sample_gap gap_before(const decoded& packet, bool hinted,
+  /// `way`: see way_to().
+  [[nodiscard]] constexpr sample_gap gap_before(const decoded& packet, double way, bool hinted,
                                                 double late_samples) const noexcept {
     if (!turning()) return {0, 0.0, !hinted};
     // A motor that spins up makes longer steps than the learnt ones; without a hint this is not a
@@ -74,7 +76,7 @@ class sample_counter {
     const double own = own_step(packet);
     const double step =
         hinted ? step_ : std::max({step_, own_step_, own > 0.0 ? own : own_step_ + growth_});
-    const double missed = way_to(packet) / step - 1.0;
+    const double missed = way / step - 1.0;
     // Without a hint, the usual deviation of the steps between packets is not a loss, and neither is
     // the rounding of both angles to 1/64 degree.
     const double of_turn = turn / step;
@@ -88,8 +90,7 @@ class sample_counter {
     return {static_cast<std::int64_t>(all + 0.5), doubt < 0.5 ? 0.0 : doubt, true};
   }
 
-  constexpr void learn(const decoded& packet) noexcept {
-    const double way = way_to(packet);
+  constexpr void learn(const decoded& packet, double way) noexcept {
     samples_ += packet.sample_count;
     way_ += way + static_cast<double>(packet.span_64ths);
     if (turning()) {
