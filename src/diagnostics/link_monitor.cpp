@@ -36,16 +36,25 @@ std::size_t size_of(const event& found) noexcept {
 
 }  // namespace
 
-void event_splitter::take(bytes input, std::int64_t arrival_ns, const observer& to) {
-  arrival_ns_ = arrival_ns;
-  raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(raw_begin_));
-  raw_begin_ = 0;
-  raw_.insert(raw_.end(), input.begin(), input.end());
-  while (const auto found = parser_.next(input)) give(*found, to);
+void event_splitter::take(bytes data, std::int64_t arrival_ns, const observer& to) {
+  received(data);
+  input_.feed(data, arrival_ns);
+  give_all(to);
 }
 
 void event_splitter::finish(const observer& to) {
-  while (const auto found = parser_.finish()) give(*found, to);
+  input_.cut();
+  give_all(to);
+}
+
+void event_splitter::give_all(const observer& to) {
+  while (const event* const found = input_.next()) give(*found, to);
+}
+
+void event_splitter::received(bytes data) {
+  raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(raw_begin_));
+  raw_begin_ = 0;
+  raw_.insert(raw_.end(), data.begin(), data.end());
 }
 
 void event_splitter::give(const event& found, const observer& to) {
@@ -60,7 +69,7 @@ void event_splitter::give(const event& found, const observer& to) {
     in_text_ = false;
   }
   counts_.add(found);
-  if (to.event) to.event({found, raw, arrival_ns_});
+  if (to.event) to.event({found, raw, input_.arrival_ns()});
 }
 
 void event_splitter::look_for_text(bytes raw) {
@@ -81,7 +90,8 @@ link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool
       is_cancelled_(std::move(is_cancelled)),
       which_(&which),
       splitter_(which.samples),
-      link_(splitter_.parser(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns}, cut_off_after_ns) {}
+      link_(splitter_.input(), transport_.get(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns},
+            cut_off_after_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
@@ -89,54 +99,61 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
   for (std::int64_t begin_ns = now_ns(); !is_over(); begin_ns = read_ns_) {
     cancelled_ = is_cancelled_ && is_cancelled_();
     if (cancelled_ || begin_ns >= until_ns) return;
-    const auto got = transport_->read(buffer_, std::min(until_ns, begin_ns + slice_ns));
+    const auto got = link_.receive(buffer_, std::min(until_ns, begin_ns + slice_ns));
     const std::int64_t before_ns = std::exchange(read_ns_, now_ns());
-    const std::int64_t took_ns = read_ns_ - before_ns;
-    if (!got) {
-      if (got.error().code() == problem::cancelled) continue;
+    if (got) {
+      take(*got, read_ns_ - before_ns, to);
+    } else if (got.error().code() != problem::cancelled) {
       error_ = got.error();
-      splitter_.finish(to);
-      return;
+      splitter_.input().cut();
     }
-    reading what{got->count, got->arrival_ns};
-    if (took_ns > slice_ns + host_pause_ns) {
-      what.host_pause_ns = took_ns;
-      ++host_pauses_;
-      if (took_ns >= arrival_statistics::stall_ns) host_paused_ns_ = read_ns_;
-      has_backlog_ = true;
-    }
-    if (got->count > 0) {
-      take(*got, what, to);
-      continue;
-    }
-    has_backlog_ = false;
-    silence_ns_ += std::min(took_ns, slice_ns);
-    if (link_.is_cut_off(read_ns_)) splitter_.finish(to);
+    give_events(to);
   }
 }
 
-void link_monitor::take(const received& got, reading what, const observer& to) {
+void link_monitor::take(const received& got, std::int64_t took_ns, const observer& to) {
+  reading what{got.count, got.arrival_ns};
+  if (took_ns > slice_ns + host_pause_ns) {
+    what.host_pause_ns = took_ns;
+    ++host_pauses_;
+    if (took_ns >= arrival_statistics::stall_ns) host_paused_ns_ = read_ns_;
+    has_backlog_ = true;
+  }
+  if (got.count == 0) {
+    has_backlog_ = false;
+    silence_ns_ += std::min(took_ns, slice_ns);
+    return;
+  }
   const bytes data = bytes(buffer_).first(got.count);
-  link_.heard(got.arrival_ns);
   what.silence_ns = std::exchange(silence_ns_, 0);
   what.is_backlog = has_backlog_;
   has_backlog_ = has_backlog_ && got.count == buffer_.size();
   if (to.arrival) to.arrival(what);
   layout_.take(data);
-  splitter_.take(data, got.arrival_ns, to);
+  splitter_.received(data);
+}
+
+void link_monitor::give_events(const observer& to) {
+  link_.events([&](const event& found) { splitter_.give(found, to); });
+}
+
+void link_monitor::finish(const observer& to) {
+  splitter_.input().cut();
+  give_events(to);
 }
 
 void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
   while (!is_over() && now_ns() < until_ns) {
     listen(std::min(now_ns() + quiet, until_ns), {});
-    if (now_ns() >= heard_ns() + quiet) return splitter_.finish({});
+    if (now_ns() >= heard_ns() + quiet) return finish({});
   }
 }
 
-void link_monitor::write(bytes data) {
-  if (is_over()) return;
+result<void> link_monitor::write(bytes data) {
+  if (is_over()) return {};
   const auto sent = transport_->write(data, transport_->now_ns() + 500 * ms);
   if (!sent && sent.error().code() != problem::cancelled) error_ = sent.error();
+  return {};
 }
 
 bool link_monitor::stop() {
@@ -145,22 +162,16 @@ bool link_monitor::stop() {
   static_cast<void>(talk.begin(requests::stop(), now_ns()));
   std::optional<outcome> done;
   while (!is_over() && !done) {
-    static_cast<void>(link_.send([&](bytes out) {
-      write(out);
-      return result<void>();
-    }));
+    static_cast<void>(link_.send([this](bytes out) { return write(out); }));
     std::int64_t until_ns = talk.next_look_ns();
-    listen(until_ns, {.event = [&](const observed_event& found) {
-             link_.take(found.what);
-             until_ns = talk.next_look_ns();
-           }});
+    listen(until_ns, {.event = [&](const auto& /*found*/) { until_ns = talk.next_look_ns(); }});
     talk.look(now_ns());
     done = talk.finished();
   }
   // The session counts events only: the beginning of a last packet may have arrived later.
   if (now_ns() < heard_ns() + quiet_ns) listen_for_quiet(quiet_ns, now_ns() + stop_ns);
   const bool is_quiet = now_ns() >= heard_ns() + quiet_ns;  // also without noise
-  if (is_quiet) splitter_.finish({});
+  if (is_quiet) finish({});
   for (const command code : {command::forced_stop, command::stop}) {
     if (error_) static_cast<void>(transport_->write(encode(code), transport_->now_ns() + 100 * ms));
   }
@@ -202,7 +213,7 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
     }
   };
   listen(until_ns, to);
-  splitter_.finish(to);
+  finish(to);
   made.packets += counts().packets - before.packets;
   made.skipped += counts().skipped_bytes() - before.skipped_bytes();
   made.is_disturbed |= boots() != boots_before || host_pauses_ != pauses_before;

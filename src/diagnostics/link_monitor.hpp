@@ -49,26 +49,31 @@ struct observer {
 class event_splitter {
  public:
   event_splitter() = default;
-  explicit event_splitter(sample_format format) noexcept : parser_(format) {}
+  explicit event_splitter(sample_format format) noexcept : input_(format) {}
 
-  [[nodiscard]] const stream_parser& parser() const noexcept { return parser_; }
-  void take(bytes input, std::int64_t arrival_ns, const observer& to);
+  void take(bytes data, std::int64_t arrival_ns, const observer& to);
   /// The held bytes have ended.
   void finish(const observer& to);
+
+  // ---- the same, if a device_link reads ----
+
+  [[nodiscard]] event_reader& input() noexcept { return input_; }
+  /// The bytes of one read, before their events.
+  void received(bytes data);
+  void give(const event& found, const observer& to);
   /// Counts of all events so far.
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   /// Boot texts so far.
   [[nodiscard]] std::uint64_t boots() const noexcept { return boots_; }
 
  private:
-  void give(const event& found, const observer& to);
+  void give_all(const observer& to);
   void look_for_text(bytes raw);
 
-  stream_parser parser_;
+  event_reader input_;
   stream_counter counts_;
   std::vector<std::uint8_t> raw_;  // not part of an event yet
   std::size_t raw_begin_ = 0;
-  std::int64_t arrival_ns_ = 0;
   std::uint64_t boots_ = 0;
   std::size_t letters_ = 0;  // consecutive
   bool in_text_ = false;
@@ -108,7 +113,7 @@ class link_monitor {
   /// A packet or response that does not continue for this time has ended. On a link that stalls it takes longer.
   void set_cut_off_after(std::int64_t pause_ns) noexcept { link_.set_cut_off_after(pause_ns); }
 
-  void send(command code) { write(encode(code)); }
+  void send(command code) { static_cast<void>(write(encode(code))); }
   /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.
   [[nodiscard]] exchange ask(command code, std::int64_t patience_ns);
   /// Waits for the reply to a command that was sent before.
@@ -149,8 +154,10 @@ class link_monitor {
   bool set_baud(std::uint32_t baud);
 
  private:
-  void take(const received& got, reading what, const observer& to);
-  void write(bytes data);
+  void take(const received& got, std::int64_t took_ns, const observer& to);
+  void give_events(const observer& to);
+  void finish(const observer& to);
+  result<void> write(bytes data);
 
   std::unique_ptr<transport> transport_;
   std::function<bool()> is_cancelled_;

@@ -10,7 +10,6 @@
 #include "driver/device_link.hpp"
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/session_times.hpp"
-#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/error.hpp"
 
 namespace g4lidar {
@@ -26,15 +25,22 @@ class inquiry {
  public:
   /// `samples` as the device sends them.
   inquiry(transport& port, sample_format samples, stop_attempts how) noexcept
-      : port_(port), parser_(samples), link_(parser_, times_for(how)) {}
+      : port_(port), input_(samples), link_(input_, &port, times_for(how)) {}
 
   [[nodiscard]] result<device_information> ask(std::int64_t deadline_ns) {
-    static_cast<void>(link_.talk().begin(requests::device_info(), port_.now_ns()));
+    session& talk = link_.talk();
+    static_cast<void>(talk.begin(requests::device_info(), port_.now_ns()));
     while (port_.now_ns() < deadline_ns) {
       const auto sent = link_.send([&](bytes out) { return port_.write(out, deadline_ns); });
       if (!sent) return tl::unexpected(sent.error());
-      if (const auto ended = link_.talk().finished()) return judge(*ended);
-      if (auto got = receive(deadline_ns); !got) return tl::unexpected(got.error());
+      if (const auto ended = talk.finished()) return judge(*ended);
+      const auto got = link_.receive(buffer_, std::min(link_.due_ns(), deadline_ns));
+      if (!got) return tl::unexpected(got.error());
+      link_.events([this](const event& found) {
+        has_heard_ = true;
+        has_packets_ = has_packets_ || std::holds_alternative<packet_view>(found);
+      });
+      if (port_.now_ns() >= talk.next_look_ns()) talk.look(port_.now_ns());
     }
     return nothing_believable();
   }
@@ -45,27 +51,6 @@ class inquiry {
     session_times times;
     if (how == stop_attempts::one) times.drain_ns = times.request_ns;
     return times;
-  }
-
-  [[nodiscard]] result<void> receive(std::int64_t deadline_ns) {
-    const std::int64_t due_ns = std::min(link_.talk().next_look_ns(), link_.cut_off_ns());
-    const auto got = port_.read(buffer_, std::min(due_ns, deadline_ns));
-    if (!got) return tl::unexpected(got.error());
-    const std::int64_t now_ns = port_.now_ns();
-    if (got->count > 0) {
-      link_.heard(got->arrival_ns);
-      parser_.feed(bytes(buffer_).first(got->count), [&](const event& found) { take(found); });
-    } else if (link_.is_cut_off(now_ns)) {
-      while (const auto found = parser_.finish()) take(*found);
-    }
-    if (now_ns >= link_.talk().next_look_ns()) link_.talk().look(now_ns);
-    return {};
-  }
-
-  void take(const event& found) noexcept {
-    has_heard_ = true;
-    has_packets_ = has_packets_ || std::holds_alternative<packet_view>(found);
-    link_.take(found);
   }
 
   [[nodiscard]] result<device_information> judge(const outcome& ended) const {
@@ -84,7 +69,7 @@ class inquiry {
   }
 
   transport& port_;
-  stream_parser parser_;
+  event_reader input_;
   device_link link_;
   std::array<std::uint8_t, 4096> buffer_{};
   bool has_heard_ = false;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "driver/device_link.hpp"
 #include "g4lidar/core/request.hpp"
 #include "inquiry.hpp"
 

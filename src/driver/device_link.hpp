@@ -1,56 +1,94 @@
 // SPDX-License-Identifier: MIT
-// What a device sends, as events, and the session with it: below the driver, the probe and the doctor.
+// A device behind a transport: its bytes as events, and the session with it. Below the driver, the probe and the doctor.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 
+#include "event_reader.hpp"
 #include "g4lidar/core/session.hpp"
-#include "g4lidar/core/stream_parser.hpp"
 #include "g4lidar/transport/transport.hpp"
 
 namespace g4lidar {
 
-/// The end of packets and responses that do not continue, and the commands and times of a session.
-/// *Single thread, never allocates.* The caller reads the transport, and takes the events.
+/// *Single thread, never allocates.* The session of a one-way lidar has nothing to do.
 class device_link {
  public:
   /// A device that has been silent for this time will not continue an unfinished packet. Bridges hold
   /// bytes back for up to 16 ms.
   static constexpr std::int64_t usual_cut_off_ns = 30'000'000;
 
-  /// `parser` gets the bytes, and must outlive this.
-  explicit device_link(const stream_parser& parser, const session_times& times = {},
+  /// `input` parses the bytes of `on`, which may be null before follow(). Both must outlive this.
+  explicit device_link(event_reader& input, transport* on, const session_times& times = {},
                        std::int64_t cut_off_after_ns = usual_cut_off_ns,
                        const model& which = g4_model) noexcept
-      : parser_(parser), session_(times, which), cut_off_after_ns_(cut_off_after_ns) {}
+      : input_(input),
+        on_(on),
+        session_(times, which),
+        cut_off_after_ns_(cut_off_after_ns),
+        listens_(which.link == link_kind::one_way) {}
 
-  /// Another transport follows: nothing is known about the device.
-  void reset(std::int64_t now_ns) noexcept {
+  /// Another transport: nothing is known about the device.
+  void follow(transport& on) noexcept {
+    on_ = &on;
     session_.reset();
-    heard_ns_ = now_ns;
+    heard_ns_ = on.now_ns();
   }
   void set_cut_off_after(std::int64_t pause_ns) noexcept { cut_off_after_ns_ = pause_ns; }
   [[nodiscard]] session& talk() noexcept { return session_; }
   [[nodiscard]] const session& talk() const noexcept { return session_; }
+  /// Whether nothing is sent to the device.
+  [[nodiscard]] bool listens() const noexcept { return listens_; }
+  /// Whether more than the packets of a wanted scan may come. Those are not cut off.
+  [[nodiscard]] bool awaits_answer() const noexcept {
+    return !listens_ && (session_.is_busy() || !session_.is_scanning());
+  }
 
-  /// Bytes have arrived, which the parser gets.
-  void heard(std::int64_t arrival_ns) noexcept { heard_ns_ = arrival_ns; }
+  /// One read into `buffer`, by `read(transport)`. Only after all events of the last one.
+  template <class Read>
+  [[nodiscard]] result<received> receive(bytes buffer, Read read) {
+    result<received> got = read(*on_);
+    if (got && got->count > 0) {
+      heard_ns_ = got->arrival_ns;
+      input_.feed(buffer.first(got->count), heard_ns_);
+    }
+    return got;
+  }
+  /// One read until the deadline, then cut_off().
+  [[nodiscard]] result<received> receive(std::span<std::uint8_t> buffer, std::int64_t deadline_ns) {
+    auto got = receive(buffer, [&](transport& on) { return on.read(buffer, deadline_ns); });
+    if (got && got->count == 0) static_cast<void>(cut_off());
+    return got;
+  }
   /// When the last byte arrived.
   [[nodiscard]] std::int64_t heard_ns() const noexcept { return heard_ns_; }
-  /// An event of the parser.
-  void take(const event& found) noexcept { session_.take(found, heard_ns_); }
-
-  /// The device does not continue a packet after such a pause. The held bytes are to be parsed again,
-  /// before the next answer is taken for the rest of the packet.
-  [[nodiscard]] bool is_cut_off(std::int64_t now_ns) const noexcept {
-    return now_ns >= cut_off_ns();
+  /// The device does not continue a packet after such a pause: events() parses the held bytes again, before the
+  /// next answer is taken for the rest of the packet. Returns whether it is so.
+  [[nodiscard]] bool cut_off() noexcept {
+    const std::int64_t end_ns = cut_off_ns();
+    const bool is_due = end_ns != never_ns && on_->now_ns() >= end_ns;
+    if (is_due) input_.cut();
+    return is_due;
   }
-  /// When is_cut_off() becomes true, if nothing arrives.
-  [[nodiscard]] std::int64_t cut_off_ns() const noexcept {
-    return parser_.held() > 0 ? heard_ns_ + cut_off_after_ns_ : never_ns;
+  /// When cut_off() or session::look() is due, if nothing arrives.
+  [[nodiscard]] std::int64_t due_ns() const noexcept {
+    return std::min(session_.next_look_ns(), cut_off_ns());
   }
 
+  /// Passes each event that `next()` returns to the session, then to `sink`, until it returns nothing. Inlined:
+  /// a call costs 20 instructions for each packet.
+  template <class Next, class Sink>
+  [[gnu::always_inline]] void events(Next next, Sink sink) {
+    while (const event* const found = next()) {
+      if (!listens_) session_.take(*found, heard_ns_);
+      sink(*found);
+    }
+  }
+  /// The same for all events.
+  void events(auto sink) {
+    events([this] { return input_.next(); }, sink);
+  }
   /// Sends the commands of the session: calls `write(bytes)` for each, until one fails.
   [[nodiscard]] result<void> send(auto write) {
     while (const auto command = session_.to_send()) {
@@ -60,10 +98,16 @@ class device_link {
   }
 
  private:
-  const stream_parser& parser_;
+  [[nodiscard]] std::int64_t cut_off_ns() const noexcept {
+    return input_.held() > 0 && awaits_answer() ? heard_ns_ + cut_off_after_ns_ : never_ns;
+  }
+
+  event_reader& input_;
+  transport* on_;
   session session_;
   std::int64_t cut_off_after_ns_;
   std::int64_t heard_ns_ = 0;
+  bool listens_;
 };
 
 }  // namespace g4lidar

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "live_stream.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <variant>
 
@@ -23,16 +22,15 @@ session_times times_for(const lidar_tuning& tuning) noexcept {
 live_stream::live_stream(const parts& of, const lidar_options& options)
     : of_(of),
       pace_(options.tuning.pace),
-      link_(of.pipeline.input().parser(), times_for(options.tuning), device_link::usual_cut_off_ns,
+      link_(of.pipeline.input(), nullptr, times_for(options.tuning), device_link::usual_cut_off_ns,
             *options.model),
       motor_(options.model->motor),
-      listens_(options.model->link == link_kind::one_way),
       reported_(*options.model),
       sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 void live_stream::begin() {
-  const transport& on = of_.on.on();
-  link_.reset(now_ns());
+  transport& on = of_.on.on();
+  link_.follow(on);
   reported_.reset();
   of_.from.reset(on.baud(), on.kept_bytes(), now_ns());
   of_.pipeline.follow(on.baud());
@@ -52,12 +50,12 @@ result<void> live_stream::look_if_due() {
   const std::int64_t due_ns = talk().next_look_ns();
   if (!of_.pipeline.input().unparsed().empty() || due_ns > now_ns()) return {};
   if (of_.from.read_until_ns() < due_ns) {
-    if (auto got = read(now_ns()); !got) return got;
+    if (const auto got = read(now_ns()); !got) return tl::unexpected(got.error());
     if (!of_.pipeline.input().unparsed().empty()) return {};
   }
-  if (is_cut_off()) {
+  if (link_.cut_off()) {
+    record(recorded_event::kind::cut);
     of_.pipeline.drop_scan();
-    cut();
     if (parse()) return {};  // look() follows in the next round
   }
   talk().look(now_ns());
@@ -65,26 +63,23 @@ result<void> live_stream::look_if_due() {
 }
 
 result<void> live_stream::receive(std::int64_t deadline_ns) {
-  if (auto got = read(deadline_ns); !got) return got;
-  if (of_.pipeline.input().unparsed().empty() && is_cut_off()) cut();
+  const auto got = read(deadline_ns);
+  if (!got) return tl::unexpected(got.error());
+  if (got->count == 0 && link_.cut_off()) record(recorded_event::kind::cut);
   return {};
 }
 
-result<void> live_stream::read(std::int64_t deadline_ns) {
-  const event_reader& input = of_.pipeline.input();
-  const auto got =
-      of_.from.receive(of_.on.on(), how_to_read(), input.held(), input.missing(), deadline_ns);
-  if (!got) return tl::unexpected(got.error());
-  if (got->count == 0) return {};
-  link_.heard(got->arrival_ns);
-  of_.pipeline.input().feed(of_.from.buffer(got->count), got->arrival_ns);
-  return {};
+result<received> live_stream::read(std::int64_t deadline_ns) {
+  return link_.receive(of_.from.buffer(), [&](transport& on) {
+    const event_reader& input = of_.pipeline.input();
+    return of_.from.receive(on, how_to_read(), input.held(), input.missing(), deadline_ns);
+  });
 }
 
 reading live_stream::how_to_read() const noexcept {
   if (of_.stage != live_stage::scanning) return reading::at_once;
   if (of_.from.is_batched()) return reading::batched;
-  if (is_waiting_for_answer()) return reading::at_once;
+  if (link_.awaits_answer()) return reading::at_once;
   const bool by_packets = pace_ == read_pace::automatic
                               ? of_.takes_points.load(std::memory_order_relaxed)
                               : pace_ == read_pace::packets;
@@ -93,22 +88,19 @@ reading live_stream::how_to_read() const noexcept {
 
 bool live_stream::parse() {
   point_pipeline& pipeline = of_.pipeline;
-  while (!pipeline.find_scan()) {
-    const event* const found = pipeline.next();
-    if (found == nullptr) return false;
-    reported_.take(*found);
-    if (!listens_) link_.take(*found);
+  const auto next = [&] { return pipeline.find_scan() ? nullptr : pipeline.next(); };
+  link_.events(next, [&](const event& found) {
+    reported_.take(found);
     follow_delivery();
-    const auto* const packet = std::get_if<packet_view>(found);
-    if (packet != nullptr && pipeline.delivers()) {
-      const double period_ns = pipeline.decoder().period_ns();
-      const auto way_ns = static_cast<double>(packet->sample_count() - 1) * period_ns;
-      of_.from.packet(*packet, pipeline.input().unparsed().size(),
-                      pipeline.decoder().next_sample_ns() + static_cast<std::int64_t>(way_ns),
-                      period_ns);
-    }
-  }
-  return true;
+    const auto* const packet = std::get_if<packet_view>(&found);
+    if (packet == nullptr || !pipeline.delivers()) return;
+    const double period_ns = pipeline.decoder().period_ns();
+    const auto way_ns = static_cast<double>(packet->sample_count() - 1) * period_ns;
+    of_.from.packet(*packet, pipeline.input().unparsed().size(),
+                    pipeline.decoder().next_sample_ns() + static_cast<std::int64_t>(way_ns),
+                    period_ns);
+  });
+  return pipeline.has_scan();
 }
 
 void live_stream::cut() {
@@ -127,8 +119,8 @@ void live_stream::follow_delivery() {
   const bool delivers = of_.pipeline.delivers();
   const bool may_begin = of_.stage >= live_stage::preparing && of_.stage != live_stage::stopping;
   const bool goes_on = of_.stage == live_stage::stopping && delivers;
-  const bool wanted =
-      listens_ ? of_.stage == live_stage::scanning : talk().is_scanning() && (may_begin || goes_on);
+  const bool wanted = link_.listens() ? of_.stage == live_stage::scanning
+                                      : talk().is_scanning() && (may_begin || goes_on);
   if (wanted == delivers) return;
   of_.pipeline.deliver(wanted);
   wanted ? begin_points() : record(recorded_event::kind::held);
@@ -175,13 +167,12 @@ void live_stream::record(recorded_event::kind what) {
 
 std::int64_t live_stream::next_deadline_ns() const noexcept {
   if (!of_.pipeline.is_empty() || !talk().has_nothing()) return now_ns();
-  const std::int64_t next = talk().next_look_ns();
-  return is_waiting_for_answer() ? std::min(next, link_.cut_off_ns()) : next;
+  return link_.due_ns();
 }
 
 /// An event loop that takes points is woken by each byte. What an idle one-way lidar sends is not read.
 std::int64_t live_stream::rest_until_ns() const noexcept {
-  if (listens_ && of_.stage == live_stage::idle) return never_ns;
+  if (link_.listens() && of_.stage == live_stage::idle) return never_ns;
   const reading how = how_to_read();
   if (how != reading::scans && how != reading::batched) return 0;
   const event_reader& input = of_.pipeline.input();

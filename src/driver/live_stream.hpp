@@ -71,7 +71,7 @@ class live_stream {
 
   /// Whether packets of a wanted scan come, or are resumed.
   [[nodiscard]] bool is_scanning() const noexcept {
-    return of_.stage == live_stage::scanning && (listens_ || talk().is_scanning());
+    return of_.stage == live_stage::scanning && (link_.listens() || talk().is_scanning());
   }
 
   /// When something is due, if nothing arrives.
@@ -85,20 +85,13 @@ class live_stream {
  private:
   [[nodiscard]] std::int64_t now_ns() const noexcept { return of_.on.now_ns(); }
   [[nodiscard]] reading how_to_read() const noexcept;
-  [[nodiscard]] bool is_waiting_for_answer() const noexcept {
-    return !listens_ && (talk().is_busy() || !talk().is_scanning());
-  }
-  [[nodiscard]] bool is_cut_off() const noexcept {
-    return is_waiting_for_answer() && link_.is_cut_off(now_ns());
-  }
-  [[nodiscard]] result<void> read(std::int64_t deadline_ns);
+  [[nodiscard]] result<received> read(std::int64_t deadline_ns);
   void record(recorded_event::kind what);
 
   parts of_;
   read_pace pace_;
   device_link link_;
   motor_kind motor_;
-  bool listens_;  // nothing is sent
   identity_reader reported_;
   std::uint32_t sample_rate_hz_;
   std::int64_t motor_ready_ns_ = 0;

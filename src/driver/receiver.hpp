@@ -47,10 +47,8 @@ class receiver {
     pace_.received(got->count, got->arrival_ns);
     return got;
   }
-  /// The bytes of the last read.
-  [[nodiscard]] bytes buffer(std::size_t count) const noexcept {
-    return bytes(buffer_.get(), count);
-  }
+  /// Begins with the bytes of the last read.
+  [[nodiscard]] bytes buffer() const noexcept { return bytes(buffer_.get(), size); }
 
   /// A packet was complete; see read_schedule.
   void packet(packet_view found, std::size_t behind, std::int64_t measured_ns,

@@ -112,7 +112,7 @@ result<void> replay_player::advance(std::int64_t deadline_ns) {
   if (got->count == 0) return check();
   is_pause_reported_ = false;
   if (const auto command = std::exchange(next_.sent, std::nullopt)) pipeline_.sent(*command);
-  pipeline_.input().feed(receiver_.buffer(got->count), got->arrival_ns);
+  pipeline_.input().feed(receiver_.buffer().first(got->count), got->arrival_ns);
   static_cast<void>(parse_bytes());
   return check();
 }
