@@ -67,6 +67,7 @@ static_assert(offsetof(g4lidar_options, reconnect) == aligned(3 * word) + 56);
 static_assert(first_size<g4lidar_options> == aligned(3 * word) + 64);
 static_assert(offsetof(g4lidar_options, device_wait_ms) == aligned(3 * word) + 64);
 static_assert(offsetof(g4lidar_options, model) == aligned(3 * word) + 64 + word);
+static_assert(offsetof(g4lidar_options, is_cancelled) == aligned(3 * word) + 64 + 2 * word);
 static_assert(offsetof(g4lidar_scan, time_ns) == 2 * word);
 static_assert(offsetof(g4lidar_scan, is_piece) == 2 * word + 61);
 static_assert(offsetof(g4lidar_scan, turn_deg) == 2 * word + 62);

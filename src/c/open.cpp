@@ -16,9 +16,11 @@
 namespace g4lidar::c {
 namespace {
 
-constexpr g4lidar_options lidar_defaults{
-    sizeof(g4lidar_options), nullptr, nullptr, 0, 0, 0,     0,     0,  0, 0,      0,
-    G4LIDAR_AUTOMATIC,       0,       0,       0, 0, false, false, {}, 0, nullptr};
+constexpr g4lidar_options lidar_defaults = [] {
+  g4lidar_options made{};  // 0 is the default of the others
+  made.struct_size = sizeof made;
+  return made;
+}();
 
 void take_time(std::int32_t given_ms, std::chrono::milliseconds& into) noexcept {
   if (given_ms != 0) into = std::chrono::milliseconds(given_ms);
@@ -105,6 +107,7 @@ int take_lidar_options(const g4lidar_options* given, opening& into, const char**
   if (!take_options(given, taken)) return refuse(error, bad_options);
   if (const char* const wrong = take_settings(taken, into.how)) return bad_option(error, wrong);
   if (!take_model(taken.model, into.how.model)) return refuse_model(error, taken.model);
+  into.how.is_cancelled = question_of(taken);
   into.how.baud = taken.baud;
   into.how.reconnect = taken.reconnect;
   into.how.partial_scans = taken.partial_scans;
@@ -204,7 +207,7 @@ int g4lidar_open_recording(const char* path, const g4lidar_playback_options* pla
         wanted.recording = path;
         wanted.how.playback = {.speed = taken.speed, .loop = taken.loop, .from_ns = taken.from_ns};
         if (taken.to_ns != 0) wanted.how.playback.to_ns = taken.to_ns;
-        wanted.how.is_cancelled = question_of(taken);
+        if (taken.is_cancelled != nullptr) wanted.how.is_cancelled = question_of(taken);
         return open_lidar(std::move(wanted), lidar, error);
       },
       path);

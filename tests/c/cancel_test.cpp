@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Reading a recording in C can be cancelled, and continued. The file has a chunk that unpacks to 64 MiB.
+// Reading a recording in C can be cancelled, and continued; a wait for a device can be cancelled. The file has
+// a chunk that unpacks to 64 MiB.
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 
 #include "c_handles.hpp"
 #include "support/hostile_mcap.hpp"
@@ -131,6 +137,79 @@ TEST_F(CCancel, OpeningALidarGivesNone) {
   EXPECT_EQ(g4lidar_open_recording(path_.c_str(), &playback, nullptr, &opened, nullptr),
             G4LIDAR_OK);
   g4lidar_free(opened);
+}
+
+TEST_F(CCancel, TheQuestionOfTheOptionsIsAskedIfPlaybackHasNone) {
+  g4lidar_options options = defaults();
+  options.is_cancelled = question::ask;
+  options.context = &question_;
+  question_.is_cancelled = true;
+  g4lidar_lidar* opened = nullptr;
+  EXPECT_EQ(g4lidar_open_recording(path_.c_str(), nullptr, &options, &opened, nullptr),
+            G4LIDAR_CANCELLED);
+  EXPECT_EQ(opened, nullptr);
+  const int asked = question_.asked;
+  EXPECT_GT(asked, 0);
+  g4lidar_playback_options playback;
+  g4lidar_playback_options_init(&playback, sizeof playback);
+  playback.is_cancelled = [](void*) { return false; };
+  EXPECT_EQ(g4lidar_open_recording(path_.c_str(), &playback, &options, &opened, nullptr),
+            G4LIDAR_OK);
+  g4lidar_free(opened);
+  EXPECT_EQ(question_.asked, asked);
+}
+
+/// Options that wait for a port that never comes.
+g4lidar_options waiting(const std::string& port, std::int32_t wait_ms) {
+  g4lidar_options options = defaults();
+  options.device = port.c_str();
+  options.device_wait_ms = wait_ms;
+  return options;
+}
+
+TEST(CWaitForADevice, AnotherThreadEndsIt) {
+  using namespace std::chrono_literals;
+  const scratch directory;
+  const std::string port = directory.path("ttyUSB0");
+  g4lidar_options options = waiting(port, -1);
+  std::atomic<bool> is_over = false;
+  options.is_cancelled = [](void* context) {
+    return static_cast<std::atomic<bool>*>(context)->load();
+  };
+  options.context = &is_over;
+  const auto begin = std::chrono::steady_clock::now();
+  std::thread other([&] {
+    std::this_thread::sleep_for(200ms);
+    is_over = true;
+  });
+  g4lidar_lidar* made = nullptr;
+  g4lidar_error why;
+  EXPECT_EQ(g4lidar_open_with(&options, &made, &why), G4LIDAR_CANCELLED);
+  const auto took = std::chrono::steady_clock::now() - begin;
+  other.join();
+  EXPECT_EQ(made, nullptr);
+  EXPECT_EQ(why.task, G4LIDAR_OPENING);
+  EXPECT_STREQ(why.subject, port.c_str());
+  EXPECT_GE(took, 200ms);
+  EXPECT_LT(took, g4lidar::test::patience);
+}
+
+// It has options that end before the function, in whatever memory follows.
+TEST(CWaitForADevice, AnOlderProgramIsNotAsked) {
+  const scratch directory;
+  const std::string port = directory.path("ttyUSB0");
+  g4lidar_options options = waiting(port, 100);
+  question asked{.is_cancelled = true};
+  options.is_cancelled = question::ask;
+  options.context = &asked;
+  options.struct_size = offsetof(g4lidar_options, is_cancelled);
+  g4lidar_lidar* made = nullptr;
+  EXPECT_EQ(g4lidar_open_with(&options, &made, nullptr), G4LIDAR_NO_PORT);
+  EXPECT_EQ(asked.asked, 0);
+  options.struct_size = sizeof options;
+  EXPECT_EQ(g4lidar_open_with(&options, &made, nullptr), G4LIDAR_CANCELLED);
+  EXPECT_EQ(asked.asked, 1);
+  EXPECT_EQ(made, nullptr);
 }
 
 }  // namespace

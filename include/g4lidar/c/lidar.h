@@ -82,6 +82,12 @@ typedef struct g4lidar_options {
    *  port finds.
    *  Copied. */
   const char* model;
+  /** Called often while a file is read, and every 50 ms between two attempts to open a device that is waited
+   *  for; returning true ends the function that opens with G4LIDAR_CANCELLED. An attempt is not interrupted.
+   *  Playing a file calls it, too, in the thread that reads. NULL: never. It must not use the lidar, nor throw
+   *  C++ exceptions. */
+  bool (*is_cancelled)(void* context);
+  void* context; /**< Passed to it; it outlives the lidar. */
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */

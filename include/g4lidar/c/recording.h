@@ -86,7 +86,8 @@ typedef struct g4lidar_playback_options {
   int64_t to_ns;       /**< And before this; 0: to its end. */
   bool loop;           /**< Whether it begins again at its end; times continue. */
   uint8_t reserved[7]; /**< 0. */
-  /** As in g4lidar_reader_options; g4lidar_wake() does the same once the lidar is open. */
+  /** As in g4lidar_reader_options; g4lidar_wake() does the same once the lidar is open. NULL: that of the
+   *  g4lidar_options. */
   bool (*is_cancelled)(void* context);
   void* context; /**< Passed to it. */
 } g4lidar_playback_options;
