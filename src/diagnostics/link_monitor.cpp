@@ -107,7 +107,7 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
       error_ = got.error();
       splitter_.input().cut();
     }
-    give_events(to);
+    link_.events(splitter_.sink(to));
   }
 }
 
@@ -133,19 +133,10 @@ void link_monitor::take(const received& got, std::int64_t took_ns, const observe
   splitter_.received(data);
 }
 
-void link_monitor::give_events(const observer& to) {
-  link_.events([&](const event& found) { splitter_.give(found, to); });
-}
-
-void link_monitor::finish(const observer& to) {
-  splitter_.input().cut();
-  give_events(to);
-}
-
 void link_monitor::listen_for_quiet(std::int64_t quiet, std::int64_t until_ns) {
   while (!is_over() && now_ns() < until_ns) {
     listen(std::min(now_ns() + quiet, until_ns), {});
-    if (now_ns() >= heard_ns() + quiet) return finish({});
+    if (now_ns() >= heard_ns() + quiet) return link_.finish(splitter_.sink({}));
   }
 }
 
@@ -171,7 +162,7 @@ bool link_monitor::stop() {
   // The session counts events only: the beginning of a last packet may have arrived later.
   if (now_ns() < heard_ns() + quiet_ns) listen_for_quiet(quiet_ns, now_ns() + stop_ns);
   const bool is_quiet = now_ns() >= heard_ns() + quiet_ns;  // also without noise
-  if (is_quiet) finish({});
+  if (is_quiet) link_.finish(splitter_.sink({}));
   for (const command code : {command::forced_stop, command::stop}) {
     if (error_) static_cast<void>(transport_->write(encode(code), transport_->now_ns() + 100 * ms));
   }
@@ -213,7 +204,7 @@ void link_monitor::await(exchange& made, std::int64_t patience_ns) {
     }
   };
   listen(until_ns, to);
-  finish(to);
+  link_.finish(splitter_.sink(to));
   made.packets += counts().packets - before.packets;
   made.skipped += counts().skipped_bytes() - before.skipped_bytes();
   made.is_disturbed |= boots() != boots_before || host_pauses_ != pauses_before;

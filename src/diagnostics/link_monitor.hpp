@@ -54,19 +54,19 @@ class event_splitter {
   void take(bytes data, std::int64_t arrival_ns, const observer& to);
   /// The held bytes have ended.
   void finish(const observer& to);
-
-  // ---- the same, if a device_link reads ----
-
+  /// Where a device_link reads: its input, the bytes of one read before their events, and what takes the events.
   [[nodiscard]] event_reader& input() noexcept { return input_; }
-  /// The bytes of one read, before their events.
   void received(bytes data);
-  void give(const event& found, const observer& to);
+  [[nodiscard]] auto sink(const observer& to) noexcept {
+    return [this, &to](const event& found) { give(found, to); };
+  }
   /// Counts of all events so far.
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   /// Boot texts so far.
   [[nodiscard]] std::uint64_t boots() const noexcept { return boots_; }
 
  private:
+  void give(const event& found, const observer& to);
   void give_all(const observer& to);
   void look_for_text(bytes raw);
 
@@ -155,8 +155,6 @@ class link_monitor {
 
  private:
   void take(const received& got, std::int64_t took_ns, const observer& to);
-  void give_events(const observer& to);
-  void finish(const observer& to);
   result<void> write(bytes data);
 
   std::unique_ptr<transport> transport_;

@@ -89,6 +89,11 @@ class device_link {
   void events(auto sink) {
     events([this] { return input_.next(); }, sink);
   }
+  /// Nothing follows: the same for the held bytes.
+  void finish(auto sink) {
+    input_.cut();
+    events(sink);
+  }
   /// Sends the commands of the session: calls `write(bytes)` for each, until one fails.
   [[nodiscard]] result<void> send(auto write) {
     while (const auto command = session_.to_send()) {
