@@ -2,6 +2,7 @@
 """The process of the node: Ctrl-C ends it with the motor at rest, and it does not grow."""
 
 import os
+import re
 import select
 import signal
 import subprocess
@@ -15,7 +16,7 @@ import launch
 import launch_testing.actions
 from launch.actions import ExecuteProcess
 from ament_index_python.packages import get_package_prefix
-from lifecycle_msgs.msg import State
+from lifecycle_msgs.msg import State, Transition
 from sensor_msgs.msg import LaserScan, PointCloud2
 
 sys.path.insert(0, os.path.dirname(__file__))
@@ -89,6 +90,39 @@ class TestProcess(unittest.TestCase):
             self.assertTrue(support.wait_for(lambda: len(scans) > count + 2))
             return node
         self.ends_within_2_s(start, lambda: self.assertEqual(bytes_within(link, 1.0), 0, "it still scans"))
+
+    @unittest.skipUnless(G4_DUMP, "SKIPPED: g4-dump is not installed")
+    def test_transitions_open_the_port_turn_the_motor_rest_it_and_close_the_port(self):
+        directory = tempfile.mkdtemp(prefix="g4lidar-ros-")
+        link, path = os.path.join(directory, "g4"), os.path.join(directory, "commands.txt")
+        with open(path, "w") as log:
+            device = subprocess.Popen([G4_DUMP, "sim", "-q", "--link", link, "--log"], stderr=log)
+        self.addCleanup(device.wait, support.PATIENCE)
+        self.addCleanup(device.send_signal, signal.SIGINT)
+        self.assertTrue(support.wait_for(lambda: os.path.exists(link)))
+        port = os.path.realpath(link)
+        node = subprocess.Popen([NODE, "--ros-args", "-p", f"source:={link}", "-r", "__ns:=/steps"])
+        self.addCleanup(node.wait, support.PATIENCE)
+        self.addCleanup(node.send_signal, signal.SIGINT)
+
+        def is_open():
+            files = f"/proc/{node.pid}/fd"
+            return port in [os.path.realpath(os.path.join(files, each)) for each in os.listdir(files)]
+
+        def turns():
+            """60 starts the scan, with the motor; 65 stops it."""
+            with open(path) as log:
+                scanning = [each for each in re.findall(r" A5 ([0-9A-F]{2}) ", log.read()) if each in ("60", "65")]
+            return scanning[-1:] == ["60"]
+        self.watcher.state("/steps/g4lidar")
+        self.assertFalse(is_open())
+        for transition, opened, turned in ((Transition.TRANSITION_CONFIGURE, True, False),
+                                           (Transition.TRANSITION_ACTIVATE, True, True),
+                                           (Transition.TRANSITION_DEACTIVATE, True, False),
+                                           (Transition.TRANSITION_CLEANUP, False, False)) * 2:
+            self.assertTrue(self.watcher.change_state("/steps/g4lidar", transition))
+            self.assertTrue(support.wait_for(lambda: turns() == turned), transition)
+            self.assertEqual(is_open(), opened, transition)
 
     def test_ends_while_it_waits_for_a_lidar(self):
         def start():
