@@ -50,13 +50,16 @@ class angle_check {
   static constexpr float part = 0.1F;
 
   constexpr bool pass_by(int samples) noexcept {
-    next_64ths_ += static_cast<float>(samples) * step_64ths_;
+    goes_on_at(next_64ths_ + static_cast<float>(samples) * step_64ths_);
     return false;
+  }
+  constexpr void goes_on_at(float angle_64ths) noexcept {
+    while (angle_64ths >= turn_64ths) angle_64ths -= turn_64ths;
+    next_64ths_ = angle_64ths;
   }
   [[nodiscard]] constexpr bool fits_at(int first) const noexcept {
     if (!has_speed_) return true;
-    const int turns = static_cast<int>(next_64ths_) / turn_64ths;
-    float off = static_cast<float>(first) - (next_64ths_ - static_cast<float>(turns * turn_64ths));
+    float off = static_cast<float>(first) - next_64ths_;
     constexpr float half_turn_64ths = turn_64ths * 0.5F;
     if (off > half_turn_64ths) off -= turn_64ths;
     if (off < -half_turn_64ths) off += turn_64ths;
@@ -76,11 +79,11 @@ class angle_check {
       step_64ths_ = has_speed_ ? step_64ths_ + 0.25F * (step - step_64ths_) : step;
       has_speed_ = true;
     }
-    next_64ths_ = static_cast<float>(first + span) + step_64ths_;
+    goes_on_at(static_cast<float>(first + span) + step_64ths_);
     follows_ = true;
   }
 
-  float next_64ths_ = 0.0F;  // where the next packet begins, not wrapped
+  float next_64ths_ = 0.0F;  // where the next packet begins
   float step_64ths_ = 0.0F;  // between two samples
   bool follows_ = false;
   bool has_speed_ = false;

@@ -265,8 +265,8 @@ class sensor_clock {
   constexpr std::int64_t observe(arrival next) noexcept {
     double late = started_ ? static_cast<double>(next.time_ns - line_.at(next.sample)) : 0.0;
     std::int64_t missed = 0;
-    const double too_early = std::max(early_ns, 3.0 * line_.bound_ns);
-    if (late < -too_early || stays_late(late, next)) {
+    const bool is_too_early = late < -early_ns && late < -3.0 * line_.bound_ns;
+    if (is_too_early || stays_late(late, next)) {
       if (late > 0.0) missed = unseen_samples(late);
       if (window_.span_ns() <= enough_ns) rate_known_ = false;  // it may be the error
       mean_late_ns_ = unknown_late_ns;
@@ -274,7 +274,7 @@ class sensor_clock {
       late = 0.0;
     }
     if (late_.is_late()) return 0;
-    if (-late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
+    if (late < 0.0 && -late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
     started_ = true;
     in_time_ = next.sample;
     mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;

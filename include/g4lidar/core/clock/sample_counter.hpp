@@ -27,14 +27,15 @@ class sample_counter {
   /// skipped; else 0. It is used only for whole turns, which angles cannot show.
   constexpr sample_gap next(const decoded& packet, bool hinted, double late_samples) noexcept {
     sample_gap gap;
+    const double own = own_step(packet);
     if (packet.suspect || !following_) {
       gap.known = !hinted;
     } else {
       const double way = way_to(packet);
-      gap = gap_before(packet, way, hinted, late_samples);
+      gap = gap_before(way, own, hinted, late_samples);
       if (gap.lost == 0 && gap.known) learn(packet, way);
     }
-    follow(packet);
+    follow(packet, own);
     return gap;
   }
 
@@ -67,13 +68,12 @@ class sample_counter {
     return way;
   }
 
-  /// `way`: see way_to().
-  [[nodiscard]] constexpr sample_gap gap_before(const decoded& packet, double way, bool hinted,
+  /// `way`: see way_to(). `own`: see own_step().
+  [[nodiscard]] constexpr sample_gap gap_before(double way, double own, bool hinted,
                                                 double late_samples) const noexcept {
     if (!turning()) return {0, 0.0, !hinted};
     // A motor that spins up makes longer steps than the learnt ones; without a hint this is not a
     // loss.
-    const double own = own_step(packet);
     const double step =
         hinted ? step_ : std::max({step_, own_step_, own > 0.0 ? own : own_step_ + growth_});
     const double missed = way / step - 1.0;
@@ -109,8 +109,8 @@ class sample_counter {
     return static_cast<double>(packet.span_64ths) / (packet.sample_count - 1);
   }
 
-  constexpr void follow(const decoded& packet) noexcept {
-    if (const double own = own_step(packet); own > 0.0) {
+  constexpr void follow(const decoded& packet, double own) noexcept {
+    if (own > 0.0) {
       growth_ = own > 1.25 * own_step_ ? own - own_step_ : 0.0;  // less is no loss of a sample
       own_step_ = own;
     }
