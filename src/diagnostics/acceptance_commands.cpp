@@ -132,14 +132,14 @@ void acceptance_run::start_and_stop(acceptance_result& into) {
     into.add("steady_after_ms", steady_ms);
     into.add_answer(q::spin_up, answered, spin_up_words(first_ns, steady_ms));
   }
-  link_->send(static_cast<std::uint8_t>(command::forced_stop));
+  link_->send(command::forced_stop);
   const std::int64_t forced_ns = link_->wait_for_silence(2'000 * ms);
   into.add_answer(q::forced_stop, answered, forced_ns >= 0 ? "It does." : "It does not.");
   into.add("stops_by_00", std::string(forced_ns >= 0 ? "yes" : "no"));
   if (forced_ns >= 0) into.add("silent_after_00_ms", in_ms(forced_ns));
   static_cast<void>(link_->start());
   static_cast<void>(link_->survey(500 * ms));
-  link_->send(static_cast<std::uint8_t>(command::stop));
+  link_->send(command::stop);
   const std::int64_t stopped_ns = link_->wait_for_silence(2'000 * ms);
   if (stopped_ns >= 0) into.add("silent_after_65_ms", in_ms(stopped_ns));
   link_->stop();

@@ -20,16 +20,9 @@ constexpr std::int64_t boot_ns = 2'000 * ms;
 
 std::string yes_or_no(bool is_so) { return is_so ? "yes" : "no"; }
 
-/// Lowers the line for so long.
-void pulse(acceptance_link& link, std::int64_t low_ns) {
-  static_cast<void>(link.set_dtr(false));
-  link.monitor().listen_for(low_ns);
-  static_cast<void>(link.set_dtr(true));
-}
-
 /// Whether it sends after a start, without anything done to the line.
 bool starts(acceptance_link& link) {
-  if (link.is_two_way()) link.send(static_cast<std::uint8_t>(command::start));
+  if (link.is_two_way()) link.send(command::start);
   return link.wait_for_packet(start_ns) >= 0;
 }
 
@@ -89,9 +82,8 @@ bool find_cut(acceptance_link& link, bool has_answered, acceptance_result& into)
 }  // namespace
 
 void acceptance_run::dtr(acceptance_result& into) {
-  constexpr std::int64_t pulse_ns = 120 * ms;
   if (!link_->set_dtr(true)) return into.add_finding(not_done, "The connection has no DTR.");
-  pulse(*link_, pulse_ns);
+  pulse_dtr(link_->monitor());
   bool turns = starts(*link_);
   // Where the line switches the supply, it had to boot before.
   if (!turns && is_two_way()) turns = starts(*link_);
@@ -139,7 +131,7 @@ void acceptance_run::dtr_start(acceptance_result& into) {
                     "does not start it.");
     return into.add_finding(observed, "It needs an edge of DTR while the port is open.");
   }
-  pulse(*link_, short_ns);
+  pulse_dtr(link_->monitor(), short_ns);
   link_->monitor().listen_for(run_down_ns);
   // Where the supply was cut, it must be started again.
   const bool goes_on = link_->wait_for_packet(silence_ns) >= 0 || starts(*link_);

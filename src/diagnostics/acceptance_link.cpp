@@ -6,6 +6,7 @@
 
 #include "acceptance_link.hpp"
 #include "g4lidar/core/response.hpp"
+#include "stages.hpp"
 
 namespace g4lidar {
 namespace {
@@ -46,11 +47,9 @@ std::optional<std::int32_t> raw_reply::number() const noexcept {
 
 std::string raw_reply::text() const {
   constexpr std::size_t most = 32;
-  constexpr std::string_view digits = "0123456789abcdef";
   std::string all;
   for (const std::uint8_t each : bytes(data).first(std::min(data.size(), most))) {
-    all += digits[each >> 4U];
-    all += digits[each & 15U];
+    all += digits_of(each, 16, 2);
   }
   return all;
 }
@@ -58,7 +57,7 @@ std::string raw_reply::text() const {
 raw_reply acceptance_link::ask(std::uint8_t code, std::int64_t patience_ns) {
   constexpr std::int64_t rest_ns = 40 * ms;
   raw_reply got;
-  send(code);
+  send(static_cast<command>(code));
   const std::int64_t asked_ns = monitor_.now_ns();
   std::int64_t until_ns = asked_ns + patience_ns;
   monitor_.listen(until_ns, {.event = [&](const observed_event& found) {
@@ -72,8 +71,6 @@ raw_reply acceptance_link::ask(std::uint8_t code, std::int64_t patience_ns) {
   got.begin = response_in(got.data);
   return got;
 }
-
-void acceptance_link::send(std::uint8_t code) { monitor_.send(static_cast<command>(code)); }
 
 std::int64_t acceptance_link::wait_for_packet(std::int64_t patience_ns) {
   const std::int64_t begin_ns = monitor_.now_ns();
@@ -112,12 +109,8 @@ bool acceptance_link::set_dtr(bool high) {
 }
 
 std::int64_t acceptance_link::start() {
-  constexpr std::int64_t pulse_ns = 120 * ms;
-  if (which_.motor == motor_kind::dtr && set_dtr(false)) {
-    monitor_.listen_for(pulse_ns);
-    static_cast<void>(set_dtr(true));
-  }
-  if (is_two_way()) send(static_cast<std::uint8_t>(command::start));
+  if (which_.motor == motor_kind::dtr) pulse_dtr(monitor_);
+  if (is_two_way()) send(command::start);
   return wait_for_packet(spin_up_ns);
 }
 

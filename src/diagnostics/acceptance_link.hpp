@@ -55,7 +55,7 @@ class acceptance_link {
   [[nodiscard]] const link_monitor& monitor() const noexcept { return monitor_; }
 
   [[nodiscard]] raw_reply ask(std::uint8_t code, std::int64_t patience_ns = 400 * ms);
-  void send(std::uint8_t code);
+  void send(command code) { monitor_.send(code); }
   /// Waits for a packet; how long it took, or -1.
   [[nodiscard]] std::int64_t wait_for_packet(std::int64_t patience_ns);
   /// Waits until nothing has arrived for 150 ms; when the last byte came after now, or -1.

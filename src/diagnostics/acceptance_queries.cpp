@@ -8,6 +8,7 @@
 #include <span>
 
 #include "acceptance_run.hpp"
+#include "stages.hpp"
 
 namespace g4lidar {
 namespace {
@@ -15,12 +16,6 @@ namespace {
 using enum acceptance_verdict;
 using enum answer_state;
 using q = acceptance_question;
-
-std::string hex(unsigned value, unsigned digits) {
-  std::string text;
-  for (unsigned i = digits; i > 0; --i) text += "0123456789abcdef"[value >> (4 * (i - 1)) & 15U];
-  return text;
-}
 
 /// A query, and whether it is answered by the table.
 struct query {
@@ -69,7 +64,7 @@ std::optional<double> answer_from(acceptance_result& into, const reply_map& repl
     for (const std::uint8_t code : codes) {
       const auto found = replies.find(code);
       const std::string reply = found == replies.end() ? "no" : found->second.text();
-      text += (text.empty() ? "" : ", ") + hex(code, 2) + ": " + reply;
+      text += (text.empty() ? "" : ", ") + digits_of(code, 16, 2) + ": " + reply;
     }
     return text + ".";
   };
@@ -97,7 +92,7 @@ std::optional<double> answer_from(acceptance_result& into, const reply_map& repl
     const unsigned number = load_u16(content, 1);
     if (content[0] != 0 || number != 0) {
       errors += (errors.empty() ? "" : ", ") + std::string("status ") + std::to_string(content[0]) +
-                " with code " + hex(number, 4);
+                " with code " + digits_of(number, 16, 4);
     }
   }
   into.add_answer(q::health_codes, errors.empty() ? not_decided : answered,
@@ -109,7 +104,7 @@ std::optional<double> answer_from(acceptance_result& into, const reply_map& repl
 
 void acceptance_run::bridge(acceptance_result& into) {
   if (options_.port != nullptr && options_.port->vendor_id != 0) {
-    into.add("usb", hex(options_.port->vendor_id, 4) + ":" + hex(options_.port->product_id, 4));
+    into.add("usb", usb_id_of(*options_.port));
     into.add("product", options_.port->product);
     into.add("driver", options_.port->driver);
     into.add_finding(observed, "The USB bridge is known.");
@@ -123,8 +118,8 @@ void acceptance_run::bridge(acceptance_result& into) {
   into.add("set_baud", got);
   if (options_.port != nullptr && options_.port->vendor_id != 0) {
     into.add_answer(q::bridge_and_baud, got != 0 ? answered : not_decided,
-                    hex(options_.port->vendor_id, 4) + ":" + hex(options_.port->product_id, 4) +
-                        " sets " + (got != 0 ? std::to_string(got) : "an unknown rate") + " of " +
+                    usb_id_of(*options_.port) + " sets " +
+                        (got != 0 ? std::to_string(got) : "an unknown rate") + " of " +
                         std::to_string(wanted) + " baud.");
   }
   if (got == 0) return;
@@ -144,7 +139,7 @@ void acceptance_run::listening(acceptance_result& into) {
   if (!is_two_way()) {
     if (first_ns >= 0) into.add("first_packet_ms", in_ms(first_ns));
     // A two-way lidar that somebody left scanning looks the same, until it gets a stop.
-    link_->send(static_cast<std::uint8_t>(command::stop));
+    link_->send(command::stop);
     link_->monitor().listen_for(500 * ms);
     const bool goes_on = link_->wait_for_packet(2'000 * ms) >= 0;
     into.add("sends_after_65", std::string(goes_on ? "yes" : "no"));

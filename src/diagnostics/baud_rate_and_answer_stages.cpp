@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "driver/identity_reader.hpp"
 #include "live_run.hpp"
 #include "transport/custom_baud.hpp"
 
@@ -164,9 +165,7 @@ void live_run::read_information() {
   const auto stated = link_.layout().information();
   if (!stated) return;
   device_.information = information_of(*stated, *lidar_.which);
-  const bool is_ok = stated->faults == ct_faults::none;
-  device_.condition = health{is_ok ? health_status::ok : health_status::error,
-                             static_cast<std::uint8_t>(stated->faults)};
+  device_.condition = health_of(*stated);
 }
 
 }  // namespace g4lidar

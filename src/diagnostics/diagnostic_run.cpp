@@ -34,13 +34,6 @@ std::string real_path(const std::string& path) {
   return ::realpath(path.c_str(), real.data()) == nullptr ? path : std::string(real.data());
 }
 
-/// The number with so many digits in this base.
-std::string digits_of(unsigned number, unsigned base, std::size_t count) {
-  std::string text(count, '0');
-  for (; number > 0 && count > 0; number /= base) text[--count] = "0123456789abcdef"[number % base];
-  return text;
-}
-
 /// Reports `current` and begins the next stage.
 void pass(stage_log& log, stage_report& current) {
   const auto next = static_cast<diagnostic_stage>(static_cast<int>(current.stage) + 1);
@@ -116,8 +109,7 @@ class port_stages {
     }
     if (!port.driver.empty()) report_.add("driver", port.driver);
     if (port.vendor_id != 0) {
-      const std::string product = digits_of(port.product_id, 16, 4);
-      report_.add("usb", digits_of(port.vendor_id, 16, 4).append(":").append(product));
+      report_.add("usb", usb_id_of(port));
       report_.add("bridge_of_a_g4", is_g4_bridge(port) ? "yes" : "no");
     }
     pass(log_, report_);
@@ -152,6 +144,16 @@ class port_stages {
 };
 
 }  // namespace
+
+std::string digits_of(unsigned number, unsigned base, std::size_t count) {
+  std::string text(count, '0');
+  for (; number > 0 && count > 0; number /= base) text[--count] = "0123456789abcdef"[number % base];
+  return text;
+}
+
+std::string usb_id_of(const port_info& port) {
+  return digits_of(port.vendor_id, 16, 4) + ":" + digits_of(port.product_id, 16, 4);
+}
 
 bool is_pty(const std::string& path) { return real_path(path).starts_with("/dev/pts/"); }
 

@@ -270,10 +270,7 @@ bool first_contact::is_expected_rate(std::uint32_t baud) const noexcept {
 // Whether a device that sends no reply starts nevertheless.
 bool first_contact::scans_when_started() {
   link_monitor& link = of_.link;
-  if (of_.lidar.is_driven_by_dtr() && link.port().set_dtr(false).value_or(false)) {
-    link.listen_for(dtr_low_ns);
-    static_cast<void>(link.port().set_dtr(true));
-  }
+  if (of_.lidar.is_driven_by_dtr()) pulse_dtr(link);
   link.send(command::start);
   link.listen_for(1'500 * ms);
   const bool scans = link.layout().sample_bytes() != 0 || link.counts().packets > 0;

@@ -14,9 +14,6 @@
 
 namespace g4lidar {
 
-/// The line DTR is low for this time before it starts the motor.
-inline constexpr std::int64_t dtr_low_ns = 120 * ms;
-
 /// The lidar of a run, as far as it is known.
 struct examined_lidar {
   const model* which = &g4_model;

@@ -174,4 +174,11 @@ class link_monitor {
   layout_recogniser layout_;
 };
 
+/// Lowers the line DTR for this time, which stops a motor that it drives, and raises it. False if there is none.
+inline bool pulse_dtr(link_monitor& link, std::int64_t low_ns = 120 * ms) {
+  if (link.is_over() || !link.port().set_dtr(false).value_or(false)) return false;
+  link.listen_for(low_ns);
+  return !link.is_over() && link.port().set_dtr(true).value_or(false);
+}
+
 }  // namespace g4lidar

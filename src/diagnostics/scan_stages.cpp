@@ -35,11 +35,7 @@ constexpr unsigned most_restarts = 2;
 
 void live_run::start_scan() {
   log_.begin(diagnostic_activity::starting);
-  if (lidar_.is_driven_by_dtr()) {
-    has_motor_line_ = link_.port().set_dtr(false).value_or(false);
-    if (has_motor_line_) link_.listen_for(dtr_low_ns);
-    static_cast<void>(link_.port().set_dtr(true));
-  }
+  if (lidar_.is_driven_by_dtr()) has_motor_line_ = pulse_dtr(link_);
   link_.send(command::start);
   started_ = {
       .sent_ns = link_.now_ns(), .kept_alive_ns = link_.now_ns(), .boots_before = link_.boots()};

@@ -35,12 +35,13 @@ bool is_host_busy(const stream_statistics& measured) noexcept {
   return measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
 }
 
-/// "4000, 8000 or 9000".
-std::string list_of(std::span<const double> numbers) {
+/// "4000, 8000 or 9000": `words(each)` of all, with `last` before the last one.
+template <class Each>
+std::string list_of(std::span<Each> all, const char* last, auto words) {
   std::string text;
-  for (const double& each : numbers) {
-    if (!text.empty()) text += &each == &numbers.back() ? " or " : ", ";
-    text += std::to_string(std::lround(each));
+  for (Each& each : all) {
+    if (!text.empty()) text += &each == &all.back() ? last : ", ";
+    text += words(each);
   }
   return text;
 }
@@ -65,7 +66,9 @@ void find_other_speed(stage_report& rate, double samples_per_s, double samples_p
   if (is_known_rate && is_possible) return;
   rate.find(diagnosis::other_device);
   rate.outcome = std::min(rate.outcome, stage_verdict::warn);
-  rate.remark = one_of(wanted) + " measures " + list_of(rates) + " samples per second";
+  const auto in_words = [](double hz) { return std::to_string(std::lround(hz)); };
+  rate.remark = one_of(wanted) + " measures " + list_of(std::span(rates), " or ", in_words) +
+                " samples per second";
   rate.remark.front() = 'A';  // "An X4"
   if (most_hz > 0.0) {
     rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
@@ -137,12 +140,7 @@ diagnostic_stage stage_of(diagnosis what) noexcept {
 }
 
 std::string words_of(std::span<const model* const> all) {
-  std::string text;
-  for (const model* const& each : all) {
-    if (!text.empty()) text += &each == &all.back() ? " and " : ", ";
-    text += each->word;
-  }
-  return text;
+  return list_of(all, " and ", [](const model* each) { return each->word; });
 }
 
 bool report_identity(stage_log& log, const std::optional<device_information>& known,

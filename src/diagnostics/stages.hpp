@@ -82,6 +82,10 @@ void report_latency(stage_log& log, const stream_statistics& measured, std::uint
 [[nodiscard]] std::string one_of(const model& which);
 /// "x2, x2l and x3": the words of these models.
 [[nodiscard]] std::string words_of(std::span<const model* const> all);
+/// The number with so many digits in this base.
+[[nodiscard]] std::string digits_of(unsigned number, unsigned base, std::size_t count);
+/// "10c4:ea60": vendor and product.
+[[nodiscard]] std::string usb_id_of(const port_info& port);
 /// Whether the samples have a size that no lidar like `wanted` sends; then adds this to `report`.
 bool find_other_layout(stage_report& report, const layout_recogniser& seen, const model& wanted);
 /// Whether this path leads to a pseudo-terminal.

@@ -106,14 +106,9 @@ void stream_survey::compare_intensities(packet_view packet) {
   }
 }
 
-double stream_survey::frequency_hz() const noexcept {
+double stream_survey::per_second(std::uint64_t count) const noexcept {
   const double seconds = static_cast<double>(last_zero_ns_ - first_zero_ns_) / 1e9;
-  return seconds > 0.0 ? static_cast<double>(zero_packets_ - 1) / seconds : 0.0;
-}
-
-double stream_survey::sample_rate_hz() const noexcept {
-  const double seconds = static_cast<double>(last_zero_ns_ - first_zero_ns_) / 1e9;
-  return seconds > 0.0 ? static_cast<double>(samples_at_zero_) / seconds : 0.0;
+  return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 
 double stream_survey::reported_hz() const noexcept {

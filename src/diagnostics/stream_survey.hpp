@@ -57,8 +57,8 @@ class stream_survey {
     return all;
   }
   /// Measured from the first zero packet to the last; 0 with fewer than two.
-  [[nodiscard]] double frequency_hz() const noexcept;
-  [[nodiscard]] double sample_rate_hz() const noexcept;
+  [[nodiscard]] double frequency_hz() const noexcept { return per_second(zero_packets_ - 1); }
+  [[nodiscard]] double sample_rate_hz() const noexcept { return per_second(samples_at_zero_); }
   /// The mean of what zero packets report, as they report it; 0: nothing.
   [[nodiscard]] double reported_hz() const noexcept;
   /// How many samples of the zone have these two lower bits.
@@ -82,6 +82,7 @@ class stream_survey {
   [[nodiscard]] std::uint64_t unasked_responses() const noexcept { return responses_; }
 
  private:
+  [[nodiscard]] double per_second(std::uint64_t count) const noexcept;
   void take(packet_view packet, std::int64_t arrival_ns);
   void compare_intensities(packet_view packet);
 

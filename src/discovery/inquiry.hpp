@@ -60,12 +60,10 @@ class inquiry {
   }
 
   [[nodiscard]] tl::unexpected<error> nothing_believable() const noexcept {
-    if (has_packets_) return fail(problem::does_not_stop);
-    return fail(has_heard_ ? problem::garbage : problem::silence);
-  }
-
-  [[nodiscard]] tl::unexpected<error> fail(problem what) const noexcept {
-    return failure(task::asking, what, port_.name());
+    const problem why = has_packets_ ? problem::does_not_stop
+                        : has_heard_ ? problem::garbage
+                                     : problem::silence;
+    return failure(task::asking, why, port_.name());
   }
 
   transport& port_;

@@ -14,6 +14,13 @@
 
 namespace g4lidar {
 
+/// The health by CT bytes.
+[[nodiscard]] constexpr health health_of(const ct_information& found) noexcept {
+  const bool is_ok = found.faults == ct_faults::none;
+  return {is_ok ? health_status::ok : health_status::error,
+          static_cast<std::uint8_t>(found.faults)};
+}
+
 /// *Single thread, never allocates.* A device information comes after power-on, and from some two-way
 /// lidars behind the scan header. One-way lidars put what they know into CT bytes.
 class identity_reader {
@@ -50,9 +57,7 @@ class identity_reader {
     is_new_ = true;
   }
   void take_ct(const ct_information& found) noexcept {
-    const bool is_ok = found.faults == ct_faults::none;
-    condition_ = health{is_ok ? health_status::ok : health_status::error,
-                        static_cast<std::uint8_t>(found.faults)};
+    condition_ = health_of(found);
     set(information_of(found, *which_));
   }
 

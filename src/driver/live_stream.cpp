@@ -48,13 +48,15 @@ result<void> live_stream::send() {
 
 result<void> live_stream::look_if_due() {
   const std::int64_t due_ns = talk().next_look_ns();
-  if (!of_.pipeline.input().unparsed().empty() || due_ns > now_ns()) return {};
+  const event_reader& input = of_.pipeline.input();
+  if (!input.unparsed().empty() || due_ns > now_ns()) return {};
   if (of_.from.read_until_ns() < due_ns) {
-    if (const auto got = read(now_ns()); !got) return tl::unexpected(got.error());
-    if (!of_.pipeline.input().unparsed().empty()) return {};
-  }
-  if (link_.cut_off()) {
+    if (auto got = receive(now_ns()); !got) return got;
+    if (!input.unparsed().empty()) return {};
+  } else if (link_.cut_off()) {
     record(recorded_event::kind::cut);
+  }
+  if (!input.is_empty()) {
     of_.pipeline.drop_scan();
     if (parse()) return {};  // look() follows in the next round
   }
@@ -63,17 +65,13 @@ result<void> live_stream::look_if_due() {
 }
 
 result<void> live_stream::receive(std::int64_t deadline_ns) {
-  const auto got = read(deadline_ns);
-  if (!got) return tl::unexpected(got.error());
-  if (got->count == 0 && link_.cut_off()) record(recorded_event::kind::cut);
-  return {};
-}
-
-result<received> live_stream::read(std::int64_t deadline_ns) {
-  return link_.receive(of_.from.buffer(), [&](transport& on) {
+  const auto got = link_.receive(of_.from.buffer(), [&](transport& on) {
     const event_reader& input = of_.pipeline.input();
     return of_.from.receive(on, how_to_read(), input.held(), input.missing(), deadline_ns);
   });
+  if (!got) return tl::unexpected(got.error());
+  if (got->count == 0 && link_.cut_off()) record(recorded_event::kind::cut);
+  return {};
 }
 
 reading live_stream::how_to_read() const noexcept {

@@ -85,7 +85,6 @@ class live_stream {
  private:
   [[nodiscard]] std::int64_t now_ns() const noexcept { return of_.on.now_ns(); }
   [[nodiscard]] reading how_to_read() const noexcept;
-  [[nodiscard]] result<received> read(std::int64_t deadline_ns);
   void record(recorded_event::kind what);
 
   parts of_;
