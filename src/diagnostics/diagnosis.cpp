@@ -196,12 +196,8 @@ std::optional<diagnosis> diagnosis_of(const stream_counts& counts, std::uint64_t
 }
 
 std::string_view evidence::unit() const noexcept {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> units{{{"per_s", "1/s"},
-                                                                                {"_ms", "ms"},
-                                                                                {"_hz", "Hz"},
-                                                                                {"_percent", "%"},
-                                                                                {"baud", "baud"},
-                                                                                {"seconds", "s"}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> units{
+      {{"_ms", "ms"}, {"_hz", "Hz"}, {"_percent", "%"}, {"baud", "baud"}, {"seconds", "s"}}};
   for (const auto& [ending, unit] : units) {
     if (name.ends_with(ending)) return unit;
   }

@@ -47,16 +47,16 @@ std::string list_of(std::span<Each> all, const char* last, auto words) {
 }
 
 /// Bytes without device information: a speed that no lidar like `wanted` has is that of another model.
-void find_other_speed(stage_report& rate, double samples_per_s, double samples_per_revolution,
+void find_other_speed(stage_report& rate, double rate_hz, double samples_per_revolution,
                       const model& wanted) {
   std::vector<double> rates;
   for (const sample_rate_entry& each : wanted.rates.entries) {
     if (each.hz != 0) rates.push_back(each.hz);
   }
-  const auto is_near = [samples_per_s](double nominal) {
-    return std::abs(samples_per_s - nominal) <= other_model_tolerance * nominal;
+  const auto is_near = [rate_hz](double nominal) {
+    return std::abs(rate_hz - nominal) <= other_model_tolerance * nominal;
   };
-  const bool is_known_rate = samples_per_s <= 0.0 || std::ranges::any_of(rates, is_near);
+  const bool is_known_rate = rate_hz <= 0.0 || std::ranges::any_of(rates, is_near);
   const double least_hz = wanted.frequency.min_dhz / 10.0;
   const double most_hz = wanted.frequency.max_dhz / 10.0;  // 0: not known
   const bool is_possible =
@@ -240,12 +240,12 @@ void report_rate(stage_log& log, const stream_statistics& measured, const device
     const bool is_off = std::abs(frequency_hz - set_hz) > frequency_tolerance * set_hz;
     if (is_off && is_certain && measured.was_steady()) rate.find(diagnosis::frequency_off);
   }
-  rate.add("samples_per_s", rate_hz);
+  rate.add("sample_rate_hz", rate_hz);
   if (is_unknown_model) {
     find_other_speed(rate, rate_hz, 1.0 / measured.tally().turns_per_sample(), wanted);
   }
   if (const double nominal_hz = nominal_rate_hz(known, rate_hz, wanted); nominal_hz > 0.0) {
-    rate.add("nominal_samples_per_s", nominal_hz);
+    rate.add("expected_sample_rate_hz", nominal_hz);
     const bool is_off = std::abs(rate_hz - nominal_hz) > sample_rate_tolerance * nominal_hz;
     if (is_off && is_certain) rate.find(diagnosis::sample_rate_off);
   }

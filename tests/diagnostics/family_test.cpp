@@ -126,7 +126,7 @@ TEST_P(DoctorOf, AHealthyOne_ItsMeasurementsAreTrue) {
   EXPECT_NEAR(std::stod(fact(done, diagnostic_stage::rate, "measured_hz")), true_hz, 0.01 * true_hz)
       << done;
   const double true_rate_hz = to_hz(options.scanner.sample_rate);
-  EXPECT_NEAR(std::stod(fact(done, diagnostic_stage::rate, "samples_per_s")), true_rate_hz,
+  EXPECT_NEAR(std::stod(fact(done, diagnostic_stage::rate, "sample_rate_hz")), true_rate_hz,
               0.02 * true_rate_hz)
       << done;
 }

@@ -45,7 +45,7 @@ TEST(HostPause, IsNotAFaultOfTheLidar) {
         EXPECT_TRUE(found.empty() || found == "host_busy") << pause_ms << " at " << at_ms << done;
       }
       EXPECT_NEAR(number_of(done, diagnostic_stage::rate, "measured_hz"), 7.0, 0.07) << at_ms;
-      EXPECT_NEAR(number_of(done, diagnostic_stage::rate, "samples_per_s"), 9000.0, 45.0) << at_ms;
+      EXPECT_NEAR(number_of(done, diagnostic_stage::rate, "sample_rate_hz"), 9000.0, 45.0) << at_ms;
       EXPECT_EQ(number_of(done, diagnostic_stage::loss, "samples_lost"), 0.0) << at_ms << done;
     }
   }

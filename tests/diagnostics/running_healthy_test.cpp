@@ -54,7 +54,7 @@ TEST(RunningHealthy, HasNoDiagnosis_AndReportsItsMeasurements) {
     const auto& last = found.looks.back();
     ASSERT_EQ(last.size(), 7U) << found;
     EXPECT_NEAR(number_of(last, diagnostic_stage::rate, "measured_hz"), 7.0, 0.05);
-    EXPECT_NEAR(number_of(last, diagnostic_stage::rate, "samples_per_s"), 9000.0, 45.0);
+    EXPECT_NEAR(number_of(last, diagnostic_stage::rate, "sample_rate_hz"), 9000.0, 45.0);
     EXPECT_EQ(number_of(last, diagnostic_stage::loss, "samples_lost"), 0.0);
     const double window_s = number_of(last, diagnostic_stage::stream, "seconds");
     EXPECT_GE(window_s, 5.0);

@@ -40,7 +40,7 @@ enum g4lidar_value_kind {
 /** One measurement or fact. */
 typedef struct g4lidar_evidence {
   const char* name; /**< It ends in its unit: "slowest_ms". */
-  const char* unit; /**< "ms", "s", "Hz", "%", "1/s" or "baud"; empty for counts and texts. */
+  const char* unit; /**< "ms", "s", "Hz", "%" or "baud"; empty for counts and texts. */
   const char* text; /**< The value for people, without its unit. */
   int64_t integer;  /**< The value, if it is an integer. */
   double real;      /**< The value, if it is a number. */

@@ -122,7 +122,7 @@ struct evidence {
   std::string name;
   std::variant<std::int64_t, double, std::string> value;
 
-  /// "ms", "s", "Hz", "%", "1/s" or "baud"; empty for counts and texts. Valid forever.
+  /// "ms", "s", "Hz", "%" or "baud"; empty for counts and texts. Valid forever.
   [[nodiscard]] G4LIDAR_API std::string_view unit() const noexcept;
   /// The value for people, without its unit: numbers with four digits or all before the point.
   [[nodiscard]] G4LIDAR_API std::string text() const;
