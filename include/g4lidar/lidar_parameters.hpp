@@ -55,9 +55,9 @@ struct parameter {
 [[nodiscard]] G4LIDAR_API parameter limited_to(const model& which, const parameter& of);
 /// The value of a setting as the device gave it; nothing for an answer that is of none.
 [[nodiscard]] G4LIDAR_API parameter_value value_of(const answer& given);
-/// The value that a setting is to have; else why not.
-[[nodiscard]] G4LIDAR_API std::variant<answer, std::string> answer_of(
-    const setting_info& of, const parameter_value& wanted);
+/// The value that a setting is to have; errors as those of value_in().
+[[nodiscard]] G4LIDAR_API result<answer> answer_of(const setting_info& of,
+                                                   const parameter_value& wanted);
 
 /// The values of one lidar. Functions without another word: only in the thread that reads it.
 class G4LIDAR_API lidar_parameters {

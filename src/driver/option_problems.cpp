@@ -8,6 +8,7 @@
 
 #include "error_context.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/setting_table.hpp"
 
 namespace g4lidar {
 namespace {
@@ -26,46 +27,43 @@ error bad(std::string_view what, std::int64_t given, std::string_view unit) noex
   return bad(words.add(static_cast<std::uint32_t>(size < 0 ? -size : size)).add(unit));
 }
 
-/// "sample_rate: 8000, 16000 or 18000 of a G6".
-error bad_rate(const model& which) noexcept {
-  return bad(error_context("sample_rate: ").add_rates(which));
-}
-
-/// "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300".
-error bad_frequency(const model& which, scan_frequency given) noexcept {
+/// "sample_rate: 8000, 16000 or 18000 of a G6"; "frequency: 500 to 1200 (5 to 12 Hz of a G4), not 1300"; "idle: off or
+/// on".
+error bad_setting(const setting_info& of, const model& which, std::uint16_t given) noexcept {
+  error_context words(of.name);
+  words.add(": ");
+  if (of.type == setting_type::whole) return bad(words.add_rates(which));
+  if (of.type != setting_type::decimal)
+    return bad(words.add(of.values[0].word).add(" or ").add(of.values[1].word));
   const auto [least_dhz, most_dhz, reply, ct] = which.frequency;
-  error_context words("frequency: ");
   words.add(least_dhz * 10U).add(" to ").add(most_dhz * 10U).add(" (").add(least_dhz / 10U);
   words.add(" to ").add(most_dhz / 10U).add(" Hz of ").add(article_of(which));
   words.add(" ").add(which.name).add(")");
-  return bad(words, given.chz, "");
+  return bad(words, given, "");
 }
 
 }  // namespace
 
 std::optional<error> problem_with_settings(const lidar_options& options) noexcept {
   const model& which = options.model != nullptr ? *options.model : g4_model;
-  const auto problem_of = [&](const auto& setting, std::string_view name,
-                              const error& bad_value) -> std::optional<error> {
-    if (!setting) return std::nullopt;
+  std::optional<error> found;
+  const auto check = [&](const auto& setting) {
+    if (found || !setting) return;
+    const setting_info& of = *setting_of(*setting);
     const request change = requests::set(*setting);
     if (!has_request(which, change.what)) {
-      return error(task::configuring, problem::not_supported,
-                   error_context(name).add(", ").add(which.name));
+      found.emplace(task::configuring, problem::not_supported,
+                    error_context(of.name).add(", ").add(which.name));
+    } else if (!is_possible(change, which)) {
+      found = bad_setting(of, which, change.value);
     }
-    return is_possible(change, which) ? std::nullopt : std::optional(bad_value);
   };
-  std::optional<error> found = problem_of(options.sample_rate, "sample_rate", bad_rate(which));
-  if (!found && options.frequency) {
-    found = problem_of(options.frequency, "frequency", bad_frequency(which, *options.frequency));
-  }
-  if (!found) {
-    found = problem_of(options.direction, "direction",
-                       bad("direction: clockwise or counter_clockwise"));
-  }
-  if (!found) found = problem_of(options.constant, "constant", bad("constant: on or off"));
-  if (!found) found = problem_of(options.idle, "idle", bad("idle: on or off"));
-  if (!found) found = problem_of(options.protection, "protection", bad("protection: on or off"));
+  check(options.sample_rate);
+  check(options.frequency);
+  check(options.direction);
+  check(options.constant);
+  check(options.idle);
+  check(options.protection);
   return found;
 }
 

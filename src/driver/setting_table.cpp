@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <string>
 #include <variant>
 
+#include "core/number_text.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
 
 namespace g4lidar {
@@ -106,6 +109,28 @@ std::optional<answer> value_of(const setting_info& of, std::int32_t number) noex
     return std::nullopt;
   }
   return scan_frequency{static_cast<std::uint16_t>(number)};
+}
+
+result<answer> value_in(const setting_info& of, std::string_view text) {
+  const std::string given = in_quotes(text.substr(0, 60));  // an error is at most 159 bytes
+  const auto refused = [&of](std::string why) {
+    if (!of.unit.empty()) why.append(" ").append(of.unit);
+    return failure(task::configuring, problem::bad_option, std::string(of.name) + ": " + why);
+  };
+  if (of.type == setting_type::decimal) {
+    const auto number = number_in(text, of.least / 100.0, of.most / 100.0);
+    if (!number)
+      return refused(not_in_range(text.substr(0, 60), of.least / 100.0, of.most / 100.0));
+    const double steps = *number * 100.0 / of.step;
+    const auto made = value_of(of, static_cast<std::int32_t>(std::lround(steps)) * of.step);
+    if (made && std::abs(steps - std::round(steps)) <= 1e-6) return *made;
+    return refused(given + " is not a multiple of " + text_of_number(of.step / 100.0));
+  }
+  for (const setting_value& each : of.values) {
+    const bool is_number = of.type == setting_type::whole && text == std::to_string(each.number);
+    if (is_number || text == each.word) return each.value;
+  }
+  return refused(given + " is not one of " + list_of(of.values, &setting_value::word));
 }
 
 // NOLINTNEXTLINE(bugprone-exception-escape): a variant of numbers always has a value

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "number_text.hpp"
+#include "core/number_text.hpp"
 
 namespace g4lidar {
 namespace {
@@ -19,15 +19,6 @@ constexpr std::array<std::string_view, 2> near_as_words{"nan", "minus-inf"};
 constexpr std::array<std::string_view, 4> speckle_words{"window", "count", "near", "ratio"};
 constexpr std::array<std::string_view, 2> edge_words{"window", "angle"};
 constexpr std::array<std::string_view, 2> near_words{"shortest", "revolutions"};
-
-/// The words, each with `after`, separated by commas.
-std::string list_of(std::span<const std::string_view> words, std::string_view after = {}) {
-  std::string made;
-  for (const std::string_view each : words) {
-    made.append(made.empty() ? "" : ", ").append(each).append(after);
-  }
-  return made;
-}
 
 struct span_of_numbers {
   double from;
@@ -75,7 +66,8 @@ std::string take_limits(std::string_view text, std::span<const std::string_view>
     const std::size_t equals = std::min(piece.find('='), piece.size());
     const auto found = std::ranges::find(names, piece.substr(0, equals));
     if (found == names.end() || equals == piece.size())
-      return in_quotes(piece) + " is not one of " + list_of(names, "=N");
+      return in_quotes(piece) + " is not one of " +
+             list_of(names, [](std::string_view name) { return std::string(name) + "=N"; });
     const named_limit& limit = limits[static_cast<std::size_t>(found - names.begin())];
     const auto value = number_in(piece.substr(equals + 1), limit.least, limit.most);
     if (!value) return value.error();

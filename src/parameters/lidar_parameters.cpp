@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "core/number_text.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
-#include "number_text.hpp"
 
 namespace g4lidar {
 namespace {
@@ -56,28 +56,13 @@ parameter parameter_of(const setting_info& which) {
   if (which.type == setting_type::decimal) {
     made.constraints = "multiples of " + text_of_number(which.step / 100.0);
     made.range = {which.least / 100.0, which.most / 100.0, which.step / 100.0};
-  } else if (which.type != setting_type::on_off) {
-    const bool is_whole = which.type == setting_type::whole;
-    for (const setting_value& each : which.values) {
-      made.constraints.append(made.constraints.empty() ? "" : ", ");
-      made.constraints.append(is_whole ? std::to_string(each.number) : std::string(each.word));
-    }
+  } else if (which.type == setting_type::whole) {
+    made.constraints = list_of(
+        which.values, [](const setting_value& each) { return std::to_string(each.number); });
+  } else if (which.type == setting_type::word) {
+    made.constraints = list_of(which.values, &setting_value::word);
   }
   return made;
-}
-
-/// A multiple of the step of a decimal.
-std::variant<answer, std::string> decimal_of(const setting_info& of, double number) {
-  const std::string text = text_of_number(number);
-  if (!(number >= of.least / 100.0 && number <= of.most / 100.0))
-    return not_in_range(text, of.least / 100.0, of.most / 100.0);
-  const double steps = number * 100.0 / of.step;
-  const auto made = value_of(of, static_cast<std::int32_t>(std::lround(steps)) * of.step);
-  if (std::abs(steps - std::round(steps)) > 1e-6 || !made) {
-    return in_quotes(text) + " is not a multiple of " + text_of_number(of.step / 100.0) +
-           ", such as 7.5";
-  }
-  return *made;
 }
 
 }  // namespace
@@ -91,11 +76,8 @@ parameter limited_to(const model& which, const parameter& of) {
   } else if (of.setting->type == setting_type::decimal) {
     made.range = {which.frequency.min_dhz / 10.0, which.frequency.max_dhz / 10.0, of.range[2]};
   } else if (of.setting->type == setting_type::whole) {
-    made.constraints.clear();
-    for (const sample_rate_entry& each : which.rates.entries) {
-      if (each.hz == 0) continue;
-      made.constraints.append(made.constraints.empty() ? "" : ", ").append(std::to_string(each.hz));
-    }
+    made.constraints = list_of(std::span(which.rates.entries).first(rate_count(which)),
+                               [](const auto& rate) { return std::to_string(rate.hz); });
   }
   return made;
 }
@@ -111,21 +93,8 @@ parameter_value value_of(const answer& given) {
   return word == nullptr ? parameter_value() : std::string(word->word);
 }
 
-std::variant<answer, std::string> answer_of(const setting_info& of, const parameter_value& wanted) {
-  if (of.type == setting_type::decimal) {
-    const auto* const whole = std::get_if<std::int64_t>(&wanted);
-    const auto* const number = std::get_if<double>(&wanted);
-    if (whole == nullptr && number == nullptr) return in_quotes(word_of(wanted)) + " is no number";
-    return decimal_of(of, whole != nullptr ? static_cast<double>(*whole) : *number);
-  }
-  const std::string word = word_of(wanted);
-  std::string known;
-  for (const setting_value& each : of.values) {
-    const bool is_number = of.type == setting_type::whole && word == std::to_string(each.number);
-    if (is_number || word == each.word) return each.value;
-    known.append(known.empty() ? "" : ", ").append(each.word);
-  }
-  return in_quotes(word) + " is not one of " + known;
+result<answer> answer_of(const setting_info& of, const parameter_value& wanted) {
+  return value_in(of, word_of(wanted));
 }
 
 std::span<const parameter> all_parameters() {
@@ -228,9 +197,8 @@ std::string lidar_parameters::set_device(lidar* device, std::span<const device_c
     }
     for (const auto& [earlier, old] : before) {
       const auto back = answer_of(*earlier->setting, old);
-      if (old.index() == 0 || back.index() != 0) continue;  // was not known
-      if (device->ask(change_to(std::get<answer>(back)), while_scanning::stop_and_resume))
-        fix(earlier->name, old);
+      if (!back) continue;  // was not known
+      if (device->ask(change_to(*back), while_scanning::stop_and_resume)) fix(earlier->name, old);
     }
     return given.error().message();
   }
@@ -252,10 +220,9 @@ std::string lidar_parameters::change(lidar* device, std::span<const named_value>
       values[known->name] = *value;
       continue;
     }
-    auto change = answer_of(*known->setting, *value);
-    if (const auto* wrong = std::get_if<std::string>(&change))
-      return std::string(known->name) + ": " + *wrong;
-    changes.emplace_back(known, std::get<answer>(change));
+    const auto change = answer_of(*known->setting, *value);
+    if (!change) return std::string(change.error().subject());
+    changes.emplace_back(known, *change);
   }
   for (const auto& [name, one] : values) {
     if (name.starts_with("range_")) continue;

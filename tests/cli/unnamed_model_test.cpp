@@ -166,7 +166,7 @@ TEST_F(FoundModel, NamedModelThatTheDeviceContradicts_ErrorNamesBoth) {
 TEST_F(FoundModel, ValuesOfNoModelAreRefusedWithTheLimitsOfAll) {
   const outcome refused = run({"set", port_, "frequency=17"});
   EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("'17' is not in the range 3 to 16"));
+  EXPECT_THAT(refused.err, HasSubstr("'17' is not in the range 3 to 16 Hz"));
   const outcome rate = run({"set", port_, "sample_rate=7k"});
   EXPECT_EQ(rate.code, 2);
   EXPECT_THAT(rate.err, HasSubstr("'7k' is not one of 4k, 6k, 8k, 9k, 10k, 16k, 18k, 20k"));

@@ -46,15 +46,6 @@ rclcpp::ParameterValue ros_value_of(const g4lidar::parameter_value& from) {
       from);
 }
 
-/// Of a setting that is made when the lidar is opened. Throws std::invalid_argument.
-void take_setting(g4lidar::lidar_options& options, const g4lidar::parameter& of,
-                  const rclcpp::Parameter& wanted) {
-  const auto made = g4lidar::answer_of(*of.setting, value_of(wanted));
-  if (const auto* wrong = std::get_if<std::string>(&made))
-    throw std::invalid_argument(wanted.get_name() + ": " + *wrong);
-  g4lidar::set_option(options, std::get<g4lidar::answer>(made));
-}
-
 }  // namespace
 
 node_parameters::node_parameters(rclcpp_lifecycle::LifecycleNode& node) : node_(node) {
@@ -136,8 +127,10 @@ session_options node_parameters::for_session() const {
   made.filters = filters();
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
     const rclcpp::Parameter wanted = node_.get_parameter(std::string(each.name));
-    if (each.setting != nullptr && wanted.get_type() != rclcpp::PARAMETER_NOT_SET)
-      take_setting(lidar, each, wanted);
+    if (each.setting == nullptr || wanted.get_type() == rclcpp::PARAMETER_NOT_SET) continue;
+    const auto setting = g4lidar::answer_of(*each.setting, value_of(wanted));
+    if (!setting) throw std::invalid_argument(std::string(setting.error().subject()));
+    g4lidar::set_option(lidar, *setting);
   }
   if (const auto wrong = g4lidar::problem_with(lidar))
     throw std::invalid_argument(wrong->message());
@@ -202,7 +195,7 @@ std::string node_parameters::refuse(const changes& wanted) {
       continue;
     }
     const auto made = g4lidar::answer_of(*known->setting, each.second);
-    if (const auto* wrong = std::get_if<std::string>(&made)) return each.first + ": " + *wrong;
+    if (!made) return std::string(made.error().subject());
   }
   return {};
 }

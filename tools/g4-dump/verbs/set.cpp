@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The verb set: changes settings, and prints each before and after.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "cli/logger.hpp"
 #include "cli/settings.hpp"
 #include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -60,18 +59,12 @@ void execute(g4lidar::lidar& lidar, const setting_change& wanted, output& out, b
 }
 
 /// "has 5 to 12 Hz": what the model can have.
-std::string possible_values(const g4lidar::model& which, request_kind of) {
-  if (of == request_kind::set_scan_frequency) {
-    const auto& [least_dhz, most_dhz, reply, ct] = which.frequency;
-    return fmt::format("has {} to {} Hz", least_dhz / 10.0, most_dhz / 10.0);
-  }
-  if (of != request_kind::set_sample_rate) return "cannot have it";
-  std::vector<std::uint32_t> rates;
-  rates.reserve(rate_count(which));
-  for (std::uint8_t code = 0; code < rate_count(which); ++code) {
-    rates.push_back(rate_hz_of_code(which, code));
-  }
-  return fmt::format("has {} samples per second", fmt::join(rates, ", "));
+std::string possible_values(const g4lidar::model& which, const setting_info& of) {
+  const parameter row = limited_to(which, *find_parameter(of.name));
+  if (of.type == setting_type::decimal)
+    return fmt::format("has {} to {} Hz", row.range[0], row.range[1]);
+  if (of.type != setting_type::whole) return "cannot have it";
+  return fmt::format("has {} samples per second", row.constraints);
 }
 
 /// Throws a bad_value if the lidar cannot have one of the values: then nothing is changed.
@@ -81,7 +74,7 @@ void check(const set_options& options, const g4lidar::model& which) {
     if (!has_request(which, wanted.what) || is_possible(wanted, which)) continue;
     throw bad_value(fmt::format("{}={}: {} {} {}", each.which->name, text_of(each.value),
                                 article_of(which), which.name,
-                                possible_values(which, wanted.what)));
+                                possible_values(which, *each.which)));
   }
 }
 

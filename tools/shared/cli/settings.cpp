@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdint>
 #include <optional>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 
 #include "exit_code.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 #include "logger.hpp"
 #include "rows.hpp"
 
@@ -17,30 +17,17 @@ namespace g4_tool {
 namespace {
 
 /// The words for the values of a setting that has a few.
-choices<answer> choices_of(const setting_info& which) {
-  choices<answer> all;
-  for (const setting_value& each : which.values) all.emplace_back(each.word, each.value);
+std::vector<std::string> value_words(const setting_info& which) {
+  std::vector<std::string> all;
+  for (const setting_value& each : which.values) all.emplace_back(each.word);
   return all;
-}
-
-/// A multiple of the step of a decimal.
-answer decimal_of(const setting_info& which, const std::string& word) {
-  const double number = number_of(word, which.least / 100.0, which.most / 100.0);
-  const double steps = number * 100.0 / which.step;
-  const bool is_whole = std::abs(steps - std::round(steps)) <= 1e-6;
-  const auto made = value_of(which, static_cast<std::int32_t>(std::lround(steps)) * which.step);
-  if (!is_whole || !made) {
-    throw bad_value(
-        fmt::format("'{}' is not a multiple of {}, such as 7.5", word, which.step / 100.0));
-  }
-  return *made;
 }
 
 }  // namespace
 
 std::string values_of(const setting_info& which) {
   if (which.values.empty()) return fmt::format("{}..{}", which.least / 100, which.most / 100);
-  return words_of(choices_of(which), "|");
+  return fmt::format("{}", fmt::join(value_words(which), "|"));
 }
 
 std::vector<std::string> example_changes() {
@@ -69,17 +56,9 @@ setting_change change_of(const std::string& word) {
   for (const setting_info& each : all_settings()) names.emplace_back(each.name, &each);
   const setting_info& which = *choice_of(word.substr(0, equals), names);
   const std::string wanted = word.substr(equals + 1);
-  for (const setting_value& each : which.values) {
-    if (which.type == setting_type::whole && wanted == std::to_string(each.number)) {
-      return {&which, each.value};
-    }
-  }
-  try {
-    return {&which, which.values.empty() ? decimal_of(which, wanted)
-                                         : choice_of(wanted, choices_of(which))};
-  } catch (const bad_value& reason) {
-    throw bad_value(fmt::format("{}: {}", which.name, reason.what()));
-  }
+  const auto value = value_in(which, wanted);
+  if (value) return {&which, *value};
+  throw bad_value(std::string(value.error().subject()) + did_you_mean(wanted, value_words(which)));
 }
 
 maybe_answer read_setting(g4lidar::lidar& lidar, const setting_info& which) {
@@ -102,19 +81,15 @@ std::string text_of(const maybe_answer& value) {
 }
 
 nlohmann::ordered_json json_of(const maybe_answer& value) {
-  const auto number = value ? number_of(*value) : std::nullopt;
-  if (!number) return nullptr;
-  switch (setting_of(*value)->type) {
-    case setting_type::whole:
-      return *number;
-    case setting_type::decimal:
-      return *number / 100.0;
-    case setting_type::word:
-      return text_of(value);
-    case setting_type::on_off:
-      break;
-  }
-  return text_of(value) == "on";
+  if (!value) return nullptr;
+  return std::visit(
+      [](const auto& known) -> nlohmann::ordered_json {
+        if constexpr (std::is_same_v<decltype(known), const std::monostate&>)
+          return nullptr;
+        else
+          return known;
+      },
+      g4lidar::value_of(*value));
 }
 
 std::string firmware_of(const device_information& who) {

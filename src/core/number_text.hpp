@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Numbers from text and as text, independent of the locale.
+// Numbers from text and as text, independent of the locale; lists of words.
 #pragma once
 
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -22,6 +23,15 @@ using text_result = tl::expected<Value, std::string>;
 inline std::string in_quotes(std::string_view text) {
   std::string quoted = "'";  // appended to: g++ 12 warns of other forms without a reason
   return quoted.append(text).append("'");
+}
+
+/// "cw, ccw": the texts of all.
+template <class Range, class TextOf = std::identity>
+std::string list_of(const Range& all, TextOf text_of = {}) {
+  std::string made;
+  for (const auto& each : all)
+    made.append(made.empty() ? "" : ", ").append(std::invoke(text_of, each));
+  return made;
 }
 
 /// As a person writes it: 5, 0.28.
