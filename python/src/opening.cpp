@@ -127,20 +127,17 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
+template <class... Wanted>
 live_lidar* open_by_keywords(
-    const device_name& device, std::uint32_t baud, std::optional<double> frequency_hz,
-    std::optional<int> sample_rate_hz, std::optional<motor_direction> direction,
-    std::optional<bool> constant, std::optional<bool> idle, std::optional<bool> protection,
-    bool reconnect, bool partial_scans, double answer_time, double stall_time,
-    double longest_backoff, double batch, double transport_delay, double speed, bool loop,
-    double begin, std::optional<double> end, std::optional<std::uint32_t> raw_sample_rate_hz,
-    const std::optional<std::string>& model, const std::optional<path_text>& record, bool overwrite,
-    double device_wait) {
-  const wanted_settings wanted{frequency_hz, sample_rate_hz, direction, constant, idle, protection};
+    const device_name& device, std::uint32_t baud, const Wanted&... wanted, bool reconnect,
+    bool partial_scans, double answer_time, double stall_time, double longest_backoff, double batch,
+    double transport_delay, double speed, bool loop, double begin, std::optional<double> end,
+    std::optional<std::uint32_t> raw_sample_rate_hz, const std::optional<std::string>& model,
+    const std::optional<path_text>& record, bool overwrite, double device_wait) {
   lidar_options options;
   options.model = model_of(model);
   options.baud = baud;
-  for (const answer& value : wanted.values()) set_option(options, value);
+  for (const answer& value : values_of(wanted...)) set_option(options, value);
   options.reconnect = reconnect;
   options.partial_scans = partial_scans;
   options.tuning.answer_time = in_milliseconds(answer_time);
@@ -239,18 +236,14 @@ void bind_discovery(nb::module_& module) {
       "USB bridge of a G4, unless `probe_all_ports` is set.");
 }
 
-}  // namespace
-
-void bind_opening(nb::module_& module) {
-  bind_discovery(module);
+template <class... Wanted, std::size_t... Index>
+void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequence<Index...>) {
   const lidar_options usual;
   const auto seconds = [](auto time) { return std::chrono::duration<double>(time).count(); };
   module.def(
-      "open", &open_by_keywords, "device"_a = path_text{}, nb::kw_only(), "baud"_a = usual.baud,
-      "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(), "direction"_a = nb::none(),
-      "constant"_a = nb::none(), "idle"_a = nb::none(), "protection"_a = nb::none(),
-      "reconnect"_a = usual.reconnect, "partial_scans"_a = usual.partial_scans,
-      "answer_time"_a = seconds(usual.tuning.answer_time),
+      "open", &open_by_keywords<Wanted...>, "device"_a = path_text{}, nb::kw_only(),
+      "baud"_a = usual.baud, keyword(Index)..., "reconnect"_a = usual.reconnect,
+      "partial_scans"_a = usual.partial_scans, "answer_time"_a = seconds(usual.tuning.answer_time),
       "stall_time"_a = seconds(usual.tuning.stall_time),
       "longest_backoff"_a = seconds(usual.tuning.longest_backoff),
       "batch"_a = seconds(usual.tuning.batch),
@@ -281,7 +274,14 @@ void bind_opening(nb::module_& module) {
       "second (None: as the model). `model`: the model of the lidar, 'x4'; None: what a search at "
       "the port finds, a recording or a Simulator states, or raw bytes show. `record`: the "
       "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
-      "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
+      "Takes about 0.06 s with a healthy device,at most 15 s. Raises an Error.");
+}
+
+}  // namespace
+
+void bind_opening(nb::module_& module) {
+  bind_discovery(module);
+  bind_open(module, setting_types(), setting_types::indices());
 }
 
 }  // namespace g4lidar::python

@@ -2,6 +2,9 @@
 #include "settings.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <map>
+#include <variant>
 
 #include "g4lidar/core/session/model_requests.hpp"
 
@@ -16,17 +19,54 @@ const model& model_of(live_lidar& on) {
   return *on.look([](lidar& device) { return candidates_of(device).front(); });
 }
 
+template <class Number>
+void check(const setting_info& which, Number wanted, int most) {
+  if (wanted >= 0 && wanted <= most) return;
+  raise(error(task::configuring, problem::bad_option,
+              std::string(keyword_of(which)) + ": 0 to " + std::to_string(most) + ", not " +
+                  nb::repr(nb::cast(wanted)).c_str()));
+}
+
+struct as_python {
+  nb::object operator()(sample_rate is) const { return nb::cast(to_hz(is)); }
+  nb::object operator()(scan_frequency is) const { return nb::cast(is.hz()); }
+  nb::object operator()(motor_direction is) const { return nb::cast(is); }
+  template <class Other>
+  nb::object operator()(const Other& is) const {
+    return nb::cast(number_of(answer(is)) == 2);  // on
+  }
+};
+
 }  // namespace
 
-void set(live_lidar& on, const wanted_settings& wanted, bool interrupt) {
+const char* keyword_of(const setting_info& which) {
+  static std::map<const setting_info*, std::string> all;  // guarded by the GIL
+  std::string& made = all[&which];
+  if (!made.empty()) return made.c_str();
+  made = which.name;
+  if (!which.unit.empty()) made.append("_").append(which.unit);
+  std::ranges::transform(made, made.begin(), [](unsigned char c) { return std::tolower(c); });
+  return made.c_str();
+}
+
+answer value_for(const setting_info& which, int wanted) {
+  check(which, wanted, UINT16_MAX);
+  return sample_rate{static_cast<std::uint16_t>(wanted)};
+}
+
+answer value_for(const setting_info& which, double wanted) {
+  check(which, wanted, UINT16_MAX / 100);
+  return scan_frequency::hz(wanted);
+}
+
+void set(live_lidar& on, std::vector<answer> wanted, bool interrupt) {
   const model& which = model_of(on);
   const auto is_refused = [&](const answer& value) {
     const request change = change_to(value);
     return !has_request(which, change.what) || !is_possible(change, which);
   };
-  std::vector<answer> all = wanted.values();
-  std::ranges::stable_partition(all, is_refused);  // first, so that nothing is sent
-  for (const answer& value : all) {
+  std::ranges::stable_partition(wanted, is_refused);  // first, so that nothing is sent
+  for (const answer& value : wanted) {
     on.run([&](lidar& device) { return device.ask(change_to(value), allowed(interrupt)); });
   }
 }
@@ -34,27 +74,21 @@ void set(live_lidar& on, const wanted_settings& wanted, bool interrupt) {
 nb::dict settings(live_lidar& on, bool interrupt) {
   const model& which = model_of(on);
   nb::dict all;
-  const auto add = [&]<class Answer>(const char* name, const request_for<Answer>& query,
-                                     request_kind change, auto in_python) {
-    all[name] = nb::none();
-    if (!has_request(which, query.what)) return;
-    const auto ask = [&](lidar& device) -> result<std::optional<Answer>> {
-      const auto given = device.ask(query, allowed(interrupt));
+  for (const setting_info& each : all_settings()) {
+    if (!each.query) continue;
+    auto value = all[keyword_of(each)];
+    value = nb::none();
+    if (!has_request(which, each.query->what)) continue;
+    const auto ask = [&](lidar& device) -> result<std::optional<answer>> {
+      const auto given = device.ask(*each.query, allowed(interrupt));
       if (given) return *given;
       // Not every TG answers the query of the sample rate, which cannot be set.
-      if (given.error() == problem::timeout && !has_request(which, change)) return std::nullopt;
+      if (given.error() == problem::timeout && !has_request(which, each.change))
+        return std::nullopt;
       return tl::unexpected(given.error());
     };
-    if (const auto found = on.run(ask)) all[name] = in_python(*found);
-  };
-  add("frequency_hz", requests::get_scan_frequency(), request_kind::set_scan_frequency,
-      [](scan_frequency is) { return is.hz(); });
-  add("sample_rate_hz", requests::get_sample_rate(), request_kind::set_sample_rate,
-      [](sample_rate is) { return to_hz(is); });
-  add("direction", requests::get_direction(), request_kind::set_direction,
-      [](motor_direction is) { return nb::cast(is); });
-  add("idle", requests::get_low_power(), request_kind::set_low_power,
-      [](low_power is) { return is == low_power::on; });
+    if (const auto found = on.run(ask)) value = std::visit(as_python(), *found);
+  }
   return all;
 }
 

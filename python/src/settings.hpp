@@ -4,9 +4,10 @@
 
 #include <nanobind/stl/optional.h>
 
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "errors.hpp"
@@ -16,49 +17,48 @@
 
 namespace g4lidar::python {
 
-/// What a call sets; None stays as the device has it.
-struct wanted_settings {
-  std::optional<double> frequency_hz;
-  std::optional<int> sample_rate_hz;
-  std::optional<motor_direction> direction;
-  std::optional<bool> constant;
-  std::optional<bool> idle;
-  std::optional<bool> protection;
-
-  /// The values, in the order of the table. Raises BadOption for one that its type cannot hold: the lidar refuses what
-  /// its model does not have.
-  [[nodiscard]] std::vector<answer> values() const {
-    std::vector<answer> all;
-    if (sample_rate_hz) {
-      const int hz = *sample_rate_hz;
-      if (hz < 0 || hz > UINT16_MAX) refuse("sample_rate_hz: 0 to 65535, not ", nb::cast(hz));
-      all.emplace_back(sample_rate{static_cast<std::uint16_t>(hz)});
-    }
-    if (frequency_hz) {
-      const double hz = *frequency_hz;
-      if (!(hz >= 0.0 && hz <= 655.0)) refuse("frequency_hz: 0 to 655, not ", nb::cast(hz));
-      all.emplace_back(scan_frequency::hz(hz));
-    }
-    if (direction) all.emplace_back(*direction);
-    if (constant) all.emplace_back(*constant ? constant_frequency::on : constant_frequency::off);
-    if (idle) {
-      all.emplace_back(*idle ? low_power::on : low_power::off);
-    }
-    if (protection) {
-      all.emplace_back(*protection ? power_down_protection::on : power_down_protection::off);
-    }
-    return all;
-  }
-
- private:
-  [[noreturn]] static void refuse(const char* what, const nb::object& given) {
-    raise(
-        error(task::configuring, problem::bad_option, std::string(what) + nb::repr(given).c_str()));
-  }
+/// What the keywords take, in the order of the table; None stays as the device has it.
+template <class... Wanted>
+struct keyword_types {
+  using indices = std::index_sequence_for<Wanted...>;
 };
+using setting_types =
+    keyword_types<std::optional<int>, std::optional<double>, std::optional<motor_direction>,
+                  std::optional<bool>, std::optional<bool>, std::optional<bool>>;
 
-/// Sends each setting that is given; nothing if the lidar refuses one of them.
-void set(live_lidar& on, const wanted_settings& wanted, bool interrupt);
+/// "frequency_hz": the name in the table, and the unit. Valid forever.
+[[nodiscard]] const char* keyword_of(const setting_info& which);
+/// The argument of a function for the setting of this index.
+[[nodiscard]] inline auto keyword(std::size_t index) {
+  return nb::arg(keyword_of(all_settings()[index])) = nb::none();
+}
+
+// The value of a setting. Raises BadOption for one that its type cannot hold: the lidar refuses what its model does not
+// have.
+[[nodiscard]] answer value_for(const setting_info& which, int wanted);
+[[nodiscard]] answer value_for(const setting_info& which, double wanted);
+[[nodiscard]] inline answer value_for(const setting_info& which, bool wanted) {
+  return *value_of(which, wanted ? 2 : 1);
+}
+[[nodiscard]] inline answer value_for(const setting_info&, motor_direction wanted) {
+  return wanted;
+}
+
+/// The values that are given, in the order of the table.
+template <class... Wanted>
+[[nodiscard]] std::vector<answer> values_of(const std::optional<Wanted>&... wanted) {
+  std::vector<answer> all;
+  const setting_info* which = all_settings().data();
+  const auto add = [&](const auto& given) {
+    if (given) all.push_back(value_for(*which, *given));
+    ++which;
+  };
+  (add(wanted), ...);
+  return all;
+}
+
+/// Sends each of these values; nothing if the lidar refuses one of them.
+void set(live_lidar& on, std::vector<answer> wanted, bool interrupt);
 /// The settings that can be queried; None where the model does not have one.
 [[nodiscard]] nb::dict settings(live_lidar& on, bool interrupt);
 

@@ -127,7 +127,7 @@ def test_a_setting_that_the_model_does_not_have_is_none(
 ) -> None:
     with g4lidar.open(g4_simulator(**options)) as lidar:
         settings = lidar.settings()
-        assert list(settings) == ["frequency_hz", "sample_rate_hz", "direction", "idle"]
+        assert list(settings) == ["sample_rate_hz", "frequency_hz", "direction", "idle"]
         assert {name for name, value in settings.items() if value is not None} == known
         if "direction" not in known:
             with pytest.raises(errors.NotSupported, match="direction"):
