@@ -4,20 +4,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
+#include <span>
 
+#include "g4lidar/core/model_choice.hpp"
 #include "transport/custom_baud.hpp"
 
 namespace g4lidar {
 namespace {
-
-bool has_id(const model& row, std::uint8_t id, std::uint8_t bits) noexcept {
-  return std::ranges::any_of(row.ids,
-                             [&](std::uint8_t of) { return of != 0 && (of & bits) == id; });
-}
-
-bool has_size(const model& row, std::size_t bytes) noexcept {
-  return sample_size(row.samples.layout) == bytes;
-}
 
 bool has_rate(const model& row, std::uint32_t baud) noexcept {
   return std::ranges::any_of(
@@ -47,11 +40,11 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
     for (const model& row : models) {
       if (seen.answers == presence::yes && row.link != link_kind::two_way) continue;
       if (seen.answers == presence::no && row.link != link_kind::one_way) continue;
-      if (seen.id != 0 && !has_id(row, seen.id, 0xFF)) continue;
-      if (seen.sample_bytes != 0 && !has_size(row, seen.sample_bytes)) continue;
+      if (seen.id != 0 && std::ranges::find(row.ids, seen.id) == row.ids.end()) continue;
+      if (!may_send(row, seen.sample_bytes, false)) continue;
       if (by_rate && seen.baud != 0 && !has_rate(row, seen.baud)) continue;
       if (by_ct && seen.ct_id_low_bits != 0 &&
-          (row.ct_information == presence::no || !has_id(row, seen.ct_id_low_bits, 0x0F))) {
+          (row.ct_information == presence::no || !detail::may_report(row, seen.ct_id_low_bits))) {
         continue;
       }
       found.push_back(&row);
@@ -73,13 +66,14 @@ std::vector<const model*> models_that_fit(const lidar_signs& seen) {
   std::vector<const model*> far;
   std::ranges::copy_if(found, std::back_inserter(far), is_far_off);
   std::erase_if(found, is_far_off);
-  const auto near_count = static_cast<std::ptrdiff_t>(found.size());
+  const auto near_end = found.empty() ? far.size() : found.size();
   found.insert(found.end(), far.begin(), far.end());
-  const auto near_end = found.begin() + near_count;
-  const auto end = near_end == found.begin() ? found.end() : near_end;
-  const auto usual =
-      std::find_if(found.begin(), end, [](const model* row) { return is_usual(*row); });
-  if (usual != end) std::rotate(found.begin(), usual, usual + 1);
+  const std::span near(found.begin(), near_end);
+  const auto is_near = [near](const model& row) {
+    return std::ranges::find(near, &row) != near.end();
+  };
+  const auto first = std::ranges::find(near, usual_model(is_near, usual_kind::at_its_rate));
+  if (first != near.end()) std::rotate(near.begin(), first, first + 1);
   return found;
 }
 

@@ -67,9 +67,7 @@ class pipe_transport final : public transport {
     const auto got = has_ahead() ? take_ahead(out) : take(out);
     if (!got) return tl::unexpected(got.error());
     // A recording must be a file; in a pipe it would be parsed as noise.
-    const bool is_recording =
-        std::ranges::equal(out.first(std::min(*got, mcap::magic.size())), mcap::magic);
-    if (!std::exchange(has_begun_, true) && is_recording) {
+    if (!std::exchange(has_begun_, true) && begins_recording(out.first(*got))) {
       return failure(task::reading, problem::bad_file, "a recording in a pipe");
     }
     return received{*got, steady_now_ns()};

@@ -11,6 +11,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/skipped.hpp"
@@ -131,7 +132,7 @@ enum class recognised_by : std::uint8_t {
 /// one few. The model is the one that the bytes name: in a device information, or in the information
 /// in the bytes CT of a revolution whose CRC fits. After a device information, the only two-way model
 /// with this number is taken first. Of several models with this number it is the one whose sample
-/// rate is nearest to that of the stream. Where nothing names it, it is the usual one, and basis()
+/// rate is nearest to that of the stream. Where nothing names it, it is the usual_model(), and basis()
 /// states so: 2-byte samples are a G4's, or an X2's where samples consist of flags alone; 3-byte
 /// samples are a T-mini Pro's, and 4-byte samples a T-mini Plus SH's. So a 2-byte sample in half or
 /// whole millimetres is not recognised without a device information, and neither are 10 bits of
@@ -186,34 +187,29 @@ class layout_recogniser {
     const detail::layout_candidate* const sent = decided();
     if (sent == nullptr) return {&g4_model, recognised_by::nothing};
     const std::size_t size = sample_bytes();
-    const auto fits = [size](const model& row) { return sample_size(row.samples.layout) == size; };
     const bool has_flags = size == 2 && sent->has_flags_alone();
+    const auto fits = [&](const model& row) { return may_send(row, size, false); };
     const recognised_by without_number = has_flags ? recognised_by::flags : recognised_by::size;
-    if (sent->id() != 0) {
-      const model* const named = model_with_id(sent->id(), link_kind::two_way);
+    if (const std::uint8_t id = sent->id(); id != 0) {
+      const model* const named = model_with_id(id, link_kind::two_way);
       if (named != nullptr && fits(*named)) return {named, recognised_by::number};
-      const auto near = nearest(*sent, sent->id(), 0xFF, fits, without_number);
+      const auto has_id = [&](const model& row) {
+        return fits(row) && (row.ids[0] == id || row.ids[1] == id);
+      };
+      const auto near = nearest(*sent, has_id, without_number);
       if (near.which != nullptr) return near;
     }
-    const auto informs = [&](const model& row) {
-      const bool has_rare = has_sample_flags(row.samples.layout) && sent->has_rare_upper_flag();
-      return fits(row) && row.ct_information != presence::no && (size != 2 || has_rare);
-    };
     if (const auto& stated = sent->information()) {
-      const auto near = nearest(*sent, stated->id_low_bits, 0x0F, informs, without_number);
+      const auto informs = [&](const model& row) {
+        const bool has_rare = has_sample_flags(row.samples.layout) && sent->has_rare_upper_flag();
+        return fits(row) && row.ct_information != presence::no && (size != 2 || has_rare) &&
+               detail::may_report(row, stated->id_low_bits);
+      };
+      const auto near = nearest(*sent, informs, without_number);
       if (near.which != nullptr) return near;
     }
-    return {&usual(size, has_flags), without_number};
-  }
-
-  /// The model that is taken where the bytes name none.
-  [[nodiscard]] static constexpr const model& usual(std::size_t size, bool has_flags) noexcept {
-    for (const model& row : models) {
-      const bool is_usual = row.usual == usual_kind::of_its_layout;
-      if (!is_usual || sample_size(row.samples.layout) != size) continue;
-      if (size != 2 || has_sample_flags(row.samples.layout) == has_flags) return row;
-    }
-    return g4_model;
+    const auto sends = [&](const model& row) { return may_send(row, size, has_flags); };
+    return {usual_model(sends, usual_kind::of_its_layout), without_number};
   }
 
   [[nodiscard]] constexpr const detail::layout_candidate* decided() const noexcept {
@@ -228,11 +224,10 @@ class layout_recogniser {
     return best;
   }
 
-  /// The first of the models with this number, in these bits, whose sample rate is nearest; null if
-  /// `may_be` is true for none. If it is not the only one, it follows from `otherwise`.
+  /// The first of the models for which `may_be` is true whose sample rate is nearest; null if there is none. If it
+  /// is not the only one, it follows from `otherwise`.
   template <class MayBe>
-  [[nodiscard]] static constexpr finding nearest(const detail::layout_candidate& to,
-                                                 std::uint8_t id, std::uint8_t bits, MayBe may_be,
+  [[nodiscard]] static constexpr finding nearest(const detail::layout_candidate& to, MayBe may_be,
                                                  recognised_by otherwise) noexcept {
     constexpr std::uint32_t usual_hz = 3000;
     const std::uint32_t hz = to.rate_hz() != 0 ? to.rate_hz() : usual_hz;
@@ -240,10 +235,9 @@ class layout_recogniser {
       const std::uint32_t first_hz = first_rate_hz(row);
       return first_hz > hz ? first_hz - hz : hz - first_hz;
     };
-    const auto has_id = [&](std::uint8_t of) { return of != 0 && (of & bits) == id; };
     finding best{nullptr, recognised_by::number};
     for (const model& row : models) {
-      if (!may_be(row) || (!has_id(row.ids[0]) && !has_id(row.ids[1]))) continue;
+      if (!may_be(row)) continue;
       if (best.which != nullptr) best.by = otherwise;
       if (best.which == nullptr || distance(row) < distance(*best.which)) best.which = &row;
     }

@@ -158,11 +158,6 @@ struct model {
   usual_kind usual = usual_kind::no;  ///< Whether it is taken where bytes fit several models.
 };
 
-/// Whether `which` is taken where bytes fit several models, and their baud rate is known. *Pure.*
-[[nodiscard]] constexpr bool is_usual(const model& which) noexcept {
-  return which.usual != usual_kind::no;
-}
-
 /// Whether `which` measures the intensity of returns. *Pure.*
 [[nodiscard]] constexpr bool has_intensity(const model& which) noexcept {
   return intensity_bits(which.samples.layout) > 0;

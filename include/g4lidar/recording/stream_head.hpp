@@ -25,6 +25,12 @@ struct recognised_model {
   }
 };
 
+/// Whether `data` begins as a recording does. *Pure.*
+[[nodiscard]] constexpr bool begins_recording(bytes data) noexcept {
+  constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+  return data.size() >= magic.size() && std::equal(magic.begin(), magic.end(), data.begin());
+}
+
 /// Holds bytes that cannot be read again until layout_recogniser has recognised their model. It is
 /// complete when the bytes name the model, 1 s after the first packet, after 10 s without a packet, or
 /// with 64 KiB; with 1 MiB as long as the size of a sample is not decided; and at once for a recording.
@@ -50,7 +56,7 @@ class stream_head {
 
   /// Whether nothing more needs to be held back.
   [[nodiscard]] bool is_complete(std::int64_t now_ns) const noexcept {
-    if (is_finished_ || now_ns >= due_ns_ || is_recording()) return true;
+    if (is_finished_ || now_ns >= due_ns_ || begins_recording(held_)) return true;
     if (seen_.sample_bytes() == 0) return held_.size() >= most_undecided;
     return held_.size() >= enough || seen_.basis() == recognised_by::number;
   }
@@ -68,11 +74,6 @@ class stream_head {
   static constexpr std::int64_t longest_silence_ns = 10'000'000'000;
   static constexpr std::size_t enough = std::size_t{64} << 10U;
   static constexpr std::size_t most_undecided = std::size_t{1} << 20U;
-
-  [[nodiscard]] bool is_recording() const noexcept {
-    constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
-    return held_.size() >= magic.size() && std::equal(magic.begin(), magic.end(), held_.begin());
-  }
 
   layout_recogniser seen_;
   std::vector<std::uint8_t> held_;

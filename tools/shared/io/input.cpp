@@ -29,8 +29,7 @@ std::string advice_on(int error, const std::string& what_to_give) {
 
 /// A recording can be read from files only; in a pipe it would count as noise.
 void refuse_recording(std::span<const std::uint8_t> begin, const std::string& title) {
-  constexpr std::array<std::uint8_t, 8> magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
-  if (!std::ranges::equal(begin.first(std::min(begin.size(), magic.size())), magic)) return;
+  if (!begins_recording(begin)) return;
   throw failure(exit_code::bad_file,
                 title +
                     " is a recording, not raw bytes. Give the file's name to g4-dump dump, scan "

@@ -12,6 +12,7 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "interrupt.hpp"
@@ -139,8 +140,7 @@ std::string alternatives_to(const g4lidar::model& found) {
   std::vector<const g4lidar::model*> kinds{&found};
   std::string words;
   for (const g4lidar::model& each : models) {
-    const bool has_size = sample_size(each.samples.layout) == sample_size(layout);
-    if (!has_size || (has_shown_flags && !has_sample_flags(each.samples.layout))) continue;
+    if (!may_send(each, sample_size(layout), has_shown_flags)) continue;
     if (std::ranges::any_of(kinds, [&](const auto* kind) { return are_alike(*kind, each); }))
       continue;
     kinds.push_back(&each);

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Which models may send the bytes that were received, and which of them is taken where the bytes do not decide.
+#pragma once
+
+#include <cstddef>
+
+#include "g4lidar/core/model.hpp"
+
+namespace g4lidar {
+
+/// Whether a device of the model `row` may send samples of this size, 0: not known. `has_flags`: samples that
+/// consist of flags alone were seen. *Pure.*
+[[nodiscard]] constexpr bool may_send(const model& row, std::size_t sample_bytes,
+                                      bool has_flags) noexcept {
+  const sample_layout layout = row.samples.layout;
+  return (sample_bytes == 0 || sample_size(layout) == sample_bytes) &&
+         (!has_flags || has_sample_flags(layout));
+}
+
+/// The model that is taken where the bytes are those of several: the usual one of those for which `fits` is
+/// true, else the first of them; null if there is none. `least`: of_its_layout where their baud rate is not
+/// known. Valid forever. *Pure.*
+template <class Fits>
+[[nodiscard]] constexpr const model* usual_model(Fits fits, usual_kind least) noexcept {
+  const model* first = nullptr;
+  for (const model& row : models) {
+    if (!fits(row)) continue;
+    if (row.usual >= least) return &row;
+    if (first == nullptr) first = &row;
+  }
+  return first;
+}
+
+}  // namespace g4lidar
