@@ -146,7 +146,7 @@ bool acceptance_run::is_possible(acceptance_result& into) const {
     case acceptance_step::sample_bits:
     case acceptance_step::ct_information:
     case acceptance_step::time_packets:
-      return needs(surveyed_ && surveyed_->packets() > 0, "There were no packets.");
+      return needs(surveyed_ && surveyed_->counts().packets > 0, "There were no packets.");
     case acceptance_step::far_target:
       return needs(target_degree_.has_value(), "There was no near target.");
     default:

@@ -133,8 +133,8 @@ void acceptance_run::listening(acceptance_result& into) {
   if (!is_two_way() && which_->motor == motor_kind::dtr) static_cast<void>(link_->set_dtr(true));
   const std::int64_t first_ns = is_two_way() ? -1 : link_->wait_for_packet(time_ns);
   const stream_survey heard = link_->survey(1'000 * ms);
-  into.add("packets", heard.packets());
-  into.add("responses", heard.unasked_responses());
+  into.add("packets", heard.counts().packets);
+  into.add("responses", heard.counts().responses);
   into.add("sample_bytes", link_->monitor().layout().sample_bytes());
   if (!is_two_way()) {
     if (first_ns >= 0) into.add("first_packet_ms", in_ms(first_ns));
@@ -144,17 +144,18 @@ void acceptance_run::listening(acceptance_result& into) {
     const bool goes_on = link_->wait_for_packet(2'000 * ms) >= 0;
     into.add("sends_after_65", std::string(goes_on ? "yes" : "no"));
     into.add_answer(q::unasked_bytes, goes_on ? answered : not_decided,
-                    goes_on               ? "It sends packets, and ignores a stop."
-                    : heard.packets() > 0 ? "It was scanning, and obeys a stop."
-                                          : "It sent no packets: by itself, or without a motor.");
-    if (heard.packets() > 0 && !goes_on) {
+                    goes_on ? "It sends packets, and ignores a stop."
+                    : heard.counts().packets > 0
+                        ? "It was scanning, and obeys a stop."
+                        : "It sent no packets: by itself, or without a motor.");
+    if (heard.counts().packets > 0 && !goes_on) {
       into.add_finding(differs, "It obeys a stop, as a two-way lidar.");
     }
-    return heard.packets() > 0
+    return heard.counts().packets > 0
                ? into.add_finding(agrees, "It sends without being asked.")
                : into.add_finding(differs, "It sends no packet without being asked.");
   }
-  if (heard.packets() == 0) {
+  if (heard.counts().packets == 0) {
     into.add_answer(q::unasked_bytes, not_decided,
                     "It was silent: by itself, or because a program has stopped it.");
     return into.add_finding(agrees, "It is silent until it is asked.");

@@ -97,7 +97,7 @@ void acceptance_run::stream(acceptance_result& into) {
       link_->steady_survey(std::chrono::nanoseconds(options_.stream_time).count()));
   const stream_survey& heard = *surveyed_;
   link_->stop();
-  into.add("packets", heard.packets());
+  into.add("packets", heard.counts().packets);
   into.add("bad_checksums", heard.bad_checksums());
   into.add("skipped_bytes", link_->monitor().counts().skipped_bytes() - skipped_before);
   into.add("revolutions", heard.zero_packets());
@@ -106,13 +106,13 @@ void acceptance_run::stream(acceptance_result& into) {
   into.add("frequency_hz", heard.frequency_hz());
   into.add("reported_hz", heard.reported_hz());
   into.add("sample_bytes", link_->monitor().layout().sample_bytes());
-  if (heard.packets() == 0)
+  if (heard.counts().packets == 0)
     return into.add_finding(differs, "No packet of the model's layout came.");
-  const std::uint64_t all = heard.packets() + heard.bad_checksums();
+  const std::uint64_t all = heard.counts().packets + heard.bad_checksums();
   constexpr std::uint64_t hundred = 100;
   const bool is_clean = heard.bad_checksums() * hundred <= all;
   into.add_answer(q::layout, answered,
-                  std::to_string(heard.packets()) + " of " + std::to_string(all) +
+                  std::to_string(heard.counts().packets) + " of " + std::to_string(all) +
                       " packets are valid by the table.");
   into.add_finding(is_clean ? agrees : differs, is_clean
                                                     ? "The packets have the layout of the model."
@@ -203,7 +203,7 @@ void acceptance_run::ct_information(acceptance_result& into) const {
         "In its CT bytes, of which there are four bits: " + std::to_string(who->id_low_bits) + ".");
   }
   constexpr std::uint64_t packets_with_information = 14;
-  if (!who && has_crc && heard.packets() < packets_with_information * heard.zero_packets()) {
+  if (!who && has_crc && heard.counts().packets < packets_with_information * heard.zero_packets()) {
     into.add_answer(q::ct_bytes, not_decided,
                     crc + " A revolution has too few packets for the information.");
     return into.add_finding(observed, "A revolution has too few packets for the information.");
@@ -221,9 +221,9 @@ void acceptance_run::ct_information(acceptance_result& into) const {
 
 void acceptance_run::time_packets(acceptance_result& into) const {
   constexpr auto long_enough = std::chrono::seconds(10);
-  const bool has_any = surveyed_->time_packets() > 0;
+  const bool has_any = surveyed_->counts().time_packets > 0;
   const bool is_decided = has_any || options_.stream_time >= long_enough;
-  into.add("time_packets", surveyed_->time_packets());
+  into.add("time_packets", surveyed_->counts().time_packets);
   into.add_answer(q::time_packets, is_decided ? answered : not_decided,
                   has_any      ? "There are."
                   : is_decided ? "There are none."

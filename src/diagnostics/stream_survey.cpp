@@ -48,23 +48,19 @@ std::optional<std::size_t> direction_survey::nearest() const {
 }
 
 void stream_survey::take(const event& found, std::int64_t arrival_ns) {
-  if (const auto* const packet = std::get_if<packet_view>(&found)) {
-    take(*packet, arrival_ns);
-  } else if (const auto* const gone = std::get_if<skipped>(&found)) {
+  if (const auto* const packet = std::get_if<packet_view>(&found)) take(*packet, arrival_ns);
+  counts_.add(found);
+  if (const auto* const gone = std::get_if<skipped>(&found)) {
     if (gone->reason == skip_reason::bad_checksum) ++bad_checksums_;
     revolution_.add(*gone);
     reader_.add(*gone);
-  } else if (std::holds_alternative<time_packet_view>(found)) {
-    ++time_packets_;
-  } else {
-    ++responses_;
   }
 }
 
 void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
-  if (packets_ > 0) longest_gap_ns_ = std::max(longest_gap_ns_, arrival_ns - last_packet_ns_);
+  if (counts_.packets > 0)
+    longest_gap_ns_ = std::max(longest_gap_ns_, arrival_ns - last_packet_ns_);
   last_packet_ns_ = arrival_ns;
-  ++packets_;
   if (const auto fits = revolution_.add(packet)) ++crc_.at(*fits ? 1 : 0);
   static_cast<void>(reader_.add(packet));
   if (packet.is_zero()) {

@@ -12,7 +12,7 @@
 #include "g4lidar/core/ct_check.hpp"
 #include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/core/stream_counter.hpp"
 
 namespace g4lidar {
 
@@ -43,7 +43,7 @@ class stream_survey {
 
   void take(const event& found, std::int64_t arrival_ns);
 
-  [[nodiscard]] std::uint64_t packets() const noexcept { return packets_; }
+  [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   [[nodiscard]] std::uint64_t zero_packets() const noexcept { return zero_packets_; }
   /// The longest time between two packets.
   [[nodiscard]] std::int64_t longest_gap_ns() const noexcept { return longest_gap_ns_; }
@@ -78,8 +78,6 @@ class stream_survey {
   }
   /// Packets other than zero packets with other bits than 0 in CT.
   [[nodiscard]] std::uint64_t informing_packets() const noexcept { return informing_; }
-  [[nodiscard]] std::uint64_t time_packets() const noexcept { return time_packets_; }
-  [[nodiscard]] std::uint64_t unasked_responses() const noexcept { return responses_; }
 
  private:
   [[nodiscard]] double per_second(std::uint64_t count) const noexcept;
@@ -87,11 +85,9 @@ class stream_survey {
   void compare_intensities(packet_view packet);
 
   const model& which_;
-  std::uint64_t packets_ = 0;
+  stream_counter counts_;
   std::uint64_t zero_packets_ = 0;
   std::uint64_t bad_checksums_ = 0;
-  std::uint64_t time_packets_ = 0;
-  std::uint64_t responses_ = 0;
   std::uint64_t informing_ = 0;
   std::size_t most_samples_ = 0;
   std::int64_t first_zero_ns_ = 0;
