@@ -24,6 +24,7 @@
 #include "g4lidar/point.hpp"
 #include "g4lidar/polygon.hpp"
 #include "g4lidar/scan.hpp"
+#include "g4lidar/scan_loop.hpp"
 #include "g4lidar/scan_shaper.hpp"
 #include "g4lidar/settings.hpp"
 #include "g4lidar/source.hpp"

@@ -27,6 +27,7 @@
 
 namespace g4lidar {
 
+class scan_loop;
 class scan_range;
 class lidar_event_loop;
 
@@ -175,6 +176,7 @@ class G4LIDAR_API lidar {
 
  private:
   friend class lidar_event_loop;
+  friend class scan_loop;
   friend G4LIDAR_API std::span<const model* const> candidates_of(const lidar& of) noexcept;
   class driver;
   explicit lidar(std::unique_ptr<driver> made) noexcept;

@@ -13,28 +13,21 @@ STEP = 0.1  # seconds of a lidar without a descriptor, whose time is virtual
 async def scans(lidar: Lidar, timeout: float | None, newest: bool) -> AsyncIterator[Scan]:
     """Yields scans, and waits for the descriptor of the lidar and for its deadline."""
     loop = asyncio.get_running_loop()
-    limit = math.inf if timeout is None else timeout
-    waited = 0.0  # without a scan
+    waiting = lidar.scans(timeout, newest=newest)
     while True:
         descriptor = lidar.fileno()
-        step = 0.0 if descriptor >= 0 else STEP
-        left = max(0.0, limit - waited)
         try:
-            scan = lidar._advance(step, left, newest)
+            scan = waiting._advance(0.0 if descriptor >= 0 else STEP)
         except StopIteration:
             return
-        waited = 0.0 if scan is not None else waited + min(step, left)
         if scan is not None:
             yield scan
         if scan is not None or descriptor < 0:
             await asyncio.sleep(0)
             continue
-        begin = loop.time()
         deadline = lidar.next_deadline()
-        until = begin + max(limit - waited, lidar._scan_due_in())
-        until = min(until, math.inf if deadline is None else deadline)
+        until = min(loop.time() + waiting._left(), math.inf if deadline is None else deadline)
         await _readable(loop, (descriptor, lidar._notice()), until)
-        waited += loop.time() - begin
 
 
 async def _readable(loop: asyncio.AbstractEventLoop, descriptors: tuple[int, ...], until: float) -> None:

@@ -21,14 +21,17 @@ using namespace nb::literals;
 
 /// The iterator of Lidar.scans().
 struct scans {
-  nb::object lidar;
-  std::optional<live_lidar::milliseconds> timeout;
+  nb::object of;
+  scan_loop loop;
   bool newest;
+
+  [[nodiscard]] live_lidar& lidar() const { return nb::cast<live_lidar&>(of); }
 };
 
-std::optional<live_lidar::milliseconds> optional_timeout(std::optional<double> seconds) {
-  if (!seconds) return std::nullopt;
-  return in_milliseconds(*seconds);
+/// In seconds.
+double seconds_of(live_lidar::milliseconds time) {
+  return time == live_lidar::milliseconds::max() ? std::numeric_limits<double>::infinity()
+                                                 : std::chrono::duration<double>(time).count();
 }
 
 nb::dict counts(live_lidar& on) {
@@ -88,41 +91,38 @@ void bind_parts(nb::module_& module) {
           "__iter__", [](nb::handle self) { return nb::borrow(self); },
           nb::sig("def __iter__(self) -> Scans"))
       .def(
-          "__next__",
-          [](scans& self) {
-            return nb::cast<live_lidar&>(self.lidar).next_in_loop(self.timeout, self.newest);
-          },
+          "__next__", [](scans& self) { return self.lidar().next_in_loop(self.loop, self.newest); },
           nb::sig("def __next__(self) -> Scan"),
-          "The next scan. Raises Timeout, and the errors of Lidar.next_scan().");
+          "The next scan. Raises Timeout, and the errors of Lidar.next_scan().")
+      .def(
+          "_advance",
+          [](scans& self, double slice) {
+            return self.lidar().advance(self.loop, in_milliseconds(slice), self.newest);
+          },
+          nb::arg(), nb::sig("def _advance(self, slice: float, /) -> Scan | None"))
+      .def("_left", [](scans& self) {
+        return seconds_of(self.lidar().look([&](lidar& on) { return self.loop.left(on); }));
+      });
 }
 
-template <class Class>
-void bind_control(Class& made) {
+template <class Class, class... Wanted, std::size_t... Index>
+void bind_control(Class& made, keyword_types<Wanted...>, std::index_sequence<Index...>) {
   made.def(
           "start",
-          [](live_lidar& on, std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
-             std::optional<motor_direction> direction, std::optional<bool> constant,
-             std::optional<bool> idle, std::optional<bool> protection) {
-            set(on, {frequency_hz, sample_rate_hz, direction, constant, idle, protection}, true);
+          [](live_lidar& on, const Wanted&... wanted) {
+            set(on, values_of(wanted...), true);
             on.start();
           },
-          nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
-          "direction"_a = nb::none(), "constant"_a = nb::none(), "idle"_a = nb::none(),
-          "protection"_a = nb::none(),
+          nb::kw_only(), keyword(Index)...,
           "Sets what is given, as set() does, and starts the scan. Returns when the device has "
           "confirmed. Blocks at most "
           "10 s with one fault of the device, 15 s for each request if many bytes are damaged.")
       .def(
           "set",
-          [](live_lidar& on, std::optional<double> frequency_hz, std::optional<int> sample_rate_hz,
-             std::optional<motor_direction> direction, std::optional<bool> constant,
-             std::optional<bool> idle, std::optional<bool> protection, bool interrupt) {
-            set(on, {frequency_hz, sample_rate_hz, direction, constant, idle, protection},
-                interrupt);
+          [](live_lidar& on, const Wanted&... wanted, bool interrupt) {
+            set(on, values_of(wanted...), interrupt);
           },
-          nb::kw_only(), "frequency_hz"_a = nb::none(), "sample_rate_hz"_a = nb::none(),
-          "direction"_a = nb::none(), "constant"_a = nb::none(), "idle"_a = nb::none(),
-          "protection"_a = nb::none(), "interrupt"_a = false,
+          nb::kw_only(), keyword(Index)..., "interrupt"_a = false,
           "Sets the scan frequency (of a G4 5 to 12 Hz), the measurements per second (of a G4 "
           "4000, 8000 or 9000), the direction of the head, whether the lidar regulates its "
           "frequency, whether the motor stops when idle, whether the lidar stops when the host "
@@ -134,7 +134,7 @@ void bind_control(Class& made) {
           "settings", &settings, nb::kw_only(), "interrupt"_a = false,
           nb::sig("def settings(self, *, interrupt: bool = False) -> dict[str, float | bool | str "
                   "| None]"),
-          "The settings that can be queried: 'frequency_hz', 'sample_rate_hz', 'direction', "
+          "The settings that can be queried: 'sample_rate_hz', 'frequency_hz', 'direction', "
           "'idle'. None: the model does not have this setting, or is a TG that does not answer for "
           "its sample rate.")
       .def(
@@ -180,7 +180,8 @@ void bind_reading(Class& made) {
       .def(
           "scans",
           [](nb::object self, std::optional<double> timeout, bool newest) {
-            return scans{std::move(self), optional_timeout(timeout), newest};
+            const double longest = timeout.value_or(std::numeric_limits<double>::infinity());
+            return scans{std::move(self), scan_loop(in_milliseconds(longest)), newest};
           },
           "timeout"_a = 2.0, nb::kw_only(), "newest"_a = false,
           "The scans, for a loop. It ends at the end of a recording, and when the lidar is closed. "
@@ -205,20 +206,6 @@ void bind_reading(Class& made) {
           "The same for `async for`: it waits in the running loop of asyncio on the descriptor and "
           "the deadline of the "
           "lidar, without a thread. start() and close() block.")
-      .def(
-          "_advance",
-          [](live_lidar& on, double step, double left, bool newest) {
-            return on.advance(in_milliseconds(step), in_milliseconds(left), newest);
-          },
-          nb::arg(), nb::arg(), nb::arg(),
-          nb::sig("def _advance(self, step: float, left: float, newest: bool, /) -> Scan | None"))
-      .def("_scan_due_in",
-           [](live_lidar& on) {
-             const auto due = on.scan_due_in();
-             return due == live_lidar::milliseconds::max()
-                        ? std::numeric_limits<double>::infinity()
-                        : std::chrono::duration<double>(due).count();
-           })
       .def("_notice", &live_lidar::notice_fileno)
       .def("poll_scan", &live_lidar::poll_scan, nb::kw_only(), "newest"_a = false,
            nb::sig("def poll_scan(self, *, newest: bool = False) -> Scan | None"),
@@ -272,7 +259,7 @@ void bind_reading(Class& made) {
       .def_prop_ro(
           "is_spinning_up",
           [](live_lidar& on) {
-            const auto due = on.scan_due_in();
+            const auto due = on.look([](lidar& of) { return of.event_loop().scan_due_in(); });
             return due.count() > 0 && due != live_lidar::milliseconds::max();
           },
           "Whether it was started, and no scan has come yet: the motor may be spinning up.");
@@ -316,7 +303,7 @@ void bind_lidar(nb::module_& module) {
       "motor; at the end of the program it is stopped, too. Threads may use different lidars; "
       "calls of several threads "
       "for one lidar wait for each other. After os.fork() the child cannot use it.");
-  bind_control(made);
+  bind_control(made, setting_types(), setting_types::indices());
   bind_reading(made);
   bind_player(module, made);
   bind_background(module, made);

@@ -138,30 +138,39 @@ bool live_lidar::counts_time(lidar& on) const {
   return on_.is_virtual || (of != nullptr && of->speed() == 0);
 }
 
+template <class Wait>
+nb::object live_lidar::take_scan(const Wait& wait) {
+  const auto copy = [&](lidar& on) -> result<std::optional<copied_scan>> {
+    const result<std::optional<scan>> found = wait(on);
+    if (!found) return tl::unexpected(found.error());
+    if (!*found) return std::nullopt;
+    const scan& next = **found;
+    if (on_.recording && !next.is_piece()) {
+      on_.recording->scan(next);
+      if (const auto why = on_.recording->take_error()) return tl::unexpected(*why);
+    }
+    player* const of = on.player();
+    const std::int64_t ahead_ns = of != nullptr    ? of->wall_ns(next.time_ns()) - next.time_ns()
+                                  : on_.is_virtual ? 0
+                                                   : wall_clock().ahead().count();
+    return copied_scan(next, ahead_ns);
+  };
+  return run(copy, [](std::optional<copied_scan>& found) {
+    return found ? found->kept() : nb::object(nb::none());
+  });
+}
+
 nb::object live_lidar::next_scan(milliseconds timeout, bool may_time_out) {
   const auto due = std::chrono::steady_clock::now() + timeout;
-  const auto wait = [&](lidar& on) -> result<std::optional<copied_scan>> {
+  return take_scan([&](lidar& on) -> result<std::optional<scan>> {
     // Less after a signal, but for clocks other than that of the caller.
     const auto left = counts_time(on)
                           ? timeout
                           : std::chrono::ceil<milliseconds>(due - std::chrono::steady_clock::now());
     const auto found = on.next_scan(std::max(left, milliseconds(0)));
-    if (!found) {
-      if (may_time_out && found.error() == problem::timeout) return std::nullopt;
-      return tl::unexpected(found.error());
-    }
-    if (on_.recording && !found->is_piece()) {
-      on_.recording->scan(*found);
-      if (const auto why = on_.recording->take_error()) return tl::unexpected(*why);
-    }
-    player* const of = on.player();
-    const std::int64_t ahead_ns = of != nullptr ? of->wall_ns(found->time_ns()) - found->time_ns()
-                                  : on_.is_virtual ? 0
-                                                   : wall_clock().ahead().count();
-    return copied_scan(*found, ahead_ns);
-  };
-  return run(wait, [](std::optional<copied_scan>& found) {
-    return found ? found->kept() : nb::object(nb::none());
+    if (found) return *found;
+    if (may_time_out && found.error() == problem::timeout) return std::nullopt;
+    return tl::unexpected(found.error());
   });
 }
 
@@ -197,17 +206,14 @@ nb::object live_lidar::next_deadline() {
   return nb::float_(on_.is_virtual ? 0.0 : static_cast<double>(due_ns) * 1e-9);
 }
 
-nb::object live_lidar::advance(milliseconds step, milliseconds left, bool newest) {
+nb::object live_lidar::advance(scan_loop& loop, milliseconds slice, bool newest) {
   try {
     if (!closed_) {
       notice_.take();
-      nb::object found = next_scan(std::min(step, std::max(left, scan_due_in())), true);
-      if (found.is_none() && left <= step && scan_due_in().count() == 0)
-        found = next_scan(milliseconds(0));  // raises Timeout, unless there is one now
+      nb::object found = take_scan([&](lidar& on) { return loop.wait(on, slice); });
       return newest && !found.is_none() ? newer(std::move(found)) : found;
     }
   } catch (nb::python_error& raised) {
-    if (is_error(raised, "Reconnecting")) return nb::none();
     const bool has_ended = is_error(raised, "EndOfInput");
     const bool was_closed = closed_ && (is_error(raised, "Cancelled") || is_error(raised, "Gone"));
     if (!has_ended && !was_closed) throw;
@@ -215,16 +221,10 @@ nb::object live_lidar::advance(milliseconds step, milliseconds left, bool newest
   throw nb::stop_iteration();
 }
 
-nb::object live_lidar::next_in_loop(std::optional<milliseconds> timeout, bool newest) {
-  using clock = std::chrono::steady_clock;
-  std::chrono::nanoseconds left = timeout.value_or(a_year);
+nb::object live_lidar::next_in_loop(scan_loop loop, bool newest) {
   while (true) {
-    const auto begin = clock::now();
-    const auto wait = std::max(std::chrono::ceil<milliseconds>(left), milliseconds(0));
-    nb::object found = advance(slice, wait, newest);
+    nb::object found = advance(loop, slice, newest);
     if (!found.is_none()) return found;
-    const bool is_counted = look([this](lidar& on) { return counts_time(on); });
-    left -= is_counted ? std::min(slice, wait) : clock::now() - begin;
   }
 }
 

@@ -19,6 +19,7 @@
 #include "g4lidar/lidar.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/scan_loop.hpp"
 #include "interruption.hpp"
 #include "notice.hpp"
 #include "process.hpp"
@@ -94,12 +95,11 @@ class live_lidar {
   void wake();
   /// The next scan; empty at the timeout, if `may_time_out`.
   [[nodiscard]] nb::object next_scan(milliseconds timeout, bool may_time_out = false);
-  /// For a loop: a scan, or None if none came within `step`. Raises StopIteration at the end of a recording, and after
-  /// close(); Timeout, if no scan came within `left`, the rest of the timeout, and one is due: see lidar::wait_scan().
-  /// With `newest` only the newest complete scan.
-  [[nodiscard]] nb::object advance(milliseconds step, milliseconds left, bool newest);
-  /// The same until there is a scan.
-  [[nodiscard]] nb::object next_in_loop(std::optional<milliseconds> timeout, bool newest);
+  /// For a loop: a scan, or None if none came within `slice`, and the loop goes on. Raises StopIteration at the end of a
+  /// recording, and after close(). With `newest` only the newest complete scan.
+  [[nodiscard]] nb::object advance(scan_loop& loop, milliseconds slice, bool newest);
+  /// The same until there is a scan, with a loop that has not begun.
+  [[nodiscard]] nb::object next_in_loop(scan_loop loop, bool newest);
   /// Readable when a loop that waits for the lidar must call advance().
   [[nodiscard]] int notice_fileno() const noexcept { return notice_.fileno(); }
 
@@ -107,10 +107,6 @@ class live_lidar {
   [[nodiscard]] nb::object poll_scan(bool newest);
   /// The latest time for the next call, in seconds of time.monotonic(); None if only bytes are awaited.
   [[nodiscard]] nb::object next_deadline();
-  /// See lidar::scan_due_in().
-  [[nodiscard]] milliseconds scan_due_in() {
-    return look([](lidar& on) { return on.event_loop().scan_due_in(); });
-  }
 
   /// Gives the lidar to a thread of the library, and is closed then: see BackgroundReader.
   [[nodiscard]] reading_thread* hand_over(bool newest);
@@ -124,6 +120,9 @@ class live_lidar {
 
   /// Waits without the GIL. `wakes`: calls that wait are woken.
   [[nodiscard]] lock locked(bool wakes = false);
+  /// The scan of `wait(lidar)`, or None.
+  template <class Wait>
+  [[nodiscard]] nb::object take_scan(const Wait& wait);
   /// `call(lidar)` with the mutex and without the GIL.
   template <class Call>
   auto alone(lock held, const Call& call);

@@ -145,11 +145,12 @@ def test_newest_drops_and_counts(g4_simulator: Make) -> None:
         lidar.start(frequency_hz=12)
         found = []
         for scan in lidar.scans(timeout=5, newest=True):
-            found.append(scan.revolution)
-            if lidar.counts()["scans_dropped"] >= 3:
+            dropped = lidar.counts()["scans_dropped"]
+            found.append((scan.revolution, dropped))
+            if dropped >= found[0][1] + 3:  # a busy machine may drop some before the first
                 break
             time.sleep(0.5)  # the system keeps the bytes of five revolutions
-        assert found[-1] - found[0] - (len(found) - 1) >= lidar.counts()["scans_dropped"]
+        assert found[-1][0] - found[0][0] - (len(found) - 1) >= found[-1][1] - found[0][1]
 
 
 def test_timeout_is_raised_and_the_loop_can_go_on(g4_simulator: Make) -> None:

@@ -67,32 +67,19 @@ void lidar::driver::drop_points() noexcept {
   if (hands_points_over_) points_missed_ += dropped;
 }
 
-result<scan> lidar::driver::next_scan(std::int64_t timeout_ns, bool in_loop) {
-  point_pipeline& pipeline = parts_.pipeline;
-  if (!pipeline.has_scan()) {
-    if (auto able = source_->can_read(); !able) return tl::unexpected(able.error());
-  }
-  const std::int64_t given_ns = source_->deadline_after_ns(timeout_ns);
-  const auto deadline_ns = [&] {
-    return in_loop ? std::max(given_ns, source_->expects().not_due_before_ns) : given_ns;
-  };
-  bool last = false;
-  while (!pipeline.has_scan()) {
-    if (last) return timed_out();
-    const auto done = source_->step(source_->step_until_ns(deadline_ns()));
-    if (!done && !(in_loop && done.error() == problem::reconnecting)) {
-      return tl::unexpected(done.error());
-    }
-    last = is_over(deadline_ns());
-  }
-  return pipeline.take_scan();
+result<scan> lidar::driver::next_scan(milliseconds timeout) {
+  const std::int64_t until_ns = deadline_after_ns(timeout);
+  const auto found = read_scan([=] { return until_ns; }, [](const error&) { return false; });
+  if (!found) return tl::unexpected(found.error());
+  if (!*found) return timed_out();
+  return **found;
 }
 
 /// Available points are returned before any error.
-result<std::span<const point>> lidar::driver::next_points(std::int64_t timeout_ns) {
+result<std::span<const point>> lidar::driver::next_points(milliseconds timeout) {
   hands_points_over_ = true;
   source_->take_points();
-  const std::int64_t deadline_ns = source_->deadline_after_ns(timeout_ns);
+  const std::int64_t deadline_ns = deadline_after_ns(timeout);
   bool last = false;
   while (true) {
     const ring_read read = parts_.pipeline.read(points_.all());

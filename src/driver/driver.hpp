@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,15 +32,32 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<answer> ask(const request& wanted, while_scanning how) {
     return source_->ask(wanted, how);
   }
-  /// `in_loop`: by the rule of lidar::scans().
-  result<scan> next_scan(std::int64_t timeout_ns, bool in_loop);
-  /// For how long from now no scan is due; never_ns without limit.
-  [[nodiscard]] std::int64_t scan_due_in_ns() const noexcept {
-    const std::int64_t due_ns = source_->expects().not_due_before_ns;
-    if (due_ns == never_ns) return never_ns;
-    return std::max<std::int64_t>(due_ns - source_->caller_ns(), 0);
+  result<scan> next_scan(milliseconds timeout);
+  /// Nothing at `until_ns()`, which each step asks; errors for which `goes_on` is true do not end it.
+  template <class Until, class GoesOn>
+  result<std::optional<scan>> read_scan(const Until& until_ns, const GoesOn& goes_on);
+  result<std::span<const point>> next_points(milliseconds timeout);
+
+  // By the clock of the timeouts of calls.
+  [[nodiscard]] std::int64_t deadline_after_ns(milliseconds timeout) const noexcept {
+    constexpr milliseconds longest = std::chrono::hours(24 * 365);
+    return source_->deadline_after_ns(
+        std::chrono::nanoseconds(std::clamp(timeout, milliseconds(0), longest)).count());
   }
-  result<std::span<const point>> next_points(std::int64_t timeout_ns);
+  [[nodiscard]] std::int64_t not_due_before_ns() const noexcept {
+    return source_->expects().not_due_before_ns;
+  }
+  /// 0 for a time that is over; milliseconds::max() for never_ns.
+  [[nodiscard]] milliseconds time_until(std::int64_t at_ns) const noexcept {
+    if (at_ns == never_ns) return milliseconds::max();
+    const std::chrono::nanoseconds left(at_ns - source_->caller_ns());
+    return std::max(std::chrono::ceil<milliseconds>(left), milliseconds(0));
+  }
+  [[nodiscard]] tl::unexpected<error> timed_out() const noexcept {
+    const scan_expectation now = source_->expects();
+    return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
+                   now.why);
+  }
   result<void> process();
   void wake() noexcept { parts_.link.wake(); }
 
@@ -71,11 +89,6 @@ class G4LIDAR_HIDDEN lidar::driver {
   }
 
  private:
-  [[nodiscard]] tl::unexpected<error> timed_out() const noexcept {
-    const scan_expectation now = source_->expects();
-    return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
-                   now.why);
-  }
   /// The connection was released: no points come any more.
   void drop_points() noexcept;
   /// Whether a call ends after its last step: at its end by source_->caller_ns().
@@ -90,6 +103,22 @@ class G4LIDAR_HIDDEN lidar::driver {
   bool hands_points_over_ = false;  // by next_points()
   std::uint64_t points_missed_ = 0;
 };
+
+template <class Until, class GoesOn>
+result<std::optional<scan>> lidar::driver::read_scan(const Until& until_ns, const GoesOn& goes_on) {
+  point_pipeline& pipeline = parts_.pipeline;
+  if (!pipeline.has_scan()) {
+    if (auto able = source_->can_read(); !able) return tl::unexpected(able.error());
+  }
+  bool last = false;
+  while (!pipeline.has_scan()) {
+    if (last) return std::nullopt;
+    const auto done = source_->step(source_->step_until_ns(until_ns()));
+    if (!done && !goes_on(done.error())) return tl::unexpected(done.error());
+    last = is_over(until_ns());
+  }
+  return pipeline.take_scan();
+}
 
 /// The results of a moved-from lidar or reader.
 [[nodiscard]] inline tl::unexpected<error> moved_from() noexcept {

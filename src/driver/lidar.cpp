@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/number_text.hpp"
 #include "driver.hpp"
 #include "g4lidar/source.hpp"
 #include "option_problems.hpp"
@@ -21,28 +22,11 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::milliseconds;
 
-/// Limited so that its sum with a time of the clock does not overflow.
-std::int64_t in_ns(milliseconds time) noexcept {
-  constexpr milliseconds longest = std::chrono::hours(24 * 365);
-  return std::chrono::nanoseconds(std::clamp(time, milliseconds(0), longest)).count();
-}
-
 }  // namespace
 
-std::string model_words() {
-  std::vector<const model*> all;
-  all.reserve(models.size());
-  for (const model& each : models) all.push_back(&each);
-  return model_words(all);
-}
-
+std::string model_words() { return list_of(models, &model::word); }
 std::string model_words(std::span<const model* const> which) {
-  std::string all;
-  for (const model* const each : which) {
-    if (!all.empty()) all += ", ";
-    all += each->word;
-  }
-  return all;
+  return list_of(which, [](const model* each) { return each->word; });
 }
 
 std::string_view name_of(lidar_event::kind what) noexcept {
@@ -132,11 +116,7 @@ void lidar::release() noexcept {
 }
 view_result<scan> lidar::next_scan(milliseconds timeout) {
   if (!driver_) return moved_from();
-  return driver_->next_scan(in_ns(timeout), false);
-}
-view_result<scan> lidar::wait_scan(milliseconds timeout) {
-  if (!driver_) return moved_from();
-  return driver_->next_scan(in_ns(timeout), true);
+  return driver_->next_scan(timeout);
 }
 std::span<const model* const> candidates_of(const lidar& of) noexcept {
   static constexpr const model* none[] = {&g4_model};
@@ -144,13 +124,12 @@ std::span<const model* const> candidates_of(const lidar& of) noexcept {
 }
 lidar_event_loop lidar::event_loop() & noexcept { return lidar_event_loop(*this); }
 milliseconds lidar_event_loop::scan_due_in() const noexcept {
-  const std::int64_t left_ns = of_->driver_ ? of_->driver_->scan_due_in_ns() : 0;
-  if (left_ns == never_ns) return milliseconds::max();
-  return std::chrono::ceil<milliseconds>(std::chrono::nanoseconds(left_ns));
+  if (!of_->driver_) return 0ms;
+  return of_->driver_->time_until(of_->driver_->not_due_before_ns());
 }
 view_result<std::span<const point>> lidar::next_points(milliseconds timeout) {
   if (!driver_) return moved_from();
-  return driver_->next_points(in_ns(timeout));
+  return driver_->next_points(timeout);
 }
 const lidar_ring& lidar::points() const noexcept {
   return driver_ ? driver_->points() : empty_ring();

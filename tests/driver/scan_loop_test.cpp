@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "g4lidar/lidar.hpp"
+#include "g4lidar/scan_loop.hpp"
 #include "support/virtual_transport.hpp"
 
 namespace g4lidar {
@@ -203,6 +205,55 @@ TEST(ScanLoop, EndOfAFile_EndsIt) {
   EXPECT_GT(seen, 10);
   EXPECT_EQ(*scans.why_ended(), problem::end_of_input);
   std::remove(path.c_str());
+}
+
+/// The end of a loop that waits in slices, and how many scans it gave.
+std::pair<error, int> in_slices(running& run, milliseconds timeout, milliseconds slice) {
+  scan_loop loop(timeout);
+  for (int scans = 0;;) {
+    const std::int64_t before_ns = run.bench.now_ns;
+    const auto found = loop.wait(run.lidar(), slice);
+    EXPECT_LE(run.bench.now_ns - before_ns, std::chrono::nanoseconds(slice).count() + 10 * ms);
+    if (!found) return {found.error(), scans};
+    if (*found) ++scans;
+  }
+}
+
+TEST(ScanLoop, InSlices_EndsAsInOneWait) {
+  const sim::fault stall = sim::make_fault(sim::fault_kind::stall, 4 * second, 10 * second);
+  for (const milliseconds slice : {7ms, 150ms, 1000ms}) {
+    running run({}, {stall});
+    running whole({}, {stall});
+    const auto [why, scans] = in_slices(run, 400ms, slice);
+    EXPECT_EQ(why, problem::timeout);
+    EXPECT_EQ(why.detail(), error_detail::usual);
+    EXPECT_EQ(scans, whole.loop(400ms, 100)) << slice.count();
+    const auto end_ns = static_cast<double>(whole.bench.now_ns);
+    EXPECT_NEAR(static_cast<double>(run.bench.now_ns), end_ns, 20e6);
+    running still(silent_for(60 * second));
+    EXPECT_EQ(in_slices(still, 500ms, slice).first.detail(), error_detail::spinning_up);
+    EXPECT_NEAR(static_cast<double>(still.passed_ns()), 10e9, 0.1e9);
+    running lost({}, {second_unplug});
+    EXPECT_EQ(in_slices(lost, 300ms, slice).first, problem::gone);
+  }
+}
+
+TEST(ScanLoop, Left_IsTheLongestWait) {
+  running run(silent_for(3 * second),
+              {sim::make_fault(sim::fault_kind::unplug, 9 * second, 60 * second)}, true);
+  scan_loop loop(300ms);
+  EXPECT_GT(loop.left(run.lidar()), 9s) << "it spins up";
+  auto found = loop.wait(run.lidar(), 5s);
+  ASSERT_TRUE(found && *found);
+  EXPECT_EQ(loop.left(run.lidar()), 300ms);
+  found = loop.wait(run.lidar(), 50ms);
+  ASSERT_TRUE(found && !*found) << "a revolution takes 140 ms";
+  EXPECT_EQ(loop.left(run.lidar()), 250ms);
+  run.lidar().wake();
+  EXPECT_EQ(loop.wait(run.lidar(), 50ms).error(), problem::cancelled);
+  EXPECT_LE(loop.left(run.lidar()), 250ms) << "the same wait";
+  while (run.bench.now_ns < 10 * second) ASSERT_TRUE(loop.wait(run.lidar(), 100ms));
+  EXPECT_EQ(loop.left(run.lidar()), milliseconds::max()) << "it is lost";
 }
 
 TEST(SingleCall, ReturnsByItsDeadline_AndNamesWhatIsAwaited) {
