@@ -48,21 +48,6 @@ std::vector<dds_entity_t> children_of(dds_entity_t parent) {
   }
 }
 
-/// Takes all that is new, and calls `use` with each sample and whether its instance is alive.
-void take_all(dds_entity_t reader, auto use) {
-  std::array<void*, 64> samples{};
-  std::array<dds_sample_info_t, 64> about{};
-  while (true) {
-    const dds_return_t count =
-        dds_take(reader, samples.data(), about.data(), samples.size(), samples.size());
-    if (count <= 0) return;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      use(samples[i], about[i].valid_data && about[i].instance_state == DDS_IST_ALIVE);
-    }
-    static_cast<void>(dds_return_loan(reader, samples.data(), count));
-  }
-}
-
 template <class Message>
 dds_return_t write(dds_entity_t participant, dds_entity_t writer, const ros_writers& hidden,
                    std::string node) {
@@ -123,11 +108,15 @@ void ros_writers::close() noexcept {
 }
 
 void ros_writers::update() {
-  take_all(participant_reader_.get(), [this](const void* sample, bool is_alive) {
-    if (is_alive) see(*static_cast<const dds_builtintopic_participant_t*>(sample));
+  using about = dds_sample_info_t;
+  const auto is_alive = [](const about& one) {
+    return one.valid_data && one.instance_state == DDS_IST_ALIVE;
+  };
+  dds::take_all(participant_reader_, [&](const void* sample, const about& one) {
+    if (is_alive(one)) see(*static_cast<const dds_builtintopic_participant_t*>(sample));
   });
-  take_all(reader_.get(), [this](const void* sample, bool is_alive) {
-    see(*static_cast<const dds_builtintopic_endpoint_t*>(sample), is_alive);
+  dds::take_all(reader_, [&](const void* sample, const about& one) {
+    see(*static_cast<const dds_builtintopic_endpoint_t*>(sample), is_alive(one));
   });
 }
 

@@ -2,7 +2,6 @@
 #include "robot_messages.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <utility>
 
@@ -108,21 +107,13 @@ void odometry_subscription::close() noexcept {
 
 void odometry_subscription::take(odometry_path& into, std::int64_t ahead_ns) {
   const std::lock_guard lock(mutex_);
-  std::array<void*, 16> samples{};
-  std::array<dds_sample_info_t, 16> about{};
-  while (reader_) {
-    const dds_return_t count =
-        dds_take(reader_.get(), samples.data(), about.data(), samples.size(), samples.size());
-    if (count <= 0) return;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (!about[i].valid_data) continue;
-      auto odometry = odometry_of(*static_cast<const nav_msgs_msg_dds__Odometry_*>(samples[i]));
-      if (!odometry) continue;
-      odometry->time_ns -= ahead_ns;
-      into.add(*odometry);
-    }
-    static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));
-  }
+  dds::take_all(reader_, [&](const void* sample, const dds_sample_info_t& about) {
+    if (!about.valid_data) return;
+    auto odometry = odometry_of(*static_cast<const nav_msgs_msg_dds__Odometry_*>(sample));
+    if (!odometry) return;
+    odometry->time_ns -= ahead_ns;
+    into.add(*odometry);
+  });
 }
 
 }  // namespace g4_tool

@@ -3,9 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <memory>
-#include <span>
 #include <utility>
 
 #include <messages.h>
@@ -36,19 +34,12 @@ void run_command::close() noexcept {
 }
 
 void run_command::update() {
-  std::array<void*, 10> samples{};
-  std::array<dds_sample_info_t, 10> about{};
-  if (!reader_) return;
-  const dds_return_t count =
-      dds_take(reader_.get(), samples.data(), about.data(), samples.size(), samples.size());
-  if (count <= 0) return;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    if (!about[i].valid_data) continue;
-    const bool runs = static_cast<const std_msgs_msg_dds__Bool_*>(samples[i])->data;
+  dds::take_all(reader_, [this](const void* sample, const dds_sample_info_t& about) {
+    if (!about.valid_data) return;
+    const bool runs = static_cast<const std_msgs_msg_dds__Bool_*>(sample)->data;
     logger::info(fmt::format("{}: {}\n", name_, runs ? "true" : "false"));
     use_(runs);
-  }
-  static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));
+  });
 }
 
 }  // namespace g4_tool

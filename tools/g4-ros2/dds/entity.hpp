@@ -4,6 +4,8 @@
 
 #include <dds/dds.h>
 
+#include <array>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -30,6 +32,19 @@ class entity {
  private:
   dds_entity_t handle_ = 0;
 };
+
+/// Takes all that is new, and calls `use` with each sample and what is known about it.
+inline void take_all(const entity& reader, auto use) {
+  std::array<void*, 64> samples{};
+  std::array<dds_sample_info_t, 64> about{};
+  while (reader) {
+    const dds_return_t count =
+        dds_take(reader.get(), samples.data(), about.data(), samples.size(), samples.size());
+    if (count <= 0) return;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) use(samples[i], about[i]);
+    static_cast<void>(dds_return_loan(reader.get(), samples.data(), count));
+  }
+}
 
 using qos = std::unique_ptr<dds_qos_t, void (*)(dds_qos_t*)>;
 

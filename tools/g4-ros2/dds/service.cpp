@@ -120,25 +120,19 @@ void service::update() {
 }
 
 void service::take_requests() {
-  std::array<void*, depth> samples{};
-  std::array<dds_sample_info_t, depth> about{};
-  const dds_return_t count =
-      dds_take(reader_.get(), samples.data(), about.data(), samples.size(), samples.size());
-  if (count <= 0) return;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    if (!about[i].valid_data) continue;
+  take_all(reader_, [this](const void* request, const dds_sample_info_t& about) {
+    if (!about.valid_data) return;
     const endpoint_data client(
-        dds_get_matched_publication_data(reader_.get(), about[i].publication_handle),
+        dds_get_matched_publication_data(reader_.get(), about.publication_handle),
         dds_builtintopic_free_endpoint);
     if (has_other_form(client)) {
       ++counts_.unreadable;
-      continue;
+      return;
     }
     ++counts_.requests;
-    const caller from{*static_cast<const request_header*>(samples[i]), identity_of(client)};
-    if (!handles_(samples[i], from)) ++counts_.ignored;
-  }
-  static_cast<void>(dds_return_loan(reader_.get(), samples.data(), count));
+    const caller from{*static_cast<const request_header*>(request), identity_of(client)};
+    if (!handles_(request, from)) ++counts_.ignored;
+  });
 }
 
 void service::send(const caller& to, reply what) {
