@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Filters as parameters, on a scan that is written here.
-#include "parameters.hpp"
+#include "io/shape_files.hpp"
 
 #include <gmock/gmock.h>
 

@@ -16,6 +16,7 @@
 
 #include "dds/bus.hpp"
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/odometry_path.hpp"
@@ -25,7 +26,6 @@
 #include "io/source_reader.hpp"
 #include "lidar_diagnostics.hpp"
 #include "options.hpp"
-#include "parameters.hpp"
 #include "robot_messages.hpp"
 #include "scan_messages.hpp"
 

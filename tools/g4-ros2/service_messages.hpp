@@ -13,7 +13,7 @@
 
 #include <services.h>
 #include "dds/service.hpp"
-#include "parameters.hpp"
+#include "g4lidar/lidar_parameters.hpp"
 
 namespace g4_tool {
 
