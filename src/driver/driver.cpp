@@ -67,19 +67,11 @@ void lidar::driver::drop_points() noexcept {
   if (hands_points_over_) points_missed_ += dropped;
 }
 
-result<scan> lidar::driver::next_scan(milliseconds timeout) {
-  const std::int64_t until_ns = deadline_after_ns(timeout);
-  const auto found = read_scan([=] { return until_ns; }, [](const error&) { return false; });
-  if (!found) return tl::unexpected(found.error());
-  if (!*found) return timed_out();
-  return **found;
-}
-
 /// Available points are returned before any error.
 result<std::span<const point>> lidar::driver::next_points(milliseconds timeout) {
   hands_points_over_ = true;
   source_->take_points();
-  const std::int64_t deadline_ns = deadline_after_ns(timeout);
+  const std::int64_t deadline_ns = deadline_after_ns(*source_, timeout);
   bool last = false;
   while (true) {
     const ring_read read = parts_.pipeline.read(points_.all());

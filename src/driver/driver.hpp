@@ -32,27 +32,12 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<answer> ask(const request& wanted, while_scanning how) {
     return source_->ask(wanted, how);
   }
-  result<scan> next_scan(milliseconds timeout);
   /// Nothing at `until_ns()`, which each step asks; errors for which `goes_on` is true do not end it.
   template <class Until, class GoesOn>
   result<std::optional<scan>> read_scan(const Until& until_ns, const GoesOn& goes_on);
   result<std::span<const point>> next_points(milliseconds timeout);
 
-  // By the clock of the timeouts of calls.
-  [[nodiscard]] std::int64_t deadline_after_ns(milliseconds timeout) const noexcept {
-    constexpr milliseconds longest = std::chrono::hours(24 * 365);
-    return source_->deadline_after_ns(
-        std::chrono::nanoseconds(std::clamp(timeout, milliseconds(0), longest)).count());
-  }
-  [[nodiscard]] std::int64_t not_due_before_ns() const noexcept {
-    return source_->expects().not_due_before_ns;
-  }
-  /// 0 for a time that is over; milliseconds::max() for never_ns.
-  [[nodiscard]] milliseconds time_until(std::int64_t at_ns) const noexcept {
-    if (at_ns == never_ns) return milliseconds::max();
-    const std::chrono::nanoseconds left(at_ns - source_->caller_ns());
-    return std::max(std::chrono::ceil<milliseconds>(left), milliseconds(0));
-  }
+  [[nodiscard]] const scan_source& source() const noexcept { return *source_; }
   [[nodiscard]] tl::unexpected<error> timed_out() const noexcept {
     const scan_expectation now = source_->expects();
     return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
@@ -103,6 +88,21 @@ class G4LIDAR_HIDDEN lidar::driver {
   bool hands_points_over_ = false;  // by next_points()
   std::uint64_t points_missed_ = 0;
 };
+
+/// The end of a call, by the clock of the timeouts of calls.
+[[nodiscard]] inline std::int64_t deadline_after_ns(const scan_source& of,
+                                                    lidar::milliseconds timeout) noexcept {
+  constexpr lidar::milliseconds longest = std::chrono::hours(24 * 365);
+  timeout = std::clamp(timeout, lidar::milliseconds(0), longest);
+  return of.deadline_after_ns(std::chrono::nanoseconds(timeout).count());
+}
+/// From now until such a time: 0 if it is over; milliseconds::max() for never_ns.
+[[nodiscard]] inline lidar::milliseconds time_until(const scan_source& of,
+                                                    std::int64_t at_ns) noexcept {
+  if (at_ns == never_ns) return lidar::milliseconds::max();
+  const std::chrono::nanoseconds left(at_ns - of.caller_ns());
+  return std::max(std::chrono::ceil<lidar::milliseconds>(left), lidar::milliseconds(0));
+}
 
 template <class Until, class GoesOn>
 result<std::optional<scan>> lidar::driver::read_scan(const Until& until_ns, const GoesOn& goes_on) {

@@ -114,10 +114,6 @@ result<void> lidar::close() { return driver_ ? driver_->close() : result<void>()
 void lidar::release() noexcept {
   if (driver_) driver_->release();
 }
-view_result<scan> lidar::next_scan(milliseconds timeout) {
-  if (!driver_) return moved_from();
-  return driver_->next_scan(timeout);
-}
 std::span<const model* const> candidates_of(const lidar& of) noexcept {
   static constexpr const model* none[] = {&g4_model};
   return of.driver_ ? of.driver_->candidates() : none;
@@ -125,7 +121,8 @@ std::span<const model* const> candidates_of(const lidar& of) noexcept {
 lidar_event_loop lidar::event_loop() & noexcept { return lidar_event_loop(*this); }
 milliseconds lidar_event_loop::scan_due_in() const noexcept {
   if (!of_->driver_) return 0ms;
-  return of_->driver_->time_until(of_->driver_->not_due_before_ns());
+  const scan_source& source = of_->driver_->source();
+  return time_until(source, source.expects().not_due_before_ns);
 }
 view_result<std::span<const point>> lidar::next_points(milliseconds timeout) {
   if (!driver_) return moved_from();
