@@ -64,13 +64,12 @@ first_contact::state first_contact::make(stage_report& baud) {
 
 /// Whether packets of the one-way lidar arrive that was named.
 bool first_contact::hear_stream() {
-  constexpr std::int64_t slice_ns = 50 * ms;
   link_monitor& link = of_.link;
   of_.log.begin(diagnostic_activity::listening);
   if (of_.lidar.is_driven_by_dtr()) static_cast<void>(link.port().set_dtr(true));
   const std::int64_t until_ns = link.now_ns() + unasked_one_way_ns;
   while (!link.is_over() && link.now_ns() < until_ns && link.layout().sample_bytes() == 0) {
-    link.listen_for(slice_ns);
+    link.listen_for(longest_read_ns);
   }
   const std::size_t size = link.layout().sample_bytes();
   if (size == 0) garbage_ = link.counts().skipped_bytes();

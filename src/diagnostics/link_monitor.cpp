@@ -10,15 +10,10 @@
 namespace g4lidar {
 namespace {
 
-/// The longest wait of a read, so that a cancellation is noticed and silence is certain.
-constexpr std::int64_t slice_ns = 50 * ms;
-/// A read that takes this much longer was delayed by the host.
-constexpr std::int64_t host_pause_ns = 25 * ms;
 /// The wait for a second reply.
 constexpr std::int64_t second_answer_ns = 35 * ms;
 /// The wait for the right reply after a wrong one.
 constexpr std::int64_t after_wrong_ns = 250 * ms;
-constexpr std::int64_t cut_off_after_ns = 60 * ms;
 /// After a stop, a link without bytes for this time is quiet.
 constexpr std::int64_t quiet_ns = 70 * ms;
 /// A device that has not stopped by then gets another stop.
@@ -91,7 +86,7 @@ link_monitor::link_monitor(std::unique_ptr<transport> opened, std::function<bool
       which_(&which),
       splitter_(which.samples),
       link_(splitter_.input(), transport_.get(), {.quiet_ns = quiet_ns, .drain_ns = stop_ns},
-            cut_off_after_ns) {}
+            usual_cut_off_ns) {}
 
 // A wait that is too long is not caused by the device: this program was suspended.
 void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
@@ -99,7 +94,7 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
   for (std::int64_t begin_ns = now_ns(); !is_over(); begin_ns = read_ns_) {
     cancelled_ = is_cancelled_ && is_cancelled_();
     if (cancelled_ || begin_ns >= until_ns) return;
-    const auto got = link_.receive(buffer_, std::min(until_ns, begin_ns + slice_ns));
+    const auto got = link_.receive(buffer_, std::min(until_ns, begin_ns + longest_read_ns));
     const std::int64_t before_ns = std::exchange(read_ns_, now_ns());
     if (got) {
       take(*got, read_ns_ - before_ns, to);
@@ -113,7 +108,7 @@ void link_monitor::listen(const std::int64_t& until_ns, const observer& to) {
 
 void link_monitor::take(const received& got, std::int64_t took_ns, const observer& to) {
   reading what{got.count, got.arrival_ns};
-  if (took_ns > slice_ns + host_pause_ns) {
+  if (took_ns > longest_read_ns + host_pause_after_ns) {
     what.host_pause_ns = took_ns;
     ++host_pauses_;
     if (took_ns >= arrival_statistics::stall_ns) host_paused_ns_ = read_ns_;
@@ -121,7 +116,7 @@ void link_monitor::take(const received& got, std::int64_t took_ns, const observe
   }
   if (got.count == 0) {
     has_backlog_ = false;
-    silence_ns_ += std::min(took_ns, slice_ns);
+    silence_ns_ += std::min(took_ns, longest_read_ns);
     return;
   }
   const bytes data = bytes(buffer_).first(got.count);

@@ -22,6 +22,10 @@
 namespace g4lidar {
 
 inline constexpr std::int64_t ms = 1'000'000;  // in ns
+/// The longest wait of a read, so that a cancellation and a pause of the host are noticed, and silence is certain.
+inline constexpr std::int64_t longest_read_ns = 50 * ms;
+/// A read that takes this much longer was delayed by the host.
+inline constexpr std::int64_t host_pause_after_ns = 25 * ms;
 
 /// An event of the parser, its bytes, and when the last of them arrived.
 struct observed_event {
@@ -101,6 +105,9 @@ struct exchange {
 /// *Single thread.* After a loss (error()) nothing arrives, and every call returns immediately.
 class link_monitor {
  public:
+  /// Longer than the pauses within an answer.
+  static constexpr std::int64_t usual_cut_off_ns = 60 * ms;
+
   /// `which` sends the packets; valid as long as this.
   link_monitor(std::unique_ptr<transport> opened, std::function<bool()> is_cancelled,
                const model& which = g4_model);
@@ -111,7 +118,9 @@ class link_monitor {
   /// Observes until nothing has arrived for `quiet_ns`, at most until `until_ns`.
   void listen_for_quiet(std::int64_t quiet_ns, std::int64_t until_ns);
   /// A packet or response that does not continue for this time has ended. On a link that stalls it takes longer.
-  void set_cut_off_after(std::int64_t pause_ns) noexcept { link_.set_cut_off_after(pause_ns); }
+  void set_cut_off_after(std::int64_t pause_ns = usual_cut_off_ns) noexcept {
+    link_.set_cut_off_after(pause_ns);
+  }
 
   void send(command code) { static_cast<void>(write(encode(code))); }
   /// Sends a command and waits at most `patience_ns` for the reply, then shortly for a copy of it.

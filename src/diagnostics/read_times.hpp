@@ -16,9 +16,6 @@ namespace g4lidar {
 /// unless nothing has arrived at their end.
 class read_times {
  public:
-  /// The longest wait of a read, so that a pause of the host is noticed. As in link_monitor.
-  static constexpr std::int64_t slice_ns = 50 * ms;
-
   void reset(std::int64_t now_ns) noexcept {
     *this = {};
     end_ns_ = now_ns;
@@ -67,8 +64,6 @@ class read_times {
   [[nodiscard]] std::int64_t silence_ns() const noexcept { return silence_ns_; }
 
  private:
-  /// A wait that takes this much longer was delayed by the host. As in link_monitor.
-  static constexpr std::int64_t host_pause_after_ns = 25 * ms;
   /// A program that does not call for this time lets bytes accumulate.
   static constexpr std::int64_t idle_ns = 1 * ms;
   /// Half of what the slowest models send: 3000 samples of 2 bytes a second, and the headers of packets.
@@ -83,7 +78,7 @@ class read_times {
   void follow(std::int64_t begin_ns) noexcept {
     const std::int64_t between_ns = begin_ns - end_ns_;
     has_backlog_ = has_backlog_ || between_ns > idle_ns;
-    if (between_ns > slice_ns + host_pause_after_ns) absence_ns_ += between_ns;
+    if (between_ns > longest_read_ns + host_pause_after_ns) absence_ns_ += between_ns;
   }
 
   std::int64_t end_ns_ = 0;         // of the last call

@@ -38,7 +38,7 @@ class observed_transport final : public forwarding_transport {
     }
     std::int64_t begin_ns = now_ns();
     while (true) {
-      const std::int64_t until_ns = std::min(deadline_ns, begin_ns + read_times::slice_ns);
+      const std::int64_t until_ns = std::min(deadline_ns, begin_ns + longest_read_ns);
       auto got = inner().read(out, until_ns);
       const std::int64_t end_ns = now_ns();
       times_.waited(begin_ns, until_ns, end_ns, got ? got->count : 0);

@@ -14,8 +14,6 @@ constexpr session_times times;
 constexpr std::int64_t observed_ns = 50 * ms;
 /// A scan without bytes for this time has become silent.
 constexpr std::int64_t silence_ns = 500 * ms;
-/// The pause caused by an answer.
-constexpr std::int64_t cut_off_after_ns = 60 * ms;
 /// The time by which the head has its speed.
 constexpr std::int64_t spin_up_ns = 6'000 * ms;
 /// For the first packet, whatever else arrives; longer than the motor may spin up.
@@ -71,7 +69,7 @@ live_run::scan_state live_run::listen_once(stream_statistics& measured) {
   const std::int64_t until_ns = link_.now_ns() + observed_ns;
   link_.set_cut_off_after(signs_ns);
   link_.listen(until_ns, to);
-  link_.set_cut_off_after(cut_off_after_ns);
+  link_.set_cut_off_after();
   if (link_.is_over()) return scan_state::over;
   const std::int64_t patience = patience_ns();
   const std::int64_t since_ns = std::max(link_.heard_ns(), started_.sent_ns);
