@@ -26,12 +26,6 @@ struct opening {
   std::string recording;                       // the file that it plays
 };
 
-/// Fills `into`; `device` is not taken. Returns a g4lidar_result.
-int take_lidar_options(const g4lidar_options* given, opening& into, const char** device,
-                       g4lidar_error* error);
-/// Opens what `wanted` describes, for the handle in `made`.
-int open_lidar(opening wanted, g4lidar_lidar** made, g4lidar_error* error);
-
 [[nodiscard]] g4lidar_identity identity_of(const device_information& from) noexcept;
 [[nodiscard]] g4lidar_recording_info info_of(const recording_reader& from) noexcept;
 void fill(g4lidar_scan& out, const scan& from) noexcept;

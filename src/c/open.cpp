@@ -99,10 +99,7 @@ result<void> connect(g4lidar_lidar& handle) {
   return {};
 }
 
-}  // namespace
-
-int take_lidar_options(const g4lidar_options* given, opening& into, const char** device,
-                       g4lidar_error* error) {
+int take_lidar_options(const g4lidar_options* given, opening& into, g4lidar_error* error) {
   g4lidar_options taken = lidar_defaults;
   if (!take_options(given, taken)) return refuse(error, bad_options);
   if (const char* const wrong = take_settings(taken, into.how)) return bad_option(error, wrong);
@@ -117,17 +114,25 @@ int take_lidar_options(const g4lidar_options* given, opening& into, const char**
   take_time(taken.stall_time_ms, into.how.tuning.stall_time);
   take_time(taken.batch_ms, into.how.tuning.batch);
   if (taken.recorder != nullptr) into.recorder = taken.recorder->made;
-  *device = taken.device;
+  into.how.device = text_of(taken.device);
   return G4LIDAR_OK;
 }
 
-int open_lidar(opening wanted, g4lidar_lidar** made, g4lidar_error* error) {
+/// Opens by these options, which `change(opening)` completes; it returns a g4lidar_result.
+int open_lidar(const g4lidar_options* given, g4lidar_lidar** made, g4lidar_error* error,
+               const auto& change) {
+  opening wanted;
+  int code = take_lidar_options(given, wanted, error);
+  if (code == G4LIDAR_OK) code = change(wanted);
+  if (code != G4LIDAR_OK) return code;
   auto handle = std::make_unique<g4lidar_lidar>();
   handle->from = std::move(wanted);
   if (const auto opened = connect(*handle); !opened) return fail(error, opened.error());
   *made = handle.release();
   return succeed(error);
 }
+
+}  // namespace
 
 g4lidar_identity identity_of(const device_information& from) noexcept {
   g4lidar_identity made{from.model, from.firmware_major, from.firmware_minor, from.hardware, {}};
@@ -153,30 +158,20 @@ int g4lidar_open(const char* device, g4lidar_lidar** lidar, g4lidar_error* error
 
 int g4lidar_open_with(const g4lidar_options* options, g4lidar_lidar** lidar, g4lidar_error* error) {
   return created(lidar, error, [&] {
-    opening wanted;
-    const char* device = nullptr;
-    const int code = take_lidar_options(options, wanted, &device, error);
-    if (code != G4LIDAR_OK) return code;
-    wanted.how.device = text_of(device);
-    return open_lidar(std::move(wanted), lidar, error);
+    return open_lidar(options, lidar, error, [](opening&) { return G4LIDAR_OK; });
   });
 }
 
 int g4lidar_open_simulated(g4lidar_simulator* simulator, const g4lidar_options* options,
                            g4lidar_lidar** lidar, g4lidar_error* error) {
+  const auto choose = [&](opening& wanted) {
+    wanted.simulated = simulator->made;
+    if (wanted.how.model == nullptr) wanted.how.model = simulator->made->simulated();
+    wanted.how.device = simulator->path;
+    return G4LIDAR_OK;
+  };
   return created(
-      lidar, error,
-      [&] {
-        opening wanted;
-        const char* device = nullptr;
-        const int code = take_lidar_options(options, wanted, &device, error);
-        if (code != G4LIDAR_OK) return code;
-        wanted.simulated = simulator->made;
-        if (wanted.how.model == nullptr) wanted.how.model = simulator->made->simulated();
-        wanted.how.device = simulator->path;
-        return open_lidar(std::move(wanted), lidar, error);
-      },
-      simulator);
+      lidar, error, [&] { return open_lidar(options, lidar, error, choose); }, simulator);
 }
 
 void g4lidar_free(g4lidar_lidar* lidar) { delete lidar; }
@@ -195,20 +190,15 @@ void g4lidar_playback_options_init(g4lidar_playback_options* options, size_t siz
 int g4lidar_open_recording(const char* path, const g4lidar_playback_options* playback,
                            const g4lidar_options* options, g4lidar_lidar** lidar,
                            g4lidar_error* error) {
-  return created(
-      lidar, error,
-      [&] {
-        opening wanted;
-        const char* device = nullptr;
-        const int code = take_lidar_options(options, wanted, &device, error);
-        if (code != G4LIDAR_OK) return code;
-        g4lidar_playback_options taken = playback_defaults;
-        if (!take_options(playback, taken)) return refuse(error, bad_options);
-        wanted.recording = path;
-        wanted.how.playback = {.speed = taken.speed, .loop = taken.loop, .from_ns = taken.from_ns};
-        if (taken.to_ns != 0) wanted.how.playback.to_ns = taken.to_ns;
-        if (taken.is_cancelled != nullptr) wanted.how.is_cancelled = question_of(taken);
-        return open_lidar(std::move(wanted), lidar, error);
-      },
-      path);
+  const auto choose = [&](opening& wanted) -> int {
+    g4lidar_playback_options taken = playback_defaults;
+    if (!take_options(playback, taken)) return refuse(error, bad_options);
+    wanted.recording = path;
+    wanted.how.device = {};
+    wanted.how.playback = {.speed = taken.speed, .loop = taken.loop, .from_ns = taken.from_ns};
+    if (taken.to_ns != 0) wanted.how.playback.to_ns = taken.to_ns;
+    if (taken.is_cancelled != nullptr) wanted.how.is_cancelled = question_of(taken);
+    return G4LIDAR_OK;
+  };
+  return created(lidar, error, [&] { return open_lidar(options, lidar, error, choose); }, path);
 }
