@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -25,12 +26,14 @@ inline std::string in_quotes(std::string_view text) {
   return quoted.append(text).append("'");
 }
 
-/// "cw, ccw": the texts of all.
+/// "cw, ccw", "4000, 8000 or 9000": the texts of all, with `last` before the last one.
 template <class Range, class TextOf = std::identity>
-std::string list_of(const Range& all, TextOf text_of = {}) {
+std::string list_of(const Range& all, TextOf text_of = {}, std::string_view last = ", ") {
   std::string made;
-  for (const auto& each : all)
-    made.append(made.empty() ? "" : ", ").append(std::invoke(text_of, each));
+  for (const auto& each : all) {
+    if (!made.empty()) made.append(&each == &*std::prev(std::end(all)) ? last : ", ");
+    made.append(std::invoke(text_of, each));
+  }
   return made;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/number_text.hpp"
 #include "discovery/model_choice.hpp"
 #include "stages.hpp"
 
@@ -35,17 +36,6 @@ bool is_host_busy(const stream_statistics& measured) noexcept {
   return measured.tally().arrivals.longest_host_pause_ns() >= arrival_statistics::stall_ns;
 }
 
-/// "4000, 8000 or 9000": `words(each)` of all, with `last` before the last one.
-template <class Each>
-std::string list_of(std::span<Each> all, const char* last, auto words) {
-  std::string text;
-  for (Each& each : all) {
-    if (!text.empty()) text += &each == &all.back() ? last : ", ";
-    text += words(each);
-  }
-  return text;
-}
-
 /// Bytes without device information: a speed that no lidar like `wanted` has is that of another model.
 void find_other_speed(stage_report& rate, double rate_hz, double samples_per_revolution,
                       const model& wanted) {
@@ -67,8 +57,8 @@ void find_other_speed(stage_report& rate, double rate_hz, double samples_per_rev
   rate.find(diagnosis::other_device);
   rate.outcome = std::min(rate.outcome, stage_verdict::warn);
   const auto in_words = [](double hz) { return std::to_string(std::lround(hz)); };
-  rate.remark = one_of(wanted) + " measures " + list_of(std::span(rates), " or ", in_words) +
-                " samples per second";
+  rate.remark =
+      one_of(wanted) + " measures " + list_of(rates, in_words, " or ") + " samples per second";
   rate.remark.front() = 'A';  // "An X4"
   if (most_hz > 0.0) {
     rate.remark += " at " + std::to_string(std::lround(least_hz)) + " to " +
@@ -140,7 +130,7 @@ diagnostic_stage stage_of(diagnosis what) noexcept {
 }
 
 std::string words_of(std::span<const model* const> all) {
-  return list_of(all, " and ", [](const model* each) { return each->word; });
+  return list_of(all, [](const model* each) { return each->word; }, " and ");
 }
 
 bool report_identity(stage_log& log, const std::optional<device_information>& known,
