@@ -178,6 +178,14 @@ found_ports ask(std::vector<port_info> ports) {
   return in_background(work, asking);
 }
 
+std::vector<port_info> ports_now() {
+  auto found = [] {
+    const without_gil free;
+    return list_ports();
+  }();
+  return value_of(std::move(found));
+}
+
 void bind_discovery(nb::module_& module) {
   nb::class_<port_info>(module, "Port",
                         "A serial port, as the system knows it. Texts are empty where not known.")
@@ -209,22 +217,11 @@ void bind_discovery(nb::module_& module) {
       .def("__repr__", [](const recognised_lidar& of) {
         return "<g4lidar.FoundLidar " + std::string(of.model->word) + ">";
       });
-  module.def(
-      "list_ports",
-      [] {
-        return value_of([] {
-          const without_gil free;
-          return list_ports();
-        }());
-      },
-      "Every serial port, ordered by path. Opens none.");
+  module.def("list_ports", &ports_now, "Every serial port, ordered by path. Opens none.");
   module.def(
       "find_lidars",
       [](bool probe_all_ports) {
-        auto ports = value_of([] {
-          const without_gil free;
-          return list_ports();
-        }());
+        auto ports = ports_now();
         std::erase_if(
             ports, [&](const port_info& port) { return !probe_all_ports && !is_g4_bridge(port); });
         return ask(std::move(ports));

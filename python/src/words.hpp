@@ -38,10 +38,6 @@ bool read_word(nanobind::handle from, std::initializer_list<std::string_view> wo
   return false;
 }
 
-}  // namespace g4lidar::python
-
-namespace g4lidar::python {
-
 /// The name of a file or a device: a str, or an object with __fspath__.
 struct path_text {
   std::string text;

@@ -21,10 +21,6 @@ common_options options_of(const ros2_options& options, const named_source& which
   return made;
 }
 
-}  // namespace
-
-namespace {
-
 /// The model that the options or the source name, or that a file is of; null: it is searched.
 const model* expected_model(const ros2_options& options, const named_source& which) {
   if (options.common.expected.model != nullptr) return options.common.expected.model;

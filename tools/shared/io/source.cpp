@@ -99,10 +99,6 @@ bool is_file_name(std::string_view name) {
   return name.ends_with(".mcap") || name.ends_with(".bin") || name.ends_with(".raw");
 }
 
-}  // namespace
-
-namespace {
-
 std::string_view words_for(sample_layout layout) {
   switch (layout) {
     case sample_layout::flagged_mm:
@@ -121,10 +117,6 @@ std::string_view words_for(sample_layout layout) {
   }
   return "2-byte samples";
 }
-
-}  // namespace
-
-namespace {
 
 /// Whether points of both are made from the same bytes in the same way.
 bool are_alike(const g4lidar::model& a, const g4lidar::model& b) {
