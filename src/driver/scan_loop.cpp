@@ -2,6 +2,7 @@
 #include "g4lidar/scan_loop.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "driver.hpp"
 
@@ -33,8 +34,9 @@ lidar::milliseconds scan_loop::left(const lidar& from) const noexcept {
 view_result<scan> lidar::wait_scan(milliseconds timeout) {
   const auto found = scan_loop(timeout).wait(*this, milliseconds::max());
   if (!found) return tl::unexpected(found.error());
-  if (!*found) return driver_->timed_out();  // a file that is paused
-  return **found;
+  const std::optional<scan>& next = *found;
+  if (!next) return driver_->timed_out();  // a file that is paused
+  return *next;
 }
 
 view_result<scan> lidar::next_scan(milliseconds timeout) {
@@ -43,8 +45,9 @@ view_result<scan> lidar::next_scan(milliseconds timeout) {
   const auto found =
       driver_->read_scan([=] { return until_ns; }, [](const error&) { return false; });
   if (!found) return tl::unexpected(found.error());
-  if (!*found) return driver_->timed_out();
-  return **found;
+  const std::optional<scan>& next = *found;
+  if (!next) return driver_->timed_out();
+  return *next;
 }
 
 }  // namespace g4lidar
