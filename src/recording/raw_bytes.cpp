@@ -87,7 +87,7 @@ class pipe_transport final : public transport {
   [[nodiscard]] bool wait(short events, std::int64_t deadline_ns) noexcept {
     const std::int64_t left_ms = (deadline_ns - steady_now_ns() + 999'999) / 1'000'000;
     pollfd waiting{events != 0 ? fd_.get() : -1, events, 0};
-    return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000))) != 0;
+    return ::poll(&waiting, 1, static_cast<int>(std::clamp<std::int64_t>(left_ms, 0, 1000))) > 0;
   }
   [[nodiscard]] bool has_ahead() const noexcept { return given_ < ahead_.size(); }
   /// Of the bytes that were read while it was opened.
@@ -255,8 +255,8 @@ class counted_items final : public item_source {
 };
 
 owned_fd open_bytes(const std::string& name) noexcept {
-  return owned_fd(name == "-" ? ::fcntl(0, F_DUPFD_CLOEXEC, 3)
-                              : ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
+  constexpr int flags = O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC;  // a pipe without a writer
+  return owned_fd(name == "-" ? ::fcntl(0, F_DUPFD_CLOEXEC, 3) : ::open(name.c_str(), flags));
 }
 
 /// Of the regular file from `at` on.

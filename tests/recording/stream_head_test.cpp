@@ -4,12 +4,14 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -152,6 +154,33 @@ TEST(PipeOfRawBytes, OpeningASilentOneCanBeCancelled) {
   const auto from = open_raw_bytes(made.path(), {}, {}, [&] { return ++calls > 2; });
   ASSERT_FALSE(from);
   EXPECT_EQ(from.error(), problem::cancelled);
+}
+
+TEST(PipeOfRawBytes, WithoutAWriterIsWaitedFor) {
+  const std::string path = testing::TempDir() + "stream_head_test.fifo";
+  ::unlink(path.c_str());
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::atomic<int> calls{0};
+  const auto cancelled = open_raw_bytes(path, {}, {}, [&] { return ++calls > 2; });
+  ASSERT_FALSE(cancelled);
+  EXPECT_EQ(cancelled.error(), problem::cancelled);
+
+  const auto from = open_raw_bytes(path, {}, {}, {}, model_named("x4"));
+  ASSERT_TRUE(from);
+  const auto port = (*from)->connect();
+  ASSERT_TRUE(port);
+  std::array<std::uint8_t, 100> memory{};
+  const auto early = (*port)->read(memory, (*port)->now_ns() + second_ns / 10);
+  ASSERT_TRUE(early) << "it ends before there is a writer";
+  EXPECT_EQ(early->count, 0U);
+  std::ofstream(path) << "bytes";
+  const auto got = (*port)->read(memory, (*port)->now_ns() + 10 * second_ns);
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->count, 5U);
+  const auto end = (*port)->read(memory, (*port)->now_ns() + 10 * second_ns);
+  ASSERT_FALSE(end);
+  EXPECT_EQ(end.error(), problem::end_of_input);
+  ::unlink(path.c_str());
 }
 
 }  // namespace

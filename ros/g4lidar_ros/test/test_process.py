@@ -133,6 +133,14 @@ class TestProcess(unittest.TestCase):
             return node
         self.ends_within_2_s(start)
 
+    def test_a_lidar_that_is_not_there_is_not_configured(self):
+        node = subprocess.Popen([NODE, "--ros-args", "-p", "source:=/dev/g4lidar-absent", "-p", "connect_timeout:=0.5",
+                                 "-r", "__ns:=/missing"])
+        self.addCleanup(node.wait, support.PATIENCE)
+        self.addCleanup(node.send_signal, signal.SIGINT)
+        self.assertFalse(self.watcher.change_state("/missing/g4lidar", Transition.TRANSITION_CONFIGURE))
+        self.assertEqual(self.watcher.state("/missing/g4lidar"), State.PRIMARY_STATE_UNCONFIGURED)
+
     def fails(self, arguments, words):
         """The node ends with exit code 1, and its last words contain these."""
         done = subprocess.run([NODE, "--ros-args", *arguments], capture_output=True, text=True, timeout=support.PATIENCE)
@@ -197,6 +205,8 @@ class TestProcess(unittest.TestCase):
         fifo = os.path.join(tempfile.mkdtemp(prefix="g4lidar-ros-"), "mask")
         os.mkfifo(fifo)
         self.not_configured([*sim, "-p", f"mask:={fifo}"], ["mask", fifo, "is a pipe or a device, not a file"])
+        # As a source it waits for its writer, and so does Ctrl-C not.
+        self.not_configured(["-p", f"source:={fifo}", "-p", "connect_timeout:=0.5"], ["it did not open in time"])
         self.not_configured([*sim, "-p", "fov:=north"], ["fov", "north"])
         self.not_configured([*sim, "-p", "direction:=up"], ["direction", "up"])
         self.not_configured([*sim, "-p", "range_min:=.nan"], ["range"])
