@@ -205,7 +205,7 @@ class TestProcess(unittest.TestCase):
         fifo = os.path.join(tempfile.mkdtemp(prefix="g4lidar-ros-"), "mask")
         os.mkfifo(fifo)
         self.not_configured([*sim, "-p", f"mask:={fifo}"], ["mask", fifo, "is a pipe or a device, not a file"])
-        # As a source it waits for its writer, and so does Ctrl-C not.
+        # As a source: the node waits for a writer, and Ctrl-C ends it.
         self.not_configured(["-p", f"source:={fifo}", "-p", "connect_timeout:=0.5"], ["it did not open in time"])
         self.not_configured([*sim, "-p", "fov:=north"], ["fov", "north"])
         self.not_configured([*sim, "-p", "direction:=up"], ["direction", "up"])
