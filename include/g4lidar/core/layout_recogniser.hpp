@@ -209,7 +209,8 @@ class layout_recogniser {
       if (near.which != nullptr) return near;
     }
     const auto sends = [&](const model& row) { return may_send(row, size, has_flags); };
-    return {usual_model(sends, usual_kind::of_its_layout), without_number};
+    const model* const usual = usual_model(sends, usual_kind::of_its_layout);
+    return {usual != nullptr ? usual : &g4_model, without_number};
   }
 
   [[nodiscard]] constexpr const detail::layout_candidate* decided() const noexcept {
