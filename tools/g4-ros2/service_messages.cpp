@@ -34,7 +34,7 @@ const dds::service_type trigger_type{
     &std_srvs_srv_dds__Trigger_Request__desc, &std_srvs_srv_dds__Trigger_Response__desc,
     "eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f"};
 
-parameter_value value_of(const rcl_interfaces_msg_dds__ParameterValue_& from) {
+g4lidar::parameter_value value_of(const rcl_interfaces_msg_dds__ParameterValue_& from) {
   switch (from.type) {
     case 1:
       return from.bool_value;

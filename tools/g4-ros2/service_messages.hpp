@@ -53,8 +53,8 @@ auto span_of(const Sequence& sequence) {
 }
 
 /// The message refers to texts of `held`.
-[[nodiscard]] rcl_interfaces_msg_dds__ParameterValue_ message_of(const parameter_value& value,
-                                                                 auto& held) {
+[[nodiscard]] rcl_interfaces_msg_dds__ParameterValue_ message_of(
+    const g4lidar::parameter_value& value, auto& held) {
   rcl_interfaces_msg_dds__ParameterValue_ made{};
   made.type = static_cast<std::uint8_t>(value.index());
   made.string_value = held.text("");
@@ -66,7 +66,8 @@ auto span_of(const Sequence& sequence) {
 }
 
 /// Nothing for a type that no parameter has, too.
-[[nodiscard]] parameter_value value_of(const rcl_interfaces_msg_dds__ParameterValue_& from);
+[[nodiscard]] g4lidar::parameter_value value_of(
+    const rcl_interfaces_msg_dds__ParameterValue_& from);
 /// Whether a name is `prefix`, or below it by less than `depth` dots; 0: by any number. *Pure.*
 [[nodiscard]] bool is_below(std::string_view name, std::string_view prefix, std::uint64_t depth);
 
