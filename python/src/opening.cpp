@@ -271,7 +271,7 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "second (None: as the model). `model`: the model of the lidar, 'x4'; None: what a search at "
       "the port finds, a recording or a Simulator states, or raw bytes show. `record`: the "
       "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
-      "Takes about 0.06 s with a healthy device,at most 15 s. Raises an Error.");
+      "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The module as a whole."""
 import inspect
+import re
 import subprocess
 import sys
 from importlib import metadata, resources
@@ -11,7 +12,7 @@ import g4lidar
 
 
 def test_everything_public_has_a_docstring() -> None:
-    missing = []
+    missing, joined = [], []
     for name in g4lidar.__all__:
         what = getattr(g4lidar, name)
         if name.endswith("_DTYPE") or inspect.ismodule(what):
@@ -19,9 +20,11 @@ def test_everything_public_has_a_docstring() -> None:
         members = [(name, what)]
         if inspect.isclass(what) and what.__module__.startswith("g4lidar"):
             members += [(f"{name}.{n}", m) for n, m in vars(what).items() if not n.startswith("_") and n.islower()]
-        missing += [each for each, member in members if not (getattr(member, "__doc__", None) or "").strip()]
+        texts = [(each, getattr(member, "__doc__", None) or "") for each, member in members]
+        missing += [each for each, text in texts if not text.strip()]
+        joined += [each for each, text in texts if re.search(r"[a-z],[a-z]", text)]  # parts without a space between
     assert missing == []
-
+    assert joined == []
 
 
 def test_the_view_has_twenty_lines() -> None:
