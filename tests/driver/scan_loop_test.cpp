@@ -233,6 +233,9 @@ TEST(ScanLoop, InSlices_EndsAsInOneWait) {
     running still(silent_for(60 * second));
     EXPECT_EQ(in_slices(still, 500ms, slice).first.detail(), error_detail::spinning_up);
     EXPECT_NEAR(static_cast<double>(still.passed_ns()), 10e9, 0.1e9);
+    running restarted(silent_for(60 * second));  // the driver starts it again after 8 s
+    EXPECT_EQ(in_slices(restarted, 12s, slice).first, problem::timeout);
+    EXPECT_NEAR(static_cast<double>(restarted.passed_ns()), 12e9, 0.1e9);
     running lost({}, {second_unplug});
     EXPECT_EQ(in_slices(lost, 300ms, slice).first, problem::gone);
   }
