@@ -187,7 +187,8 @@ class link_monitor {
 inline bool pulse_dtr(link_monitor& link, std::int64_t low_ns = 120 * ms) {
   if (link.is_over() || !link.port().set_dtr(false).value_or(false)) return false;
   link.listen_for(low_ns);
-  return !link.is_over() && link.port().set_dtr(true).value_or(false);
+  const bool is_high = link.port().set_dtr(true).value_or(false);
+  return is_high && !link.is_over();
 }
 
 }  // namespace g4lidar

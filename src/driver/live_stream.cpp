@@ -56,7 +56,7 @@ result<void> live_stream::look_if_due() {
   } else if (link_.cut_off()) {
     record(recorded_event::kind::cut);
   }
-  if (!input.is_empty()) {
+  if (!input.is_empty() && input.current() == nullptr) {  // cut off
     of_.pipeline.drop_scan();
     if (parse()) return {};  // look() follows in the next round
   }

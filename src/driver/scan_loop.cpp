@@ -13,11 +13,13 @@ result<std::optional<scan>> scan_loop::wait(lidar& from, lidar::milliseconds sli
   lidar::driver& on = *from.driver_;
   const scan_source& source = on.source();
   const std::int64_t slice_ends_ns = deadline_after_ns(source, slice);
-  const scan_expectation now = source.expects();
-  // Not while a scan is set up: a motor that never turns is started again and again.
-  const bool is_away = now.not_due_before_ns == never_ns && now.why != error_detail::spinning_up;
-  if (!deadline_ns_ || is_away) deadline_ns_ = deadline_after_ns(source, timeout_);
-  const auto ends_ns = [&] { return std::max(*deadline_ns_, source.expects().not_due_before_ns); };
+  const auto ends_ns = [&] {
+    const scan_expectation now = source.expects();
+    // Not while a scan is set up: a motor that never turns is started again and again.
+    const bool is_away = now.not_due_before_ns == never_ns && now.why != error_detail::spinning_up;
+    if (!deadline_ns_ || is_away) deadline_ns_ = deadline_after_ns(source, timeout_);
+    return std::max(*deadline_ns_, now.not_due_before_ns);
+  };
   auto found = on.read_scan([&] { return std::min(slice_ends_ns, ends_ns()); },
                             [](const error& why) { return why == problem::reconnecting; });
   if (found && !*found && ends_ns() <= slice_ends_ns) found = on.timed_out();
