@@ -2,8 +2,7 @@
 // A scan on a fixed grid of directions: always the same number of ranges, as SLAM requires.
 #pragma once
 
-#include <array>
-#include <cassert>
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <span>
 
 #include "g4lidar/core/angle.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan.hpp"
 
@@ -70,8 +70,9 @@ struct grid_options {
 /// The bin that contains a direction (clockwise degrees in [0, 360), as in a point) in a grid of
 /// `bins` bins, and the distance from the middle of the bin. *Pure.* `turn_deg` as for bearing_deg().
 struct grid_place {
-  std::size_t bin;
-  float off_middle_deg;  ///< At most half a bin, plus rounding.
+  std::size_t bin;  ///< Below `bins`; 0 if there is no bin.
+  float
+      off_middle_deg;  ///< At most half a bin, plus rounding; of another number more than 360, or not a number.
 };
 [[nodiscard]] constexpr grid_place place_in_grid(
     float direction, frame to, std::size_t bins,
@@ -79,9 +80,9 @@ struct grid_place {
   const float bearing = bearing_deg(direction, to, turn_deg);
   const float from_first = to == frame::robot ? wrap_once_deg(bearing + 180.0F) : bearing;
   const float width = 360.0F / static_cast<float>(bins);
-  const auto bin = static_cast<std::size_t>(from_first / width + 0.5F);
+  const std::size_t bin = detail::saturated<std::uint32_t>(from_first / width + 0.5F);
   const float off = from_first - static_cast<float>(bin) * width;
-  return {bin % bins, off < 0.0F ? -off : off};
+  return {bins == 0 ? 0 : bin % bins, off < 0.0F ? -off : off};
 }
 
 /// Like fill_grid() below, of the points for which `takes(point, bin)` is true. `intensities` is empty,
@@ -90,7 +91,8 @@ template <std::predicate<const point&, std::size_t> Takes>
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options, Takes takes,
                          std::span<float> intensities = {}) noexcept {
-  assert(!ranges_m.empty() && points.size() <= (std::size_t{1} << 24));
+  points = points.first(ranges_m.empty() ? 0 : std::min(points.size(), std::size_t{1} << 24));
+  intensities = intensities.first(std::min(intensities.size(), ranges_m.size()));
   // First each bin holds the index of its best point, which a float holds exactly; then the range.
   constexpr float nothing = -1.0F;
   for (float& slot : ranges_m) slot = nothing;
@@ -111,7 +113,8 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   for (std::size_t i = 0; i < points.size(); ++i) {
     const point& p = points[i];
     const grid_place place = place_of(p);
-    if (!takes(p, place.bin)) continue;
+    const bool is_there = place.off_middle_deg <= 360.0F;  // its direction is one
+    if (!is_there || !takes(p, place.bin)) continue;
     float& slot = ranges_m[place.bin];
     if (slot < 0.0F || better(p, place.off_middle_deg, points[static_cast<std::size_t>(slot)])) {
       slot = static_cast<float>(i);
@@ -125,11 +128,14 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
   }
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   constexpr float infinity = std::numeric_limits<float>::infinity();
-  const std::array<float, 3> of_no_return{infinity, nan, options.longest_mm * 0.001F};
+  const auto of_no_return = [&] {
+    if (options.no_return == no_return_as::nan) return nan;
+    return options.no_return == no_return_as::max ? options.longest_mm * 0.001F : infinity;
+  }();
   const auto value_of = [&](const point& p) {
     switch (worth(p)) {
       case no_return:
-        return of_no_return[static_cast<std::size_t>(options.no_return)];
+        return of_no_return;
       case perhaps_near:
         return options.near_is_minus_infinity ? -infinity : nan;
       case unusable:
@@ -148,8 +154,9 @@ constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_
 /// return); NaN if nothing is known, because the sensor did not measure there, or every return is too
 /// near to be reliable, or mark_near() has flagged the direction. +infinity is not free space: what is
 /// nearer than the shortest range may give no return. `intensities` is empty, or as long as `ranges_m`,
-/// and gets those of the points that determine the ranges, 0 where none does. *Never allocates.* Accepts a
-/// scan of up to 16,777,216 points. (protocol: Point packets, no return)
+/// and gets those of the points that determine the ranges, 0 where none does. *Never allocates.* Points
+/// without a direction, which is not a number or far beyond 360, are in no bin, and neither are those behind
+/// the first 16,777,216. (protocol: Point packets, no return)
 constexpr void fill_grid(std::span<const point> points, std::span<float> ranges_m,
                          const grid_options& options = {},
                          std::span<float> intensities = {}) noexcept {

@@ -11,6 +11,7 @@
 
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/detail/lidar_motion.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 
@@ -29,9 +30,9 @@ struct merged {
   std::size_t outside = 0;  ///< How many of them are flagged not_deskewed.
   std::uint32_t lost = 0;   ///< Bit i is set if lidar i has no fresh scan; it gives no points.
 
-  /// Whether lidar `i` has no fresh scan. *Pure.*
+  /// Whether lidar `i` has no fresh scan; one beyond the last possible one has none. *Pure.*
   [[nodiscard]] constexpr bool is_lost(std::size_t i) const noexcept {
-    return (lost >> i & 1U) != 0;
+    return i >= 32 || (lost >> i & 1U) != 0;
   }
 };
 
@@ -50,7 +51,8 @@ constexpr merged merge_scans(std::span<const mounted_scan> lidars, std::int64_t 
   for (std::size_t i = 0; i < lidars.size(); ++i) {
     const std::span<const point> scan = lidars[i].points;
     const std::int64_t end_ns = scan.empty() ? 0 : scan.back().time_ns;
-    if (end_ns == 0 || end_ns < reference_ns - fresh_ns || end_ns > reference_ns + fresh_ns) {
+    if (end_ns == 0 || end_ns < saturating_sub(reference_ns, fresh_ns) ||
+        end_ns > saturating_add(reference_ns, fresh_ns)) {
       result.lost |= std::uint32_t{1} << i;
       continue;
     }

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -72,14 +74,29 @@ struct rotation {
   double cosine = 1.0;
 };
 
+namespace detail {
+
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The integer that is nearest to `x`; nothing if `x` is not a number, or not below 2^62 in magnitude.
+[[nodiscard]] constexpr std::optional<std::int64_t> nearest(double x) noexcept {
+  constexpr double beyond = 0x1p62;
+  if (x != x || x >= beyond || x <= -beyond) return std::nullopt;
+  return static_cast<std::int64_t>(x < 0.0 ? x - 0.5 : x + 0.5);
+}
+
+}  // namespace detail
+
 /// The rotation by an angle in radians, below 1e6 in magnitude, without libm. *Pure.* Within 1e-15 of the true values.
+/// That by another angle is less exact; from 2^62 quarter turns on, and of what is not a number, it is not a number.
 [[nodiscard]] constexpr rotation rotation_by(double yaw_rad) noexcept {
   // The nearest multiple of a quarter turn is subtracted in two parts, the first one short enough for an exact product;
   // the rest, at most an eighth of a turn, goes into two series.
   constexpr double quarter_upper = 0x1.921fb544p0;
   constexpr double quarter_lower = 0x1.0b4611a626331p-34;
-  const double turns = yaw_rad * (2.0 / std::numbers::pi);
-  const auto quarters = static_cast<std::int64_t>(turns < 0.0 ? turns - 0.5 : turns + 0.5);
+  const std::optional<std::int64_t> nearest = detail::nearest(yaw_rad * (2.0 / std::numbers::pi));
+  if (!nearest) return {detail::not_a_number, detail::not_a_number};
+  const std::int64_t quarters = *nearest;
   const double x = (yaw_rad - static_cast<double>(quarters) * quarter_upper) -
                    static_cast<double>(quarters) * quarter_lower;
   const double x2 = x * x;
@@ -111,11 +128,11 @@ struct rotation {
   }
 }
 
-/// `yaw_rad`, below 1e6 in magnitude, as the same direction in [-pi, pi]. *Pure.*
+/// `yaw_rad`, below 1e6 in magnitude, as the same direction in [-pi, pi]. *Pure.* Another one as rotation_by().
 [[nodiscard]] constexpr double wrap_rad(double yaw_rad) noexcept {
-  const double turns = yaw_rad * (0.5 / std::numbers::pi);
-  const auto whole = static_cast<std::int64_t>(turns < 0.0 ? turns - 0.5 : turns + 0.5);
-  return yaw_rad - static_cast<double>(whole) * (2.0 * std::numbers::pi);
+  const std::optional<std::int64_t> whole = detail::nearest(yaw_rad * (0.5 / std::numbers::pi));
+  if (!whole) return detail::not_a_number;
+  return yaw_rad - static_cast<double>(*whole) * (2.0 * std::numbers::pi);
 }
 
 /// The pose `b`, given in the frame of `a`, in the frame in which `a` is given. *Pure.* The yaw is wrapped.
@@ -183,8 +200,8 @@ struct arc_factors {
 [[nodiscard]] constexpr pose_2d interpolated(const stamped_pose& from, const stamped_pose& to,
                                              std::int64_t time_ns) noexcept {
   if (from.time_ns == to.time_ns) return from.pose;
-  const auto whole = static_cast<double>(to.time_ns - from.time_ns);
-  const auto part = static_cast<double>(time_ns - from.time_ns);
+  const auto whole = static_cast<double>(detail::saturating_sub(to.time_ns, from.time_ns));
+  const auto part = static_cast<double>(detail::saturating_sub(time_ns, from.time_ns));
   return from.pose * moved_by(twist_to(inverse(from.pose) * to.pose, whole), part);
 }
 
@@ -199,8 +216,9 @@ struct arc_factors {
   const auto has = [&](std::size_t i) {
     return path[i].time_ns <= time_ns && time_ns <= path[i + 1].time_ns;
   };
-  if (guess + 1 < path.size() && has(guess)) return guess;
-  if (guess + 2 < path.size() && has(guess + 1)) return guess + 1;
+  const std::size_t last = path.size() - 2;
+  if (guess <= last && has(guess)) return guess;
+  if (guess < last && has(guess + 1)) return guess + 1;
   std::size_t low = 0;
   std::size_t high = path.size() - 1;
   while (high - low > 1) {

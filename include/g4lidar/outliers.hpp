@@ -31,9 +31,10 @@ inline constexpr std::size_t max_window = 16;
 /// so is a wall at 10 degrees to the beam. An object that gives one return is marked: below 10 mm
 /// of width per metre of distance an object may give one return only.
 struct speckle_limits {
-  std::size_t window = 2;  ///< How many samples on each side are neighbours: 1 to max_window.
-  std::size_t count = 1;   ///< With fewer near neighbours than this a return is isolated.
-  float near_m = 0.05F;    ///< Neighbours up to this distance are near; or up to
+  /// How many samples on each side are neighbours: 1 to max_window; another number counts as the nearest.
+  std::size_t window = 2;
+  std::size_t count = 1;  ///< With fewer near neighbours than this a return is isolated.
+  float near_m = 0.05F;   ///< Neighbours up to this distance are near; or up to
   /// this share of the range, if that is more. Negative: 0.05 where the samples are up to 0.28 degrees
   /// apart, as those of a G4 at 9 kHz and 7 Hz, and in proportion where they are farther apart: 0.15
   /// for an X2 at 7 Hz.
@@ -53,9 +54,9 @@ struct speckle_limits {
 /// that is at most `window` samples wide, and stands between a nearer one on one side and a farther
 /// one on the other side, cannot be distinguished from veiling points and is marked.
 struct edge_limits {
-  std::size_t window = 1;  ///< How many samples on each side are neighbours: 1 to max_window.
-  /// Below this angle between beam and line a neighbour is across a jump: above 0, at most 45. Walls
-  /// at a greater angle to the beam are kept. A veiling point is found if its distance from both
+  std::size_t window = 1;  ///< As in speckle_limits.
+  /// Below this angle between beam and line a neighbour is across a jump: above 0, at most 45; 0 and less
+  /// mark nothing, and more counts as 45. Walls at a greater angle to the beam are kept. A veiling point is found if its distance from both
   /// surfaces is at least the distance between two samples there divided by the tangent: at 7 Hz and
   /// 9 kHz, and with 5 degrees, 5.6 % of the range of each surface.
   float least_angle_deg = 5.0F;
@@ -63,14 +64,19 @@ struct edge_limits {
 
 namespace detail {
 
+/// The nearest window that there can be.
+[[nodiscard]] constexpr std::size_t possible_window(std::size_t wanted) noexcept {
+  return std::clamp<std::size_t>(wanted, 1, max_window);
+}
+
 /// Sets `mark` on the returns for which `is_marked(before, here, after, range_mm)` is true and clears
 /// it on all other points. The places are those of a point and of the samples in the window on each
 /// side, NaN where there is no sample or no return. Returns the number of marked points.
 template <class Judge>
-constexpr std::size_t mark_by_neighbours(std::span<point> points, std::size_t window,
+constexpr std::size_t mark_by_neighbours(std::span<point> points, std::size_t wanted_window,
                                          scan_ends ends, point_flags mark,
                                          Judge is_marked) noexcept {
-  assert(window >= 1 && window <= max_window);
+  const std::size_t window = possible_window(wanted_window);
   const std::size_t size = points.size();
   // A sample would be its own neighbour.
   const bool joined = ends == scan_ends::joined && size > 2 * window;
@@ -213,8 +219,8 @@ constexpr std::size_t mark_isolated(std::span<const point> points, std::span<poi
 /// The same for veiling points and point_flags::veiling.
 constexpr std::size_t mark_veiling(std::span<point> points, const edge_limits& limits = {},
                                    scan_ends ends = scan_ends::joined) noexcept {
-  assert(limits.least_angle_deg > 0.0F && limits.least_angle_deg <= 45.0F);
-  const sine_cosine least = sine_cosine_deg(limits.least_angle_deg);
+  const float least_deg = limits.least_angle_deg > 0.0F ? limits.least_angle_deg : 0.0F;
+  const sine_cosine least = sine_cosine_deg(std::min(least_deg, 45.0F));
   const auto judge = [tangent = least.sine / least.cosine](std::span<const xy_point> before,
                                                            const xy_point& here,
                                                            std::span<const xy_point> after, float) {

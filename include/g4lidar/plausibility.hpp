@@ -2,11 +2,13 @@
 // What the checksum does not find: packets whose angles do not fit, samples with one wrong bit.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "g4lidar/core/packet.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
@@ -100,7 +102,7 @@ struct bit_error_limits {
 namespace detail {
 
 /// Whether `raw` is off the middle of smooth neighbours by one bit of its 16; `far` and `far_on` are
-/// the samples two before and two after it.
+/// the samples two before and two after it. All have 16 bits.
 [[nodiscard]] constexpr bool has_one_wrong_bit(std::int32_t far, std::int32_t before,
                                                std::int32_t raw, std::int32_t after,
                                                std::int32_t far_on, const bit_error_limits& limits,
@@ -111,8 +113,8 @@ namespace detail {
   if (before == 0 && after == 0) return (raw & (raw - 1)) == 0;
   if (before == 0 || after == 0 || far == 0 || far_on == 0) return false;
   const std::int32_t middle = (before + after) / 2;
-  const auto ratio = static_cast<std::int32_t>(limits.smooth_ratio * static_cast<float>(middle));
-  const auto least = static_cast<std::int32_t>(static_cast<float>(units_per_mm) * limits.smooth_mm);
+  const auto ratio = saturated<std::uint16_t>(limits.smooth_ratio * static_cast<float>(middle));
+  const auto least = saturated<std::uint16_t>(static_cast<float>(units_per_mm) * limits.smooth_mm);
   const std::int32_t smooth = ratio > least ? ratio : least;
   if (magnitude(before - after) > 2 * smooth || magnitude(far - before) > smooth ||
       magnitude(far_on - after) > smooth) {
@@ -138,12 +140,15 @@ constexpr std::size_t mark_bit_errors(std::span<point> points, const bit_error_l
                                       sample_layout layout = g4_layout) noexcept {
   const int units = range_units_per_mm(layout);
   const auto raw = [&points, units](std::size_t i) {
-    return static_cast<std::int32_t>(points[i].range_mm * static_cast<float>(units));
+    return std::int32_t{
+        detail::saturated<std::uint16_t>(points[i].range_mm * static_cast<float>(units))};
   };
+  if (points.size() < 5) return 0;
   std::size_t marked = 0;
+  std::array<std::int32_t, 5> near{0, raw(0), raw(1), raw(2), raw(3)};  // of the samples around `i`
   for (std::size_t i = 2; i + 2 < points.size(); ++i) {
-    if (!detail::has_one_wrong_bit(raw(i - 2), raw(i - 1), raw(i), raw(i + 1), raw(i + 2), limits,
-                                   units)) {
+    near = {near[1], near[2], near[3], near[4], raw(i + 2)};
+    if (!detail::has_one_wrong_bit(near[0], near[1], near[2], near[3], near[4], limits, units)) {
       continue;
     }
     points[i].flags = points[i].flags | point_flags::unlikely;

@@ -14,6 +14,7 @@
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/correction.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -108,7 +109,7 @@ static_assert(std::is_trivially_copyable_v<point>);
 /// Point packets)
 [[nodiscard]] constexpr float raw_angle_deg(const point& p,
                                             correction_kind kind = g4_format.correction) noexcept {
-  const auto raw = static_cast<std::int32_t>(p.range_mm * 4.0F);
+  const auto raw = detail::saturated<std::int32_t>(p.range_mm * 4.0F);
   switch (kind) {
     case correction_kind::triangle:
       return wrap_once_deg(p.angle_deg - compact_correction{}(raw));

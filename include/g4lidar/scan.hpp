@@ -10,6 +10,7 @@
 #include <span>
 
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/point.hpp"
 
 namespace g4lidar {
@@ -108,7 +109,7 @@ struct scan {
   /// When the next scan began; if there is none, when the last point was measured.
   [[nodiscard]] constexpr std::int64_t end_ns() const noexcept {
     if (empty()) return 0;
-    return duration_ns > 0 ? time_ns() + duration_ns : points.back().time_ns;
+    return duration_ns > 0 ? detail::saturating_add(time_ns(), duration_ns) : points.back().time_ns;
   }
 #if __STDC_HOSTED__
   /// The same as a time of the monotonic clock; the epoch if it is not known.
@@ -119,7 +120,8 @@ struct scan {
   /// Samples per second, from the times of its points; the nominal rate if these are not
   /// sufficient.
   [[nodiscard]] constexpr float measured_sample_rate_hz() const noexcept {
-    const std::int64_t taken = size() < 2 ? 0 : points.back().time_ns - time_ns();
+    const std::int64_t taken =
+        size() < 2 ? 0 : detail::saturating_sub(points.back().time_ns, time_ns());
     if (taken <= 0 || has(scan_flags::data_lost | scan_flags::crc_mismatch))
       return static_cast<float>(sample_rate_hz);
     return static_cast<float>(size() - 1) * 1e9F / static_cast<float>(taken);

@@ -37,7 +37,8 @@ struct mark_limits {
 
   /// How many samples on each side determine the marks of a point; 0 without `speckle` and `edges`. *Pure.*
   [[nodiscard]] constexpr std::size_t window() const noexcept {
-    return std::max(speckle ? speckle->window : 0, edges ? edges->window : 0);
+    return std::max(speckle ? detail::possible_window(speckle->window) : 0,
+                    edges ? detail::possible_window(edges->window) : 0);
   }
   /// Marks by neighbours: all that is given but `near`. *Never allocates.*
   constexpr void mark_by_neighbours(std::span<point> points, scan_ends ends) const noexcept {

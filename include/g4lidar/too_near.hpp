@@ -8,6 +8,7 @@
 #include <span>
 
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/outliers.hpp"
 #include "g4lidar/point.hpp"
 
@@ -53,7 +54,8 @@ class near_history {
   constexpr bool add(const point& p, const near_limits& limits, const model& which = g4_model,
                      std::uint32_t sample_rate_hz = 0) noexcept {
     // The angle of the head, as a near and a far target on the same beam have different directions.
-    const auto direction = static_cast<std::size_t>(raw_angle_deg(p, which.samples.correction));
+    const auto direction =
+        detail::saturated<std::uint32_t>(raw_angle_deg(p, which.samples.correction));
     std::uint32_t& last = near_[direction % directions];
     if (!p.is_no_return()) {
       last =

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -29,7 +30,8 @@ class basic_wall_clock {
 
   /// The wall clock at `time`, with the difference that the last update() measured.
   [[nodiscard]] wall_time at(monotonic_time time) const noexcept {
-    return wall_time(time.time_since_epoch() + ahead_);
+    return wall_time(
+        duration(detail::saturating_add(time.time_since_epoch().count(), ahead_.count())));
   }
   /// The same for a time in nanoseconds, such as point::time_ns.
   [[nodiscard]] wall_time at(std::int64_t time_ns) const noexcept {

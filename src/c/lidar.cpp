@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "border.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/setting_table.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "handles.hpp"
@@ -306,8 +307,8 @@ const g4lidar_counts* g4lidar_get_counts(g4lidar_lidar* lidar) {
 int64_t g4lidar_wall_ns(const g4lidar_lidar* lidar, int64_t time_ns) {
   if (lidar == nullptr) return 0;
   if (player* const of = lidar->made->player()) return of->wall_ns(time_ns);
-  if (lidar->wall_ahead_ns != 0) return time_ns + lidar->wall_ahead_ns;
+  if (lidar->wall_ahead_ns != 0) return detail::saturating_add(time_ns, lidar->wall_ahead_ns);
   const auto* const from = lidar->connector;
   const auto ahead_ns = from == nullptr ? std::nullopt : from->traits().wall_ahead_ns;
-  return time_ns + ahead_ns.value_or(wall_clock().ahead().count());
+  return detail::saturating_add(time_ns, ahead_ns.value_or(wall_clock().ahead().count()));
 }

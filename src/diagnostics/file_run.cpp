@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/source.hpp"
 #include "g4lidar/transport/byte_file.hpp"
@@ -68,7 +69,7 @@ class file_run {
       device_.frequency = device->frequency;
       if (device->sample_rate) device_.sample_rate_hz = to_hz(*device->sample_rate);
     }
-    seconds_ = static_cast<double>(last_ns_ - reader.first_ns()) / 1e9;
+    seconds_ = static_cast<double>(detail::saturating_sub(last_ns_, reader.first_ns())) / 1e9;
     return true;
   }
 
@@ -113,7 +114,8 @@ class file_run {
   void take(bytes data, std::int64_t arrival_ns) {
     // Before a scan runs, silence is not a stall; only recordings show how long it lasted.
     const bool follows = is_judging_ && arrival_ns > 0 && arrival_ns_ > 0;
-    measured_.take(reading{data.size(), arrival_ns, follows ? arrival_ns - arrival_ns_ : 0});
+    measured_.take(reading{data.size(), arrival_ns,
+                           follows ? detail::saturating_sub(arrival_ns, arrival_ns_) : 0});
     arrival_ns_ = arrival_ns;
     layout_.take(data);
     splitter_.take(data, arrival_ns, to_);

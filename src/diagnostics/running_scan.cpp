@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "g4lidar/detail/saturating.hpp"
+
 namespace g4lidar {
 void running_scan::begin(bool is_device) {
   is_device_ = is_device;
@@ -47,7 +49,8 @@ void running_scan::enter(phase next) {
 }
 
 bool running_scan::is_current(std::int64_t now_ns) const noexcept {
-  return phase_ >= phase::speeds_up && now_ns - packet_ns_ < arrival_statistics::stall_ns;
+  return phase_ >= phase::speeds_up &&
+         detail::saturating_sub(now_ns, packet_ns_) < arrival_statistics::stall_ns;
 }
 
 void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns) {
@@ -72,7 +75,7 @@ void running_scan::sent(bytes data, std::int64_t now_ns, std::int64_t silence_ns
 void running_scan::received(const reading& what, bytes data) {
   reading known = what;
   if (!is_device_) {
-    known.silence_ns = time_ns_ > 0 ? what.arrival_ns - time_ns_ : 0;
+    known.silence_ns = time_ns_ > 0 ? detail::saturating_sub(what.arrival_ns, time_ns_) : 0;
     if (known.silence_ns >= pause_of_file_ns) enter(phase::starts);
   }
   time_ns_ = what.arrival_ns;
@@ -123,10 +126,10 @@ void running_scan::look() {
     if (phase_ == phase::speeds_up && is_steady) return enter(phase::runs);
   }
   if (phase_ == phase::speeds_up) {
-    if (time_ns_ >= begin_.phase_ns + spin_up_ns) enter(phase::runs);
+    if (time_ns_ >= detail::saturating_add(begin_.phase_ns, spin_up_ns)) enter(phase::runs);
     return;
   }
-  if (time_ns_ < begin_.stretch_ns + half_window_ns_) return;
+  if (time_ns_ < detail::saturating_add(begin_.stretch_ns, half_window_ns_)) return;
   earlier_ = measured_.next_stretch();
   looked_ = 0;
   begin_.window_ns = std::exchange(begin_.stretch_ns, time_ns_);

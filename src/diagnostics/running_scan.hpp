@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "g4lidar/core/command.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "link_monitor.hpp"
 #include "reply_statistics.hpp"
@@ -49,7 +50,7 @@ class running_scan {
   [[nodiscard]] stream_statistics window() const;
   /// Its length so far.
   [[nodiscard]] double seconds() const noexcept {
-    return static_cast<double>(time_ns_ - begin_.window_ns) / 1e9;
+    return static_cast<double>(detail::saturating_sub(time_ns_, begin_.window_ns)) / 1e9;
   }
   /// Whether the device has booted during a scan since the last call.
   [[nodiscard]] bool take_reboot() noexcept { return std::exchange(has_rebooted_, false); }

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "stages.hpp"
 
 namespace g4lidar {
@@ -90,12 +91,13 @@ running_state::copy running_state::take_copy() const {
             scan_.window(),
             scan_.known(),
             &scan_.which(),
-            found_.since(now_ns_ - window_ns_),
+            found_.since(detail::saturating_sub(now_ns_, window_ns_)),
             scan_.seconds(),
             baud_,
             {},
             name_};
-  if (lost_ && !found_.has(*lost_, now_ns_ - window_ns_)) made.found.push_back(*lost_);
+  if (lost_ && !found_.has(*lost_, detail::saturating_sub(now_ns_, window_ns_)))
+    made.found.push_back(*lost_);
   if (!name_.empty()) made.port.add("address", name_);
   if (reconnects_ > 0) made.port.add("reconnects", reconnects_);
   made.port.remark = why_lost_;

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/diagnostics/running_diagnosis.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
 #include "g4lidar/transport/transport.hpp"
@@ -118,7 +119,7 @@ class running_state {
     if (scan_.has_garbage()) found_.add(diagnosis::wrong_baud_rate, now_ns_);
     // Packets come again: it had ended by itself, or by a boot.
     if (scan_.now() >= running_scan::phase::speeds_up && std::exchange(is_restarted_, false) &&
-        !found_.has(diagnosis::reboots, now_ns_ - window_ns_)) {
+        !found_.has(diagnosis::reboots, detail::saturating_sub(now_ns_, window_ns_))) {
       found_.add(diagnosis::scan_ends, now_ns_);
     }
     if (lost_ && scan_.now() == running_scan::phase::runs) back();

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "core/time_limit.hpp"
 #include "live_run.hpp"
 
 namespace g4lidar {
@@ -178,7 +179,7 @@ live_run::fate live_run::fate_of_silent() {
 void live_run::measure_scan() {
   measured_.begin();
   const std::int64_t begin_ns = link_.now_ns();
-  std::int64_t until_ns = begin_ns + log_.options().measuring_time.count();
+  std::int64_t until_ns = begin_ns + limited_ns(log_.options().measuring_time);
   while (link_.now_ns() < until_ns) {
     const scan_state state = listen_once(measured_);
     if (state == scan_state::over) break;
@@ -231,7 +232,7 @@ bool live_run::restart_scan(std::int64_t& until_ns) {
     }
   }
   measured_.part();
-  until_ns = std::max(until_ns, link_.now_ns() + log_.options().measuring_time.count() / 2);
+  until_ns = std::max(until_ns, link_.now_ns() + limited_ns(log_.options().measuring_time) / 2);
   return true;
 }
 

@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "g4lidar/detail/saturating.hpp"
+
 namespace g4lidar {
 namespace {
 
@@ -122,7 +124,7 @@ void stream_statistics::take(const reading& observed) {
   tally_.arrivals.take(observed);
   if (std::max(observed.silence_ns, observed.host_pause_ns) < arrival_statistics::stall_ns) return;
   between_.is_unsure = true;
-  backlog_ns_ = observed.arrival_ns + backlog_time_ns;
+  backlog_ns_ = detail::saturating_add(observed.arrival_ns, backlog_time_ns);
 }
 
 void stream_statistics::take(const observed_event& observed) {
@@ -232,8 +234,9 @@ void stream_statistics::judge_bytes(std::size_t lost_packets) {
 
 // The angles show how many samples are missing, but not how many revolutions.
 void stream_statistics::measure_pace(const place& before, const place& now, std::size_t missing) {
-  const bool may_miss_revolutions = between_.is_unsure || now.arrival_ns < backlog_ns_ ||
-                                    now.arrival_ns - before.arrival_ns > pause_ns;
+  const bool may_miss_revolutions =
+      between_.is_unsure || now.arrival_ns < backlog_ns_ ||
+      detail::saturating_sub(now.arrival_ns, before.arrival_ns) > pause_ns;
   if (may_miss_revolutions && missing > 0) return tally_.pace.part();
   const std::size_t samples = now.samples + missing;
   if (now.arrival_ns != 0) tally_.pace.add(samples, now.arrival_ns);  // otherwise it is not known

@@ -6,6 +6,8 @@
 #include <limits>
 #include <variant>
 
+#include "g4lidar/detail/saturating.hpp"
+
 namespace g4lidar {
 namespace {
 
@@ -59,7 +61,8 @@ void stream_survey::take(const event& found, std::int64_t arrival_ns) {
 
 void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
   if (counts_.packets > 0)
-    longest_gap_ns_ = std::max(longest_gap_ns_, arrival_ns - last_packet_ns_);
+    longest_gap_ns_ =
+        std::max(longest_gap_ns_, detail::saturating_sub(arrival_ns, last_packet_ns_));
   last_packet_ns_ = arrival_ns;
   if (const auto fits = revolution_.add(packet)) ++crc_.at(*fits ? 1 : 0);
   static_cast<void>(reader_.add(packet));
@@ -103,7 +106,8 @@ void stream_survey::compare_intensities(packet_view packet) {
 }
 
 double stream_survey::per_second(std::uint64_t count) const noexcept {
-  const double seconds = static_cast<double>(last_zero_ns_ - first_zero_ns_) / 1e9;
+  const double seconds =
+      static_cast<double>(detail::saturating_sub(last_zero_ns_, first_zero_ns_)) / 1e9;
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 

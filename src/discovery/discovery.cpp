@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/time_limit.hpp"
 #include "g4lidar/transport/serial_port.hpp"
 #include "system_connector.hpp"
 
@@ -15,8 +16,7 @@ result<recognised_lidar> search_at(const port_info& port, const find_options& op
       serial_port::open(port.path, {.baud = options.baud != 0 ? options.baud : g4_model.bauds[0]});
   if (!opened) return tl::unexpected(opened.error());
   transport& to_device = **opened;
-  return search(to_device,
-                to_device.now_ns() + std::chrono::nanoseconds(options.probe_timeout).count(),
+  return search(to_device, to_device.now_ns() + limited_ns(options.probe_timeout),
                 {.baud = options.baud});
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "core/time_limit.hpp"
 #include "g4lidar/lidar.hpp"
 #include "scan_source.hpp"
 
@@ -92,9 +93,7 @@ class G4LIDAR_HIDDEN lidar::driver {
 /// The end of a call, by the clock of the timeouts of calls.
 [[nodiscard]] inline std::int64_t deadline_after_ns(const scan_source& of,
                                                     lidar::milliseconds timeout) noexcept {
-  constexpr lidar::milliseconds longest = std::chrono::hours(24 * 365);
-  timeout = std::clamp(timeout, lidar::milliseconds(0), longest);
-  return of.deadline_after_ns(std::chrono::nanoseconds(timeout).count());
+  return of.deadline_after_ns(limited_ns(timeout));
 }
 /// From now until such a time: 0 if it is over; milliseconds::max() for never_ns.
 [[nodiscard]] inline lidar::milliseconds time_until(const scan_source& of,

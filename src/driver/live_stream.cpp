@@ -4,7 +4,7 @@
 #include <chrono>
 #include <variant>
 
-#include "core/saturating.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "transport/port_holder.hpp"
 
 namespace g4lidar {
@@ -125,7 +125,7 @@ void live_stream::follow_delivery() {
 }
 
 void live_stream::begin_points() {
-  of_.motor.begin(saturating_add(now_ns(), spin_up::longest_ns), of_.pipeline.scans());
+  of_.motor.begin(detail::saturating_add(now_ns(), spin_up::longest_ns), of_.pipeline.scans());
   of_.pipeline.begin(sample_rate_hz_);
   record(recorded_event::kind::begun);
 }

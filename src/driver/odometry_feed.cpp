@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/reader.hpp"
 
 namespace g4lidar {
@@ -44,7 +45,7 @@ result<void> odometry_feed::load_recording(const std::string& path,
 }
 
 void odometry_feed::shift(std::int64_t shift_ns) {
-  for (stamped_odometry& each : all_) each.time_ns += shift_ns;
+  for (stamped_odometry& each : all_) each.time_ns = detail::saturating_add(each.time_ns, shift_ns);
 }
 
 void odometry_feed::follow(const sim::simulated_source* carried) {
@@ -56,14 +57,15 @@ void odometry_feed::follow(const sim::simulated_source* carried) {
 
 void odometry_feed::follow(player& played) {
   const std::int64_t before_ns = std::exchange(begin_ns_, played.begin_ns());
-  if (std::exchange(player_, &played) != nullptr) shift(begin_ns_ - before_ns);  // opened again
+  if (std::exchange(player_, &played) != nullptr)
+    shift(detail::saturating_sub(begin_ns_, before_ns));  // opened again
   has_begun_ = false;
 }
 
 void odometry_feed::follow_round(std::int64_t time_ns) {
   const std::int64_t begin_ns = player_->begin_ns();
-  if (begin_ns == begin_ns_ || time_ns < begin_ns - largest_age_ns) return;
-  shift(begin_ns - std::exchange(begin_ns_, begin_ns));
+  if (begin_ns == begin_ns_ || time_ns < detail::saturating_sub(begin_ns, largest_age_ns)) return;
+  shift(detail::saturating_sub(begin_ns, std::exchange(begin_ns_, begin_ns)));
   has_begun_ = false;
 }
 
@@ -71,7 +73,8 @@ void odometry_feed::follow(std::span<const point> points, const taker& take) {
   if (points.empty()) return;
   if (player_ != nullptr) follow_round(points.front().time_ns);
   const std::int64_t before_ns = std::exchange(points_ns_, points.front().time_ns);
-  if (points_ns_ < before_ns - least_way_back_ns) has_begun_ = false;  // a seek
+  if (points_ns_ < detail::saturating_sub(before_ns, least_way_back_ns))
+    has_begun_ = false;  // a seek
   if (all_.empty() && robot_) return follow_robot(points, take);
   if (all_.empty()) return;
   if (!std::exchange(has_begun_, true)) {

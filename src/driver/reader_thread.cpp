@@ -6,6 +6,8 @@
 #include <system_error>
 #include <utility>
 
+#include "g4lidar/detail/saturating.hpp"
+
 namespace g4lidar {
 namespace {
 
@@ -94,7 +96,8 @@ void background_reader::thread::stop() noexcept {
 
 std::int64_t background_reader::thread::wall_ns(std::int64_t time_ns) noexcept {
   player* const file = played();
-  return file != nullptr ? file->wall_ns(time_ns) : time_ns + wall_.ahead().count();
+  return file != nullptr ? file->wall_ns(time_ns)
+                         : detail::saturating_add(time_ns, wall_.ahead().count());
 }
 
 void background_reader::thread::run() noexcept {

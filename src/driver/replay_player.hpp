@@ -37,7 +37,7 @@ class replay_player final : public scan_source {
   }
   [[nodiscard]] std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept override {
     return source_ != nullptr ? source_->deadline_after_ns(timeout_ns)
-                              : saturating_add(now_ns(), timeout_ns);
+                              : detail::saturating_add(now_ns(), timeout_ns);
   }
   [[nodiscard]] std::int64_t step_until_ns(std::int64_t deadline_ns) const noexcept override {
     return source_ != nullptr ? source_->recorded_ns(deadline_ns) : deadline_ns;

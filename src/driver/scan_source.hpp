@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "connection.hpp"
-#include "core/saturating.hpp"
 #include "event_queue.hpp"
 #include "g4lidar/core/session.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "point_pipeline.hpp"
@@ -83,7 +83,7 @@ class scan_source {
   [[nodiscard]] virtual std::int64_t caller_ns() const noexcept { return now_ns(); }
   /// The end of a call that waits for this time, by caller_ns().
   [[nodiscard]] virtual std::int64_t deadline_after_ns(std::int64_t timeout_ns) const noexcept {
-    return saturating_add(now_ns(), timeout_ns);
+    return detail::saturating_add(now_ns(), timeout_ns);
   }
   /// Such an end by the clock of step(), as it goes now.
   [[nodiscard]] virtual std::int64_t step_until_ns(std::int64_t deadline_ns) const noexcept {

@@ -12,6 +12,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/plausibility.hpp"
 #include "g4lidar/settings.hpp"
 
@@ -62,7 +63,8 @@ class timed_decoder {
   /// same read, at `read_ns`. `lost` is set if samples were lost without skipped bytes.
   [[nodiscard]] decoded decode(packet_view packet, std::int64_t read_ns, std::size_t behind,
                                std::span<point, max_samples> out, bool& lost) noexcept {
-    const std::int64_t arrival_ns = read_ns - gathered_for_ns(packet, behind);
+    const std::int64_t arrival_ns =
+        detail::saturating_sub(read_ns, gathered_for_ns(packet, behind));
     decoded found = without_points(packet, revolutions_.count(packet));
     const packet_times times = clock_.stamp(found, arrival_ns);
     const bool fits = angles_.fits(packet);
@@ -76,7 +78,8 @@ class timed_decoder {
     samples_lost_ += static_cast<std::uint64_t>(times.lost);
     lost = times.lost > 0;
     if (last_packet_ns_ != 0) {
-      largest_gap_ns_ = std::max(largest_gap_ns_, arrival_ns - last_packet_ns_);
+      largest_gap_ns_ =
+          std::max(largest_gap_ns_, detail::saturating_sub(arrival_ns, last_packet_ns_));
     }
     last_packet_ns_ = arrival_ns;
     return found;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/filter.hpp"
 #include "g4lidar/wall_clock.hpp"
 
@@ -46,8 +47,9 @@ std::span<const point> shaping_writer::in_range(std::span<const point> points) {
   if (!has_limits || points.empty()) return points;
   if (!first_ns_) first_ns_ = points.front().time_ns;
   const auto find = [&points, first_ns = *first_ns_](auto begin, std::int64_t since_ns) {
-    return std::find_if(begin, points.end(),
-                        [&](const point& p) { return p.time_ns - first_ns >= since_ns; });
+    return std::find_if(begin, points.end(), [&](const point& p) {
+      return detail::saturating_sub(p.time_ns, first_ns) >= since_ns;
+    });
   };
   const auto begin = find(points.begin(), options_.from_ns);
   const auto end = find(begin, options_.to_ns);

@@ -13,7 +13,9 @@ namespace {
 /// Beyond this range, in millimetres, the circles are 5 m apart.
 constexpr float far_mm = 8000.0F;
 
-bool is_drawn(const point& p) noexcept { return !p.is_no_return() && !p.is_too_near(); }
+bool is_drawn(const point& p) noexcept {
+  return !p.is_no_return() && !p.is_too_near() && p.range_mm >= 0.0F && p.range_mm < 1e8F;
+}
 
 std::string centimetres(float metres) { return std::to_string(std::lround(metres * 100.0F)); }
 

@@ -109,7 +109,7 @@ std::optional<point> point_lines::point_of(const fields& found) {
   float angle_deg = 0.0F;
   float range = 0.0F;
   const bool has_angle = read_number(found.angle, angle_deg) && std::abs(angle_deg) <= 360.0F;
-  const bool has_range = read_number(found.range, range) && range >= 0.0F && range < 1e8F;
+  const bool has_range = read_number(found.range, range) && range >= 0.0F && range * mm_ < 1e8F;
   constexpr std::uint8_t most_flags = 3;
   const auto is_bad = [this](std::string_view column, bool bad) {
     if (bad) bad_column_ = column;

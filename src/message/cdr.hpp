@@ -2,9 +2,11 @@
 // Messages in CDR, little-endian: the encoding of ROS 2 messages. (OMG DDSI-RTPS, section 10)
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -57,8 +59,12 @@ class cdr_writer {
 inline void put_time(cdr_writer& message, std::int64_t time_ns) {
   constexpr std::int64_t second_ns = 1'000'000'000;
   // The nanoseconds count from the previous second, also before 1970.
-  const std::int64_t rest_ns = (time_ns % second_ns + second_ns) % second_ns;
-  message.put(static_cast<std::int32_t>((time_ns - rest_ns) / second_ns));
+  const std::int64_t left_ns = time_ns % second_ns;
+  const std::int64_t rest_ns = left_ns < 0 ? left_ns + second_ns : left_ns;
+  const std::int64_t seconds = time_ns / second_ns - (left_ns < 0 ? 1 : 0);
+  using limits = std::numeric_limits<std::int32_t>;
+  message.put(
+      static_cast<std::int32_t>(std::clamp<std::int64_t>(seconds, limits::min(), limits::max())));
   message.put(static_cast<std::uint32_t>(rest_ns));
 }
 

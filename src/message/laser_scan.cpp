@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cdr.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/grid.hpp"
 #include "g4lidar/message/ros_messages.hpp"
 
@@ -23,7 +24,8 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
   float count = 0.0F;
   for (const point& p : points) {
     if (p.is_no_return()) continue;
-    const angle begun = angle::from_degrees(p.angle_deg - 360.0F * part_of(p.time_ns - begin_ns));
+    const angle begun = angle::from_degrees(
+        p.angle_deg - 360.0F * part_of(detail::saturating_sub(p.time_ns, begin_ns)));
     if (!first) first = begun;
     sum_deg += (begun - *first).signed_degrees();
     ++count;
@@ -35,7 +37,8 @@ std::size_t fill_time_grid(std::span<const point> points, std::int64_t duration_
   const auto is_in_time = [&](const point& p, std::size_t bin) {
     const float part =
         static_cast<float>((bin + bins - first_bin) % bins) / static_cast<float>(bins);
-    return duration_ns <= 0 || std::abs(part - part_of(p.time_ns - begin_ns)) < 0.5F;
+    const std::int64_t since_ns = detail::saturating_sub(p.time_ns, begin_ns);
+    return duration_ns <= 0 || std::abs(part - part_of(since_ns)) < 0.5F;
   };
   how.to = frame::vendor;
   fill_grid(points, ranges_m, how, is_in_time, intensities);
@@ -60,7 +63,8 @@ void fill_laser_scan(const scan& source, message_header& header, std::size_t bin
   header.intensities = intensities;
 }
 
-laser_scan_numbers numbers_of(const message_header& header, std::size_t bins) noexcept {
+laser_scan_numbers numbers_of(const message_header& header, std::size_t wanted_bins) noexcept {
+  const std::size_t bins = std::max<std::size_t>(wanted_bins, 1);
   constexpr float pi = std::numbers::pi_v<float>;
   const bool is_by_time = header.order == scan_order::time;
   const std::size_t first = is_by_time ? header.first_bin % bins : 0;

@@ -10,6 +10,7 @@
 
 #include "cdr.hpp"
 #include "g4lidar/cartesian.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "schema_text.hpp"
 
 namespace g4lidar {
@@ -173,7 +174,7 @@ void put_cloud_points(std::span<const point> points, const message_header& heade
   for (const point& p : points) {
     if (p.is_no_return()) continue;
     const xy_point place = to_xy(p, frame::robot, header.model->turn_deg);
-    const std::int64_t since_ns = p.time_ns - points.front().time_ns;
+    const std::int64_t since_ns = detail::saturating_sub(p.time_ns, points.front().time_ns);
     append(out, place.x_m);
     append(out, left * place.y_m);
     append(out, 0.0F);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "core/saturating.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/digest.hpp"
 
 namespace g4lidar {
@@ -44,11 +44,11 @@ class coverage {
 
   /// From the begin of the chunk to `time_ns`.
   [[nodiscard]] std::int64_t chunk_age_ns(std::int64_t time_ns) const noexcept {
-    return saturating_sub(time_ns, chunk_ns_);
+    return detail::saturating_sub(time_ns, chunk_ns_);
   }
   /// From the begin of the file to the end of the open chunk.
   [[nodiscard]] std::int64_t length_ns() const noexcept {
-    return saturating_sub(chunk_last_ns_, file_ns_);
+    return detail::saturating_sub(chunk_last_ns_, file_ns_);
   }
   /// Of what was written to the file.
   [[nodiscard]] const payload_digest& payload() const noexcept { return file_payload_; }

@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "core/saturating.hpp"
 #include "file_end.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "summary.hpp"
 
 namespace g4lidar {
@@ -217,7 +217,8 @@ std::optional<recorded_item> recording_reader::file_reader::advance() {
     if (item->time_ns >= to_ns_) {
       const bool is_odometry = item->what == recorded_item::kind::odometry;
       const bool has_odometry = channels_.has(topic::odometry);
-      is_over_ = !is_odometry && (!has_odometry || item->time_ns - to_ns_ >= late_ns);
+      is_over_ = !is_odometry &&
+                 (!has_odometry || detail::saturating_sub(item->time_ns, to_ns_) >= late_ns);
       if (is_over_) return std::nullopt;
       continue;
     }
@@ -295,7 +296,7 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
   if (is_from_device || is(topic::to_device)) {
     const auto found = mcap::recorded_bytes_from(record.rest());
     if (!found || !is_a_time(found->time_ns)) return std::nullopt;
-    wall_ahead_ns_ = wall_ns - found->time_ns;
+    wall_ahead_ns_ = detail::saturating_sub(wall_ns, found->time_ns);
     if (is_from_device && skips(sequence)) is_gap_ = true;
     const auto what =
         is_from_device ? recorded_item::kind::from_device : recorded_item::kind::to_device;
@@ -305,14 +306,14 @@ std::optional<recorded_item> recording_reader::file_reader::item_in(field_reader
     auto found = mcap::odometry_from(record.rest());
     if (!found || !wall_ahead_ns_) return std::nullopt;
     const std::int64_t stamp_ns = found->time_ns;
-    found->time_ns = saturating_sub(stamp_ns, *wall_ahead_ns_);
+    found->time_ns = detail::saturating_sub(stamp_ns, *wall_ahead_ns_);
     if (!is_a_time(stamp_ns) || !is_a_time(found->time_ns)) return std::nullopt;
     return recorded_item{recorded_item::kind::odometry, found->time_ns, stamp_ns, {}, {}, *found};
   }
   if (!is(topic::events)) return std::nullopt;
   const auto found = mcap::event_from(record.rest());
   if (!found || !is_a_time(found->time_ns)) return std::nullopt;
-  wall_ahead_ns_ = wall_ns - found->time_ns;
+  wall_ahead_ns_ = detail::saturating_sub(wall_ns, found->time_ns);
   return recorded_item{recorded_item::kind::other, found->time_ns, wall_ns, {}, *found};
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/saturating.hpp"
 #include "coverage.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/wall_clock.hpp"
 #include "mcap_file.hpp"
@@ -37,7 +37,7 @@ class wall_offset {
   [[nodiscard]] std::int64_t ahead_ns() const noexcept { return ahead_ns_; }
   /// The wall clock at this time of the transport.
   [[nodiscard]] std::int64_t at(std::int64_t time_ns) const noexcept {
-    return saturating_add(time_ns, ahead_ns_);
+    return detail::saturating_add(time_ns, ahead_ns_);
   }
 
  private:

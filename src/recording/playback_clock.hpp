@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/saturating.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "transport/fd_port.hpp"
 
 namespace g4lidar {
@@ -23,27 +23,29 @@ class playback_clock {
   [[nodiscard]] std::int64_t now_ns() const noexcept {
     if (is_paused_ || speed_ == 0) return now_ns_;
     const auto since = static_cast<double>(steady_now_ns() - begun_ns_) * speed_;
-    return std::max(now_ns_, saturating_add(begin_ns_, saturating_ns(since)));
+    return std::max(now_ns_,
+                    detail::saturating_add(begin_ns_, detail::saturated<std::int64_t>(since)));
   }
   /// When this clock will be `at_ns`, by the steady clock. While it is paused: when a wait of as long ends.
   [[nodiscard]] std::int64_t steady_ns(std::int64_t at_ns) const noexcept {
-    if (is_paused_) return saturating_add(steady_now_ns(), saturating_sub(at_ns, now_ns_));
-    const auto left = static_cast<double>(saturating_sub(at_ns, begin_ns_)) / speed_;
-    return saturating_add(begun_ns_, saturating_ns(std::max(left, 0.0)));
+    if (is_paused_)
+      return detail::saturating_add(steady_now_ns(), detail::saturating_sub(at_ns, now_ns_));
+    const auto left = static_cast<double>(detail::saturating_sub(at_ns, begin_ns_)) / speed_;
+    return detail::saturating_add(begun_ns_, detail::saturated<std::int64_t>(std::max(left, 0.0)));
   }
   /// The time that has passed for a caller, at all speeds: by the steady clock, and at speed 0 by this clock.
   [[nodiscard]] std::int64_t caller_ns() const noexcept {
     const std::int64_t since_ns =
-        is_free() ? saturating_sub(now_ns_, begin_ns_) : steady_now_ns() - begun_ns_;
-    return saturating_add(passed_ns_, since_ns);
+        is_free() ? detail::saturating_sub(now_ns_, begin_ns_) : steady_now_ns() - begun_ns_;
+    return detail::saturating_add(passed_ns_, since_ns);
   }
   /// The time of this clock when caller_ns() is `at_ns`, if neither changes; while it stands, after a wait
   /// of as long.
   [[nodiscard]] std::int64_t at_caller_ns(std::int64_t at_ns) const noexcept {
-    const std::int64_t left_ns = saturating_sub(at_ns, caller_ns());
-    if (is_paused_ || speed_ == 0) return saturating_add(now_ns_, left_ns);
+    const std::int64_t left_ns = detail::saturating_sub(at_ns, caller_ns());
+    if (is_paused_ || speed_ == 0) return detail::saturating_add(now_ns_, left_ns);
     const double time = std::ceil(static_cast<double>(left_ns) * speed_);
-    return saturating_add(now_ns(), saturating_ns(time));
+    return detail::saturating_add(now_ns(), detail::saturated<std::int64_t>(time));
   }
 
   /// It never goes back.

@@ -28,7 +28,7 @@ error bad(std::string_view what) noexcept { return {task::configuring, problem::
 
 /// The time of the clock at the beginning of what is played.
 std::int64_t begin_of(const item_source& from, std::int64_t from_ns) noexcept {
-  return saturating_add(from.first_ns(), std::max<std::int64_t>(from_ns, 0));
+  return detail::saturating_add(from.first_ns(), std::max<std::int64_t>(from_ns, 0));
 }
 
 }  // namespace
@@ -59,8 +59,8 @@ recorded_item* item_rounds::find_item() noexcept {
     if (is_cancelled_) static_cast<void>(waits_->take());
     if (read) item_ = *read;
     is_over_ = !item_ && !is_cancelled_;
-    if (item_) item_->time_ns = saturating_add(item_->time_ns, moved_ns_);
-    if (item_) item_->wall_ns = saturating_add(item_->wall_ns, moved_ns_);
+    if (item_) item_->time_ns = detail::saturating_add(item_->time_ns, moved_ns_);
+    if (item_) item_->wall_ns = detail::saturating_add(item_->wall_ns, moved_ns_);
   }
   if (!item_) return nullptr;
   if (item_->what != recorded_item::kind::odometry) last_ns_ = item_->time_ns;
@@ -73,7 +73,7 @@ result<std::optional<recorded_item>> item_rounds::begin_again() noexcept {
   if (auto moved = from_->seek(options_.from_ns); !moved) return tl::unexpected(moved.error());
   has_read_ = false;
   const std::int64_t begin = begin_of(*from_, options_.from_ns);
-  moved_ns_ = saturating_sub(saturating_add(last_ns_, loop_pause_ns), begin);
+  moved_ns_ = detail::saturating_sub(detail::saturating_add(last_ns_, loop_pause_ns), begin);
   recorded_item seam{recorded_item::kind::other, begin, begin, {}, {}};
   seam.other.what = recorded_event::kind::gap;
   return seam;
@@ -177,14 +177,15 @@ std::optional<recorded_event> played_file::next_event() noexcept {
 /// The time of raw bytes that are read as fast as possible passes by reading alone.
 std::int64_t played_file::deadline_after_ns(std::int64_t timeout_ns) const noexcept {
   const bool is_counted = clock_.is_free() && items_.source().recording() == nullptr;
-  return is_counted && timeout_ns > 0 ? never_ns : saturating_add(caller_ns(), timeout_ns);
+  return is_counted && timeout_ns > 0 ? never_ns : detail::saturating_add(caller_ns(), timeout_ns);
 }
 
 std::int64_t played_file::wait_for_next_ns() noexcept {
   if (clock_.is_free() || clock_.is_paused()) return 0;
   const recorded_item* const next = items_.peek();
   if (next == nullptr) return 0;
-  return std::max<std::int64_t>(clock_.steady_ns(next->time_ns) - steady_now_ns(), 0);
+  return std::max<std::int64_t>(
+      detail::saturating_sub(clock_.steady_ns(next->time_ns), steady_now_ns()), 0);
 }
 
 std::optional<std::int64_t> played_file::wall_ahead_ns() noexcept {
@@ -255,17 +256,17 @@ result<void> file_player::seek(std::int64_t position_ns) noexcept {
 
 std::int64_t file_player::begin_ns() noexcept { return of_.items().first_ns(); }
 std::int64_t file_player::position_ns() noexcept {
-  const std::int64_t since_ns = saturating_sub(of_.clock().now_ns(), begin_ns());
+  const std::int64_t since_ns = detail::saturating_sub(of_.clock().now_ns(), begin_ns());
   return std::clamp<std::int64_t>(since_ns, 0, length_ns());
 }
 
 std::int64_t file_player::length_ns() noexcept {
   item_source& from = of_.items().source();
-  return std::max<std::int64_t>(saturating_sub(from.last_ns(), from.first_ns()), 0);
+  return std::max<std::int64_t>(detail::saturating_sub(from.last_ns(), from.first_ns()), 0);
 }
 
 std::int64_t file_player::wall_ns(std::int64_t time_ns) noexcept {
-  return saturating_add(time_ns, of_.wall_ahead_ns().value_or(0));
+  return detail::saturating_add(time_ns, of_.wall_ahead_ns().value_or(0));
 }
 
 }  // namespace g4lidar

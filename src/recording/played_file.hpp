@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
-#include "core/saturating.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/player.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/recording/recorded_device.hpp"
@@ -74,7 +74,7 @@ class item_rounds {
   [[nodiscard]] std::string_view path() const noexcept { return path_; }
   /// The first time of the round.
   [[nodiscard]] std::int64_t first_ns() const noexcept {
-    return saturating_add(from_->first_ns(), moved_ns_);
+    return detail::saturating_add(from_->first_ns(), moved_ns_);
   }
 
  private:
@@ -167,7 +167,7 @@ class played_file final : public recorded_event_source {
   void set_handle(std::int64_t at_ns) noexcept;
   void set_handle_for_next() noexcept;
   void follow_wall_clock(const recorded_item& item) noexcept {
-    wall_ahead_ns_ = saturating_sub(item.wall_ns, item.time_ns);
+    wall_ahead_ns_ = detail::saturating_sub(item.wall_ns, item.time_ns);
   }
 
   item_rounds items_;

@@ -17,11 +17,11 @@
 #include <variant>
 #include <vector>
 
-#include "core/saturating.hpp"
 #include "format.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/recorded_event.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "played_file.hpp"
@@ -155,7 +155,7 @@ class counted_items final : public item_source {
         name_(std::move(name)),
         rate_hz_(sample_rate_hz),
         wall_ahead_ns_(wall_ns - file_begin_ns),
-        to_ns_(saturating_add(file_begin_ns, to_ns)),
+        to_ns_(detail::saturating_add(file_begin_ns, to_ns)),
         is_cancelled_(std::move(is_cancelled)),
         model_(found.which),
         is_usual_(found.is_usual()) {}
@@ -166,12 +166,15 @@ class counted_items final : public item_source {
       if (!piece) return tl::unexpected(piece.error());
       if (piece->empty() || now_ns_ >= to_ns_) return std::nullopt;
       if (now_ns_ < from_ns_) continue;
-      return recorded_item{
-          recorded_item::kind::from_device, now_ns_, now_ns_ + wall_ahead_ns_, *piece, {}};
+      return recorded_item{recorded_item::kind::from_device,
+                           now_ns_,
+                           detail::saturating_add(now_ns_, wall_ahead_ns_),
+                           *piece,
+                           {}};
     }
   }
   [[nodiscard]] result<void> seek(std::int64_t from_ns) noexcept override {
-    from_ns_ = saturating_add(file_begin_ns, from_ns);
+    from_ns_ = detail::saturating_add(file_begin_ns, from_ns);
     now_ns_ = file_begin_ns;
     read_ = 0;
     begin_ = parsed_ = end_ = 0;

@@ -8,9 +8,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "g4lidar/core/angle.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar::sim {
 namespace {
@@ -54,6 +56,10 @@ constexpr std::array<double, 6> atan_series{-1.0 / 3.0, 1.0 / 5.0,   -1.0 / 7.0,
 sin_cos sin_cos_deg(double degrees) noexcept {
   // The nearest multiple of 90 is subtracted exactly; the rest is at most 45.
   const double turned = degrees * (1.0 / 90.0);
+  if (!detail::fits<std::int64_t>(turned)) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {none, none};
+  }
   const auto quarter = static_cast<std::int64_t>(turned < 0.0 ? turned - 0.5 : turned + 0.5);
   const double x = (degrees - static_cast<double>(quarter) * 90.0) * radians_per_degree;
   const double x2 = x * x;
@@ -72,6 +78,7 @@ sin_cos sin_cos_deg(double degrees) noexcept {
 }
 
 double atan_deg(double x) noexcept {
+  if (x != x) return x;
   const double size = x < 0.0 ? -x : x;
   const bool steep = size > 1.0;
   const double y = steep ? 1.0 / size : size;

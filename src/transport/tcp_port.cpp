@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/time_limit.hpp"
 #include "fd_port.hpp"
 
 namespace g4lidar {
@@ -131,8 +132,7 @@ result<std::unique_ptr<transport>> open_connection(std::string_view address,
   }
   std::string name = "tcp:" + wanted->host + ":" + wanted->port;
   const address_list list = addresses_of(*wanted);
-  const std::int64_t deadline_ns =
-      steady_now_ns() + std::chrono::nanoseconds(options.connect_timeout).count();
+  const std::int64_t deadline_ns = steady_now_ns() + limited_ns(options.connect_timeout);
   auto waits = std::make_unique<waker>(calls);
   if (!waits->is_open()) return failure(task::opening, problem::system, "eventfd", errno);
   int refused = 0;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -34,10 +35,11 @@ namespace g4lidar {
   return lifted >= 360.0 ? lifted - 360.0 : lifted;
 }
 
-/// `degrees` wrapped into [0, 360), for any number of turns. *Pure.* Accepts any finite number
-/// below 1e15 in magnitude.
+/// `degrees` wrapped into [0, 360), for any number of turns; 0 for a number that has no direction: not a
+/// number, and 2^63 and more in magnitude. *Pure.*
 template <class Real>
 [[nodiscard]] constexpr Real wrap_deg(Real degrees) noexcept {
+  if (!detail::fits<std::int64_t>(degrees)) return Real(0);
   // Whole degrees are wrapped as an integer, so that large numbers lose no precision.
   const auto whole = static_cast<std::int64_t>(degrees);
   const Real fraction = degrees - static_cast<Real>(whole);
@@ -50,10 +52,16 @@ struct sine_cosine {
   float cosine;
 };
 
-/// Sine and cosine of `degrees` in [0, 360), without libm. *Pure.* Within 1.2e-7 of the true values.
+/// Sine and cosine of `degrees` in [0, 360), without libm. *Pure.* Within 1.2e-7 of the true values. Those
+/// of other numbers are less exact, and from 1e6 on any numbers.
 [[nodiscard]] constexpr sine_cosine sine_cosine_deg(float degrees) noexcept {
   // The nearest multiple of 90 is subtracted exactly; the rest, at most 45, goes into two series.
-  const auto quarter = static_cast<std::int32_t>(degrees * (1.0F / 90.0F) + 0.5F);
+  // At this height the last bit of a float has the value 1, so its bits have the integer; those of any
+  // number are one, without a branch.
+  constexpr float height = 0x1.8p23F;
+  const auto quarter =
+      static_cast<std::int32_t>(std::bit_cast<std::uint32_t>(degrees * (1.0F / 90.0F) + height) -
+                                std::bit_cast<std::uint32_t>(height));
   const float x =
       (degrees - static_cast<float>(quarter) * 90.0F) * (std::numbers::pi_v<float> / 180.0F);
   const float x2 = x * x;
@@ -80,11 +88,11 @@ class angle {
   /// 0 degrees.
   constexpr angle() noexcept = default;
 
-  /// Any finite number of degrees below 1e15 in magnitude.
+  /// Any number of degrees; see wrap_deg().
   [[nodiscard]] static constexpr angle from_degrees(float degrees) noexcept {
     return angle(wrap_deg(degrees));
   }
-  /// Any finite number of radians below 1e13 in magnitude.
+  /// Any number of radians.
   [[nodiscard]] static constexpr angle from_radians(float radians) noexcept {
     return angle(wrap_deg(radians * (180.0F / std::numbers::pi_v<float>)));
   }

@@ -35,8 +35,8 @@ inline constexpr double correction_zero_mm = 155.3;
 /// The correction of an infinitely distant target, in degrees: atan(-21.8 / 155.3).
 inline constexpr double far_correction_deg = no_return_correction_deg(correction_kind::triangle);
 
-/// The arctangent in degrees, without libm. *Pure.* Within 3e-14 degrees of the true value for any
-/// finite `x`.
+/// The arctangent in degrees, without libm. *Pure.* Within 3e-14 degrees of the true value; not a number
+/// for what is not a number.
 [[nodiscard]] constexpr double arctangent_deg(double x) noexcept {
   // atan(1 / x) = 90 - atan(x) reduces x to at most 1; the nearest eighth, whose arctangent is in a
   // table, reduces it to at most 1/16; for that a short series is exact enough.
@@ -49,6 +49,7 @@ inline constexpr double far_correction_deg = no_return_correction_deg(correction
                                               36.86989764584402129686,
                                               41.18592516570964580509,
                                               45.0};
+  if (x != x) return x;
   const double magnitude = x < 0.0 ? -x : x;
   const bool steep = magnitude > 1.0;
   const double slope = steep ? 1.0 / magnitude : magnitude;
@@ -104,7 +105,8 @@ struct compact_correction {
   [[nodiscard]] constexpr float operator()(std::int32_t raw,
                                            std::int32_t least = least_range_raw) const noexcept {
     // A sample without range counts as a very long range; a branch would prevent vectorization.
-    const auto sample = static_cast<float>(raw + ((raw - least) >> 31 & 1'000'000'000));
+    const std::uint32_t is_none = raw < least ? 0xFFFF'FFFFU : 0U;
+    const float sample = static_cast<float>(raw) + masked(is_none, 1e9F);
     const float t = (zero_raw - sample) / (below_0 + below_1 * sample);
     return centre_deg + t * arctangent_ratio(t * t);
   }

@@ -81,7 +81,7 @@ struct range_word {
 /// without a branch.
 template <sample_layout Layout = g4_layout>
 [[nodiscard]] constexpr point_flags flag_of(
-    std::uint16_t raw, std::int32_t shortest_mm = g4_model.range.min_mm) noexcept {
+    std::uint16_t raw, std::uint16_t shortest_mm = g4_model.range.min_mm) noexcept {
   static_assert(static_cast<int>(point_flags::too_near) - 1 ==
                 static_cast<int>(point_flags::no_return));
   using word = range_word<Layout>;

@@ -229,11 +229,13 @@ struct expected_rate {
 }
 
 /// The rotation frequency that a zero packet of a lidar like `which` means with `reported_dhz`, both in
-/// 0.1 Hz; 0, not reported, stays 0. *Pure.*
+/// 0.1 Hz; 0, not reported, stays 0, and more than a packet can report, 127, counts as that. *Pure.*
 template <class Number>
 [[nodiscard]] constexpr Number true_frequency_dhz(const model& which,
                                                   Number reported_dhz) noexcept {
-  return reported_dhz > 0 ? reported_dhz + which.frequency.ct_offset_dhz : Number{};
+  constexpr Number most = 127;
+  if (!(reported_dhz > 0)) return Number{};
+  return (reported_dhz < most ? reported_dhz : most) + which.frequency.ct_offset_dhz;
 }
 
 /// The most points of a revolution of `which`: four times those of its highest sample rate at its lowest

@@ -95,6 +95,7 @@ namespace detail {
   }
   if (have < 8) return {wire_state::incomplete, have + 1};
   const std::size_t size = packet_size(data[3], format.layout);
+  if (size > max_packet_size) return refused_at(3);
   if (have < size) return {wire_state::incomplete, size};
   const bool agrees = packet_checksum(data.first(size), format.layout) == load_u16(data, 8);
   return {agrees ? wire_state::valid : wire_state::bad_checksum, size};

@@ -3,6 +3,7 @@
 // constant rate.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,9 +15,11 @@ namespace g4lidar {
 /// accumulates. Valid for 292 years. *Single thread, never allocates.* (protocol: Point packets)
 class sample_clock {
  public:
-  /// `sample_rate_hz`: 1 to 10^9.
+  /// `sample_rate_hz`: 1 to 10^9; 0 counts as 1.
   explicit constexpr sample_clock(std::uint32_t sample_rate_hz) noexcept
-      : rate_(sample_rate_hz), step_(second / sample_rate_hz), rest_(second % sample_rate_hz) {}
+      : rate_(std::max(sample_rate_hz, std::uint32_t{1})),
+        step_(second / rate_),
+        rest_(second % rate_) {}
 
   /// The time of the next sample.
   [[nodiscard]] constexpr std::int64_t now_ns() const noexcept { return now_ns_; }

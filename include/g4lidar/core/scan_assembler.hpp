@@ -14,6 +14,7 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/point.hpp"
 #include "g4lidar/scan.hpp"
 
@@ -153,7 +154,8 @@ class scan_assembler {
   [[nodiscard]] static constexpr std::int32_t way(const decoded& packet, std::size_t from,
                                                   std::size_t to) noexcept {
     const auto before = [&](std::size_t i) {
-      return packet.span_64ths * static_cast<std::int32_t>(i) /
+      const std::size_t sample = std::min<std::size_t>(i, packet.sample_count);
+      return packet.span_64ths * static_cast<std::int32_t>(sample) /
              std::max(packet.sample_count - 1, 1);
     };
     return before(to) - before(from);
@@ -189,14 +191,15 @@ class scan_assembler {
   /// known, or less than half a turn.
   [[nodiscard]] constexpr std::int32_t way_by_time(const point& next) const noexcept {
     if (turn_ns_ == 0 || used_ == 0 || storage_[used_ - 1].time_ns == 0) return 0;
-    const std::int64_t taken = next.time_ns - storage_[used_ - 1].time_ns;
+    const std::int64_t taken = detail::saturating_sub(next.time_ns, storage_[used_ - 1].time_ns);
     if (taken <= turn_ns_ / 2) return 0;
     return static_cast<std::int32_t>(std::min(taken, 99 * turn_ns_) * turn / turn_ns_);
   }
 
   [[nodiscard]] constexpr std::optional<scan> fill(decoded& packet) noexcept {
     if (packet.points.empty()) return std::nullopt;
-    const std::size_t first = packet.sample_count - packet.points.size();  // not taken yet
+    const std::size_t left = packet.points.size();  // not taken yet
+    const std::size_t first = packet.sample_count > left ? packet.sample_count - left : 0;
     move_to(within_turn(packet.first_angle_64ths + way(packet, 0, first)), packet.points);
     take_loss();
     if (used_ == 0) first_turned_ = turned_;
@@ -279,7 +282,7 @@ class scan_assembler {
     scan_.turned_deg = static_cast<float>(end_64ths - first_turned_) / 64.0F;
     const std::int64_t from = scan_.time_ns();
     if (from != 0 && behind != nullptr && behind->time_ns > from) {
-      scan_.duration_ns = behind->time_ns - from;
+      scan_.duration_ns = detail::saturating_sub(behind->time_ns, from);
       const std::int64_t turned = end_64ths - first_turned_;
       const bool is_turning = turned > turn / 2 && scan_.duration_ns < 10'000'000'000;
       if (is_turning) turn_ns_ = scan_.duration_ns * turn / turned;

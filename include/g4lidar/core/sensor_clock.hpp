@@ -3,63 +3,32 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "g4lidar/core/clock/arrival_window.hpp"
 #include "g4lidar/core/clock/late_packets.hpp"
+#include "g4lidar/core/clock/packet_times.hpp"
 #include "g4lidar/core/clock/sample_counter.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
-#include "g4lidar/point.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
-/// What a sensor_clock cannot determine by itself.
+/// What a sensor_clock cannot determine by itself. A number out of range counts as the nearest one.
 struct sensor_clock_options {
-  double sample_rate_hz = g4_model.rates.nominal_hz;  ///< Nominal, above 0.
+  double sample_rate_hz = g4_model.rates.nominal_hz;  ///< Nominal, 1 to 10^9.
   /// How far the true time between two samples may be from the nominal one, as a fraction of it, below
   /// 0.5. See expected_rate_of().
   double rate_tolerance = 0.04;
-  std::int64_t transport_delay_ns =
-      0;  ///< The least delay of every byte after the serial connection.
+  /// The least delay of every byte after the serial connection, within 30 years of 0.
+  std::int64_t transport_delay_ns = 0;
   /// Bits per second, 10 bits per byte; 0: bytes take no time.
   std::uint32_t baud = g4_model.bauds[0];
   sample_layout layout = g4_layout;  ///< Of the packets.
-};
-
-/// The measurement times of the samples of one packet.
-struct packet_times {
-  std::int64_t first_ns = 0;  ///< Of the first sample.
-  double step_ns = 0.0;       ///< From each sample to the next.
-  std::int64_t bound_ns = 0;  ///< The greatest possible difference of these times from the truth.
-  std::int64_t lost = 0;      ///< Samples that were lost before this packet.
-
-  /// The time of sample `i`.
-  [[nodiscard]] constexpr std::int64_t at(std::size_t i) const noexcept {
-    return first_ns + ((static_cast<std::int64_t>(i) * step_fixed()) >> fraction_bits);
-  }
-  /// Writes the times to all points of the packet.
-  constexpr void write_to(std::span<point> points) const noexcept {
-    const std::int64_t step = step_fixed();
-    std::int64_t way = 0;
-#pragma GCC unroll 8
-    for (point& p : points) {
-      p.time_ns = first_ns + (way >> fraction_bits);
-      way += step;
-    }
-  }
-
- private:
-  /// A step of a second, 80 times, fits with so many bits behind the point.
-  static constexpr int fraction_bits = 20;
-  [[nodiscard]] constexpr std::int64_t step_fixed() const noexcept {
-    return static_cast<std::int64_t>(step_ns * (1 << fraction_bits));
-  }
 };
 
 /// Estimates when samples were measured. *Single thread, never allocates, never waits*: bounded
@@ -70,21 +39,24 @@ struct packet_times {
 /// it is an option. `docs/design/sensor_clock.md` has the accuracy and the reasons.
 class sensor_clock {
  public:
-  /// An option out of range is an assertion.
+  /// At the beginning of a stream.
   explicit constexpr sensor_clock(const sensor_clock_options& options = {}) noexcept
       : options_(options),
         sample_size_(sample_size(options.layout)),
-        nominal_ns_(1e9 / options.sample_rate_hz),
+        nominal_ns_(period_ns_of(options.sample_rate_hz)),
         window_(nominal_ns_) {
-    assert(options.sample_rate_hz > 0.0 && options.rate_tolerance < 0.5);
+    options_.rate_tolerance = possible_tolerance(options.rate_tolerance);
+    options_.transport_delay_ns = possible_ns(options.transport_delay_ns, most_ns / 2);
     line_.period_ns = nominal_ns_;
     restart();
   }
 
   /// The times of the samples of `packet`, whose last byte arrived at `arrival_ns` of a monotonic
-  /// clock, within 70 years of 0. Call it once for every packet, in order, also for suspect ones.
+  /// clock, within 70 years of 0; another time counts as the nearest one. Call it once for every
+  /// packet, in order, also for suspect ones.
   /// Times are strictly increasing, from sample to sample and from packet to packet, in all cases.
-  constexpr packet_times stamp(const decoded& packet, std::int64_t arrival_ns) noexcept {
+  constexpr packet_times stamp(const decoded& packet, std::int64_t arrived_ns) noexcept {
+    const std::int64_t arrival_ns = possible_ns(arrived_ns);
     const std::int64_t count = std::max<std::int64_t>(packet.sample_count, 1);
     const sample_gap gap = counter_.next(packet, hinted_, late_samples(count, arrival_ns));
     if (gap.lost > 0) part_.forget();  // bytes of a packet that never arrived
@@ -95,9 +67,12 @@ class sensor_clock {
     doubt(gap);
     const std::int64_t missed = observe({next_ - 1, before});
     packet_times times = times_until(std::min(line_.at(next_ - 1), before), count);
-    if (late_.is_late()) times.bound_ns += before - line_.at(next_ - 1);  // samples may be missing
+    if (late_.is_late()) {  // samples may be missing
+      times.bound_ns = detail::saturating_add(times.bound_ns,
+                                              detail::saturating_sub(before, line_.at(next_ - 1)));
+    }
     bound_ns_ = times.bound_ns;
-    times.lost = gap.lost + missed;
+    times.lost = detail::saturating_add(gap.lost, missed);
     return times;
   }
 
@@ -108,7 +83,7 @@ class sensor_clock {
   /// information as the arrival of a whole packet.
   constexpr void seen(std::size_t count, std::int64_t arrival_ns) noexcept {
     if (count < packet_header_size || count > max_packet_size) return;
-    part_.add(count, arrival_ns - line_time_ns(count));
+    part_.add(count, possible_ns(arrival_ns) - line_time_ns(count));
   }
 
   /// Packets were probably lost here: call it after each skip with a reason other than noise, of
@@ -130,11 +105,10 @@ class sensor_clock {
     part_.forget();
     restart();
   }
-  /// The same with another nominal sample rate, above 0, and its tolerance.
+  /// The same with another nominal sample rate and its tolerance; see sensor_clock_options.
   constexpr void reset(expected_rate rate) noexcept {
-    assert(rate.hz > 0.0 && rate.tolerance < 0.5);
-    options_.rate_tolerance = rate.tolerance;
-    nominal_ns_ = 1e9 / rate.hz;
+    options_.rate_tolerance = possible_tolerance(rate.tolerance);
+    nominal_ns_ = period_ns_of(rate.hz);
     line_.period_ns = nominal_ns_;
     window_ = arrival_window(nominal_ns_);
     rate_known_ = false;
@@ -151,6 +125,20 @@ class sensor_clock {
   [[nodiscard]] constexpr std::int64_t bound_ns() const noexcept { return bound_ns_; }
 
  private:
+  /// Within 70 years of 0: two such times have a sum and a difference.
+  static constexpr std::int64_t most_ns = std::int64_t{1} << 61;
+  [[nodiscard]] static constexpr std::int64_t possible_ns(std::int64_t time_ns,
+                                                          std::int64_t most = most_ns) noexcept {
+    return std::clamp(time_ns, -most, most);
+  }
+  [[nodiscard]] static constexpr double possible_tolerance(double tolerance) noexcept {
+    return tolerance >= 0.0 ? std::min(tolerance, 0.499) : 0.0;
+  }
+  /// The period of a rate.
+  [[nodiscard]] static constexpr double period_ns_of(double hz) noexcept {
+    return 1e9 / (hz >= 1.0 ? std::min(hz, 1e9) : 1.0);
+  }
+
   /// The received part of the next packet, and the limit that it gives for the times.
   class received_part {
    public:
@@ -171,37 +159,6 @@ class sensor_clock {
    private:
     std::size_t count_ = 0;
     std::int64_t before_ns_ = 0;
-  };
-
-  /// Times that increase from sample to sample and from packet to packet.
-  class increasing_times {
-   public:
-    /// The times of `count` samples of which the last one is at `last_ns`. If that is not after the
-    /// previous samples, the steps are shortened until it is; the bound is the delay that results.
-    [[nodiscard]] constexpr packet_times until(std::int64_t last_ns, std::int64_t count,
-                                               double period_ns) noexcept {
-      const double steps = static_cast<double>(count - 1);
-      const double shortest_ns = period_ns / 4.0;
-      const std::int64_t first_ns = last_ns - static_cast<std::int64_t>(steps * period_ns);
-      packet_times times;
-      times.first_ns = first_ns;
-      times.step_ns = period_ns;
-      if (any_) {
-        times.first_ns = std::max(first_ns, last_ns_ + static_cast<std::int64_t>(shortest_ns));
-      }
-      if (times.first_ns > first_ns && count > 1) {
-        const double fitting = static_cast<double>(last_ns - times.first_ns) / steps;
-        times.step_ns = std::max(shortest_ns, fitting);
-      }
-      any_ = true;
-      last_ns_ = times.at(static_cast<std::size_t>(count - 1));
-      times.bound_ns = times.first_ns - first_ns;
-      return times;
-    }
-
-   private:
-    bool any_ = false;
-    std::int64_t last_ns_ = 0;  // the time of the last sample
   };
 
   /// A stream whose packets are usually later than that is not live.
@@ -230,8 +187,10 @@ class sensor_clock {
   [[nodiscard]] constexpr double late_samples(std::int64_t count,
                                               std::int64_t arrival_ns) const noexcept {
     if (!started_ || skipped_bytes_ <= 0.0) return 0.0;
-    const std::int64_t expected = line_.at(next_ + count - 1) + options_.transport_delay_ns;
-    const double late = static_cast<double>(arrival_ns - expected) / line_.period_ns;
+    const std::int64_t expected =
+        detail::saturating_add(line_.at(next_ + count - 1), options_.transport_delay_ns);
+    const double late =
+        static_cast<double>(detail::saturating_sub(arrival_ns, expected)) / line_.period_ns;
     return late < skipped_bytes_ ? late : 0.0;  // at least two bytes per sample
   }
 
@@ -263,7 +222,9 @@ class sensor_clock {
 
   /// Updates the line. Returns how many samples must have been lost without being detected.
   constexpr std::int64_t observe(arrival next) noexcept {
-    double late = started_ ? static_cast<double>(next.time_ns - line_.at(next.sample)) : 0.0;
+    double late =
+        started_ ? static_cast<double>(detail::saturating_sub(next.time_ns, line_.at(next.sample)))
+                 : 0.0;
     std::int64_t missed = 0;
     const bool is_too_early = late < -early_ns && late < -3.0 * line_.bound_ns;
     if (is_too_early || stays_late(late, next)) {
@@ -284,6 +245,9 @@ class sensor_clock {
       slopes_ = {-widest(), widest()};
     }
     line_ = window_.fit(slopes_, mean_late_ns_);
+    // Impossible arrivals can have no line.
+    if (!(line_.period_ns > 0.0 && line_.period_ns < 4.0 * nominal_ns_))
+      line_.period_ns = nominal_ns_;
     return missed;
   }
 
@@ -292,10 +256,10 @@ class sensor_clock {
   [[nodiscard]] constexpr std::int64_t unseen_samples(double late) const noexcept {
     const double samples = late / line_.period_ns;
     const double step = counter_.step_64ths();
-    if (step <= 0.0) return static_cast<std::int64_t>(samples);
+    if (step <= 0.0) return detail::saturated<std::int64_t>(samples);
     const double of_turn = turn_64ths / step;
-    const auto turns = static_cast<std::int64_t>(samples / of_turn + 0.5);
-    return static_cast<std::int64_t>(static_cast<double>(turns) * of_turn + 0.5);
+    const auto turns = detail::saturated<std::int64_t>(samples / of_turn + 0.5);
+    return detail::saturated<std::int64_t>(static_cast<double>(turns) * of_turn + 0.5);
   }
 
   /// Whether packets have been too late for too long: then samples were lost without being counted.
@@ -318,7 +282,8 @@ class sensor_clock {
                                                    std::int64_t count) noexcept {
     packet_times times = times_.until(last_ns, count, line_.period_ns);
     const auto behind_ns = static_cast<double>(times.bound_ns);
-    times.bound_ns = static_cast<std::int64_t>(line_.bound_ns + behind_ns + doubt_ns_) + 1000;
+    times.bound_ns = detail::saturating_add(
+        detail::saturated<std::int64_t>(line_.bound_ns + behind_ns + doubt_ns_), 1000);
     doubt_ns_ *= 0.999;  // later arrivals reduce the doubt
     return times;
   }
@@ -334,7 +299,7 @@ class sensor_clock {
   std::int64_t arrival_ns_ = std::numeric_limits<std::int64_t>::min();
   received_part part_;
   late_packets late_;
-  increasing_times times_;
+  detail::increasing_times times_;
   std::int64_t in_time_ = 0;  // the last sample of a packet that was in time
   std::int64_t bound_ns_ = 0;
   double mean_late_ns_ = unknown_late_ns;

@@ -16,6 +16,7 @@
 #include "g4lidar/core/session/scan_supervisor.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -66,7 +67,7 @@ class session {
     if (is_busy()) return refusal::busy;
     const bool disturbs = wanted.what != request_kind::start && wanted.what != request_kind::stop;
     if (scanning_ && disturbs && how == while_scanning::refuse) return refusal::scanning;
-    request_.begin(wanted, now_ns + channel_.times().request_ns, *which_);
+    request_.begin(wanted, detail::saturating_add(now_ns, channel_.times().request_ns), *which_);
     starts_ = 0;
     watch_.forget_restarts();
     channel_.question().be_quick();

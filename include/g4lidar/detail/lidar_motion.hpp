@@ -11,6 +11,7 @@
 #include <span>
 
 #include "g4lidar/detail/point_block.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/motion.hpp"
 #include "g4lidar/point.hpp"
 
@@ -37,8 +38,8 @@ struct constant_motion {
     // At most 1 second and 0.02 radians from the first point, where the series of set_places() are exact.
     const double rate = twist.yaw_rad_per_s < 0.0 ? -twist.yaw_rad_per_s : twist.yaw_rad_per_s;
     const auto reach_ns = static_cast<std::int64_t>(rate > 0.02 ? 0.02e9 / rate : 1e9);
-    std::int64_t low_ns = std::max(first_ns, begin_ns - reach_ns);
-    std::int64_t high_ns = std::min(last_ns, begin_ns + reach_ns);
+    std::int64_t low_ns = std::max(first_ns, saturating_sub(begin_ns, reach_ns));
+    std::int64_t high_ns = std::min(last_ns, saturating_add(begin_ns, reach_ns));
     // 0 is no time.
     if (begin_ns > 0) low_ns = std::max<std::int64_t>(low_ns, 1);
     if (begin_ns < 0) high_ns = std::min<std::int64_t>(high_ns, -1);
@@ -51,7 +52,7 @@ struct constant_motion {
       block.load(count, p);
       block.since_ns[count] = static_cast<std::int32_t>(p.time_ns - begin_ns);
     }
-    const double seconds = static_cast<double>(begin_ns - start_ns) * 1e-9;
+    const double seconds = static_cast<double>(saturating_sub(begin_ns, start_ns)) * 1e-9;
     block.set_places(start * moved_by(twist, seconds), twist, count);
     return count;
   }
@@ -133,7 +134,7 @@ class motion_on_path {
   constexpr void enter(std::size_t index) noexcept {
     const stamped_pose& from = path_[index];
     const stamped_pose& to = path_[index + 1];
-    const double seconds = static_cast<double>(to.time_ns - from.time_ns) * 1e-9;
+    const double seconds = static_cast<double>(saturating_sub(to.time_ns, from.time_ns)) * 1e-9;
     const twist_2d robot =
         seconds > 0.0 ? twist_to(inverse(from.pose) * to.pose, seconds) : twist_2d{};
     piece_ = {places_.place(from.pose), places_.twist(robot), from.time_ns, from.time_ns,

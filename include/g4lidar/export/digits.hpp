@@ -90,7 +90,7 @@ class growing_number {
 };
 
 /// 10^`exponent`.
-[[nodiscard]] constexpr std::uint32_t power_of_ten(unsigned exponent) noexcept {
+[[nodiscard]] consteval std::uint32_t power_of_ten(unsigned exponent) noexcept {
   return exponent == 0 ? 1U : 10U * power_of_ten(exponent - 1);
 }
 

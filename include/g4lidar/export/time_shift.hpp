@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -40,9 +40,10 @@ class time_shift {
   }
   /// The time to write for the next record.
   [[nodiscard]] constexpr std::int64_t of(std::int64_t time_ns) noexcept {
-    if (style_ == time_style::zero) return begun_ ? difference(time_ns, before_ns_) : time_ns;
-    if (style_ != time_style::delta) return sum(time_ns, shift_ns_);
-    const std::int64_t since_ns = written_ ? difference(time_ns, before_ns_) : 0;
+    if (style_ == time_style::zero)
+      return begun_ ? detail::saturating_sub(time_ns, before_ns_) : time_ns;
+    if (style_ != time_style::delta) return detail::saturating_add(time_ns, shift_ns_);
+    const std::int64_t since_ns = written_ ? detail::saturating_sub(time_ns, before_ns_) : 0;
     written_ = true;
     before_ns_ = time_ns;
     return since_ns;
@@ -51,25 +52,12 @@ class time_shift {
   /// read at the same time, and written times should not jitter.
   constexpr void set_wall_ahead(std::int64_t wall_ahead_ns) noexcept {
     constexpr std::int64_t step_ns = 1'000'000;
-    const std::int64_t change_ns = difference(wall_ahead_ns, shift_ns_);
+    const std::int64_t change_ns = detail::saturating_sub(wall_ahead_ns, shift_ns_);
     if (style_ != time_style::absolute || (change_ns > -step_ns && change_ns < step_ns)) return;
     shift_ns_ = wall_ahead_ns;
   }
 
  private:
-  static constexpr std::int64_t end(bool is_least) noexcept {
-    using limits = std::numeric_limits<std::int64_t>;
-    return is_least ? limits::min() : limits::max();
-  }
-  static constexpr std::int64_t sum(std::int64_t a, std::int64_t b) noexcept {
-    std::int64_t made = 0;
-    return __builtin_add_overflow(a, b, &made) ? end(a < 0) : made;
-  }
-  static constexpr std::int64_t difference(std::int64_t a, std::int64_t b) noexcept {
-    std::int64_t made = 0;
-    return __builtin_sub_overflow(a, b, &made) ? end(a < 0) : made;
-  }
-
   time_style style_;
   bool begun_ = false;
   bool written_ = false;

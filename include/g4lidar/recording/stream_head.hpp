@@ -11,6 +11,7 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/layout_recogniser.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -38,7 +39,8 @@ struct recognised_model {
 class stream_head {
  public:
   /// Begins at `now_ns`, by any clock.
-  explicit stream_head(std::int64_t now_ns) noexcept : due_ns_(now_ns + longest_silence_ns) {}
+  explicit stream_head(std::int64_t now_ns) noexcept
+      : due_ns_(detail::saturating_add(now_ns, longest_silence_ns)) {}
 
   /// Adds bytes that were read at `now_ns`.
   void take(bytes data, std::int64_t now_ns) {
@@ -46,7 +48,7 @@ class stream_head {
     seen_.take(data);
     if (has_packet_ || !seen_.has_packet()) return;
     has_packet_ = true;
-    due_ns_ = now_ns + longest_wait_ns;
+    due_ns_ = detail::saturating_add(now_ns, longest_wait_ns);
   }
   /// The input has ended, or nobody waits any longer.
   void finish() noexcept {

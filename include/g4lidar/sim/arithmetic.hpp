@@ -12,11 +12,12 @@ struct sin_cos {
   double cosine;
 };
 
-/// Sine and cosine of `degrees`, any finite number below 1e9 in magnitude. *Pure.* Within 3e-16 of
-/// the true values; uses only + - * /, so that all IEEE 754 machines agree to the last bit.
+/// Sine and cosine of `degrees`, below 1e9 in magnitude. *Pure.* Within 3e-16 of the true values; uses only
+/// + - * /, so that all IEEE 754 machines agree to the last bit. Those of greater numbers are less exact; of
+/// what is not a number, and from 2^63 quarter turns on, they are not a number.
 [[nodiscard]] G4LIDAR_API sin_cos sin_cos_deg(double degrees) noexcept;
 
-/// The angle whose tangent is `x`, in degrees, -90 to 90. *Pure.* Accepts infinities, not NaN.
+/// The angle whose tangent is `x`, in degrees, -90 to 90; NaN for NaN. *Pure.* Accepts infinities.
 /// Within 3e-14 degrees of the true value (5e-16 radians); uses only + - * /.
 [[nodiscard]] G4LIDAR_API double atan_deg(double x) noexcept;
 

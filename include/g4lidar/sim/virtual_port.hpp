@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "g4lidar/detail/api.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/sim/device.hpp"
 #include "g4lidar/transport/connector.hpp"
@@ -31,7 +32,7 @@ class virtual_clock {
   void advance_to(std::int64_t at_ns) noexcept { now_ns_ = at_ns > now_ns_ ? at_ns : now_ns_; }
   /// A call was made.
   void tick() noexcept {
-    now_ns_ += tick_ns_;
+    now_ns_ = g4lidar::detail::saturating_add(now_ns_, tick_ns_);
     ++calls_;
   }
   /// For all ports and connectors.

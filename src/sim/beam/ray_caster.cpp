@@ -9,6 +9,7 @@
 
 #include "beam.hpp"
 #include "g4lidar/core/angle.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
@@ -48,9 +49,9 @@ ray_caster::ray_caster(const world& scene, const beam_shape& shape) : shape_(sha
     const double end = first + width - correction_deg(w.farthest, shape_) + margin;
     constexpr double per_degree = static_cast<double>(sectors) / 360.0;
     const bool all_round = w.distance < least_range_mm || end - begin >= 359.0;
-    const auto from = static_cast<std::size_t>((begin + 360.0) * per_degree);
+    const auto from = detail::saturated<std::size_t>((begin + 360.0) * per_degree);
     const auto to =
-        all_round ? from + sectors - 1 : static_cast<std::size_t>((end + 360.0) * per_degree);
+        all_round ? from + sectors - 1 : detail::saturated<std::size_t>((end + 360.0) * per_degree);
     for (std::size_t s = from; s <= to; ++s) seen_from[s % sectors].push_back(i);
   }
   sector_begin_.reserve(sectors + 1);
@@ -64,7 +65,7 @@ ray_caster::ray_caster(const world& scene, const beam_shape& shape) : shape_(sha
 std::optional<sighting> ray_caster::cast(double first_level_deg) const noexcept {
   constexpr double per_degree = static_cast<double>(sectors) / 360.0;
   const std::size_t sector =
-      std::min(static_cast<std::size_t>(first_level_deg * per_degree), sectors - 1);
+      std::min(detail::saturated<std::size_t>(first_level_deg * per_degree), sectors - 1);
   wall_search search(first_level_deg, shape_);
   for (std::uint32_t i = sector_begin_[sector]; i < sector_begin_[sector + 1]; ++i) {
     if (!search.take(walls_[candidates_[i]])) break;

@@ -11,6 +11,7 @@
 
 #include "g4lidar/core/angle.hpp"
 #include "g4lidar/core/response.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "packet_encoder.hpp"
 #include "sim/purpose.hpp"
 
@@ -36,7 +37,7 @@ std::uint64_t first_phase(const scanner_options& options) noexcept {
 // -1 to 1 and back in a minute, from 0 at time 0.
 double slow_wave(std::int64_t time_ns) noexcept {
   constexpr std::int64_t quarter = 15'000'000'000;
-  const std::int64_t at = (time_ns + quarter) % (4 * quarter);
+  const std::int64_t at = (time_ns % (4 * quarter) + quarter) % (4 * quarter);
   const std::int64_t height = at < 2 * quarter ? at - quarter : 3 * quarter - at;
   return static_cast<double>(height) / static_cast<double>(quarter);
 }
@@ -45,7 +46,8 @@ double slow_wave(std::int64_t time_ns) noexcept {
 std::uint64_t true_rate_mhz(const scanner_options& options, std::int64_t time_ns) noexcept {
   const double drift = options.sample_rate_drift_ppm * 1e-6 * slow_wave(time_ns);
   const double nominal = 1000.0 * to_hz(options.sample_rate);
-  return static_cast<std::uint64_t>(nominal * options.sample_rate_ratio * (1.0 + drift) + 0.5);
+  const double rate_mhz = nominal * options.sample_rate_ratio * (1.0 + drift) + 0.5;
+  return std::max<std::uint64_t>(static_cast<std::uint64_t>(rate_mhz), 1);
 }
 
 // Walls reflect 0.3 to 0.9 of what a perfectly bright one does, and of that half comes back from 4 m.
@@ -145,8 +147,9 @@ void scanner::set_sample_rate(sample_rate rate) noexcept { options_.sample_rate 
 std::int64_t scanner::next_sample_ns() const noexcept {
   const std::uint64_t since = index_ - index_then_;
   constexpr std::uint64_t ns_by_mhz = 1'000'000'000'000;
-  return since_ns_ + static_cast<std::int64_t>(since / rate_mhz_ * ns_by_mhz +
-                                               since % rate_mhz_ * ns_by_mhz / rate_mhz_);
+  const std::uint64_t since_ns =
+      since / rate_mhz_ * ns_by_mhz + since % rate_mhz_ * ns_by_mhz / rate_mhz_;
+  return detail::saturating_add(since_ns_, static_cast<std::int64_t>(since_ns));
 }
 
 void scanner::resume(std::int64_t at_ns, std::uint64_t phase) noexcept {
@@ -214,10 +217,13 @@ sample_truth scanner::measure() noexcept {
 std::uint16_t scanner::raw_sample(double range_mm) noexcept {
   const double error = noise_.gaussian();
   const bool dropped = dropouts_.uniform() < options_.dropout_ratio;
-  if (dropped || range_mm < options_.min_range_mm || range_mm > options_.max_range_mm) return 0;
+  const auto is_seen = [this](double mm) {
+    return mm >= options_.min_range_mm && mm <= options_.max_range_mm;
+  };
+  if (dropped || !is_seen(range_mm)) return 0;
   const double spread = options_.noise_mm + options_.noise_ratio * range_mm;
   const double measured = range_mm + error * spread;
-  if (measured < options_.min_range_mm || measured > options_.max_range_mm) return 0;
+  if (!is_seen(measured)) return 0;
   return static_cast<std::uint16_t>(measured * options_.format.code.units_per_mm + 0.5);
 }
 

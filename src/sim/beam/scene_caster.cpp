@@ -13,6 +13,7 @@
 
 #include "beam.hpp"
 #include "g4lidar/core/angle.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
@@ -151,7 +152,7 @@ std::optional<sighting> scene_caster::cast(double first_level_deg, const pose& l
   for (std::uint32_t i = 0; i < discs_.size(); ++i) {
     const auto& [d, rounds_per_s] = discs_[i];
     const double rounds = static_cast<double>(time_ns) * 1e-9 * rounds_per_s;
-    const double round = rounds - static_cast<double>(static_cast<std::int64_t>(rounds));
+    const double round = rounds - static_cast<double>(detail::saturated<std::int64_t>(rounds));
     const double part = round < 0.5 ? 2.0 * round : 2.0 - 2.0 * round;
     const double x = d.x_m + part * (d.to_x_m - d.x_m);
     const double y = d.y_m + part * (d.to_y_m - d.y_m);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/sim/arithmetic.hpp"
 #include "sim/purpose.hpp"
 
@@ -20,7 +21,8 @@ constexpr double radians_of_degree = std::numbers::pi / 180.0;
 bool is_within(double x, double least, double most) noexcept { return x >= least && x <= most; }
 
 double wrapped_rad(double degrees) noexcept {
-  const auto turns = static_cast<std::int64_t>(degrees / 360.0 + (degrees < 0.0 ? -0.5 : 0.5));
+  const auto turns =
+      detail::saturated<std::int64_t>(degrees / 360.0 + (degrees < 0.0 ? -0.5 : 0.5));
   return (degrees - 360.0 * static_cast<double>(turns)) * radians_of_degree;
 }
 
@@ -55,7 +57,8 @@ odometry::odometry(const world& scene, const odometry_options& options)
 }
 
 std::int64_t odometry::next_ns() const noexcept {
-  return static_cast<std::int64_t>(static_cast<double>(index_) * (1e9 / options_.rate_hz) + 0.5);
+  return detail::saturated<std::int64_t>(static_cast<double>(index_) * (1e9 / options_.rate_hz) +
+                                         0.5);
 }
 
 odometry_sample odometry::next() noexcept {

@@ -10,6 +10,7 @@
 #include <array>
 #include <cassert>
 
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/sim/arithmetic.hpp"
 
 namespace g4lidar::sim {
@@ -18,7 +19,7 @@ namespace {
 constexpr std::array pose_numbers{&pose::x_m, &pose::y_m, &pose::heading_deg};
 
 double seconds_between(const path_point& from, const path_point& to) noexcept {
-  return static_cast<double>(to.time_ns - from.time_ns) * 1e-9;
+  return static_cast<double>(detail::saturating_sub(to.time_ns, from.time_ns)) * 1e-9;
 }
 
 }  // namespace
@@ -54,7 +55,8 @@ moving_pose robot_at(std::span<const path_point> path, std::int64_t time_ns) noe
   const path_point& from = *(next - 1);
   const path_point& to = *next;
   const double whole_s = seconds_between(from, to);
-  const double s = static_cast<double>(time_ns - from.time_ns) * 1e-9 / whole_s;
+  const double s =
+      static_cast<double>(detail::saturating_sub(time_ns, from.time_ns)) * 1e-9 / whole_s;
   moving_pose robot;
   for (const auto coordinate : pose_numbers) {
     // A robot that stands has exactly the same pose at all times.

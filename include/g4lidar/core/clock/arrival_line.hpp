@@ -11,10 +11,11 @@
 
 namespace g4lidar {
 
-/// e^-t for t >= 0, without libm. *Pure.* Within 1e-9 of the true value.
+/// e^-t for t >= 0, without libm. *Pure.* Within 1e-9 of the true value; 1 for a negative one.
 [[nodiscard]] constexpr double exp_minus(double t) noexcept {
   constexpr double ln_2 = 0.69314718055994531;
   if (!(t < 600.0)) return 0.0;
+  if (t < 0.0) return 1.0;
   const auto halvings = static_cast<std::int64_t>(t / ln_2);
   const double rest = t - static_cast<double>(halvings) * ln_2;
   double series = 1.0;

@@ -8,10 +8,11 @@
 #include <cstdint>
 
 #include "g4lidar/core/clock/arrival_line.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
-/// A sample, counted from the start, and a time before which it was measured.
+/// A sample, counted from the start, and a time before which it was measured: both within 2^62 of 0.
 struct arrival {
   std::int64_t sample = 0;
   std::int64_t time_ns = 0;
@@ -26,8 +27,9 @@ struct sampling_line {
 
   /// The time of `sample`.
   [[nodiscard]] constexpr std::int64_t at(std::int64_t sample) const noexcept {
-    return anchor.time_ns +
-           static_cast<std::int64_t>(static_cast<double>(sample - anchor.sample) * period_ns);
+    const std::int64_t samples = detail::wrapping_sub(sample, anchor.sample);
+    return detail::wrapping_add(
+        anchor.time_ns, detail::saturated<std::int64_t>(static_cast<double>(samples) * period_ns));
   }
 };
 
@@ -49,13 +51,13 @@ class arrival_window {
   /// Forgets all arrivals.
   constexpr void clear() noexcept {
     size_ = 0;
-    block_ = static_cast<std::int64_t>(first_block_ns / nominal_ns_);
+    block_ = detail::saturated<std::int64_t>(first_block_ns / nominal_ns_);
   }
 
   /// Adds an arrival; samples never decrease. Returns whether it began a block. `period_ns` decides
   /// which of two arrivals is earlier.
   constexpr bool add(arrival next, double period_ns) noexcept {
-    if (size_ > 0 && next.sample < block_start_ + block_) {
+    if (size_ > 0 && next.sample < detail::wrapping_add(block_start_, block_)) {
       if (is_below(next, blocks_[size_ - 1], period_ns)) blocks_[size_ - 1] = next;
       return false;
     }
@@ -68,7 +70,7 @@ class arrival_window {
   /// From the first to the last arrival, with the nominal period.
   [[nodiscard]] constexpr double span_ns() const noexcept {
     if (size_ == 0) return 0.0;
-    return static_cast<double>(blocks_[size_ - 1].sample - blocks_[0].sample) * nominal_ns_;
+    return way(blocks_[0].sample, blocks_[size_ - 1].sample) * nominal_ns_;
   }
 
   /// The line; at least one arrival is required. `mean_late_ns`, above 0: the mean delay of
@@ -82,8 +84,8 @@ class arrival_window {
     for (int halvings = 0; halvings < 3 && wanted >= 16; ++halvings) wanted = (wanted + 1) / 2;
     for (std::size_t taken = 1; taken <= end; ++taken) {
       const arrival next = blocks_[end - taken];
-      const double x = static_cast<double>(next.sample - newest.sample) * nominal_ns_;
-      points.add_left(x, static_cast<double>(next.time_ns - newest.time_ns) - x);
+      const double x = way(newest.sample, next.sample) * nominal_ns_;
+      points.add_left(x, way(newest.time_ns, next.time_ns) - x);
       if (taken < std::min(wanted, end)) continue;
       candidate& c = found.all[found.count++];
       c.line = points.estimate(within.lowest, within.highest, mean_late_ns);
@@ -116,9 +118,11 @@ class arrival_window {
     std::size_t count = 0;
   };
 
+  [[nodiscard]] static constexpr double way(std::int64_t from, std::int64_t to) noexcept {
+    return static_cast<double>(detail::wrapping_sub(to, from));
+  }
   [[nodiscard]] static constexpr bool is_below(arrival a, arrival b, double period_ns) noexcept {
-    return static_cast<double>(a.time_ns - b.time_ns) <=
-           static_cast<double>(a.sample - b.sample) * period_ns;
+    return way(b.time_ns, a.time_ns) <= way(b.sample, a.sample) * period_ns;
   }
 
   constexpr void make_room(double period_ns) noexcept {
@@ -133,7 +137,7 @@ class arrival_window {
       blocks_[i] = is_below(right, left, period_ns) ? right : left;
     }
     size_ = most / 2;
-    block_ *= 2;
+    block_ = detail::wrapping_add(block_, block_);
   }
 
   /// The error of a line at its end if the rate changes by `drift`.
@@ -168,7 +172,9 @@ class arrival_window {
       const double cost = noise * noise + bend * bend + veil * veil;
       if (cost >= least) continue;
       least = cost;
-      result.anchor = {newest.sample, newest.time_ns + static_cast<std::int64_t>(c.line.offset)};
+      result.anchor = {
+          newest.sample,
+          detail::wrapping_add(newest.time_ns, detail::saturated<std::int64_t>(c.line.offset))};
       result.period_ns = nominal_ns_ * (1.0 + c.line.slope);
       result.bound_ns = deviations * noise + sag(c, usual_drift) + std::min(hidden / longest, 10e6);
       result.mean_delay_ns = c.line.mean_delay;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "g4lidar/detail/cpp20.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -38,8 +39,9 @@ class late_packets {
       since_ns_ = steady_since_ns_ = time_ns;
     }
     if (delay_ns > least_ns_ + late_ns) steady_since_ns_ = time_ns;
-    const auto late_for_ns = static_cast<double>(time_ns - since_ns_);
-    const auto steady_for_ns = static_cast<double>(time_ns - steady_since_ns_);
+    const auto late_for_ns = static_cast<double>(detail::saturating_sub(time_ns, since_ns_));
+    const auto steady_for_ns =
+        static_cast<double>(detail::saturating_sub(time_ns, steady_since_ns_));
     return (is_torn_ && steady_for_ns > all_late_ns) || late_for_ns > surely_late_ns;
   }
 

@@ -83,7 +83,8 @@ class sample_counter {
     const double least = 0.5 + (hinted ? 0.0 : std::max(4.0 * roughness_, 1.0 / step));
     if (missed < least && late_samples < of_turn / 2) return {};
     // The delay may be a little less than the truth, or as long as bytes are held back.
-    const double turns = std::clamp((late_samples - missed) / of_turn + 0.3, 0.0, most_turns);
+    const double late_turns = (late_samples - missed) / of_turn + 0.3;
+    const double turns = std::min(std::max(0.0, late_turns), most_turns);  // not a number: 0
     const double whole_turns = of_turn * static_cast<double>(static_cast<std::int64_t>(turns));
     const double all = std::max(missed + whole_turns, 0.0);
     const double doubt = roughness_ + (step_doubt + step_drift * all) * all;

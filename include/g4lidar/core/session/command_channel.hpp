@@ -14,6 +14,7 @@
 #include "g4lidar/core/session/pending_command.hpp"
 #include "g4lidar/core/session_times.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/detail/saturating.hpp"
 
 namespace g4lidar {
 
@@ -57,12 +58,12 @@ class command_channel {
   /// Starts the scan: ends with running or not_started.
   constexpr void start(std::int64_t now_ns) noexcept {
     send(command::start);
-    enter(act::starting, now_ns + times_.start_ns);
+    enter(act::starting, detail::saturating_add(now_ns, times_.start_ns));
   }
   /// Restarts the device: ends with restarted or silent.
   constexpr void restart(std::int64_t now_ns) noexcept {
     is_old_ = false;
-    boot_until_ns_ = now_ns + times_.boot_ns;
+    boot_until_ns_ = detail::saturating_add(now_ns, times_.boot_ns);
     await_boot(command::restart, now_ns);
   }
   /// Ends the operation.
@@ -94,7 +95,8 @@ class command_channel {
     if (now_ns < next_look_ns()) return channel_state::going_on;
     switch (act_) {
       case act::draining:
-        if (now_ns >= heard_ns_ + times_.quiet_ns) return channel_state::quiet;
+        if (now_ns >= detail::saturating_add(heard_ns_, times_.quiet_ns))
+          return channel_state::quiet;
         if (drains_ == max_drains)
           return has_packets_ ? channel_state::streaming : channel_state::quiet;
         send_stop(now_ns);
@@ -122,9 +124,12 @@ class command_channel {
       case act::none:
         return std::numeric_limits<std::int64_t>::max();
       case act::draining:
-        return std::min(heard_ns_ + times_.quiet_ns, deadline_ns_);
+        return std::min(detail::saturating_add(heard_ns_, times_.quiet_ns), deadline_ns_);
       case act::booting:
-        if (has_signs_) return std::min(heard_ns_ + 2 * times_.quiet_ns, boot_until_ns_);
+        if (has_signs_)
+          return std::min(
+              detail::saturating_add(heard_ns_, detail::saturating_twice(times_.quiet_ns)),
+              boot_until_ns_);
         break;
       default:
         break;
@@ -163,28 +168,30 @@ class command_channel {
     has_packets_ = false;
     heard_ns_ = now_ns;
     send_stop();
-    enter(act::draining, now_ns + times_.drain_ns);
+    enter(act::draining, detail::saturating_add(now_ns, times_.drain_ns));
   }
   /// A device that may be booting gets more time for its first answer, and a device whose last
   /// answer was slow for each answer.
   constexpr void send_question(std::int64_t now_ns) noexcept {
     send(question_.code_to_send());
-    std::int64_t wait_ns = question_.patience() * times_.answer_ns;
+    std::int64_t wait_ns = times_.answer_ns;
+    if (question_.is_patient()) wait_ns = detail::saturating_twice(wait_ns);
     if (is_slow_ || (is_new_ && !question_.is_clearing())) {
       wait_ns = std::max(wait_ns, times_.first_answer_ns);
     }
-    slow_from_ns_ = now_ns + times_.answer_ns;
-    enter(act::asking, now_ns + wait_ns);
+    slow_from_ns_ = detail::saturating_add(now_ns, times_.answer_ns);
+    enter(act::asking, detail::saturating_add(now_ns, wait_ns));
   }
   constexpr void await_boot(command code, std::int64_t now_ns) noexcept {
     is_old_ = code == command::restart_old;
     has_signs_ = false;
     send(code);
-    enter(act::booting, now_ns + times_.boot_sign_ns);
+    enter(act::booting, detail::saturating_add(now_ns, times_.boot_sign_ns));
   }
   constexpr void probe(std::int64_t now_ns) noexcept {
     send(command::device_info);
-    enter(act::probing, now_ns + std::max(times_.answer_ns, times_.first_answer_ns));
+    enter(act::probing,
+          detail::saturating_add(now_ns, std::max(times_.answer_ns, times_.first_answer_ns)));
   }
 
   constexpr channel_state on_question(question_state now, std::int64_t now_ns) noexcept {

@@ -107,10 +107,10 @@ class pending_command {
   [[nodiscard]] constexpr command code_to_send() const noexcept { return sent_; }
   /// Whether the link is being cleared.
   [[nodiscard]] constexpr bool is_clearing() const noexcept { return is_clearing_; }
-  /// The wait, in multiples of the usual time: after a loss the device may be slow.
-  [[nodiscard]] constexpr int patience() const noexcept {
+  /// Whether to wait twice the usual time: after a loss the device may be slow.
+  [[nodiscard]] constexpr bool is_patient() const noexcept {
     const bool is_last = is_clearing_ && clears_ == max_clears;
-    return is_last || (is_slow_ && !is_clearing_) ? 2 : 1;
+    return is_last || (is_slow_ && !is_clearing_);
   }
 
  private:

@@ -11,6 +11,7 @@
 #include "g4lidar/core/request.hpp"
 #include "g4lidar/core/response.hpp"
 #include "g4lidar/core/session_times.hpp"
+#include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/settings.hpp"
 
 namespace g4lidar {
@@ -66,7 +67,7 @@ class scan_supervisor {
   }
   /// From its start to its last packet, also for a scan that has ended; 0 if none has arrived.
   [[nodiscard]] constexpr std::int64_t length_ns() const noexcept {
-    return last_packet_ns_ - since_ns_;
+    return detail::saturating_sub(last_packet_ns_, since_ns_);
   }
   /// Forgets the restarts of a scan that is not wanted any more.
   constexpr void forget_restarts() noexcept { restarts_ = 0; }
@@ -94,29 +95,36 @@ class scan_supervisor {
 
   /// When look() is due, if no packet arrives.
   [[nodiscard]] constexpr std::int64_t next_look_ns(const session_times& times) const noexcept {
-    std::int64_t next = last_packet_ns_ + patience_ns(times);
-    if (is_unreported()) next = std::min(next, since_ns_ + times.spin_up_notice_ns);
-    return is_protected() ? std::min(next, last_start_ns_ + times.keep_alive_ns) : next;
+    std::int64_t next = detail::saturating_add(last_packet_ns_, patience_ns(times));
+    if (is_unreported())
+      next = std::min(next, detail::saturating_add(since_ns_, times.spin_up_notice_ns));
+    return is_protected()
+               ? std::min(next, detail::saturating_add(last_start_ns_, times.keep_alive_ns))
+               : next;
   }
 
   /// What to do now.
   [[nodiscard]] constexpr scan_need look(std::int64_t now_ns, const session_times& times) noexcept {
-    if (length_ns() >= 2 * times.protected_ns)
+    if (length_ns() >= detail::saturating_twice(times.protected_ns))
       restarts_ = 0;  // it ran long enough to forget earlier restarts
-    if (is_protected() && now_ns - last_start_ns_ > times.protected_ns) return scan_need::starved;
-    if (now_ns - last_packet_ns_ >= patience_ns(times)) return judge_end(times);
-    if (is_unreported() && now_ns - since_ns_ >= times.spin_up_notice_ns) {
+    if (is_protected() && detail::saturating_sub(now_ns, last_start_ns_) > times.protected_ns)
+      return scan_need::starved;
+    if (detail::saturating_sub(now_ns, last_packet_ns_) >= patience_ns(times))
+      return judge_end(times);
+    if (is_unreported() && detail::saturating_sub(now_ns, since_ns_) >= times.spin_up_notice_ns) {
       is_reported_ = true;
       return scan_need::spinning_up;
     }
-    const bool is_due = is_protected() && now_ns - last_start_ns_ >= times.keep_alive_ns;
+    const bool is_due =
+        is_protected() && detail::saturating_sub(now_ns, last_start_ns_) >= times.keep_alive_ns;
     return is_due ? scan_need::keep_alive : scan_need::nothing;
   }
 
   /// A scan header has arrived during the scan. After a pause it is the header of another scan.
   [[nodiscard]] constexpr scan_need header(std::int64_t now_ns,
                                            const session_times& times) noexcept {
-    const bool is_new = has_packets_ && now_ns - last_packet_ns_ >= 2 * times.quiet_ns;
+    const bool is_new = has_packets_ && detail::saturating_sub(now_ns, last_packet_ns_) >=
+                                            detail::saturating_twice(times.quiet_ns);
     return is_new ? judge_end(times) : scan_need::nothing;
   }
 
@@ -139,10 +147,10 @@ class scan_supervisor {
   [[nodiscard]] constexpr scan_need judge_end(const session_times& times) noexcept {
     if (restarts_ >= (has_packets_ ? max_restarts : max_silent_restarts)) return scan_need::give_up;
     ++restarts_;
-    const std::int64_t alone_ns = last_packet_ns_ - last_start_ns_;
+    const std::int64_t alone_ns = detail::saturating_sub(last_packet_ns_, last_start_ns_);
     const std::int64_t slack_ns = times.protected_ns / 6;
-    const bool is_starved =
-        alone_ns > times.protected_ns - slack_ns && alone_ns < times.protected_ns + slack_ns;
+    const bool is_starved = alone_ns > detail::saturating_sub(times.protected_ns, slack_ns) &&
+                            alone_ns < detail::saturating_add(times.protected_ns, slack_ns);
     // A protection in unknown state may have stopped the device before its first packet.
     is_assumed_ = !has_packets_ && !protection_;
     if (is_protected() || !is_starved) return scan_need::restart;

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// Extreme numbers in texts and files: each parser refuses them, or what it gives can be used.
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "g4lidar/export/mask.hpp"
+#include "g4lidar/export/odometry_text.hpp"
+#include "g4lidar/export/point_writer.hpp"
+#include "g4lidar/export/text_points.hpp"
+#include "g4lidar/filter_text.hpp"
+#include "g4lidar/lidar_parameters.hpp"
+#include "g4lidar/message/ros_messages.hpp"
+#include "g4lidar/setting_table.hpp"
+#include "g4lidar/sim/odometry.hpp"
+#include "g4lidar/sim/scene_caster.hpp"
+#include "g4lidar/sim/setup.hpp"
+#include "numbers.hpp"
+
+namespace {
+
+using namespace g4lidar;
+using namespace g4lidar::extreme;
+
+const std::vector<std::string> numbers{"0",
+                                       "-0",
+                                       "1",
+                                       "-1",
+                                       "0.5",
+                                       "1e-320",
+                                       "1e-45",
+                                       "1e30",
+                                       "-1e30",
+                                       "1e308",
+                                       "1e309",
+                                       "-1e400",
+                                       "nan",
+                                       "-nan",
+                                       "inf",
+                                       "-inf",
+                                       "infinity",
+                                       "255",
+                                       "256",
+                                       "65535",
+                                       "65536",
+                                       "2147483647",
+                                       "2147483648",
+                                       "-2147483648",
+                                       "4294967295",
+                                       "4294967296",
+                                       "9223372036854775807",
+                                       "9223372036854775808",
+                                       "-9223372036854775808",
+                                       "-9223372036854775809",
+                                       "18446744073709551615",
+                                       "18446744073709551616",
+                                       "99999999",
+                                       "100000000",
+                                       "99999.9999",
+                                       "1e5",
+                                       "0x7f",
+                                       "1e",
+                                       "360",
+                                       "359.99999",
+                                       "1000",
+                                       "1e3"};
+
+std::string any_number(test::dice& random) { return numbers[random.below(numbers.size())]; }
+
+std::string any_numbers(test::dice& random, std::size_t count, const std::string& between) {
+  std::string made = any_number(random);
+  while (count-- > 1) made += between + any_number(random);
+  return made;
+}
+
+TEST(ExtremeText, Points) {
+  std::string written;
+  callback_sink sink([&](std::string_view text) { written += text; });
+  many_times([&](test::dice& random) {
+    const bool is_csv = any<bool>(random);
+    const bool is_m = any<bool>(random);
+    const std::string unit = is_m ? "range_m" : "range_mm";
+    std::string text = is_csv ? "scan,angle_deg," + unit + ",time_ns,intensity,sample_flags\n" : "";
+    for (int i = 0; i < 3; ++i) {
+      text += is_csv ? any_numbers(random, 6, ",") + "\n"
+                     : R"({"scan":)" + any_number(random) + R"(,"angle_deg":)" +
+                           any_number(random) + ",\"" + unit + "\":" + any_number(random) +
+                           R"(,"time_ns":)" + any_number(random) + "}\n";
+    }
+    const auto writer = make_point_writer({.scans = any<bool>(random)});
+    text_points reader(is_csv ? text_source::csv : text_source::jsonl, any<frame>(random), *writer,
+                       sink);
+    reader.take(text);
+    reader.finish();
+    sink.flush();
+  });
+  // What a writer can write: see point_writer.
+  point_lines lines(text_source::jsonl, frame::vendor);
+  EXPECT_TRUE(lines.read(R"({"angle_deg":1,"range_m":99999})"));
+  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_m":100000})"));
+  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_m":99999999})"));
+  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_mm":1e8})"));
+  EXPECT_FALSE(lines.read(R"({"angle_deg":nan,"range_mm":1})"));
+  EXPECT_FALSE(lines.read(R"({"angle_deg":1,"range_mm":inf})"));
+}
+
+TEST(ExtremeText, MasksAndOdometry) {
+  many_times([](test::dice& random) {
+    use(parse_mask("polygon " + any_numbers(random, 6, " ")).index());
+    std::string text;
+    for (int i = 0; i < 3; ++i) text += any_numbers(random, 4, " ") + "\n";
+    const auto read = parse_odometry(text);
+    if (const auto* const path = std::get_if<std::vector<stamped_pose>>(&read)) {
+      use(pose_at(*path, any<std::int64_t>(random)));
+    }
+  });
+}
+
+TEST(ExtremeText, Worlds) {
+  many_times([](test::dice& random) {
+    std::string text = "lidar " +
+                       (random.below(2) == 0 ? any_numbers(random, 3, " ") : std::string("0 0 0")) +
+                       "\n";
+    text += "wall " +
+            (random.below(2) == 0 ? any_numbers(random, 4, " ") : std::string("1 0 1 1")) + "\n";
+    if (random.below(2) == 0) text += "disc " + any_numbers(random, 3, " ") + "\n";
+    if (random.below(2) == 0) text += "walker " + any_numbers(random, 6, " ") + "\n";
+    const auto read = sim::parse_world(text);
+    if (const auto* const scene = std::get_if<sim::world>(&read)) {
+      sim::scene_caster caster(*scene);
+      use(caster.cast(12.0, caster.lidar_at(5'000'000'000), 5'000'000'000, false));
+    }
+    std::string route;
+    for (int i = 0; i < 3; ++i) {
+      route += random.below(2) == 0 ? "pose " + any_numbers(random, 4, " ")
+                                    : std::string("drive ") +
+                                          std::vector<std::string>{"forward", "turn", "arc",
+                                                                   "wait"}[random.below(4)] +
+                                          " " + any_numbers(random, 1 + random.below(3), " ");
+      route += "\n";
+    }
+    const auto way = sim::parse_path(route, {});
+    if (const auto* const path = std::get_if<std::vector<sim::path_point>>(&way)) {
+      use(sim::robot_at(*path, any<std::int64_t>(random)));
+    }
+  });
+}
+
+TEST(ExtremeText, Setups) {
+  for (const char* const name : {"seed",
+                                 "baud",
+                                 "batch_min_ns",
+                                 "batch_max_ns",
+                                 "reaction_ns",
+                                 "acceleration_mhz_per_s",
+                                 "motor_drift_ppm",
+                                 "motor_drift_period_ns",
+                                 "time_packet_ns",
+                                 "boot_ns",
+                                 "highest_frequency_chz",
+                                 "zero_angle_cdeg",
+                                 "pitch_cdeg",
+                                 "protection_ns",
+                                 "scan_frequency_chz",
+                                 "sample_rate",
+                                 "samples_per_packet",
+                                 "zero_deg",
+                                 "index_deg",
+                                 "start_deg",
+                                 "min_range_mm",
+                                 "max_range_mm",
+                                 "noise_mm",
+                                 "noise_ratio",
+                                 "dropout_ratio",
+                                 "sample_rate_ratio",
+                                 "sample_rate_drift_ppm",
+                                 "model_id",
+                                 "firmware",
+                                 "ordinary_ct",
+                                 "truth_capacity",
+                                 "log_capacity"}) {
+    for (const std::string& number : numbers) {
+      sim::setup made;
+      const std::string wrong = sim::set(made, std::string(name) + "=" + number);
+      if (!wrong.empty() || !sim::problem_with(made.device).empty()) continue;
+      made.device.truth_capacity = 100;
+      made.device.log_capacity = 100;
+      sim::device device(sim::world{}, made.device);
+      std::array<std::uint8_t, 64> out{};
+      device.write(std::array<std::uint8_t, 2>{0xA5, 0x60}, 1000);
+      use(device.read(out, 1'000'000'000));
+    }
+  }
+  many_times([](test::dice& random) {
+    const std::string unit =
+        std::vector<std::string>{"ns", "us", "ms", "s", "min", "%", ""}[random.below(7)];
+    for (const std::string& text : {"batch=" + any_number(random) + unit + "@" +
+                                        any_number(random) + "s+" + any_number(random) + unit,
+                                    "flip*" + any_number(random) + unit,
+                                    "burst=" + any_number(random) + "*" + any_number(random) +
+                                        "%@" + any_number(random) + unit}) {
+      const auto read = sim::parse_fault(text);
+      if (const auto* const fault = std::get_if<sim::fault>(&read))
+        use(sim::problem_with(*fault).size());
+    }
+  });
+}
+
+TEST(ExtremeText, FiltersAndMountings) {
+  many_times(
+      [](test::dice& random) {
+        filter_settings settings;
+        for (const std::string& name :
+             {std::string("range"), std::string("fov"), std::string("ignore")}) {
+          use(set_filter(settings, name, any_numbers(random, 2, ":")).size());
+        }
+        use(set_filter(settings, "speckle",
+                       "window=" + any_number(random) + ",count=" + any_number(random) +
+                           ",near=" + any_number(random) + ",ratio=" + any_number(random))
+                .size());
+        use(set_filter(settings, "edges",
+                       "window=" + any_number(random) + ",angle=" + any_number(random))
+                .size());
+        use(set_filter(settings, "near",
+                       "shortest=" + any_number(random) + ",revolutions=" + any_number(random))
+                .size());
+        for (const std::string_view name : {"speckle", "edges", "near"}) {
+          for (const std::string_view word : filter_words(name))
+            use(set_filter(settings, name, std::string(word) + "=" + any_number(random)).size());
+        }
+        use(settings.filter.keeps(any<point>(random)));
+        const auto mount = mounting_in(any_numbers(random, 3, ","));
+        if (const auto* const place = std::get_if<mounting>(&mount)) use(quaternion_of(*place));
+      },
+      1000);
+}
+
+TEST(ExtremeText, Parameters) {
+  for (const setting_info& each : all_settings()) {
+    for (const std::string& number : numbers) {
+      const auto made = value_in(each, number);
+      if (made) use(change_to(*made));
+      use(answer_of(each, number).has_value());
+    }
+    with_extremes<double>([&](double number) { use(answer_of(each, number).has_value()); });
+    with_extremes<std::int64_t>(
+        [&](std::int64_t number) { use(answer_of(each, number).has_value()); });
+    with_extremes<std::int32_t>(
+        [&](std::int32_t number) { use(value_of(each, number).has_value()); });
+  }
+  many_times(
+      [](test::dice& random) {
+        scan_shaper shaper;
+        lidar_parameters parameters({}, {}, {}, {}, shaper);
+        for (const parameter& each : all_parameters()) {
+          std::vector<named_value> wanted{{std::string(each.name), any<double>(random)}};
+          use(parameters.change(nullptr, wanted).size());
+          wanted[0].second = any<std::int64_t>(random);
+          use(parameters.change(nullptr, wanted).size());
+          wanted[0].second = any_number(random);
+          use(parameters.change(nullptr, wanted).size());
+          use(parameters.value(each).index());
+        }
+      },
+      100);
+}
+
+}  // namespace
