@@ -51,6 +51,10 @@ enum class source_kind : std::uint8_t {
 /// Fails with bad_option if there is no such model. Valid forever.
 [[nodiscard]] G4LIDAR_API result<const model*> model_in_source(std::string_view name);
 
+/// Whether opening this source reads the file at `path`, under any of its names: it is the source, or the world or the
+/// path of `sim:`. Compared by device and inode. A program that writes files asks before it replaces one.
+[[nodiscard]] G4LIDAR_API bool reads_file(std::string_view name, const std::string& path);
+
 /// The connector for the source that `options.device` names, without options.wrap: for callers that
 /// open it themselves. lidar::open(options) is open(connector_for(options), options), with wrap and
 /// device_wait. Errors: bad_option, bad_file, system, cancelled.

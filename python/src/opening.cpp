@@ -90,6 +90,8 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   foundation on;
   auto from = connect(device, options, how, on);
   if (record) {
+    if (reads_file(options.device, record->text))
+      raise_bad_option("record: this is the file of the source");
     recording_options as;
     as.overwrite = overwrite;
     on.recording =
@@ -270,7 +272,8 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
       "second (None: as the model). `model`: the model of the lidar, 'x4'; None: what a search at "
       "the port finds, a recording or a Simulator states, or raw bytes show. `record`: the "
-      "MCAP file to which the lidar is recorded; an existing file only with `overwrite`.\n\n"
+      "MCAP file to which the lidar is recorded; an existing file only with `overwrite`, "
+      "and never the file that is read.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }
 

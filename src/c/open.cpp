@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "border.hpp"
@@ -86,6 +87,10 @@ result<void> connect(g4lidar_lidar& handle) {
       handle.wall_ahead_ns = wall_clock().ahead().count() + g4lidar_now_ns() - from->now_ns();
     }
     if (!wanted.recorder) return from;
+    if (reads_file(how.device, std::string(wanted.recorder->path()))) {
+      return failure(task::opening, problem::bad_option,
+                     "recorder: its file is the one of the source");
+    }
     if (has_own_time) wanted.recorder->set_wall_clock(handle.wall_ahead_ns);
     return recorded(std::move(from), *wanted.recorder);
   };

@@ -11,6 +11,7 @@
 #include "g4lidar/recording/replay.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "option_problems.hpp"
+#include "recording/new_file.hpp"
 #if defined(G4LIDAR_HAS_SIM)
 #include <variant>
 
@@ -110,6 +111,19 @@ source_kind kind_of_source(std::string_view name) {
 }
 
 std::string path_of_source(std::string_view name) { return std::string(divided(name).path); }
+
+bool reads_file(std::string_view name, const std::string& path) {
+  const auto is_at = [&path](const std::string& file) { return are_one_file(file, path); };
+  if (name == "-") return is_at("/dev/stdin");
+#if defined(G4LIDAR_HAS_SIM)
+  if (sim::is_simulated(name)) {
+    const auto read = sim::parse_setup(name);
+    const auto* const setup = std::get_if<sim::setup>(&read);
+    return setup != nullptr && (is_at(setup->world_file) || is_at(setup->path_file));
+  }
+#endif
+  return is_at(path_of_source(name));
+}
 
 result<const model*> model_in_source(std::string_view name) {
   const std::string_view word = divided(name).model;

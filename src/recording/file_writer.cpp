@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "g4lidar/message/ros_messages.hpp"
-#include "numbered_path.hpp"
 
 namespace g4lidar {
 namespace {
@@ -37,7 +36,7 @@ using mcap::topic;
 recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_view path,
                                            const recording_options& options)
     : options_(options),
-      first_path_(path),
+      further_(path),
       file_(std::make_unique<mcap::mcap_file>(std::move(first))),
       channels_(options),
       ranges_(options) {
@@ -49,7 +48,7 @@ recording_writer::file_writer::file_writer(mcap::mcap_file first, std::string_vi
 
 template <class Work>
 result<void> recording_writer::file_writer::guarded(Work work) noexcept {
-  if (is_closed_) return {};
+  if (stage_ == stage::closed) return {};
   try {
     auto done = work();
     trouble_.add(done);
@@ -87,7 +86,7 @@ void recording_writer::file_writer::put(topic id, std::int64_t time_ns, std::siz
 
 void recording_writer::file_writer::put_bytes(direction way, bytes data,
                                               std::int64_t time_ns) noexcept {
-  if (is_closed_) return;
+  if (stage_ == stage::closed) return;
   payload_.add(way, data);
   const bool is_from_device = way == direction::from_device;
   (is_from_device ? counts_.bytes_from_device : counts_.bytes_to_device) += data.size();
@@ -111,6 +110,7 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
     if (options_.keep_odometry) odometry(what.odometry);
     return;
   }
+  if (what.what == recorded_event::kind::begun) keep();
   if (what.what !=
       recorded_event::kind::state) {  // each chunk begins with one, of the state before
     put(topic::events, what.time_ns, 0,
@@ -120,7 +120,7 @@ void recording_writer::file_writer::event(const recorded_event& what) noexcept {
 }
 
 void recording_writer::file_writer::scan(const g4lidar::scan& revolution) noexcept {
-  if (is_closed_ || revolution.points.empty()) return;
+  if (stage_ == stage::closed || revolution.points.empty()) return;
   const std::span<const point> points = revolution.points;
   message_header header{.frame_id = options_.frame_id,
                         .duration_ns = revolution.duration_ns,
@@ -166,7 +166,8 @@ void recording_writer::file_writer::odometry(const stamped_odometry& what) noexc
       values, [](double value) { return std::fabs(value) <= max_odometry_value; });
   const bool has_begun =
       transport_.is_known || counts_.bytes_from_device + counts_.bytes_to_device > 0;
-  if (is_closed_ || !is_possible || !has_begun || !has_channel(topic::odometry)) return;
+  if (stage_ == stage::closed || !is_possible || !has_begun || !has_channel(topic::odometry))
+    return;
   ++counts_.odometry;
   put(topic::odometry, what.time_ns, 0, [&](mcap::record_text& out) {
     put_odometry({.stamp_ns = wall_.at(what.time_ns),
@@ -199,7 +200,7 @@ void recording_writer::file_writer::metadata(
 
 result<void> recording_writer::file_writer::take_model(const model& which) {
   const std::string_view now = channels_.model().word;
-  if (is_closed_ || now == which.word) return {};
+  if (stage_ == stage::closed || now == which.word) return {};
   const bool has_begun = transport_.is_known || !chunk_.is_empty() || !file_->is_empty();
   if (options_.model != nullptr || has_begun) {
     return failure(
@@ -241,7 +242,8 @@ result<void> recording_writer::file_writer::end_chunk() {
     const bool is_full = options_.rotate_bytes != 0 && after > options_.rotate_bytes;
     const std::int64_t rotate_ns = ns_of(options_.rotate_time);
     const bool is_old = rotate_ns != 0 && covered_.length_ns() >= rotate_ns;
-    if (file_->has_chunks() && (is_full || is_old)) rotated = rotate();
+    const bool may_rotate = stage_ != stage::attempt && file_->has_chunks();
+    if (may_rotate && (is_full || is_old)) rotated = rotate();
   }
   if (packed && options_.mount && !file_->has_chunks()) {
     if (auto first = add_transform(); !first) rotated = first;
@@ -254,6 +256,7 @@ result<void> recording_writer::file_writer::end_chunk() {
   chunk_.clear();
   ++counts_.chunks;
   covered_.keep_chunk();
+  if (rotated) rotated = settle();
   if (rotated) trouble_.end();
   return rotated;
 }
@@ -284,15 +287,21 @@ void recording_writer::file_writer::lose_chunk() noexcept {
   counts_.bytes_lost += covered_.lose_chunk();
 }
 
-/// The new file is created first: if that fails, the old one is continued.
+/// The new file is created first: if that fails, the old one is continued. An existing file stays: its number is left
+/// out.
 result<void> recording_writer::file_writer::rotate() {
-  auto next = mcap::mcap_file::create(numbered_path(first_path_, counts_.files), channels_,
-                                      options_.overwrite);
-  if (!next) return tl::unexpected(next.error());
+  const auto next = [this] {
+    while (true) {
+      auto made = mcap::mcap_file::create(further_.next(), channels_, false);
+      if (made || made.error().system_errno() != EEXIST) return made;
+    }
+  };
+  auto made = next();
+  if (!made) return tl::unexpected(made.error());
   auto ended = end_file(false);
   ++counts_.files;
   closed_bytes_ += file_->size();
-  file_ = std::make_unique<mcap::mcap_file>(std::move(*next));
+  file_ = std::make_unique<mcap::mcap_file>(std::move(*made));
   covered_.begin_file(mcap::payload_of(chunk_.records()));
   if (ended && device_)
     ended = file_->add_metadata(mcap::device_metadata, mcap::words_of(*device_));
@@ -309,13 +318,19 @@ result<void> recording_writer::file_writer::end_file(bool is_only_one) {
     words.emplace_back("computed_with", computed_with());
     words.emplace_back("points_version", mcap::points_version);
   }
-  auto kept = file_->add_metadata(mcap::digest_metadata, words);
-  auto closed = file_->close();
-  return kept ? closed : kept;
+  auto done = file_->add_metadata(mcap::digest_metadata, words);
+  if (auto closed = file_->close(); done) done = closed;
+  if (auto settled = settle(); done) done = settled;
+  return done;
 }
 
 result<void> recording_writer::file_writer::flush() noexcept {
-  return guarded([&] { return end_chunk(); });
+  keep();
+  return guarded([&]() -> result<void> {
+    auto ended = end_chunk();
+    auto settled = settle();
+    return ended ? settled : ended;
+  });
 }
 
 result<void> recording_writer::file_writer::close() noexcept {
@@ -324,18 +339,9 @@ result<void> recording_writer::file_writer::close() noexcept {
     auto closed = end_file(counts_.files == 1);
     return ended ? closed : ended;
   });
-  is_closed_ = true;
+  file_->place().drop_if_waiting();
+  stage_ = stage::closed;
   return done;
-}
-
-recording_counts recording_writer::file_writer::counts() const noexcept {
-  recording_counts all = counts_;
-  all.file_bytes = closed_bytes_ + file_->size();
-  return all;
-}
-
-recorded_digest recording_writer::file_writer::digest() const noexcept {
-  return {payload_.value(), points_.count() > 0 ? points_.value() : 0, points_.count()};
 }
 
 }  // namespace g4lidar

@@ -17,6 +17,7 @@
 #include "g4lidar/wall_clock.hpp"
 #include "mcap_file.hpp"
 #include "messages.hpp"
+#include "numbered_path.hpp"
 #include "packer.hpp"
 #include "scan_ranges.hpp"
 
@@ -76,12 +77,26 @@ class recording_writer::file_writer {
   /// What sends the bytes: the file begins again if it is empty and for another model.
   [[nodiscard]] result<void> take_model(const model& which);
   void set_wall_clock(std::int64_t ahead_ns) noexcept { wall_.set(ahead_ns); }
+  /// The file is to replace an older one: there is more in it than attempts to open a lidar.
+  void keep() noexcept {
+    if (stage_ == stage::attempt) stage_ = stage::kept;
+  }
   result<void> flush() noexcept;
   result<void> close() noexcept;
+  void discard() noexcept {
+    stage_ = stage::closed;
+    file_->place().remove();
+  }
 
   [[nodiscard]] std::optional<error> take_error() noexcept { return trouble_.take(); }
-  [[nodiscard]] recording_counts counts() const noexcept;
-  [[nodiscard]] recorded_digest digest() const noexcept;
+  [[nodiscard]] recording_counts counts() const noexcept {
+    recording_counts all = counts_;
+    all.file_bytes = closed_bytes_ + file_->size();
+    return all;
+  }
+  [[nodiscard]] recorded_digest digest() const noexcept {
+    return {payload_.value(), points_.count() > 0 ? points_.value() : 0, points_.count()};
+  }
   [[nodiscard]] std::string_view path() const noexcept { return file_->path(); }
 
  private:
@@ -98,15 +113,22 @@ class recording_writer::file_writer {
   [[nodiscard]] result<void> rotate();
   [[nodiscard]] result<void> end_file(bool is_only_one);
   void lose_chunk() noexcept;
+  /// Replaces an older file when there is something to replace it by.
+  [[nodiscard]] result<void> settle() noexcept {
+    const bool has_something = stage_ == stage::kept && file_->has_chunks();
+    return has_something ? file_->place().take_place() : result<void>();
+  }
+
+  enum class stage : std::uint8_t { attempt, kept, closed };
 
   recording_options options_;
-  std::string first_path_;
+  numbered_paths further_;
   std::unique_ptr<mcap::mcap_file> file_;
   mcap::channel_set channels_;  // of the current file
   mcap::open_chunk chunk_;
   std::optional<mcap::packer> packer_;
   scan_ranges ranges_;
-  bool is_closed_ = false;
+  stage stage_ = stage::attempt;
 
   mcap::transport_state transport_;
   std::optional<recorded_device> device_;

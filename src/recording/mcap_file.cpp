@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "mcap_file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -60,14 +58,12 @@ void open_chunk::clear() noexcept {
 
 result<mcap_file> mcap_file::create(const std::string& path, const channel_set& channels,
                                     bool overwrite) {
-  const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOCTTY | (overwrite ? O_TRUNC : O_EXCL);
-  owned_fd fd(uninterrupted([&] { return ::open(path.c_str(), flags, 0666); }));
-  if (fd.get() < 0) return failure(task::opening, problem::system, path, errno);
-  mcap_file made(std::move(fd), path);
+  auto file = new_file::create(path, overwrite);
+  if (!file) return tl::unexpected(file.error());
+  mcap_file made(*std::move(file));
   made.text_.reserve(text_room);
   if (auto written = made.begin(channels); !written) {
-    struct stat file{};  // a device such as /dev/full stays
-    if (::fstat(made.fd_.get(), &file) == 0 && S_ISREG(file.st_mode)) ::unlink(path.c_str());
+    made.file_.remove();
     return tl::unexpected(written.error());
   }
   return made;
@@ -86,7 +82,7 @@ result<void> mcap_file::begin(const channel_set& channels) {
   channels_.put_channels(text_);
   crc_ = crc32();
   if (std::exchange(offset_, 0) != 0) {
-    static_cast<void>(uninterrupted([&] { return ::ftruncate(fd_.get(), 0); }));
+    static_cast<void>(uninterrupted([&] { return ::ftruncate(file_.fd(), 0); }));
   }
   return write(text_.all());
 }
@@ -96,9 +92,9 @@ result<void> mcap_file::write_all(bytes data) noexcept {
   while (done < data.size()) {
     const bytes rest = data.subspan(done);
     const ssize_t count = uninterrupted([&] {
-      return ::pwrite(fd_.get(), rest.data(), rest.size(), static_cast<off_t>(offset_ + done));
+      return ::pwrite(file_.fd(), rest.data(), rest.size(), static_cast<off_t>(offset_ + done));
     });
-    if (count <= 0) return failure(task::writing, problem::system, path_, count < 0 ? errno : EIO);
+    if (count <= 0) return failure(task::writing, problem::system, path(), count < 0 ? errno : EIO);
     done += static_cast<std::size_t>(count);
   }
   return {};
@@ -109,7 +105,7 @@ result<void> mcap_file::write(bytes data) {
   auto done = write_all(data);
   if (!done) {
     static_cast<void>(
-        uninterrupted([&] { return ::ftruncate(fd_.get(), static_cast<off_t>(offset_)); }));
+        uninterrupted([&] { return ::ftruncate(file_.fd(), static_cast<off_t>(offset_)); }));
     return done;
   }
   crc_.add(data);

@@ -15,8 +15,8 @@
 #include "crc32.hpp"
 #include "g4lidar/error.hpp"
 #include "messages.hpp"
+#include "new_file.hpp"
 #include "record_text.hpp"
-#include "transport/owned_fd.hpp"
 
 namespace g4lidar::mcap {
 
@@ -65,7 +65,7 @@ class open_chunk {
 /// *Single thread.* Only complete records are passed to the system; a partial write is reverted.
 class mcap_file {
  public:
-  /// Creates it, and writes the records before the chunks.
+  /// Creates it, and writes the records before the chunks. `overwrite`: see new_file.
   [[nodiscard]] static result<mcap_file> create(const std::string& path,
                                                 const channel_set& channels, bool overwrite);
   mcap_file(mcap_file&&) noexcept = default;
@@ -77,13 +77,15 @@ class mcap_file {
   [[nodiscard]] result<void> add_metadata(std::string_view name, const word_map& words);
   /// Writes the summary; nothing can be added afterwards.
   [[nodiscard]] result<void> close();
+  /// The file itself: to let it take its place, or to remove it.
+  [[nodiscard]] new_file& place() noexcept { return file_; }
 
   /// Writes the records before the chunks; whatever was written before is dropped.
   [[nodiscard]] result<void> begin(const channel_set& channels);
   /// Whether there is nothing but these records.
   [[nodiscard]] bool is_empty() const noexcept { return !has_chunks() && metadata_.empty(); }
 
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
   [[nodiscard]] std::uint64_t size() const noexcept { return offset_; }
   /// Its size if it is closed now.
   [[nodiscard]] std::uint64_t closed_size() const noexcept;
@@ -100,7 +102,7 @@ class mcap_file {
     std::string name;
   };
 
-  mcap_file(owned_fd fd, std::string path) noexcept : fd_(std::move(fd)), path_(std::move(path)) {}
+  explicit mcap_file(new_file file) noexcept : file_(std::move(file)) {}
   [[nodiscard]] result<void> write(bytes data);
   [[nodiscard]] result<void> write_all(bytes data) noexcept;
   [[nodiscard]] result<void> end_data();
@@ -108,8 +110,7 @@ class mcap_file {
   void put_statistics();
   void put_chunk_index(const chunk_place& of);
 
-  owned_fd fd_;
-  std::string path_;
+  new_file file_;
   channel_set channels_;
   std::uint64_t offset_ = 0;
   crc32 crc_;  // of everything written, and later of the summary

@@ -20,4 +20,16 @@ namespace g4lidar {
   return std::string(first) + digits.data() + (has_extension ? std::string(extension) : "");
 }
 
+/// The paths of the files that follow a first one.
+class numbered_paths {
+ public:
+  explicit numbered_paths(std::string_view first) : first_(first) {}
+  /// Each has a number of its own. Allocates.
+  [[nodiscard]] std::string next() { return numbered_path(first_, ++number_); }
+
+ private:
+  std::string first_;
+  std::uint64_t number_ = 0;
+};
+
 }  // namespace g4lidar

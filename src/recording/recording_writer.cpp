@@ -104,36 +104,46 @@ result<recording_writer> recording_writer::create(std::string_view path,
   return recording_writer(std::make_unique<file_writer>(std::move(*first), path, options));
 }
 
+template <class Call>
+void recording_writer::keep(Call call) noexcept {
+  if (!made_) return;
+  made_->keep();
+  call(*made_);
+}
+
 void recording_writer::from_device(bytes data, std::int64_t time_ns) noexcept {
-  if (made_) made_->put_bytes(direction::from_device, data, time_ns);
+  keep([&](file_writer& to) { to.put_bytes(direction::from_device, data, time_ns); });
 }
 void recording_writer::to_device(bytes data, std::int64_t time_ns) noexcept {
-  if (made_) made_->put_bytes(direction::to_device, data, time_ns);
+  keep([&](file_writer& to) { to.put_bytes(direction::to_device, data, time_ns); });
 }
 void recording_writer::event(const recorded_event& what) noexcept {
-  if (made_) made_->event(what);
+  keep([&](file_writer& to) { to.event(what); });
 }
 void recording_writer::scan(const g4lidar::scan& revolution) noexcept {
-  if (made_) made_->scan(revolution);
+  keep([&](file_writer& to) { to.scan(revolution); });
 }
 void recording_writer::odometry(const stamped_odometry& what) noexcept {
-  if (made_) made_->odometry(what);
+  keep([&](file_writer& to) { to.odometry(what); });
 }
 void recording_writer::points(std::span<const point> delivered) noexcept {
-  if (made_) made_->points(delivered);
+  keep([&](file_writer& to) { to.points(delivered); });
 }
 void recording_writer::device(const recorded_device& known) noexcept {
-  if (made_) made_->device(known);
+  keep([&](file_writer& to) { to.device(known); });
 }
 void recording_writer::metadata(
     std::string_view name, std::span<const std::pair<std::string, std::string>> words) noexcept {
-  if (made_) made_->metadata(name, words);
+  keep([&](file_writer& to) { to.metadata(name, words); });
 }
 void recording_writer::set_wall_clock(std::int64_t ahead_ns) noexcept {
   if (made_) made_->set_wall_clock(ahead_ns);
 }
 result<void> recording_writer::flush() noexcept { return made_ ? made_->flush() : result<void>(); }
 result<void> recording_writer::close() noexcept { return made_ ? made_->close() : result<void>(); }
+void recording_writer::discard() noexcept {
+  if (made_) made_->discard();
+}
 std::optional<error> recording_writer::take_error() noexcept {
   return made_ ? made_->take_error() : std::nullopt;
 }

@@ -2,11 +2,13 @@
 // Transports and connectors with recording.
 #include <cerrno>
 #include <new>
+#include <string>
 #include <utility>
 
 #include "file_writer.hpp"
 #include "g4lidar/recording/recording_switch.hpp"
 #include "g4lidar/transport/forwarding.hpp"
+#include "new_file.hpp"
 #include "played_file.hpp"
 
 namespace g4lidar {
@@ -154,6 +156,12 @@ result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
                                             recording_writer& into) {
   using writer = recording_writer::file_writer;
   if (!into.made_) return from;  // a moved-from writer records nothing
+  const played_file* const played = file_of(*from);
+  if (played != nullptr &&
+      are_one_file(std::string(played->items().path()), std::string(into.made_->path()))) {
+    return failure(task::opening, problem::bad_option,
+                   "the file of the recording is also its source");
+  }
   if (const model* const stated = from->traits().model) {
     if (auto taken = into.made_->take_model(*stated); !taken) return tl::unexpected(taken.error());
   }

@@ -45,6 +45,11 @@ std::vector<g4lidar_point> all_points(const lidar& from) {
   return all;
 }
 
+std::string contents(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 class CRecording : public testing::Test {
  protected:
   /// Records three seconds of a simulated lidar, and returns its points.
@@ -284,6 +289,34 @@ TEST_F(CRecording, RecordsBytesOfAProgram) {
   ASSERT_EQ(g4lidar_recorder_flush(into.get(), nullptr), G4LIDAR_OK);
   EXPECT_EQ(g4lidar_recorder_get_counts(into.get())->bytes_from_device, 3U);
   EXPECT_EQ(g4lidar_recorder_get_counts(into.get())->bytes_to_device, 2U);
+}
+
+TEST_F(CRecording, ReplacesNeitherItsSourceNorItsWorld) {
+  record();
+  const std::string room = scratch_.path("room.txt");
+  std::ofstream(room) << "wall 2 2 -2 2\nwall -2 2 -2 -2\nwall -2 -2 2 -2\nwall 2 -2 2 2\n";
+  g4lidar_recorder_options how;
+  g4lidar_recorder_options_init(&how, sizeof how);
+  how.overwrite = true;
+  const std::string simulated = "sim:?world=" + room;
+  for (const auto& [source, file] : {std::pair(path_, path_), std::pair(simulated, room)}) {
+    const std::string before = contents(file);
+    for (const bool by_name : {true, false}) {
+      if (!by_name && file == room) continue;
+      const recorder into = record_to(file, &how);
+      g4lidar_options options = defaults();
+      if (by_name) options.device = source.c_str();
+      options.recorder = into.get();
+      g4lidar_lidar* made = nullptr;
+      g4lidar_error why;
+      const int code = by_name
+                           ? g4lidar_open(&options, &made, &why)
+                           : g4lidar_open_recording(file.c_str(), nullptr, &options, &made, &why);
+      EXPECT_EQ(code, G4LIDAR_BAD_OPTION) << why.message;
+      EXPECT_EQ(made, nullptr);
+    }
+    EXPECT_EQ(contents(file), before);
+  }
 }
 
 TEST_F(CRecording, FailsWithTheReason) {

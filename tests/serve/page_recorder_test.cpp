@@ -74,11 +74,15 @@ class PageRecorder : public cli::scratch {
     return *recorder_;
   }
   void read(page_recorder& into, int count) {
-    std::array<std::uint8_t, 4000> buffer{};
     for (int i = 0; i < count; ++i) {
-      ASSERT_TRUE(port_->read(buffer, 0));
+      read_bytes(1);
       into.add(g4lidar::scan{});
     }
+  }
+  /// As at a wrong baud rate: no scan comes.
+  void read_bytes(int count) {
+    std::array<std::uint8_t, 4000> buffer{};
+    for (int i = 0; i < count; ++i) ASSERT_TRUE(port_->read(buffer, 0));
   }
   [[nodiscard]] std::set<std::string> files() const {
     std::set<std::string> all;
@@ -123,6 +127,22 @@ TEST_F(PageRecorder, EndsAtItsLimit) {
   EXPECT_GT(std::filesystem::file_size(recordings_ + '/' + status->last), 2 * megabyte);
   EXPECT_LT(std::filesystem::file_size(recordings_ + '/' + status->last), 5 * megabyte);
   EXPECT_THAT(recorder.set(true), HasSubstr("remove some"));
+}
+
+TEST_F(PageRecorder, BytesWithoutScans_AreShownAndEndAtTheLimit) {
+  page_recorder& recorder = make(4 * megabyte);
+  ASSERT_EQ(recorder.set(true), "");
+  read_bytes(600);
+  EXPECT_GT(recorder.status()->bytes, megabyte);
+  EXPECT_NEAR(recorder.status()->seconds, 0.6, 0.01);
+  read_bytes(1500);
+  const auto status = recorder.status();
+  EXPECT_TRUE(status->file.empty());
+  EXPECT_THAT(status->why, HasSubstr("4 MB that --record-limit allows"));
+  const auto size = std::filesystem::file_size(recordings_ + '/' + status->last);
+  EXPECT_EQ(status->bytes, size);
+  EXPECT_LT(size, 6 * megabyte);
+  EXPECT_EQ(cli::run({"packets", "-q", recordings_ + '/' + status->last}).code, 0);
 }
 
 TEST_F(PageRecorder, OfOneOfSeveralLidars_HasItsNameAndItsPartOfTheLimit) {
@@ -172,7 +192,7 @@ TEST_F(PageRecorder, ReportsAFullDisk_AndKeepsWhatWasWritten) {
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit small{megabyte, before.rlim_max};
   ::setrlimit(RLIMIT_FSIZE, &small);
-  read(recorder, 1500);
+  read_bytes(1500);  // no scan is needed
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   const auto status = recorder.status();

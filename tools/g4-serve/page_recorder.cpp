@@ -9,12 +9,17 @@
 #include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <functional>
+#include <new>
+#include <span>
 #include <system_error>
 #include <utility>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 #include "io/output.hpp"
+#include "io/source.hpp"
 
 namespace g4_tool {
 namespace {
@@ -41,6 +46,26 @@ std::string reason_of(const g4lidar::error& why, const std::string& name) {
                      advice_on_writing(number));
 }
 
+/// Calls `look` after each read, behind what records its bytes.
+class watched_transport final : public g4lidar::forwarding_transport {
+ public:
+  watched_transport(std::unique_ptr<g4lidar::transport> inner, std::function<void()> look)
+      : forwarding_transport(std::move(inner)), look_(std::move(look)) {}
+
+  [[nodiscard]] g4lidar::result<g4lidar::received> read(
+      std::span<std::uint8_t> into, std::int64_t deadline_ns) noexcept override {
+    auto got = inner().read(into, deadline_ns);
+    try {
+      look_();
+    } catch (const std::bad_alloc&) {  // the next read looks again
+    }
+    return got;
+  }
+
+ private:
+  std::function<void()> look_;
+};
+
 }  // namespace
 
 page_recorder::page_recorder(std::string directory, std::uint64_t most_bytes,
@@ -62,7 +87,11 @@ page_recorder::~page_recorder() { end(); }
 
 std::unique_ptr<g4lidar::connector> page_recorder::observe(
     std::unique_ptr<g4lidar::connector> from) {
-  return is_allowed() ? switch_.observe(std::move(from)) : std::move(from);
+  if (!is_allowed()) return from;
+  const auto watched = for_each_connection([this](std::unique_ptr<g4lidar::transport> port) {
+    return std::make_unique<watched_transport>(std::move(port), [this] { check(); });
+  });
+  return *watched(switch_.observe(std::move(from)));
 }
 
 void page_recorder::opened(g4lidar::lidar& device) {
@@ -136,7 +165,6 @@ std::string page_recorder::begin() {
 void page_recorder::add(const g4lidar::scan& found) {
   model_ = found.model;
   if (writer_ && !found.is_piece()) writer_->scan(found);
-  check();
 }
 
 void page_recorder::add(const g4lidar::stamped_odometry& at) {
@@ -157,15 +185,20 @@ void page_recorder::check() {
     shown_.seconds = static_cast<double>(*now_ns - begin_ns_) * 1e-9;
 }
 
-void page_recorder::end(const std::string& why) {
+void page_recorder::end(const std::string& why, bool discards) {
   if (!writer_) return;
   switch_.off();
   const auto closed = writer_->close();
   auto failed = writer_->take_error();
   if (!failed && !closed) failed = closed.error();
   const std::uint64_t bytes = writer_->counts().file_bytes;
+  if (discards) writer_->discard();
   writer_.reset();
   const std::lock_guard lock(mutex_);
+  if (discards) {
+    shown_ = {};
+    return;
+  }
   shown_.last = std::exchange(shown_.file, "");
   shown_.bytes = bytes;
   shown_.why = why.empty() && failed ? reason_of(*failed, shown_.last) : why;
@@ -174,15 +207,6 @@ void page_recorder::end(const std::string& why) {
     shown_.why = "it was removed while it was written";
   logger::info(fmt::format("recorded {}/{}: {} bytes{}{}\n", directory_, shown_.last, bytes,
                            shown_.why.empty() ? "" : "; ", shown_.why));
-}
-
-void page_recorder::discard() {
-  if (!writer_) return;
-  end();
-  std::error_code unimportant;
-  std::filesystem::remove(directory_ + '/' + shown_.last, unimportant);
-  const std::lock_guard lock(mutex_);
-  shown_ = {};
 }
 
 std::optional<page_recording> page_recorder::status() const {

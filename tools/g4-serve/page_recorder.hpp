@@ -51,9 +51,9 @@ class page_recorder {
   /// Begins a recording, or ends it. Returns the error; empty if there is none.
   [[nodiscard]] std::string set(bool is_on);
   /// Ends the recording, if there is one.
-  void end(const std::string& why = {});
+  void end(const std::string& why = {}, bool discards = false);
   /// Ends it, and removes the file.
-  void discard();
+  void discard() { end({}, true); }
   void add(const g4lidar::scan& found);
   void add(const g4lidar::stamped_odometry& at);
 
@@ -66,7 +66,7 @@ class page_recorder {
   [[nodiscard]] std::string begin();
   /// What is wrong with the directory, or how much may be written.
   [[nodiscard]] std::string measure(std::uint64_t& free_bytes) const;
-  /// Ends it if something went wrong, or it is too long.
+  /// After each read: ends it if something went wrong, or it is too long.
   void check();
 
   const std::string directory_;

@@ -22,13 +22,14 @@ typedef struct g4lidar_recorder_options {
   const char* frame_id;          /**< Of the messages of scans and points; "laser". */
   const char* points_topic;      /**< Of PointCloud2 messages; NULL: none are written. */
   const g4lidar_mounting* mount; /**< How the lidar is fixed to the robot; NULL: not known. */
-  /** Begin a new file before one becomes larger, at least 1048576; 0: never. */
+  /** Begin a new file before one becomes larger, at least 1048576; 0: never. It has the next free number. */
   uint64_t rotate_bytes;
-  int32_t rotate_s;    /**< The same for its duration in seconds; 0: never. */
-  int32_t chunk_ms;    /**< A crash loses at most this much, 10 to 10000; 500. */
-  uint32_t scan_bins;  /**< Ranges in each LaserScan, 1 to 65536; 0, g4lidar_scan::default_bins. */
-  bool compressed;     /**< Whether zstd is used; see g4lidar_has_feature(). */
-  bool overwrite;      /**< Whether an existing file may be replaced. */
+  int32_t rotate_s;   /**< The same for its duration in seconds; 0: never. */
+  int32_t chunk_ms;   /**< A crash loses at most this much, 10 to 10000; 500. */
+  uint32_t scan_bins; /**< Ranges in each LaserScan, 1 to 65536; 0, g4lidar_scan::default_bins. */
+  bool compressed;    /**< Whether zstd is used; see g4lidar_has_feature(). */
+  bool
+      overwrite; /**< Whether an existing file may be replaced, when there is something to write. */
   bool without_scans;  /**< Write no LaserScan messages: only bytes. */
   uint8_t reserved[1]; /**< 0. */
   int32_t no_return; /**< Of a LaserScan: a g4lidar_no_return_as; G4LIDAR_NO_RETURN_AS_INFINITY. */

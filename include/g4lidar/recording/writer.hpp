@@ -41,11 +41,13 @@ struct recording_options {
   /// wraps states, and else a G4.
   const g4lidar::model* model = nullptr;
   packing packed = packing::none;
-  bool overwrite = false;  ///< Whether an existing file may be replaced.
+  /// Whether an existing file may be replaced. It remains until there is something to replace it by: what a caller
+  /// records, or bytes and the beginning of a scan. Attempts to open a lidar leave it as it is.
+  bool overwrite = false;
 
   /// A new file is begun, beside the first one, before a file becomes larger than this or lasts
-  /// this long; 0: never. `walk.mcap` is followed by `walk-0001.mcap`. Each file is complete by
-  /// itself. At least 1 MiB and 1 s.
+  /// this long; 0: never. `walk.mcap` is followed by `walk-0001.mcap`, or by the next number without a
+  /// file: such a file is never replaced. Each file is complete by itself. At least 1 MiB and 1 s.
   std::uint64_t rotate_bytes = 0;
   std::chrono::seconds rotate_time{0};
 
@@ -145,6 +147,10 @@ class G4LIDAR_API recording_writer {
   /// the disk. Error: system.
   [[nodiscard]] result<void> close() noexcept;
 
+  /// Removes the current file instead of ending it; an older one that it has not replaced remains. Also after close().
+  /// After that every function does nothing.
+  void discard() noexcept;
+
   /// Why something could not be written, once for each failure; nothing otherwise.
   [[nodiscard]] std::optional<error> take_error() noexcept;
   /// All counts as they are now.
@@ -158,6 +164,8 @@ class G4LIDAR_API recording_writer {
   friend result<std::unique_ptr<connector>> recorded(std::unique_ptr<connector> from,
                                                      recording_writer& into);
   class G4LIDAR_HIDDEN file_writer;
+  template <class Call>
+  G4LIDAR_HIDDEN void keep(Call call) noexcept;
   explicit recording_writer(std::unique_ptr<file_writer> made) noexcept;
   std::unique_ptr<file_writer> made_;
 };
@@ -165,7 +173,8 @@ class G4LIDAR_API recording_writer {
 /// `from`, with recording: the bytes that are read and sent, and when its transports open and
 /// break. The writer must outlive the result; it may be moved, and must be used by the
 /// same thread. Recording a replayed recording gives an equal recording. Fails with bad_option if
-/// `from` states another model than the options of the writer, or than what it has recorded; with system.
+/// `from` states another model than the options of the writer, or than what it has recorded, or plays the file that
+/// is to be replaced; with system.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> recorded(
     std::unique_ptr<connector> from, recording_writer& into);
 

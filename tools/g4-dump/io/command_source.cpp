@@ -72,7 +72,7 @@ command_source::command_source(const common_options& options, task doing)
 verb device_verb(verb made, exit_code (*run)(const common_options&), bool has_output) {
   const auto options = std::make_shared<common_options>();
   made.arguments = {source_argument(*options)};
-  if (has_output) made.options = {json_row(*options), output_row(*options)};
+  if (has_output) made.options = joined(json_row(*options), output_rows(*options));
   made.options = joined(made.options, device_rows(*options));
   made.run = [options, run] { return static_cast<int>(run(*options)); };
   return made;

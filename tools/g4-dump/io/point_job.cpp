@@ -123,7 +123,7 @@ class point_run {
   }
   void choose_files() {
     if (job_.bins > 0) throw bad_value("--grid cannot be combined with the formats pcd and svg");
-    files_ = numbered_files_of(common_.output, job_.keeps_existing);
+    files_ = numbered_files_of(common_.output);
     if (files_) return;
     if (common_.count > 1) {
       throw bad_value("-n: a file holds one revolution; write several with -o scan-%04d.pcd");
@@ -201,8 +201,7 @@ class point_run {
 
   void read_file() {
     input& in = input_ ? *input_ : open_input();
-    output out(output_name(), when_it_appears(in.id().has_value()));
-    refuse_same_file(in.id(), out);
+    output out(output_name(), when_it_appears(in.is_file()));
     const std::uint64_t found = job_.text ? read_text(in, out) : read_bytes(in, out);
     if (found > 0) commit(out);
     report_left_out();
@@ -244,7 +243,6 @@ class point_run {
   void read_lidar() {
     const bool is_recording = kind_ == source_kind::recording;
     output out(output_name(), when_it_appears(is_recording));
-    if (is_recording) refuse_same_file(id_of_name(path_of_source(common_.source)), out);
     lidar_options how = job_.source;
     how.partial_scans = writer_->takes_scans();  // the writer leaves them out, and counts them
     opened_source source(common_, how);
@@ -252,7 +250,7 @@ class point_run {
     try {
       run_lidar(source, out);
     } catch (const failure&) {  // what came before it is good
-      commit(out);
+      if (source.lidar().counts().stream.packets > 0) commit(out);
       report_lidar(source);
       throw;
     }

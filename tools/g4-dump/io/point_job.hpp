@@ -33,9 +33,8 @@ struct point_job {
   lidar_options source{};  ///< How it is opened; the range of `playback` holds for files, too.
   std::optional<text_source> text;  ///< The source holds points as text, in this format.
   g4lidar::frame text_frame = g4lidar::frame::vendor;  ///< Of the angles in that text.
-  bool keeps_existing = false;  ///< A file of a revolution does not replace another.
-  bool whole_file = false;      ///< OUT appears at the end, even where the source is a pipe.
-  bool json_counts = false;     ///< The counts of raw bytes as JSON.
+  bool whole_file = false;   ///< OUT appears at the end, even where the source is a pipe.
+  bool json_counts = false;  ///< The counts of raw bytes as JSON.
 };
 
 /// Returns the exit code; throws a failure or a bad_value.

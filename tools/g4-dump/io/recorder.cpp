@@ -17,6 +17,8 @@
 #include "g4lidar/motion.hpp"
 #include "g4lidar/odometry_feed.hpp"
 #include "g4lidar/recording/reader.hpp"
+#include "io/command_files.hpp"
+#include "io/interrupt.hpp"
 #include "io/output.hpp"
 #include "io/service_watch.hpp"
 #include "io/shape_files.hpp"
@@ -51,10 +53,11 @@ class recorder {
       output nowhere("/dev/null");
       read_source(*source_, job_.common, sink(), nowhere);
       end();
-      if (const auto why = file_error_) throw file_failure(*why, title_, job_.is_kept);
+      if (file_error_) throw why_not_written(job_.is_kept);
     } catch (...) {
       end();
       if (job_.shows_counts && has_run_ && job_.is_kept) report_recorded(result_, title_);
+      if (file_error_ && interrupt() == 0) throw why_not_written(has_run_ && job_.is_kept);
       throw;
     }
     return result_;
@@ -63,7 +66,9 @@ class recorder {
  private:
   /// Creates the file before the source is opened, because opening is recorded, too.
   void open() {
+    if (job_.title.empty()) claim_.emplace(job_.path);
     recording_options made = job_.made;
+    made.overwrite = made.overwrite || may_replace();
     made.mount = job_.common.mount;
     if (!job_.common.odometry.empty()) {
       odometry_.set(load_moving_odometry(job_.common.odometry));
@@ -73,6 +78,7 @@ class recorder {
     how.partial_scans = true;  // so that points arrive at the latest when a scan's storage is full
     // The ring stores the points of many reads, so a read for each revolution is enough.
     how.tuning.pace = read_pace::revolutions;
+    how.is_cancelled = [this] { return interrupt() != 0 || cannot_write(); };
     how.wrap = [this,
                 &made](std::unique_ptr<connector> from) -> result<std::unique_ptr<connector>> {
       if (!writer_) {
@@ -91,6 +97,7 @@ class recorder {
     points_ = std::make_unique<lidar_ring::reader>(source_->lidar().points().make_reader());
     odometry_.follow(source_->simulation());
     has_run_ = true;
+    static_cast<void>(writer_->flush());  // from now on the file is at its place
     describe();
   }
 
@@ -117,7 +124,7 @@ class recorder {
   void pulse() {
     take_points();
     report_to_service();
-    if (const auto why = writer_->take_error()) throw file_failure(*why, title_, job_.is_kept);
+    if (cannot_write()) throw why_not_written(job_.is_kept);
     if (!line_.is_due()) return;
     const lidar_counts lidar = source_->lidar().counts();
     line_.draw(fmt::format(
@@ -161,17 +168,34 @@ class recorder {
     points_.reset();
     odometry_.follow(nullptr);
     source_.reset();
-    const auto closed = writer_->close();
-    file_error_ = writer_->take_error();
-    if (!closed && !file_error_) file_error_ = closed.error();
     result_.file = writer_->counts();
-    result_.digest = writer_->digest();
-    std::error_code unimportant;
     // Without has_run_ the file contains only the attempt to open the source.
     const bool has_bytes = result_.file.bytes_from_device + result_.file.bytes_to_device > 0;
     const bool is_kept = has_run_ || (job_.keeps_attempt && has_bytes);
-    if (!is_kept && is_file(job_.path)) std::filesystem::remove(job_.path, unimportant);
+    if (is_kept) {
+      static_cast<void>(writer_->flush());
+      const auto closed = writer_->close();
+      if (!cannot_write() && !closed) file_error_ = closed.error();
+    } else {
+      writer_->discard();
+    }
+    result_.file = writer_->counts();
+    result_.digest = writer_->digest();
+    path_ = writer_->path();
     writer_.reset();
+  }
+
+  /// Whether something could not be written.
+  bool cannot_write() {
+    if (!file_error_ && writer_) file_error_ = writer_->take_error();
+    return file_error_.has_value();
+  }
+
+  /// The failure for `file_error_`.
+  [[nodiscard]] failure why_not_written(bool is_kept) {
+    if (writer_) path_ = writer_->path();
+    const bool has_several = job_.title.empty() && !path_.empty();
+    return file_failure(*file_error_, has_several ? path_ : title_, is_kept);
   }
 
   static bool is_file(const std::string& path) {
@@ -181,6 +205,8 @@ class recorder {
 
   const recording_job& job_;
   const std::string& title_ = job_.title.empty() ? job_.path : job_.title;
+  std::optional<claimed_output> claim_;
+  std::string path_;  // of the last file
   status_line line_;
   service_watch service_;
   std::unique_ptr<recording_writer> writer_;  // outlives the source, which writes to it

@@ -20,6 +20,7 @@
 #include "cli/logger.hpp"
 #include "g4lidar/diagnostics/acceptance.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "io/command_files.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
 #include "io/output.hpp"
@@ -42,7 +43,6 @@ struct acceptance_settings : common_options {
   struct choices {
     std::string file = "acceptance.mcap";
     bool is_alone = false;
-    bool overwrites = false;
   } run;
 };
 
@@ -182,7 +182,7 @@ acceptance_settings with_model(acceptance_settings options) {
 int accept(const acceptance_settings& given) {
   output out(given.output);
   refuse_files(given, task::asking);
-  if (!given.run.overwrites) refuse_existing(given.run.file);
+  const claimed_output claim(given.run.file);
   const acceptance_settings options = with_model(given);
   acceptance_options how;
   how.model = options.expected.model;
@@ -193,7 +193,7 @@ int accept(const acceptance_settings& given) {
   auto from = connector_for(options_for(options, {}));
   if (!from) throw failure_of(options, from.error());
   auto file = recording_writer::create(
-      options.run.file, {.model = how.model, .overwrite = options.run.overwrites, .scans = false});
+      options.run.file, {.model = how.model, .overwrite = may_replace(), .scans = false});
   if (!file) throw failure(file.error());
   auto observed = recorded(*std::move(from), *file);
   if (!observed) throw failure(observed.error());
@@ -202,7 +202,12 @@ int accept(const acceptance_settings& given) {
   const std::optional<port_info> known = port ? port_of(port->path) : std::nullopt;
   if (known) how.port = &*known;
   if (!options.run.is_alone) how.ask = ask_user;
-  how.is_cancelled = [] { return interrupt() != 0; };
+  std::optional<error> unwritten;
+  const auto cannot_write = [&] {
+    if (!unwritten) unwritten = file->take_error();
+    return unwritten.has_value();
+  };
+  how.is_cancelled = [&] { return interrupt() != 0 || cannot_write(); };
   how.on_step = [](acceptance_step step) { logger::info(fmt::format("{} ...\n", name_of(step))); };
   how.on_result = [&](const acceptance_result& done) {
     out.write(options.json ? json_line(json_of_step(done)) : text_of_step(done));
@@ -217,7 +222,9 @@ int accept(const acceptance_settings& given) {
     words.emplace_back(name_of(each.step), json_of_step(each).dump());
   }
   file->metadata("g4lidar.acceptance", words);
-  if (auto closed = file->close(); !closed) throw failure(closed.error());
+  const auto closed = file->close();
+  if (cannot_write()) throw failure(*unwritten);
+  if (!closed) throw failure(closed.error());
   if (!options.json) out.write(questions_of(all));
   out.commit();
   logger::info(fmt::format("{} has all bytes and these results. Attach it to a report: {}\n",
@@ -251,23 +258,20 @@ verb make_acceptance_verb() {
   json.help = "A JSON object for each step, a line each";
   option_row time = duration_row(*options);
   time.help = "Observe the scan for so long (1m)";
-  option_row file =
-      text_row("--file", "FILE", "The file for a report (acceptance.mcap)", options->run.file);
-  return {
-      .name = "acceptance",
-      .summary = "Compare a real lidar with the table of models, for a report",
-      .arguments = {source_argument(*options)},
-      .options = joined(
-          output_row(*options), json, time, baud_row(*options), model_row(*options),
-          option_rows{
-              file,
-              flag_row("--alone", "Leave out the steps that need a user", options->run.is_alone),
-              flag_row("--force", "Replace an existing file", options->run.overwrites)}),
-      .details = acceptance_details,
-      .examples = {{"g4-dump acceptance --model x4 /dev/ttyUSB0", "Examine an X4"},
-                   {"g4-dump acceptance --alone --file g4.mcap sim:",
-                    "A simulated G4, without its user"}},
-      .run = [options] { return accept(*options); }};
+  option_row file = text_row("--file", "FILE", "The file for a report (acceptance.mcap)",
+                             options->run.file, completion::output);
+  return {.name = "acceptance",
+          .summary = "Compare a real lidar with the table of models, for a report",
+          .arguments = {source_argument(*options)},
+          .options =
+              joined(output_rows(*options), json, time, baud_row(*options), model_row(*options),
+                     option_rows{file, flag_row("--alone", "Leave out the steps that need a user",
+                                                options->run.is_alone)}),
+          .details = acceptance_details,
+          .examples = {{"g4-dump acceptance --model x4 /dev/ttyUSB0", "Examine an X4"},
+                       {"g4-dump acceptance --alone --file g4.mcap sim:",
+                        "A simulated G4, without its user"}},
+          .run = [options] { return accept(*options); }};
 }
 
 }  // namespace g4_tool

@@ -47,7 +47,6 @@ struct convert_options {
   point_job points;               ///< Its source is IN, its output OUT; also for bytes.
   std::optional<file_form> from;  ///< Nothing: by its contents and name.
   std::optional<file_form> to;    ///< Nothing: by its name.
-  bool overwrites = false;        ///< OUT may be an existing file.
   bool shapes = false;            ///< An option for points was given.
   recording_options made;         ///< Of a written recording.
 
@@ -150,7 +149,6 @@ int to_points(convert_options options, file_form from, file_form to) {
   if (from == file_form::jsonl) job.text = text_source::jsonl;
   if (to == file_form::pcd) job.file = scan_file::pcd;
   if (const auto at = point_files.find(to); at != point_files.end()) job.point_file = at->second;
-  job.keeps_existing = !options.overwrites;
   if (to == file_form::tum) job.log = slam_log::tum;
   if (to == file_form::carmen) job.log = slam_log::carmen;
   job.common->marks.near = options.made.near;
@@ -200,7 +198,6 @@ int to_bytes(const convert_options& options, file_form from) {
   if (out.is_terminal()) {
     throw failure(exit_code::usage, "raw bytes are not for a terminal. Give a file as OUT.");
   }
-  refuse_same_file(id_of_name(path_of_source(options.in())), out);
   from == file_form::recording ? copy_recording(options, out) : copy_bytes(options, out);
   out.commit();
   return exit_code_now();
@@ -217,7 +214,6 @@ int to_bytes(const convert_options& options, file_form from) {
 
 int to_recording(const convert_options& options) {
   output out(options.out());
-  refuse_same_file(id_of_name(path_of_source(options.in())), out);
   recording_job job;
   job.common = *options.points.common;
   job.source = options.points.source;
@@ -239,10 +235,6 @@ int run(const convert_options& options) {
   const file_form from = form_of_input(options);
   const file_form to = form_of_output(options);
   check_combination(options, from, to);
-  const auto in_place = id_of_name(options.out());  // the input itself has another error message
-  if (!options.overwrites && in_place != id_of_name(path_of_source(options.in()))) {
-    refuse_existing(options.out());
-  }
   if (to == file_form::recording) return to_recording(options);
   if (to == file_form::raw_bytes) return to_bytes(options, from);
   return to_points(options, from, to);
@@ -261,7 +253,7 @@ messages are computed again: see --points, --order, --odometry and --mount of g4
 
 --from and --to count from the beginning of IN. Of a damaged IN the undamaged part is converted,
 and the rest is counted on standard error. OUT appears when everything is written; --force
-replaces an existing file. ^C ends the command; what was converted so far is written.)";
+replaces an existing file, but never IN. ^C ends the command; what was converted so far is written.)";
 
 option_rows form_rows(convert_options& options) {
   const choices<file_form> inputs(forms().begin(), forms().begin() + 4);
@@ -271,7 +263,7 @@ option_rows form_rows(convert_options& options) {
   return {
       choice_row("--from-format", "Format of IN (by its contents and name)", options.from, inputs),
       choice_row("--to-format", "Format of OUT (by its name)", options.to, outputs),
-      flag_row("--force", "Replace an existing file", options.overwrites),
+      force_row(),
       moment_row("--from", "Begin at this time of IN: 10s", range.from_ns),
       moment_row("--to", "End at this time of IN: 40s", range.to_ns),
       value_row("--ascii", "", "Write pcd as text", job.data,
@@ -304,9 +296,10 @@ verb make_convert_verb() {
   return {
       .name = "convert",
       .summary = "Convert recordings, raw bytes and points",
-      .arguments = {file_argument("IN", "A recording, raw bytes, csv or jsonl", common.source),
+      .arguments = {file_argument("IN", "A recording, raw bytes, csv or jsonl", common.source,
+                                  completion::input),
                     file_argument("OUT", "The file to write; - with --to-format: standard output",
-                                  common.output)},
+                                  common.output, completion::output)},
       .options = joined(form_rows(*options), message_rows(options->made), motion_rows(common),
                         point_rows(*options)),
       .details = convert_details,

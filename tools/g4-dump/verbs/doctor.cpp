@@ -31,7 +31,7 @@ namespace {
 constexpr std::size_t text_indent = 15;
 
 struct doctor_options : common_options {
-  report_options report;
+  std::string report;  ///< The text of a report; empty: none.
 };
 
 std::string list_of(std::span<const diagnosis> all) {
@@ -157,7 +157,7 @@ int examine(const doctor_options& options) {
   if (options.duration.count() > 0) how.measuring_time = options.duration;
   how.is_cancelled = [] { return interrupt() != 0; };
   std::optional<problem_report> report;
-  if (!options.report.path.empty()) report.emplace(options, options.report);
+  if (!options.report.empty()) report.emplace(options, options.report);
   how.on_stage = [&, colored = wants_color(out.descriptor())](const stage_report& stage) {
     out.write(options.json ? json_line(json_of_report(stage)) : text_of_report(stage, colored));
     out.flush();
@@ -197,8 +197,9 @@ failed; a stage that only warns leaves it at 0.
 
 --report FILE writes the text FILE with what a report of a problem needs: versions, system, ports
 and who has them open, diagnosis, settings. Ten seconds of the lidar are recorded beside it: in
-report.mcap for report.txt. The text states what is in both. In the place of what cannot be found
-out, as without a lidar, is the reason.)";
+report.mcap for report.txt. A file is not recorded again: it is the second file of the report. The
+text states what is in both. In the place of what cannot be found out, as without a lidar, is the
+reason.)";
 
 }  // namespace
 
@@ -208,28 +209,26 @@ verb make_doctor_verb() {
   time.help = "Listen to the scan for so long (5s)";
   option_row json = json_row(*options);
   json.help = "A JSON object for each stage, a line each";
-  return {
-      .name = "doctor",
-      .summary = "What is wrong with a lidar, its port or a file, and what to try",
-      .arguments = {source_argument(*options)},
-      .options = joined(
-          output_row(*options), json, time, baud_row(*options), model_row(*options),
-          in_group("Report of a problem",
-                   {text_row("--report", "FILE",
-                             "Write a text, and a recording beside it, to attach to a report",
-                             options->report.path),
-                    flag_row("--force", "Replace existing files", options->report.overwrites)})),
-      .details = doctor_details,
-      .examples = {{"g4-dump doctor", "Examine the only lidar"},
-                   {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
-                    "Listen to one port for 30 s, as JSON"},
-                   {"g4-dump doctor walk.mcap", "Examine a recording"},
-                   {"g4-dump doctor --report report.txt",
-                    "Write report.txt and report.mcap, to attach to a report of a problem"},
-                   {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
-                   {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
-                    "A simulated X4 without its second plug"}},
-      .run = [options] { return examine(*options); }};
+  return {.name = "doctor",
+          .summary = "What is wrong with a lidar, its port or a file, and what to try",
+          .arguments = {source_argument(*options)},
+          .options = joined(
+              output_rows(*options), json, time, baud_row(*options), model_row(*options),
+              in_group("Report of a problem",
+                       {text_row("--report", "FILE",
+                                 "Write a text, and a recording beside it, to attach to a report",
+                                 options->report, completion::output)})),
+          .details = doctor_details,
+          .examples = {{"g4-dump doctor", "Examine the only lidar"},
+                       {"g4-dump doctor --json -d 30s /dev/ttyUSB0",
+                        "Listen to one port for 30 s, as JSON"},
+                       {"g4-dump doctor walk.mcap", "Examine a recording"},
+                       {"g4-dump doctor --report report.txt",
+                        "Write report.txt and report.mcap, to attach to a report of a problem"},
+                       {"g4-dump doctor 'sim:?fault=flip'", "A simulated G4 on a bad cable"},
+                       {"g4-dump doctor 'sim:?model=x4&motor_has_power=false'",
+                        "A simulated X4 without its second plug"}},
+          .run = [options] { return examine(*options); }};
 }
 
 }  // namespace g4_tool

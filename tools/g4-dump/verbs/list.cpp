@@ -214,7 +214,7 @@ verb make_list_verb() {
           .options = joined(
               flag_row("--probe", "Search a lidar at each port with such a bridge", options->probe),
               flag_row("--all", "Query every port: sends commands to any device", options->all),
-              json_row(options->common), output_row(options->common), baud_row(options->common)),
+              json_row(options->common), output_rows(options->common), baud_row(options->common)),
           .details = list_details,
           .examples = {{"g4-dump list", "The serial ports"},
                        {"g4-dump list --probe", "The lidars, their models and baud rates"}},

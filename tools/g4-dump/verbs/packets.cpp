@@ -47,8 +47,7 @@ void list_bytes(const packets_options& options) {
     throw bad_value("--time: raw bytes carry no times; lines begin with the offset of the bytes");
   input in(path_of_source(common.source),
            "Give a file of raw bytes from the lidar's port, or pipe them in.");
-  output out(common.output, in.id() ? output::appears::whole : output::appears::growing);
-  refuse_same_file(in.id(), out);
+  output out(common.output, in.is_file() ? output::appears::whole : output::appears::growing);
   protocol_log_style style = options.style;
   if (!options.is_model_known) {
     const recognised_model found = in.recognise(common);
@@ -77,7 +76,6 @@ void list_recording(const packets_options& options) {
   const common_options& common = *options.common;
   const std::string path = path_of_source(common.source);
   output out(common.output);
-  refuse_same_file(id_of_name(path), out);
   const time_style wanted = common.time.value_or(time_style::absolute);
   std::optional<protocol_log> log;
   std::optional<std::int64_t> end_ns;
@@ -214,7 +212,7 @@ verb make_packets_verb() {
       .summary = "Print commands, responses and packets, both ways",
       .arguments = {source_argument(common)},
       .options = joined(
-          output_row(common), flag_row("--hex", "Show all bytes", style.hex),
+          output_rows(common), flag_row("--hex", "Show all bytes", style.hex),
           flag_row("--errors", "Show only skipped bytes and suspect packets", style.errors),
           ending_rows(common), in_group("Output form", {time_row(common)}), device_rows(common)),
       .details = packets_details,

@@ -43,8 +43,8 @@ Raw bytes have no times: times are counted from the first sample with --sample-r
 mono are refused.)";
 
 constexpr const char* ending_text =
-    R"(From a lidar or a pipe, OUT is created (or replaced) with the first record and grows. From a
-file, OUT appears when everything is written. ^C stops the lidar; the records so far are
+    R"(From a lidar or a pipe, OUT is created (with --force also replaced) with the first record and
+grows. From a file, OUT appears when everything is written. ^C stops the lidar; the records so far are
 written. With --on-loss reconnect or wait the command waits for a lost lidar, until --idle ends
 it; with wait also for one that is not connected yet. For files, -d counts the times of the
 points.)";
@@ -116,7 +116,7 @@ verb make_dump_verb() {
   return {.name = "dump",
           .summary = "Print points (the default command)",
           .arguments = {source_argument(common)},
-          .options = joined(output_row(common), checked(format_row(job->style.format), refuse_pcd),
+          .options = joined(output_rows(common), checked(format_row(job->style.format), refuse_pcd),
                             sample_rate_row(job->source.raw_sample_rate_hz), ending_rows(common),
                             filter_rows(common), near_row(common.marks.near), shape_rows(common),
                             device_rows(common)),
@@ -150,7 +150,7 @@ verb make_scan_verb() {
       .summary = "Print whole revolutions",
       .arguments = {source_argument(common)},
       .options = joined(
-          output_row(common), format,
+          output_rows(common), format,
           number_row("--grid", "N", "Write N ranges at equal angles, no points", job->bins,
                      std::size_t{1}, std::size_t{65'536}),
           flag_row("--partial", "Write pieces of revolutions, too", job->partial),
@@ -182,12 +182,12 @@ verb make_decode_verb() {
   };
   option_row file = value_row("FILE", "", "Raw bytes or a recording; - for standard input (-)",
                               common.source, as_file);
-  file.complete = completion::file;
+  file.complete = completion::input;
   return {.name = "decode",
           .summary = "Print the points of a file (dump with other defaults)",
           .arguments = {file},
           .options =
-              joined(output_row(common), format_row(job->style.format, "Output format (csv)"),
+              joined(output_rows(common), format_row(job->style.format, "Output format (csv)"),
                      flag_row("--scans", "A record for each revolution", job->style.scans),
                      flag_row("--valid", "Leave out points without a return", job->returns_only),
                      model_row(common), sample_rate_row(job->source.raw_sample_rate_hz),

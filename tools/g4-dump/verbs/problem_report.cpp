@@ -27,19 +27,23 @@ namespace {
 
 constexpr auto recorded_time = std::chrono::seconds(10);
 
-/// The name of the recording beside the text. Removes an older recording if it may be replaced.
-std::string recording_path(const report_options& how) {
-  if (how.path == "-" || how.path.ends_with(".mcap")) {
-    throw bad_value("--report: " + in_quotes(how.path) +
-                    " cannot be the text of a report; its recording is put beside it");
-  }
-  std::string recording = std::filesystem::path(how.path).replace_extension(".mcap").string();
-  std::error_code unimportant;
-  if (how.overwrites) std::filesystem::remove(recording, unimportant);
-  for (const std::string& each : {how.path, recording}) {
-    if (!how.overwrites) refuse_existing(each);
-  }
+/// `path`, if it can be the text of a report.
+const std::string& text_path(const std::string& path) {
+  if (path != "-" && !path.ends_with(".mcap")) return path;
+  throw bad_value("--report: " + in_quotes(path) +
+                  " cannot be the text of a report; its recording is put beside it");
+}
+
+/// The name of the recording beside the text, which can be written.
+std::string recording_beside(const std::string& text) {
+  std::string recording = std::filesystem::path(text).replace_extension(".mcap").string();
+  const claimed_output checked(recording);
   return recording;
+}
+
+bool is_file(const std::string& source) {
+  const source_kind kind = kind_of_source(source);
+  return kind == source_kind::recording || kind == source_kind::raw_bytes;
 }
 
 /// The rest of the first line of `file` that begins with `name`; empty if there is none.
@@ -83,8 +87,11 @@ void attempt(output& out, Write write) {
 
 }  // namespace
 
-problem_report::problem_report(const common_options& source, const report_options& how)
-    : source_(source), recording_(recording_path(how)), text_(how.path) {
+problem_report::problem_report(const common_options& source, const std::string& path)
+    : source_(source),
+      text_(text_path(path)),
+      is_recorded_(!is_file(source.source)),
+      recording_(is_recorded_ ? recording_beside(path) : path_of_source(source.source)) {
   text_.write(fmt::format(
       "A report of g4-dump doctor about a problem.\n\n"
       "This file contains: this command line; the versions and the system; the serial ports with\n"
@@ -103,10 +110,7 @@ void problem_report::finish() {
   text_.write("\n== settings\n");
   attempt(text_, [this] { write_facts(source_, text_); });
   text_.write("\n== recording\n");
-  const source_kind kind = kind_of_source(source_.source);
-  const bool is_file = kind == source_kind::recording || kind == source_kind::raw_bytes;
-  const std::string attached = is_file ? path_of_source(source_.source) : recording_;
-  if (is_file) {
+  if (!is_recorded_) {
     text_.write("The source is a file, and is not recorded again: attach it.\n");
   } else if (interrupt() == 0) {
     attempt(text_, [this] {
@@ -125,12 +129,12 @@ void problem_report::finish() {
   }
   text_.commit();
   std::error_code unimportant;
-  const bool has_recording = std::filesystem::exists(attached, unimportant);
+  const bool has_recording = std::filesystem::exists(recording_, unimportant);
   logger::info(fmt::format(
       "{0}{1}{2} {3} what a report of the problem needs. {0} states what it contains: read it, "
       "then "
       "attach {4}: {5}\n",
-      text_.title(), has_recording ? " and " : "", has_recording ? in_quotes(attached) : "",
+      text_.title(), has_recording ? " and " : "", has_recording ? in_quotes(recording_) : "",
       has_recording ? "are" : "is", has_recording ? "both" : "it", G4LIDAR_ISSUES));
 }
 

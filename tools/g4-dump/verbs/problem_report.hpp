@@ -10,16 +10,11 @@
 
 namespace g4_tool {
 
-struct report_options {
-  std::string path{};       ///< Of the text; empty: no report.
-  bool overwrites = false;  ///< Replaces existing files.
-};
-
 class problem_report {
  public:
-  /// Writes the versions, the system and the ports. Throws bad_value for an unsuitable name, and a failure
-  /// if a file exists already or cannot be created.
-  problem_report(const common_options& source, const report_options& how);
+  /// Writes the versions, the system and the ports to the text `path`. Throws bad_value for an unsuitable name, and a
+  /// failure if a file exists already or cannot be created.
+  problem_report(const common_options& source, const std::string& path);
 
   /// Adds a part of the diagnosis.
   void add(std::string_view text) { text_.write(text); }
@@ -29,8 +24,9 @@ class problem_report {
 
  private:
   const common_options source_;
-  const std::string recording_;
   output text_;
+  const bool is_recorded_;       // a file is not
+  const std::string recording_;  // beside the text, or the file that is examined
 };
 
 }  // namespace g4_tool

@@ -8,6 +8,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "cli/rows.hpp"
+#include "io/command_files.hpp"
 #include "io/input.hpp"
 #include "io/interrupt.hpp"
 #include "io/read_loop.hpp"
@@ -22,7 +23,9 @@ constexpr const char* record_details =
 sensor_msgs/msg/LaserScan message, which Foxglove and ros2 bag show. It can be read while it
 grows; after a crash or on a full disk at most the last second is missing. A single argument that
 ends in .mcap is OUT. With --rotate-size or --rotate-time, walk.mcap is followed by
-walk-0001.mcap and so on; each can be opened by itself.
+walk-0001.mcap and so on; each can be opened by itself. If there is such a file, it stays, and the
+next free number is taken, also with --force. An existing OUT is replaced with --force only, when
+the source has been opened.
 
 SOURCE may be a recording: the new one holds the same bytes in the same order and has the same
 digest, which is printed at the end and kept in the file (see g4-dump replay --verify). Files of
@@ -48,6 +51,7 @@ void sort_words(record_options& options) {
   if (out.empty() && has_out) {
     out = words.back();
     words.pop_back();
+    if (words.empty()) take_back_input(out);  // it was in the place of SOURCE
   }
   if (words.size() > 1) throw bad_value("unexpected argument " + in_quotes(words.back()));
   if (out.empty()) {
@@ -88,10 +92,10 @@ option_rows file_rows(record_options& options) {
     if (given < seconds(1)) throw bad_value(in_quotes(word) + " is below 1s");
     return std::chrono::duration_cast<seconds>(given);
   };
-  return joined(text_row("-o,--output", "OUT", "The recording, an MCAP file", options.job.path),
+  return joined(text_row("-o,--output", "OUT", "The recording, an MCAP file", options.job.path,
+                         completion::output),
                 in_group("The file",
-                         {flag_row("--force", "Replace an existing file", made.overwrite),
-                          compress_row(made.packed),
+                         {force_row(), compress_row(made.packed),
                           value_row("--rotate-size", "SIZE",
                                     "Start a new file before one exceeds this size: 1G, 500M",
                                     made.rotate_bytes, size),
@@ -119,7 +123,8 @@ verb make_record_verb() {
   const auto options = std::make_shared<record_options>();
   common_options& common = options->job.common;
   option_row source = source_argument(common);
-  option_row out = text_row("OUT", "", "The recording, as with -o", options->job.path);
+  option_row out =
+      text_row("OUT", "", "The recording, as with -o", options->job.path, completion::output);
   source.take =
       out.take = [words = &options->words](const std::string& word) { words->push_back(word); };
   return {

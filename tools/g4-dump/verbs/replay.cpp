@@ -116,9 +116,9 @@ verb make_replay_verb() {
   return {
       .name = "replay",
       .summary = "Play a recording at its own speed or another, or verify it",
-      .arguments = {file_argument("FILE", "A recording", common.source)},
+      .arguments = {file_argument("FILE", "A recording", common.source, completion::input)},
       .options =
-          joined(output_row(common), format_row(job.style.format),
+          joined(output_rows(common), format_row(job.style.format),
                  flag_row("--scans", "Whole revolutions, not points", job.style.scans),
                  value_row("--playback-speed", "1|max|FACTOR",
                            "1: as recorded, 0.5: half as fast (1)", played.speed,

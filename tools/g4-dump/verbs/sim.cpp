@@ -28,16 +28,6 @@ void check(const sim_options& options) {
   if (const auto problem = problem_with(options.setup.device); !problem.empty()) {
     throw bad_value(std::string(problem));
   }
-  const auto plain = [](const std::string& name) {
-    return std::filesystem::path(name).lexically_normal();
-  };
-  if (!options.truth.empty() && plain(options.truth) == plain(options.output)) {
-    throw bad_value("--truth and -o name the same file");
-  }
-  if (!options.odometry_file.empty() && (plain(options.odometry_file) == plain(options.output) ||
-                                         plain(options.odometry_file) == plain(options.truth))) {
-    throw bad_value("--odometry names the same file as -o or --truth");
-  }
   if (options.odometry_file.empty() && options.has_odometry_options) {
     throw bad_value(
         "--odometry-rate, --way-noise, --turn-noise, --way-slip and --turn-slip need --odometry");
@@ -149,19 +139,21 @@ void set(sim::setup& setup, const std::string& word) {
 }
 
 option_rows file_rows(sim_options& options) {
-  return {
-      // First: the other options change what it sets.
-      {"--model", "MODEL", "The model (g4): x4, t-mini-pro, ...; see docs/sim.md",
-       [&options](const std::string& word) { set(options.setup, "model=" + word); }},
-      number_row("--seconds", "N", "Duration of the scan (10)", options.seconds, 0.0, 1e9),
-      {"--seed", "S", "Seed of the random numbers (1)",
-       [&options](const std::string& word) { set(options.setup, "seed=" + word); }},
-      text_row("-o,--output", "FILE", "Output file; - for standard output (-)", options.output),
-      text_row("--truth", "FILE", "Write the exact value of each sample, as csv", options.truth),
-      text_row("--world", "FILE", "The walls (a flat of a few rooms); see docs/sim.md",
-               options.setup.world_file),
-      text_row("--path", "FILE", "How the lidar moves (as in the world); see docs/sim.md",
-               options.setup.path_file)};
+  return {// First: the other options change what it sets.
+          {"--model", "MODEL", "The model (g4): x4, t-mini-pro, ...; see docs/sim.md",
+           [&options](const std::string& word) { set(options.setup, "model=" + word); }},
+          number_row("--seconds", "N", "Duration of the scan (10)", options.seconds, 0.0, 1e9),
+          {"--seed", "S", "Seed of the random numbers (1)",
+           [&options](const std::string& word) { set(options.setup, "seed=" + word); }},
+          text_row("-o,--output", "FILE", "Output file; - for standard output (-)", options.output,
+                   completion::output),
+          text_row("--truth", "FILE", "Write the exact value of each sample, as csv", options.truth,
+                   completion::output),
+          force_row(),
+          text_row("--world", "FILE", "The walls (a flat of a few rooms); see docs/sim.md",
+                   options.setup.world_file, completion::input),
+          text_row("--path", "FILE", "How the lidar moves (as in the world); see docs/sim.md",
+                   options.setup.path_file, completion::input)};
 }
 
 option_rows odometry_rows(sim_options& options) {
@@ -173,7 +165,7 @@ option_rows odometry_rows(sim_options& options) {
   };
   option_rows rows{
       text_row("--odometry", "FILE", "Write the odometry: lines of time_ns, x, y and yaw_rad",
-               options.odometry_file),
+               options.odometry_file, completion::output),
       number("--odometry-rate", "HZ", "Poses per second (50)", how.rate_hz, 0.1, 1000.0),
       number("--way-noise", "RATIO", "Standard deviation of the odometry after 1 m (0)",
              how.way_noise, 0.0, 1.0),
@@ -256,7 +248,7 @@ option_rows served_rows(sim_options& options) {
           [&options](const std::string& word) {
             add_new(options.links, std::filesystem::path(word).lexically_normal().string());
           },
-          completion::file),
+          completion::output),
       listed(
           "--tcp", "PORT", "Serve a device at [ADDRESS:]PORT, as a network bridge does",
           [&options](const std::string& word) { options.bridges.push_back(tcp_place_of(word)); }),

@@ -75,21 +75,16 @@ int write_stream(const sim_options& options) {
   std::optional<output> truth;
   if (!options.truth.empty()) {
     truth.emplace(options.truth);
-    refuse_same_file(out.id(), *truth);
     truth->write("index,time_ns,scan,first_level_deg,bearing_deg,range_mm,raw,");
     if (has_more) truth->write("intensity,sample_flags,");
     truth->write("lidar_x_m,lidar_y_m,lidar_heading_deg\n");
   }
   std::optional<output> way;
-  if (!options.odometry_file.empty()) {
-    way.emplace(options.odometry_file);
-    refuse_same_file(out.id(), *way);
-    if (truth) refuse_same_file(truth->id(), *way);
-  }
+  if (!options.odometry_file.empty()) way.emplace(options.odometry_file);
   const auto write = [&out](g4lidar::bytes data) {
     out.write({reinterpret_cast<const char*>(data.data()), data.size()});
   };
-  const sim::world scene = load_scene(options.setup, &out);
+  const sim::world scene = load_scene(options.setup);
   sim::scanner scanner(scene, sim::scanner_of(device));
   const auto end_ns = static_cast<std::int64_t>(std::llround(options.seconds * 1e9));
   write(sim::scan_start_reply());

@@ -193,7 +193,7 @@ verb make_stats_verb() {
       .arguments = {source_argument(common)},
       .options =
           joined(duration_row("--watch", "Print a line each TIME: 1s", options->interval),
-                 json_row(common), output_row(common), ending_rows(common), device_rows(common)),
+                 json_row(common), output_rows(common), ending_rows(common), device_rows(common)),
       .details = stats_details,
       .examples = {{"g4-dump stats", "The counts of 5 s of the only lidar"},
                    {"g4-dump stats --watch 1s", "A line each second"},

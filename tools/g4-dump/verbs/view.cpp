@@ -295,7 +295,7 @@ verb make_view_verb() {
           choice_row("--glyphs", "What dots are made of (braille where the locale is UTF-8)",
                      job->how,
                      choices<glyphs>{{"braille", glyphs::braille}, {"ascii", glyphs::ascii}}),
-          flag_row("--once", "Print one revolution and end", job->once), size, output_row(common),
+          flag_row("--once", "Print one revolution and end", job->once), size, output_rows(common),
           duration_row(common),
           flag_row("--loop", "A recording begins again at its end", job->source.playback.loop),
           sample_rate_row(job->source.raw_sample_rate_hz), device),

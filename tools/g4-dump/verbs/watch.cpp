@@ -140,14 +140,15 @@ port. No port is opened. Without udevd, as in most containers, the ports are als
 
 verb make_watch_verb() {
   const auto options = std::make_shared<common_options>();
-  return {.name = "watch",
-          .summary = "Report ports as they are plugged and unplugged",
-          .options = joined(json_row(*options), output_row(*options), ending_rows(*options, false)),
-          .details = watch_details,
-          .examples = {{"g4-dump watch", "Report until ^C"},
-                       {"g4-dump watch -n 1 --json", "Wait for one event"}},
-          .exits = {0, 2, 10, 11, 130},
-          .run = [options] { return watch(*options); }};
+  return {
+      .name = "watch",
+      .summary = "Report ports as they are plugged and unplugged",
+      .options = joined(json_row(*options), output_rows(*options), ending_rows(*options, false)),
+      .details = watch_details,
+      .examples = {{"g4-dump watch", "Report until ^C"},
+                   {"g4-dump watch -n 1 --json", "Wait for one event"}},
+      .exits = {0, 2, 10, 11, 130},
+      .run = [options] { return watch(*options); }};
 }
 
 }  // namespace g4_tool

@@ -61,8 +61,10 @@ void add(CLI::App& app, const option_row& row) {
   const std::string name = row.long_name();
   // CLI11 itself adds the name of a flag with a value.
   const bool adds_name = name.starts_with('-') && row.optional_value.empty();
-  const auto take = [inner = row.take,
+  const bool is_read = row.complete == completion::input || row.complete == completion::source;
+  const auto take = [inner = row.take, is_read,
                      before = adds_name ? name + ": " : ""](const std::string& word) {
+    if (is_read) add_input(word);
     try {
       inner(word);
     } catch (const bad_value& reason) {
@@ -333,6 +335,9 @@ std::function<int()> read_command_line(int argc, const char* const* argv) {
     const std::vector<CLI::App*> named = app.get_subcommands();
     return done(report_usage_error(problem_with(app, error),
                                    named.empty() ? "" : " " + named.back()->get_name()));
+  }
+  if (const CLI::Option* const config = app.get_config_ptr()) {
+    for (const std::string& name : config->results()) add_input(name);
   }
   return chosen ? chosen : ours.overview;
 }

@@ -14,6 +14,7 @@
 
 #include "g4lidar/filter_text.hpp"
 #include "g4lidar/lidar_options.hpp"
+#include "io/command_files.hpp"
 #include "suggestion.hpp"
 
 namespace g4_tool {
@@ -55,8 +56,14 @@ option_row source_argument(common_options& options) {
                   options.source, completion::source);
 }
 
-option_row output_row(common_options& options) {
-  return text_row("-o,--output", "OUT", "Output file; - for standard output (-)", options.output);
+option_row force_row() {
+  return {"--force", "", "Replace an existing file", [](const std::string&) { allow_replacing(); }};
+}
+
+option_rows output_rows(common_options& options) {
+  return {text_row("-o,--output", "OUT", "Output file; - for standard output (-)", options.output,
+                   completion::output),
+          force_row()};
 }
 
 option_row duration_row(common_options& options) {
@@ -166,7 +173,8 @@ option_rows filter_rows(common_options& options) {
        filter_row("--fov", "FROM:TO", "Keep these directions, in degrees of the frame: -90:90",
                   taken("fov")),
        ignore,
-       text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask),
+       text_row("--mask", "FILE", "Leave out returns inside the polygons of a file", options.mask,
+                completion::input),
        limits_row("--speckle", "Leave out returns without another one near them", taken("speckle")),
        limits_row("--edges", "Leave out veiling points at jumps of the range", taken("edges"))});
 }
@@ -186,7 +194,7 @@ option_row mount_row(common_options& options) {
 option_rows motion_rows(common_options& options) {
   return in_group("Motion of the robot",
                   {text_row("--odometry", "FILE", "Poses: lines of time_ns, x, y and yaw_rad",
-                            options.odometry),
+                            options.odometry, completion::input),
                    mount_row(options)});
 }
 

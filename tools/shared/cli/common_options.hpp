@@ -91,7 +91,10 @@ using shared_options = std::shared_ptr<common_options>;
 
 /// The argument SOURCE: see source.hpp.
 [[nodiscard]] option_row source_argument(common_options& options);
-[[nodiscard]] option_row output_row(common_options& options);
+/// --force, of each verb that writes a file.
+[[nodiscard]] option_row force_row();
+/// -o, --force.
+[[nodiscard]] option_rows output_rows(common_options& options);
 /// -d.
 [[nodiscard]] option_row duration_row(common_options& options);
 /// -n, -d, --idle.

@@ -53,7 +53,8 @@ class offer {
       case completion::source:
         add_sources();
         [[fallthrough]];
-      case completion::file:
+      case completion::input:
+      case completion::output:
         fmt::print("/\n");
         break;
       case completion::nothing:

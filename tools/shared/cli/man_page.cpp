@@ -286,6 +286,7 @@ std::string single_page(const program& ours, const verb& only) {
 }
 
 void write(const std::string& directory, std::string_view page, std::string_view text) {
+  allow_replacing();
   output out(fmt::format("{}/{}.1", directory, page));
   out.write(text);
   out.commit();

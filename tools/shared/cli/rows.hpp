@@ -80,7 +80,7 @@ template <class Target, class Parse>
 
 template <class Target>
 [[nodiscard]] option_row text_row(const char* names, std::string value, const char* help,
-                                  Target& into, completion complete = completion::file) {
+                                  Target& into, completion complete) {
   option_row row =
       value_row(names, std::move(value), help, into, [](const std::string& word) { return word; });
   row.complete = complete;
@@ -88,9 +88,9 @@ template <class Target>
 }
 
 /// A required argument: the name of a file.
-[[nodiscard]] inline option_row file_argument(const char* name, const char* help,
-                                              std::string& into) {
-  option_row row = text_row(name, "", help, into);
+[[nodiscard]] inline option_row file_argument(const char* name, const char* help, std::string& into,
+                                              completion complete) {
+  option_row row = text_row(name, "", help, into, complete);
   row.required = true;
   return row;
 }

@@ -49,7 +49,7 @@ option_rows server_rows(serve_options& options) {
                  }),
        flag_row("--allow-set", "Let clients change the settings of the lidar", options.allows_set),
        text_row("--allow-record", "DIRECTORY", "Let pages record into this directory",
-                options.record_directory, completion::file),
+                options.record_directory, completion::output),
        value_row("--record-limit", "SIZE", "Of all recordings in this directory (4G)",
                  options.record_limit, byte_count_of),
        origin});

@@ -20,8 +20,9 @@ class bad_value : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What the completion of a shell offers for a value.
-enum class completion : unsigned char { nothing, file, source, choices, setting, fault };
+/// What a value is: the completion of a shell offers that. A file is an input, which no output of the command replaces
+/// (io/command_files.hpp), or an output.
+enum class completion : unsigned char { nothing, input, output, source, choices, setting, fault };
 
 /// An option, or an argument if `names` does not begin with a dash. An option with an empty `value`
 /// is a flag.

@@ -43,6 +43,7 @@ std::string baud_question() {
 }  // namespace
 
 input::input(const std::string& name, const std::string& what_to_give) {
+  add_input(name);
   if (name == "-") {
     title_ = "standard input";
     if (::isatty(0) != 0) {
@@ -63,8 +64,8 @@ input::input(const std::string& name, const std::string& what_to_give) {
     if (fd_ != 0) ::close(fd_);
     throw failure(exit_code::bad_file, title_ + " is a directory. " + what_to_give);
   }
-  id_ = id_of(status);
-  if (id_) size_ = static_cast<std::uint64_t>(status.st_size);
+  is_file_ = S_ISREG(status.st_mode);
+  if (is_file_) size_ = static_cast<std::uint64_t>(status.st_size);
 }
 
 input::~input() {
@@ -88,7 +89,7 @@ std::size_t input::read(std::span<std::uint8_t> into) {
 
 bool input::wait(output& out, const time_limits& limits) const {
   pollfd waiting{fd_, POLLIN, 0};
-  if (id_ || ::poll(&waiting, 1, 0) != 0) return true;
+  if (is_file_ || ::poll(&waiting, 1, 0) != 0) return true;
   out.flush();
   return !out.is_closed() && wait_for_input(fd_, out.descriptor(), limits.end()) == wake::input;
 }
@@ -124,7 +125,7 @@ std::string input::first_line(const common_options& options) {
     const std::size_t end = std::min(all.find_first_of("\r\n", begin), all.size());
     if (end < all.size() || is_at_end) return std::string(all.substr(begin, end - begin));
     is_at_end = all.size() >= most || limits.is_over() || interrupt() != 0 ||
-                (!id_ && wait_for_input(fd_, -1, limits.end()) != wake::input);
+                (!is_file_ && wait_for_input(fd_, -1, limits.end()) != wake::input);
     if (is_at_end) continue;
     const std::size_t held = all.size();
     ahead_.resize(held + piece);
@@ -151,7 +152,7 @@ void input::pump(output& out, const byte_sink& sink, const common_options& optio
     rest = rest.subspan(piece.size());
   }
   while (!is_done()) {
-    if (!wait(out, limits) || (!id_ && limits.is_over())) return;
+    if (!wait(out, limits) || (!is_file_ && limits.is_over())) return;
     const std::size_t most = bytes == 0 ? first_piece : buffer.size();
     const std::span<const std::uint8_t> got(buffer.data(), read(std::span(buffer).first(most)));
     if (got.empty()) return;

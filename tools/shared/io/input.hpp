@@ -53,8 +53,8 @@ class input {
   /// `out` closes it. `out` is flushed before each wait, and after the first piece of a file.
   void pump(output& out, const byte_sink& sink, const common_options& options);
 
-  /// The identity of a file on disk.
-  [[nodiscard]] const std::optional<file_id>& id() const noexcept { return id_; }
+  /// Whether it is a file on disk, which has an end.
+  [[nodiscard]] bool is_file() const noexcept { return is_file_; }
 
   /// Its name in messages.
   [[nodiscard]] const std::string& title() const noexcept { return title_; }
@@ -65,7 +65,7 @@ class input {
 
   int fd_ = 0;
   std::string title_;
-  std::optional<file_id> id_;
+  bool is_file_ = false;
   std::uint64_t size_ = 0;
   std::vector<std::uint8_t> ahead_;  // read by recognise() or first_line()
 };

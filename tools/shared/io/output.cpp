@@ -19,13 +19,16 @@
 
 namespace g4_tool {
 
+std::string title_of_output(const std::string& name) {
+  return name == "-" ? "standard output" : in_quotes(name);
+}
+
 output::output(std::string name, appears when)
-    : name_(std::move(name)), title_(name_ == "-" ? "standard output" : in_quotes(name_)) {
+    : name_(name == "/dev/stdout" ? "-" : std::move(name)),
+      title_(title_of_output(name_)),
+      claim_(name_) {
+  if (name_ == "-") return;
   struct stat status{};
-  if (name_ == "-") {
-    if (::fstat(1, &status) == 0) id_ = id_of(status);
-    return;
-  }
   const bool exists = ::stat(name_.c_str(), &status) == 0;
   if (exists && S_ISDIR(status.st_mode)) {
     throw failure(exit_code::bad_file,
@@ -36,7 +39,6 @@ output::output(std::string name, appears when)
     if (fd_ < 0) fail("open", errno);
     return;
   }
-  if (exists) id_ = id_of(status);
   if (when == appears::whole) {
     open_beside(exists ? &status : nullptr);
     return;
@@ -72,6 +74,7 @@ void output::open_beside(const struct stat* older) {
 
 void output::take(std::string_view text) {
   if (fd_ < 0 && !text.empty()) {
+    claim_.refuse_inputs();
     fd_ = open_file(name_, O_WRONLY | O_CREAT | O_TRUNC);
     if (fd_ < 0) fail("create", errno);
   }
@@ -103,17 +106,20 @@ void output::replace_begin(std::string_view text) {
 }
 
 void output::commit() {
+  if (has_failed_) return;
   flush();
   if (fd_ <= 2) return;
   if (::close(std::exchange(fd_, -1)) != 0 && errno != EINTR) fail("write", errno);
   if (temporary_.empty()) return;
+  claim_.refuse_inputs();
   if (::rename(temporary_.c_str(), name_.c_str()) != 0) fail("replace", errno);
   temporary_.clear();
 }
 
 bool output::is_terminal() const noexcept { return ::isatty(fd_) != 0; }
 
-void output::fail(const char* doing, int error) const {
+void output::fail(const char* doing, int error) {
+  has_failed_ = true;
   throw failure(exit_code::bad_file, fmt::format("cannot {} {}: {}. {}", doing, title_,
                                                  std::strerror(error), advice_on_writing(error)));
 }
@@ -127,16 +133,7 @@ const char* advice_on_writing(int error) noexcept {
   return "Give another place.";
 }
 
-numbered_files numbered_files_of(const std::string& name, bool keeps_existing) {
-  if (keeps_existing) {
-    numbered_files all = numbered_files_of(name);
-    if (!all) return all;
-    return [name_of = std::move(all)](std::uint64_t number) {
-      std::string made = name_of(number);
-      refuse_existing(made);
-      return made;
-    };
-  }
+numbered_files numbered_files_of(const std::string& name) {
   std::error_code unknown;
   if (name.ends_with('/') || std::filesystem::is_directory(name, unknown)) {
     return [place = std::filesystem::path(name)](std::uint64_t number) {
@@ -157,18 +154,6 @@ numbered_files numbered_files_of(const std::string& name, bool keeps_existing) {
           behind = after.substr(1)](std::uint64_t number) {
     return fmt::format("{}{:0{}}{}", before, number, digits, behind);
   };
-}
-
-void refuse_existing(const std::string& name) {
-  if (!id_of_name(name)) return;
-  throw failure(exit_code::bad_file, fmt::format("cannot write {}: it exists already. {}",
-                                                 in_quotes(name), advice_on_writing(EEXIST)));
-}
-
-void refuse_same_file(const std::optional<file_id>& from, const output& to) {
-  if (!from || from != to.id()) return;
-  throw failure(exit_code::usage,
-                to.title() + " is also the input. Give another name for the output.");
 }
 
 }  // namespace g4_tool

@@ -6,33 +6,20 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
+#include "command_files.hpp"
 #include "g4lidar/export/text_sink.hpp"
 
 namespace g4_tool {
 
-/// The identity of a regular file, independent of its names: its device and inode.
-using file_id = std::pair<dev_t, ino_t>;
-
-[[nodiscard]] inline std::optional<file_id> id_of(const struct stat& status) noexcept {
-  if (!S_ISREG(status.st_mode)) return std::nullopt;
-  return file_id{status.st_dev, status.st_ino};
-}
-
-/// The identity of the regular file of that name; nothing if there is none.
-[[nodiscard]] inline std::optional<file_id> id_of_name(const std::string& name) noexcept {
-  struct stat status{};
-  if (::stat(name.c_str(), &status) != 0) return std::nullopt;
-  return id_of(status);
-}
+/// Its name in messages.
+[[nodiscard]] std::string title_of_output(const std::string& name);
 
 /// A buffered output. A file on disk is written beside its place under a temporary name, and commit()
-/// renames it; without commit() it is removed and an older file of that name remains. All else is
-/// written directly.
+/// renames it; without commit(), and if it could not be written, it is removed and an older file of that name remains.
+/// All else is written directly. It is a claimed_output.
 class output : public g4lidar::text_sink {
  public:
   /// When a file on disk appears under its name.
@@ -41,7 +28,7 @@ class output : public g4lidar::text_sink {
     growing,  ///< With the first bytes, so that they remain after a crash.
   };
 
-  /// The file of that name; standard output for `-`.
+  /// The file of that name; standard output for `-` and `/dev/stdout`.
   explicit output(std::string name, appears when = appears::whole);
   output(const output&) = delete;
   output& operator=(const output&) = delete;
@@ -49,7 +36,7 @@ class output : public g4lidar::text_sink {
 
   /// Calls flush(), then overwrites the beginning of the output. For a file on disk.
   void replace_begin(std::string_view text);
-  /// Calls flush() and gives the file its name.
+  /// Calls flush() and gives the file its name. Does nothing after a failure of this output.
   void commit();
 
   /// The reader has closed the pipe: further output is discarded. That is a normal end.
@@ -58,8 +45,6 @@ class output : public g4lidar::text_sink {
   void close_early() noexcept { closed_ = true; }
 
   [[nodiscard]] bool is_terminal() const noexcept;
-  /// The existing file on disk that is written or replaced.
-  [[nodiscard]] const std::optional<file_id>& id() const noexcept { return id_; }
   [[nodiscard]] int descriptor() const noexcept { return fd_; }
   /// The path of the file until commit().
   [[nodiscard]] const std::string& place() const noexcept {
@@ -71,31 +56,25 @@ class output : public g4lidar::text_sink {
  private:
   void take(std::string_view text) override;
   void open_beside(const struct stat* older);
-  [[noreturn]] void fail(const char* doing, int error) const;
+  [[noreturn]] void fail(const char* doing, int error);
 
   std::string name_;
   std::string title_;
+  claimed_output claim_;
   std::string temporary_;  // until commit()
   int fd_ = 1;             // -1: a growing file before its first bytes
-  std::optional<file_id> id_;
   bool closed_ = false;
+  bool has_failed_ = false;
 };
 
 /// The names of numbered files.
 using numbered_files = std::function<std::string(std::uint64_t)>;
 
 /// For `scan-%04d.pcd` or a directory; empty if `name` is the name of one file. Throws a bad_value for
-/// other uses of %. With `keeps_existing` the function refuses the name of an existing file.
-[[nodiscard]] numbered_files numbered_files_of(const std::string& name,
-                                               bool keeps_existing = false);
+/// other uses of %.
+[[nodiscard]] numbered_files numbered_files_of(const std::string& name);
 
 /// The advice for an error of writing.
 [[nodiscard]] const char* advice_on_writing(int error) noexcept;
-
-/// Throws a failure if the file exists.
-void refuse_existing(const std::string& name);
-
-/// Throws a failure if input and output are the same file.
-void refuse_same_file(const std::optional<file_id>& from, const output& to);
 
 }  // namespace g4_tool

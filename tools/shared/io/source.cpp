@@ -12,11 +12,11 @@
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
+#include "command_files.hpp"
 #include "g4lidar/core/model_choice.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
 #include "g4lidar/transport/forwarding.hpp"
 #include "interrupt.hpp"
-#include "output.hpp"
 
 namespace g4_tool {
 namespace {
@@ -49,10 +49,9 @@ std::function<result<std::unique_ptr<connector>>(std::unique_ptr<connector>)> fo
 namespace {
 
 /// "-" is standard input.
-std::string name_of_text(const std::string& name, const output* out) {
-  std::string file = name == "-" ? "/dev/stdin" : name;
-  if (out != nullptr && !file.empty()) refuse_same_file(id_of_name(file), *out);
-  return file;
+std::string name_of_text(const std::string& name) {
+  add_input(name);
+  return name == "-" ? "/dev/stdin" : name;
 }
 
 [[noreturn]] void refuse(const std::string& file, const sim::world_error& error,
@@ -65,8 +64,8 @@ std::string name_of_text(const std::string& name, const output* out) {
 
 }  // namespace
 
-sim::world load_scene(const sim::setup& setup, const output* out) {
-  const std::string file = name_of_text(setup.world_file, out);
+sim::world load_scene(const sim::setup& setup) {
+  const std::string file = name_of_text(setup.world_file);
   auto read = sim::load_world(file);
   if (interrupt() != 0) throw interrupted();
   if (const auto* error = std::get_if<sim::world_error>(&read)) {
@@ -76,7 +75,7 @@ sim::world load_scene(const sim::setup& setup, const output* out) {
   }
   auto scene = std::get<sim::world>(std::move(read));
   if (setup.path_file.empty()) return scene;
-  const std::string path_file = name_of_text(setup.path_file, out);
+  const std::string path_file = name_of_text(setup.path_file);
   const auto wrong = sim::load_path(scene, path_file);
   if (interrupt() != 0) throw interrupted();
   if (wrong) {

@@ -19,11 +19,8 @@
 
 namespace g4_tool {
 
-class output;
-
-/// The world and the path that a setup names, or the built-in rooms; not in the file that `out` writes.
-/// Throws a failure.
-[[nodiscard]] sim::world load_scene(const sim::setup& setup, const output* out = nullptr);
+/// The world and the path that a setup names, or the built-in rooms. Throws a failure.
+[[nodiscard]] sim::world load_scene(const sim::setup& setup);
 
 /// For lidar_options::wrap: puts something between the driver and each connection, such as a log.
 using transport_tap = std::function<std::unique_ptr<transport>(std::unique_ptr<transport>)>;
