@@ -20,6 +20,14 @@ struct device_information {
 
   /// Whether it was ever reported: one-way lidars that do not send it have zeros in all members. *Pure.*
   [[nodiscard]] constexpr bool is_known() const noexcept { return model != 0; }
+  /// Whether it has a serial number: the CT bytes of a one-way lidar have room for it only in revolutions of 14
+  /// packets or more. Without one all digits are '0'. *Pure.*
+  [[nodiscard]] constexpr bool has_serial_number() const noexcept {
+    for (const char each : serial_digits) {
+      if (each != '0' && each != '\0') return true;
+    }
+    return false;
+  }
   /// The serial number; valid as long as this structure.
   [[nodiscard]] constexpr std::string_view serial_number() const& noexcept {
     return {serial_digits.data(), serial_digits.size()};

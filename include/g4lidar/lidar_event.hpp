@@ -28,6 +28,12 @@ struct lidar_event {
     /// stop() has ended the scans, but the motor turns. Where the line DTR drives it, close() stops it; else
     /// nothing does.
     still_turning,
+    /// Points come without the offset of zero that their model has: command 93 was not answered, or the bytes or the
+    /// recording do not have the answer. The angles are those of the device. Asked again at each start.
+    no_zero_angle,
+    /// The lidar states a number that its model does not have, but that names no other model surely: that of
+    /// information().
+    other_number,
   };
   kind what;
   problem reason;        ///< Of `lost`; else problem::timeout, without a meaning.

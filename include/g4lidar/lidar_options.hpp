@@ -68,6 +68,11 @@ struct lidar_options {
   std::optional<power_down_protection>
       protection{};  ///< Stops when the host sends nothing for 3 s.
 
+  /// What is added to each angle, -360 to 360 degrees: instead of the answer to command 93, which is not asked. For raw
+  /// bytes and recordings that do not have the answer, and for a lidar that does not give it. Refused with not_supported
+  /// for a model without this command.
+  std::optional<g4lidar::zero_angle> zero_angle{};
+
   bool reconnect = false;      ///< Whether to reconnect after a loss; see lidar::next_event().
   bool partial_scans = false;  ///< Whether next_scan() also gives pieces: scan::is_piece().
   lidar_tuning tuning{};       ///< Times and speeds of the connection.

@@ -48,7 +48,8 @@ struct zero_angle {
   std::int32_t cdeg;
   /// In degrees. *Pure.*
   [[nodiscard]] constexpr double deg() const noexcept { return cdeg / 100.0; }
-  /// Whether it was measured: devices that were not calibrated report 180 degrees. *Pure.*
+  /// Whether it was measured: devices that were not calibrated report 180 degrees, which is added all the same.
+  /// *Pure.*
   [[nodiscard]] constexpr bool is_calibrated() const noexcept {
     return cdeg != 18'000 && cdeg != -18'000;
   }

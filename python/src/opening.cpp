@@ -7,8 +7,11 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -129,13 +132,21 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
+/// The nearest hundredth of a degree. What is no angle within a turn is refused later.
+zero_angle in_cdeg(double deg) {
+  constexpr double beyond = 1000.0;
+  const double limited = std::isnan(deg) ? beyond : std::clamp(deg, -beyond, beyond);
+  return {static_cast<std::int32_t>(std::lround(100.0 * limited))};
+}
+
 template <class... Wanted>
 live_lidar* open_by_keywords(
     const device_name& device, std::uint32_t baud, const Wanted&... wanted, bool reconnect,
     bool partial_scans, double answer_time, double stall_time, double longest_backoff, double batch,
     double transport_delay, double speed, bool loop, double begin, std::optional<double> end,
     std::optional<std::uint32_t> raw_sample_rate_hz, const std::optional<std::string>& model,
-    const std::optional<path_text>& record, bool overwrite, double device_wait) {
+    std::optional<double> zero_angle, const std::optional<path_text>& record, bool overwrite,
+    double device_wait) {
   lidar_options options;
   options.model = model_of(model);
   options.baud = baud;
@@ -155,6 +166,7 @@ live_lidar* open_by_keywords(
   options.playback.from_ns = in_ns(begin);
   if (end) options.playback.to_ns = in_ns(*end);
   options.raw_sample_rate_hz = raw_sample_rate_hz;
+  if (zero_angle) options.zero_angle = in_cdeg(*zero_angle);
   return open_lidar(device, options, {speed, loop, begin, end}, record, overwrite);
 }
 
@@ -248,7 +260,8 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "batch"_a = seconds(usual.tuning.batch),
       "transport_delay"_a = seconds(usual.tuning.transport_delay), "speed"_a = 0.0,
       "loop"_a = false, "begin"_a = 0.0, "end"_a = nb::none(), "raw_sample_rate_hz"_a = nb::none(),
-      "model"_a = nb::none(), "record"_a = nb::none(), "overwrite"_a = false, "device_wait"_a = 0.0,
+      "model"_a = nb::none(), "zero_angle"_a = nb::none(), "record"_a = nb::none(),
+      "overwrite"_a = false, "device_wait"_a = 0.0,
       "Opens a lidar and queries its identity; a device that is scanning is stopped first. "
       "`device`: '' for the only lidar; "
       "a path; 'serial:2021101000070073' (the number of the lidar); 'usb:1-1.4'; 'tcp:host:port'; "
@@ -271,9 +284,10 @@ void bind_open(nb::module_& module, keyword_types<Wanted...>, std::index_sequenc
       "`loop` again and again; "
       "from `begin` up to `end` seconds. Raw bytes in a file have `raw_sample_rate_hz` samples per "
       "second (None: as the model). `model`: the model of the lidar, 'x4'; None: what a search at "
-      "the port finds, a recording or a Simulator states, or raw bytes show. `record`: the "
-      "MCAP file to which the lidar is recorded; an existing file only with `overwrite`, "
-      "and never the file that is read.\n\n"
+      "the port finds, a recording or a Simulator states, or raw bytes show. `zero_angle`: what is "
+      "added to each angle, in degrees (-360 to 360): instead of the answer to command 93, which "
+      "the bytes may not have. `record`: the MCAP file to which the lidar is recorded; an existing "
+      "file only with `overwrite`, and never the file that is read.\n\n"
       "Takes about 0.06 s with a healthy device, at most 15 s. Raises an Error.");
 }
 

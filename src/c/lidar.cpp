@@ -18,8 +18,8 @@ using namespace g4lidar::c;
 
 namespace {
 
-static_assert(static_cast<int>(lidar_event::kind::still_turning) + 1 ==
-              G4LIDAR_EVENT_STILL_TURNING);
+static_assert(static_cast<int>(lidar_event::kind::other_number) + 1 ==
+              G4LIDAR_EVENT_OTHER_NUMBER);
 static_assert(static_cast<int>(lidar_event::kind::health_warning) + 1 ==
               G4LIDAR_EVENT_HEALTH_WARNING);
 
@@ -294,7 +294,7 @@ int g4lidar_next_event(g4lidar_lidar* lidar, g4lidar_event* event) {
 }
 
 const char* g4lidar_event_name(int kind) {
-  if (kind < G4LIDAR_EVENT_LOST || kind > G4LIDAR_EVENT_STILL_TURNING) return "unknown";
+  if (kind < G4LIDAR_EVENT_LOST || kind > G4LIDAR_EVENT_OTHER_NUMBER) return "unknown";
   return literal(name_of(static_cast<lidar_event::kind>(kind - 1)));
 }
 

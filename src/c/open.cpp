@@ -55,6 +55,7 @@ const char* take_settings(const g4lidar_options& given, lidar_options& into) noe
     return "pace: a g4lidar_pace";
   }
   into.tuning.pace = static_cast<read_pace>(given.pace);
+  if (given.has_zero_angle) into.zero_angle = zero_angle{given.zero_angle_cdeg};
   return nullptr;
 }
 

@@ -164,8 +164,10 @@ void live_run::read_information() {
   }
   const auto stated = link_.layout().information();
   if (!stated) return;
-  device_.information = information_of(*stated, *lidar_.which);
-  device_.condition = health_of(*stated);
+  if (const auto who = information_of(*stated, *lidar_.which); who.is_known()) {
+    device_.information = who;
+  }
+  if (stated->has_faults) device_.condition = health_of(*stated);
 }
 
 }  // namespace g4lidar

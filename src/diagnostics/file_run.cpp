@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include "driver/identity_reader.hpp"
+#include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/recording/reader.hpp"
 #include "g4lidar/source.hpp"
@@ -27,7 +29,7 @@ bool is_stop(bytes sent) noexcept {
 class file_run {
  public:
   file_run(stage_log& log, const model& which)
-      : log_(log), model_(which), splitter_(which.samples) {}
+      : log_(log), model_(which), splitter_(which.samples), stated_(which, true) {}
 
   void run(const std::string& path) {
     port_.add("path", path);
@@ -100,9 +102,11 @@ class file_run {
       case recorded_item::kind::from_device:
         return take(item.data, item.time_ns);
       case recorded_item::kind::to_device:
+        replies_.sent(item.data);
         if (is_stop(item.data)) await_speed();
         return;
       case recorded_item::kind::other:
+        has_zero_ = has_zero_ || item.other.zero;
         if (item.other.what == recorded_event::kind::gap) measured_.part();
         if (item.other.what == recorded_event::kind::closed) await_speed();
         return;
@@ -122,10 +126,13 @@ class file_run {
   }
 
   void take(const observed_event& observed) {
+    stated_.take(observed.what);
     if (const auto* response = std::get_if<response_view>(&observed.what)) {
       device_.take(*response);
+      has_zero_ = replies_.take(*response, model_).zero || has_zero_;
       if (response->kind() == response_kind::scan_started) await_speed();
     }
+    if (std::get_if<response_view>(&observed.what) == nullptr) replies_.pass();
     measured_.take(observed);
     if (is_judging_ || measured_.tally().samples < looked_ + steady_samples) return;
     looked_ = measured_.tally().samples;
@@ -160,7 +167,16 @@ class file_run {
       baud.remark = "It is also possible that these bytes are not those of a lidar.";
     }
     log_.report(std::move(baud));
-    log_.skip(diagnostic_stage::answers, needs_device);
+    if (counts.packets > 0 && has_request(model_, request_kind::zero_angle) && !has_zero_) {
+      stage_report answers{.stage = diagnostic_stage::answers};
+      answers.find(diagnosis::no_zero_angle);
+      answers.remark = "The answer to command 93 is not in this file.";
+      log_.report(std::move(answers));
+    } else {
+      log_.skip(diagnostic_stage::answers, needs_device);
+    }
+    if (!device_.information) device_.information = stated_.who();
+    if (!device_.condition) device_.condition = stated_.condition();
     report_identity(log_, device_.information, model_);
     report_health(log_, device_.condition);
     stage_report motor{.stage = diagnostic_stage::motor};
@@ -196,6 +212,9 @@ class file_run {
   observer to_{.event = [this](const observed_event& observed) { take(observed); }};
   stream_statistics measured_{model_};
   device_snapshot device_;
+  identity_reader stated_;  // in CT bytes, too
+  reply_watch replies_;
+  bool has_zero_ = false;     // the offset of zero is known
   std::uint64_t looked_ = 0;  // samples at the last check of the speed
   bool is_judging_ = false;
   std::int64_t arrival_ns_ = 0;

@@ -147,6 +147,15 @@ void reply_statistics::judge(stage_report& report, bool host_paused, const model
   if (sum.wrong > 0 && !is_held_up) report.find(diagnosis::answers_wrong);
   if (sum.twice > 0) report.find(diagnosis::answers_twice);
   if (sum.missing > 0 && !is_held_up) report.find(diagnosis::answers_missing);
+  if (answered() > 0 && has_request(which, request_kind::zero_angle) && !has_zero(which)) {
+    report.find(diagnosis::no_zero_angle);
+  }
+}
+
+bool reply_statistics::has_zero(const model& which) const {
+  const bytes reply = usual(command::zero_angle);
+  const auto heard = response_view::from(reply, which.samples.has_angle_replies);
+  return heard && zero_angle_of(*heard, which);
 }
 
 void device_snapshot::take(const response_view& reply) {

@@ -68,6 +68,12 @@ void running_state::add(const lidar_event& what) {
     case health_warning:
       found_.add(diagnosis::health_warning, now_ns_);
       break;
+    case no_zero_angle:
+      found_.add(diagnosis::no_zero_angle, now_ns_);
+      break;
+    case other_number:
+      found_.add(diagnosis::other_number, now_ns_);
+      break;
     case spinning_up:
     case other_lidar:
     case long_pause:

@@ -25,13 +25,17 @@ namespace g4lidar {
 /// lidars behind the scan header. One-way lidars put what they know into CT bytes.
 class identity_reader {
  public:
-  explicit identity_reader(const model& which) noexcept : which_(&which) {}
+  /// `reads_ct`: CT bytes are read, too; a two-way lidar answers instead.
+  explicit identity_reader(const model& which, bool reads_ct) noexcept
+      : which_(&which), reads_ct_(reads_ct) {}
+  explicit identity_reader(const model& which) noexcept
+      : identity_reader(which, which.link == link_kind::one_way) {}
 
   void take(const event& found) noexcept {
     if (const auto* const packet = std::get_if<packet_view>(&found)) {
       if (!packet->is_suspect()) ++packets_;
       // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked in the same expression
-      if (which_->link == link_kind::one_way && in_ct_.add(*packet)) take_ct(*in_ct_.last());
+      if (reads_ct_ && in_ct_.add(*packet)) take_ct(*in_ct_.last());
     } else if (const auto* const gone = std::get_if<skipped>(&found)) {
       in_ct_.add(*gone);
     } else if (const auto* const heard = std::get_if<response_view>(&found)) {
@@ -39,7 +43,7 @@ class identity_reader {
     }
   }
   /// Another transport follows.
-  void reset() noexcept { *this = identity_reader(*which_); }
+  void reset() noexcept { *this = identity_reader(*which_, reads_ct_); }
 
   /// The valid packets.
   [[nodiscard]] std::uint64_t packets() const noexcept { return packets_; }
@@ -47,6 +51,10 @@ class identity_reader {
   [[nodiscard]] const std::optional<device_information>& who() const noexcept { return who_; }
   /// The last health, from CT bytes.
   [[nodiscard]] const std::optional<health>& condition() const noexcept { return condition_; }
+  /// Whether who() has a number that no lidar like the model has.
+  [[nodiscard]] bool has_other_number() const noexcept {
+    return who_ && !detail::may_report(*which_, who_->model);
+  }
   /// Whether who() has changed since the last call.
   [[nodiscard]] bool take_news() noexcept { return std::exchange(is_new_, false); }
 
@@ -56,12 +64,22 @@ class identity_reader {
     who_ = who;
     is_new_ = true;
   }
+  /// What CT bytes do not state stays as it was.
   void take_ct(const ct_information& found) noexcept {
-    condition_ = health_of(found);
-    set(information_of(found, *which_));
+    if (found.has_faults) condition_ = health_of(found);
+    device_information who = information_of(found, *which_);
+    if (!who.is_known()) return;
+    if (who_ && !found.has_firmware) {
+      who.hardware = who_->hardware;
+      who.firmware_major = who_->firmware_major;
+      who.firmware_minor = who_->firmware_minor;
+    }
+    if (who_ && !found.has_serial) who.serial_digits = who_->serial_digits;
+    set(who);
   }
 
   const model* which_;
+  bool reads_ct_;
   ct_information_reader in_ct_;
   std::uint64_t packets_ = 0;
   std::optional<device_information> who_;

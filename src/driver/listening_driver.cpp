@@ -42,6 +42,7 @@ result<void> listening_driver::look() {
     // It may identify itself at any time: after a revolution, and when it gets power.
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
     if (auto known = identified(*reported.who()); !known) return known;
+    if (reported.has_other_number()) report(lidar_event::kind::other_number);
   }
   if (stage_ == live_stage::identifying && reported.packets() >= packets_to_recognise) {
     return recognised();

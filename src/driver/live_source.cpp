@@ -108,12 +108,18 @@ result<void> live_source::identified(const device_information& who) {
   if (const auto other = other_device_error(who, *options_.model, connection_.name())) {
     return tl::unexpected(*other);
   }
-  if (information_.is_known() && who.serial_digits != information_.serial_digits) {
+  // A one-way lidar may state its number before its serial number.
+  const bool is_part = options_.model->link == link_kind::one_way &&
+                       !(who.has_serial_number() && information_.has_serial_number());
+  if (information_.is_known() && !is_part && who.serial_digits != information_.serial_digits) {
     connection_.from().refuse();  // the wanted lidar may be behind another port
     if (reconnection_.refuse(who)) report(lidar_event::kind::other_lidar);
     return failure(task::finding, problem::no_port, connection_.name());
   }
+  const auto serial_digits = information_.serial_digits;
+  const bool keeps_serial = is_part && information_.has_serial_number();
   information_ = who;
+  if (keeps_serial) information_.serial_digits = serial_digits;
   return {};
 }
 

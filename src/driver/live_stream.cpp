@@ -156,6 +156,7 @@ void live_stream::record(recorded_event::kind what) {
   if (recorder == nullptr || !of_.on.is_open()) return;
   recorded_event made{.what = what, .time_ns = now_ns()};
   made.delivers = of_.pipeline.delivers();
+  made.zero = of_.pipeline.zero().angle();
   made.baud = of_.on.on().baud();
   made.sample_rate_hz = sample_rate_hz_;
   made.unparsed = static_cast<std::uint32_t>(of_.pipeline.input().unparsed().size());

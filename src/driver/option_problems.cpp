@@ -64,6 +64,14 @@ std::optional<error> problem_with_settings(const lidar_options& options) noexcep
   check(options.constant);
   check(options.idle);
   check(options.protection);
+  // Of a file whose model is not known yet, it is checked when that is known.
+  if (found || !options.zero_angle || options.model == nullptr) return found;
+  if (!has_request(which, request_kind::zero_angle)) {
+    found.emplace(task::configuring, problem::not_supported,
+                  error_context("zero_angle, ").add(which.name));
+  } else if (options.zero_angle->cdeg < -36'000 || options.zero_angle->cdeg > 36'000) {
+    found = bad("zero_angle: -360 to 360 degrees");
+  }
   return found;
 }
 

@@ -10,7 +10,11 @@ const event* point_pipeline::next() noexcept {
   const event* const found = input_.next();
   if (found != nullptr) {
     stream_counts_.add(*found);
-    if (const auto* const heard = std::get_if<response_view>(found)) learn(*heard);
+    if (const auto* const heard = std::get_if<response_view>(found)) {
+      learn(*heard);
+    } else {
+      replies_.pass();
+    }
   } else if (has_bytes && delivers_) {
     decoder_.seen(input_.held(), input_.arrival_ns());
   }
@@ -18,8 +22,9 @@ const event* point_pipeline::next() noexcept {
 }
 
 void point_pipeline::learn(const response_view& heard) noexcept {
-  if (const auto who = replies_.who(heard)) identified(*who);
-  if (const auto zero = replies_.zero(heard, decoder_.like())) decoder_.set_zero(*zero);
+  const auto stated = replies_.take(heard, decoder_.like());
+  if (stated.firmware) identified(*stated.firmware);
+  if (stated.zero) zero().set(*stated.zero, zero_offset::known_by::device);
 }
 
 void point_pipeline::identified(const device_information& who) noexcept {

@@ -16,11 +16,11 @@
 #include <type_traits>
 
 #include "event_reader.hpp"
+#include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/lidar.hpp"
-#include "reply_watch.hpp"
 #include "timed_decoder.hpp"
 
 namespace g4lidar {
@@ -138,6 +138,12 @@ class point_pipeline {
   void sent(bytes command) noexcept { replies_.sent(command); }
   /// Packets are read as the firmware of this device sends them.
   void identified(const device_information& who) noexcept;
+  /// What is added to all angles.
+  [[nodiscard]] zero_offset& zero() noexcept { return decoder_.zero(); }
+  /// Whether points lack the offset that their model has.
+  [[nodiscard]] bool lacks_zero() const noexcept {
+    return decoder_.like().zero_angle_divisor != 0 && !decoder_.zero().angle();
+  }
 
   // ---- scans ----
 

@@ -9,14 +9,19 @@
 namespace g4lidar {
 
 replay_player::replay_player(parts& of, const lidar_options& options)
-    : scan_source(of, options), sample_rate_hz_(first_rate_hz(*options.model)) {}
+    : scan_source(of, options),
+      reported_(*options.model, true),
+      sample_rate_hz_(first_rate_hz(*options.model)) {}
 
 result<void> replay_player::open() {
   if (auto opened = connection_.open(); !opened) return opened;
   recording_hook* const hook = recording_hook_of(connection_.from());
   file_ = file_of(connection_.from());
   source_ = hook != nullptr ? hook->events() : nullptr;
-  if (source_ == nullptr) source_ = file_;  // the seams of raw bytes in a loop
+  if (source_ == nullptr) {
+    recorder_ = hook;
+    source_ = file_;  // the seams of raw bytes in a loop
+  }
   if (file_ != nullptr) file_->controls().when_moved([this] { follow_seek(); });
   receiver_.reset(0, 0, now_ns());
   pipeline_.follow(connection_.on().baud());
@@ -34,6 +39,7 @@ result<void> replay_player::open() {
 result<void> replay_player::start() {
   if (stage_ != stage::idle) return can_read();
   stage_ = stage::playing;
+  if (pipeline_.zero().angle()) record(recorded_event::kind::begun);  // the user knows it
   spin_up_.forget();
   begin_spin_up();
   return {};
@@ -137,14 +143,48 @@ void replay_player::report_long_pause() {
 bool replay_player::parse_bytes() {
   while (!pipeline_.find_scan()) {
     static_cast<void>(play_events(false));
-    if (pipeline_.next() != nullptr) {
+    if (const event* const found = pipeline_.next()) {
+      learn(*found);
       static_cast<void>(play_events(false));
       follow_delivery();
+      report_missing_zero();
     } else if (!play_events(true)) {
       return false;
     }
   }
   return true;
+}
+
+/// What the bytes state of their lidar.
+void replay_player::learn(const event& found) {
+  reported_.take(found);
+  if (reported_.take_news()) {
+    // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
+    if (!information_.is_known()) information_ = *reported_.who();
+    if (reported_.has_other_number()) report(lidar_event::kind::other_number);
+  }
+  if (pipeline_.zero().angle() != recorded_zero_) record(recorded_event::kind::state);
+}
+
+/// For a recording of raw bytes: what is added to the angles of the points that follow.
+void replay_player::record(recorded_event::kind what) {
+  recorded_zero_ = pipeline_.zero().angle();
+  if (recorder_ == nullptr) return;
+  recorded_event made{.what = what, .time_ns = now_ns()};
+  made.baud = connection_.on().baud();
+  made.sample_rate_hz = sample_rate_hz_;
+  made.name = connection_.name();
+  made.zero = recorded_zero_;
+  recorder_->event(made);
+}
+
+/// Once, with the first packet that makes points.
+void replay_player::report_missing_zero() {
+  if (is_zero_reported_ || !pipeline_.delivers()) return;
+  const event* const found = pipeline_.input().current();
+  if (found == nullptr || std::get_if<packet_view>(found) == nullptr) return;
+  is_zero_reported_ = true;
+  if (pipeline_.lacks_zero()) report(lidar_event::kind::no_zero_angle);
 }
 
 void replay_player::follow_delivery() {
@@ -207,6 +247,7 @@ bool replay_player::play_events(bool all) {
 }
 
 void replay_player::play(const recorded_event& what) {
+  if (what.zero) pipeline_.zero().set(*what.zero, zero_offset::known_by::recording);
   switch (what.what) {
     case recorded_event::kind::opened:
       pipeline_.follow(what.baud);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "identity_reader.hpp"
 #include "recording/played_file.hpp"
 #include "scan_source.hpp"
 
@@ -66,12 +67,16 @@ class replay_player final : public scan_source {
   void follow_seek();
   void follow_delivery();
   void report_long_pause();
+  void report_missing_zero();
   [[nodiscard]] bool play_events(bool all);
   [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
+  void learn(const event& found);
+  void record(recorded_event::kind what);
 
   played_file* file_ = nullptr;              // null: a pipe
   recorded_event_source* source_ = nullptr;  // of a file
+  recording_hook* recorder_ = nullptr;       // of raw bytes, which have no events
   stage stage_ = stage::closed;
   error why_{task::reading, problem::gone};  // why it ended
   awaited_event next_;
@@ -80,6 +85,9 @@ class replay_player final : public scan_source {
   bool is_pause_reported_ = false;  // the event long_pause was reported
   bool is_lost_ = false;            // the recorded connection was lost
   bool is_released_ = false;
+  bool is_zero_reported_ = false;  // the event no_zero_angle was reported
+  identity_reader reported_;
+  std::optional<zero_angle> recorded_zero_;  // by recorder_
   std::uint32_t sample_rate_hz_;
   std::uint64_t reconnects_ = 0;
 };

@@ -90,7 +90,9 @@ class setup_sequence {
   void add_steps(const lidar_options& options) noexcept {
     add(setup_step::health);
     const model& which = options.model != nullptr ? *options.model : g4_model;
-    if (has_request(which, request_kind::zero_angle)) add(setup_step::zero_angle);
+    if (has_request(which, request_kind::zero_angle) && !options.zero_angle) {
+      add(setup_step::zero_angle);
+    }
     // Queried if it is not set.
     const bool has_rate = has_request(which, request_kind::get_sample_rate);
     if (has_rate || options.sample_rate) add(setup_step::sample_rate);

@@ -12,9 +12,9 @@
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/sensor_clock.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/core/zero_offset.hpp"
 #include "g4lidar/detail/saturating.hpp"
 #include "g4lidar/plausibility.hpp"
-#include "g4lidar/settings.hpp"
 
 namespace g4lidar {
 
@@ -47,11 +47,9 @@ class timed_decoder {
   }
   /// The following bytes may be earlier ones. Before follow().
   void forget() noexcept { baud_.reset(); }
-  /// What is added to each angle, as the manufacturer's program does. That this is the sign, and that a
-  /// device has not added it already, is an assumption: no device was at hand.
-  void set_zero(zero_angle offset) noexcept {
-    zero_deg_ = offset.is_calibrated() ? static_cast<float>(offset.deg()) : 0.0F;
-  }
+  /// What is added to each angle.
+  [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
+  [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }
   /// A scan begins, or continues after an interruption. `sample_rate_hz` is nominal.
   void begin(std::uint32_t sample_rate_hz) noexcept {
     clock_.reset(expected_rate_of(*which_, sample_rate_hz));
@@ -72,7 +70,7 @@ class timed_decoder {
     if (!found.suspect) {
       to_points_(packet, found.revolution, shortest_mm_, times, out);
       found.points = out.first(packet.sample_count());
-      if (zero_deg_ != 0.0F) turn(out.first(packet.sample_count()));
+      zero_.add_to(out.first(packet.sample_count()));
       if (!fits) mark_unlikely(out.first(packet.sample_count()));
     }
     samples_lost_ += static_cast<std::uint64_t>(times.lost);
@@ -100,14 +98,6 @@ class timed_decoder {
   [[nodiscard]] std::int64_t largest_gap_ns() const noexcept { return largest_gap_ns_; }
 
  private:
-  void turn(std::span<point> points) const noexcept {
-    for (point& each : points) {
-      float turned_deg = each.angle_deg + zero_deg_;
-      if (turned_deg < 0.0F) turned_deg += 360.0F;
-      if (turned_deg >= 360.0F) turned_deg -= 360.0F;
-      each.angle_deg = turned_deg;
-    }
-  }
   /// Bytes that accumulated for longer were not read in time.
   static constexpr std::int64_t longest_batch_ns = 50'000'000;
 
@@ -130,7 +120,7 @@ class timed_decoder {
   decltype(bulk::kernels::to_points) to_points_ = nullptr;
   std::optional<std::uint32_t> baud_;  // of its transport
   std::int64_t byte_ns_ = 0;           // the time of a byte
-  float zero_deg_ = 0.0F;              // see set_zero()
+  zero_offset zero_;
   sensor_clock clock_;
   revolution_counter revolutions_;
   angle_check angles_;

@@ -21,16 +21,17 @@ scan_record record_of(const g4lidar::scan& scan) {
 }  // namespace
 
 byte_points::byte_points(point_writer& writer, text_sink& out, std::uint32_t rate_hz,
-                         const model& which)
+                         const model& which, std::optional<zero_angle> zero)
     : out_(out),
       writer_(writer),
       by_scan_(writer.takes_scans()),
-      format_(which.samples),
-      shortest_mm_(which.range.min_mm),
+      named_(&which),
+      which_(&which),
       clock_(rate_hz),
       scan_storage_(by_scan_ ? 2 * largest_scan(which) : 1),
       assembler_(scan_storage_, which) {
   assembler_.set_sample_rate(rate_hz);
+  if (zero) zero_.set(*zero, zero_offset::known_by::user);
 }
 
 void byte_points::take(g4lidar::bytes data) {
@@ -48,20 +49,42 @@ void byte_points::finish() {
 
 void byte_points::take(const event& found) {
   counts_.add(found);
+  if (const auto* heard = std::get_if<response_view>(&found)) return take(*heard);
+  replies_.pass();
   if (const auto* packet = std::get_if<packet_view>(&found)) return take(*packet);
   if (const auto* gone = std::get_if<skipped>(&found)) {
+    in_ct_.add(*gone);
     angles_.lost();
     assembler_.add(*gone);
   }
 }
 
+void byte_points::take(const response_view& heard) {
+  const auto stated = replies_.take(heard, *which_);
+  if (stated.zero) zero_.set(*stated.zero, zero_offset::known_by::device);
+  if (!stated.firmware) return;
+  check_number(stated.firmware->model);
+  which_ = &with_firmware(*named_, *stated.firmware);
+  parser_.set_layout(which_->samples.layout);
+  assembler_.become(*which_);
+}
+
+void byte_points::check_number(std::uint8_t number) noexcept {
+  if (number != 0 && !detail::may_report(*named_, number)) other_number_ = number;
+}
+
 void byte_points::take(g4lidar::packet_view packet) {
   if (counts_.packets == 1) writer_.begin(out_);
+  // NOLINTNEXTLINE(bugprone-unchecked-optional-access): checked in the same expression
+  if (in_ct_.add(packet)) check_number(in_ct_.last()->id_low_bits);
   g4lidar::decoded decoded = without_points(packet, revolutions_.count(packet));
   if (!decoded.suspect) {
-    bulk::kernels_of(best_instruction_set(), format_)
-        .to_points(packet, decoded.revolution, shortest_mm_, {}, points_);
-    decoded.points = std::span(points_).first(packet.sample_count());
+    bulk::kernels_of(best_instruction_set(), which_->samples)
+        .to_points(packet, decoded.revolution, which_->range.min_mm, {}, points_);
+    const std::span made = std::span(points_).first(packet.sample_count());
+    zero_.add_to(made);
+    decoded.points = made;
+    lacks_zero_ = lacks_zero_ || (which_->zero_angle_divisor != 0 && !zero_.angle());
   }
   for (g4lidar::point& p : std::span(points_).first(decoded.points.size())) {
     p.time_ns = clock_.now_ns();

@@ -28,6 +28,8 @@ bool delivers    # whether packets make points from here on
 string what      # opened, closed, begun, held, cut, gap, state
 string reason
 string name
+bool has_zero_angle    # whether the next one is known; older recordings end before it
+int32 zero_angle_cdeg  # what is added to each angle, in 0.01 degrees
 )";
 
 struct schema_words {

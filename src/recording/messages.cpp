@@ -126,6 +126,8 @@ void put_event(record_text& out, const recorded_event& what, std::int64_t wall_a
   message.put(name_of(what.what));
   message.put(name_of(what.reason));
   message.put(what.name.substr(0, longest_name));
+  message.put(std::uint8_t{what.zero.has_value()});
+  message.put(what.zero.value_or(zero_angle{}).cdeg);
 }
 
 std::optional<recorded_bytes> recorded_bytes_from(bytes message) noexcept {
@@ -157,6 +159,14 @@ std::optional<recorded_event> event_from(bytes message) noexcept {
   const auto* const named = std::ranges::find(event_names, what);
   if (!fields.is_good() || named == event_names.end()) return std::nullopt;
   made.what = static_cast<recorded_event::kind>(named - event_names.begin());
+  if (!fields.is_at_end()) {  // older recordings end here
+    constexpr std::int32_t turn_cdeg = 36'000;
+    const bool has_zero = fields.take<std::uint8_t>() != 0;
+    fields.align(sizeof(std::int32_t));
+    const auto cdeg = static_cast<std::int32_t>(fields.take<std::uint32_t>());
+    if (!fields.is_good()) return std::nullopt;
+    if (has_zero && cdeg >= -turn_cdeg && cdeg <= turn_cdeg) made.zero = zero_angle{cdeg};
+  }
   if (made.sample_rate_hz > max_sample_rate_hz) return std::nullopt;
   if (made.what == recorded_event::kind::begun && made.sample_rate_hz == 0) return std::nullopt;
   // These have channels of their own.
@@ -259,6 +269,7 @@ recorded_digest digest_of(field_reader& map, std::int64_t& last_ns) {
 void transport_state::take(const recorded_event& what) noexcept {
   using enum recorded_event::kind;
   is_known = true;
+  if (what.zero) zero = what.zero;
   if (what.what == opened || what.what == state) {
     baud = what.baud;
     name_size = static_cast<std::uint8_t>(std::min(what.name.size(), name.size()));
@@ -300,6 +311,7 @@ recorded_event transport_state::as_event(std::int64_t time_ns) const noexcept {
   made.baud = baud;
   made.sample_rate_hz = sample_rate_hz;
   made.name = transport_name();
+  made.zero = zero;
   return made;
 }
 

@@ -49,7 +49,7 @@ inline constexpr std::string_view digest_metadata = "g4lidar.digest";
 /// The version of the computation of points from bytes. It increases with each change that gives
 /// other points: digests of points of different versions cannot be compared. A recording without
 /// one has version 1.
-inline constexpr std::string_view points_version = "5";
+inline constexpr std::string_view points_version = "6";
 [[nodiscard]] word_map words_of(const recorded_device& device);
 /// Missing or invalid fields are not known.
 [[nodiscard]] recorded_device device_of(field_reader& map);
@@ -68,6 +68,7 @@ struct transport_state {
   std::uint32_t sample_rate_hz = 0;
   std::array<char, longest_name> name{};
   std::uint8_t name_size = 0;
+  std::optional<zero_angle> zero{};
 
   void take(const recorded_event& what) noexcept;
   [[nodiscard]] recorded_event as_event(std::int64_t time_ns) const noexcept;

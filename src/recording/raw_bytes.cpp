@@ -271,13 +271,11 @@ recognised_model recognised_at(const owned_fd& fd, off_t at) {
   for (off_t read = 0; read < most && (read == 0 || seen.sample_bytes() == 0);) {
     const ssize_t count =
         uninterrupted([&] { return ::pread(fd.get(), piece.data(), piece.size(), at + read); });
-    if (count <= 0) {
-      seen.finish();
-      break;
-    }
+    if (count <= 0) break;
     seen.take(bytes(piece).first(static_cast<std::size_t>(count)));
     read += count;
   }
+  if (seen.sample_bytes() == 0) seen.finish();
   return {&seen.most_likely(), seen.basis()};
 }
 

@@ -30,7 +30,9 @@ TEST(CBase, EveryResultHasItsName) {
   EXPECT_STREQ(g4lidar_event_name(0), "unknown");
   EXPECT_STREQ(g4lidar_event_name(G4LIDAR_EVENT_OVERFLOW), "overflow");
   EXPECT_STREQ(g4lidar_event_name(G4LIDAR_EVENT_STILL_TURNING), "still_turning");
-  EXPECT_STREQ(g4lidar_event_name(13), "unknown");
+  EXPECT_STREQ(g4lidar_event_name(G4LIDAR_EVENT_NO_ZERO_ANGLE), "no_zero_angle");
+  EXPECT_STREQ(g4lidar_event_name(G4LIDAR_EVENT_OTHER_NUMBER), "other_number");
+  EXPECT_STREQ(g4lidar_event_name(15), "unknown");
 }
 
 TEST(CBase, TheVersionIsThatOfTheHeader) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
 #include "support/crc_reference.hpp"
 #include "support/packet_maker.hpp"
 
@@ -131,12 +132,80 @@ TEST(CtInformation, AnImpossibleDateIsNotBelieved) {
   EXPECT_FALSE(of.revolution(ct, crc_8_maxim(ct)));
 }
 
-TEST(CtInformation, ARevolutionWithTooFewPacketsIsNotBelieved) {
+// The places of the fields are those of the manual: the fault in packet 3, hardware and firmware in 4 and 5, the
+// number of the model in 7, the date in 9 to 11, the serial number to 13.
+TEST(CtInformation, ARevolutionWithFewPackets_HasItsFirstFields) {
   const std::vector<std::uint8_t> all = example();
-  const std::vector<std::uint8_t> ct(all.begin(), all.begin() + 13);
+  for (std::size_t count = 4; count <= all.size(); ++count) {
+    SCOPED_TRACE(count);
+    const std::vector<std::uint8_t> ct(all.begin(),
+                                       all.begin() + static_cast<std::ptrdiff_t>(count));
+    const bool has_date = count > 11;
+    stream of;
+    EXPECT_EQ(of.revolution(ct, crc_8_maxim(ct)), has_date);
+    // The zero packet that ended the revolution begins the next one.
+    const std::vector<std::uint8_t> next(ct.begin() + 1, ct.end());
+    std::vector<std::uint8_t> sent = ct;
+    sent[0] = 1;
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(of.reader.last().has_value(), has_date) << i;
+      of.revolution(next, crc_8_maxim(sent));
+    }
+    ASSERT_TRUE(of.reader.last()) << "the third CRC in a row";
+    const ct_information& found = *of.reader.last();
+    EXPECT_TRUE(found.has_faults);
+    EXPECT_EQ(found.faults, ct_faults::sensor);
+    EXPECT_EQ(found.has_firmware, count > 5);
+    EXPECT_EQ(found.hardware, count > 5 ? 2 : 0);
+    EXPECT_EQ(found.firmware_major, count > 5 ? 1 : 0);
+    EXPECT_EQ(found.firmware_minor, count > 5 ? 7 : 0);
+    EXPECT_EQ(found.id_low_bits, count > 7 ? 4 : 0);
+    EXPECT_EQ(found.has_serial, count > 13);
+    const device_information who = information_of(found, *model_named("x4-pro"));
+    EXPECT_EQ(who.is_known(), count > 7);
+    EXPECT_EQ(who.serial_number(), count > 13 ? "2023031500012345" : "0000000000000000");
+    EXPECT_EQ(who.has_serial_number(), count > 13);
+  }
+}
+
+TEST(CtInformation, ZeroPacketsOneAfterTheOther_AreNotBelieved) {
+  stream of;
+  for (int i = 0; i < 9; ++i) EXPECT_FALSE(of.revolution({}, 1)) << i;
+  EXPECT_FALSE(of.reader.last());
+}
+
+// A long revolution had the serial number, shorter ones do not.
+TEST(CtInformation, WhatWasStatedStays) {
+  stream of;
+  ASSERT_TRUE(of.revolution(example(), example_crc));
+  std::vector<std::uint8_t> ct = example();
+  ct.resize(12);
+  ct[0] = 1;
+  ct[3] = 0;
+  ct[5] = 2 * 8;
+  EXPECT_TRUE(of.revolution({ct.begin() + 1, ct.end()}, crc_8_maxim(ct)));
+  const ct_information& found = *of.reader.last();
+  EXPECT_EQ(found.faults, ct_faults::none);
+  EXPECT_EQ(found.firmware_minor, 8);
+  const device_information who = information_of(found, *model_named("x2"));
+  EXPECT_EQ(who.serial_number(), "2023031500012345");
+}
+
+// The date of a device that does not state it is not possible; everything else is.
+TEST(CtInformation, WithoutADate_TheOtherFieldsNeedThreeRevolutions) {
+  std::vector<std::uint8_t> ct = example();
+  ct[9] = ct[10] = ct[11] = 0;
+  ct[0] = 1;
   stream of;
   EXPECT_FALSE(of.revolution(ct, crc_8_maxim(ct)));
-  EXPECT_FALSE(of.revolution({}, 1)) << "zero packets one after the other";
+  const std::vector<std::uint8_t> next(ct.begin() + 1, ct.end());
+  EXPECT_FALSE(of.revolution(next, crc_8_maxim(ct)));
+  EXPECT_FALSE(of.revolution(next, crc_8_maxim(ct) ^ 1U)) << "from here on they count again";
+  EXPECT_FALSE(of.revolution(next, crc_8_maxim(ct)));
+  EXPECT_FALSE(of.revolution(next, crc_8_maxim(ct)));
+  EXPECT_TRUE(of.revolution(next, crc_8_maxim(ct)));
+  EXPECT_EQ(of.reader.last()->id_low_bits, 4);
+  EXPECT_FALSE(of.reader.last()->has_serial);
 }
 
 TEST(CtInformation, TheLastOneStays) {

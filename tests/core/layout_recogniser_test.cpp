@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "support/crc_reference.hpp"
@@ -156,6 +157,51 @@ TEST(LayoutRecogniser, IsUndecidedWithoutALeadOfThree) {
   EXPECT_EQ(same.sample_bytes(), 3U);
 }
 
+/// The bytes of the zero packet and of the packets behind it that one or two whole packets leave.
+byte_vector first_packets(std::string_view model, unsigned from, unsigned count) {
+  const byte_vector all = room(model).of(1);
+  const auto size = static_cast<unsigned>(format_of(model).sample_bytes);
+  const auto at = [size](unsigned packet) {
+    return packet == 0 ? 0 : 10 + size + (packet - 1) * (10 + 40 * size);
+  };
+  return {all.begin() + static_cast<std::ptrdiff_t>(at(from)),
+          all.begin() + static_cast<std::ptrdiff_t>(at(from + count))};
+}
+
+TEST(LayoutRecogniser, AtTheEnd_TheBestSizeDecides) {
+  for (const reference::wire_format& how : reference::wire_formats) {
+    for (const unsigned count : {1U, 2U, 3U}) {
+      for (const unsigned cut : {0U, 1U, 17U}) {  // bytes of the next packet
+        SCOPED_TRACE(how.model + " " + std::to_string(count) + " " + std::to_string(cut));
+        byte_vector all = first_packets(how.model, 1, count);
+        const byte_vector next = first_packets(how.model, 1 + count, 1);
+        all.insert(all.end(), next.begin(), next.begin() + cut);
+        layout_recogniser seen;
+        seen.take(all);
+        EXPECT_EQ(seen.sample_bytes(), 0U) << "there is no lead of three yet";
+        seen.finish();
+        EXPECT_EQ(seen.sample_bytes(), static_cast<std::size_t>(how.sample_bytes));
+        EXPECT_EQ(seen.basis(), recognised_by::size);
+        EXPECT_EQ(sample_size(seen.most_likely().samples.layout),
+                  static_cast<std::size_t>(how.sample_bytes));
+        all.insert(all.begin(), {0x13, 0xAA, 0x55});
+        EXPECT_EQ(basis_of(all), recognised_by::size) << "noise before it";
+      }
+    }
+  }
+}
+
+TEST(LayoutRecogniser, AtTheEnd_OnePacketAndANumberNameTheModel) {
+  for (const auto& [sent, id, word] : {std::tuple{"tg15", 101U, "tg30"}, {"t-mini", 151U, "t-mini-plus"},
+                                       {"g2", 15U, "g2"}, {"t-mini-plus-sh", 152U, "t-mini-plus-sh"}}) {
+    byte_vector all = information_of(id);
+    const byte_vector packet = first_packets(sent, 1, 1);
+    all.insert(all.end(), packet.begin(), packet.end());
+    EXPECT_EQ(recognised(all).word, word);
+    EXPECT_EQ(basis_of(all), recognised_by::number) << word;
+  }
+}
+
 TEST(LayoutRecogniser, DamagedPacketsDoNotDecide) {
   byte_vector all = room("t-mini").of(20);
   for (std::size_t i = 50; i < all.size(); i += 300) all[i] ^= 0x10U;  // in half of the packets
@@ -252,6 +298,35 @@ TEST(LayoutRecogniser, StatesWhatTheModelFollowsFrom) {
   EXPECT_EQ(basis_of(single.of(2)), recognised_by::number) << "no other model has it";
   single.stated.has_crc = false;
   EXPECT_EQ(basis_of(single.of(2)), recognised_by::size);
+}
+
+/// From 4 to 12 Hz a revolution has 1 + rate / frequency / 40 packets: at 3 kHz 20 to 8, at 5 kHz 33 to 12.
+TEST(LayoutRecogniser, NumberInCt_AtEachRateAndFrequency) {
+  struct sender {
+    std::string_view layout;
+    unsigned id;
+    unsigned rate_hz;
+    sample_layout wanted;
+    correction_kind correction;
+  };
+  using enum sample_layout;
+  using enum correction_kind;
+  for (const auto& [layout, id, rate_hz, wanted, correction] :
+       {sender{"x4", 4, 3000, flagged_mm, triangle}, sender{"x4", 6, 3000, flagged_mm, triangle},
+        sender{"x4", 12, 4000, flagged_mm, triangle}, sender{"x4", 4, 5000, flagged_mm, triangle},
+        sender{"s4b", 4, 3000, intensity_8, triangle}, sender{"s4b", 12, 3000, intensity_8, triangle},
+        sender{"s4b", 11, 4000, intensity_8, triangle}, sender{"scl", 22, 3000, intensity_8, scl}}) {
+    for (unsigned dhz = 40; dhz <= 120; dhz += 5) {
+      room informed(layout);
+      informed.stated = {id, dhz};
+      informed.samples = 10 * rate_hz / dhz;
+      const unsigned packets = 1 + (informed.samples + 38) / 40;
+      const model& found = recognised(informed.of(5));
+      const bool has_number = packets > 7;
+      EXPECT_EQ(found.samples.layout == wanted && found.samples.correction == correction, has_number)
+          << layout << " " << id << " " << rate_hz << " Hz at " << dhz << ": " << found.word;
+    }
+  }
 }
 
 TEST(LayoutRecogniser, ThreeBytesOfAnS2) {

@@ -85,4 +85,19 @@ const std::vector<expectation> expectations{
 INSTANTIATE_TEST_SUITE_P(All, FamilyFault, ::testing::ValuesIn(expectations),
                          [](const auto& one) { return std::string(one.param.name); });
 
+TEST(FamilyZeroAngle, WithoutAnAnswerTo93_IsAWarning) {
+  for (const std::string_view word : {"g1", "g2", "g2a", "g2c", "r2", "tg15", "tg30", "tg50"}) {
+    for (const std::string_view text : {"mute=93", "mute=91"}) {
+      sim::device_options options;
+      ASSERT_TRUE(sim::use_model(options, word));
+      diagnostic_options how;
+      how.model = model_named(word);
+      sim::device simulated(sim::built_in_world(), options, faults_of({text}));
+      sim::virtual_clock clock;
+      const examined done = examine(simulated, clock, how);
+      EXPECT_EQ(done.diagnoses(), text == "mute=93" ? "no_zero_angle" : "") << word << done;
+    }
+  }
+}
+
 }  // namespace

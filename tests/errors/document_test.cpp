@@ -99,7 +99,7 @@ TEST(ErrorsDocument, StatesWhichProblemsAreFatal) {
 
 TEST(SymptomsDocument, HasALineForEachEvent) {
   const std::string text = symptoms_document();
-  constexpr auto last = static_cast<std::size_t>(lidar_event::kind::still_turning);
+  constexpr auto last = static_cast<std::size_t>(lidar_event::kind::other_number);
   for (std::size_t i = 0; i <= last; ++i) {
     const std::string name(name_of(static_cast<lidar_event::kind>(i)));
     EXPECT_NE(text.find("\n| `" + name + "` | "), std::string::npos) << name;

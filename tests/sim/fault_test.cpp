@@ -338,4 +338,15 @@ TEST(SimFaults, Truth_FlagsPacketsInterruptedByAnAnswer) {
   }
 }
 
+// The information is answered, the health is not.
+TEST(SimFaults, OfOneCommand_LeaveTheOthers) {
+  for (const fault_kind kind : {fault_kind::mute, fault_kind::wrong, fault_kind::twice}) {
+    host_side clean;
+    host_side host({}, {with_amount(make_fault(kind), 0x91)});
+    EXPECT_EQ(host.ask(command::device_info), information);
+    EXPECT_NE(host.ask(command::health), clean.ask(command::health));
+    EXPECT_EQ(host.ask(command::health_vendor), clean.ask(command::health_vendor));
+  }
+}
+
 }  // namespace

@@ -65,6 +65,10 @@ TEST(SimFaultText, ParsesRateAndAmount) {
   EXPECT_EQ(all.duration_ns, 1'000'000'000);
   EXPECT_EQ(read("health=warning").amount, 1);
   EXPECT_EQ(read("health=2").amount, 2);
+  EXPECT_EQ(read("mute=93").amount, 0x93);
+  EXPECT_EQ(read("wrong=0D*0.5@1s").amount, 0x0D);
+  EXPECT_EQ(read("twice=d9").amount, 0xD9);
+  EXPECT_EQ(read("mute").amount, 0);
 }
 
 TEST(SimFaultText, InvalidTexts_AreRefused) {
@@ -78,6 +82,9 @@ TEST(SimFaultText, InvalidTexts_AreRefused) {
   EXPECT_EQ(refusal("burst=0"), "a burst must have 1 to 1000000 bytes");
   EXPECT_EQ(refusal("burst=1.5"), "'1.5' is no amount for burst");
   EXPECT_EQ(refusal("batch=16"), "'16' is no amount for batch");
+  for (const char* const code : {"9", "193", "0x93", "G3", "00", ""}) {
+    EXPECT_EQ(refusal(std::string("mute=") + code), "'" + std::string(code) + "' is no amount for mute");
+  }
   EXPECT_EQ(refusal("late=1min"), "a fault's time must be 0 to 4 s");
   EXPECT_EQ(refusal("health=3"), "the health must be 0, 1 or 2");
   for (const char* when : {"", "5", "s", "1,5s", "-1s", "1.s", ".5s", "1s ", "9999999999s",

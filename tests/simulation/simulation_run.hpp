@@ -13,7 +13,7 @@
 namespace g4lidar::simulation {
 
 inline constexpr std::size_t event_kinds =
-    static_cast<std::size_t>(lidar_event::kind::still_turning) + 1;
+    static_cast<std::size_t>(lidar_event::kind::other_number) + 1;
 
 struct run_report {
   std::string failure;         ///< Empty if nothing failed.

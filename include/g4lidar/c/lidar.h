@@ -88,6 +88,11 @@ typedef struct g4lidar_options {
    *  C++ exceptions. */
   bool (*is_cancelled)(void* context);
   void* context; /**< Passed to it; it outlives the lidar. */
+  /** What is added to each angle, in 0.01 degrees, -36000 to 36000, if `has_zero_angle`: instead of the answer to
+   *  command 93, which raw bytes may not have. Only of a model with this command. */
+  int32_t zero_angle_cdeg;
+  bool has_zero_angle;       /**< Whether zero_angle_cdeg is given. */
+  uint8_t more_reserved[3];  /**< 0. */
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */
@@ -215,7 +220,9 @@ enum g4lidar_event_kind {
   G4LIDAR_EVENT_OTHER_LIDAR = 9,         /**< While the lidar was lost, another one answered. */
   G4LIDAR_EVENT_LONG_PAUSE = 10,         /**< The next data of a recording is far away. */
   G4LIDAR_EVENT_OVERFLOW = 11,           /**< Earlier events were dropped. */
-  G4LIDAR_EVENT_STILL_TURNING = 12       /**< The scans have ended, but the motor turns. */
+  G4LIDAR_EVENT_STILL_TURNING = 12,      /**< The scans have ended, but the motor turns. */
+  G4LIDAR_EVENT_NO_ZERO_ANGLE = 13,      /**< Points come without the offset of zero of the model. */
+  G4LIDAR_EVENT_OTHER_NUMBER = 14        /**< It states a number that its model does not have. */
 };
 
 /** An event. */

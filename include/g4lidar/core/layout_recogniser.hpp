@@ -40,8 +40,8 @@ class layout_candidate {
   /// Packets that another packet, a time packet or a response follows, with at most one byte before
   /// it.
   [[nodiscard]] constexpr std::uint32_t votes() const noexcept { return votes_; }
-  /// Whether there was a packet.
-  [[nodiscard]] constexpr bool has_packet() const noexcept { return has_packet_; }
+  /// All packets.
+  [[nodiscard]] constexpr std::uint32_t packets() const noexcept { return packets_; }
   /// The number in the first device information; 0: there was none.
   [[nodiscard]] constexpr std::uint8_t id() const noexcept { return id_; }
   /// What the bytes CT state.
@@ -71,7 +71,7 @@ class layout_candidate {
     if (is_open_ && gap_ <= 1) ++votes_;
     const auto* const packet = std::get_if<packet_view>(&found);
     is_open_ = packet != nullptr;
-    has_packet_ = has_packet_ || is_open_;
+    if (is_open_) ++packets_;
     if (packet != nullptr) take(*packet);
     if (const auto* const reply = std::get_if<response_view>(&found);
         reply != nullptr && id_ == 0) {
@@ -103,7 +103,7 @@ class layout_candidate {
   ct_information_reader reader_;
   std::uint32_t votes_ = 0;
   std::size_t gap_ = 0;  // bytes skipped since the last packet or response
-  bool has_packet_ = false;
+  std::uint32_t packets_ = 0;
   bool is_open_ = false;  // the last one was a packet, and has no vote yet
   std::uint8_t id_ = 0;
   bool is_in_revolution_ = false;  // received from its zero packet on, without a gap
@@ -129,7 +129,8 @@ enum class recognised_by : std::uint8_t {
 ///
 /// The size of a sample is the one with which at least three packets more than with any other size
 /// have a valid checksum and are followed by another one: the right size fits each packet, a wrong
-/// one few. The model is the one that the bytes name: in a device information, or in the information
+/// one few. When the input has ended, the best size decides: that with the most such packets, then that
+/// with the most packets, then the smallest. The model is the one that the bytes name: in a device information, or in the information
 /// in the bytes CT of a revolution whose CRC fits. After a device information, the only two-way model
 /// with this number is taken first. Of several models with this number it is the one whose sample
 /// rate is nearest to that of the stream. Where nothing names it, it is the usual_model(), and basis()
@@ -143,9 +144,10 @@ class layout_recogniser {
   constexpr void take(bytes input) noexcept {
     for (detail::layout_candidate& each : candidates_) each.take(input);
   }
-  /// The input has ended: a packet at its end counts, too.
+  /// The input has ended: a packet at its end counts, too, and one packet decides.
   constexpr void finish() noexcept {
     for (detail::layout_candidate& each : candidates_) each.finish();
+    is_finished_ = true;
   }
 
   /// The size of a sample in bytes: 2, 3 or 4; 0 as long as it is not decided.
@@ -156,8 +158,7 @@ class layout_recogniser {
 
   /// Whether there was a packet, with samples of any size.
   [[nodiscard]] constexpr bool has_packet() const noexcept {
-    return candidates_[0].has_packet() || candidates_[1].has_packet() ||
-           candidates_[2].has_packet();
+    return candidates_[0].packets() + candidates_[1].packets() + candidates_[2].packets() != 0;
   }
 
   /// What the bytes CT state, as long as the size of a sample is decided.
@@ -199,7 +200,7 @@ class layout_recogniser {
       const auto near = nearest(*sent, has_id, without_number);
       if (near.which != nullptr) return near;
     }
-    if (const auto& stated = sent->information()) {
+    if (const auto& stated = sent->information(); stated && stated->id_low_bits != 0) {
       const auto informs = [&](const model& row) {
         const bool has_rare = has_sample_flags(row.samples.layout) && sent->has_rare_upper_flag();
         return fits(row) && row.ct_information != presence::no && (size != 2 || has_rare) &&
@@ -217,8 +218,12 @@ class layout_recogniser {
     constexpr std::uint32_t clear_lead = 3;
     const detail::layout_candidate* best = candidates_.data();
     for (const auto& each : candidates_) {
-      if (each.votes() > best->votes()) best = &each;
+      const bool is_as_good = each.votes() == best->votes();
+      if (each.votes() > best->votes() || (is_as_good && each.packets() > best->packets())) {
+        best = &each;
+      }
     }
+    if (is_finished_) return best->packets() != 0 ? best : nullptr;
     for (const auto& each : candidates_) {
       if (&each != best && best->votes() < each.votes() + clear_lead) return nullptr;
     }
@@ -250,6 +255,7 @@ class layout_recogniser {
       detail::layout_candidate(g4_format),
       detail::layout_candidate({sample_layout::intensity_8, correction_kind::none}),
       detail::layout_candidate({sample_layout::intensity_16, correction_kind::none})};
+  bool is_finished_ = false;
 };
 
 }  // namespace g4lidar

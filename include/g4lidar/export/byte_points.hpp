@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "g4lidar/core/decode.hpp"
+#include "g4lidar/core/ct_information.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
+#include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/core/sample_clock.hpp"
 #include "g4lidar/core/scan_assembler.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/core/zero_offset.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/export/point_writer.hpp"
 #include "g4lidar/export/text_sink.hpp"
@@ -25,14 +28,15 @@ namespace g4lidar {
 /// Parses and decodes bytes and passes them to a point_writer: as points, or as revolutions if the
 /// writer accepts these. Raw bytes contain no times, so they are counted from the first point on at
 /// a constant rate; samples of suspect packets are counted, lost ones are not. Points of a packet
-/// whose angles do not fit (angle_check) are flagged unlikely. *Single thread, allocates on
+/// whose angles do not fit (angle_check) are flagged unlikely. What the bytes state of the firmware and of the
+/// offset of zero holds from there on, as for a lidar; see reply_watch. *Single thread, allocates on
 /// construction*; exceptions of the sink are passed on.
 class G4LIDAR_API byte_points {
  public:
   /// `writer` and `out` must outlive this. `sample_rate_hz`: 1 to 10^9. The bytes are those of a lidar
-  /// like `which`, whose `samples` and `range` are copied.
+  /// like `which`, which is valid as long as this. `zero`: what is added to each angle, whatever the bytes state.
   byte_points(point_writer& writer, text_sink& out, std::uint32_t sample_rate_hz,
-              const model& which = g4_model);
+              const model& which = g4_model, std::optional<zero_angle> zero = {});
 
   /// Adds the next bytes, in pieces of any size.
   void take(g4lidar::bytes data);
@@ -43,18 +47,29 @@ class G4LIDAR_API byte_points {
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   /// The number of bytes added so far.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  /// Whether there are points without the offset of zero that their model has.
+  [[nodiscard]] bool lacks_zero() const noexcept { return lacks_zero_; }
+  /// A number that the bytes state and that the model does not have; 0: there was none.
+  [[nodiscard]] std::uint8_t other_number() const noexcept { return other_number_; }
 
  private:
   void take(const event& found);
   void take(packet_view packet);
+  void take(const response_view& heard);
+  void check_number(std::uint8_t number) noexcept;
 
   text_sink& out_;
   point_writer& writer_;
   bool by_scan_;
   std::uint64_t bytes_ = 0;
-  sample_format format_;
-  std::uint16_t shortest_mm_;
-  stream_parser parser_{format_};
+  const model* named_;  // whatever the firmware
+  const model* which_;
+  stream_parser parser_{which_->samples};
+  reply_watch replies_;
+  zero_offset zero_;
+  ct_information_reader in_ct_;
+  bool lacks_zero_ = false;
+  std::uint8_t other_number_ = 0;
   stream_counter counts_;
   revolution_counter revolutions_;
   angle_check angles_;

@@ -11,6 +11,7 @@
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/error.hpp"
 #include "g4lidar/motion.hpp"
+#include "g4lidar/settings.hpp"
 
 namespace g4lidar {
 
@@ -49,6 +50,8 @@ struct recorded_event {
   std::string_view name{};              ///< transport::name(), of `opened` and `state`.
   bytes data{};                         ///< Of `sent`.
   stamped_odometry odometry{};          ///< Of `odometry`.
+  /// What is added to each angle, of `begun`, `held`, `cut` and `state`; nothing: not known.
+  std::optional<zero_angle> zero{};
 };
 
 /// The names in tools and documents. Valid forever.

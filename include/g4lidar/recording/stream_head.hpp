@@ -66,9 +66,14 @@ class stream_head {
   [[nodiscard]] std::int64_t due_ns() const noexcept { return due_ns_; }
   /// All bytes that were added. Valid until the next call.
   [[nodiscard]] bytes held() const noexcept { return held_; }
-  /// What sends them, as far as they show it.
+  /// What sends them, as far as they show it: if it is complete and not decided, as if they ended here.
   [[nodiscard]] recognised_model found() const noexcept {
-    return {&seen_.most_likely(), seen_.basis()};
+    if (seen_.sample_bytes() != 0 || begins_recording(held_)) {
+      return {&seen_.most_likely(), seen_.basis()};
+    }
+    layout_recogniser ended = seen_;
+    ended.finish();
+    return {&ended.most_likely(), ended.basis()};
   }
 
  private:

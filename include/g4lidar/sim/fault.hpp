@@ -26,9 +26,9 @@ enum class fault_kind : std::uint8_t {
   stall,     ///< Nothing reaches the host; everything arrives when the fault ends.
   batch,     ///< Bytes to the host wait 0 to `amount` ns {16 ms}, as with some USB bridges.
   late,      ///< An answer is delayed by `amount` ns {300 ms}: `rate` of all {1}.
-  wrong,     ///< A wrong but possible answer: `rate` {1}.
-  twice,     ///< An answer is sent twice: `rate` {1}.
-  mute,      ///< No answer, although the command is executed: `rate` {1}.
+  wrong,     ///< A wrong but possible answer: `rate` {1}, to the command `amount`, 0: to all {0}.
+  twice,     ///< An answer is sent twice: `rate` {1}, `amount` as of wrong {0}.
+  mute,      ///< No answer, although the command is executed: `rate` {1}, `amount` as of wrong {0}.
   deaf,      ///< The transmit wire is broken: commands do not reach the device.
   baud,      ///< The host has another baud rate: garbage in both directions.
   scanning,  ///< When the fault begins, the device starts to scan without a command.
@@ -68,7 +68,7 @@ struct fault_error {
 };
 
 /// The fault that `text` describes, `KIND[=AMOUNT][*RATE][@BEGIN[+DURATION]]`, for example
-/// "unplug@5s+2s", "flip*0.001", "batch=16ms@1s", "burst=30*0.01%@500ms+1s". Times are decimal
+/// "unplug@5s+2s", "flip*0.001", "batch=16ms@1s", "burst=30*0.01%@500ms+1s", "mute=93". Times are decimal
 /// numbers followed by ns, us, ms, s or min (0 needs no unit); docs/sim.md describes the format.
 /// Independent of the locale. Throws only std::bad_alloc.
 [[nodiscard]] G4LIDAR_API std::variant<fault, fault_error> parse_fault(std::string_view text);

@@ -16,13 +16,14 @@ class answerer {
   answerer(const device_options& options, fault_injector& faults) noexcept
       : options_(options), faults_(faults) {}
 
-  /// Answers `later_ns` from now. Passes what is to be sent at once to `send`.
+  /// Answers the command `code`, `later_ns` from now. Passes what is to be sent at once to `send`.
   template <class Send>
-  void answer(answer_bytes what, std::int64_t later_ns, std::int64_t now_ns, Send send) noexcept {
+  void answer(std::uint8_t code, answer_bytes what, std::int64_t later_ns, std::int64_t now_ns,
+              Send send) noexcept {
     if (queue.begin_answer()) later_ns += options_.first_answer_ns;
-    if (faults_.strike(fault_kind::mute) != nullptr) return;
-    if (faults_.strike(fault_kind::wrong) != nullptr) what = another_than(what);
-    const bool twice = faults_.strike(fault_kind::twice) != nullptr;
+    if (faults_.strike(fault_kind::mute, code) != nullptr) return;
+    if (faults_.strike(fault_kind::wrong, code) != nullptr) what = another_than(what);
+    const bool twice = faults_.strike(fault_kind::twice, code) != nullptr;
     const fault* const late = faults_.strike(fault_kind::late);
     if (late != nullptr) later_ns += late->amount;
     for (int times = twice ? 2 : 1; times > 0; --times) {

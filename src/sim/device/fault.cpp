@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t longest_ns = 1'000'000'000'000'000;  // 11 days
 
-enum class amount_is : std::uint8_t { nothing, bytes, time, health };
+enum class amount_is : std::uint8_t { nothing, bytes, time, health, command };
 
 struct kind_traits {
   fault_kind kind;
@@ -37,9 +37,9 @@ constexpr std::array<kind_traits, 20> kinds{{
     {fault_kind::stall, "stall", false, 1.0, amount_is::nothing, 0},
     {fault_kind::batch, "batch", false, 1.0, amount_is::time, 16 * ms},
     {fault_kind::late, "late", true, 1.0, amount_is::time, 300 * ms},
-    {fault_kind::wrong, "wrong", true, 1.0, amount_is::nothing, 0},
-    {fault_kind::twice, "twice", true, 1.0, amount_is::nothing, 0},
-    {fault_kind::mute, "mute", true, 1.0, amount_is::nothing, 0},
+    {fault_kind::wrong, "wrong", true, 1.0, amount_is::command, 0},
+    {fault_kind::twice, "twice", true, 1.0, amount_is::command, 0},
+    {fault_kind::mute, "mute", true, 1.0, amount_is::command, 0},
     {fault_kind::deaf, "deaf", false, 1.0, amount_is::nothing, 0},
     {fault_kind::baud, "baud", false, 1.0, amount_is::nothing, 0},
     {fault_kind::scanning, "scanning", false, 1.0, amount_is::nothing, 0},
@@ -99,8 +99,21 @@ std::optional<double> read_rate(std::string_view text) noexcept {
   return static_cast<double>(read->millionths) / per;
 }
 
+/// Two digits of a command, as the protocol names it: "93".
+std::optional<std::int64_t> read_command(std::string_view text) noexcept {
+  constexpr std::string_view digits = "0123456789ABCDEFabcdef";
+  std::int64_t code = 0;
+  for (const char each : text) {
+    const std::size_t at = digits.find(each);
+    if (at == std::string_view::npos) return std::nullopt;
+    code = 16 * code + static_cast<std::int64_t>(at < 16 ? at : at - 6);
+  }
+  return text.size() == 2 && code != 0 ? std::optional(code) : std::nullopt;
+}
+
 std::optional<std::int64_t> read_amount(std::string_view text, amount_is what) noexcept {
   if (what == amount_is::time) return read_time_ns(text);
+  if (what == amount_is::command) return read_command(text);
   if (what == amount_is::health) {
     if (text == "warning") return 1;
     if (text == "error") return 2;
@@ -212,6 +225,8 @@ std::string_view problem_with(const fault& f) noexcept {
       return f.amount >= 0 && f.amount <= 4'000 * ms ? "" : "a fault's time must be 0 to 4 s";
     case amount_is::health:
       return f.amount >= 0 && f.amount <= 2 ? "" : "the health must be 0, 1 or 2";
+    case amount_is::command:
+      return f.amount >= 0 && f.amount <= 0xFF ? "" : "a command must be 0 to FF";
   }
   return {};
 }

@@ -67,10 +67,11 @@ bool fault_injector::begins(fault_kind kind) const noexcept {
   });
 }
 
-const fault* fault_injector::strike(fault_kind kind) noexcept {
+const fault* fault_injector::strike(fault_kind kind, std::uint8_t code) noexcept {
   const fault* struck = nullptr;
   for (entry& e : entries_) {
     if (!e.at_work || e.what.kind != kind) continue;
+    if (code != 0 && e.what.amount != 0 && e.what.amount != code) continue;
     if (e.random.uniform() < e.what.rate) struck = &e.what;
   }
   return struck;

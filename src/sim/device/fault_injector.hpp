@@ -35,8 +35,9 @@ class fault_injector {
   [[nodiscard]] std::int64_t end_of(fault_kind kind) const noexcept;
   /// Whether a fault of this kind begins now.
   [[nodiscard]] bool begins(fault_kind kind) const noexcept;
-  /// Draws: the fault of this kind that takes effect, or nullptr. Each active fault draws once.
-  [[nodiscard]] const fault* strike(fault_kind kind) noexcept;
+  /// Draws: the fault of this kind that takes effect, or nullptr. Each active fault draws once; of those to
+  /// answers only the ones of every command and of `code`.
+  [[nodiscard]] const fault* strike(fault_kind kind, std::uint8_t code = 0) noexcept;
   /// A number from 0 to below `count` for the effect of a fault of this kind; 0 if none is active.
   [[nodiscard]] std::uint64_t draw(fault_kind kind, std::uint64_t count) noexcept;
   /// A byte is sent to the host.

@@ -49,13 +49,13 @@ bool device::machine::obey(command code) noexcept {
     case command::start:
       return obey_start();
     case command::device_info:
-      answer(answer_with(options.info));
+      answer(code, answer_with(options.info));
       return true;
     case command::health:
-      if (options.answers_health_91) answer(answer_with(answers_.condition()));
+      if (options.answers_health_91) answer(code, answer_with(answers_.condition()));
       return options.answers_health_91;
     case command::health_vendor:
-      if (options.answers_health_92) answer(answer_with(answers_.condition()));
+      if (options.answers_health_92) answer(code, answer_with(answers_.condition()));
       return options.answers_health_92;
     case command::restart:
       if (options.obeys_restart_80) power_on(options.settings_outlive_restart);
@@ -75,7 +75,7 @@ bool device::machine::obey_setting(command code) noexcept {
   if (settings.protection != before) fed_ns_ = now_ns_;
   use_settings();
   keep_motor();
-  answer(*answered);
+  answer(code, *answered);
   return true;
 }
 
@@ -92,21 +92,24 @@ bool device::machine::obey_start() noexcept {
   fed_ns_ = now_ns_;
   if (is_scanning()) {
     output.samples.end_at(forever_ns);  // a stop that has not ended the scan yet has no effect
-    if (options.start_again_answers) answer(answer_with(response_kind::scan_started, {}));
+    if (options.start_again_answers) {
+      answer(command::start, answer_with(response_kind::scan_started, {}));
+    }
     return true;
   }
   if (!stopped_by_protection_ || options.header_after_protection) {
     answer_bytes header = answer_with(response_kind::scan_started, {});
     if (options.stray_after_start) header.data[header.size++] = 0x00;
-    answer(header, options.header_ns);
+    answer(command::start, header, options.header_ns);
   }
   output.samples.silence_until(now_ns_ + options.header_ns + options.silence_ns);
   begin_scan();
   return true;
 }
 
-void device::machine::answer(const answer_bytes& what, std::int64_t later_ns) noexcept {
-  answers_.answer(what, later_ns, now_ns_,
+void device::machine::answer(command to, const answer_bytes& what,
+                             std::int64_t later_ns) noexcept {
+  answers_.answer(static_cast<std::uint8_t>(to), what, later_ns, now_ns_,
                   [this](const answer_bytes& now) { output.send(now, is_scanning(), now_ns_); });
 }
 

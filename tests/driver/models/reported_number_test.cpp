@@ -25,33 +25,40 @@ struct reported_id {
   const char* word;  ///< Of the model that is named.
   std::uint8_t sent;
   std::uint8_t known;      ///< By information(); 0: it is refused.
+  bool is_said = false;    ///< By the event other_number.
   const char* other = "";  ///< In the error, as what.
 };
+
+int times_said(lidar& of) {
+  int count = 0;
+  while (const auto event = of.next_event()) count += event->what == lidar_event::kind::other_number ? 1 : 0;
+  return count;
+}
 
 // CT has four bits: 22 of an SCL is 6 there, and 100 of a TX is 4. X2, X3, S2, S4 and X4 Pro report 4, by the
 // table of the manufacturer most of them 6. Only an S2 reports 12; an F4 and a G4C have the baud rate of an X2.
 TEST(ReportedNumber, NumberOfAOneWayLidar_IsRefusedOnlyIfItIsSurelyAnotherModel) {
-  for (const auto& [word, sent, known, other] : std::to_array<reported_id>({
+  for (const auto& [word, sent, known, is_said, other] : std::to_array<reported_id>({
            {"x2", 4, 4},
            {"x2", 6, 6},
            {"x3", 4, 4},
            {"x3-pro", 6, 6},
            {"s2", 4, 4},
            {"s2", 12, 12},
-           {"s2", 6, 6},
-           {"s2-intensity", 6, 6},
+           {"s2", 6, 6, true},
+           {"s2-intensity", 6, 6, true},
            {"x4-pro", 4, 4},
            {"x4-pro", 6, 6},
            {"scl", 22, 22},
-           {"scl", 4, 4},
+           {"scl", 4, 4, true},
            {"tx8", 100, 100},
-           {"tx8", 6, 6},
-           {"x2", 10, 10},
-           {"x4-pro", 1, 1},
-           {"x2", 12, 0, "model 12 (S2), not X2"},
-           {"x4-pro", 12, 0, "model 12 (S2), not X4 Pro"},
-           {"x2", 1, 0, "model 1 (F4), not X2"},
-           {"x3", 2, 0, "model 2 (G4C), not X3"},
+           {"tx8", 6, 6, true},
+           {"x2", 10, 10, true},
+           {"x4-pro", 1, 1, true},
+           {"x2", 12, 0, false, "model 12 (S2), not X2"},
+           {"x4-pro", 12, 0, false, "model 12 (S2), not X4 Pro"},
+           {"x2", 1, 0, false, "model 1 (F4), not X2"},
+           {"x3", 2, 0, false, "model 2 (G4C), not X3"},
        })) {
     sim::device_options options = options_of(*model_named(word));
     options.info.model = sent;
@@ -65,9 +72,35 @@ TEST(ReportedNumber, NumberOfAOneWayLidar_IsRefusedOnlyIfItIsSurelyAnotherModel)
     for (int i = 0; i < 5 && scan; ++i) scan = lidar->wait_scan(2000ms);
     EXPECT_EQ(lidar->information().model, known) << word << " " << int{sent};
     EXPECT_EQ(scan.has_value(), known != 0) << word << " " << int{sent};
+    EXPECT_EQ(times_said(*lidar), is_said ? 1 : 0) << word << " " << int{sent};
     if (scan) continue;
     EXPECT_EQ(scan.error().code(), problem::other_device);
     EXPECT_NE(scan.error().message().find(other), std::string::npos) << scan.error().message();
+  }
+}
+
+// At 40 samples a packet: 3 kHz at 8 Hz are 11 packets a revolution, up to the month of the date; at 4 Hz 20.
+TEST(ReportedNumber, NumberOfAOneWayLidarWithFewPackets_IsKnown) {
+  for (const model& which : models) {
+    if (which.link != link_kind::one_way || which.ct_information == presence::no) continue;
+    for (const std::uint16_t chz : std::to_array<std::uint16_t>({400, 500, 600, 700, 800})) {
+      sim::device_options options = options_of(which);
+      options.ct_information = options.ct_crc = options.stray_before_zero = true;
+      options.condition = {health_status::error, 1};
+      options.scanner.scan_frequency_chz = chz;
+      bench on(which, options);
+      auto lidar = on.open();
+      ASSERT_TRUE(lidar) << which.word << lidar.error().message();
+      ASSERT_TRUE(lidar->start());
+      for (int i = 0; i < 8; ++i) ASSERT_TRUE(lidar->wait_scan(2000ms)) << which.word << " " << chz;
+      EXPECT_EQ(lidar->information().model, options.info.model) << which.word << " " << chz;
+      EXPECT_EQ(lidar->information().firmware_major, options.info.firmware_major) << which.word;
+      EXPECT_EQ(lidar->information().firmware_minor, options.info.firmware_minor) << which.word;
+      const auto condition = lidar->ask(requests::health());
+      ASSERT_TRUE(condition) << which.word << " " << chz;
+      EXPECT_EQ(condition->status, health_status::error) << which.word << " " << chz;
+      EXPECT_EQ(times_said(*lidar), 0) << which.word << " " << chz;
+    }
   }
 }
 

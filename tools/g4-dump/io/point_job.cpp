@@ -208,8 +208,12 @@ class point_run {
   }
 
   std::uint64_t read_bytes(input& in, output& out) {
+    if (common_.expected.zero && model_->zero_angle_divisor == 0) {
+      throw bad_value(fmt::format("--zero-angle: {} {} has no such offset", article_of(*model_),
+                                  model_->name));
+    }
     byte_points way(*writer_, out, job_.source.raw_sample_rate_hz.value_or(first_rate_hz(*model_)),
-                    *model_);
+                    *model_, common_.expected.zero);
     bool has_text = false;
     pump(in, out, [&](std::span<const std::uint8_t> got) {
       if (way.bytes() == 0) has_text = looks_like_text(got);
@@ -221,6 +225,8 @@ class point_run {
     } else if (way.bytes() > 0) {
       logger::info(stats_in_words(way.counts(), way.bytes()));
       logger::info(warning_about(way.counts(), way.bytes()));
+      if (way.lacks_zero()) report_missing_zero(*model_);
+      if (way.other_number() != 0) report_other_number(*model_, way.other_number());
     }
     if (way.counts().packets == 0 && !out.is_closed() && interrupt() == 0) {
       throw failure(exit_code::bad_file,

@@ -106,6 +106,15 @@ void report_events(g4lidar::lidar& lidar) {
   while (const auto event = lidar.next_event()) {
     const bool is_loss = event->what == lidar_event::kind::lost;
     if (is_loss && event->reason == g4lidar::problem::end_of_input) continue;  // the end of a file
+    const g4lidar::model& which = *candidates_of(lidar).front();
+    if (event->what == lidar_event::kind::no_zero_angle) {
+      report_missing_zero(which);
+      continue;
+    }
+    if (event->what == lidar_event::kind::other_number) {
+      report_other_number(which, lidar.information().model);
+      continue;
+    }
     logger::info(fmt::format("{}: {}{}{}\n", lidar.name(), name_of(event->what),
                              is_loss ? ", " : "", is_loss ? name_of(event->reason) : ""));
   }

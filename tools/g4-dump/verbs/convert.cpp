@@ -11,10 +11,12 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
 #include "g4lidar/recording/raw_bytes.hpp"
+#include "g4lidar/recording/raw_copy.hpp"
 #include "g4lidar/recording/writer.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "io/input.hpp"
@@ -129,6 +131,11 @@ void check_combination(const convert_options& options, file_form from, file_form
   if (to != file_form::recording && has_messages) {
     throw bad_value("--points, --order, --no-return and --near-as are for recordings");
   }
+  const bool keeps_bytes = to == file_form::raw_bytes ||
+                           (to == file_form::recording && from == file_form::recording);
+  if (keeps_bytes && options.points.common->expected.zero) {
+    throw bad_value("the bytes stay as they are: --zero-angle is for points, and for a recording of raw bytes");
+  }
   if (to == file_form::raw_bytes && !options.points.common->odometry.empty()) {
     throw bad_value("raw bytes hold no odometry: --odometry is for recordings and points");
   }
@@ -157,39 +164,55 @@ int to_points(convert_options options, file_form from, file_form to) {
   return run(job);
 }
 
+void write_bytes(output& out, const std::vector<std::uint8_t>& data) {
+  out.write({reinterpret_cast<const char*>(data.data()), data.size()});
+}
+
 /// Writes the bytes that the lidar sent.
 void copy_recording(const convert_options& options, output& out) {
+  const std::string path = path_of_source(options.in());
+  const std::int64_t from_ns = options.range().from_ns;
+  const std::int64_t to_ns = options.range().to_ns;
+  const recording_reader about = open_recording(path);
+  raw_copy copy(about.model(), about.device().value_or(recorded_device{}).information);
   std::uint64_t count = 0;
+  std::vector<std::uint8_t> copied;
   const auto take = [&](const recorded_item& item) {
-    if (item.what == recorded_item::kind::from_device) {
-      out.write({reinterpret_cast<const char*>(item.data.data()), item.data.size()});
-      count += item.data.size();
-    }
+    const bool is_wanted = from_ns <= 0 || item.time_ns - about.first_ns() >= from_ns;
+    copied.clear();
+    copy.take(item, is_wanted, copied);
+    write_bytes(out, copied);
+    if (is_wanted && item.what == recorded_item::kind::from_device) count += item.data.size();
     return !out.is_closed();
   };
   const auto reader =
-      read_items(path_of_source(options.in()),
-                 {.from_ns = options.range().from_ns, .to_ns = options.range().to_ns}, take);
+      read_items(path, {.from_ns = copy.needs_begin() ? 0 : from_ns, .to_ns = to_ns}, take);
   logger::info(
       fmt::format("{} from the lidar\n{}", counted(count, "byte"), describe(reader.damage())));
 }
 
 /// Writes a part of raw bytes; their times are counted.
 void copy_bytes(const convert_options& options, output& out) {
-  const auto from = value_of(open_raw_bytes(path_of_source(options.in()),
-                                            options.points.source.raw_sample_rate_hz, {}, {},
-                                            model_of(*options.points.common)));
+  const g4lidar::model* const named = model_of(*options.points.common);
+  const auto from =
+      value_of(open_raw_bytes(path_of_source(options.in()),
+                              options.points.source.raw_sample_rate_hz, {}, {}, named));
+  const g4lidar::model* const which = named != nullptr ? named : from->traits().model;
+  raw_copy copy(which != nullptr ? *which : g4_model);
   const std::int64_t begin_ns = from->now_ns();
   const auto opened = value_of(from->connect());
   std::array<std::uint8_t, 32'768> memory;
+  std::vector<std::uint8_t> copied;
   while (interrupt() == 0 && !out.is_closed()) {
     const auto got = opened->read(memory, opened->now_ns() + 50'000'000);
     if (!got && got.error().code() == g4lidar::problem::end_of_input) break;
     if (!got) throw failure(got.error());
     const std::int64_t since_ns = got->arrival_ns - begin_ns;
-    if (got->count == 0 || since_ns < options.range().from_ns) continue;
     if (since_ns >= options.range().to_ns) break;
-    out.write({reinterpret_cast<const char*>(memory.data()), got->count});
+    copied.clear();
+    copy.received(g4lidar::bytes(memory).first(got->count), since_ns >= options.range().from_ns,
+                  copied);
+    write_bytes(out, copied);
   }
 }
 
@@ -269,6 +292,7 @@ option_rows form_rows(convert_options& options) {
       value_row("--ascii", "", "Write pcd as text", job.data,
                 [](const std::string&) { return pcd_data::ascii; }),
       model_row(*job.common),
+      zero_row(*job.common),
       sample_rate_row(job.source.raw_sample_rate_hz),
       frame_row("--from-frame", "Frame of the angles in csv and jsonl (vendor)", job.text_frame),
       compress_row(options.made.packed)};

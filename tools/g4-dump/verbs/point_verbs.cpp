@@ -190,7 +190,7 @@ verb make_decode_verb() {
               joined(output_rows(common), format_row(job->style.format, "Output format (csv)"),
                      flag_row("--scans", "A record for each revolution", job->style.scans),
                      flag_row("--valid", "Leave out points without a return", job->returns_only),
-                     model_row(common), sample_rate_row(job->source.raw_sample_rate_hz),
+                     model_row(common), zero_row(common), sample_rate_row(job->source.raw_sample_rate_hz),
                      choice_row("--stats", "Form of the counts on standard error (words)",
                                 job->json_counts, choices<bool>{{"words", false}, {"json", true}}),
                      ending_rows(common), filter_rows(common), near_row(common.marks.near),

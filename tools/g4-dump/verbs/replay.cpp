@@ -128,7 +128,7 @@ verb make_replay_verb() {
                  loop_row(played.loop),
                  moment_row("--from", "Begin at this time of the recording: 10s", played.from_ns),
                  moment_row("--to", "End at this time of the recording: 40s", played.to_ns),
-                 model_row(common), verification, ending_rows(common), filter_rows(common),
+                 model_row(common), zero_row(common), verification, ending_rows(common), filter_rows(common),
                  near_row(common.marks.near), shape_rows(common)),
       .details = replay_details,
       .examples = {{"g4-dump replay walk.mcap", "Print the points at the speed of the recording"},

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <string_view>
@@ -252,6 +253,14 @@ option_row model_row(common_options& options) {
       });
 }
 
+option_row zero_row(common_options& options) {
+  return value_row("--zero-angle", "DEG", "Added to all angles, not the answer to command 93",
+                   options.expected.zero, [](const std::string& word) {
+                     const double cdeg = std::round(100.0 * number_of(word, -360.0, 360.0));
+                     return std::optional(g4lidar::zero_angle{static_cast<std::int32_t>(cdeg)});
+                   });
+}
+
 option_rows device_rows(common_options& options) {
   const choices<loss_rule> rules{
       {"exit", loss_rule::exit}, {"wait", loss_rule::wait}, {"reconnect", loss_rule::reconnect}};
@@ -259,7 +268,7 @@ option_rows device_rows(common_options& options) {
       std::ranges::find(rules, options.on_loss, &choices<loss_rule>::value_type::second);
   const std::string help = "If the device is lost; wait: also at the start (" + usual->first + ")";
   return joined(in_group("Device", {choice_row("--on-loss", help.c_str(), options.on_loss, rules)}),
-                baud_row(options), in_group("Device", {model_row(options)}));
+                baud_row(options), in_group("Device", {model_row(options), zero_row(options)}));
 }
 
 option_row loop_row(bool& into) { return flag_row("--loop", "Start again at the end", into); }

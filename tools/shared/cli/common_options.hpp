@@ -58,6 +58,7 @@ struct expected_device {
   std::uint32_t baud = 0;  ///< 0: the usual rate of the model, or searched.
   /// What sends the bytes; null: as a file shows, or searched.
   const g4lidar::model* model = nullptr;
+  std::optional<g4lidar::zero_angle> zero;  ///< Of --zero-angle.
 
   [[nodiscard]] std::uint32_t rate() const noexcept {
     if (baud != 0) return baud;
@@ -130,6 +131,8 @@ using shared_options = std::shared_ptr<common_options>;
 [[nodiscard]] option_rows baud_row(common_options& options);
 /// --model.
 [[nodiscard]] option_row model_row(common_options& options);
+/// --zero-angle.
+[[nodiscard]] option_row zero_row(common_options& options);
 /// --on-loss with the present value of `options` as default, --baud and --model.
 [[nodiscard]] option_rows device_rows(common_options& options);
 

@@ -53,7 +53,7 @@ exit_code exit_code_for(const g4lidar::error& why, bool was_running) noexcept {
 }
 
 std::span<const tool_word> tool_words() noexcept {
-  static constexpr std::array<tool_word, 14> words{{
+  static constexpr std::array<tool_word, 15> words{{
       {"plug it in and open it again",
        "plug it in and run the command again; --on-loss reconnect "
        "waits for it"},
@@ -73,6 +73,7 @@ std::span<const tool_word> tool_words() noexcept {
        "Correct it, or leave it out"},
       {"name it with the option model", "name it with --model"},
       {", or give lidar_options::answer_time a larger value", ""},
+      {" (lidar_options::zero_angle)", ""},
   }};
   return words;
 }

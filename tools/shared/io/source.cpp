@@ -174,6 +174,20 @@ void report_candidates(std::span<const g4lidar::model* const> candidates) {
                   candidates.front()->name, model_words(candidates.subspan(1))));
 }
 
+void report_missing_zero(const g4lidar::model& which) {
+  logger::info(fmt::format(
+      "the offset of zero of this {} is not known: its answer to command 93 is missing, and the angles are those of "
+      "the device; --zero-angle gives it\n",
+      which.name));
+}
+
+void report_other_number(const g4lidar::model& which, unsigned number) {
+  logger::info(fmt::format(
+      "the lidar states the number {}, and {} {} has {}{}: --model names another model\n", number,
+      article_of(which), which.name, which.ids[0],
+      which.ids[1] != 0 ? fmt::format(" or {}", which.ids[1]) : ""));
+}
+
 void report_model(const recognised_model& found) { report_model(*found.which, found.is_usual()); }
 
 const g4lidar::model* model_of(const common_options& options,
@@ -205,6 +219,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   how.device = options.source;
   how.model = named_model(options);
   if (options.expected.baud != 0) how.baud = options.expected.baud;
+  how.zero_angle = options.expected.zero;
   how.reconnect = options.on_loss != loss_rule::exit;
   // A file that is missing is not waited for.
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))

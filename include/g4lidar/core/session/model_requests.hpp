@@ -65,6 +65,16 @@ namespace g4lidar {
   }
 }
 
+/// Whether this answer of a lidar like `which` can be a frequency, so that it is not certainly an angle: one
+/// within the limits of the model, with the offset of its replies or without. *Pure.*
+[[nodiscard]] constexpr bool may_be_frequency(const response_view& heard,
+                                              const model& which) noexcept {
+  const auto chz = heard.as_frequency_chz();
+  const auto& [min_dhz, max_dhz, offset_chz, ct_offset] = which.frequency;
+  const int beyond_chz = offset_chz < 0 ? -offset_chz : 0;
+  return chz && *chz >= 10 * min_dhz && *chz <= 10 * max_dhz + beyond_chz;
+}
+
 /// The answer of a lidar like `which` to command 93; nothing if it is no angle within a turn. *Pure.*
 [[nodiscard]] constexpr std::optional<zero_angle> zero_angle_of(const response_view& heard,
                                                                 const model& which) noexcept {

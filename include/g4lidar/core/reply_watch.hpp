@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The answers that decide how points are read, live, in a recording or in raw bytes: the firmware, and the offset
+// of zero.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "g4lidar/core/bytes.hpp"
+#include "g4lidar/core/command.hpp"
+#include "g4lidar/core/model.hpp"
+#include "g4lidar/core/response.hpp"
+#include "g4lidar/core/session/model_requests.hpp"
+
+namespace g4lidar {
+
+/// What a stream states of its lidar. *Single thread, never allocates.* Which command was answered is known by the
+/// order, where the commands are known: a lidar gets one command at a time. Raw bytes have no commands. There an
+/// answer of four bytes is that to 93 if it cannot be a frequency of the model, or if it comes directly behind a
+/// scan header, where a lidar sends no answer: g4-dump repeats it there. (protocol: Commands)
+class reply_watch {
+ public:
+  /// Was sent to the device.
+  constexpr void sent(bytes data) noexcept {
+    if (data.size() == 2) last_ = static_cast<command>(data[1]);
+  }
+  /// What a response states.
+  struct finding {
+    /// Who the lidar is, if its firmware decides: the first information of a stream, and later the answers to
+    /// command 90. The turning part may report another firmware behind the scan header.
+    std::optional<device_information> firmware;
+    std::optional<zero_angle> zero;  ///< The answer to command 93.
+  };
+
+  /// Passes a response of a lidar like `which`.
+  [[nodiscard]] constexpr finding take(const response_view& heard, const model& which) noexcept {
+    const bool is_certain = std::exchange(is_behind_header_, false) ||
+                            !may_be_frequency(heard, which);
+    is_behind_header_ = heard.kind() == response_kind::scan_started;
+    finding made;
+    if (const auto who = heard.as_device_info()) {
+      const bool is_first = !std::exchange(is_known_, true);
+      if (is_first || last_ == command::device_info) made.firmware = who;
+    }
+    if (last_ ? *last_ == command::zero_angle : is_certain) made.zero = zero_angle_of(heard, which);
+    return made;
+  }
+  /// Passes any other event.
+  constexpr void pass() noexcept { is_behind_header_ = false; }
+
+ private:
+  std::optional<command> last_;    // nothing: the commands are not known
+  bool is_known_ = false;          // there was an information
+  bool is_behind_header_ = false;  // the last event was a scan header
+};
+
+}  // namespace g4lidar
