@@ -53,6 +53,9 @@ struct parameter {
 /// The row for a lidar of this model: its values or limits instead of those of all models. `constraints` states
 /// where the model does not have the setting.
 [[nodiscard]] G4LIDAR_API parameter limited_to(const model& which, const parameter& of);
+/// The value as one of a type, the index in parameter_value, as people write it: 10 or "10" for 10.0, "on" or "true" for
+/// true, true or "true" for "on", an infinite number for "inf". Nothing if it is none. *Allocates.*
+[[nodiscard]] G4LIDAR_API parameter_value converted(const parameter_value& from, std::uint8_t type);
 /// The value of a setting as the device gave it; nothing for an answer that is of none.
 [[nodiscard]] G4LIDAR_API parameter_value value_of(const answer& given);
 /// The value that a setting is to have; errors as those of value_in().

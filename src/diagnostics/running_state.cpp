@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "g4lidar/detail/saturating.hpp"
-#include "stages.hpp"
 
 namespace g4lidar {
 namespace {

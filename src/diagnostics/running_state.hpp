@@ -17,6 +17,7 @@
 #include "g4lidar/recording/recorded_device.hpp"
 #include "g4lidar/transport/transport.hpp"
 #include "running_scan.hpp"
+#include "stages.hpp"
 
 namespace g4lidar {
 
@@ -82,6 +83,8 @@ class running_state {
   void received(const reading& what, bytes data, std::int64_t now_ns) {
     const std::lock_guard hold(mutex_);
     now_ns_ = now_ns;
+    // Whoever sends is not unplugged, also where no scan runs.
+    if (lost_ && stage_of(*lost_) == diagnostic_stage::port) back();
     scan_.received(what, data);
     follow_scan();
   }
@@ -107,9 +110,8 @@ class running_state {
   };
   [[nodiscard]] copy take_copy() const;
 
-  /// The lidar works: the last loss is reported for the length of a window.
+  /// The lidar works.
   void back() {
-    if (lost_) found_.add(*lost_, now_ns_);
     lost_.reset();
     why_lost_.clear();
   }

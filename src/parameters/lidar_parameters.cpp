@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/number_text.hpp"
@@ -28,23 +29,37 @@ std::string word_of(const parameter_value& value) {
   return text != nullptr ? *text : std::string();
 }
 
-/// A whole number is a double, too.
-text_result<parameter_value> converted(const parameter& to, const parameter_value& from) {
+std::optional<double> number_of(const parameter_value& from) {
+  if (const auto* whole = std::get_if<std::int64_t>(&from)) return static_cast<double>(*whole);
+  if (const auto* number = std::get_if<double>(&from)) return *number;
+  const auto* const text = std::get_if<std::string>(&from);
+  constexpr double most = std::numeric_limits<double>::max();
+  const auto made = number_in(text != nullptr ? *text : "", -most, most);
+  return made ? std::optional(*made) : std::nullopt;
+}
+
+/// "on" is true in the YAML of ROS, and "nan" and "inf" are numbers there.
+parameter_value text_of(const parameter_value& from) {
+  const auto* const text = std::get_if<std::string>(&from);
+  if (text != nullptr && (*text == "true" || *text == "false"))
+    return std::string(*text == "true" ? "on" : "off");
+  const auto* const number = std::get_if<double>(&from);
+  const bool has_word = from.index() == is_bool || (number != nullptr && !std::isfinite(*number));
+  if (has_word) return word_of(from);
+  return text != nullptr ? from : parameter_value();
+}
+
+/// The value for a parameter, or why not.
+text_result<parameter_value> value_for(const parameter& to, const parameter_value& from) {
   constexpr std::array<std::string_view, 5> types{"not set", "a bool", "an integer", "a double",
                                                   "a string"};
-  const auto* const whole = std::get_if<std::int64_t>(&from);
-  if (to.type == is_double && whole != nullptr) return static_cast<double>(*whole);
-  // "on" is true in the YAML of `ros2 param`.
-  if (to.type == is_string && from.index() == is_bool) return word_of(from);
-  // "nan" and "inf" are numbers there.
-  const auto* const number = std::get_if<double>(&from);
-  if (to.type == is_string && number != nullptr && !std::isfinite(*number)) return word_of(from);
-  if (from.index() != to.type)
+  parameter_value made = converted(from, to.type);
+  if (made.index() != to.type)
     return tl::unexpected(std::string(to.name) + ": it is " + std::string(types.at(to.type)));
-  const auto* const text = std::get_if<std::string>(&from);
+  const auto* const text = std::get_if<std::string>(&made);
   if (text != nullptr && text->size() > longest_text)
     return tl::unexpected(std::string(to.name) + ": the text is too long");
-  return from;
+  return made;
 }
 
 parameter parameter_of(const setting_info& which) {
@@ -80,6 +95,23 @@ parameter limited_to(const model& which, const parameter& of) {
                                [](const auto& rate) { return std::to_string(rate.hz); });
   }
   return made;
+}
+
+parameter_value converted(const parameter_value& from, std::uint8_t type) {
+  if (type == is_string) return text_of(from);
+  if (from.index() == type) return from;
+  if (type == is_bool) {
+    const std::string word = word_of(text_of(from));
+    if (word != "on" && word != "off") return {};
+    return word == "on";
+  }
+  const auto number = number_of(from);
+  if (!number) return {};
+  if (type == is_double) return *number;
+  constexpr double largest = 1e15;  // each whole number below is a double
+  const bool is_whole = std::trunc(*number) == *number && std::abs(*number) < largest;
+  if (type != is_integer || !is_whole) return {};
+  return static_cast<std::int64_t>(*number);
 }
 
 parameter_value value_of(const answer& given) {
@@ -214,7 +246,7 @@ std::string lidar_parameters::change(lidar* device, std::span<const named_value>
     if (known == nullptr) return "there is no such parameter";
     if (known->kind == parameter_kind::read_only)
       return std::string(known->name) + ": it cannot change while the program runs";
-    const auto value = converted(*known, given);
+    const auto value = value_for(*known, given);
     if (!value) return value.error();
     if (known->kind == parameter_kind::filter) {
       values[known->name] = *value;

@@ -142,4 +142,41 @@ TEST_P(RunningScenario, GetsItsOwnDiagnosis) {
 INSTANTIATE_TEST_SUITE_P(All, RunningScenario, ::testing::ValuesIn(scenarios()),
                          [](const auto& one) { return std::string(one.param.name); });
 
+// The lidar is back at 9 s, and scans again within 4 s: the window would be 10 s.
+TEST(RunningDiagnosis, ALossIsOverWhenTheLidarIsBack) {
+  use how;
+  how.faults.push_back(std::get<sim::fault>(sim::parse_fault("unplug@8s+1s")));
+  how.options.reconnect = true;
+  how.seconds = 14;
+  const seen found = watch(how);
+  EXPECT_EQ(found.diagnoses(), "unplugged") << found;
+  EXPECT_EQ(found.diagnoses(found.looks.size() - 1), "") << found;
+  const stage_report& port = found.looks.back().front();
+  EXPECT_EQ(port.stage, diagnostic_stage::port);
+  EXPECT_EQ(port.outcome, stage_verdict::ok);
+}
+
+// Another lidar object opens it, and no scan is started: its answers show that it is there.
+TEST(RunningDiagnosis, ALossIsOverWhenALidarAtRestAnswers) {
+  using namespace std::chrono_literals;
+  const std::vector<sim::fault> faults{std::get<sim::fault>(sim::parse_fault("unplug@2s+1s"))};
+  sim::device simulated(sim::built_in_world(), {}, faults);
+  sim::virtual_clock clock;
+  running_diagnosis judge;
+  const auto open = [&] {
+    return lidar::open(judge.observe(std::make_unique<sim::virtual_connector>(simulated, clock)));
+  };
+  {
+    auto device = open();
+    ASSERT_TRUE(device && device->start());
+    auto scan = device->next_scan(1s);
+    while (scan || !scan.error().is_fatal()) scan = device->next_scan(1s);
+    judge.add(scan.error());
+  }
+  EXPECT_EQ(judge.stages().front().outcome, stage_verdict::fail);
+  clock.advance_to(4 * second);
+  ASSERT_TRUE(open());
+  EXPECT_EQ(judge.stages().front().outcome, stage_verdict::ok);
+}
+
 }  // namespace

@@ -35,6 +35,35 @@ TEST(LimitedRow, HasTheValuesOfTheModel) {
   EXPECT_EQ(row("range_max", "x4").range, (std::array{0.0, 100.0, 0.0}));
 }
 
+TEST(ConvertedValue, IsAsPeopleWriteIt) {
+  using value = g4lidar::parameter_value;
+  const std::int64_t nine = 9;
+  const std::string fast = "fast";
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  struct row {
+    value from;
+    std::array<value, 4> to;  // a bool, an integer, a double, a string
+  };
+  const value none;
+  for (const auto& [from, to] : std::vector<row>{
+           {true, {true, none, none, std::string("on")}},
+           {nine, {none, nine, 9.0, none}},
+           {9.0, {none, nine, 9.0, none}},
+           {9.5, {none, none, 9.5, none}},
+           {1e18, {none, none, 1e18, none}},
+           {infinite, {none, none, infinite, std::string("inf")}},
+           {std::string("9"), {none, nine, 9.0, std::string("9")}},
+           {std::string("9.5"), {none, none, 9.5, std::string("9.5")}},
+           {std::string("false"), {false, none, none, std::string("off")}},
+           {std::string("on"), {true, none, none, std::string("on")}},
+           {fast, {none, none, none, fast}},
+           {std::string(), {none, none, none, std::string()}},
+           {none, {none, none, none, none}}}) {
+    for (std::uint8_t type = 1; type <= to.size(); ++type)
+      EXPECT_EQ(g4lidar::converted(from, type), to.at(type - 1U)) << from.index() << " to " << int{type};
+  }
+}
+
 /// A lidar with these options: walls in 2 m and, from 300 degrees on, in 4 m; a speck before the wall at 200 degrees,
 /// and a veiling point between the walls at 299.
 class filtered {

@@ -72,6 +72,7 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
   }
   if (const std::string wrong = parameters_.change(nullptr, options.filters); !wrong.empty())
     throw std::invalid_argument(wrong);
+  wanted_.insert(options.settings.begin(), options.settings.end());
   // The motor rests at once, also in a container whose other components take their time.
   before_shutdown_ =
       node.get_node_base_interface()->get_context()->add_pre_shutdown_callback([this] {
@@ -96,13 +97,11 @@ void lidar_session::guard(Call call) noexcept {
   }
 }
 
-bool lidar_session::wait_until_open(std::chrono::nanoseconds longest) {
+void lidar_session::wait_unless_device() {
+  if (g4lidar::kind_of_source(options_.lidar.device) == g4lidar::source_kind::device) return;
   std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, longest, [this] {
-    return is_ending_ || reader_.status().state != reader_state::opening;
-  });
-  const reader_state now = reader_.status().state;
-  return now != reader_state::opening && now != reader_state::ended;
+  changed_.wait_for(
+      lock, 1s, [this] { return is_ending_ || reader_.status().state != reader_state::opening; });
 }
 
 void lidar_session::rest(bool rests, std::chrono::nanoseconds longest) {
@@ -113,20 +112,17 @@ void lidar_session::rest(bool rests, std::chrono::nanoseconds longest) {
                     [this] { return reader_.status().state != reader_state::running; });
 }
 
-std::optional<std::string> lidar_session::change(const std::vector<g4lidar::named_value>& wanted) {
+std::string lidar_session::change(const std::vector<g4lidar::named_value>& settings) {
   struct request {
     std::atomic_flag is_taken;  // by the one who answers it: the reader, or this function
     std::promise<std::string> reply;
   };
   const auto made = std::make_shared<request>();
   auto answered = made->reply.get_future();
-  reader_.ask([this, made, wanted](g4lidar::lidar* lidar) {
+  reader_.ask([this, made, settings](g4lidar::lidar* lidar) {
     if (made->is_taken.test_and_set()) return;
-    std::string reason;
-    guard([&] {
-      reason = "it could not be set";
-      reason = parameters_.change(lidar, wanted);
-    });
+    std::string reason = "it could not be set";
+    guard([&] { reason = set(lidar, settings); });
     made->reply.set_value(reason);
   });
   const auto end = std::chrono::steady_clock::now() + change_time;
@@ -134,17 +130,23 @@ std::optional<std::string> lidar_session::change(const std::vector<g4lidar::name
     if (answered.wait_for(20ms) == std::future_status::ready) return answered.get();
     // The reader searches the lidar, and may do so for long.
     const bool is_searched = reader_.status().state == reader_state::opening;
-    if (is_searched && !made->is_taken.test_and_set()) return std::nullopt;
+    if (is_searched && !made->is_taken.test_and_set()) return "the lidar is not connected";
   }
   return "the lidar did not answer in time; it may be set later";
 }
 
-void lidar_session::change_later(std::vector<g4lidar::named_value> filters) {
-  reader_.ask([this, what = std::move(filters)](g4lidar::lidar* lidar) {
-    guard([&] {
-      if (const std::string wrong = parameters_.change(lidar, what); !wrong.empty())
-        RCLCPP_ERROR(node_.get_logger(), "%s", wrong.c_str());
-    });
+std::string lidar_session::set(g4lidar::lidar* device,
+                               const std::vector<g4lidar::named_value>& settings) {
+  std::string wrong = parameters_.change(device, settings);
+  if (!wrong.empty()) return wrong;
+  for (const auto& [name, value] : settings) wanted_.insert_or_assign(name, value);
+  is_news_ = true;
+  return wrong;
+}
+
+void lidar_session::filter(std::vector<g4lidar::named_value> filters) {
+  reader_.ask([this, what = std::move(filters)](g4lidar::lidar* /*lidar*/) {
+    guard([&] { static_cast<void>(parameters_.change(nullptr, what)); });
   });
 }
 
@@ -187,7 +189,15 @@ void lidar_session::on_open(g4lidar::lidar& device) {
     if (device.information().is_known())
       parameters_.fix("serial_number", std::string(device.information().serial_number()));
     parameters_.read_device(device);
-    is_news_ = true;
+    // The options are those of the beginning; and what is set now is known before the scan.
+    std::vector<g4lidar::named_value> missing;
+    for (const auto& [name, value] : wanted_) {
+      if (parameters_.value(*g4lidar::find_parameter(name)) != value)
+        missing.emplace_back(name, value);
+    }
+    if (const std::string wrong = set(&device, missing); !wrong.empty())
+      RCLCPP_WARN(node_.get_logger(), "%s", wrong.c_str());
+    is_news_ = true;  // also if that has failed
   });
 }
 
@@ -248,6 +258,7 @@ void lidar_session::on_state(reader_state state, const std::optional<g4lidar::er
     const std::string text =
         std::string(name_of(state)) + (why && !is_end ? ": " + why->message() : "");
     const rclcpp::Logger logger = node_.get_logger();
+    if (why && *why == g4lidar::problem::cancelled) return;  // by the end of the program
     if (state == reader_state::ended && !is_end)
       RCLCPP_ERROR(logger, "%s", text.c_str());
     else if (why && !is_end)

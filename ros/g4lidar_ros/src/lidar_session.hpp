@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,6 +35,8 @@ struct session_options {
   motion_options motion;
   std::string mask;                           ///< The file of the mask; empty: none.
   std::vector<g4lidar::named_value> filters;  ///< The parameters that are filters.
+  /// Those that are settings, which the lidar also has in its options.
+  std::vector<g4lidar::named_value> settings;
 };
 
 /// Publishes in the thread of the reader while the publishers are active. *Any thread* may call its functions.
@@ -48,19 +51,18 @@ class lidar_session final : private g4lidar::reader_listener {
 
   /// Opens the lidar in the thread; its motor rests. Fails with system.
   [[nodiscard]] g4lidar::result<void> start() { return reader_.start(); }
-  /// Waits until it is open, or cannot be opened: whether it is open.
-  [[nodiscard]] bool wait_until_open(std::chrono::nanoseconds longest);
+  /// A file or a simulated lidar is open at once, or cannot be opened: waits until it is known, at most 1 s.
+  void wait_unless_device();
   /// Whether the motor is to stand; waits at most `longest` until it does.
   void rest(bool rests, std::chrono::nanoseconds longest = {});
-  /// Sets parameters of the lidar, all or none: why not, or empty. Blocks until the lidar has answered. Nothing if it is
-  /// searched: then it is not asked.
-  [[nodiscard]] std::optional<std::string> change(const std::vector<g4lidar::named_value>& wanted);
-  /// Sets filters when the search is over.
-  void change_later(std::vector<g4lidar::named_value> filters);
-  /// The parameters of the lidar, if they became known since the last call.
-  [[nodiscard]] const g4lidar::lidar_parameters* news() noexcept {
-    return is_news_.exchange(false) ? &parameters_ : nullptr;
-  }
+  /// Makes settings, all or none: why not, or empty. Blocks until the lidar has answered; not while it is searched.
+  [[nodiscard]] std::string change(const std::vector<g4lidar::named_value>& settings);
+  /// Sets filters, which are right, soon: while the lidar is searched, when that is over.
+  void filter(std::vector<g4lidar::named_value> filters);
+  /// What is known of the lidar: lidar_parameters::value().
+  [[nodiscard]] const g4lidar::lidar_parameters& known() const noexcept { return parameters_; }
+  /// Whether something became known since the last call.
+  [[nodiscard]] bool has_news() noexcept { return is_news_.exchange(false); }
   /// A file that is at its end begins again. Blocks until it does.
   void restart_file();
 
@@ -85,6 +87,9 @@ class lidar_session final : private g4lidar::reader_listener {
   void on_state(g4lidar::reader_state state, const std::optional<g4lidar::error>& why) override;
   template <class Call>
   void guard(Call call) noexcept;
+  /// Makes settings in the thread of the reader: why not, or empty.
+  [[nodiscard]] std::string set(g4lidar::lidar* device,
+                                const std::vector<g4lidar::named_value>& settings);
   void publish(const g4lidar::scan& whole);
   void publish_clock(std::int64_t now_ns);
   /// The time of stamps minus point::time_ns, which is negative where the time of /clock is less than that since the
@@ -102,6 +107,7 @@ class lidar_session final : private g4lidar::reader_listener {
   g4lidar::scan_shaper shaper_;
   std::atomic<std::uint64_t> not_deskewed_ = 0;
   g4lidar::lidar_parameters parameters_;
+  std::map<std::string, g4lidar::parameter_value> wanted_;  // the settings, in the thread
   std::atomic<bool> is_news_ = false;
   g4lidar::running_diagnosis diagnosis_;
   const g4lidar::sim::simulated_source* simulation_ = nullptr;  // the lidar's

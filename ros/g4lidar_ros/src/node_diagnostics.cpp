@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "g4lidar/diagnostics/diagnostic_message.hpp"
+#include "parameter_declarations.hpp"
 
 namespace g4lidar_ros {
 namespace {
@@ -54,6 +55,11 @@ void node_diagnostics::report_state(wrapper& status) {
   if (is_bad && now.why) text += ": " + now.why->message();
   status.summary(is_bad ? wrapper::ERROR : wrapper::OK, text);
   status.add("device", now.name);
+  for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
+    const g4lidar::parameter_value known = session_->known().value(each);
+    if (has_state(each) && known.index() != 0)
+      status.add(std::string(each.name), rclcpp::to_string(shown(each, known)));
+  }
 }
 
 void node_diagnostics::report_stage(g4lidar::diagnostic_stage which, wrapper& status) {

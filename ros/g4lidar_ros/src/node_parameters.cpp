@@ -7,9 +7,10 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <variant>
+
+#include <rclcpp/version.h>
 
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/filter_text.hpp"
@@ -20,30 +21,29 @@
 namespace g4lidar_ros {
 namespace {
 
-g4lidar::parameter_value value_of(const rclcpp::Parameter& from) {
-  switch (from.get_type()) {
-    case rclcpp::PARAMETER_BOOL:
-      return from.as_bool();
-    case rclcpp::PARAMETER_INTEGER:
-      return from.as_int();
-    case rclcpp::PARAMETER_DOUBLE:
-      return from.as_double();
-    case rclcpp::PARAMETER_STRING:
-      return from.as_string();
-    default:
-      return {};
-  }
+/// The text of the filter fov. Throws std::invalid_argument if two fields of view are given.
+std::string field_of_view(const std::string& fov, double from, double to) {
+  if (fov.empty()) return sector_text(from, to);
+  if (from == -180.0 && to == 180.0) return fov;
+  throw std::invalid_argument("fov: it cannot be used together with angle_min and angle_max");
 }
 
-rclcpp::ParameterValue ros_value_of(const g4lidar::parameter_value& from) {
-  return std::visit(
-      [](const auto& value) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
-          return rclcpp::ParameterValue();
-        else
-          return rclcpp::ParameterValue(value);
-      },
-      from);
+bool is_direction(const std::string& name) {
+  return name == "fov" || name == "angle_min" || name == "angle_max";
+}
+
+/// A filter or a setting of this name; else null.
+const g4lidar::parameter* row_of(const std::string& name) {
+  const g4lidar::parameter* const known = g4lidar::find_parameter(name);
+  return known != nullptr && known->kind != g4lidar::parameter_kind::read_only ? known : nullptr;
+}
+
+/// What the lidar is to be set to; nothing: to nothing. Throws std::invalid_argument with the possible values.
+g4lidar::parameter_value wish_in(const g4lidar::parameter& of, const rclcpp::Parameter& given) {
+  if (given.get_parameter_value() == shown(of, {})) return {};
+  const auto made = g4lidar::answer_of(*of.setting, value_of(given.get_parameter_value()));
+  if (!made) throw std::invalid_argument(std::string(made.error().subject()));
+  return g4lidar::value_of(*made);
 }
 
 }  // namespace
@@ -51,12 +51,35 @@ rclcpp::ParameterValue ros_value_of(const g4lidar::parameter_value& from) {
 node_parameters::node_parameters(rclcpp_lifecycle::LifecycleNode& node) : node_(node) {
   declare_parameters(node);
   warn_about_unknown_ones();
+#if RCLCPP_VERSION_GTE(21, 0, 0)
+  converting_ = node.add_pre_set_parameters_callback([this](changes& wanted) { convert(wanted); });
+#endif
   refusing_ = node.add_on_set_parameters_callback([this](const changes& wanted) {
     rcl_interfaces::msg::SetParametersResult made;
-    made.reason = is_update_ ? "" : refuse(wanted);
+    if (is_update_) {
+      made.successful = true;
+      return made;
+    }
+#if !RCLCPP_VERSION_GTE(21, 0, 0)
+    // Humble has nothing that is called before. It keeps these values, in its own copy.
+    convert(const_cast<changes&>(wanted));  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+#endif
+    try {
+      made.reason = refuse(wanted);
+    } catch (const std::invalid_argument& wrong) {
+      made.reason = wrong.what();
+    }
     made.successful = made.reason.empty();
     return made;
   });
+}
+
+void node_parameters::convert(changes& wanted) const {
+  for (rclcpp::Parameter& each : wanted) {
+    const std::string name = each.get_name();
+    if (row_of(name) != nullptr || is_direction(name) || name == "standby")
+      each = {name, converted(each.get_parameter_value(), node_.get_parameter(name).get_type())};
+  }
 }
 
 void node_parameters::warn_about_unknown_ones() const {
@@ -111,7 +134,7 @@ session_options node_parameters::for_session() const {
   if (const auto baud = node_.get_parameter("baud").as_int(); baud > 0)
     lidar.baud = static_cast<std::uint32_t>(baud);
   lidar.reconnect = true;
-  lidar.device_wait = std::chrono::milliseconds::max();
+  lidar.device_wait = connect_timeout();
   lidar.playback.speed = node_.get_parameter("playback_speed").as_double();
   lidar.playback.loop = node_.get_parameter("loop").as_bool();
   made.frame_id = node_.get_parameter("frame_id").as_string();
@@ -124,13 +147,14 @@ session_options node_parameters::for_session() const {
   take_motion(made);
   made.mask = node_.get_parameter("mask").as_string();
   made.shaping.restamps = true;  // nobody is to deskew the points of a message again
-  made.filters = filters();
+  made.filters = filters({});
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
-    const rclcpp::Parameter wanted = node_.get_parameter(std::string(each.name));
-    if (each.setting == nullptr || wanted.get_type() == rclcpp::PARAMETER_NOT_SET) continue;
-    const auto setting = g4lidar::answer_of(*each.setting, value_of(wanted));
-    if (!setting) throw std::invalid_argument(std::string(setting.error().subject()));
-    g4lidar::set_option(lidar, *setting);
+    if (each.setting == nullptr) continue;
+    const std::string name(each.name);
+    const auto value = wish_in(each, node_.get_parameter(name));
+    if (value.index() == 0) continue;
+    g4lidar::set_option(lidar, *g4lidar::answer_of(*each.setting, value));
+    made.settings.emplace_back(name, value);
   }
   if (const auto wrong = g4lidar::problem_with(lidar))
     throw std::invalid_argument(wrong->message());
@@ -139,74 +163,75 @@ session_options node_parameters::for_session() const {
 
 void node_parameters::follow(std::shared_ptr<lidar_session> session) {
   session_ = std::move(session);
-  update();
+  update(true);
 }
 
-void node_parameters::update() {
-  const g4lidar::lidar_parameters* const known = session_ ? session_->news() : nullptr;
-  if (known == nullptr) return;
+void node_parameters::update(bool is_news) {
+  if (!is_news && !(session_ && session_->has_news())) return;
   is_update_ = true;
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
-    const g4lidar::parameter_value value = known->value(each);
-    const bool is_of_lidar = each.setting != nullptr || each.name == "serial_number";
-    if (is_of_lidar && value.index() != 0)
-      node_.set_parameter({std::string(each.name), ros_value_of(value)});
+    if (!has_state(each)) continue;
+    const auto known = session_ ? session_->known().value(each) : g4lidar::parameter_value();
+    node_.set_parameter({std::string(state_prefix).append(each.name), shown(each, known)});
   }
   is_update_ = false;
 }
 
-std::vector<g4lidar::named_value> node_parameters::filters() const {
+std::vector<g4lidar::named_value> node_parameters::filters(const changes& wanted) const {
+  const auto value = [&](const std::string& name) {
+    const auto at = std::ranges::find(wanted, name, &rclcpp::Parameter::get_name);
+    return at != wanted.end() ? *at : node_.get_parameter(name);
+  };
   std::vector<g4lidar::named_value> found;
   for (const g4lidar::parameter& each : g4lidar::all_parameters()) {
+    const std::string name(each.name);
     if (each.kind == g4lidar::parameter_kind::filter)
-      found.emplace_back(each.name, value_of(node_.get_parameter(std::string(each.name))));
+      found.emplace_back(name, value_of(value(name).get_parameter_value()));
+    if (name == "fov")
+      found.back().second = field_of_view(value(name).as_string(), value("angle_min").as_double(),
+                                          value("angle_max").as_double());
   }
   return found;
 }
 
-std::string node_parameters::refuse_while_searching(
-    const std::vector<g4lidar::named_value>& wanted) const {
-  g4lidar::scan_shaper shaper;
-  g4lidar::lidar_parameters trial({}, {}, {}, {}, shaper);
-  if (std::string wrong = trial.change(nullptr, filters()); !wrong.empty()) return wrong;
-  return trial.change(nullptr, wanted);
-}
-
 std::string node_parameters::refuse(const changes& wanted) {
-  std::vector<g4lidar::named_value> values;
+  std::vector<g4lidar::named_value> settings;
+  std::vector<std::string> touched;  // the filters
   for (const rclcpp::Parameter& each : wanted) {
-    const g4lidar::parameter* const known = g4lidar::find_parameter(each.get_name());
-    if (known != nullptr) values.emplace_back(each.get_name(), value_of(each));
+    const std::string& name = each.get_name();
+    if (name.starts_with(state_prefix)) return name + ": only the lidar changes it";
+    if (!node_.has_parameter(name)) continue;
+    const auto type = node_.get_parameter(name).get_type();
+    if (each.get_type() != type)
+      return name + ": it is a " + rclcpp::to_string(type) + ", and not a " + each.get_type_name();
+    const g4lidar::parameter* const known = row_of(name);
+    if (known != nullptr && known->setting != nullptr)
+      settings.emplace_back(name, wish_in(*known, each));
+    else if (known != nullptr || is_direction(name))
+      touched.push_back(is_direction(name) ? "fov" : name);
   }
-  if (values.empty()) return {};
-  if (session_) {
-    if (auto answered = session_->change(values)) return *std::move(answered);
-    std::string wrong = refuse_while_searching(values);
-    if (wrong.empty()) session_->change_later(std::move(values));
-    return wrong;
-  }
-  // Nothing is open: only whether they can be used later.
+  // One that is no longer wanted stays as it is.
+  std::erase_if(settings, [](const auto& each) { return each.second.index() == 0; });
+  std::vector<g4lidar::named_value> values;
+  if (!touched.empty()) values = filters(wanted);
+  std::erase_if(values, [&](const auto& each) {
+    return std::ranges::find(touched, each.first) == touched.end();
+  });
   g4lidar::scan_shaper shaper;
   g4lidar::lidar_parameters trial({}, {}, {}, {}, shaper);
-  for (const g4lidar::named_value& each : values) {
-    const g4lidar::parameter* const known = g4lidar::find_parameter(each.first);
-    if (known->setting == nullptr) {
-      if (std::string wrong = trial.change(nullptr, {&each, 1}); !wrong.empty()) return wrong;
-      continue;
-    }
-    const auto made = g4lidar::answer_of(*known->setting, each.second);
-    if (!made) return std::string(made.error().subject());
+  if (session_ && !values.empty()) static_cast<void>(trial.change(nullptr, filters({})));
+  if (std::string wrong = trial.change(nullptr, values); !wrong.empty() || !session_) return wrong;
+  if (!settings.empty()) {
+    if (std::string wrong = session_->change(settings); !wrong.empty()) return wrong;
   }
+  if (!values.empty()) session_->filter(std::move(values));
   return {};
 }
 
-std::chrono::nanoseconds node_parameters::connect_timeout() const {
+std::chrono::milliseconds node_parameters::connect_timeout() const {
   const std::chrono::duration<double> wait(node_.get_parameter("connect_timeout").as_double());
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(wait);
+  if (wait.count() == 0) return std::chrono::milliseconds::max();
+  return std::chrono::duration_cast<std::chrono::milliseconds>(wait);
 }
-
-bool node_parameters::starts_itself() const { return node_.get_parameter("autostart").as_bool(); }
-
-bool node_parameters::is_standby() const { return node_.get_parameter("standby").as_bool(); }
 
 }  // namespace g4lidar_ros

@@ -46,7 +46,7 @@ def generate_test_description():
     nodes = [Node(package="g4lidar_ros", executable="lidar_node", name="g4lidar", namespace=name, output="screen",
                   remappings=[("/tf", "tf")],
                   parameters=[{key: ParameterValue(value, value_type=type(value)) for key, value in
-                               {**values, "use_sim_time": True, "autostart": True, "connect_timeout": 60.0}.items()}])
+                               {**values, "use_sim_time": True, "autostart": True}.items()}])
              for name, values in NODES.items()]
     devices = [ExecuteProcess(cmd=[G4_DUMP, "sim", "-q", "--world", room.world_file(DIRECTORY), "--path",
                                    room.way_file(DIRECTORY), *(word for port in PORTS for word in

@@ -94,12 +94,12 @@ class TestCommands(CommandTest):
         topic = "/bare/scan [sensor_msgs/msg/LaserScan]"
         self.assertTrue(support.wait_for(lambda: topic in ros2("topic", "list", "-t", ALONE)))
         self.assertIn("frame_id: laser", ros2("topic", "echo", "--once", ALONE, "/bare/scan", "sensor_msgs/msg/LaserScan"))
-        self.assertTrue(support.wait_for(lambda: "7.0" in ros2("param", "get", ALONE, node, "frequency")))
-        self.assertIn("successful", ros2("param", "set", ALONE, node, "frequency", "9.5"))
-        self.assertIn("9.5", ros2("param", "get", ALONE, node, "frequency"))
-        self.wait_for_scan("bare", lambda scan: abs(scan.scan_time - 1 / 9.5) < 0.005)
+        self.assertTrue(support.wait_for(lambda: "7.0" in ros2("param", "get", ALONE, node, "device.frequency")))
+        self.assertIn("successful", ros2("param", "set", ALONE, node, "frequency", "9"))
+        self.assertIn("Double value is: 9.0", ros2("param", "get", ALONE, node, "frequency"))
+        self.wait_for_scan("bare", lambda scan: abs(scan.scan_time - 1 / 9) < 0.005)
         described = ros2("param", "describe", ALONE, node, "connect_timeout")
-        for words in ("How long configure waits", "Read only: true", "Max value: 3600.0"):
+        for words in ("How long the lidar may be missing", "Read only: true", "Max value: 3600.0"):
             self.assertIn(words, described)
         for command, words in (("stop", "rests until start"), ("start", "the motor turns")):
             answer = ros2("service", "call", f"{node}/{command}", "std_srvs/srv/Trigger")
@@ -152,6 +152,9 @@ class TestCommands(CommandTest):
         self.assertIn("/plug/scan subscribers", [each.key for each in statuses()["/plug/g4lidar: topics"].values])
         self.assertTrue(support.wait_for(lambda: state().level == b"\2" and state().message.startswith("lost: ")))
         self.assertTrue(support.wait_for(lambda: state().level == b"\0"), "it does not heal")
+        # It is unplugged again 8 s after its return.
+        levels = lambda: {statuses()[f"/plug/g4lidar: {name}"].level for name in ("state", "port")}
+        self.assertTrue(support.wait_for(lambda: levels() == {b"\0"}), "the port does not heal")
 
 
 class TestFiles(CommandTest):
@@ -159,7 +162,7 @@ class TestFiles(CommandTest):
         """The parameters of the node: their values and descriptions by their names."""
         service = "/plug/g4lidar/"
         names = self.watcher.call(ListParameters, service + "list_parameters", ListParameters.Request()).result.names
-        of_ros = ("use_sim_time", "start_type_description_service", "serial_number")
+        of_ros = ("use_sim_time", "start_type_description_service")
         names = [each for each in names if "." not in each and each not in of_ros]
         values = self.watcher.call(GetParameters, service + "get_parameters", GetParameters.Request(names=names)).values
         described = self.watcher.call(DescribeParameters, service + "describe_parameters",
@@ -185,7 +188,7 @@ class TestFiles(CommandTest):
 
     def test_the_parameters_are_arguments_of_the_launch_files(self):
         of_launch = {"name", "namespace", "sim", "container", "rviz", "params_file", "use_sim_time"}
-        wanted = (set(self.parameters()) - {"autostart"}) | of_launch
+        wanted = set(self.parameters()) | of_launch
         for name in ("lidar.launch.py", "lidar.launch.xml"):
             shown = ros2("launch", "g4lidar_ros", name, "--show-args")
             self.assertEqual(set(re.findall(r"^    '(\w+)':$", shown, re.M)), wanted, name)

@@ -2,9 +2,7 @@
 // A lidar as a lifecycle node and component of ROS 2.
 #pragma once
 
-#include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,10 +20,10 @@ class node_diagnostics;
 class node_parameters;
 struct lidar_topics;
 
-/// configure opens the lidar, activate turns its motor and publishes, deactivate rests it, cleanup closes it. An unplug
-/// is a warning, after which it reconnects. An error that it cannot recover from deactivates it, and on_deactivate()
-/// returns ERROR. on_configure() returns FAILURE if there is no lidar, which may come later, else ERROR. A thread of its
-/// own reads the lidar; everything else is in the default callback group.
+/// configure begins to open the lidar, activate turns its motor and publishes, deactivate rests it, cleanup closes it. A
+/// thread of its own opens and reads the lidar, so configure does not wait for one, which may come later; everything else
+/// is in the default callback group. An unplug is a warning, after which it reconnects. After an error that it cannot
+/// recover from it is unconfigured: on_configure(), on_activate() or on_deactivate() returns ERROR.
 // Components of ROS are named so.
 class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readability-identifier-naming)
  public:
@@ -46,28 +44,23 @@ class LidarNode : public rclcpp_lifecycle::LifecycleNode {  // NOLINT(readabilit
  private:
   using trigger = std_srvs::srv::Trigger;
 
-  /// Makes the session that opens the lidar, if there is none. Throws if a parameter is wrong.
-  void open();
-  /// Whether the lidar is being opened; begins it.
-  bool is_opening();
-  /// Configures and activates itself, when the lidar is open.
-  void start_itself();
-  /// Rests or turns the motor, and notices the end of the lidar. Called several times a second.
+  /// Starts itself, rests or turns the motor, and notices the end of the lidar. Called several times a second.
   void update();
   void allow(bool runs, trigger::Response& answer);
+  /// `by`: who wants it, for the log.
+  void allow(bool runs, const std::string& by);
 
   std::unique_ptr<node_parameters> parameters_;
   std::unique_ptr<lidar_topics> topics_;    // since the first configure
-  std::shared_ptr<lidar_session> session_;  // null unless it is configured, or starts itself
+  std::shared_ptr<lidar_session> session_;  // null unless it is configured
   std::unique_ptr<node_diagnostics> diagnostics_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
   rclcpp::SubscriptionBase::SharedPtr running_;
   rclcpp::TimerBase::SharedPtr timer_;
   g4lidar::standby standby_;
-  bool is_allowed_ = true;  // by ~/start, ~/stop and ~/run
+  std::shared_ptr<void> bond_;  // with a lifecycle manager; null: none
+  bool is_allowed_ = true;      // by ~/start, ~/stop, ~/run and the like
   bool starts_itself_ = false;
-  /// When a lidar that is missing is reported as an error.
-  std::optional<std::chrono::steady_clock::time_point> late_at_;
 };
 
 }  // namespace g4lidar_ros
