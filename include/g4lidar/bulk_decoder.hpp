@@ -11,8 +11,10 @@
 #include "g4lidar/core/bytes.hpp"
 #include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
+#include "g4lidar/core/reply_watch.hpp"
 #include "g4lidar/core/stream_counter.hpp"
 #include "g4lidar/core/stream_parser.hpp"
+#include "g4lidar/core/zero_offset.hpp"
 #include "g4lidar/detail/api.hpp"
 #include "g4lidar/point.hpp"
 
@@ -36,12 +38,13 @@ enum class instruction_set : std::uint8_t {
 /// known.
 ///
 /// The points are those of decode() with any correction form: angles are within 4e-5 degrees of the
-/// exact ones, everything else is identical. Every instruction set gives the same bits.
+/// exact ones, everything else is identical. Every instruction set gives the same bits. What the bytes state of the
+/// firmware and of the offset of zero holds from there on; see reply_watch.
 class G4LIDAR_API bulk_decoder {
  public:
   /// Uses `wanted` if this processor has it, else `portable`.
   explicit bulk_decoder(instruction_set wanted = best_instruction_set()) noexcept;
-  /// For packets of this model, whose `samples`, `range` and `turn_deg` are copied.
+  /// For packets of this model, which is valid as long as this.
   explicit bulk_decoder(const model& which,
                         instruction_set wanted = best_instruction_set()) noexcept;
 
@@ -70,10 +73,15 @@ class G4LIDAR_API bulk_decoder {
   [[nodiscard]] const stream_counts& counts() const noexcept { return counts_; }
   /// Bytes of an unfinished packet or response.
   [[nodiscard]] std::size_t held() const noexcept { return parser_.held(); }
+  /// What is added to each angle, of a model that has such an offset: what the bytes state, or what is set here with
+  /// zero_offset::known_by::user.
+  [[nodiscard]] zero_offset& zero() noexcept { return zero_; }
+  [[nodiscard]] const zero_offset& zero() const noexcept { return zero_; }
   /// The instruction set in use.
   [[nodiscard]] instruction_set in_use() const noexcept { return set_; }
 
  private:
+  void learn(const response_view& heard) noexcept;
   template <class Source, class Point, class Convert>
   std::optional<std::size_t> step(const Source& source, const Convert& convert,
                                   std::span<Point, max_samples> out) noexcept;
@@ -83,9 +91,10 @@ class G4LIDAR_API bulk_decoder {
   stream_parser parser_;
   revolution_counter revolutions_;
   stream_counter counts_;
-  sample_format format_;
-  std::uint16_t shortest_mm_;
-  std::uint16_t turn_deg_;
+  const model* named_;  // whatever the firmware
+  const model* which_;
+  reply_watch replies_;
+  zero_offset zero_;
   instruction_set set_;
 };
 

@@ -12,6 +12,7 @@
 #include "g4lidar/bulk_decoder.hpp"
 #include "gil.hpp"
 #include "scan.hpp"
+#include "settings.hpp"
 
 namespace g4lidar::python {
 
@@ -20,6 +21,15 @@ void bind_decode(nb::module_& module);
 namespace {
 
 using namespace nb::literals;
+
+bulk_decoder decoder_for(const std::optional<std::string>& model,
+                         std::optional<double> zero_angle) {
+  const g4lidar::model& which = model_or_g4(model);
+  bulk_decoder made(which);
+  if (zero_angle)
+    made.zero().set(zero_angle_from(*zero_angle, &which), zero_offset::known_by::user);
+  return made;
+}
 
 /// Python's class Decoder.
 class decoder {
@@ -43,7 +53,8 @@ class decoder {
     decoder& of_;
   };
 
-  explicit decoder(const std::optional<std::string>& model) : made_(model_or_g4(model)) {}
+  decoder(const std::optional<std::string>& model, std::optional<double> zero_angle)
+      : made_(decoder_for(model, zero_angle)) {}
 
  private:
   bulk_decoder made_;
@@ -119,8 +130,18 @@ void bind_decode(nb::module_& module) {
       "unfinished packet for "
       "the next call. One thread at a time: else RuntimeError is raised. Times are 0: a recording "
       "has them, see open().")
-      .def(nb::init<std::optional<std::string>>(), "model"_a = nb::none(),
-           "For the bytes of this model: 'x4'; None: a G4.")
+      .def(nb::init<std::optional<std::string>, std::optional<double>>(), "model"_a = nb::none(),
+           "zero_angle"_a = nb::none(),
+           "For the bytes of this model: 'x4'; None: a G4. `zero_angle`: as of open().")
+      .def_prop_ro(
+          "zero_angle",
+          [](decoder& with) -> std::optional<double> {
+            const decoder::use used(with);
+            const auto& known = used->zero().angle();
+            return known ? std::optional(known->deg()) : std::nullopt;
+          },
+          "What is added to each angle, in degrees: as given, or as the bytes state it. None: not "
+          "known; then the angles are those of the device.")
       .def("decode", &decode, "data"_a, "out"_a = nb::none(),
            nb::sig("def decode(self, data: bytes | bytearray | memoryview | "
                    "numpy.typing.NDArray[numpy.uint8], out: numpy.typing.NDArray[numpy.void] | "
@@ -140,9 +161,10 @@ void bind_decode(nb::module_& module) {
            "'parsed_bytes' + all 'skipped_...' + 'held'.");
   module.def(
       "decode",
-      [](nb::handle data, const std::optional<std::string>& model) {
+      [](nb::handle data, const std::optional<std::string>& model,
+         std::optional<double> zero_angle) {
         const buffer from(data);
-        bulk_decoder decoder(model_or_g4(model));
+        bulk_decoder decoder = decoder_for(model, zero_angle);
         return make_array<point>(room_for(from.read().size(), 0), [&](std::span<point> out) {
           const without_gil free;
           bytes input = from.read();
@@ -150,12 +172,14 @@ void bind_decode(nb::module_& module) {
           return count + decoder.finish(out.subspan(count)).size();
         });
       },
-      "data"_a, "model"_a = nb::none(),
+      "data"_a, "model"_a = nb::none(), "zero_angle"_a = nb::none(),
       nb::sig("def decode(data: bytes | bytearray | memoryview | "
-              "numpy.typing.NDArray[numpy.uint8], model: str | None = None) "
+              "numpy.typing.NDArray[numpy.uint8], model: str | None = None, "
+              "zero_angle: float | None = None) "
               "-> numpy.typing.NDArray[numpy.void]"),
-      "The points of all packets in these bytes, as Scan.points, with times 0. `model` as for "
-      "Decoder. The memory of the "
+      "The points of all packets in these bytes, as Scan.points, with times 0. `model` and "
+      "`zero_angle` as "
+      "for Decoder. The memory of the "
       "result is reserved for as "
       "many points as the bytes can contain; copy() gives it back.");
 }

@@ -7,11 +7,8 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -132,13 +129,6 @@ live_lidar* open_lidar(const device_name& device, lidar_options options, const p
   return new live_lidar(*std::move(opened), std::move(on));
 }
 
-/// The nearest hundredth of a degree. What is no angle within a turn is refused later.
-zero_angle in_cdeg(double deg) {
-  constexpr double beyond = 1000.0;
-  const double limited = std::isnan(deg) ? beyond : std::clamp(deg, -beyond, beyond);
-  return {static_cast<std::int32_t>(std::lround(100.0 * limited))};
-}
-
 template <class... Wanted>
 live_lidar* open_by_keywords(
     const device_name& device, std::uint32_t baud, const Wanted&... wanted, bool reconnect,
@@ -166,7 +156,7 @@ live_lidar* open_by_keywords(
   options.playback.from_ns = in_ns(begin);
   if (end) options.playback.to_ns = in_ns(*end);
   options.raw_sample_rate_hz = raw_sample_rate_hz;
-  if (zero_angle) options.zero_angle = in_cdeg(*zero_angle);
+  if (zero_angle) options.zero_angle = zero_angle_from(*zero_angle, options.model);
   return open_lidar(device, options, {speed, loop, begin, end}, record, overwrite);
 }
 

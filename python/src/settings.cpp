@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <variant>
 
 #include "g4lidar/core/session/model_requests.hpp"
+#include "g4lidar/lidar_options.hpp"
 
 namespace g4lidar::python {
 namespace {
@@ -57,6 +60,16 @@ answer value_for(const setting_info& which, int wanted) {
 answer value_for(const setting_info& which, double wanted) {
   check(which, wanted, UINT16_MAX / 100);
   return scan_frequency::hz(wanted);
+}
+
+zero_angle zero_angle_from(double deg, const model* which) {
+  constexpr double beyond = 1000.0;
+  const double limited = std::isnan(deg) ? beyond : std::clamp(deg, -beyond, beyond);
+  lidar_options of;
+  of.model = which != nullptr ? which : model_named("tg15");  // one that has it
+  of.zero_angle = zero_angle{static_cast<std::int32_t>(std::lround(100.0 * limited))};
+  if (const auto wrong = problem_with(of)) raise(*wrong);
+  return *of.zero_angle;
 }
 
 void set(live_lidar& on, std::vector<answer> wanted, bool interrupt) {

@@ -57,6 +57,10 @@ template <class... Wanted>
   return all;
 }
 
+/// What is added to each angle, in degrees. Raises NotSupported for a model that has no such offset, and BadOption beyond
+/// a turn; null: the model is not known yet.
+[[nodiscard]] zero_angle zero_angle_from(double deg, const model* which);
+
 /// Sends each of these values; nothing if the lidar refuses one of them.
 void set(live_lidar& on, std::vector<answer> wanted, bool interrupt);
 /// The settings that can be queried; None where the model does not have one.

@@ -150,3 +150,42 @@ def test_nothing_is_sent_if_one_setting_is_refused(g4_simulator: Make) -> None:
         with pytest.raises(errors.NotSupported):
             other.set(frequency_hz=8, direction="clockwise")
         assert (len(g4.commands()), len(t_mini.commands())) == sent
+
+
+def answer(value: int) -> bytes:
+    """An answer of four bytes."""
+    return bytes([0xA5, 0x5A, 4, 0, 0, 0, 4]) + value.to_bytes(4, "little", signed=True)
+
+
+def tg_stream() -> bytes:
+    """A packet of a TG with 40 samples of 1000 mm, from 10 to 49 degrees."""
+    first, last = 10 * 64 * 2 + 1, 49 * 64 * 2 + 1
+    checksum = 0x55AA ^ (40 << 8) ^ first ^ last
+    words = [0x55AA, 40 << 8, first, last, checksum]
+    return b"".join(word.to_bytes(2, "little") for word in [*words, *[1000] * 40])
+
+
+def test_the_offset_of_zero(tmp_path: Path) -> None:
+    data = tg_stream()
+    plain = g4lidar.decode(data, model="tg15")
+    assert plain["angle_deg"][0] == pytest.approx(10.0)
+    for turned in (g4lidar.decode(data, model="tg15", zero_angle=180.0),
+                   g4lidar.decode(answer(-720) + data, model="tg15")):
+        assert turned["angle_deg"][0] == pytest.approx(190.0)
+    decoder = g4lidar.Decoder(model="tg15")
+    assert decoder.zero_angle is None
+    decoder.decode(answer(-295))
+    assert decoder.zero_angle == pytest.approx(-73.75)
+    (tmp_path / "raw.bin").write_bytes(data)
+    with g4lidar.open(tmp_path / "raw.bin", model="tg15", zero_angle=90.0, partial_scans=True) as lidar:
+        lidar.start()
+        found = np.concatenate([scan.points for scan in lidar.scans()])
+    assert found["angle_deg"][0] == pytest.approx(100.0)
+    with g4lidar.open(tmp_path / "raw.bin", model="tg15", partial_scans=True) as lidar:
+        lidar.start()
+        assert len(list(lidar.scans())) > 0
+        assert "no_zero_angle" in [event.kind for event in lidar.events()]
+    with pytest.raises(errors.NotSupported):
+        g4lidar.decode(data, zero_angle=1.0)
+    with pytest.raises(errors.BadOption):
+        g4lidar.decode(data, model="tg15", zero_angle=361.0)

@@ -18,8 +18,7 @@ using namespace g4lidar::c;
 
 namespace {
 
-static_assert(static_cast<int>(lidar_event::kind::other_number) + 1 ==
-              G4LIDAR_EVENT_OTHER_NUMBER);
+static_assert(static_cast<int>(lidar_event::kind::other_number) + 1 == G4LIDAR_EVENT_OTHER_NUMBER);
 static_assert(static_cast<int>(lidar_event::kind::health_warning) + 1 ==
               G4LIDAR_EVENT_HEALTH_WARNING);
 

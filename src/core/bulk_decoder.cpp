@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <type_traits>
 #include <variant>
@@ -56,10 +58,17 @@ bulk_decoder::bulk_decoder(instruction_set wanted) noexcept : bulk_decoder(g4_mo
 
 bulk_decoder::bulk_decoder(const model& which, instruction_set wanted) noexcept
     : parser_(which.samples),
-      format_(which.samples),
-      shortest_mm_(which.range.min_mm),
-      turn_deg_(which.turn_deg),
+      named_(&which),
+      which_(&which),
       set_(wanted == best_instruction_set() ? wanted : instruction_set::portable) {}
+
+void bulk_decoder::learn(const response_view& heard) noexcept {
+  const auto stated = replies_.take(heard, *which_);
+  if (stated.zero) zero_.set(*stated.zero, zero_offset::known_by::device);
+  if (!stated.firmware) return;
+  which_ = &with_firmware(*named_, *stated.firmware);
+  parser_.set_layout(which_->samples.layout);
+}
 
 /// The next event, and how many points were written for it.
 template <class Source, class Point, class Convert>
@@ -68,6 +77,11 @@ std::optional<std::size_t> bulk_decoder::step(const Source& source, const Conver
   const std::optional<event> found = source.next(parser_);
   if (!found) return std::nullopt;
   counts_.add(*found);
+  if (const auto* const heard = std::get_if<response_view>(&*found)) {
+    learn(*heard);
+    return 0;
+  }
+  replies_.pass();
   const auto* const packet = std::get_if<packet_view>(&*found);
   if (packet == nullptr) return 0;
   const std::uint32_t revolution = revolutions_.count(*packet);
@@ -125,38 +139,73 @@ struct ended {
   void go_back(bytes /*to*/) const noexcept {}
 };
 
-auto points_with(instruction_set set, sample_format format, std::uint16_t shortest_mm) noexcept {
-  return [kernel = bulk::kernels_of(set, format).to_points, shortest_mm](
+/// The kernels for the packets of a model, also where a device information between them states old firmware.
+class kernel_choice {
+ public:
+  kernel_choice(instruction_set set, const model& which) noexcept
+      : set_(set), format_(which.samples), usual_(&bulk::kernels_of(set, which.samples)) {}
+
+  [[nodiscard]] const bulk::kernels& of(packet_view packet) const noexcept {
+    if (packet.layout() == format_.layout) return *usual_;
+    return bulk::kernels_of(set_, {packet.layout(), format_.correction});
+  }
+
+ private:
+  instruction_set set_;
+  sample_format format_;
+  const bulk::kernels* usual_;
+};
+
+/// Turns positions in frame `to` by the angle that is added to those of the device, which count clockwise.
+void turn(std::span<xy_point> points, frame to, const zero_offset& zero) noexcept {
+  if (!zero.angle() || zero.angle()->cdeg == 0) return;
+  const double sign = to == frame::vendor ? 1.0 : -1.0;
+  const double turn_rad = sign * zero.angle()->deg() * std::numbers::pi / 180.0;
+  const auto cosine = static_cast<float>(std::cos(turn_rad));
+  const auto sine = static_cast<float>(std::sin(turn_rad));
+  for (xy_point& each : points) {
+    const float x_m = each.x_m;
+    each.x_m = cosine * x_m - sine * each.y_m;
+    each.y_m = sine * x_m + cosine * each.y_m;
+  }
+}
+
+auto points_with(instruction_set set, const model& which, const zero_offset& zero) noexcept {
+  return [choice = kernel_choice(set, which), shortest_mm = which.range.min_mm, &zero](
              packet_view packet, std::uint32_t revolution,
              std::span<point, max_samples> out) noexcept {
-    kernel(packet, revolution, shortest_mm, {}, out);
+    choice.of(packet).to_points(packet, revolution, shortest_mm, {}, out);
+    zero.add_to(out.first(packet.sample_count()));
   };
 }
 
-auto places_with(instruction_set set, sample_format format, frame to,
-                 std::uint16_t turn_deg) noexcept {
-  return [kernel = bulk::kernels_of(set, format).to_xy, to, turn_deg](
+auto places_with(instruction_set set, const model& which, const zero_offset& zero,
+                 frame to) noexcept {
+  return [choice = kernel_choice(set, which), &zero, to, turn_deg = which.turn_deg](
              packet_view packet, std::uint32_t /*revolution*/,
-             std::span<xy_point, max_samples> out) noexcept { kernel(packet, to, turn_deg, out); };
+             std::span<xy_point, max_samples> out) noexcept {
+    choice.of(packet).to_xy(packet, to, turn_deg, out);
+    turn(out.first(packet.sample_count()), to, zero);
+  };
 }
 
 }  // namespace
 
 std::span<point> bulk_decoder::decode(bytes& input, std::span<point> out) noexcept {
-  return run(going_on{input}, points_with(set_, format_, shortest_mm_), out);
+  return run(going_on{input}, points_with(set_, *which_, zero_), out);
 }
 
 std::span<xy_point> bulk_decoder::decode_xy(bytes& input, frame to,
                                             std::span<xy_point> out) noexcept {
-  return run(going_on{input}, places_with(set_, format_, to, turn_deg_), out);
+  return run(going_on{input}, places_with(set_, *which_, zero_, to), out);
 }
 
 std::span<point> bulk_decoder::finish(std::span<point> out) noexcept {
-  return run(ended{}, points_with(set_, format_, shortest_mm_), out);
+  return run(ended{}, points_with(set_, *which_, zero_), out);
 }
 
 std::span<xy_point> bulk_decoder::finish_xy(frame to, std::span<xy_point> out) noexcept {
-  return run(ended{}, places_with(set_, format_, to, turn_deg_), out);
+  return run(ended{}, places_with(set_, *which_, zero_, to), out);
 }
 
 }  // namespace g4lidar

@@ -84,15 +84,18 @@ constexpr std::array rows{
         problem::wrong_answer, {interference}),
     row("answers_twice", warn, "Replies arrive twice.", answer_advice),
     row("no_zero_angle", warn,
-        "The offset of zero, which this model states as the answer to command 93, is not known: all angles may be "
+        "The offset of zero, which this model states as the answer to command 93, is not known: "
+        "all angles may be "
         "wrong by the same amount.",
-        "Query it again: unplug the lidar and plug it in. Or give it with --zero-angle (lidar_options::zero_angle): "
+        "Query it again: unplug the lidar and plug it in. Or give it with --zero-angle "
+        "(lidar_options::zero_angle): "
         "0 if the angles are right without it."),
     row("answers_missing", fail, "Replies are missing, although commands reach the lidar.",
         answer_advice, {interference}),
     row("other_number", warn,
         "The lidar states a number that the model does not have. It names no other model surely.",
-        "Compare the model with the label of the lidar, and name the right one: ranges and angles may be wrong."),
+        "Compare the model with the label of the lidar, and name the right one: ranges and angles "
+        "may be wrong."),
     row("other_device", fail, "The lidar is another model than the one that was expected.",
         problem::other_device),
     row("health_warning", warn, "The lidar reports a warning about its own health.",

@@ -67,7 +67,9 @@ class file_run {
     if (damage.chunks_lost > 0) port_.add("lost_chunks", damage.chunks_lost);
     if (damage.is_cut_off) port_.remark = "The recording was cut off: it has no end.";
     if (const auto& device = reader.device()) {
-      if (!device_.information) device_.information = device->information;
+      if (!device_.information && device->information.is_known()) {
+        device_.information = device->information;
+      }
       device_.frequency = device->frequency;
       if (device->sample_rate) device_.sample_rate_hz = to_hz(*device->sample_rate);
     }

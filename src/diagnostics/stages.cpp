@@ -149,8 +149,8 @@ bool report_identity(stage_log& log, const std::optional<device_information>& kn
                std::string(known->serial_digits.begin(), known->serial_digits.end()));
   const bool is_wanted = known->model == wanted.ids[0] || known->model == wanted.ids[1];
   // As the driver judges it: a number that several one-way models report contradicts none of them surely.
-  const bool is_surely_other = wanted.link == link_kind::two_way ||
-                               one_way_other_than(wanted, known->model) != nullptr;
+  const bool is_surely_other =
+      wanted.link == link_kind::two_way || one_way_other_than(wanted, known->model) != nullptr;
   if (!is_wanted) {
     identity.find(is_surely_other ? diagnosis::other_device : diagnosis::other_number);
     identity.remark = other_number(known->model, wanted);

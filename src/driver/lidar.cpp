@@ -31,9 +31,9 @@ std::string model_words(std::span<const model* const> which) {
 
 std::string_view name_of(lidar_event::kind what) noexcept {
   constexpr std::array<std::string_view, 14> names{
-      "lost",        "reconnected",  "found_scanning", "protection_starved", "protection_found_on",
-      "spinning_up", "restarted",    "health_warning", "other_lidar",        "long_pause",
-      "overflow",    "still_turning", "no_zero_angle", "other_number"};
+      "lost",        "reconnected",   "found_scanning", "protection_starved", "protection_found_on",
+      "spinning_up", "restarted",     "health_warning", "other_lidar",        "long_pause",
+      "overflow",    "still_turning", "no_zero_angle",  "other_number"};
   return names[static_cast<std::size_t>(what)];
 }
 

@@ -144,10 +144,9 @@ bool replay_player::parse_bytes() {
   while (!pipeline_.find_scan()) {
     static_cast<void>(play_events(false));
     if (const event* const found = pipeline_.next()) {
-      learn(*found);
       static_cast<void>(play_events(false));
       follow_delivery();
-      report_missing_zero();
+      judge(*found);
     } else if (!play_events(true)) {
       return false;
     }
@@ -155,8 +154,8 @@ bool replay_player::parse_bytes() {
   return true;
 }
 
-/// What the bytes state of their lidar.
-void replay_player::learn(const event& found) {
+/// What the bytes state of their lidar, and what they lack: once, with the first packet that makes points.
+void replay_player::judge(const event& found) {
   reported_.take(found);
   if (reported_.take_news()) {
     // NOLINTNEXTLINE(bugprone-unchecked-optional-access): there is news
@@ -164,6 +163,9 @@ void replay_player::learn(const event& found) {
     if (reported_.has_other_number()) report(lidar_event::kind::other_number);
   }
   if (pipeline_.zero().angle() != recorded_zero_) record(recorded_event::kind::state);
+  const bool makes_points = pipeline_.delivers() && std::get_if<packet_view>(&found) != nullptr;
+  if (!makes_points || std::exchange(is_zero_judged_, true)) return;
+  if (pipeline_.lacks_zero()) report(lidar_event::kind::no_zero_angle);
 }
 
 /// For a recording of raw bytes: what is added to the angles of the points that follow.
@@ -176,15 +178,6 @@ void replay_player::record(recorded_event::kind what) {
   made.name = connection_.name();
   made.zero = recorded_zero_;
   recorder_->event(made);
-}
-
-/// Once, with the first packet that makes points.
-void replay_player::report_missing_zero() {
-  if (is_zero_reported_ || !pipeline_.delivers()) return;
-  const event* const found = pipeline_.input().current();
-  if (found == nullptr || std::get_if<packet_view>(found) == nullptr) return;
-  is_zero_reported_ = true;
-  if (pipeline_.lacks_zero()) report(lidar_event::kind::no_zero_angle);
 }
 
 void replay_player::follow_delivery() {

@@ -67,11 +67,10 @@ class replay_player final : public scan_source {
   void follow_seek();
   void follow_delivery();
   void report_long_pause();
-  void report_missing_zero();
   [[nodiscard]] bool play_events(bool all);
   [[nodiscard]] bool is_here(const recorded_event& what) const noexcept;
   void play(const recorded_event& what);
-  void learn(const event& found);
+  void judge(const event& found);
   void record(recorded_event::kind what);
 
   played_file* file_ = nullptr;              // null: a pipe
@@ -85,7 +84,7 @@ class replay_player final : public scan_source {
   bool is_pause_reported_ = false;  // the event long_pause was reported
   bool is_lost_ = false;            // the recorded connection was lost
   bool is_released_ = false;
-  bool is_zero_reported_ = false;  // the event no_zero_angle was reported
+  bool is_zero_judged_ = false;  // whether it is known when points begin
   identity_reader reported_;
   std::optional<zero_angle> recorded_zero_;  // by recorder_
   std::uint32_t sample_rate_hz_;

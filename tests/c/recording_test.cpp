@@ -310,7 +310,7 @@ TEST_F(CRecording, ReplacesNeitherItsSourceNorItsWorld) {
       g4lidar_lidar* made = nullptr;
       g4lidar_error why;
       const int code = by_name
-                           ? g4lidar_open(&options, &made, &why)
+                           ? g4lidar_open_with(&options, &made, &why)
                            : g4lidar_open_recording(file.c_str(), nullptr, &options, &made, &why);
       EXPECT_EQ(code, G4LIDAR_BAD_OPTION) << why.message;
       EXPECT_EQ(made, nullptr);

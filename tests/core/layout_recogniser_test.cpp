@@ -192,8 +192,10 @@ TEST(LayoutRecogniser, AtTheEnd_TheBestSizeDecides) {
 }
 
 TEST(LayoutRecogniser, AtTheEnd_OnePacketAndANumberNameTheModel) {
-  for (const auto& [sent, id, word] : {std::tuple{"tg15", 101U, "tg30"}, {"t-mini", 151U, "t-mini-plus"},
-                                       {"g2", 15U, "g2"}, {"t-mini-plus-sh", 152U, "t-mini-plus-sh"}}) {
+  for (const auto& [sent, id, word] : {std::tuple{"tg15", 101U, "tg30"},
+                                       {"t-mini", 151U, "t-mini-plus"},
+                                       {"g2", 15U, "g2"},
+                                       {"t-mini-plus-sh", 152U, "t-mini-plus-sh"}}) {
     byte_vector all = information_of(id);
     const byte_vector packet = first_packets(sent, 1, 1);
     all.insert(all.end(), packet.begin(), packet.end());
@@ -314,8 +316,10 @@ TEST(LayoutRecogniser, NumberInCt_AtEachRateAndFrequency) {
   for (const auto& [layout, id, rate_hz, wanted, correction] :
        {sender{"x4", 4, 3000, flagged_mm, triangle}, sender{"x4", 6, 3000, flagged_mm, triangle},
         sender{"x4", 12, 4000, flagged_mm, triangle}, sender{"x4", 4, 5000, flagged_mm, triangle},
-        sender{"s4b", 4, 3000, intensity_8, triangle}, sender{"s4b", 12, 3000, intensity_8, triangle},
-        sender{"s4b", 11, 4000, intensity_8, triangle}, sender{"scl", 22, 3000, intensity_8, scl}}) {
+        sender{"s4b", 4, 3000, intensity_8, triangle},
+        sender{"s4b", 12, 3000, intensity_8, triangle},
+        sender{"s4b", 11, 4000, intensity_8, triangle},
+        sender{"scl", 22, 3000, intensity_8, scl}}) {
     for (unsigned dhz = 40; dhz <= 120; dhz += 5) {
       room informed(layout);
       informed.stated = {id, dhz};
@@ -323,7 +327,8 @@ TEST(LayoutRecogniser, NumberInCt_AtEachRateAndFrequency) {
       const unsigned packets = 1 + (informed.samples + 38) / 40;
       const model& found = recognised(informed.of(5));
       const bool has_number = packets > 7;
-      EXPECT_EQ(found.samples.layout == wanted && found.samples.correction == correction, has_number)
+      EXPECT_EQ(found.samples.layout == wanted && found.samples.correction == correction,
+                has_number)
           << layout << " " << id << " " << rate_hz << " Hz at " << dhz << ": " << found.word;
     }
   }

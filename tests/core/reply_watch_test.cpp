@@ -52,7 +52,8 @@ constexpr std::array all{having{"g1", 4, 500, 1200},   having{"g2", 4, 500, 1200
 
 TEST(ReplyWatch, TheTableIsWhole) {
   for (const model& row : models) {
-    const bool is_listed = std::ranges::any_of(all, [&](const having& each) { return each.word == row.word; });
+    const bool is_listed =
+        std::ranges::any_of(all, [&](const having& each) { return each.word == row.word; });
     EXPECT_EQ(row.zero_angle_divisor != 0, is_listed) << row.word;
   }
 }

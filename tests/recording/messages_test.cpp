@@ -48,10 +48,9 @@ TEST(Messages, ExtremeSampleRate_IsRefused) {
 
 TEST(Messages, TruncatedEvent_IsRefused) {
   mcap::record_text memory;
-  const bytes whole = message_of({.what = recorded_event::kind::opened,
-                                  .name = "/dev/ttyUSB0",
-                                  .zero = zero_angle{-7375}},
-                                 memory);
+  const bytes whole = message_of(
+      {.what = recorded_event::kind::opened, .name = "/dev/ttyUSB0", .zero = zero_angle{-7375}},
+      memory);
   EXPECT_EQ(mcap::event_from(whole)->zero, zero_angle{-7375});
   // Older recordings end behind the name, whose text ends with a zero.
   const auto name_end = std::ranges::search(whole, std::string_view("ttyUSB0\0", 8)).end();

@@ -88,8 +88,8 @@ double turned_deg(const std::vector<point>& wanted, const std::vector<point>& go
     const point& b = got[got.size() - i];
     EXPECT_EQ(a.range_mm, b.range_mm) << i;
     if (a.range_mm != b.range_mm) return 999.0;
-    const double apart = std::remainder(
-        static_cast<double>(b.angle_deg) - static_cast<double>(a.angle_deg), 360.0);
+    const double apart =
+        std::remainder(static_cast<double>(b.angle_deg) - static_cast<double>(a.angle_deg), 360.0);
     if (std::abs(apart) > std::abs(most)) most = apart;
     ++compared;
   }
@@ -98,7 +98,8 @@ double turned_deg(const std::vector<point>& wanted, const std::vector<point>& go
 }
 
 /// The raw bytes of a recording from a time on.
-std::string raw_of(const std::string& recording, const std::string& path, std::int64_t from_ns = 0) {
+std::string raw_of(const std::string& recording, const std::string& path,
+                   std::int64_t from_ns = 0) {
   auto reader = recording_reader::open(recording);
   EXPECT_TRUE(reader);
   raw_copy copy(reader->model(), reader->device().value_or(recorded_device{}).information);
@@ -141,8 +142,9 @@ run_result played(const std::string& path, const lidar_options& how = {}) {
 }
 
 std::string source_of(std::string_view word, double offset_deg, std::string_view more = "") {
-  return "sim:?model=" + std::string(word) + "&seed=3&zero_angle_cdeg=" +
-         std::to_string(std::lround(100 * offset_deg)) + std::string(more);
+  return "sim:?model=" + std::string(word) +
+         "&seed=3&zero_angle_cdeg=" + std::to_string(std::lround(100 * offset_deg)) +
+         std::string(more);
 }
 
 class ZeroAngle : public testing::TestWithParam<const char*> {};
@@ -226,8 +228,7 @@ TEST_P(ZeroAngle, IsInARecordingOfRawBytes) {
 
 TEST_P(ZeroAngle, ThatIsMissing_IsSaidAndCanBeGiven) {
   const temporary_path file;
-  const run_result without =
-      live(source_of(GetParam(), 55.5, "&fault=mute=93"), file.text());
+  const run_result without = live(source_of(GetParam(), 55.5, "&fault=mute=93"), file.text());
   EXPECT_TRUE(has(without, no_zero_angle));
   const run_result replay = played(file.text());
   EXPECT_TRUE(has(replay, no_zero_angle));
@@ -267,7 +268,8 @@ TEST_P(ZeroAngle, ThatIsGiven_IsRecordedWithALidar) {
   EXPECT_EQ(again.points, wanted.points);
   auto reader = recording_reader::open(file.text());
   ASSERT_TRUE(reader->for_each([](const recorded_item& item) {
-    EXPECT_FALSE(item.what == recorded_item::kind::to_device && item.data[1] == 0x93) << "not asked";
+    EXPECT_FALSE(item.what == recorded_item::kind::to_device && item.data[1] == 0x93)
+        << "not asked";
     return true;
   }));
 }

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <set>
 #include <string>
@@ -45,22 +47,23 @@ TEST(ConvertedValue, IsAsPeopleWriteIt) {
     std::array<value, 4> to;  // a bool, an integer, a double, a string
   };
   const value none;
-  for (const auto& [from, to] : std::vector<row>{
-           {true, {true, none, none, std::string("on")}},
-           {nine, {none, nine, 9.0, none}},
-           {9.0, {none, nine, 9.0, none}},
-           {9.5, {none, none, 9.5, none}},
-           {1e18, {none, none, 1e18, none}},
-           {infinite, {none, none, infinite, std::string("inf")}},
-           {std::string("9"), {none, nine, 9.0, std::string("9")}},
-           {std::string("9.5"), {none, none, 9.5, std::string("9.5")}},
-           {std::string("false"), {false, none, none, std::string("off")}},
-           {std::string("on"), {true, none, none, std::string("on")}},
-           {fast, {none, none, none, fast}},
-           {std::string(), {none, none, none, std::string()}},
-           {none, {none, none, none, none}}}) {
+  for (const auto& [from, to] :
+       std::vector<row>{{true, {true, none, none, std::string("on")}},
+                        {nine, {none, nine, 9.0, none}},
+                        {9.0, {none, nine, 9.0, none}},
+                        {9.5, {none, none, 9.5, none}},
+                        {1e18, {none, none, 1e18, none}},
+                        {infinite, {none, none, infinite, std::string("inf")}},
+                        {std::string("9"), {none, nine, 9.0, std::string("9")}},
+                        {std::string("9.5"), {none, none, 9.5, std::string("9.5")}},
+                        {std::string("false"), {false, none, none, std::string("off")}},
+                        {std::string("on"), {true, none, none, std::string("on")}},
+                        {fast, {none, none, none, fast}},
+                        {std::string(), {none, none, none, std::string()}},
+                        {none, {none, none, none, none}}}) {
     for (std::uint8_t type = 1; type <= to.size(); ++type)
-      EXPECT_EQ(g4lidar::converted(from, type), to.at(type - 1U)) << from.index() << " to " << int{type};
+      EXPECT_EQ(g4lidar::converted(from, type), to.at(type - 1U))
+          << from.index() << " to " << int{type};
   }
 }
 

@@ -83,7 +83,8 @@ TEST(SimFaultText, InvalidTexts_AreRefused) {
   EXPECT_EQ(refusal("burst=1.5"), "'1.5' is no amount for burst");
   EXPECT_EQ(refusal("batch=16"), "'16' is no amount for batch");
   for (const char* const code : {"9", "193", "0x93", "G3", "00", ""}) {
-    EXPECT_EQ(refusal(std::string("mute=") + code), "'" + std::string(code) + "' is no amount for mute");
+    EXPECT_EQ(refusal(std::string("mute=") + code),
+              "'" + std::string(code) + "' is no amount for mute");
   }
   EXPECT_EQ(refusal("late=1min"), "a fault's time must be 0 to 4 s");
   EXPECT_EQ(refusal("health=3"), "the health must be 0, 1 or 2");

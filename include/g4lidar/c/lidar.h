@@ -91,8 +91,8 @@ typedef struct g4lidar_options {
   /** What is added to each angle, in 0.01 degrees, -36000 to 36000, if `has_zero_angle`: instead of the answer to
    *  command 93, which raw bytes may not have. Only of a model with this command. */
   int32_t zero_angle_cdeg;
-  bool has_zero_angle;       /**< Whether zero_angle_cdeg is given. */
-  uint8_t more_reserved[3];  /**< 0. */
+  bool has_zero_angle;      /**< Whether zero_angle_cdeg is given. */
+  uint8_t more_reserved[3]; /**< 0. */
 } g4lidar_options;
 
 /** Sets the defaults; `size` is sizeof(g4lidar_options). */
@@ -221,8 +221,8 @@ enum g4lidar_event_kind {
   G4LIDAR_EVENT_LONG_PAUSE = 10,         /**< The next data of a recording is far away. */
   G4LIDAR_EVENT_OVERFLOW = 11,           /**< Earlier events were dropped. */
   G4LIDAR_EVENT_STILL_TURNING = 12,      /**< The scans have ended, but the motor turns. */
-  G4LIDAR_EVENT_NO_ZERO_ANGLE = 13,      /**< Points come without the offset of zero of the model. */
-  G4LIDAR_EVENT_OTHER_NUMBER = 14        /**< It states a number that its model does not have. */
+  G4LIDAR_EVENT_NO_ZERO_ANGLE = 13, /**< Points come without the offset of zero of the model. */
+  G4LIDAR_EVENT_OTHER_NUMBER = 14   /**< It states a number that its model does not have. */
 };
 
 /** An event. */

@@ -30,10 +30,10 @@ enum class ct_faults : std::uint8_t {
 /// What the CT bytes of the revolutions state: each field by itself, because a revolution with few packets
 /// has only the first ones. A field that was not stated is 0.
 struct ct_information {
-  bool has_faults;         ///< Whether `faults` was stated.
-  bool has_firmware;       ///< Whether hardware and firmware were stated.
-  bool has_serial;         ///< Whether the date and the number were stated.
-  std::uint8_t customer;   ///< A version of the customer.
+  bool has_faults;        ///< Whether `faults` was stated.
+  bool has_firmware;      ///< Whether hardware and firmware were stated.
+  bool has_serial;        ///< Whether the date and the number were stated.
+  std::uint8_t customer;  ///< A version of the customer.
   ct_faults faults;
   std::uint8_t hardware;
   std::uint8_t firmware_major;

@@ -34,8 +34,8 @@ class reply_watch {
 
   /// Passes a response of a lidar like `which`.
   [[nodiscard]] constexpr finding take(const response_view& heard, const model& which) noexcept {
-    const bool is_certain = std::exchange(is_behind_header_, false) ||
-                            !may_be_frequency(heard, which);
+    const bool is_certain =
+        std::exchange(is_behind_header_, false) || !may_be_frequency(heard, which);
     is_behind_header_ = heard.kind() == response_kind::scan_started;
     finding made;
     if (const auto who = heard.as_device_info()) {

@@ -71,7 +71,7 @@ class scan_assembler {
 
   /// Takes the points of `packet` until a scan is complete. The scan is valid until the next call
   /// of any function. Call it again with the same `packet`, from whose front the taken points are
-  /// removed, until it returns nothing.
+  /// removed, until it returns nothing. It has at most `sample_count` points; more are left out.
   [[nodiscard]] constexpr std::optional<scan> next(decoded& packet) noexcept {
     if (ready_) begin_next();
     noise_ = 0;
@@ -154,8 +154,7 @@ class scan_assembler {
   [[nodiscard]] static constexpr std::int32_t way(const decoded& packet, std::size_t from,
                                                   std::size_t to) noexcept {
     const auto before = [&](std::size_t i) {
-      const std::size_t sample = std::min<std::size_t>(i, packet.sample_count);
-      return packet.span_64ths * static_cast<std::int32_t>(sample) /
+      return packet.span_64ths * static_cast<std::int32_t>(i) /
              std::max(packet.sample_count - 1, 1);
     };
     return before(to) - before(from);
@@ -198,8 +197,11 @@ class scan_assembler {
 
   [[nodiscard]] constexpr std::optional<scan> fill(decoded& packet) noexcept {
     if (packet.points.empty()) return std::nullopt;
-    const std::size_t left = packet.points.size();  // not taken yet
-    const std::size_t first = packet.sample_count > left ? packet.sample_count - left : 0;
+    if (packet.points.size() > packet.sample_count) {  // a mistake of the caller
+      packet.points = packet.points.first(packet.sample_count);
+      return fill(packet);
+    }
+    const std::size_t first = packet.sample_count - packet.points.size();  // not taken yet
     move_to(within_turn(packet.first_angle_64ths + way(packet, 0, first)), packet.points);
     take_loss();
     if (used_ == 0) first_turned_ = turned_;

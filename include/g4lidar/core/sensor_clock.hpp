@@ -65,14 +65,14 @@ class sensor_clock {
     skipped_bytes_ = 0.0;
     next_ += gap.lost + count;
     doubt(gap);
-    const std::int64_t missed = observe({next_ - 1, before});
-    packet_times times = times_until(std::min(line_.at(next_ - 1), before), count);
+    const observed seen = observe({next_ - 1, before});
+    packet_times times = times_until(std::min(seen.at_ns, before), count);
     if (late_.is_late()) {  // samples may be missing
-      times.bound_ns = detail::saturating_add(times.bound_ns,
-                                              detail::saturating_sub(before, line_.at(next_ - 1)));
+      times.bound_ns =
+          detail::saturating_add(times.bound_ns, detail::saturating_sub(before, seen.at_ns));
     }
     bound_ns_ = times.bound_ns;
-    times.lost = detail::saturating_add(gap.lost, missed);
+    times.lost = detail::wrapping_add(gap.lost, seen.missed);
     return times;
   }
 
@@ -220,11 +220,14 @@ class sensor_clock {
     doubt_ns_ = std::max(doubt_ns_, doubt_ns);
   }
 
-  /// Updates the line. Returns how many samples must have been lost without being detected.
-  constexpr std::int64_t observe(arrival next) noexcept {
-    double late =
-        started_ ? static_cast<double>(detail::saturating_sub(next.time_ns, line_.at(next.sample)))
-                 : 0.0;
+  struct observed {
+    std::int64_t missed;  // samples that must have been lost without being detected
+    std::int64_t at_ns;   // of the sample, by the line
+  };
+  /// Updates the line.
+  constexpr observed observe(arrival next) noexcept {
+    const std::int64_t at_ns = line_.at(next.sample);
+    double late = started_ ? static_cast<double>(detail::saturating_sub(next.time_ns, at_ns)) : 0.0;
     std::int64_t missed = 0;
     const bool is_too_early = late < -early_ns && late < -3.0 * line_.bound_ns;
     if (is_too_early || stays_late(late, next)) {
@@ -234,12 +237,12 @@ class sensor_clock {
       restart();
       late = 0.0;
     }
-    if (late_.is_late()) return 0;
+    if (late_.is_late()) return {0, at_ns};
     if (late < 0.0 && -late > line_.bound_ns / 3.0) doubt_ns_ = std::max(doubt_ns_, -2.0 * late);
     started_ = true;
     in_time_ = next.sample;
     mean_late_ns_ += (std::max(late, least_late_ns) - mean_late_ns_) * 0.02;
-    if (!window_.add(next, line_.period_ns)) return missed;
+    if (!window_.add(next, line_.period_ns)) return {missed, at_ns};
     if (window_.span_ns() > enough_ns) {
       rate_known_ = true;
       slopes_ = {-widest(), widest()};
@@ -248,7 +251,7 @@ class sensor_clock {
     // Impossible arrivals can have no line.
     if (!(line_.period_ns > 0.0 && line_.period_ns < 4.0 * nominal_ns_))
       line_.period_ns = nominal_ns_;
-    return missed;
+    return {missed, line_.at(next.sample)};
   }
 
   /// How many samples were lost if packets stay late by so much: whole turns, since the angles show

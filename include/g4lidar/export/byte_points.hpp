@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/ct_information.hpp"
+#include "g4lidar/core/decode.hpp"
 #include "g4lidar/core/model.hpp"
 #include "g4lidar/core/packet.hpp"
 #include "g4lidar/core/reply_watch.hpp"

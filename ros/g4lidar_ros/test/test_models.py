@@ -101,7 +101,7 @@ class TestModels(unittest.TestCase):
 
     def test_t_mini(self):
         self.check_t_mini("mini")
-        self.assertIn(" 6:12;", self.describe("mini", "frequency").additional_constraints)
+        self.assertIn("; 6:12", self.describe("mini", "frequency").additional_constraints)
         self.assertFalse(self.set_frequency("mini", 5.5).successful)
         self.assertTrue(self.set_frequency("mini", 8.0).successful)
         scans = self.watcher.collect(LaserScan, "/mini/scan")
@@ -111,7 +111,7 @@ class TestModels(unittest.TestCase):
     def test_a_model_that_is_not_named_is_found(self):
         self.check_t_mini("found")
         # The limits of all models: what is at the port may be any.
-        self.assertIn(" 3:16;", self.describe("found", "frequency").additional_constraints)
+        self.assertIn("; 3:16", self.describe("found", "frequency").additional_constraints)
         # The lidar itself refuses what its model does not have.
         refused = self.set_frequency("found", 14.0)
         self.assertFalse(refused.successful)

@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include "g4lidar/core/model.hpp"
+#include "support/family_reference.hpp"
 #include "support/packet_maker.hpp"
 #include "support/random_stream.hpp"
 #include "support/reference_points.hpp"
@@ -262,6 +264,77 @@ TEST(BulkDecoderChoice, SelectsTheBestInstructionSet_OrPortable) {
   EXPECT_EQ(bulk_decoder(instruction_set::portable).in_use(), instruction_set::portable);
   EXPECT_STREQ(name_of(instruction_set::portable), "portable");
   EXPECT_STREQ(name_of(instruction_set::avx2), "AVX2");
+}
+
+/// An answer of four bytes.
+buffer answer_of(std::int32_t number) {
+  buffer made{0xA5, 0x5A, 4, 0, 0, 0, 4};
+  for (unsigned shift = 0; shift < 32; shift += 8) {
+    made.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(number) >> shift));
+  }
+  return made;
+}
+
+// family: in quarters of a degree, added to each angle.
+TEST_P(BulkDecoder, TheOffsetOfZeroIsAdded) {
+  const auto& how = reference::wire_format_of("tg15");
+  const model& tg = *model_named("tg15");
+  const buffer packet = reference::packet_of(how, 0, 10 * 64, 49 * 64,
+                                             std::vector<reference::wire_sample>(40, {0, 2000}));
+  for (const double deg : {-90.25, 180.0, 270.5}) {
+    for (const bool is_given : {false, true}) {
+      buffer data;
+      bulk_decoder decoder(tg, GetParam());
+      EXPECT_FALSE(decoder.zero().angle());
+      if (is_given) {
+        decoder.zero().set({static_cast<std::int32_t>(std::lround(100 * deg))},
+                           zero_offset::known_by::user);
+        data = answer_of(-4);  // the user knows better
+      } else {
+        data = {0xA5, 0x5A, 5, 0, 0, 0x40, 0x81};
+        const buffer answer = answer_of(static_cast<std::int32_t>(std::lround(4 * deg)));
+        data.insert(data.end(), answer.begin(), answer.end());
+      }
+      data.insert(data.end(), packet.begin(), packet.end());
+      std::vector<point> points(max_samples);
+      bytes input = data;
+      const auto got = decoder.decode(input, points);
+      ASSERT_EQ(got.size(), 40U);
+      for (std::size_t i = 0; i < got.size(); ++i) {
+        const double wanted_deg = 10.0 + static_cast<double>(i) + deg;
+        EXPECT_LT(reference::apart_deg(static_cast<double>(got[i].angle_deg), wanted_deg), 1e-3);
+      }
+      for (const frame to : {frame::vendor, frame::robot}) {
+        std::vector<xy_point> places(max_samples);
+        bytes again = packet;
+        const auto found = decoder.decode_xy(again, to, places);
+        ASSERT_EQ(found.size(), 40U);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          const double vendor_deg = 10.0 + static_cast<double>(i) + deg;
+          const double angle_deg = to == frame::vendor ? vendor_deg : 180.0 - vendor_deg;
+          const double rad = angle_deg * std::numbers::pi / 180.0;
+          EXPECT_NEAR(static_cast<double>(found[i].x_m), 2.0 * std::cos(rad), 1e-4);
+          EXPECT_NEAR(static_cast<double>(found[i].y_m), 2.0 * std::sin(rad), 1e-4);
+        }
+      }
+    }
+  }
+}
+
+// family: a TG up to firmware 1.2 sends half millimetres.
+TEST_P(BulkDecoder, TheFirmwareDecides) {
+  const auto& how = reference::wire_format_of("tg15");
+  buffer data{0xA5, 0x5A, 0x14, 0, 0, 0, 0x04, 100, 2, 1, 1};
+  data.resize(7 + 20);
+  const buffer packet = reference::packet_of(how, 0, 10 * 64, 49 * 64,
+                                             std::vector<reference::wire_sample>(40, {0, 2000}));
+  data.insert(data.end(), packet.begin(), packet.end());
+  bulk_decoder decoder(*model_named("tg15"), GetParam());
+  std::vector<point> points(max_samples);
+  bytes input = data;
+  const auto got = decoder.decode(input, points);
+  ASSERT_EQ(got.size(), 40U);
+  for (const point& each : got) EXPECT_EQ(each.range_mm, 1000.0F);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ struct reported_id {
 
 int times_said(lidar& of) {
   int count = 0;
-  while (const auto event = of.next_event()) count += event->what == lidar_event::kind::other_number ? 1 : 0;
+  while (const auto event = of.next_event())
+    count += event->what == lidar_event::kind::other_number ? 1 : 0;
   return count;
 }
 

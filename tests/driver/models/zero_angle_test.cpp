@@ -176,7 +176,8 @@ TEST_P(LiveZeroAngle, ThatIsGiven_IsNotAsked) {
   ASSERT_TRUE(lidar);
   const heard got = third_scan(*lidar);
   EXPECT_FALSE(got.lacks_zero());
-  EXPECT_TRUE(std::ranges::none_of(on.device.log(), [](const auto& each) { return each.code == 0x93; }));
+  EXPECT_TRUE(
+      std::ranges::none_of(on.device.log(), [](const auto& each) { return each.code == 0x93; }));
   bench plain(which_, turned(GetParam(), 0));
   auto usual = plain.open();
   EXPECT_TRUE(is_alike(third_scan(*usual).points, got.points));

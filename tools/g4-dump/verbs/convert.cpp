@@ -131,10 +131,11 @@ void check_combination(const convert_options& options, file_form from, file_form
   if (to != file_form::recording && has_messages) {
     throw bad_value("--points, --order, --no-return and --near-as are for recordings");
   }
-  const bool keeps_bytes = to == file_form::raw_bytes ||
-                           (to == file_form::recording && from == file_form::recording);
+  const bool keeps_bytes =
+      to == file_form::raw_bytes || (to == file_form::recording && from == file_form::recording);
   if (keeps_bytes && options.points.common->expected.zero) {
-    throw bad_value("the bytes stay as they are: --zero-angle is for points, and for a recording of raw bytes");
+    throw bad_value(
+        "the bytes stay as they are: --zero-angle is for points, and for a recording of raw bytes");
   }
   if (to == file_form::raw_bytes && !options.points.common->odometry.empty()) {
     throw bad_value("raw bytes hold no odometry: --odometry is for recordings and points");
@@ -194,9 +195,8 @@ void copy_recording(const convert_options& options, output& out) {
 /// Writes a part of raw bytes; their times are counted.
 void copy_bytes(const convert_options& options, output& out) {
   const g4lidar::model* const named = model_of(*options.points.common);
-  const auto from =
-      value_of(open_raw_bytes(path_of_source(options.in()),
-                              options.points.source.raw_sample_rate_hz, {}, {}, named));
+  const auto from = value_of(open_raw_bytes(
+      path_of_source(options.in()), options.points.source.raw_sample_rate_hz, {}, {}, named));
   const g4lidar::model* const which = named != nullptr ? named : from->traits().model;
   raw_copy copy(which != nullptr ? *which : g4_model);
   const std::int64_t begin_ns = from->now_ns();

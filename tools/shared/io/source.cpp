@@ -175,10 +175,11 @@ void report_candidates(std::span<const g4lidar::model* const> candidates) {
 }
 
 void report_missing_zero(const g4lidar::model& which) {
-  logger::info(fmt::format(
-      "the offset of zero of this {} is not known: its answer to command 93 is missing, and the angles are those of "
-      "the device; --zero-angle gives it\n",
-      which.name));
+  logger::info(
+      fmt::format("the offset of zero of this {} is not known: its answer to command 93 is "
+                  "missing, and the angles are those of "
+                  "the device; --zero-angle gives it\n",
+                  which.name));
 }
 
 void report_other_number(const g4lidar::model& which, unsigned number) {

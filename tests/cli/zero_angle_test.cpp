@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+// g4-dump and the offset of zero: recordings, raw bytes, parts of them, --zero-angle; and numbers of other models.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+namespace {
+
+using cli::lines_of;
+using cli::outcome;
+using cli::run;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* missing = "the offset of zero of this TG15 is not known";
+
+class ZeroAngleOption : public cli::scratch {
+ protected:
+  void record(const std::string& source) {
+    const outcome made = run({"record", source, "-o", path("a.mcap"), "-d", "1s", "--force"});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  void convert(const std::string& from, const std::string& to,
+               const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"convert", path(from), path(to), "--force"};
+    words.insert(words.end(), more.begin(), more.end());
+    const outcome done = run(words);
+    ASSERT_EQ(done.code, 0) << done.err;
+  }
+  /// Angles and ranges of the last thousand points.
+  [[nodiscard]] std::vector<std::string> points_of(const std::string& name,
+                                                   const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"decode", path(name)};
+    words.insert(words.end(), more.begin(), more.end());
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 0) << done.err;
+    log_ = done.err;
+    const std::vector<std::string> rows = lines_of(done.out);
+    std::vector<std::string> all;
+    for (std::size_t i = rows.size() > 1000 ? rows.size() - 1000 : 1; i < rows.size(); ++i) {
+      const std::size_t begin = rows[i].find(',') + 1;
+      all.push_back(rows[i].substr(begin, rows[i].rfind(',') - begin));
+    }
+    return all;
+  }
+
+  std::string log_;  // what points_of() wrote to standard error
+};
+
+TEST_F(ZeroAngleOption, RawBytesOfARecordingHaveIt) {
+  for (const char* const cdeg : {"-7375", "9000", "18000"}) {
+    record(std::string("sim:?model=tg15&zero_angle_cdeg=") + cdeg);
+    const auto wanted = points_of("a.mcap");
+    ASSERT_EQ(wanted.size(), 1000U);
+    convert("a.mcap", "a.bin");
+    convert("a.mcap", "part.bin", {"--from", "500ms"});
+    convert("a.mcap", "part.mcap", {"--from", "500ms"});
+    convert("a.bin", "again.mcap");
+    convert("a.bin", "again.bin", {"--from", "500ms"});
+    for (const char* const name : {"a.bin", "part.bin", "part.mcap", "again.mcap", "again.bin"}) {
+      EXPECT_EQ(points_of(name), wanted) << name << " " << cdeg;
+      EXPECT_THAT(log_, Not(HasSubstr(missing))) << name << " " << cdeg;
+    }
+  }
+}
+
+TEST_F(ZeroAngleOption, WhereItIsMissing_ALineSaysSo) {
+  record("sim:?model=tg15&zero_angle_cdeg=9000&fault=mute=93");
+  convert("a.mcap", "a.bin");
+  convert("a.bin", "b.mcap", {"--zero-angle", "90"});
+  for (const char* const name : {"a.mcap", "a.bin"}) {
+    const auto without = points_of(name);
+    EXPECT_THAT(log_, HasSubstr(missing)) << name;
+    EXPECT_THAT(log_, HasSubstr("--zero-angle gives it"));
+    const auto given = points_of(name, {"--zero-angle", "90"});
+    EXPECT_THAT(log_, Not(HasSubstr(missing))) << name;
+    EXPECT_EQ(points_of("b.mcap"), given);
+    ASSERT_EQ(given.size(), without.size());
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      const double apart = std::stod(given[i]) - std::stod(without[i]);
+      ASSERT_NEAR(std::remainder(apart - 90.0, 360.0), 0.0, 0.001) << i;
+    }
+  }
+  const outcome listed = run({"doctor", path("a.bin")});
+  EXPECT_THAT(listed.out, HasSubstr("no_zero_angle"));
+  const outcome served = run({"dump", "sim:?model=tg15&fault=mute=93", "-n", "1"});
+  EXPECT_THAT(served.err, HasSubstr(missing));
+}
+
+TEST_F(ZeroAngleOption, WhereItHasNoMeaning_IsRefused) {
+  const std::string raw = path("g4.bin");
+  ASSERT_EQ(run({"sim", "--seconds", "1", "-o", raw}).code, 0);
+  const auto expect_refused = [](const std::vector<std::string>& words, const std::string& why) {
+    const outcome done = run(words);
+    EXPECT_NE(done.code, 0) << words[0];
+    EXPECT_THAT(done.err, HasSubstr(why));
+    EXPECT_EQ(done.out, "");
+  };
+  expect_refused({"decode", raw, "--zero-angle", "10"}, "a G4 has no such offset");
+  expect_refused({"dump", "sim:", "--zero-angle", "10"}, "zero_angle");
+  expect_refused({"decode", raw, "--zero-angle", "361"}, "361");
+  expect_refused({"convert", raw, path("out.bin"), "--zero-angle", "10"},
+                 "the bytes stay as they are");
+  EXPECT_EQ(listing(), "g4.bin\n");
+}
+
+class FewBytes : public cli::scratch {};
+
+TEST_F(FewBytes, OneOrTwoPacketsAreReadAndTheModelIsNamed) {
+  struct row {
+    std::string model;
+    std::size_t packet;  ///< The size of one with 40 samples.
+    std::string line;
+  };
+  for (const auto& [word, size, line] :
+       {row{"t-mini-pro", 130, "read as T-mini Pro: 3-byte samples"},
+        row{"tg15", 90, "read as G4: 2-byte samples do not name their model; --model"},
+        row{"t-mini-plus-sh", 170, "read as T-mini Plus SH: 4-byte samples"}}) {
+    const std::string file = path(word);
+    ASSERT_EQ(run({"sim", "--model", word, "--seconds", "1", "-o", file}).code, 0);
+    const std::string all = cli::read_file(file);
+    std::size_t at = 0;
+    while (at + 2 * size < all.size() &&
+           !(all.compare(at, 2, "\xAA\x55") == 0 && all[at + 3] == 40 &&
+             all.compare(at + size, 2, "\xAA\x55") == 0 && all[at + size + 3] == 40)) {
+      ++at;
+    }
+    for (const std::size_t packets : {1U, 2U}) {
+      const std::string few = all.substr(at, packets * size);
+      cli::write_file(path("few.bin"), few);
+      for (const outcome& done : {run({"decode", path("few.bin")}), run({"decode"}, few)}) {
+        EXPECT_EQ(done.code, 0) << done.err;
+        EXPECT_THAT(done.err, HasSubstr(line)) << packets;
+        EXPECT_EQ(lines_of(done.out).size(), 1 + 40 * packets) << word;
+      }
+      EXPECT_EQ(run({"doctor", path("few.bin")}).out.find("wrong_baud_rate"), std::string::npos)
+          << word;
+    }
+  }
+}
+
+TEST_F(FewBytes, ANumberOfAnotherModel_IsSaidWithBoth) {
+  const std::string file = path("scl.bin");
+  const outcome made = run(
+      {"record", "sim:?model=scl&model_id=4&ct_information=true&ct_crc=true&stray_before_zero=true",
+       "-o", path("scl.mcap"), "-d", "2s"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const std::string line = "the lidar states the number 4, and an SCL has 22";
+  EXPECT_THAT(made.err, HasSubstr(line));
+  EXPECT_THAT(run({"decode", path("scl.mcap")}).err, HasSubstr(line));
+  ASSERT_EQ(run({"convert", path("scl.mcap"), file}).code, 0);
+  EXPECT_THAT(run({"decode", file, "--model", "scl"}).err, HasSubstr(line));
+  const outcome unnamed = run({"decode", file});
+  EXPECT_THAT(unnamed.err, HasSubstr("read as S2 with intensity"));
+  EXPECT_THAT(unnamed.err, Not(HasSubstr("states the number")));
+}
+
+}  // namespace
