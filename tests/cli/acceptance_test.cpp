@@ -3,15 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "g4lidar/diagnostics/acceptance.hpp"
+#include "acceptance/kit.hpp"
 #include "program.hpp"
+#include "support/patience.hpp"
 
 namespace {
 
@@ -46,14 +49,13 @@ TEST_F(AcceptanceVerb, AsksItsUser_AndWritesAFileThatReplays) {
   EXPECT_EQ(done.code, 0) << done.err << done.out;
   std::vector<json> steps;
   for (const std::string& line : lines_of(done.out)) steps.push_back(json::parse(line));
-  ASSERT_EQ(steps.size(), g4lidar::acceptance_step_count);
-  const json& near = steps.at(static_cast<std::size_t>(g4lidar::acceptance_step::near_target));
+  ASSERT_EQ(steps.size(), g4_tool::acceptance::step_count);
+  const json& near = steps.at(static_cast<std::size_t>(g4_tool::acceptance::step::near_target));
   EXPECT_EQ(near.at("evidence").at("placed_mm"), 800.0);
   EXPECT_EQ(near.at("verdict"), "agrees") << near;
   EXPECT_EQ(steps.back().at("verdict"), "not_done");
-  const json& who = steps.at(static_cast<std::size_t>(g4lidar::acceptance_step::identity));
-  EXPECT_EQ(who.at("answers").at(0).at("state"), "answered");
-  EXPECT_EQ(who.at("answers").at(0).at("text"), "With 5.");
+  const json& who = steps.at(static_cast<std::size_t>(g4_tool::acceptance::step::identity));
+  EXPECT_EQ(who.at("evidence").at("number"), 5);
   EXPECT_THAT(done.err, HasSubstr("'far' is no distance"));
   EXPECT_THAT(done.err, HasSubstr("unplug"));
 
@@ -79,10 +81,10 @@ TEST_F(AcceptanceVerb, WithoutAModel_ItIsTheOneOfTheLidar) {
   EXPECT_THAT(run({"info", path("x4.mcap")}).out, ::testing::HasSubstr("X4"));
   // Each question with its answer, or with the reason why it has none.
   const std::string page = in_one_line(done.out);
-  EXPECT_THAT(page, HasSubstr(" yes With which number does the device identify itself? With 6."));
+  EXPECT_THAT(page, HasSubstr(" yes With which number does the device identify itself? number 6"));
   EXPECT_THAT(page, HasSubstr(" open Does an edge of DTR start the motor, or its level? The "
                               "connection has no DTR."));
-  EXPECT_THAT(page, HasSubstr(" - Is there power-down protection (D9)? The model does not have"));
+  EXPECT_THAT(page, HasSubstr(" - Is there power-down protection (D9)? Not with this model."));
   EXPECT_THAT(page, HasSubstr(" open Are there time packets? There were none in less than 10 s."));
   EXPECT_THAT(page, HasSubstr(" open Is the unit of the range that of the table? There was no"));
   const outcome several =
@@ -98,6 +100,81 @@ TEST_F(AcceptanceVerb, ARecording_IsRefused) {
   const outcome done = run({"acceptance", "--file", path("other.mcap"), file});
   EXPECT_NE(done.code, 0);
   EXPECT_FALSE(std::filesystem::exists(path("other.mcap")));
+}
+
+/// A simulated T-mini at 10 Hz, in an own process, with its log.
+class Settings : public AcceptanceVerb {
+ protected:
+  Settings()
+      : served_({"sim", "--link", link_, "--model", "t-mini", "--log"},
+                {cli::stream{}, cli::stream{}, cli::stream::of_file(log_)}) {
+    EXPECT_TRUE(g4lidar::test::comes_true([&] { return std::filesystem::exists(link_); }));
+  }
+
+  /// The kit at work: it has changed the frequency.
+  [[nodiscard]] std::unique_ptr<program> begun() {
+    auto asked = std::make_unique<program>(
+        std::vector<std::string>{"acceptance", "--alone", "--model", "t-mini", "--file",
+                                 path("t.mcap"), link_},
+        cli::streams{cli::stream{}, cli::stream{}, cli::stream::of_file(messages_)});
+    EXPECT_TRUE(g4lidar::test::comes_true([&] { return has_stepped(); }));
+    return asked;
+  }
+
+  [[nodiscard]] std::string messages() const { return cli::read_file(messages_); }
+  [[nodiscard]] bool has_stepped() const {
+    return cli::read_file(log_).find("A5 0B") != std::string::npos;
+  }
+  [[nodiscard]] std::string frequency() const {
+    return json::parse(run({"info", "--json", link_}).out).at("frequency").dump();
+  }
+
+  std::string link_ = path("lidar");
+  std::string log_ = path("log");
+  std::string messages_ = path("messages");
+  program served_;
+};
+
+TEST_F(Settings, AreAsBefore_AfterASignal) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    cli::write_file(log_, "");  // the simulator appends
+    const auto asked = begun();
+    asked->send(signal);
+    const outcome done = asked->wait();
+    EXPECT_EQ(done.code, 128 + signal) << messages();
+    EXPECT_EQ(frequency(), "10.0") << messages();
+    EXPECT_THAT(done.out, HasSubstr("Interrupted."));
+    std::filesystem::remove(path("t.mcap"));
+  }
+}
+
+TEST_F(Settings, AreAsBefore_AfterAPipeThatIsClosed) {
+  const auto asked = begun();
+  asked->close_output();
+  static_cast<void>(asked->wait());
+  EXPECT_EQ(frequency(), "10.0") << messages();
+}
+
+TEST_F(Settings, OfALostLidar_TheCommandIsSaid) {
+  const auto asked = begun();
+  served_.send(SIGKILL);
+  const outcome done = asked->wait();
+  EXPECT_EQ(done.code, 9) << messages();
+  EXPECT_THAT(messages(), HasSubstr("g4-dump set --model t-mini '" + link_ + "' frequency=10\n"));
+  EXPECT_EQ(messages().find("unplugged"), messages().rfind("unplugged")) << messages();
+}
+
+TEST_F(AcceptanceVerb, APortThatDoesNotExist_IsOneError) {
+  for (const bool is_named : {false, true}) {
+    std::vector<std::string> words{"acceptance", "--alone", "--file", path("no.mcap"),
+                                   path("port")};
+    if (is_named) words.insert(words.end(), {"--model", "g4"});
+    const outcome done = run(words);
+    EXPECT_EQ(done.code, 3) << done.err;
+    EXPECT_EQ(lines_of(done.err).size(), 1U) << done.err;
+    EXPECT_EQ(done.out, "");
+    EXPECT_FALSE(std::filesystem::exists(path("no.mcap")));
+  }
 }
 
 }  // namespace

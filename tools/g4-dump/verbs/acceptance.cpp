@@ -15,11 +15,12 @@
 #include <variant>
 #include <vector>
 
+#include "acceptance/rows.hpp"
 #include "cli/common_options.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/logger.hpp"
-#include "g4lidar/diagnostics/acceptance.hpp"
 #include "g4lidar/recording/writer.hpp"
+#include "g4lidar/transport/forwarding.hpp"
 #include "io/command_files.hpp"
 #include "io/command_source.hpp"
 #include "io/interrupt.hpp"
@@ -31,12 +32,10 @@
 namespace g4_tool {
 namespace {
 
+using acceptance::user_action;
+
 constexpr std::size_t indent = 16;
 constexpr std::size_t answer_indent = 7;
-
-std::string_view words_of(acceptance_question question) noexcept {
-  return open_questions()[static_cast<std::size_t>(question)].text;
-}
 
 struct acceptance_settings : common_options {
   /// Beside those of the source.
@@ -58,26 +57,27 @@ std::optional<std::string> read_line() {
   return std::nullopt;
 }
 
-std::string_view task_of(acceptance_action what) noexcept {
+std::string_view task_of(user_action what) noexcept {
   switch (what) {
-    case acceptance_action::place_near:
+    case user_action::place_near:
       return "Place a flat target straight ahead of the lidar, opposite to its cable, 0.3 m to 1 m "
-             "away. Nothing else may be nearer. Measure its distance from the middle of the head.";
-    case acceptance_action::place_far:
+             "away. Nothing else may be nearer. Five degrees are 9 cm at a distance of 1 m. "
+             "Measure its "
+             "distance from the middle of the head.";
+    case user_action::place_far:
       return "Place the target 2 m to 5 m away in the same direction, or remove it if there is a "
              "wall. Measure the distance.";
-    case acceptance_action::unplug:
+    case user_action::unplug:
       return "Press Enter, and then unplug the USB cable of the lidar within 2 minutes.";
-    case acceptance_action::plug_in:
+    case user_action::plug_in:
       return "Press Enter, and then plug the cable in again within 2 minutes.";
   }
   return {};
 }
 
 /// The answer of the user; asks again until it is one.
-std::optional<double> ask_user(acceptance_action what) {
-  const bool wants_distance =
-      what == acceptance_action::place_near || what == acceptance_action::place_far;
+std::optional<double> ask_user(user_action what) {
+  const bool wants_distance = what == user_action::place_near || what == user_action::place_far;
   constexpr double longest_mm = 100'000.0;
   logger::info(fmt::format("{}\n", task_of(what)));
   while (true) {
@@ -96,30 +96,23 @@ std::optional<double> ask_user(acceptance_action what) {
   }
 }
 
-nlohmann::ordered_json json_of_step(const acceptance_result& of) {
-  nlohmann::ordered_json line{{"step", name_of(of.step)},
+nlohmann::ordered_json json_of_step(const acceptance::step_result& of) {
+  nlohmann::ordered_json line{{"step", name_of(of.of)},
                               {"verdict", name_of(of.outcome)},
                               {"evidence", nlohmann::ordered_json::object()},
-                              {"text", of.text},
-                              {"answers", nlohmann::ordered_json::array()}};
-  for (const evidence& each : of.measurements) {
+                              {"text", of.text}};
+  for (const evidence& each : of.facts)
     std::visit([&](const auto& value) { line["evidence"][each.name] = value; }, each.value);
-  }
-  for (const question_answer& each : of.answers) {
-    line["answers"].push_back({{"question", words_of(each.question)},
-                               {"state", name_of(each.state)},
-                               {"text", each.text}});
-  }
   return line;
 }
 
-std::string text_of_step(const acceptance_result& of) {
+std::string text_of_step(const acceptance::step_result& of) {
   std::string measured;
-  for (const evidence& each : of.measurements) {
+  for (const evidence& each : of.facts) {
     measured +=
         fmt::format("{}{} {}", measured.empty() ? "" : ", ", each.name, printable(each.text()));
   }
-  std::string text = fmt::format("{:<15} {:<9}", name_of(of.step), name_of(of.outcome));
+  std::string text = fmt::format("{:<15} {:<9}", name_of(of.of), name_of(of.outcome));
   text += wrapped(" " + printable(of.text), indent + 9, indent) + "\n";
   if (!measured.empty()) {
     text += std::string(indent, ' ') + wrapped(measured, indent, indent) + "\n";
@@ -128,14 +121,15 @@ std::string text_of_step(const acceptance_result& of) {
 }
 
 /// Each open question with its answer, or with the reason why it has none.
-std::string questions_of(const std::vector<acceptance_result>& all) {
+std::string questions_of(const model& which, const std::vector<acceptance::step_result>& all) {
   constexpr std::array<std::string_view, 3> marks{"open", "-", "yes"};
   std::string text =
       "\nOpen questions (yes: answered; -: does not arise with this model; open: not decided):\n";
-  for (const question_answer& each : answers_of(all)) {
-    text += fmt::format("  {:<5}", marks.at(static_cast<std::size_t>(each.state)));
-    text += wrapped(fmt::format("{} {}", words_of(each.question), printable(each.text)),
-                    answer_indent, answer_indent) +
+  auto row = acceptance::question_rows().begin();
+  for (const acceptance::question_answer& each : answers_of(which, all)) {
+    text += fmt::format("  {:<5}", marks.at(static_cast<std::size_t>(each.how)));
+    text += wrapped(fmt::format("{} {}", (row++)->text, printable(each.text)), answer_indent,
+                    answer_indent) +
             "\n";
   }
   return text;
@@ -149,23 +143,29 @@ std::optional<port_info> port_of(std::string_view name) {
   return found == ports->end() ? std::nullopt : std::optional(*found);
 }
 
-/// The options with the model and the baud rate of the lidar, if the user has named no model. Throws a
-/// failure, or a bad_value if the bytes fit several models.
-acceptance_settings with_model(acceptance_settings options) {
-  constexpr std::int64_t search_ns = 3'000'000'000;
-  if (options.expected.model == nullptr) {
-    options.expected.model = value_of(model_in_source(options.source));
+/// Gives the connection that is open already, and then those of `inner`.
+class opened_connector final : public forwarding_connector {
+ public:
+  opened_connector(std::unique_ptr<connector> inner, std::unique_ptr<transport> opened)
+      : forwarding_connector(std::move(inner)), opened_(std::move(opened)) {}
+  [[nodiscard]] result<std::unique_ptr<transport>> connect() noexcept override {
+    if (opened_) return std::move(opened_);
+    return inner().connect();
   }
-  if (options.expected.model != nullptr) return options;
-  acceptance_settings as_found = options;
-  as_found.expected.model = &g4_model;  // opened at its rate, and not searched
-  auto from = connector_for(options_for(as_found, {}));
-  if (!from) throw failure_of(options, from.error());
-  auto port = (*from)->connect();
-  if (!port) throw failure_of(options, port.error());
-  const auto found =
-      search(**port, (*port)->now_ns() + search_ns,
-             {.baud = options.expected.baud, .may_pulse_dtr = !options.source.empty()});
+
+ private:
+  std::unique_ptr<transport> opened_;
+};
+
+/// Sets model and baud rate of `options` to those of the lidar behind `port`, if the user has named no model. Throws a
+/// failure, or a bad_value if the bytes fit several models.
+void recognise(acceptance_settings& options, transport& port) {
+  constexpr std::int64_t search_ns = 3'000'000'000;
+  const auto found = search(port, port.now_ns() + search_ns,
+                            {.baud = options.expected.baud,
+                             .may_pulse_dtr = !options.source.empty(),
+                             .is_cancelled = [] { return interrupt() != 0; }});
+  if (!found && interrupt() != 0) throw interrupted();
   if (!found) throw failure_of(options, found.error());
   if (found->candidates.size() > 1) {
     std::vector<std::string_view> words;
@@ -176,62 +176,93 @@ acceptance_settings with_model(acceptance_settings options) {
   logger::info(fmt::format("recognised: {}\n", found->model->name));
   options.expected.model = found->model;
   if (options.expected.baud == 0) options.expected.baud = found->baud;
-  return options;
+}
+
+/// The open connection to the lidar, whose model is known then. Throws a failure.
+std::unique_ptr<connector> connect(acceptance_settings& options) {
+  if (options.expected.model == nullptr)
+    options.expected.model = value_of(model_in_source(options.source));
+  acceptance_settings as_found = options;
+  // Opened at the rate of a model, and not searched.
+  if (as_found.expected.model == nullptr) as_found.expected.model = &g4_model;
+  auto from = connector_for(options_for(as_found, {}));
+  if (!from) throw failure_of(options, from.error());
+  auto port = (*from)->connect();
+  if (!port) throw failure_of(options, port.error());
+  if (options.expected.model == nullptr) recognise(options, **port);
+  return std::make_unique<opened_connector>(*std::move(from), *std::move(port));
+}
+
+/// "g4-dump set --model t-mini /dev/ttyUSB0 frequency=10".
+std::string command_to_set(const acceptance_settings& options, const std::string& words) {
+  const std::string model = options.source.find("model=") == std::string::npos
+                                ? fmt::format(" --model {}", options.expected.model->word)
+                                : "";
+  const std::string source = options.source.empty() ? "" : " '" + options.source + "'";
+  return fmt::format("g4-dump set{}{} {}", model, source, words);
+}
+
+acceptance::run_options options_of(const acceptance_settings& options) {
+  acceptance::run_options how;
+  how.model = options.expected.model;
+  how.baud = options.expected.baud;
+  if (options.duration.count() > 0)
+    how.stream_time = std::chrono::ceil<std::chrono::milliseconds>(options.duration);
+  if (!options.run.is_alone) how.ask = ask_user;
+  how.is_cancelled = [] { return interrupt() != 0; };
+  how.on_step = [](acceptance::step of) { logger::info(fmt::format("{} ...\n", name_of(of))); };
+  how.on_lost_settings = [&options](const std::string& words) {
+    logger::info(fmt::format("The settings could not be set back. This does it: {}\n",
+                             command_to_set(options, words)));
+  };
+  return how;
 }
 
 int accept(const acceptance_settings& given) {
   output out(given.output);
   refuse_files(given, task::asking);
   const claimed_output claim(given.run.file);
-  const acceptance_settings options = with_model(given);
-  acceptance_options how;
-  how.model = options.expected.model;
-  how.baud = options.expected.baud;
-  if (options.duration.count() > 0) {
-    how.stream_time = std::chrono::ceil<std::chrono::milliseconds>(options.duration);
-  }
-  auto from = connector_for(options_for(options, {}));
-  if (!from) throw failure_of(options, from.error());
+  acceptance_settings options = given;
+  auto from = connect(options);
+  acceptance::run_options how = options_of(options);
   auto file = recording_writer::create(
       options.run.file, {.model = how.model, .overwrite = may_replace(), .scans = false});
   if (!file) throw failure(file.error());
-  auto observed = recorded(*std::move(from), *file);
+  auto observed = recorded(std::move(from), *file);
   if (!observed) throw failure(observed.error());
 
   const auto port = select_port(options.source);
   const std::optional<port_info> known = port ? port_of(port->path) : std::nullopt;
   if (known) how.port = &*known;
-  if (!options.run.is_alone) how.ask = ask_user;
   std::optional<error> unwritten;
   const auto cannot_write = [&] {
     if (!unwritten) unwritten = file->take_error();
     return unwritten.has_value();
   };
   how.is_cancelled = [&] { return interrupt() != 0 || cannot_write(); };
-  how.on_step = [](acceptance_step step) { logger::info(fmt::format("{} ...\n", name_of(step))); };
-  how.on_result = [&](const acceptance_result& done) {
+  how.on_result = [&](const acceptance::step_result& done) {
     out.write(options.json ? json_line(json_of_step(done)) : text_of_step(done));
     out.flush();
   };
   if (!options.json)
     out.write(fmt::format("Compared with the {} of the table of models:\n", how.model->name));
-  const auto all = run_acceptance(**observed, how);
+  const auto [all, lost] = acceptance::run(**observed, how);
 
   std::vector<std::pair<std::string, std::string>> words{{"model", std::string(how.model->word)}};
-  for (const acceptance_result& each : all) {
-    words.emplace_back(name_of(each.step), json_of_step(each).dump());
-  }
+  for (const acceptance::step_result& each : all)
+    words.emplace_back(name_of(each.of), json_of_step(each).dump());
   file->metadata("g4lidar.acceptance", words);
   const auto closed = file->close();
   if (cannot_write()) throw failure(*unwritten);
   if (!closed) throw failure(closed.error());
-  if (!options.json) out.write(questions_of(all));
+  if (!options.json) out.write(questions_of(*how.model, all));
   out.commit();
   logger::info(fmt::format("{} has all bytes and these results. Attach it to a report: {}\n",
                            in_quotes(options.run.file), G4LIDAR_ISSUES));
   if (interrupt() != 0) return 128 + interrupt();
-  const bool differs =
-      std::ranges::find(all, acceptance_verdict::differs, &acceptance_result::outcome) != all.end();
+  if (lost) throw failure_of(options, *lost);
+  const bool differs = std::ranges::find(all, acceptance::finding::differs,
+                                         &acceptance::step_result::outcome) != all.end();
   return static_cast<int>(differs ? exit_code::unhealthy : exit_code::ok);
 }
 
@@ -241,7 +272,8 @@ its bytes show; if they fit several models, name it. It takes about 20 minutes: 
 command with its answer and time, frequencies and sample rates, start and stop, DTR, a minute of
 the scan with its CT bytes, lower bits and time packets. It asks its user for a target that is
 near, one that is far, and an unplug; s skips such a step, and --alone all of them. Settings are
-changed and set back, and the motor is stopped at the end. docs/models.md lists which models need
+changed. However it ends, with ^C too, they are set back and the motor is stopped; where that is not
+possible, the command that does it is printed. docs/models.md lists which models need
 such a run most: nobody has tried them with a real device.
 
 The output is a page of text: for each step agrees, observed (not in the table), not_done or

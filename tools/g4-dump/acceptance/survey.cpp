@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "stream_survey.hpp"
+#include "survey.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 
 #include "g4lidar/detail/saturating.hpp"
 
-namespace g4lidar {
+namespace g4_tool::acceptance {
 namespace {
 
 /// The byte of intensity of a sample of three bytes.
@@ -46,39 +46,65 @@ std::optional<std::size_t> direction_survey::nearest() const {
     least_mm = here_mm;
     best = degree;
   }
+  if (!best) return best;
+  // A flat target has nearly the same range in many directions: the middle of them.
+  const double same_mm = 1.01 * least_mm + 2.0;
+  const auto is_target = [&](std::size_t degree) {
+    return range_mm(degree % ranges_.size()).value_or(2.0 * same_mm) <= same_mm;
+  };
+  constexpr std::size_t widest = 60;
+  const std::size_t turn = ranges_.size() + *best;
+  std::size_t first = turn;
+  std::size_t last = turn;
+  while (turn - first < widest && is_target(first - 1)) --first;
+  while (last - turn < widest && is_target(last + 1)) ++last;
+  return (first + last) / 2 % ranges_.size();
+}
+
+std::optional<std::size_t> direction_survey::farthest() const {
+  std::optional<std::size_t> best;
+  double most_mm = 0.0;
+  for (std::size_t degree = 0; degree < ranges_.size(); ++degree) {
+    const double here_mm = range_mm(degree).value_or(0.0);
+    if (here_mm <= most_mm) continue;
+    most_mm = here_mm;
+    best = degree;
+  }
   return best;
 }
 
 void stream_survey::take(const event& found, std::int64_t arrival_ns) {
   if (const auto* const packet = std::get_if<packet_view>(&found)) take(*packet, arrival_ns);
-  counts_.add(found);
+  counts.add(found);
   if (const auto* const gone = std::get_if<skipped>(&found)) {
-    if (gone->reason == skip_reason::bad_checksum) ++bad_checksums_;
+    if (gone->reason == skip_reason::bad_checksum) ++bad_checksums;
     revolution_.add(*gone);
     reader_.add(*gone);
   }
 }
 
 void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
-  if (counts_.packets > 0)
-    longest_gap_ns_ =
-        std::max(longest_gap_ns_, detail::saturating_sub(arrival_ns, last_packet_ns_));
+  if (counts.packets > 0) {
+    longest_gap_ns =
+        std::max(longest_gap_ns, g4lidar::detail::saturating_sub(arrival_ns, last_packet_ns_));
+  }
   last_packet_ns_ = arrival_ns;
-  if (const auto fits = revolution_.add(packet)) ++crc_.at(*fits ? 1 : 0);
+  directions.take(packet);
+  if (const auto fits = revolution_.add(packet)) ++(*fits ? crc_fits : crc_misfits);
   static_cast<void>(reader_.add(packet));
   if (packet.is_zero()) {
-    if (zero_packets_ == 0) first_zero_ns_ = arrival_ns;
+    if (zero_packets == 0) first_zero_ns_ = arrival_ns;
     last_zero_ns_ = arrival_ns;
     samples_at_zero_ = samples_;
     reported_dhz_ += static_cast<std::uint64_t>(packet.reported_frequency_dhz());
-    ++zero_packets_;
+    ++zero_packets;
   } else if (packet.ct() >> 1 != 0) {
-    ++informing_;
+    ++informing;
   }
   const std::size_t count = packet.sample_count();
-  most_samples_ = std::max(most_samples_, count);
-  if (zero_packets_ > 0) samples_ += count;
-  const int units = range_units_per_mm(which_.samples.layout);
+  most_samples = std::max(most_samples, count);
+  if (zero_packets > 0) samples_ += count;
+  const int units = range_units_per_mm(layout_);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint16_t word = packet.sample(i);
     const int range_mm = word / units;
@@ -86,9 +112,9 @@ void stream_survey::take(packet_view packet, std::int64_t arrival_ns) {
                        : range_mm < 1000 ? below_1_m
                        : range_mm < 2000 ? below_2_m
                                          : beyond;
-    ++bits_.at(where).at(word & 3U);
+    ++bits.at(where).at(word & 3U);
   }
-  if (sample_size(which_.samples.layout) == 3) compare_intensities(packet);
+  if (sample_size(layout_) == 3) compare_intensities(packet);
 }
 
 void stream_survey::compare_intensities(packet_view packet) {
@@ -100,20 +126,20 @@ void stream_survey::compare_intensities(packet_view packet) {
     if (last >> 2U == 0 || now >> 2U == 0 || (step != 1 && step != -1)) continue;
     const int change = low_intensity(packet, i) - low_intensity(packet, i - 1);
     const bool is_smooth = std::abs(change) <= near;
-    const bool overflows = std::abs(change + 256 * step) <= near;
-    if (is_smooth != overflows) ++changes_.at(overflows ? 1 : 0);
+    const bool is_overflow = std::abs(change + 256 * step) <= near;
+    if (is_smooth != is_overflow) ++(is_overflow ? overflows : smooth_changes);
   }
 }
 
 double stream_survey::per_second(std::uint64_t count) const noexcept {
   const double seconds =
-      static_cast<double>(detail::saturating_sub(last_zero_ns_, first_zero_ns_)) / 1e9;
+      static_cast<double>(g4lidar::detail::saturating_sub(last_zero_ns_, first_zero_ns_)) / 1e9;
   return seconds > 0.0 ? static_cast<double>(count) / seconds : 0.0;
 }
 
 double stream_survey::reported_hz() const noexcept {
-  if (zero_packets_ == 0) return 0.0;
-  return static_cast<double>(reported_dhz_) / 10.0 / static_cast<double>(zero_packets_);
+  if (zero_packets == 0) return 0.0;
+  return static_cast<double>(reported_dhz_) / 10.0 / static_cast<double>(zero_packets);
 }
 
-}  // namespace g4lidar
+}  // namespace g4_tool::acceptance

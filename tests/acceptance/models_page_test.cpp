@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "acceptance/rows.hpp"
 #include "g4lidar/core/model.hpp"
-#include "g4lidar/diagnostics/acceptance.hpp"
 
-namespace g4lidar::test {
+namespace g4_tool::acceptance::test {
 namespace {
 
 /// The cells of a row of a table.
@@ -85,12 +85,12 @@ TEST(ModelsPage, TheReadmeHasTheSameEvidence) {
 }
 
 TEST(ModelsPage, HasEachOpenQuestionWithItsStep) {
-  for (const open_question& each : open_questions()) {
+  for (const question_row& each : question_rows()) {
     const auto row = row_of(std::string(each.text));
     ASSERT_EQ(row.size(), 2U) << each.text;
-    EXPECT_EQ(row[1], "`" + std::string(name_of(each.step)) + "`");
+    EXPECT_EQ(row[1], "`" + std::string(name_of(each.asked_by)) + "`");
   }
 }
 
 }  // namespace
-}  // namespace g4lidar::test
+}  // namespace g4_tool::acceptance::test
