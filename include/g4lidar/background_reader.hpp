@@ -55,7 +55,7 @@ struct reader_options {
 };
 
 /// What a program does with what comes. All calls are made in the thread of the reader, one at a time. They
-/// throw nothing.
+/// throw nothing. They may call every function of the reader: see there.
 class G4LIDAR_API reader_listener {
  public:
   reader_listener() = default;
@@ -76,9 +76,14 @@ class G4LIDAR_API reader_listener {
 };
 
 /// Reads a lidar in a thread of its own and provides its scans and points: to one thread that calls
-/// next_scan(), or to a listener. *Any thread* may call any function except construction, start(), assignment,
-/// destruction and those that name a thread; only one thread at a time may call next_scan(). *Allocates on
-/// open.* A moved-from reader behaves like a stopped one.
+/// next_scan(), or to a listener. *Any thread* may call any function except construction, assignment, destruction and
+/// those that name a thread; only one thread at a time may call next_scan(). *Allocates on open.* A moved-from reader
+/// behaves like a stopped one.
+///
+/// The same functions may be called in the thread of the reader: by a listener, by a function that was given to ask(),
+/// and by the functions of lidar_options. There no function waits for the thread: stop() lets it end after the call,
+/// and next_scan() gives what has come already. After a stop() there the listener is not called again. Destruction and
+/// assignment there are like stop(): the thread ends later, by itself, and then stops the motor.
 ///
 ///     auto reader = background_reader::start(std::move(*lidar));
 ///     while (running) {
@@ -87,7 +92,7 @@ class G4LIDAR_API reader_listener {
 ///       else if (scan.error().is_fatal()) return report(scan.error());
 ///     }
 ///
-/// One that opens the lidar itself can open it again. It ends at a failure that another attempt does not undo,
+/// One that opens the lidar itself can open it again. It ends at an error that does not pass (error::may_pass()),
 /// and at all others when lidar_options::device_wait has passed without a success: points, or a motor at rest. It
 /// tries again twice a second. lidar_options::reconnect is that of the lidar.
 class G4LIDAR_API background_reader {
@@ -102,7 +107,8 @@ class G4LIDAR_API background_reader {
   /// nothing. `options.wrap` and `options.is_cancelled` are called in the thread.
   explicit background_reader(const lidar_options& options, const reader_options& how = {},
                              reader_listener* listener = nullptr);
-  /// Starts the thread of a reader that opens the lidar itself, once. Fails with system.
+  /// Starts the thread of a reader that opens the lidar itself. A further call does nothing. Fails with system, and
+  /// with gone after stop(): make another reader then.
   [[nodiscard]] result<void> start();
 
   background_reader(background_reader&&) noexcept;
@@ -111,7 +117,8 @@ class G4LIDAR_API background_reader {
   ~background_reader();
 
   /// Wakes and ends the thread, and stops the motor. Blocks at most as long as lidar::stop(), and as a call of
-  /// lidar::open(), lidar::start() or the listener that is in progress. A second call does nothing.
+  /// lidar::open(), lidar::start() or the listener that is in progress. In the thread itself it does not block. A
+  /// second call does nothing; after one in the thread itself it waits until the thread has ended.
   void stop() noexcept;
 
   /// The oldest scan that was not taken yet, with its flags; valid until the next call of
@@ -136,7 +143,8 @@ class G4LIDAR_API background_reader {
   /// Whether the motor is to stand. A file, too, is not read while it rests.
   void rest(bool rests);
   /// `what` is called in the thread, soon, between two scans: with the lidar, or with null while there is none
-  /// (opening, lost, ended). It is not called if the reader is stopped before.
+  /// (opening, lost, ended). It is not called if the reader is stopped before. In the thread of the reader, too, it is
+  /// called later.
   void ask(std::function<void(lidar*)> what);
 
   /// Pauses the player of a file; a seek then gives one scan. Everything else ignores it.
@@ -152,8 +160,8 @@ class G4LIDAR_API background_reader {
 
  private:
   class thread;
-  explicit background_reader(std::unique_ptr<thread> made) noexcept;
-  std::unique_ptr<thread> thread_;
+  explicit background_reader(std::shared_ptr<thread> made) noexcept;
+  std::shared_ptr<thread> thread_;  // its own thread holds it, too
 };
 
 }  // namespace g4lidar

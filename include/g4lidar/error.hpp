@@ -42,7 +42,7 @@ enum class problem : std::uint8_t {
   other_device,    ///< A device answers that is not the model that was expected.
   does_not_stop,   ///< The device scans and does not react to a stop command.
   unhealthy,       ///< The device reports an error of its own.
-  timeout,         ///< Nothing arrived in time; a retry may help.
+  timeout,         ///< What was awaited did not arrive in time; a retry may help.
   wrong_answer,    ///< Replies arrived, none of them valid for the command.
   not_reached,     ///< The device did not reach the wanted setting.
   bad_setting,     ///< Refused: the model cannot be set to this value. Nothing was sent.
@@ -68,7 +68,7 @@ inline constexpr std::size_t problem_count = static_cast<std::size_t>(problem::n
 enum class error_detail : std::uint8_t {
   usual,          ///< The only case of most problems.
   spinning_up,    ///< timeout: no scan has come since the start, because the motor spins up.
-  searching,      ///< timeout: the lidar was lost, and the driver is looking for it.
+  searching,      ///< timeout: the lidar was lost, or is not there yet, and is looked for.
   missing_port,   ///< no_port: the port that was named does not exist.
   missing_path,   ///< no_port: neither a port nor a file has the name that was given.
   not_attached,   ///< no_port: no lidar has the number, or no port the USB path, that was given.
@@ -80,6 +80,11 @@ enum class error_detail : std::uint8_t {
   unsupported_product,  ///< other_device: a product of the manufacturer with another protocol.
   answered_before,  ///< silence, garbage: the lidar had identified itself, so its model and its baud rate are right.
   searched,  ///< silence: no model was named, and no lidar answered or sent at any rate that was tried.
+  no_revolution,  ///< timeout: packets arrive, but no revolution was complete.
+  resting,        ///< timeout: the motor stands, because background_reader::rest() was called.
+  of_file,        ///< timeout: no scan of the file that is played was due.
+  not_sent,       ///< timeout: the port did not accept the bytes of a command.
+  other_source,   ///< bad_option: the option is for another kind of source (source.hpp).
 };
 
 /// One error. Trivially copyable, never allocates.
@@ -105,6 +110,11 @@ class G4LIDAR_API error {
   /// timeout, wrong_answer, not_reached, scanning, reconnecting, read_only, cancelled and not_supported; the
   /// object works as before.
   [[nodiscard]] bool is_fatal() const noexcept;
+  /// Whether another attempt to open and start the same lidar may succeed, because a cause outside of the program may
+  /// pass: a missing port, a missing permission before udev has set it, another program. Not for a mistake in the
+  /// options, another model, the content of a file, or a refusal of the system. lidar_options::device_wait covers
+  /// these errors, and no others.
+  [[nodiscard]] bool may_pass() const noexcept;
 
   /// What to try, a sentence. Valid forever.
   [[nodiscard]] std::string_view advice() const noexcept;

@@ -42,14 +42,15 @@ struct lidar_tuning {
   std::chrono::nanoseconds transport_delay{0};
 };
 
-/// How a lidar is opened and used. Every option has a default. A setting that is not given stays as the
+/// How a lidar is opened and used. Every option has a default. One that the source cannot use is refused:
+/// problem_with_source(). A setting that is not given stays as the
 /// device has it; one that is given is set at each start, after a reconnect, and when the device seems
 /// to have rebooted.
 struct lidar_options {
   /// Which lidar, in the words of source.hpp: empty for the only lidar; `/dev/ttyUSB0`; `sim:`; ...
   std::string device{};
-  /// How long open() waits for a device that is not there yet: it tries again twice a second.
-  /// milliseconds::max(): without limit.
+  /// How long open() waits for a device that is not there yet, or cannot be opened yet: after an error that may pass
+  /// (error::may_pass()) it tries again twice a second. milliseconds::max(): without limit.
   std::chrono::milliseconds device_wait{0};
   /// What sends the bytes; valid as long as the lidar and its scans. Null: what a recording or `sim:`
   /// states, raw bytes show, or a search at the port finds; of a connector of the program a G4. A source

@@ -73,10 +73,13 @@ struct shaping_options {
 /// Allocates when a scan has more points than those before, and throws only what std::vector throws.
 ///
 ///     scan_shaper shaper({.marks = {.speckle = speckle_limits{}}, .deskew = deskewing::by_scans});
-///     while (auto scan = lidar->next_scan(500ms)) {
-///       shaper.shape(*scan);
+///     auto scans = lidar->scans(500ms);
+///     for (const scan& each : scans) {
+///       shaper.shape(each);
 ///       fill_grid(shaper.for_grid(), ranges_m);
+///       use(ranges_m);
 ///     }
+///     return report(*scans.why_ended());
 class G4LIDAR_API scan_shaper {
  public:
   /// Copies what the filter views.

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -60,6 +61,14 @@ enum class source_kind : std::uint8_t {
 /// device_wait. Errors: bad_option, bad_file, system, cancelled.
 [[nodiscard]] G4LIDAR_API result<std::unique_ptr<connector>> connector_for(
     const lidar_options& options);
+
+/// Which of the options the source that `options.device` names cannot use, as an error; nothing if it can use all.
+/// A file has no connection and no settings: `baud`, `reconnect`, the settings, and of the tuning all but `batch` and
+/// `transport_delay` are for lidars. `playback` is for files, and `raw_sample_rate_hz` for files of raw bytes; a pipe has
+/// neither. lidar::open() and connector_for() fail with this error: bad_option, with the detail other_source.
+[[nodiscard]] G4LIDAR_API std::optional<error> problem_with_source(const lidar_options& options);
+/// The same options without these: for a program that opens whatever its user names.
+[[nodiscard]] G4LIDAR_API lidar_options usable_options(lidar_options options);
 
 /// The simulated lidar that a connector of connector_for() opens; null if it opens another one. Valid
 /// as long as the connector, or the lidar that owns it.

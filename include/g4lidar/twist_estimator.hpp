@@ -52,10 +52,12 @@ struct twist_estimate {
 /// 0.05 m/s and 0.8 degrees/s. Where objects are small and far away, up to a quarter of the twists are then not known.
 ///
 ///     twist_estimator estimator;
-///     while (auto scan = lidar->next_scan(500ms)) {
-///       const twist_estimate motion = estimator.add(*scan);
+///     auto scans = lidar->scans(500ms);
+///     for (const scan& each : scans) {
+///       const twist_estimate motion = estimator.add(each);
 ///       if (motion.is_known()) use(motion.twist);
 ///     }
+///     return report(*scans.why_ended());
 class G4LIDAR_API twist_estimator {
  public:
   twist_estimator();

@@ -78,7 +78,7 @@ class Unhealthy(Error):
 
 
 class Timeout(Error, TimeoutError):
-    """No data arrived in time."""
+    """What was awaited did not arrive in time."""
 
 
 class WrongAnswer(Error):

@@ -33,21 +33,6 @@ namespace {
 using namespace nb::literals;
 using device_name = std::variant<path_text, simulator*>;
 
-/// How files are played.
-struct playing {
-  double speed;
-  bool loop;
-  double begin;
-  std::optional<double> end;
-
-  /// Raises BadOption if anything is given that is only for files.
-  void refuse_for(const std::string& what) const {
-    if (speed == 0.0 && !loop && begin == 0.0 && !end) return;
-    raise_bad_option("speed, loop, begin and end are for recordings and raw bytes, not for " +
-                     what);
-  }
-};
-
 /// The connector for a file, without waiting. Signals end the opening; later they wake the lidar, which
 /// reads without the GIL.
 std::unique_ptr<connector> open_file(lidar_options options) {
@@ -62,9 +47,8 @@ std::unique_ptr<connector> open_file(lidar_options options) {
 /// What needs no time to open: a file, or a simulation in virtual time. Null for all else, which
 /// `options.device` names then.
 std::unique_ptr<connector> connect(const device_name& device, lidar_options& options,
-                                   const playing& how, foundation& on) {
+                                   foundation& on) {
   if (const auto* given = std::get_if<simulator*>(&device)) {
-    how.refuse_for("a Simulator");
     simulator& simulated = **given;
     if (options.model == nullptr) options.model = simulated.simulated();
     if (simulated.is_virtual()) {
@@ -81,14 +65,14 @@ std::unique_ptr<connector> connect(const device_name& device, lidar_options& opt
   options.device = std::get<path_text>(device).text;
   const source_kind kind = kind_of_source(options.device);
   if (kind == source_kind::recording || kind == source_kind::raw_bytes) return open_file(options);
-  how.refuse_for(options.device.empty() ? "a device" : options.device);
   return nullptr;
 }
 
-live_lidar* open_lidar(const device_name& device, lidar_options options, const playing& how,
+live_lidar* open_lidar(const device_name& device, lidar_options options,
                        const std::optional<path_text>& record, bool overwrite) {
   foundation on;
-  auto from = connect(device, options, how, on);
+  auto from = connect(device, options, on);
+  if (const auto wrong = problem_with_source(options)) raise(*wrong);  // before a file is made
   if (record) {
     if (reads_file(options.device, record->text))
       raise_bad_option("record: this is the file of the source");
@@ -157,7 +141,7 @@ live_lidar* open_by_keywords(
   if (end) options.playback.to_ns = in_ns(*end);
   options.raw_sample_rate_hz = raw_sample_rate_hz;
   if (zero_angle) options.zero_angle = zero_angle_from(*zero_angle, options.model);
-  return open_lidar(device, options, {speed, loop, begin, end}, record, overwrite);
+  return open_lidar(device, options, record, overwrite);
 }
 
 using found_ports = std::vector<std::tuple<port_info, recognised_lidar>>;

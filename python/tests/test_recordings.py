@@ -167,8 +167,15 @@ def test_what_is_no_file_refuses_what_is_for_files(
     for device in (g4_simulator(), "sim:", "/dev/ttyUSB99"):
         wrong: list[dict[str, Any]] = [{"begin": 1.0}, {"end": 1.0}, {"speed": 1.0}, {"loop": True}]
         for options in wrong:
-            with pytest.raises(errors.BadOption, match="recordings and raw bytes"):
+            with pytest.raises(errors.BadOption, match="source cannot use this option"):
                 g4lidar.open(device, **options)
+            with pytest.raises(errors.BadOption, match="source cannot use this option"):
+                g4lidar.open(device, record=tmp_path / "never.mcap", **options)
+            assert not (tmp_path / "never.mcap").exists()
+    for_lidars: list[dict[str, Any]] = [{"reconnect": True}, {"baud": 115200}, {"frequency_hz": 10.0}, {"stall_time": 0.5}]
+    for options in for_lidars:
+        with pytest.raises(errors.BadOption, match="is a recording"):
+            g4lidar.open(recorded[0], **options)
     with g4lidar.open(g4_simulator()) as lidar:
         assert lidar.player is None
     with g4lidar.open(recorded[0], record=tmp_path / "again.mcap") as lidar:  # its times do not go back

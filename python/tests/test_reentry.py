@@ -272,3 +272,33 @@ def test_a_handler_that_does_not_raise_leaves_open_alone(g4_simulator: Make) -> 
     """, g4_simulator(virtual_time=False).path)
     out, err = program.communicate(timeout=PATIENCE)
     assert out == "True\n", err
+
+
+@pytest.mark.parametrize("inner", ["stop", "counts", "next_scan", "events", "rest", "pause", "set_speed", "seek", "state"])
+def test_a_handler_calls_anything_of_a_reader_during_anything(inner: str) -> None:
+    program = start_program("""
+        import signal
+        reader = g4lidar.open("sim:?silence_ns=60s", stall_time=60).background()
+        calls = {"next_scan": lambda: reader.next_scan(0.01), "set_speed": lambda: reader.set_speed(2),
+                 "seek": lambda: reader.seek(0), "state": lambda: reader.state}
+        inner = calls.get(sys.argv[1]) or getattr(reader, sys.argv[1])
+        handled = []
+        def handle(*_):
+            try:
+                inner()
+            except g4lidar.Error:
+                pass
+            handled.append(1)
+        signal.signal(signal.SIGALRM, handle)
+        for outer in (lambda: reader.next_scan(1), reader.counts, reader.rest, lambda: reader.rest(False), reader.events,
+                      lambda: reader.next_scan(0.1), reader.stop):
+            signal.setitimer(signal.ITIMER_REAL, 0.01, 0.1)
+            try:
+                outer()
+            except g4lidar.Error:
+                pass
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        print("ended", len(handled) > 0)
+    """, inner)
+    out, err = program.communicate(timeout=PATIENCE)
+    assert out == "ended True\n", err

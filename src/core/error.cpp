@@ -67,7 +67,7 @@ constexpr std::array<words, problem_count> all_words{{
     {problem::unhealthy, "unhealthy", "the lidar reports that it is defective",
      "Unplug it and plug it in again. If it reports the error again, have it repaired; the "
      "manufacturer knows the error code."},
-    {problem::timeout, "timeout", "no data arrived in time",
+    {problem::timeout, "timeout", "what was awaited did not arrive in time",
      "Try again, or wait longer. If it fails again, unplug the lidar and plug it in again."},
     {problem::wrong_answer, "wrong_answer", "the answers do not match the request",
      "Try again. If it fails again, check that no other program uses the lidar, and unplug it and "
@@ -116,11 +116,12 @@ struct detail_words {
   std::string_view cause;
   std::string_view advice;
 };
-constexpr std::array<detail_words, 13> all_details{{
+constexpr std::array<detail_words, 18> all_details{{
     {"no scan arrived in time, because the motor spins up",
      "Call again or wait longer: the first scan arrives about 0.7 s after the start, later with a "
      "heavy or cold motor. If the head does not turn within 10 s, check the power supply."},
-    {"no scan arrived in time, because the lidar was lost and the driver is looking for it",
+    {"no scan arrived in time: the lidar was lost or is not there yet, and the driver is looking "
+     "for it",
      "Check the plug, the cable and the power supply, and call again: scans continue when the "
      "lidar is back."},
     {"this port does not exist",
@@ -162,8 +163,24 @@ constexpr std::array<detail_words, 13> all_details{{
      "without commands, such as an X2, sends only while its motor turns. Or name the model or its "
      "baud "
      "rate (options model and baud, --model and --baud)."},
+    {"packets arrive, but no revolution was complete in time",
+     "Use a timeout that is longer than a revolution (0.2 s at 5 Hz). If it is longer, the motor "
+     "turns too slowly: check "
+     "its power supply, and that nothing touches the head."},
+    {"no scan arrived in time, because the motor rests",
+     "The program has called rest(true): call rest(false), and scans come when the motor has spun "
+     "up."},
+    {"no scan of the file was due in time",
+     "Wait longer, or play it faster. While it is paused, and where the recorded lidar was stopped "
+     "or lost, it gives no "
+     "scan."},
+    {"the port did not accept the command in time",
+     "Check the adapter, or the network and its bridge. If it fails again, unplug the lidar and "
+     "plug it in again."},
+    {"the source cannot use this option",
+     "Omit the option: a port has no playback, and a file has no settings and no connection."},
 }};
-static_assert(all_details.size() == static_cast<std::size_t>(error_detail::searched));
+static_assert(all_details.size() == static_cast<std::size_t>(error_detail::other_source));
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < all_words.size(); ++i) {
@@ -234,6 +251,12 @@ bool error::is_fatal() const noexcept {
   using enum problem;
   return !is_one_of(code_, timeout, wrong_answer, not_reached, bad_setting, scanning, reconnecting,
                     read_only, cancelled, not_supported);
+}
+
+bool error::may_pass() const noexcept {
+  using enum problem;
+  return !is_one_of(code_, bad_option, not_serial, bad_baud_rate, other_device, bad_setting,
+                    read_only, bad_file, end_of_input, cancelled, system, not_supported);
 }
 
 std::string_view error::advice() const noexcept { return words_of(code_, detail_).advice; }

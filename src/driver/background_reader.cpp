@@ -11,6 +11,8 @@
 
 namespace g4lidar {
 
+using namespace std::chrono_literals;
+
 std::string_view name_of(reader_state state) noexcept {
   constexpr std::array<std::string_view, 5> names{"opening", "running", "resting", "lost", "ended"};
   return names[static_cast<std::size_t>(state)];
@@ -18,11 +20,11 @@ std::string_view name_of(reader_state state) noexcept {
 
 reader_listener::~reader_listener() = default;
 
-background_reader::background_reader(std::unique_ptr<thread> made) noexcept
+background_reader::background_reader(std::shared_ptr<thread> made) noexcept
     : thread_(std::move(made)) {}
 background_reader::background_reader(const lidar_options& options, const reader_options& how,
                                      reader_listener* listener)
-    : thread_(std::make_unique<thread>(options, how, listener)) {}
+    : thread_(std::make_shared<thread>(options, how, listener)) {}
 background_reader::background_reader(background_reader&&) noexcept = default;
 
 background_reader& background_reader::operator=(background_reader&& other) noexcept {
@@ -36,7 +38,7 @@ background_reader& background_reader::operator=(background_reader&& other) noexc
 background_reader::~background_reader() { stop(); }
 
 result<background_reader> background_reader::start(lidar&& device, const reader_options& how) {
-  background_reader made(std::make_unique<thread>(std::move(device), how));
+  background_reader made(std::make_shared<thread>(std::move(device), how));
   if (auto started = made.start(); !started) return tl::unexpected(started.error());
   return made;
 }
@@ -52,13 +54,14 @@ view_result<scan> background_reader::next_scan(lidar::milliseconds timeout) {
   constexpr lidar::milliseconds longest = std::chrono::hours(24 * 365);
   const auto wait = std::clamp(timeout, lidar::milliseconds(0), longest);
   if (thread_->queue) {
-    const auto until = std::chrono::steady_clock::now() + wait;
+    // In its own thread no scan would come.
+    const auto until = std::chrono::steady_clock::now() + (thread_->is_own() ? 0ms : wait);
     if (const auto found = thread_->queue->scans.take(until)) return *found;
   }
   if (const auto why = failed()) return tl::unexpected(*why);
   const bool stopped = thread_->requests.has_to_stop();
   if (stopped) return g4lidar::failure(task::reading, problem::not_scanning);
-  return g4lidar::failure(task::reading, problem::timeout, {}, 0, thread_->detail.load());
+  return g4lidar::failure(task::reading, problem::timeout, {}, 0, thread_->why_no_scan());
 }
 
 const lidar_ring& background_reader::points() const noexcept {

@@ -81,7 +81,7 @@ result<std::span<const point>> lidar::driver::next_points(milliseconds timeout) 
     points_missed_ += read.missed;
     if (read.points > 0) return points_.all().first(read.points);
     if (auto able = source_->can_read(); !able) return tl::unexpected(able.error());
-    if (last) return timed_out();
+    if (last) return timed_out(false);
     parts_.pipeline.drop_scan();
     if (auto done = source_->step(source_->step_until_ns(deadline_ns)); !done)
       return tl::unexpected(done.error());

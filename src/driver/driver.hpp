@@ -39,8 +39,10 @@ class G4LIDAR_HIDDEN lidar::driver {
   result<std::span<const point>> next_points(milliseconds timeout);
 
   [[nodiscard]] const scan_source& source() const noexcept { return *source_; }
-  [[nodiscard]] tl::unexpected<error> timed_out() const noexcept {
-    const scan_expectation now = source_->expects();
+  /// The error of a call that waited for a scan, or for any points.
+  [[nodiscard]] tl::unexpected<error> timed_out(bool wants_scan = true) const noexcept {
+    scan_expectation now = source_->expects();
+    if (!wants_scan && now.why == error_detail::no_revolution) now.why = error_detail::usual;
     return failure(task::reading, problem::timeout, now.lost.empty() ? name() : now.lost, 0,
                    now.why);
   }

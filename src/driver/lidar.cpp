@@ -44,13 +44,6 @@ lidar::~lidar() = default;
 
 namespace {
 
-/// Whether a device that is plugged in later would be opened.
-bool may_come(const error& why) noexcept {
-  using enum problem;
-  return why == no_port || why == silence || why == gone || why == cannot_connect ||
-         why == garbage || why == busy;
-}
-
 /// Waits until the next attempt to open; false if that is cancelled.
 bool waited(const lidar_options& options) {
   constexpr int parts = 10;
@@ -75,7 +68,7 @@ result<lidar> lidar::open(const lidar_options& options) {
     const auto waited_for = std::chrono::steady_clock::now() - begin;
     const bool is_late =
         std::chrono::duration_cast<milliseconds>(waited_for) >= options.device_wait;
-    if (opened || is_late || !may_come(opened.error())) return opened;
+    if (opened || is_late || !opened.error().may_pass()) return opened;
     if (!waited(options)) return failure(task::opening, problem::cancelled, options.device);
   }
 }
@@ -97,6 +90,8 @@ result<lidar> lidar::open(std::unique_ptr<connector> from, const lidar_options& 
   lidar_options used = options;
   if (stated != nullptr) used.model = stated;
   if (used.model == nullptr) used.model = &g4_model;
+  const option_users users = behind.answers ? live : recording | raw_file | pipe;
+  if (const auto wrong = problem_with_users(used, users)) return tl::unexpected(*wrong);
   // Where the port could not be opened, there is no model that could refuse a setting.
   const bool is_missing = behind.is_searched && stated == nullptr;
   if (const auto wrong = problem_with_use(used)) return tl::unexpected(*wrong);

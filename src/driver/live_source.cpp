@@ -134,8 +134,10 @@ result<void> live_source::can_read() const noexcept {
 scan_expectation live_source::expects() const noexcept {
   if (stage_ == live_stage::closed || !wants_scan_) return {};
   if (stream_.is_scanning()) {
-    if (!spin_up_.lasts(pipeline_.scans())) return {};
-    return {spin_up_.ends_ns(), error_detail::spinning_up};
+    const error_detail why = why_no_scan();
+    if (!spin_up_.lasts(pipeline_.scans())) return {0, why};
+    const bool is_slow = why == error_detail::no_revolution && now_ns() >= spin_up_.ends_ns();
+    return {spin_up_.ends_ns(), is_slow ? why : error_detail::spinning_up};
   }
   const bool is_set_up = stage_ == live_stage::preparing || stage_ == live_stage::scanning;
   if (is_set_up && !reconnection_.is_under_way()) return {never_ns, error_detail::spinning_up};

@@ -2,6 +2,7 @@
 #include "option_problems.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string_view>
@@ -42,7 +43,81 @@ error bad_setting(const setting_info& of, const model& which, std::uint16_t give
   return bad(words, given, "");
 }
 
+/// What can use an option; whether two values of it differ, and how it is copied.
+struct option_row {
+  std::string_view name;
+  option_users users;
+  bool (*differs)(const lidar_options& a, const lidar_options& b);
+  void (*copy)(lidar_options& to, const lidar_options& from);
+};
+
+/// `part(options)` is the member.
+template <class Part>
+constexpr option_row row(std::string_view name, option_users users, Part /*part*/) {
+  return {name, users,
+          [](const lidar_options& a, const lidar_options& b) { return !(Part{}(a) == Part{}(b)); },
+          [](lidar_options& to, const lidar_options& from) { Part{}(to) = Part{}(from); }};
+}
+
+constexpr option_users any_file = recording | raw_file;
+
+/// The options that not every source can use.
+constexpr std::array option_rows{
+    row("baud", live, [](auto& of) -> auto& { return of.baud; }),
+    row("sample_rate", live, [](auto& of) -> auto& { return of.sample_rate; }),
+    row("frequency", live, [](auto& of) -> auto& { return of.frequency; }),
+    row("direction", live, [](auto& of) -> auto& { return of.direction; }),
+    row("constant", live, [](auto& of) -> auto& { return of.constant; }),
+    row("idle", live, [](auto& of) -> auto& { return of.idle; }),
+    row("protection", live, [](auto& of) -> auto& { return of.protection; }),
+    row("reconnect", live, [](auto& of) -> auto& { return of.reconnect; }),
+    row("longest_backoff", live, [](auto& of) -> auto& { return of.tuning.longest_backoff; }),
+    row("answer_time", live, [](auto& of) -> auto& { return of.tuning.answer_time; }),
+    row("stall_time", live, [](auto& of) -> auto& { return of.tuning.stall_time; }),
+    row("pace", live, [](auto& of) -> auto& { return of.tuning.pace; }),
+    row("speed", any_file, [](auto& of) -> auto& { return of.playback.speed; }),
+    row("loop", any_file, [](auto& of) -> auto& { return of.playback.loop; }),
+    row("range", any_file, [](auto& of) -> auto& { return of.playback.from_ns; }),
+    row("range", any_file, [](auto& of) -> auto& { return of.playback.to_ns; }),
+    row("raw_sample_rate_hz", raw_file, [](auto& of) -> auto& { return of.raw_sample_rate_hz; }),
+};
+
+std::string_view words_for(option_users users) noexcept {
+  switch (users) {
+    case live:
+      return "a live lidar";
+    case recording:
+      return "a recording";
+    case raw_file:
+      return "a file of raw bytes";
+    case pipe:
+      return "a pipe";
+    default:
+      return "a file";
+  }
+}
+
 }  // namespace
+
+std::optional<error> problem_with_users(const lidar_options& options, option_users users) noexcept {
+  const lidar_options usual;
+  for (const option_row& each : option_rows) {
+    if ((each.users & users) != 0 || !each.differs(options, usual)) continue;
+    error_context about(each.name);
+    about.add(", and ").add(options.device.empty() ? "the source" : options.device);
+    about.add(" is ").add(words_for(users));
+    return error(task::configuring, problem::bad_option, about, 0, error_detail::other_source);
+  }
+  return std::nullopt;
+}
+
+lidar_options without_others(lidar_options options, option_users users) {
+  const lidar_options usual;
+  for (const option_row& each : option_rows) {
+    if ((each.users & users) == 0) each.copy(options, usual);
+  }
+  return options;
+}
 
 std::optional<error> problem_with_settings(const lidar_options& options) noexcept {
   const model& which = options.model != nullptr ? *options.model : g4_model;

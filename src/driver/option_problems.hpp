@@ -2,6 +2,7 @@
 // What is wrong with options: the two parts of problem_with().
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "g4lidar/error.hpp"
@@ -11,6 +12,21 @@ namespace g4lidar {
 
 /// With the settings, which depend on the model; null: of a G4. *Pure.*
 [[nodiscard]] std::optional<error> problem_with_settings(const lidar_options& options) noexcept;
+
+/// What uses options; bits of a set.
+enum option_user : std::uint8_t {
+  live = 1,       ///< A port, a network bridge, `sim:`.
+  recording = 2,  ///< A file with times.
+  raw_file = 4,   ///< A file of raw bytes.
+  pipe = 8,       ///< Raw bytes as they come.
+};
+using option_users = std::uint8_t;
+
+/// With the options that are given, and that none of `users` can use. *Pure.*
+[[nodiscard]] std::optional<error> problem_with_users(const lidar_options& options,
+                                                      option_users users) noexcept;
+/// The same options without these. *Pure.*
+[[nodiscard]] lidar_options without_others(lidar_options options, option_users users);
 
 /// With all else. *Pure.*
 [[nodiscard]] std::optional<error> problem_with_use(const lidar_options& options) noexcept;

@@ -53,6 +53,10 @@ class reader_view {
     const std::lock_guard lock(mutex_);
     return status_;
   }
+  [[nodiscard]] reader_state state() const {
+    const std::lock_guard lock(mutex_);
+    return status_.state;
+  }
   [[nodiscard]] lidar_counts counts() const {
     const std::lock_guard lock(mutex_);
     return counts_;

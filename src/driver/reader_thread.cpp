@@ -18,27 +18,12 @@ constexpr std::chrono::milliseconds longest_wait = 100ms;
 /// Before the end of a file, so that a seek gives something.
 constexpr std::int64_t least_rest_ns = 1'000'000'000;
 
-/// Whether another attempt may succeed.
-bool may_pass(const error& why) noexcept {
-  switch (why.code()) {
-    case problem::bad_option:
-    case problem::bad_setting:
-    case problem::not_supported:
-    case problem::other_device:
-    case problem::read_only:
-    case problem::bad_file:
-    case problem::end_of_input:
-    case problem::cancelled:
-    case problem::system:
-      return false;
-    default:
-      return true;
-  }
-}
-
 bool is_same(const std::optional<error>& a, const std::optional<error>& b) {
   return a && b ? a->message() == b->message() : a.has_value() == b.has_value();
 }
+
+/// What the current thread runs.
+thread_local const void* in_thread_of = nullptr;
 
 std::size_t depth_of(const reader_options& how) noexcept { return how.newest_only ? 1 : 4; }
 
@@ -49,9 +34,10 @@ background_reader::thread::thread(const lidar_options& options, const reader_opt
     : options_(options),
       how_(how),
       listener_(listener != nullptr
-                    ? *listener
-                    : *(queue = std::make_unique<reader_queue>(
-                            depth_of(how), options.model != nullptr ? *options.model : g4_model))),
+                    ? listener
+                    : (queue = std::make_unique<reader_queue>(
+                           depth_of(how), options.model != nullptr ? *options.model : g4_model))
+                          .get()),
       playback_{.speed = options.playback.speed} {
   options_.is_cancelled = [this, inner = options.is_cancelled] {
     return requests.has_to_stop() || (inner && inner());
@@ -63,7 +49,7 @@ background_reader::thread::thread(lidar&& given, const reader_options& how)
     // A model with larger scans than a G4 makes it grow once.
     : queue(std::make_unique<reader_queue>(depth_of(how), g4_model)),
       how_(how),
-      listener_(*queue),
+      listener_(queue.get()),
       device_(std::make_unique<lidar>(std::move(given))),
       is_given_(true) {
   if (player* const file = played()) {
@@ -73,14 +59,27 @@ background_reader::thread::thread(lidar&& given, const reader_options& how)
   show_device();
 }
 
+/// In its own thread, when nobody else holds it: there it cannot be joined.
+background_reader::thread::~thread() {
+  if (thread_.joinable()) thread_.detach();
+}
+
+bool background_reader::thread::is_own() const noexcept { return in_thread_of == this; }
+
 result<void> background_reader::thread::start() {
+  std::unique_lock lock(start_mutex_, std::defer_lock);
+  if (!is_own()) lock.lock();  // a stop() may hold it, and wait for this thread
+  if (requests.has_to_stop())
+    return failure(task::starting, problem::gone, "this reader, which was stopped");
+  if (is_own() || thread_.joinable()) return {};
   if (is_given_ && !how_.starts_rested) {
     if (auto started = device_->start(); !started) return started;
     is_started_ = true;
     set_state(reader_state::running);
   }
   try {
-    thread_ = std::thread([this] { run(); });
+    // It is held as long as the thread runs: a reader may be destroyed there.
+    thread_ = std::thread([self = shared_from_this()] { self->run(); });
   } catch (const std::system_error& refused) {
     return failure(task::starting, problem::system, "a thread", refused.code().value());
   }
@@ -88,10 +87,21 @@ result<void> background_reader::thread::start() {
 }
 
 void background_reader::thread::stop() noexcept {
-  const std::lock_guard lock(stop_mutex_);
   requests.add([](reader_request& all) { all.stops = true; });
+  if (is_own()) {
+    if (!queue) listener_ = &nobody_;
+    return;
+  }
+  const std::lock_guard lock(start_mutex_);
   if (thread_.joinable()) thread_.join();
   if (queue) queue->scans.end();
+}
+
+error_detail background_reader::thread::why_no_scan() const {
+  const reader_state now = view.state();
+  if (now == reader_state::resting) return error_detail::resting;
+  const bool is_away = now == reader_state::opening || now == reader_state::lost;
+  return is_away ? error_detail::searching : detail_.load();
 }
 
 std::int64_t background_reader::thread::wall_ns(std::int64_t time_ns) noexcept {
@@ -101,6 +111,7 @@ std::int64_t background_reader::thread::wall_ns(std::int64_t time_ns) noexcept {
 }
 
 void background_reader::thread::run() noexcept {
+  in_thread_of = this;
   while (serve()) {
     if (state() == reader_state::ended) {
       requests.wait();
@@ -115,6 +126,7 @@ void background_reader::thread::run() noexcept {
     }
   }
   close();
+  if (queue) queue->scans.end();
 }
 
 bool background_reader::thread::serve() {
@@ -124,29 +136,32 @@ bool background_reader::thread::serve() {
   if (now.pauses) playback_ = {.speed = playback_.speed, .is_paused = *now.pauses};
   if (std::exchange(rests_, now.rests) != rests_ || now.speed || now.pauses) follow_playback();
   const bool is_there = state() == reader_state::running || state() == reader_state::resting;
-  for (const auto& question : now.questions) question(is_there ? device_.get() : nullptr);
+  for (const auto& question : now.questions) {
+    if (!requests.has_to_stop()) question(is_there ? device_.get() : nullptr);
+  }
   if (now.seek_ns) seek(*now.seek_ns);
   publish();
-  return true;
+  return !requests.has_to_stop();  // a question may have stopped it
 }
 
 void background_reader::thread::open() {
   lidar_options used = options_;
   used.device_wait = 0ms;  // this thread waits
   auto opened = lidar::open(used);
+  if (requests.has_to_stop()) return;  // before the listener hears of it
   if (!opened) return fail(opened.error());
   device_ = std::make_unique<lidar>(*std::move(opened));
   is_started_ = false;
   follow_playback();
   show_device();
   static_cast<void>(wall_.update());
-  listener_.on_open(*device_);
+  listener_->on_open(*device_);
 }
 
 void background_reader::thread::close() {
   if (!device_) return;
   static_cast<void>(device_->stop());
-  while (const auto scan = device_->next_scan(0ms)) listener_.on_scan(*scan);  // measured before
+  while (const auto scan = device_->next_scan(0ms)) listener_->on_scan(*scan);  // measured before
   give_events(true);
   publish();
   if (!is_given_) device_.reset();
@@ -158,7 +173,9 @@ void background_reader::thread::start_scan() {
   is_started_ = started.has_value();
   if (is_started_ && state() != reader_state::lost) set_state(reader_state::running);
   if (is_started_) return;
-  started.error() == problem::reconnecting ? look() : fail(started.error());
+  if (started.error() == problem::reconnecting) return look();
+  // It goes on in the next call, if a program has woken the lidar.
+  if (started.error() != problem::cancelled || is_cancelled()) fail(started.error());
 }
 
 void background_reader::thread::read() {
@@ -172,8 +189,8 @@ void background_reader::thread::read() {
   give_events(is_over);
   if (is_over) return fail(*why);
   if (!why || *why != problem::cancelled) {
-    detail.store(why ? why->detail() : error_detail::usual, std::memory_order_relaxed);
-  } else if (!is_woken && options_.is_cancelled && options_.is_cancelled()) {
+    detail_.store(why ? why->detail() : error_detail::usual, std::memory_order_relaxed);
+  } else if (!is_woken && is_cancelled()) {
     end(*why);
   }
 }
@@ -201,13 +218,13 @@ void background_reader::thread::look() {
 std::optional<error> background_reader::thread::take(lidar::milliseconds longest) {
   if (how_.wants_points) {
     const auto points = device_->next_points(longest);
-    if (points) listener_.on_points(*points);
+    if (points) listener_->on_points(*points);
     if (!points && points.error() != problem::timeout) return points.error();
     longest = 0ms;
   }
   const auto scan = device_->next_scan(longest);
   if (!scan) return scan.error();
-  listener_.on_scan(*scan);
+  listener_->on_scan(*scan);
   if (std::exchange(playback_.shows_one, false)) follow_playback();
   return std::nullopt;
 }
@@ -235,12 +252,12 @@ void background_reader::thread::give_events(bool is_over) {
       set_state(reader_state::lost, error(task::reading, found->reason, device_->name()));
     }
     if (is_return) set_state(rests_ ? reader_state::resting : reader_state::running);
-    listener_.on_event(*found);
+    listener_->on_event(*found);
   }
 }
 
 void background_reader::thread::fail(const error& why) {
-  if (is_given_ || !may_pass(why)) return end(why);
+  if (is_given_ || !why.may_pass()) return end(why);
   publish();
   const auto now = clock::now();
   if (!failing_since_) failing_since_ = now;
@@ -264,7 +281,7 @@ void background_reader::thread::set_state(reader_state state, const std::optiona
     now.state = state;
     now.why = why;
   });
-  listener_.on_state(state, why);
+  listener_->on_state(state, why);
 }
 
 void background_reader::thread::follow_playback() {

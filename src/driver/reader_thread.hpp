@@ -19,14 +19,23 @@
 namespace g4lidar {
 
 /// *Any thread*, except for what belongs to the thread: wall_ns() and the private part.
-class G4LIDAR_HIDDEN background_reader::thread {
+class G4LIDAR_HIDDEN background_reader::thread
+    : public std::enable_shared_from_this<background_reader::thread> {
  public:
   thread(const lidar_options& options, const reader_options& how, reader_listener* listener);
   /// Of an open lidar, which is never opened again.
   thread(lidar&& given, const reader_options& how);
 
+  thread(const thread&) = delete;
+  thread& operator=(const thread&) = delete;
+  ~thread();
+
   [[nodiscard]] result<void> start();
   void stop() noexcept;
+  /// Whether this is called in the thread itself, which cannot wait for itself.
+  [[nodiscard]] bool is_own() const noexcept;
+  /// Why a call that waited for a scan has none.
+  [[nodiscard]] error_detail why_no_scan() const;
   /// Of the lidar that was given.
   [[nodiscard]] const lidar_ring& points() const noexcept {
     return is_given_ ? device_->points() : empty_ring();
@@ -35,8 +44,7 @@ class G4LIDAR_HIDDEN background_reader::thread {
 
   reader_requests requests;
   reader_view view;
-  std::unique_ptr<reader_queue> queue;                     // where there is no listener
-  std::atomic<error_detail> detail = error_detail::usual;  // why no scan has come
+  std::unique_ptr<reader_queue> queue;  // where there is no listener
 
  private:
   using clock = std::chrono::steady_clock;
@@ -68,12 +76,16 @@ class G4LIDAR_HIDDEN background_reader::thread {
   void follow_playback();
   void show_device();
   void publish();
+  /// By lidar_options::is_cancelled, and not by a stop.
+  [[nodiscard]] bool is_cancelled() const {
+    return !requests.has_to_stop() && options_.is_cancelled && options_.is_cancelled();
+  }
   [[nodiscard]] player* played() noexcept { return device_ ? device_->player() : nullptr; }
   [[nodiscard]] reader_state state() const noexcept { return view.own().state; }
 
   lidar_options options_;
   reader_options how_;
-  reader_listener& listener_;
+  reader_listener* listener_;
   std::unique_ptr<lidar> device_;
   bool is_given_ = false;
   bool is_started_ = false;
@@ -83,7 +95,9 @@ class G4LIDAR_HIDDEN background_reader::thread {
   std::optional<clock::time_point> failing_since_;  // until points come, or the motor rests
   wall_clock wall_;
   clock::time_point wall_due_{};
-  std::mutex stop_mutex_;  // for stop() by several threads at once
+  reader_listener nobody_;  // instead of the listener, after a stop() in the thread
+  std::atomic<error_detail> detail_ = error_detail::usual;  // why no scan has come
+  std::mutex start_mutex_;  // for start() and stop() by several threads at once
   std::thread thread_;
 };
 

@@ -79,8 +79,9 @@ result<void> replay_player::can_read() const noexcept {
 /// Where the recorded lidar was lost or stopped, the recording goes on later, or ends.
 scan_expectation replay_player::expects() const noexcept {
   if (!is_scanning()) return {};
-  if (!delivers_ || stands()) return {.not_due_before_ns = never_ns};
-  return {.not_due_before_ns = spin_up_.lasts(pipeline_.scans()) ? spin_up_.ends_ns() : 0};
+  const auto why = file_ != nullptr ? error_detail::of_file : why_no_scan();  // a pipe
+  if (!delivers_ || stands()) return {never_ns, why};
+  return {spin_up_.lasts(pipeline_.scans()) ? spin_up_.ends_ns() : 0, why};
 }
 
 result<void> replay_player::advance(std::int64_t deadline_ns) {

@@ -109,6 +109,14 @@ class scan_source {
     events_.put({what, reason, now_ns()});
   }
 
+  /// Why a scan that is due has not come: packets of it have come in the last moments, or nothing.
+  [[nodiscard]] error_detail why_no_scan() const noexcept {
+    constexpr std::int64_t longest_gap_ns = 200'000'000;  // with the largest batch
+    const std::int64_t last_ns = pipeline_.decoder().last_packet_ns();
+    const bool is_moving = last_ns != 0 && now_ns() - last_ns < longest_gap_ns;
+    return is_moving ? error_detail::no_revolution : error_detail::usual;
+  }
+
   /// The motor is started: the first scan comes when it has spun up.
   void begin_spin_up() noexcept {
     spin_up_.begin(deadline_after_ns(spin_up::longest_ns), pipeline_.scans());

@@ -44,6 +44,19 @@ named_parts divided(std::string_view name) {
   return {whole.substr(0, at), whole.substr(at + model_suffix.size())};
 }
 
+option_user user_of(source_kind kind, const std::string& path) {
+  if (kind == source_kind::recording) return recording;
+  if (kind != source_kind::raw_bytes) return live;
+  struct stat found{};
+  const bool is_there = (path == "-" ? ::fstat(0, &found) : ::stat(path.c_str(), &found)) == 0;
+  const bool is_file = !is_there || S_ISREG(found.st_mode) || S_ISDIR(found.st_mode);
+  return is_file ? raw_file : pipe;
+}
+
+option_user user_of(std::string_view name) {
+  return user_of(kind_of_source(name), path_of_source(name));
+}
+
 std::uint32_t baud_of(const lidar_options& options, const model& which) noexcept {
   return options.baud != 0 ? options.baud : which.bauds[0];
 }
@@ -172,6 +185,8 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   if (wanted == nullptr && kind == source_kind::simulated) {
     known.model = model_of_source(options.device).value_or(nullptr);
   }
+  if (const auto wrong = problem_with_users(options, user_of(kind, path)))
+    return tl::unexpected(*wrong);
   const bool is_searched = wanted == nullptr && kind == source_kind::device;
   const auto wrong = is_searched ? problem_with_use(known) : problem_with(known);
   if (wrong) return tl::unexpected(*wrong);
@@ -188,6 +203,15 @@ result<std::unique_ptr<connector>> connector_for(const lidar_options& options) {
   }
   if (is_searched) return system_connector::find(path, options.baud, options.is_cancelled);
   return system_connector::make(path, baud_of(options, *wanted), wanted);
+}
+
+std::optional<error> problem_with_source(const lidar_options& options) {
+  return problem_with_users(options, user_of(options.device));
+}
+
+lidar_options usable_options(lidar_options options) {
+  const option_user user = user_of(options.device);
+  return without_others(std::move(options), user);
 }
 
 const sim::simulated_source* simulation_of([[maybe_unused]] const connector& from) noexcept {

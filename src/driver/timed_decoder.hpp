@@ -94,6 +94,8 @@ class timed_decoder {
   [[nodiscard]] double period_ns() const noexcept { return 1e9 / clock_.sample_rate_hz(); }
   /// When the sample after the last one is measured.
   [[nodiscard]] std::int64_t next_sample_ns() const noexcept { return clock_.next_sample_ns(); }
+  /// When the last packet arrived; 0 if none has come since begin().
+  [[nodiscard]] std::int64_t last_packet_ns() const noexcept { return last_packet_ns_; }
   [[nodiscard]] std::uint64_t samples_lost() const noexcept { return samples_lost_; }
   [[nodiscard]] std::int64_t largest_gap_ns() const noexcept { return largest_gap_ns_; }
 

@@ -154,7 +154,9 @@ result<void> fd_port::write(bytes data, std::int64_t deadline_ns) noexcept {
     if ((polled & hung_up) != 0) return ended(task::writing, problem::gone, 0);
     const auto is_ready = wait(task::writing, POLLOUT, deadline_ns);
     if (!is_ready) return tl::unexpected(is_ready.error());
-    if (*is_ready == 0) return failure(task::writing, problem::timeout, name_);
+    if (*is_ready == 0) {
+      return failure(task::writing, problem::timeout, name_, 0, error_detail::not_sent);
+    }
     polled = *is_ready;
   }
   return {};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files that are played in C, and lidars that are read in a thread.
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -157,6 +158,51 @@ TEST_F(CPlayer, IsControlledInAThread) {
   }
   EXPECT_EQ(code, G4LIDAR_END_OF_INPUT) << why.message;
   expect_state(it, G4LIDAR_ENDED);
+}
+
+/// Calls of a reader by its own thread, while it reads its file.
+struct own_calls {
+  std::atomic<g4lidar_background*> reader = nullptr;
+  std::atomic<int> count = 0;
+
+  static bool make(void* context) {
+    auto& self = *static_cast<own_calls*>(context);
+    g4lidar_background* const of = self.reader;
+    if (of == nullptr) return false;
+    g4lidar_event event{};
+    EXPECT_NE(g4lidar_background_get_state(of), 0);
+    EXPECT_NE(g4lidar_background_next_event(of, &event), G4LIDAR_BAD_ARGUMENT);
+    EXPECT_EQ(g4lidar_background_rest(of, true), G4LIDAR_OK);
+    EXPECT_EQ(g4lidar_background_rest(of, false), G4LIDAR_OK);
+    EXPECT_EQ(g4lidar_background_pause(of, true), G4LIDAR_OK);
+    EXPECT_EQ(g4lidar_background_pause(of, false), G4LIDAR_OK);
+    EXPECT_EQ(g4lidar_background_set_speed(of, 2.0, nullptr), G4LIDAR_OK);
+    self.reader = nullptr;  // once
+    EXPECT_EQ(g4lidar_background_seek(of, second), G4LIDAR_OK);
+    ++self.count;
+    return false;
+  }
+};
+
+TEST_F(CPlayer, MayBeCalledByItsOwnThread) {
+  own_calls calls;
+  g4lidar_options options = defaults();
+  options.device = path_.c_str();
+  options.is_cancelled = own_calls::make;
+  options.context = &calls;
+  g4lidar_lidar* made = nullptr;
+  g4lidar_error why;
+  ASSERT_EQ(g4lidar_open_with(&options, &made, &why), G4LIDAR_OK) << why.message;
+  const lidar file(made);
+  const background it = read(file, false);
+  ASSERT_NE(it, nullptr);
+  calls.reader = it.get();
+  EXPECT_EQ(g4lidar_background_seek(it.get(), 0), G4LIDAR_OK);  // the file is read again
+  wait_until([&] { return calls.count > 0; });
+  EXPECT_EQ(calls.count, 1);
+  const g4lidar_scan* scan = nullptr;
+  EXPECT_EQ(g4lidar_background_next_scan(it.get(), patience_ms, &scan, &why), G4LIDAR_OK)
+      << why.message;
 }
 
 TEST(CBackground, ReadsALidarThatTheProgramNeedNotCall) {

@@ -186,13 +186,18 @@ def test_ascii():
 
 
 def test_signals():
-    for number, code in ((signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGHUP, 129),
-                         (signal.SIGSEGV, -signal.SIGSEGV), (signal.SIGQUIT, -signal.SIGQUIT),
-                         (signal.SIGUSR1, -signal.SIGUSR1)):
-        terminal = Terminal(SOURCE)
-        terminal.shows("state")
-        terminal.child.send_signal(number)
-        terminal.end(code)
+    """Each signal that ends a program; those that the program ignores, or that stop it, are none."""
+    ends = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGHUP: 129}
+    others = {signal.SIGKILL, signal.SIGSTOP, signal.SIGCHLD, signal.SIGCONT, signal.SIGTSTP, signal.SIGTTIN,
+              signal.SIGTTOU, signal.SIGURG, signal.SIGWINCH, signal.SIGPIPE, signal.SIGXFSZ}
+    numbers = sorted(int(number) for number in signal.valid_signals() if number not in others)
+    assert len(numbers) > 50 and signal.SIGRTMAX in numbers, numbers
+    for first in range(0, len(numbers), 8):
+        terminals = [(number, Terminal(SOURCE)) for number in numbers[first : first + 8]]
+        for number, terminal in terminals:
+            terminal.shows("state")
+            terminal.child.send_signal(number)
+            terminal.end(ends.get(number, -number))
     terminal = Terminal(SOURCE)
     terminal.shows("state")
     terminal.press("\x03")

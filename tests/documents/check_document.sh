@@ -12,7 +12,7 @@
 # Python blocks are run with PYTHON (python3 by default) and the argument sim:, if it can import g4lidar. If a document has
 # nothing else to run, its check is skipped. check_document.sh BLOCKS python runs the Python blocks only.
 #
-# Needs G4_DUMP; for command lines PROGRAMS, directories for PATH, and for projects PREFIX, the
+# LIDAR=NAME=VALUE is an option of the simulated G4. Needs G4_DUMP; for command lines PROGRAMS, directories for PATH, and for projects PREFIX, the
 # prefix of the installed library. Prints errors only.
 set -euo pipefail
 blocks=$(cd "$1" && pwd)
@@ -58,7 +58,7 @@ await() {
 # A simulated G4 at $g4, started at its first use.
 need_g4() {
   if [[ -e $g4 ]]; then return 0; fi
-  "$G4_DUMP" sim --link "$g4" >/dev/null 2>"$scratch/simulator" &
+  "$G4_DUMP" sim ${LIDAR:+--device "$LIDAR"} --link "$g4" >/dev/null 2>"$scratch/simulator" &
   await "$g4" || { echo "g4-dump sim created no device" >&2; exit 1; }
 }
 

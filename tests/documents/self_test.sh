@@ -93,4 +93,21 @@ done
 { echo '<!-- test: in project -->'; block cmake 'find_package(no_such REQUIRED)'; } | expect wrong "an unknown package"
 printf '%s\n' '- A list:' "  ${fence}sh" '  true' "  $fence" | expect wrong "an indented fence"
 printf '%s\n' "${fence}sh" 'true' | expect wrong "a block without an end"
+
+# examples <list> <line of a header>...: whether the examples of this header are those of the list.
+examples() {
+  mkdir -p "$scratch/headers"
+  printf '%s\n' "$1" >"$scratch/examples.txt"
+  printf '%s\n' "${@:2}" >"$scratch/headers/one.hpp"
+  bash "$here/header_examples.sh" "$scratch/examples.txt" "$scratch/headers" >"$scratch/headers.md" 2>&1
+}
+if ! examples 'one.hpp 1 header_lidar' '/// Text.' '///' '///     open("/dev/ttyUSB0");' 'void f();' \
+  || ! grep -qx 'open(device);' "$scratch/headers.md"; then
+  echo "an example of a header is refused, or its port is not the simulated one:" >&2
+  cat "$scratch/headers.md" >&2
+  failed=1
+fi
+if examples '' '///' '///     open();'; then echo "an example that is not listed is not refused" >&2 && failed=1; fi
+if examples 'one.hpp 1 text' '///' '///     open();'; then echo "code as text is not refused" >&2 && failed=1; fi
+if examples 'one.hpp 2 text' '/// Text.'; then echo "an example that does not exist is not refused" >&2 && failed=1; fi
 exit "$failed"

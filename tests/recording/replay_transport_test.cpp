@@ -66,16 +66,13 @@ TEST(ReplayTransport, FindsTheDeviceInTheBytes) {
   EXPECT_EQ(device->information().serial_number(), "2021101000070073");
 }
 
-TEST(ReplayTransport, End_IsFinalAlsoWithReconnecting) {
+TEST(ReplayTransport, End_IsFinal) {
   const temporary_path path;
   {
     auto writer = made_writer(path.text());
     record_device(writer, 3 * second);
   }
-  lidar_options options;
-  options.device = path.text();
-  options.reconnect = true;
-  auto device = lidar::open(options);
+  auto device = lidar::open(path.text());
   ASSERT_TRUE(device) << device.error().message();
   ASSERT_TRUE(device->start());
   result<scan> found = device->next_scan(500ms);

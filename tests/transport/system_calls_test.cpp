@@ -244,6 +244,7 @@ TEST(SerialCalls, FullOutput_TimesOut) {
   const auto sent = (*port)->write(std::array<std::uint8_t, 2>{0xA5, 0x65}, in(**port, 20ms));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code(), problem::timeout);
+  EXPECT_EQ(sent.error().detail(), error_detail::not_sent);
   EXPECT_FALSE(sent.error().is_fatal());
   ASSERT_EQ(::tcflow(device.keep(), TCOON), 0);
   EXPECT_TRUE((*port)->write(std::array<std::uint8_t, 2>{0xA5, 0x65}, in(**port, patience)));

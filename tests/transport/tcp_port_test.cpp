@@ -134,6 +134,7 @@ TEST(TcpPort, OtherEndDoesNotRead_WriteTimesOut) {
   const auto sent = (*port)->write(much, in(**port, 200ms));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code(), problem::timeout);
+  EXPECT_EQ(sent.error().detail(), error_detail::not_sent);
 }
 
 }  // namespace

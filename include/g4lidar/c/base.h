@@ -71,7 +71,7 @@ enum g4lidar_result {
   G4LIDAR_OTHER_DEVICE = 11,  /**< A device answers that is another model. */
   G4LIDAR_DOES_NOT_STOP = 12, /**< The device scans and does not react to a stop command. */
   G4LIDAR_UNHEALTHY = 13,     /**< The device reports an error of its own. */
-  G4LIDAR_TIMEOUT = 14,       /**< Nothing arrived in time; a retry may help. */
+  G4LIDAR_TIMEOUT = 14,       /**< What was awaited did not arrive in time; a retry may help. */
   G4LIDAR_WRONG_ANSWER = 15,  /**< Replies arrived, none of them valid for the command. */
   G4LIDAR_NOT_REACHED = 16,   /**< The device did not reach the wanted setting. */
   G4LIDAR_BAD_SETTING = 17,   /**< Refused: the model cannot be set to this value. */

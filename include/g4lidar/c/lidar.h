@@ -51,7 +51,8 @@ enum g4lidar_pace {
 };
 
 /** How a lidar is opened and used. A setting that is 0 stays as the device has it; another one is
- *  set at each start and after a reconnect. A time that is 0 has its default. */
+ *  set at each start and after a reconnect. A time that is 0 has its default. What the source cannot use is refused with
+ *  bad_option: settings, `baud`, `pace`, `reconnect` and the times of a connection for a file. */
 typedef struct g4lidar_options {
   size_t struct_size; /**< Set by g4lidar_options_init(). */
   /** Which lidar: "" or NULL for the only lidar; a path; `serial:2021101000070073`; `usb:1-1.4`;

@@ -57,12 +57,12 @@ enum g4lidar_background_state {
  *  G4LIDAR_BAD_ARGUMENT for a simulator in virtual time, and for a lidar with a recorder. */
 G4LIDAR_C_API int g4lidar_background_start(g4lidar_lidar* lidar, bool newest_only,
                                            g4lidar_background** reader, g4lidar_error* error);
-/** Ends the thread, stops the motor and closes the lidar. */
+/** Ends the thread, stops the motor and closes the lidar. Not in `is_cancelled`. */
 G4LIDAR_C_API void g4lidar_background_free(g4lidar_background* reader);
 /** The oldest scan that is kept and was not taken yet; valid until the next call. Older ones are counted
  *  as `scans_missed`. Fails with G4LIDAR_TIMEOUT; when the thread has ended, with the reason. One thread at a
  *  time calls this and the other functions of a reader that return pointers; those that return none may be
- *  called by any thread. */
+ *  called by any thread, and in `is_cancelled`, which the thread of the reader calls. */
 G4LIDAR_C_API int g4lidar_background_next_scan(g4lidar_background* reader, int timeout_ms,
                                                const g4lidar_scan** scan, g4lidar_error* error);
 /** A g4lidar_background_state; 0 for NULL. */

@@ -82,9 +82,10 @@ class G4LIDAR_API background_pty {
 
   /// See pty_port; with faults or unplug() it stays valid only if there is a link.
   [[nodiscard]] const std::string& path() const noexcept;
-  /// Calls a function with the device, or unplugs it, between two steps of the thread.
+  /// Calls a function with the device, which may unplug it, between two steps of the thread. *Any thread.* The function
+  /// may call the functions of this.
   void with(const std::function<void(device& simulated, std::int64_t now_ns)>& look);
-  /// See pty_port.
+  /// See pty_port. *Any thread.*
   [[nodiscard]] std::uint64_t bytes_lost() const;
 
  private:

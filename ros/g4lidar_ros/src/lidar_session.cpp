@@ -56,7 +56,7 @@ lidar_session::lidar_session(rclcpp_lifecycle::LifecycleNode& node, lidar_topics
       parameters_(options.shaping, first_filters(), mask_in(options.mask), {}, shaper_),
       reader_(
           [this] {
-            g4lidar::lidar_options made = options_.lidar;
+            g4lidar::lidar_options made = g4lidar::usable_options(options_.lidar);
             made.wrap = [this](std::unique_ptr<g4lidar::connector> from) {
               simulation_ = g4lidar::simulation_of(*from);
               return g4lidar::result<std::unique_ptr<g4lidar::connector>>(

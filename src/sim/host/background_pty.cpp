@@ -35,7 +35,7 @@ class G4LIDAR_HIDDEN background_pty::state {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
   void with(const std::function<void(device&, std::int64_t)>& look) {
-    const std::lock_guard lock(mutex_);
+    const std::lock_guard lock(mutex_);  // recursive: `look` may use this, too
     look(port_.simulated(), port_.now_ns());
     ring();
   }
@@ -77,7 +77,7 @@ class G4LIDAR_HIDDEN background_pty::state {
   pty_port port_;
   std::string path_;
   owned_fd wake_descriptor_;
-  std::mutex mutex_;
+  std::recursive_mutex mutex_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };

@@ -278,6 +278,19 @@ TEST_F(SimPty, IsResetForEachProgram) {
   EXPECT_GT(got.packets, 15U) << "it goes on scanning";
 }
 
+TEST_F(SimPty, FunctionOfAnotherThread_MayUseThePort) {
+  auto port = sim::background_pty::open(simulated(), link());
+  ASSERT_TRUE(port);
+  bool is_plugged = false;
+  port->with([&](sim::device&, std::int64_t) {
+    EXPECT_EQ(port->bytes_lost(), 0U);
+    EXPECT_EQ(port->path(), link());
+    port->with(
+        [&](sim::device& inner, std::int64_t now_ns) { is_plugged = inner.is_plugged(now_ns); });
+  });
+  EXPECT_TRUE(is_plugged);
+}
+
 TEST_F(SimPty, Idle_DoesNotSpin) {
   std::array<int, 2> wake_pipe{};
   ASSERT_EQ(::pipe2(wake_pipe.data(), O_CLOEXEC), 0);

@@ -22,18 +22,27 @@
 namespace g4_tool {
 namespace {
 
-/// Signals that end the program at once, and those of which it handles the first one.
-constexpr std::array fatal_signals{SIGQUIT, SIGILL,  SIGABRT, SIGBUS,  SIGFPE,
-                                   SIGSEGV, SIGALRM, SIGUSR1, SIGUSR2, SIGSYS};
+/// Signals of which the program handles the first one.
 constexpr std::array ending_signals{SIGINT, SIGTERM, SIGHUP};
+/// Signals that do not end a program, or cannot be handled. All others end it at once.
+constexpr std::array other_signals{SIGKILL, SIGSTOP, SIGCHLD, SIGCONT, SIGTSTP,
+                                   SIGTTIN, SIGTTOU, SIGURG,  SIGWINCH};
+/// Signals of a fault of the program, whose handlers (of a sanitizer) end it, too.
+constexpr std::array fault_signals{SIGILL, SIGTRAP, SIGABRT, SIGBUS, SIGFPE, SIGSEGV, SIGSYS};
+constexpr int signal_count = NSIG;  // from 1 on, with the real-time ones
+
+template <std::size_t Count>
+bool is_in(const std::array<int, Count>& all, int number) {
+  return std::ranges::find(all, number) != all.end();
+}
 
 /// The data of the signal handlers, prepared by the constructor.
 struct restoring {
   std::array<char, 256> words;
   std::size_t size;
   termios before;
-  std::array<struct sigaction, ending_signals.size()> ending;
-  std::array<struct sigaction, fatal_signals.size()> fatal;
+  std::array<struct sigaction, signal_count> actions;  // as they were, by signal
+  std::array<bool, signal_count> is_handled;
 };
 restoring saved{};
 volatile std::sig_atomic_t is_ending = 0;
@@ -68,23 +77,25 @@ void restore_and_raise(int number) {
 void handle_ending_signal(int number) {
   if (is_ending != 0) return restore_and_raise(number);
   is_ending = 1;
-  for (std::size_t i = 0; i < ending_signals.size(); ++i) {
-    const struct sigaction& before = saved.ending[i];
-    if (ending_signals[i] == number && before.sa_handler != SIG_DFL)
-      return before.sa_handler(number);
-  }
-  restore_and_raise(number);
+  const auto before = saved.actions[static_cast<std::size_t>(number)].sa_handler;
+  before == SIG_DFL ? restore_and_raise(number) : before(number);
 }
 
-template <std::size_t Count>
-void handle(const std::array<int, Count>& signals, std::array<struct sigaction, Count>& before,
-            void (*handler)(int)) {
-  for (std::size_t i = 0; i < Count; ++i) {
+/// Before each signal that ends the program. What is ignored (as under nohup) remains so, and what has a handler that
+/// need not end the program (of a profiler).
+void handle_signals() {
+  for (int number = 1; number < signal_count; ++number) {
+    struct sigaction& before = saved.actions[static_cast<std::size_t>(number)];
+    bool& is_handled = saved.is_handled[static_cast<std::size_t>(number)];
+    is_handled = false;
+    if (is_in(other_signals, number) || ::sigaction(number, nullptr, &before) != 0) continue;
+    const bool ends_later = is_in(ending_signals, number);
+    const bool is_free = before.sa_handler == SIG_DFL || ends_later || is_in(fault_signals, number);
+    if (before.sa_handler == SIG_IGN || !is_free) continue;
     struct sigaction action{};
-    action.sa_handler = handler;
+    action.sa_handler = ends_later ? handle_ending_signal : restore_and_raise;
     action.sa_flags = SA_NODEFER;
-    ::sigaction(signals[i], nullptr, &before[i]);
-    if (before[i].sa_handler != SIG_IGN) ::sigaction(signals[i], &action, nullptr);
+    is_handled = ::sigaction(number, &action, nullptr) == 0;
   }
 }
 
@@ -132,8 +143,7 @@ screen::screen(bool colored) {
   saved.size = 0;
   for (const char* word : {"sgr0", "op", "rmkx", "cnorm", "rmcup"}) add_sequence(word);
   is_ending = 0;
-  handle(ending_signals, saved.ending, handle_ending_signal);
-  handle(fatal_signals, saved.fatal, restore_and_raise);
+  handle_signals();
   ::cbreak();
   ::noecho();
   ::nonl();
@@ -150,12 +160,11 @@ screen::screen(bool colored) {
 
 screen::~screen() {
   ::endwin();
-  for (std::size_t i = 0; i < fatal_signals.size(); ++i) {
-    ::sigaction(fatal_signals[i], &saved.fatal[i], nullptr);
-  }
-  if (is_ending != 0) return;
-  for (std::size_t i = 0; i < ending_signals.size(); ++i) {
-    ::sigaction(ending_signals[i], &saved.ending[i], nullptr);
+  for (int number = 1; number < signal_count; ++number) {
+    const bool stays =
+        is_ending != 0 && is_in(ending_signals, number);  // a second one ends the program
+    if (!saved.is_handled[static_cast<std::size_t>(number)] || stays) continue;
+    ::sigaction(number, &saved.actions[static_cast<std::size_t>(number)], nullptr);
   }
 }
 

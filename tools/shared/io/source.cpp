@@ -226,6 +226,7 @@ lidar_options options_for(const common_options& options, lidar_options how) {
   if (options.on_loss == loss_rule::wait && !is_file_name(options.source))
     how.device_wait = std::chrono::milliseconds::max();
   if (!how.is_cancelled) how.is_cancelled = [] { return interrupt() != 0; };
+  how = usable_options(std::move(how));
   if (how.model != nullptr) return how;
   const bool is_raw = kind_of_source(options.source) == source_kind::raw_bytes;
   how.wrap = [inner = std::move(how.wrap), is_raw](std::unique_ptr<connector> from) {
@@ -259,7 +260,14 @@ opened_source::opened_source(const common_options& options, lidar_options how) {
     simulation_ = simulation_of(*from);
     return wrap ? wrap(std::move(from)) : result<std::unique_ptr<connector>>(std::move(from));
   };
+  const auto wait = std::exchange(how.device_wait, std::chrono::milliseconds(0));
   auto opened = g4lidar::lidar::open(how);
+  if (!opened && wait > how.device_wait && opened.error().may_pass()) {
+    logger::info(fmt::format("{}\nIt is tried again until a lidar answers.\n",
+                             failure_of(options, opened.error()).what()));
+    how.device_wait = wait;
+    opened = g4lidar::lidar::open(how);
+  }
   if (!opened) {
     if (interrupt() != 0 || opened.error() == problem::cancelled) throw interrupted();
     throw failure_of(options, opened.error());
